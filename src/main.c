@@ -1,12 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Finds the command, runs it, prints its error, exits: 0 done and equal, 1 done and different, or incomplete, 2 bad usage or input,
-   3 the system failed, 130 interrupted by SIGINT or SIGTERM. */
-#define _GNU_SOURCE /* on_exit */
-#include "cli/commands.h"
-#include "cli/interrupt.h"
-#include "cli/print_contexts.h"
-#include "cli/notes.h"
-#include "common/names.h"
+#define _GNU_SOURCE
+#include "base/base.h"
+#include "cli/cli.h"
 
 #include <signal.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #pragma once
 #include "testing.h"
 
-#include "dynamics/contact_problem.h"
+#include "engine/engine.h"
 
 /* Two contact problems that are equal to the bit. */
 static inline void assert_equal_problems(const ContactProblem *one, const ContactProblem *two) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pieces of a plan, done by shards in one process. Include it after testing.h. */
 #pragma once
-#include "pieces/pieces.h"
+#include "runs/pieces.h"
 
 /* Does the plan in `count` shards beside the file `output`, the last first, and opens their pieces as a merge does. */
 static inline void in_shards(Pieces *merged, const PiecePlan *plan, const char *output, int count) {

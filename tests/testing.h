@@ -8,7 +8,7 @@
 /* cmocka.h comes after the four above. */
 #include <cmocka.h>
 
-#include "common/error.h"
+#include "base/base.h"
 
 #include <ftw.h>
 #include <stdio.h>

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "report/approve.h"
-
-#include "cli/commands.h"
+#include "base/base.h"
 #include "cli/options.h"
-#include "common/visible_text.h"
+#include "regression/report.h"
 
 #include <limits.h>
 #include <stdio.h>

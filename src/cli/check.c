@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
-#include "cli/draw_panels.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "common/file.h"
-#include "common/text_add.h"
-#include "simulate/scene_check.h"
+#include "engine/engine.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
+#include "pixels/png.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +17,7 @@
 
 enum { WIDTH = 1280, HEIGHT = 720 };
 
-/* s after the bomb is added in which it has struck: the view of the picture shows its way (picture/framing.h). */
+/* s after the bomb is added in which it has struck: the view of the picture shows its way (pictures/picture.h). */
 static const double way = 3;
 
 typedef struct Options {

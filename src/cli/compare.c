@@ -1,23 +1,176 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
-#include "cli/compare_options.h"
-#include "cli/compare_json.h"
-#include "cli/compare_print.h"
-#include "cli/compare_watch.h"
-#include "cli/notes.h"
-#include "cli/progress_bar.h"
-#include "common/standard_io.h"
-#include "common/hash.h"
-#include "common/text_add.h"
-#include "report/regression_github.h"
-#include "report/regression_report.h"
-#include "trajectory/trajectory.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/runs.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/regression.h"
+#include "regression/report.h"
+#include "runs/trajectory.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <time.h>
+
+static OptionRead read_fuzzy, read_tolerance, read_beyond, read_flip, read_antialias, read_mask;
+
+static const char *const annotation_kinds[] = {"none", "github", NULL}; /* CompareAnnotations */
+static const char *const metadata_kinds[] = {"report", "strict", NULL};
+
+static const Option option_table[] = {
+    {"--fuzzy", 0, "MAX,SHARE",
+     "Pass frames in which no channel differs by more than MAX (0 to 255) and at most this SHARE (0 to 1) of the "
+     "pixels differs",
+     OPTION_READ(read_fuzzy, CompareOptions, tolerance)},
+    {"--tolerance", 0, "MAX", "Ignore pixels in which no channel differs by more than MAX (0 to 255)",
+     OPTION_READ(read_tolerance, CompareOptions, tolerance)},
+    {"--beyond", 0, "SHARE", "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than that",
+     OPTION_READ(read_beyond, CompareOptions, tolerance)},
+    {"--flip", 0, "[p99=]MAX",
+     "Pass frames whose FLIP is at most MAX (0 to 1) on average, or at its 99th percentile (may be repeated); "
+     "prints FLIP of the first frame that fails",
+     OPTION_READ(read_flip, CompareOptions, tolerance)},
+    {"--antialias", 0, NULL, "Ignore pixels along edges that moved by a part of a pixel, or were sampled otherwise",
+     OPTION_READ(read_antialias, CompareOptions, tolerance)},
+    {"--rules", 0, "FILE",
+     "Limits and masks for files of certain names (default: " RULES_NAME " in EXPECTED, if it is there)",
+     OPTION_PATH(CompareOptions, rules)},
+    {"--mask", 0, "FILE.png|X,Y,W,H",
+     "Pixels to ignore: where this picture is neither black nor transparent, or a rectangle (may be repeated)",
+     OPTION_READ(read_mask, CompareOptions, mask)},
+    {"--max-pixels", 0, "N", "Refuse larger pictures before decoding them (default: 100000000)",
+     OPTION_INT(CompareOptions, max_pixels, 1, INT_MAX)},
+    {"--no-recursive", 0, NULL, "Leave out subfolders, and print how many pictures they hold",
+     OPTION_FLAG(CompareOptions, flat)},
+    {"--metadata", 0, "KIND",
+     "report or strict: pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, "
+     "orientation) are reported, or fail (default: report)",
+     OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
+    {"--report", 0, "DIR",
+     "Folder for report.html, junit.xml, results.tap, results.json, and run-NAME.html for each run that differs",
+     OPTION_TEXT(CompareOptions, report)},
+    {"--report-size", 0, "MB",
+     "Most that the pictures in the report may take, and as much for its pages of runs (default: 64)",
+     OPTION_INT(CompareOptions, megabytes, 1, 1000)},
+    {"--annotations", 0, "KIND",
+     "none, or github: print failures as annotations of GitHub Actions (at most ten) and append a summary to the file "
+     "named by GITHUB_STEP_SUMMARY (default: none)",
+     OPTION_ENUM(CompareOptions, annotations, annotation_kinds)},
+    {"--watch", 0, NULL,
+     "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
+     OPTION_FLAG(CompareOptions, watch)},
+    {OPTION_JSON(CompareOptions, json)},
+    {0}};
+
+static const CommandSpec spec = {
+    .options = option_table,
+    .input = {.value = "EXPECTED ACTUAL",
+              .needed = "two inputs are needed",
+              OPTION_PATHS(CompareOptions, paths, count)},
+    .inputs = {2, 2, "input"},
+    .help =
+        "Compare two trajectories (.npz) or two PNG sequences (folders with their subfolders, or single files). "
+        "Trajectories are equal if every bit of every pose and velocity is equal; pictures are equal if every decoded "
+        "pixel is. Frames are matched by name, or by the stem and the number of their names. Trajectories that are in "
+        "both folders, and the states "
+        "named in twinbox's own pictures, tell whether the physics or the renderer changed. Exit status 0: equal, 1: "
+        "different, 2: not comparable.\v"
+        "Example: twinbox compare golden/frames out/golden/frames --report out/report\n"
+        "         twinbox compare expected.npz actual.npz"};
+
+/* "X,Y,W,H"; false for anything else. */
+static bool parse_rectangle(const char *text, int numbers[4]) {
+    char part[16];
+    for (int i = 0; i < 4; i++) {
+        size_t length = strcspn(text, ",");
+        int64_t value;
+        if (length >= sizeof part || (text[length] == ',') != (i < 3)) return false;
+        memcpy(part, text, length);
+        part[length] = '\0';
+        if (!parse_int(part, i < 2 ? -1000000 : 1, 1000000, &value)) return false;
+        numbers[i] = (int)value;
+        text += length + 1;
+    }
+    return true;
+}
+
+static bool read_mask(const Option *option, const char *text, void *value, Error *error) {
+    int numbers[4];
+    const char *ending = strrchr(text, '.');
+    if (parse_rectangle(text, numbers))
+        return mask_add_rectangle(value, numbers[0], numbers[1], numbers[2], numbers[3], error);
+    if (ending != NULL && strcasecmp(ending, ".png") == 0) return mask_add_picture(value, text, error);
+    return error_input(error, option->name, "'%s' is neither a PNG file nor X,Y,W,H with W and H from 1", text);
+}
+
+static bool parse_share(const char *text, double *share) {
+    return parse_double(text, share) && *share >= 0 && *share <= 1;
+}
+
+static bool read_fuzzy(const Option *option, const char *text, void *value, Error *error) {
+    Tolerance *tolerance = value;
+    const char *comma = strchr(text, ',');
+    char largest[8] = "";
+    int64_t difference;
+    double share;
+    if (comma != NULL && comma - text < (int)sizeof largest) memcpy(largest, text, (size_t)(comma - text));
+    if (!parse_int(largest, 0, 255, &difference) || !parse_share(comma + 1, &share))
+        return error_input(error, option->name, "'%s' is not MAX,SHARE with MAX from 0 to 255 and SHARE from 0 to 1",
+                           text);
+    tolerance->given |= LIMIT_FUZZY;
+    tolerance->fuzzy = (int)difference;
+    tolerance->share = share;
+    return true;
+}
+
+static bool read_tolerance(const Option *option, const char *text, void *value, Error *error) {
+    Tolerance *tolerance = value;
+    int64_t difference;
+    if (!parse_int(text, 0, 255, &difference))
+        return error_input(error, option->name, "'%s' is not a whole number from 0 to 255", text);
+    tolerance->given |= LIMIT_TOLERANCE;
+    tolerance->tolerance = (int)difference;
+    return true;
+}
+
+static bool read_beyond(const Option *option, const char *text, void *value, Error *error) {
+    Tolerance *tolerance = value;
+    if (!parse_share(text, &tolerance->beyond))
+        return error_input(error, option->name, "'%s' is not a share from 0 to 1", text);
+    tolerance->given |= LIMIT_BEYOND;
+    return true;
+}
+
+static bool read_flip(const Option *option, const char *text, void *value, Error *error) {
+    return tolerance_parse_flip(value, text) ||
+           error_input(error, option->name, "'%s' is not MAX, mean=MAX or p99=MAX with MAX from 0 to 1", text);
+}
+
+static bool read_antialias(const Option *option, const char *text, void *value, Error *error) {
+    Tolerance *tolerance = value;
+    (void)option, (void)text, (void)error;
+    tolerance->given |= LIMIT_ANTIALIAS;
+    tolerance->antialias = true;
+    return true;
+}
+
+/* Reads the command line. False with error set if it is wrong, or after --help. */
+static bool compare_options_parse(CompareOptions *options, int argc, char **argv, Error *error) {
+    *options = (CompareOptions){.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES};
+    if (!options_parse(&spec, argc, argv, options, error)) return false;
+    if (options->json && (options->watch || options->annotations != ANNOTATE_NONE))
+        return error_input(error, "--json", "cannot be combined with --%s", options->watch ? "watch" : "annotations");
+    return true;
+}
+
+static void compare_options_free(CompareOptions *options) { mask_free(&options->mask); }
 
 static bool is_trajectory(const char *path) {
     size_t length = strlen(path);

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/progress_bar.h"
-#include "cli/shard_option.h"
-#include "common/file_reserve.h"
-#include "dataset/dataset_pieces.h"
-#include "npz/output_check.h"
+#include "learning/dataset.h"
+#include "methods/pair.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/camera_option.h"
-#include "cli/commands.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/picture_notes.h"
-#include "cli/progress_bar.h"
-#include "common/file.h"
-#include "figure/figure.h"
-#include "picture/caption_check.h"
-#include "type/type_check.h"
+#include "figures/figure.h"
+#include "figures/sketch.h"
+#include "pictures/picture.h"
+#include "pixels/type.h"
+#include "runs/trajectory.h"
 
 #include <stdio.h>
 #include <string.h>

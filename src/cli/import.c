@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
-#include "cli/notes.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "common/standard_io.h"
-#include "trajectory/csv_run.h"
-#include "trajectory/trajectory_name.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/shard_option.h"
-#include "common/file.h"
-#include "pieces/study_record.h"
+#include "runs/pieces.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
-#include "cli/json_output.h"
+#include "base/base.h"
+#include "base/json.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "simulate/method.h"
+#include "methods/methods.h"
 
 #include <stdio.h>
 

@@ -3,9 +3,8 @@
    Options that gets its value. What is not given keeps the value that the member had. argp writes the help and finds
    the options. Every command has -q and -v besides (notes.h). */
 #pragma once
-#include "common/error.h"
-#include "common/parse.h"
-#include "scene/scene.h"
+#include "base/base.h"
+#include "scenes/scenes.h"
 
 #include <stddef.h>
 #include <stdint.h>

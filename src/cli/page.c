@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
-#include "cli/draw_panels.h"
-#include "cli/frames_option.h"
-#include "cli/notes.h"
-#include "cli/panels.h"
-#include "cli/picture_notes.h"
-#include "common/file.h"
-#include "npz/output_check.h"
-#include "player/player.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "pictures/picture.h"
+#include "pictures/player.h"
+#include "runs/trajectory.h"
 
 #include <limits.h>
 #include <stdio.h>

@@ -1,17 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
-#include "cli/installed.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/progress_bar.h"
-#include "cli/shard_option.h"
-#include "common/file.h"
-#include "npz/output_check.h"
-#include "paper/figures/illustrations.h"
-#include "paper/figures/plots.h"
-#include "paper/report/paper_report.h"
-#include "paper/study/paper.h"
-#include "paper/systems/system.h"
-#include "paper/systems/system_strips.h"
+#include "paper/paper.h"
+#include "paper/report.h"
+#include "runs/pieces.h"
 
 #include <stdio.h>
 

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
+#include "base/base.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "dynamics/problem_file.h"
-#include "npz/output_check.h"
-#include "simulate/simulate.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdio.h>

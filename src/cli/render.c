@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/camera_option.h"
-#include "cli/commands.h"
-#include "cli/draw_panels.h"
-#include "cli/frames_option.h"
+#include "base/base.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/panel_costs.h"
-#include "cli/panels.h"
-#include "cli/picture_notes.h"
-#include "cli/render_shards.h"
-#include "cli/shard_option.h"
-#include "picture/caption_check.h"
-#include "picture/picture.h"
-#include "render/moments.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
+#include "pixels/gl.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
 
 #include <stdio.h>
 #include <string.h>

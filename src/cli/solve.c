@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "cli/commands.h"
-#include "cli/json_output.h"
+#include "base/base.h"
+#include "base/json.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "dynamics/problem_file.h"
-#include "reference/solution_error.h"
-#include "simulate/method.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,22 +1,264 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "stability/stability.h"
-
-#include "cli/commands.h"
-#include "cli/installed.h"
+#include "base/base.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/progress_bar.h"
-#include "cli/shard_option.h"
-#include "cli/stability_clip.h"
-#include "cli/stability_pages.h"
-#include "cli/stability_plan_print.h"
-#include "cli/stability_print.h"
-#include "npz/output_check.h"
-#include "stability/stability_case.h"
-#include "stability/stability_figures.h"
-#include "stability/stability_studies.h"
+#include "cli/runs.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+#include "studies/stability.h"
 
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* Relative tolerance of a typed number: figures show three digits. */
+static const double share = 0.01;
+
+static bool parse_values(const char *text, double *x, double *y) {
+    const char *rest;
+    return parse_leading_double(text, x, &rest) && *rest == ',' && parse_double(rest + 1, y);
+}
+
+bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error) {
+    const char *first = strchr(text, ':'), *last = strrchr(text, ':');
+    bool parts = first != NULL && first > text && last > first + 1;
+    if (!parts || (size_t)(first - text) >= sizeof cell->map || (size_t)(last - first) > sizeof cell->method ||
+        !parse_values(last + 1, &cell->x, &cell->y))
+        return error_input(error, "--clip", "'%s' is not MAP:METHOD:X,Y", text);
+    snprintf(cell->map, sizeof cell->map, "%.*s", (int)(first - text), text);
+    snprintf(cell->method, sizeof cell->method, "%.*s", (int)(last - first - 1), first + 1);
+    return true;
+}
+
+static bool is_near(double value, double typed) { return fabs(value - typed) <= share * fabs(value); }
+
+/* Names the known values of the part that was not found. */
+static const MapCell *fail(const MapTable *table, const StabilityCell *cell, bool map_known, bool method_known,
+                           Error *error) {
+    NameList names = {0}, ups = {0};
+    char text[MAP_METHOD_SIZE];
+    for (int i = 0; i < table->count; i++) {
+        const MapCell *row = &table->cells[i];
+        map_cell_method(text, row);
+        if (map_known && strcmp(row->map, cell->map) != 0) continue;
+        if (map_known && method_known && strcmp(text, cell->method) == 0) {
+            snprintf(text, sizeof text, "%.9g", row->y);
+            name_list_add(&ups, text);
+            snprintf(text, sizeof text, "%.9g", row->x);
+            name_list_add(&names, text);
+        } else if (!map_known || !method_known)
+            name_list_add(&names, map_known ? text : row->map);
+    }
+    if (!map_known)
+        error_input(error, "--clip", "there is no map %s in %s; its maps: %s", cell->map, table->csv.csv.path,
+                    names.used > 0 ? names.text : "none");
+    else if (!method_known)
+        error_input(error, "--clip", "map %s has no method %s; its methods: %s", cell->map, cell->method, names.text);
+    else
+        error_input(error, "--clip", "map %s has no cell %g,%g of method %s; its X: %s; its Y: %s", cell->map, cell->x,
+                    cell->y, cell->method, names.text, ups.text);
+    return NULL;
+}
+
+static double distance(const MapCell *row, const StabilityCell *cell) {
+    return fabs(row->x - cell->x) + fabs(row->y - cell->y);
+}
+
+const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *cell, Error *error) {
+    const MapCell *found = NULL;
+    bool map_known = false, method_known = false;
+    for (int i = 0; i < table->count; i++) {
+        const MapCell *row = &table->cells[i];
+        char method[MAP_METHOD_SIZE];
+        if (strcmp(row->map, cell->map) != 0) continue;
+        map_known = true;
+        map_cell_method(method, row);
+        if (strcmp(method, cell->method) != 0) continue;
+        method_known = true;
+        if (!is_near(row->x, cell->x) || !is_near(row->y, cell->y)) continue;
+        if (found == NULL || distance(row, cell) < distance(found, cell)) found = row;
+    }
+    return found != NULL ? found : fail(table, cell, map_known, method_known, error);
+}
+
+const MapCell *stability_cell_holder(const MapTable *table, const MapCell *row) {
+    for (int i = 0; i < table->count; i++) {
+        const MapCell *other = &table->cells[i];
+        if (strcmp(other->map, row->map) == 0 && other->x == row->x && other->y == row->y &&
+            other->verdict < VERDICTS && verdict_holds((Verdict)other->verdict))
+            return other;
+    }
+    return NULL;
+}
+
+/* s that are shown after the frame that decided the verdict. */
+static const double shown_after = 3;
+
+/* Hz: a scene with more steps per second is thinned to this rate. */
+static const double shown_rate = 60;
+
+typedef struct Making {
+    CellRuns *runs;
+    const ClipMap *map;
+    const char *input;
+    const Progress *progress;
+} Making;
+
+static void choose_rows(CellRuns *runs, const MapTable *table, const MapCell *cell) {
+    const MapCell *holder = verdict_holds((Verdict)cell->verdict) ? NULL : stability_cell_holder(table, cell);
+    if (holder != NULL) runs->rows[runs->count++] = holder;
+    runs->rows[runs->count++] = cell;
+}
+
+static Scene *read_scene(const Making *making, Error *error) {
+    SceneSetting settings[2] = {{.value = making->runs->rows[0]->x}, {.value = making->runs->rows[0]->y}};
+    snprintf(settings[0].name, sizeof settings[0].name, "%s", making->map->x_parameter);
+    snprintf(settings[1].name, sizeof settings[1].name, "%s", making->map->y_parameter);
+    return scene_read_with(making->map->scene, settings, 2, error);
+}
+
+static void cell_note(char note[CELL_NOTE_SIZE], const MapCell *cell, double dt);
+
+static bool add_run(const Making *making, const Scene *scene, const MapCell *row, Error *error) {
+    Panels *panels = &making->runs->panels;
+    char method[MAP_METHOD_SIZE], note[CELL_NOTE_SIZE];
+    map_cell_method(method, row);
+    if (!panels_add_watched(panels, scene, method, making->input, making->progress, error)) return false;
+    Trajectory *run = panels->runs[panels->count - 1];
+    cell_note(note, row, (double)scene->dt);
+    trajectory_judge(run, note, !isnan(row->frame) && row->frame < run->frames ? (int)row->frame : -1,
+                     !isnan(row->body) && row->body < run->bodies ? (int)row->body : -1);
+    return true;
+}
+
+/* After an explosion, states may become NaN or infinite in the seconds that follow: then these are left out. */
+static bool run_row(const Making *making, Scene *scene, const MapCell *row, int shown, Error *error) {
+    Error failure = {0};
+    int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;
+    scene->frames = row->verdict == VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
+    if (add_run(making, scene, row, &failure)) return true;
+    if (row->verdict != VERDICT_EXPLODES || failure.kind != ERROR_INPUT || decided >= shown) {
+        *error = failure;
+        return false;
+    }
+    scene->frames = decided;
+    return add_run(making, scene, row, error);
+}
+
+static bool run_all(const Making *making, Error *error) {
+    CellRuns *runs = making->runs;
+    Scene *scene = read_scene(making, error);
+    if (scene == NULL) return false;
+    const MapCell *own = runs->rows[runs->count - 1];
+    double shown = (isnan(own->frame) ? scene->frames : own->frame) + ceil(shown_after / (double)scene->dt);
+    runs->dt = (double)scene->dt;
+    bool ok = true;
+    for (int i = 0, frames = scene->frames; ok && i < runs->count; i++)
+        ok = run_row(making, scene, runs->rows[i], shown < frames ? (int)shown : frames, error);
+    scene_destroy(scene);
+    return ok;
+}
+
+static bool thin_out(CellRuns *runs, Error *error) {
+    int every = (int)(1 / (shown_rate * runs->dt) + 0.01);
+    for (int i = 0; every > 1 && i < runs->panels.count; i++) {
+        Trajectory *thin = trajectory_every(runs->panels.runs[i], every, error);
+        if (thin == NULL) return false;
+        trajectory_destroy(runs->panels.runs[i]);
+        runs->panels.runs[i] = thin;
+    }
+    return true;
+}
+
+bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapTable *table, const MapCell *cell, const char *input,
+                    const Progress *progress, Error *error) {
+    const Making making = {runs, map, input, progress};
+    *runs = (CellRuns){.count = 0};
+    choose_rows(runs, table, cell);
+    return run_all(&making, error) && thin_out(runs, error);
+}
+
+void cell_runs_free(CellRuns *runs) { panels_free(&runs->panels); }
+
+/* "falls at 4.22 s (0.53 m, body 7)" */
+static void cell_note(char note[CELL_NOTE_SIZE], const MapCell *cell, double dt) {
+    size_t used = (size_t)snprintf(note, CELL_NOTE_SIZE, "%s", verdict_words[cell->verdict]);
+    if (verdict_holds((Verdict)cell->verdict) || isnan(cell->frame)) return;
+    used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, " at %.2f s", cell->frame * dt);
+    if (isnan(cell->value)) return;
+    used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, " (%.3g %s", cell->value, cell->unit);
+    if (!isnan(cell->body) && cell->body >= 0)
+        used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, ", body %.0f", cell->body);
+    snprintf(note + used, CELL_NOTE_SIZE - used, ")");
+}
+
+enum { TITLE_SIZE = 320 };
+
+static const MapCell *find_cell(const ClipOptions *options, const MapTable *table, Error *error) {
+    StabilityCell cell;
+    if (!stability_cell_parse(&cell, options->cell, error)) return NULL;
+    const MapCell *row = stability_cell_find(table, &cell, error);
+    if (row == NULL || row->verdict < VERDICTS) return row;
+    error_input(error, "--clip", "'%s' is not applicable", options->cell);
+    return NULL;
+}
+
+static const ClipMap *find_map(const ClipOptions *options, const MapCell *row, Error *error) {
+    for (int i = 0; i < options->map_count; i++)
+        if (strcmp(options->maps[i].name, row->map) == 0) return &options->maps[i];
+    error_input(error, "--clip", "map %s has no scene", row->map);
+    return NULL;
+}
+
+static bool stability_clip_draw(const ClipOptions *options, CellRuns *runs, Error *error) {
+    const MapCell *own = runs->rows[runs->count - 1];
+    char name[MAP_CLIP_SIZE], folder[PATH_MAX], video[PATH_MAX], title[TITLE_SIZE];
+    char notes[2][CELL_NOTE_SIZE];
+    map_cell_clip(name, own);
+    if (!file_path(folder, sizeof folder, error, "%s/%s", options->folder, name) ||
+        !file_path(video, sizeof video, error, "%s.mp4", folder))
+        return false;
+    snprintf(title, sizeof title, "%s %.4g %s, %s %.4g %s", own->x_parameter, own->x, own->x_unit, own->y_parameter,
+             own->y, own->y_unit);
+    RenderOptions render = draw_panels_defaults(folder);
+    render.width = options->width;
+    render.height = options->height;
+    render.title = title;
+    for (int i = 0; i < runs->count; i++) {
+        cell_note(notes[i], runs->rows[i], runs->dt);
+        render.notes[i] = notes[i];
+    }
+    const DrawVideos videos = {1, {video}};
+    RenderResult result;
+    if (!file_make_directory(folder, error) || !draw_videos_check(&videos, render.width, render.height, false, error) ||
+        !draw_panels(&runs->panels, &render, &videos, NULL, &result, error))
+        return false;
+    printf("%s: %s -> %s, %s/frame_%06d.png ... frame_%06d.png\n", options->cell, notes[runs->count - 1], video, folder,
+           result.first, result.last);
+    return true;
+}
+
+bool stability_clip(const ClipOptions *options, Error *error) {
+    MapTable table;
+    if (!map_table_read(&table, options->folder, error)) return false;
+    CellRuns runs = {.count = 0};
+    const MapCell *row = find_cell(options, &table, error);
+    const ClipMap *map = row != NULL ? find_map(options, row, error) : NULL;
+    bool ok = map != NULL && cell_runs_make(&runs, map, &table, row, options->cell, NULL, error) &&
+              stability_clip_draw(options, &runs, error);
+    cell_runs_free(&runs);
+    map_table_free(&table);
+    return ok;
+}
 
 /* One parameter more than can be varied, which stability_own_make() then refuses. */
 enum { CLIP_WIDTH = 1280, CLIP_HEIGHT = 720, VARY_TEXTS = STABILITY_MAX_VARY + 1 };

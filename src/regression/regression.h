@@ -1,25 +1,103 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How far a picture may differ and still pass. Nothing given: every pixel must be equal. */
+#pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/flip.h"
+#include "regression/naming.h"
+#include "runs/trajectory.h"
+
+/* Bits of Tolerance.given. */
+typedef enum ToleranceLimit {
+    LIMIT_FUZZY = 1 << 0,
+    LIMIT_TOLERANCE = 1 << 1,
+    LIMIT_BEYOND = 1 << 2,
+    LIMIT_FLIP_MEAN = 1 << 3,
+    LIMIT_FLIP_P99 = 1 << 4,
+    LIMIT_ANTIALIAS = 1 << 5,
+    LIMITS_FLIP = LIMIT_FLIP_MEAN | LIMIT_FLIP_P99
+} ToleranceLimit;
+
+/* All that is given must hold. Members that are not given are 0. */
+typedef struct Tolerance {
+    unsigned given;
+    int fuzzy;                  /* largest difference of a channel, 0..255 */
+    double share;               /* largest share of pixels that differ, 0..1; given with fuzzy */
+    int tolerance;              /* pixels that differ by at most this, 0..255, count as equal */
+    double beyond;              /* largest share of pixels that differ by more than `tolerance` */
+    double flip_mean, flip_p99; /* largest FLIP: mean, 99th percentile (regression/flip.h) */
+    bool antialias;             /* ignore pixels along edges (regression/internal.h) */
+} Tolerance;
+
+/* Replaces in *tolerance what `over` gives. */
+void tolerance_override(Tolerance *tolerance, const Tolerance *over);
+
+/* Whether the pictures pass. `flip` is used only if a limit of FLIP is given. */
+bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *difference, const FlipSummary *flip);
+
+/* "differences of at most 2 in at most 1% of the pixels, FLIP of at most 0.01 on average"; "none". */
+typedef struct ToleranceText {
+    char text[320];
+} ToleranceText;
+ToleranceText tolerance_words(const Tolerance *tolerance);
+
+/* "MAX", "mean=MAX" or "p99=MAX", with MAX from 0 to 1. False, and nothing set, for anything else. */
+bool tolerance_parse_flip(Tolerance *tolerance, const char *text);
+
+/* Rules of a comparison: what the files of certain names may differ in. A YAML file:
+
+     rules:
+       - files: "stack_*"        # a glob of names, with their folder if they have one; * also stands for /
+         tolerance: 3            # as the options of compare of these names
+         beyond: 0.001
+         fuzzy: [2, 0.01]
+         flip: 0.01              # or: flip: {mean: 0.01, p99: 0.1}
+         antialias: on
+         masks:
+           - rectangle: [0, 0, 320, 20]
+           - picture: clock.png  # beside this file
+           - colour: "#ff00ff"   # opaque pixels that have this colour in the expected picture
+
+   Rules apply from top to bottom: a later one replaces the limits of an earlier one, and all masks count. */
+
+#define RULES_NAME "compare.yaml" /* in the expected folder */
+
+/* Of one file: each name is matched with each rule, and pictures stay in memory. */
+enum { RULES_MAX = 256, RULES_MAX_PICTURES = 64 };
+
+typedef struct Rules Rules;
+
+/* ERROR_INPUT, with line and column, for anything that is not a rule: unknown keys, values out of range, masks that
+   cannot be read. */
+Rules *rules_read(const char *path, Error *error);
+void rules_destroy(Rules *rules); /* NULL: does nothing */
+const char *rules_path(const Rules *rules);
+
+/* Finds the rules for each of the names. ERROR_INPUT, with the place of the rule, if one matches none of them. */
+bool rules_check_names(const Rules *rules, const char *const *names, int count, Error *error);
+
+/* Replaces in *tolerance what the rules for this name give. */
+void rules_override(const Rules *rules, const char *name, Tolerance *tolerance);
+
+/* Whether the rules for this name have masks; mask_most_hidden() of all of them, and mask_draw(). */
+bool rules_have_masks(const Rules *rules, const char *name);
+double rules_most_hidden(const Rules *rules, const char *name, int width, int height);
+bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,
+                      Error *error);
+
 /* Compares expected with actual pictures, frame by frame, and finds the cause of differences: the physics changed if
    the states of the bodies differ, the renderer if only pixels differ. States are compared by trajectories of the same
    name in both folders and by the "State" texts in the pictures. Without either the cause is unknown. */
-#pragma once
-#include "common/progress.h"
-#include "image/image_compare.h"
-#include "image/mask.h"
-#include "image/png_display.h"
-#include "image/sequence.h"
-#include "naming/change.h"
-#include "regression/rules.h"
-#include "naming/shown.h"
-#include "trajectory/trajectory.h"
 
 typedef struct RegressionOptions {
-    Tolerance tolerance;  /* replaces what the rules give */
-    const char *rules;    /* a file (regression/rules.h); NULL: RULES_NAME in the expected folder, if it is there */
-    const Mask *mask;     /* for all frames, beside the masks of the rules; or NULL */
-    int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
-    bool flat;            /* without subfolders */
-    bool strict_metadata; /* files that display differently fail (image/png_display.h) */
+    Tolerance tolerance; /* replaces what the rules give */
+    const char *rules;   /* a file (regression/regression.h); NULL: RULES_NAME in the expected folder, if it is there */
+    const Mask *mask;    /* for all frames, beside the masks of the rules; or NULL */
+    int64_t max_pixels;  /* of a picture; larger ones are refused before decompression */
+    bool flat;           /* without subfolders */
+    bool strict_metadata; /* files that display differently fail (regression/compare.h) */
 } RegressionOptions;
 
 typedef enum RegressionSide { EXPECTED, ACTUAL, SIDES } RegressionSide;
@@ -70,7 +148,7 @@ typedef struct RegressionFrame {
     ImageDifference difference;
     PngDisplay metadata; /* that differs; only for different files */
     bool metadata_failed;
-    double flip, flip_p99; /* image/flip.h; NaN where neither a limit nor the report needs it */
+    double flip, flip_p99; /* regression/flip.h; NaN where neither a limit nor the report needs it */
     bool run_differs;      /* a trajectory of its scene differs in any frame */
     bool other_view;       /* the cameras of its pictures differ, so their regions have no names */
     FrameChanges *changes; /* of different pixels; else NULL */
@@ -114,7 +192,7 @@ typedef struct Regression {
     double seconds;                   /* of the whole comparison */
 } Regression;
 
-/* Compares two folders, or two files, with all threads. Identical files are checked (image/png_check.h), but not decoded.
+/* Compares two folders, or two files, with all threads. Identical files are checked (pixels/png.h), but not decoded.
    False with error set if a file cannot be read (the first by the order of frames), if masks hide all its pixels, or if
    progress stops the comparison; then nothing needs to be freed. */
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,

@@ -103,7 +103,7 @@ cmp again/run.5 "$pages/man5/twinbox-run.5" || fail "another page of runs"
 SOURCE_DATE_EPOCH=1 sh "$manuals/command.sh" again/solve.1 "$("$twinbox" --version | cut -d ' ' -f 2)" "$twinbox" \
     "$("$twinbox" --help | sed -n 's/^  solve *//p')" solve
 cmp again/solve.1 "$pages/man1/twinbox-solve.1" || fail "another page of solve"
-sed 's/^## Datasets/## Data/' "$sources/src/trajectory/README.md" >changed.md
+sed 's/^## Datasets/## Data/' "$sources/src/runs/README.md" >changed.md
 awk -v intro=1 -v sections=Datasets -f "$manuals/page.awk" changed.md >out 2>err && fail "a section that is gone is not missed"
 complains "not all of these sections are there: Datasets"
 finish

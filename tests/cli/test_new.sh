@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# twinbox new: scenes to start from, in any folder; tests/stability/test_templates.c tests that they stand.
+# twinbox new: scenes to start from, in any folder; tests/studies/test_templates.c tests that they stand.
 . "$(dirname "$0")/checks.sh"
 
 for kind in wall stack pyramid arch dominoes; do

@@ -2,10 +2,9 @@
 /* What reaches standard error at each level. Time is that of the test: the linker replaces clock_seconds(). */
 #include "testing.h"
 
-#include "cli/notes.h"
-#include "cli/progress_bar.h"
-#include "common/file.h"
-#include "common/trace.h"
+#include "cli/cli.h"
+#include "base/file.h"
+#include "base/base.h"
 
 static double now; /* s */
 

@@ -2,8 +2,9 @@
 /* The pages of a study stay within bounds: of one page, and of all together. */
 #include "testing.h"
 
-#include "cli/page_set.h"
-#include "common/file.h"
+#include "cli/cli.h"
+#include "studies/chart_internal.h"
+#include "base/file.h"
 
 /* Two boxes that stand still for so many frames. */
 static Trajectory *make_run(int frames) {

@@ -3,13 +3,12 @@
    stability study then know it. */
 #include "testing.h"
 
-#include "cli/commands.h"
-#include "cli/draw_panels.h"
-#include "common/file.h"
-#include "picture/caption.h"
-#include "render/runs.h"
-#include "solvers/solvers.h"
-#include "study/contenders.h"
+#include "cli/cli.h"
+#include "base/file.h"
+#include "pictures/internal.h"
+#include "pictures/runs.h"
+#include "methods/methods.h"
+#include "studies/chart.h"
 
 static void *create(const Settings *chosen, Error *error) { return solver_engine.create(chosen, error); }
 
@@ -29,7 +28,7 @@ static const ContactSolverKind solver_of_test = {.description = {.name = "of-tes
                                                  .solve = solve,
                                                  .destroy = destroy};
 
-/* In place of simulate/methods.c, which is not linked. */
+/* In place of methods/registry.c, which is not linked. */
 const MethodKind method_kinds[] = {METHODS(METHOD_KIND_SOLVER, METHOD_KIND_STEPPING) METHOD_KIND_SOLVER(of_test){0}};
 
 static char *read_text(const char *path) {
@@ -139,7 +138,7 @@ static void a_picture_has_its_caption(void **state) {
     Picture picture;
     Trajectory *run = run_make("of-test", 2);
     const RenderOptions options = draw_panels_defaults(".");
-    char name[CAPTION_SIZE], note[CAPTION_SIZE];
+    char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
     assert_ok(picture_plan(&picture, (const Trajectory *[]){run}, 1, 640, 360, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);
     caption_method(&picture, 0, name, note);

@@ -145,7 +145,7 @@ says "129 frames -> short/frame_000050.png ... frame_000178.png"
 "$twinbox" render single.yaml -o grey --size 96x64 --frames 0:0 --video - 2>err </dev/null |
     ffmpeg -v error -colorspace bt709 -i - back.png
 /usr/bin/python3 - >out <<'PYTHON'
-# The ffmpeg command of src/render/README.md gives the colours back.
+# The ffmpeg command of src/pictures/README.md gives the colours back.
 import subprocess
 def pixels(path):
     command = ["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]

@@ -2,8 +2,8 @@
 /* Which failures of a run are verdicts. */
 #include "testing.h"
 
-#include "cli/simulate_verdict.h"
-#include "common/file.h"
+#include "cli/runs.h"
+#include "base/file.h"
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step; no scene file may have that speed. */
 static void a_run_that_overflows_has_a_verdict(void **state) {

@@ -2,8 +2,8 @@
 /* Cells of maps as they are named on the command line, and found in the table. */
 #include "testing.h"
 
-#include "cli/stability_cell.h"
-#include "common/file.h"
+#include "cli/runs.h"
+#include "base/file.h"
 
 #define HEADER "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit\n"
 

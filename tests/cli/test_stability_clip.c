@@ -2,8 +2,8 @@
 /* Clips of cells: which frames there are, and of which runs. The table's verdicts are made up. */
 #include "testing.h"
 
-#include "cli/stability_clip.h"
-#include "common/file.h"
+#include "cli/runs.h"
+#include "base/file.h"
 
 #define ROW(method, height, verdict, frame) \
     "m," method ",,rate,Hz,%d,height,," height "," verdict "," frame ",1,0.5,m\n"

@@ -5,7 +5,7 @@
 
    A finding is an abort with a message; the sanitizers have more: memory errors, undefined behaviour, leaks. */
 #pragma once
-#include "common/error.h"
+#include "base/base.h"
 
 #include <stddef.h>
 #include <stdint.h>

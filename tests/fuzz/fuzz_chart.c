@@ -2,8 +2,7 @@
 /* What a merge reads from the pieces of a chart: their results are bytes. */
 #include "fuzz.h"
 
-#include "study/method_scores.h"
-#include "study/scene_times.h"
+#include "studies/chart_internal.h"
 
 #include <stdlib.h>
 

@@ -3,9 +3,9 @@
 #include "fuzz.h"
 
 #include "fuzz_png.h"
-#include "naming/view.h"
-#include "regression/rules.h"
-#include "report/approve_read.h"
+#include "regression/naming.h"
+#include "regression/regression.h"
+#include "regression/internal.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +39,7 @@ void fuzz_results(const uint8_t *data, size_t size) {
 }
 
 void fuzz_view(const uint8_t *data, size_t size) {
-    View view;
+    FrameView view;
     Error error = {0};
     const char *path = fuzz_file("manifest.json", data, size);
     fuzz_begin();

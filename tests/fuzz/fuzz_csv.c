@@ -2,17 +2,13 @@
 /* CSV files: launches, the tables of charts and studies, runs. */
 #include "fuzz.h"
 
-#include "paper/study/paper_tables.h"
-#include "paper/systems/hybrid_study.h"
-#include "paper/systems/gns_study.h"
-#include "paper/systems/subspace_study.h"
-#include "paper/systems/sain_study.h"
-#include "paper/systems/system_claims.h"
-#include "scene/launch.h"
-#include "stability/stability_table.h"
-#include "study/chart_csv.h"
-#include "study/equal_time.h"
-#include "trajectory/csv_run.h"
+#include "paper/paper_internal.h"
+#include "paper/paper.h"
+#include "scenes/scenes.h"
+#include "studies/stability.h"
+#include "studies/chart.h"
+#include "studies/chart_internal.h"
+#include "runs/trajectory.h"
 
 #include <math.h>
 #include <string.h>

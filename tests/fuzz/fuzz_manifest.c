@@ -2,8 +2,8 @@
 /* What --resume takes from an earlier manifest.json and from its journal. */
 #include "fuzz.h"
 
-#include "common/file.h"
-#include "render/manifest_print.h"
+#include "base/file.h"
+#include "pictures/render_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

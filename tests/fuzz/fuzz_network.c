@@ -3,13 +3,11 @@
 #include "fuzz.h"
 
 #include "fuzz_archive.h"
-#include "learning/fit_state.h"
-#include "network/network.h"
-#include "network/slot_network.h"
-#include "particles/gns_net.h"
-#include "relation/relation_network.h"
-#include "subspace/subspace.h"
-#include "tabulation/tabulation.h"
+#include "learning/learning.h"
+#include "nets/nets.h"
+#include "nets/kinds.h"
+#include "methods/solvers.h"
+#include "methods/tabulation.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,12 +2,12 @@
 /* Readers of .npz: runs (of twinbox and of others), datasets, contact problems; and the archive itself. */
 #include "fuzz.h"
 
-#include "dataset/dataset.h"
-#include "dynamics/problem_file.h"
+#include "learning/dataset.h"
+#include "runs/runs.h"
 #include "fuzz_archive.h"
-#include "npz/npz.h"
-#include "simulate/method.h"
-#include "trajectory/trajectory.h"
+#include "base/npz.h"
+#include "methods/methods.h"
+#include "runs/trajectory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,9 +2,8 @@
 /* What shards leave for each other: run.json, and the files of pieces. */
 #include "fuzz.h"
 
-#include "common/file.h"
-#include "pieces/piece_file.h"
-#include "pieces/study_record.h"
+#include "base/file.h"
+#include "runs/pieces.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,11 +4,9 @@
 #include "fuzz_png.h"
 #include "fuzz.h"
 
-#include "image/image.h"
-#include "image/png_check.h"
-#include "image/png_chunk.h"
-#include "image/png_display.h"
-#include "image/png_fast.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "pixels/internal.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,9 +3,9 @@
    hash, so these bytes would have been written with it. */
 #include "fuzz.h"
 
-#include "common/memory_stream.h"
-#include "dataset/dataset_pieces.h"
-#include "impact_training/slot_samples.h"
+#include "base/file.h"
+#include "learning/dataset.h"
+#include "learning/scene_training.h"
 
 #include <stdlib.h>
 #include <string.h>

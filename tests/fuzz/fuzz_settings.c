@@ -2,8 +2,8 @@
 /* Methods and their settings, as --method has them, and the laws of a loss. */
 #include "fuzz.h"
 
-#include "simulate/method.h"
-#include "training/law_weights.h"
+#include "methods/methods.h"
+#include "learning/pair_training.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
    such as one that libFuzzer has found. */
 #include "testing.h"
 
-#include "common/file.h"
+#include "base/file.h"
 #include "fuzz.h"
 
 #include <dirent.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "learning/adam.h"
+#include "learning/learning.h"
 
 #include <math.h>
 

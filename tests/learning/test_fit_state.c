@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "learning/fit_state.h"
-#include "npz/npz.h"
+#include "learning/learning.h"
+#include "base/npz.h"
 
 #include <math.h>
 #include <unistd.h>

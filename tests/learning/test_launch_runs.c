@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "learning/launch_runs.h"
-#include "simulate/simulate.h"
+#include "learning/dataset.h"
+#include "runs/runs.h"
 
 #include <math.h>
 

@@ -2,9 +2,8 @@
 /* The study of gns: runs beside the teacher's, and verdicts from made-up tables. */
 #include "testing.h"
 
-#include "common/file.h"
-#include "paper/systems/gns_rollout.h"
-#include "paper/systems/gns_study.h"
+#include "base/file.h"
+#include "paper/paper_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 /* Whichever allocation fails, also of cmark-gfm, which aborts by itself: a page is written whole, or memory is named. */
 #include "library_allocations.h"
 
-#include "image/image.h"
-#include "paper/report/html_page.h"
+#include "pixels/png.h"
+#include "paper/report_internal.h"
 
 static char whole[1 << 14];
 

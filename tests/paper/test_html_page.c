@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "image/image.h"
-#include "paper/report/html_page.h"
+#include "pixels/png.h"
+#include "paper/report_internal.h"
 
 static void write_picture(const char *name) {
     Error error = {0};
@@ -58,7 +58,7 @@ static void pictures_are_embedded(void **state) {
     write_picture("a.png");
     expect_within("![\"x\" & y](a.png)\n\n**Figure 1.** z\n\nbehind\n",
                   "<figure><img width=\"5\" height=\"3\" style=\"max-width:3px\" alt=\"&quot;x&quot; &amp; y\" "
-                  "src=\"data:image/png;base64,iVBORw0KGgo");
+                  "src=\"data:pixels/png;base64,iVBORw0KGgo");
     expect_within("![x](a.png)\n\n**Figure 1.** z\n\nbehind\n",
                   "<figcaption><p><strong>Figure 1.</strong> z</p>\n</figcaption></figure>\n<p>behind</p>");
     expect_within("![x](a.png)\n", "<figcaption></figcaption></figure>");

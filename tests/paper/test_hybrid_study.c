@@ -2,10 +2,10 @@
 /* The quick learning of the single box, and claims from tables made by hand. */
 #include "testing.h"
 
-#include "paper/systems/hybrid_study.h"
+#include "paper/paper_internal.h"
 
-#include "common/file.h"
-#include "tabulation_training/tabulation_training.h"
+#include "base/file.h"
+#include "learning/hybrid_training.h"
 
 #include <math.h>
 #include <sys/stat.h>

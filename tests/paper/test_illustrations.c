@@ -2,15 +2,15 @@
 /* The figures are drawn once, from the scenes that ship. */
 #include "testing.h"
 
-#include "render/mesa.h"
+#include "pictures/mesa.h"
 
-#include "common/file.h"
-#include "dataset/dataset.h"
-#include "paper/figures/illustration_parts.h"
-#include "paper/figures/illustrations.h"
-#include "figure/separating_axes.h"
-#include "sketch/sketch_files.h"
-#include "simulate/simulate.h"
+#include "base/file.h"
+#include "learning/dataset.h"
+#include "paper/report_internal.h"
+#include "paper/report.h"
+#include "figures/figure.h"
+#include "figures/sketch.h"
+#include "runs/runs.h"
 
 #include <math.h>
 
@@ -75,7 +75,7 @@ static void drawings_say_what_they_show(void **state) {
     expect_texts("data",
                  (const char *const[]){"21 of 201 launches", "Ten inputs", "angle b", "dvxa", "velocity before", NULL});
     expect_texts("scenes", (const char *const[]){"1  Single: 1 box", "2  Stack: 10 boxes", "3  Pyramid: 66 boxes",
-                                                 "data:image/png;base64,", NULL});
+                                                 "data:pixels/png;base64,", NULL});
 }
 
 /* The engine's run of a scene, up to a step. */
@@ -190,7 +190,7 @@ static Box moved(const Box *a, const Box *b, Vec2 axis, double way) {
 }
 
 /* Moving a box by the smallest overlap separates the two. The engine's normal is along the axis of the smallest overlap,
-   or of a nearly equal one (clearly_better() in collision/manifold.c). Its points are as deep as that, or less deep where
+   or of a nearly equal one (clearly_better() in engine/box.c). Its points are as deep as that, or less deep where
    clipping has cut the deepest corner off. */
 static void the_smallest_overlap_separates_the_boxes(void **state) {
     (void)state;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "paper/study/law_study.h"
+#include "paper/paper_internal.h"
 
 #include <math.h>
 

@@ -3,10 +3,10 @@
    that predicts the mean has the constant predictor's. */
 #include "testing.h"
 
-#include "pair/pair.h"
-#include "network/network.h"
-#include "scene/launch.h"
-#include "paper/study/pair_rates.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
+#include "scenes/scenes.h"
+#include "paper/paper_internal.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 /* The study is honest only if one factor is varied at a time. */
 #include "testing.h"
 
-#include "paper/study/paper_networks.h"
+#include "paper/paper.h"
 
 /* Factors in which a network can be other than the baseline. The first width follows from the inputs, the last from
    the outputs; the scaling belongs to the output's activation. */

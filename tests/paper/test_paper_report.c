@@ -2,9 +2,9 @@
 /* Reports of small hand-written tables, with figures of a few pixels. */
 #include "python.h"
 
-#include "common/file.h"
-#include "image/image.h"
-#include "paper/report/paper_report.h"
+#include "base/file.h"
+#include "pixels/png.h"
+#include "paper/report.h"
 
 static const char *const tables[] = {"table1.csv",   "networks.csv", "rates.csv",         "closed_loop.csv", "laws.csv",
                                      "transfer.csv", "study.csv",    "system_scores.csv", "systems.csv",     NULL};
@@ -287,7 +287,7 @@ static void the_page_is_whole_and_needs_nothing(void **state) {
                "assert p.seen.count('img') == p.seen.count('figcaption') == 22\n"
                "for image in p.images:\n"
                "    head, data = image['src'].split(',')\n"
-               "    assert head == 'data:image/png;base64' and image['alt'], image\n"
+               "    assert head == 'data:pixels/png;base64' and image['alt'], image\n"
                "    assert base64.b64decode(data, validate=True)[:8] == b'\\x89PNG\\r\\n\\x1a\\n'\n"
                "    assert (image['width'], image['height']) == ('5', '3')\n"
                "assert base64.b64decode(p.images[0]['src'].split(',')[1]) == open(sys.argv[1].replace('report.html',\n"

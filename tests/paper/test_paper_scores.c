@@ -3,8 +3,7 @@
    three, but for times. */
 #include "testing.h"
 
-#include "paper/study/pair_rates.h"
-#include "paper/study/paper_scores.h"
+#include "paper/paper_internal.h"
 
 #include <omp.h>
 

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "allocations.h"
-#include "paper/study/paper_training.h"
+#include "paper/paper_internal.h"
 
 #include <math.h>
 

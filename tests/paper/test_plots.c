@@ -2,9 +2,9 @@
 /* paper/: tables made up after measured ones, each with all that its figure can show. */
 #include "python.h"
 
-#include "paper/figures/plots.h"
+#include "paper/report.h"
 
-#include "common/file.h"
+#include "base/file.h"
 
 #include <sys/stat.h>
 

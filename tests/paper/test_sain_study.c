@@ -2,8 +2,8 @@
 /* paper/systems: the study of sain, and its claims on made-up tables. */
 #include "testing.h"
 
-#include "paper/systems/sain_study.h"
-#include "study/piece_tables.h"
+#include "paper/paper_internal.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <unistd.h>

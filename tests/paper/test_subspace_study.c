@@ -2,11 +2,10 @@
 /* The study of subspace: what is measured, and claims judged from a made-up table. */
 #include "testing.h"
 
-#include "common/file.h"
-#include "paper/study/paper_data.h"
-#include "paper/systems/subspace_study.h"
-#include "paper/systems/system.h"
-#include "study/piece_tables.h"
+#include "base/file.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
+#include "studies/chart.h"
 
 #include <math.h>
 

@@ -2,11 +2,10 @@
 /* The frame of the systems that the paper cites, tried on a system made for this test: interior with other limits. */
 #include "testing.h"
 
-#include "common/file.h"
-#include "paper/systems/system.h"
-#include "paper/systems/system_strips.h"
+#include "base/file.h"
+#include "paper/paper.h"
 #include "sanitized.h"
-#include "study/piece_tables.h"
+#include "studies/chart.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "paper/report/template.h"
+#include "paper/report_internal.h"
 
 static void write_file(const char *name, const char *text) { write_bytes(temporary_path(name), text, strlen(text)); }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "dataset/dataset_subset.h"
-#include "paper/study/transfer_study.h"
+#include "learning/dataset.h"
+#include "paper/paper_internal.h"
 
 #include <math.h>
 

@@ -2,10 +2,10 @@
 /* The smallest possible changes, each with its verdict: the cause and the first frame. */
 #include "testing.h"
 
-#include "common/file.h"
-#include "render/mesa.h"
-#include "render/render.h"
-#include "render/runs.h"
+#include "base/file.h"
+#include "pictures/mesa.h"
+#include "pictures/render.h"
+#include "pictures/runs.h"
 #include "regression/regression.h"
 
 #include <math.h>

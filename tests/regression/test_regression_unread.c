@@ -3,7 +3,7 @@
 #include "folder_faults.h"
 #include "testing.h"
 
-#include "common/file.h"
+#include "base/file.h"
 #include "regression/regression.h"
 
 static char expected[256], actual[256];

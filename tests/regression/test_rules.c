@@ -2,7 +2,7 @@
 /* Rules of a comparison: what is refused, with its place, and what applies to a name; limits that hold or not. */
 #include "testing.h"
 
-#include "regression/rules.h"
+#include "regression/regression.h"
 
 static Rules *read_text(const char *text, Error *error) {
     *error = (Error){.kind = ERROR_NONE};

@@ -11,7 +11,7 @@ if(NOT HELP2MAN OR NOT CMARK_GFM)
 endif()
 
 set(folder ${CMAKE_CURRENT_LIST_DIR})
-set(commands_header ${PROJECT_SOURCE_DIR}/src/cli/commands.h)
+set(commands_header ${PROJECT_SOURCE_DIR}/src/cli/cli.h)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${commands_header} ${folder}/pages.txt)
 set(manuals "")
 

@@ -5,7 +5,7 @@ set(documents ${share}/doc/twinbox)
 file(REMOVE ${documents}/LICENSE ${documents}/OFL.txt)
 
 # Indented by a space, empty lines as dots.
-file(READ ${CPACK_TWINBOX_SOURCE}/src/gl/font/OFL.txt font_licence)
+file(READ ${CPACK_TWINBOX_SOURCE}/src/pixels/font/OFL.txt font_licence)
 string(REGEX REPLACE "\n+$" "" font_licence "${font_licence}")
 string(REGEX REPLACE "\n" "\n " font_licence " ${font_licence}")
 string(REGEX REPLACE "\n *\n" "\n .\n" font_licence "${font_licence}")

@@ -5,12 +5,12 @@
    all steps; the orders take turns. */
 #include "report.h"
 
-#include "solvers/momentum.h"
-#include "reference/solution_error.h"
-#include "common/parse.h"
-#include "impact_training/impact_problems.h"
-#include "simulate/phases.h"
-#include "simulate/simulate.h"
+#include "methods/solvers.h"
+#include "methods/reference.h"
+#include "base/base.h"
+#include "learning/scene_training.h"
+#include "scenes/scenes.h"
+#include "runs/runs.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
 #include "report.h"
 #include "rival.h"
 
-#include "scene/scene.h"
-#include "simulate/simulate.h"
+#include "scenes/scenes.h"
+#include "runs/runs.h"
 
 #include <math.h>
 #include <omp.h>

@@ -2,8 +2,8 @@
 /* twinbox's engine with the defaults of a scene file. */
 #include "rival.h"
 
-#include "dynamics/world.h"
-#include "solvers/solvers.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
 
 #include <stdio.h>
 #include <stdlib.h>

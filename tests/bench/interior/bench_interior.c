@@ -7,7 +7,7 @@
 #include "rival_suitesparse.h"
 #include "report.h"
 
-#include "interior/interior.h"
+#include "methods/interior_point_internal.h"
 
 #include <math.h>
 #include <stdio.h>

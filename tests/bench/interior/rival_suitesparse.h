@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The direct solvers of SuiteSparse, on the same matrices. */
 #pragma once
-#include "interior/block_lu.h"
+#include "methods/block_lu.h"
 
 /* By compressed columns, with sorted rows. */
 typedef struct Matrix {

@@ -4,8 +4,8 @@
        time_learn predict NET.npz PAIRS         per pair: "name seconds" for each of the kernels, and one by one
        time_learn train DATA.npz ITERATIONS     per iteration
        time_learn record THREADS SCENE.yaml...  for 201 launches of every scene, in memory */
-#include "network/kernels.h"
-#include "training/training.h"
+#include "nets/kernels.h"
+#include "learning/pair_training.h"
 
 #include <omp.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
    turns. Files are written to TMPDIR, or /tmp. */
 #include "report.h"
 
-#include "simulate/recorder.h"
+#include "runs/runs.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
    boxes with outline and band, the text. Prints the seconds that the frames took. */
 #include "runs.h"
 
-#include "picture/picture.h"
+#include "pictures/picture.h"
 
 #include <cairo.h>
 #include <math.h>

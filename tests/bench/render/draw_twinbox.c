@@ -3,7 +3,7 @@
    on disk, and the memory (MB) of its largest process. */
 #include "runs.h"
 
-#include "render/render.h"
+#include "pictures/render.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lower bounds for a renderer of this kind, in ms per frame: copying the pixels, clearing and reading them back, and
    writing a file of the same size. Arguments: DIR WIDTH HEIGHT BYTES. */
-#include "common/file.h"
-#include "image/image.h"
-#include "gl/context.h"
+#include "base/file.h"
+#include "pixels/png.h"
+#include "pixels/gl.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shared by the programs of this benchmark. */
 #pragma once
-#include "trajectory/trajectory.h"
+#include "runs/trajectory.h"
 
 enum { PANELS = 2 };
 

@@ -5,10 +5,10 @@
    output is not copied. */
 #include "runs.h"
 
-#include "common/file.h"
-#include "common/hash.h"
-#include "render/renderer.h"
-#include "render/sink.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "pictures/render_internal.h"
+#include "pictures/render.h"
 
 #include <isa-l.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
    take turns. */
 #include "report.h"
 
-#include "scene/scene.h"
-#include "solvers/solvers.h"
+#include "scenes/scenes.h"
+#include "methods/methods.h"
 
 #include <math.h>
 #include <stdio.h>

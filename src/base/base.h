@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Why a function failed, as a message that main() prints unchanged.
+
+   A function that can fail returns bool or NULL and takes an Error * as its last argument. Both setters return false,
+   so a failing function ends in `return error_input(error, ...)`. The first error stays: a caller passes it on
+   unchanged. Arguments may be any text: control characters in them become visible (visible_text.h). Ends of lines do, too,
+   unless the format has one. */
+#pragma once
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The values are the program's exit statuses. */
+typedef enum ErrorKind {
+    ERROR_NONE = 0,
+    ERROR_INCOMPLETE = 1,
+    ERROR_INPUT = 2,
+    ERROR_SYSTEM = 3,
+    ERROR_INTERRUPTED = 130
+} ErrorKind;
+
+typedef struct Error {
+    ErrorKind kind;
+    char message[2048];
+} Error;
+
+#define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
+
+/* Bad usage or input. The message becomes "where: error: text"; where names a file, `file:line:column` or an option.
+   The text may have further lines (an excerpt of the file with a caret). */
+bool error_input(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* The system failed: disk, memory, a missing library or program. */
+bool error_system(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* Work was stopped on request (base/machine.h): by SIGINT or SIGTERM. */
+bool error_interrupted(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* Other processes have not finished what this one needs. */
+bool error_incomplete(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* Out of memory: a system error whose text needs no arguments. */
+bool error_memory(Error *error, const char *where);
+
+/* Appends to the message of an error that is set. */
+void error_add(Error *error, const char *format, ...) PRINTF_LIKE(2, 3);
+
+#ifdef __clang_analyzer__ /* It reads one source at a time. This tells it what they return. */
+static inline bool error_false(bool set) {
+    (void)set;
+    return false;
+}
+#define error_input(...) error_false(error_input(__VA_ARGS__))
+#define error_incomplete(...) error_false(error_incomplete(__VA_ARGS__))
+#define error_system(...) error_false(error_system(__VA_ARGS__))
+#define error_interrupted(...) error_false(error_interrupted(__VA_ARGS__))
+#define error_memory(...) error_false(error_memory(__VA_ARGS__))
+#endif
+
+/* Text that grows in a fixed array. */
+
+/* Appends as printf does; what does not fit is cut off. */
+void text_add(char *text, size_t size, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* The ending of a noun: "1 frame", "2 frames". */
+static inline const char *plural(int count) { return count == 1 ? "" : "s"; }
+
+/* Text of others, such as names of files, in messages: what a terminal or a log would obey becomes visible. */
+
+typedef enum VisibleLines { VISIBLE_ONE_LINE, VISIBLE_LINES } VisibleLines;
+
+/* Copies text to out[size], size > 16. Control characters, bytes that are not UTF-8 and characters that turn the direction
+   of text become "\x1b", "\xff", "\u202e"; ends of lines "\n", unless `lines` keeps them. Text that does not fit loses its
+   middle: "begin...end". Returns the length. */
+size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines);
+
+/* The first control character in the text (C0, DEL, C1 of Unicode, which includes ends of lines); 0 without one. */
+unsigned control_in_text(const char *text);
+
+/* Suggestions for mistyped words. Own code: no library in use has an edit distance. */
+
+/* The nearest of the words by edit distance, or NULL if none is near. Words of more than 31 bytes are never near. */
+const char *nearest_word(const char *word, const char *const *words, int count);
+
+/* Lists of names for messages. */
+
+/* "a, b, c"; begin with {0}. */
+typedef struct NameList {
+    size_t used;
+    char text[1536];
+} NameList;
+
+/* Appends a name that the list does not have yet; ignores it if there is no room. */
+void name_list_add(NameList *list, const char *name);
+
+/* The error for a name that a table lacks: "'fo' is not a method; did you mean 'foo'?" or, if no known name is near,
+   "'x' is not a method; known: foo, bar", where `what` is "a method". */
+bool error_unknown(Error *error, const char *where, const char *name, const char *what, const NameList *known);
+
+/* The character that text of `size` bytes begins with (Unicode 15, table 3-7): its length in bytes, or 0 if it is not
+   well-formed. */
+size_t utf8_decode(const char *text, size_t size, uint32_t *character);
+
+/* The next character of NUL-terminated text that is not empty; moves *text behind it. Returns U+FFFD for a byte that is
+   not well-formed. */
+uint32_t utf8_next(const char **text);
+
+/* Length of the first whole characters of NUL-terminated text, at most `limit` bytes. */
+size_t utf8_cut(const char *text, size_t limit);
+
+/* Writes a character (not a surrogate, at most 0x10ffff) to `out`, which has room for 4 bytes; returns its length. */
+size_t utf8_encode(char *out, uint32_t character);
+
+/* Arrays that grow. */
+
+/* Grows *items (a malloc'ed block or NULL, freed by the caller) to `wanted` items of `item_size` bytes; `wanted`
+   exceeds the capacity. The capacity at least doubles, so that appending costs O(1). False when memory is short; *items
+   stays valid. */
+bool array_grow(void **items, size_t *capacity, size_t wanted, size_t item_size);
+
+/* The same, but does nothing if the capacity suffices. Inline: a step of a few microseconds reserves a dozen arrays. */
+static inline bool array_reserve(void **items, size_t *capacity, size_t wanted, size_t item_size) {
+    return wanted <= *capacity || array_grow(items, capacity, wanted, item_size);
+}
+
+/* SplitMix64: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014). */
+
+static inline uint64_t split_mix(uint64_t *state) {
+    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return z ^ (z >> 31);
+}
+
+/* The settings of a method, as on the command line: `name:key=value,key=value`. */
+
+enum { SETTINGS_MAX = 16, SETTING_KEY_SIZE = 32, SETTING_VALUE_SIZE = 512 };
+
+typedef struct Setting {
+    char key[SETTING_KEY_SIZE];
+    char value[SETTING_VALUE_SIZE];
+} Setting;
+
+typedef struct Settings {
+    int count;
+    Setting items[SETTINGS_MAX];
+} Settings;
+
+/* A key that a method knows, and what it means; a table of these ends with a NULL key. */
+typedef struct SettingSpec {
+    const char *key, *summary;
+} SettingSpec;
+
+/* Parses "key=value,..." (may be empty). Every key must be in the table (NULL: none), once. `where` begins the message. */
+bool settings_parse(Settings *settings, const char *text, const SettingSpec *known, const char *where, Error *error);
+
+/* True if the table, which may be NULL, has the key. */
+bool settings_known(const SettingSpec *known, const char *key);
+
+/* The value of key, or NULL. */
+const char *settings_get(const Settings *settings, const char *key);
+
+/* Sets key to value unless it is set. False if there is no room. */
+bool settings_default(Settings *settings, const char *key, const char *value);
+
+/* The value of key as a whole number of [minimum, maximum]; *value is unchanged if the key is missing. */
+bool settings_int(const Settings *settings, const char *key, int minimum, int maximum, int *value, Error *error);
+
+/* The same for a number of [minimum, maximum]. */
+bool settings_float(const Settings *settings, const char *key, float minimum, float maximum, float *value,
+                    Error *error);
+
+/* on|off, the same way. */
+bool settings_bool(const Settings *settings, const char *key, bool *value, Error *error);
+
+/* Libraries that read a file report a lack of memory or of descriptors as damage of the file. What they leave in errno
+   tells the truth, if it was 0 before. */
+
+/* Whether this errno says that the machine failed (memory, descriptors, disk), not the file. */
+bool cause_is_system(int cause);
+
+/* Sets a system error: "path: error: out of memory", "path: error: cannot read: Input/output error". Returns false. */
+bool cause_error(int cause, const char *path, Error *error);
+
+/* What a program does on its way to a result: files read and written, programs started, the OpenGL context. The library
+   never prints: cli/ listens if the user wants to know (-v). */
+
+/* Gets one line without its end; called from several threads at once, and in forked processes. */
+typedef void TraceListener(const char *line);
+
+/* Call it before threads begin; NULL ends it, which is the start, too. */
+void trace_listen(TraceListener *listener);
+
+/* Does nothing unless somebody listens. What is longer than 1,000 bytes is cut. */
+void trace_line(const char *format, ...) PRINTF_LIKE(1, 2);
+
+/* Numbers from text, for scene files and options. The whole text must be a number: no locale, no surrounding space, no
+   NaN, no infinity. */
+
+/* A decimal number, rounded to the nearest float32, or a fraction of two such as 1/60, divided in float32. */
+bool parse_float(const char *text, float *value);
+
+/* A decimal number in the range of float32, rounded to the nearest double. */
+bool parse_double(const char *text, double *value);
+
+/* The decimal number that text begins with, as parse_double reads it; *rest is what follows it. */
+bool parse_leading_double(const char *text, double *value, const char **rest);
+
+bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value);
+
+/* "A:B:STEP", three floats with STEP > 0 and A <= B. Value i of the range is the decimal A + i * STEP (computed
+   in double, then rounded to float32, so that -5:5:0.05 gives the floats of the decimals -5.00, -4.95, ...). */
+typedef struct FloatRange {
+    double first, step;
+    int count;
+} FloatRange;
+bool parse_range(const char *text, int max_count, FloatRange *range);
+float range_value(const FloatRange *range, int i);

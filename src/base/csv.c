@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* RFC 4180 in one pass: fields are unquoted in place and end in NUL. */
+#include "base/csv.h"
+
+#include "base/base.h"
+#include "base/file.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool fail_at(const char *path, int line, int column, Error *error, const char *what) {
+    char where[1280];
+    snprintf(where, sizeof where, "%.1200s:%d:%d", path, line, column);
+    return error_input(error, where, "%s", what);
+}
+
+/* UTF-8: the bytes after a character's first do not count. */
+static bool begins_character(char c) { return ((unsigned char)c & 0xc0) != 0x80; }
+
+static bool check_text(const char *path, const char *text, size_t size, Error *error) {
+    int line = 1, column = 1;
+    for (size_t i = 0; i < size; i++) {
+        unsigned char c = (unsigned char)text[i];
+        bool line_end = c == '\n' || (c == '\r' && text[i + 1] == '\n');
+        if (!line_end && (c < 0x20 || c == 0x7f)) {
+            char what[64];
+            snprintf(what, sizeof what, "control character 0x%02x", (unsigned)c);
+            return fail_at(path, line, column, error, what);
+        }
+        column += begins_character(text[i]);
+        if (c != '\n') continue;
+        line++;
+        column = 1;
+    }
+    return true;
+}
+
+typedef struct Reader {
+    Csv *csv;
+    char *at;
+    size_t capacity; /* of csv->fields */
+    size_t count;    /* fields read */
+    int column;
+    int max_rows;
+} Reader;
+
+static bool fail(const Reader *reader, int column, Error *error, const char *what) {
+    return fail_at(reader->csv->path, reader->csv->rows + 1, column, error, what);
+}
+
+static char step(Reader *reader) {
+    reader->column += begins_character(*reader->at);
+    return *reader->at++;
+}
+
+static bool ends_field(const char *at) { return *at == ',' || *at == '\n' || *at == '\0' || *at == '\r'; }
+
+static char *fail_text(const Reader *reader, int column, Error *error, const char *what) {
+    fail(reader, column, error, what);
+    return NULL;
+}
+
+static char *take_plain(Reader *reader, Error *error) {
+    while (!ends_field(reader->at))
+        if (step(reader) == '"')
+            return fail_text(reader, reader->column - 1, error, "a quote inside a field that does not begin with one");
+    return reader->at;
+}
+
+static char *take_quoted(Reader *reader, Error *error) {
+    int start = reader->column;
+    char *write = reader->at;
+    step(reader);
+    for (;;) {
+        if (*reader->at == '\0' || *reader->at == '\n' || *reader->at == '\r')
+            return fail_text(reader, start, error, "this quote is not closed on its line");
+        char c = step(reader);
+        if (c == '"' && *reader->at != '"') break;
+        if (c == '"') step(reader);
+        *write++ = c;
+    }
+    return ends_field(reader->at)
+               ? write
+               : fail_text(reader, reader->column, error, "expected a comma after the closing quote");
+}
+
+/* *separator is what ended the field: a comma, or the line. */
+static bool take_field(Reader *reader, char *separator, Error *error) {
+    Csv *csv = reader->csv;
+    void *fields = csv->fields;
+    bool room = array_reserve(&fields, &reader->capacity, reader->count + 1, sizeof *csv->fields);
+    csv->fields = fields;
+    if (!room) return error_memory(error, csv->path);
+    csv->fields[reader->count++] = (CsvField){reader->at, reader->column};
+    /* Where the field's text, unquoted in place, has to end. */
+    char *end = (*reader->at == '"' ? take_quoted : take_plain)(reader, error);
+    if (end == NULL) return false;
+    if (*reader->at == '\r') reader->at++;
+    /* The text's NUL may take the place of what ended it. */
+    *separator = *reader->at;
+    if (*separator != '\0') step(reader);
+    *end = '\0';
+    return true;
+}
+
+static bool take_row(Reader *reader, Error *error) {
+    Csv *csv = reader->csv;
+    reader->column = 1;
+    if (csv->rows > reader->max_rows) {
+        char what[64];
+        snprintf(what, sizeof what, "the table has more than %d rows", reader->max_rows);
+        return fail(reader, 1, error, what);
+    }
+    if (*reader->at == '\n' || *reader->at == '\r') return fail(reader, 1, error, "the line is empty");
+    size_t first = reader->count;
+    char separator = ',';
+    while (separator == ',')
+        if (!take_field(reader, &separator, error)) return false;
+    int width = (int)(reader->count - first);
+    if (csv->rows++ == 0) csv->width = width;
+    return width == csv->width || csv_error(csv, csv->rows - 1, 0, error, "%d field%s, but the header has %d", width,
+                                            width == 1 ? "" : "s", csv->width);
+}
+
+static bool take_rows(Csv *csv, int min_rows, int max_rows, Error *error) {
+    Reader reader = {.csv = csv, .at = csv->text, .max_rows = max_rows};
+    while (*reader.at != '\0')
+        if (!take_row(&reader, error)) return false;
+    return csv->rows > min_rows ||
+           fail(&reader, 1, error, csv->rows == 0 ? "the file is empty" : "the table has no rows");
+}
+
+bool csv_read(Csv *csv, const char *path, size_t max_size, int min_rows, int max_rows, Error *error) {
+    *csv = (Csv){.path = strdup(path)};
+    if (csv->path == NULL) return error_memory(error, path);
+    size_t size;
+    csv->text = file_read(path, max_size, &size, error);
+    if (csv->text != NULL) {
+        if (strncmp(csv->text, "\xef\xbb\xbf", 3) == 0) memmove(csv->text, csv->text + 3, (size -= 3) + 1);
+        if (check_text(path, csv->text, size, error) && take_rows(csv, min_rows, max_rows, error)) return true;
+    }
+    csv_free(csv);
+    return false;
+}
+
+void csv_free(Csv *csv) {
+    free(csv->fields);
+    free(csv->text);
+    free(csv->path);
+    *csv = (Csv){.path = NULL};
+}
+
+static const CsvField *field_at(const Csv *csv, int row, int field) {
+    return &csv->fields[(size_t)row * (size_t)csv->width + (size_t)field];
+}
+
+const char *csv_text(const Csv *csv, int row, int field) { return field_at(csv, row, field)->text; }
+
+bool csv_error(const Csv *csv, int row, int field, Error *error, const char *format, ...) {
+    char what[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    return fail_at(csv->path, row + 1, field_at(csv, row, field)->column, error, what);
+}
+
+CsvShown csv_show(const char *text) {
+    CsvShown shown;
+    size_t length = strlen(text), room = sizeof shown.text - 1;
+    bool cut = length > room;
+    if (cut) length = room - 3;
+    for (size_t i = 0; i < length; i++) shown.text[i] = text[i] >= ' ' && text[i] <= '~' ? text[i] : '?';
+    strcpy(shown.text + length, cut ? "..." : "");
+    return shown;
+}
+
+void csv_put(FILE *file, const char *text, bool quoted) {
+    if (!quoted && text[strcspn(text, ",\"\r\n")] == '\0') {
+        fputs(text, file);
+        return;
+    }
+    fputc('"', file);
+    for (; *text != '\0'; text++) {
+        if (*text == '"') fputc('"', file);
+        fputc(*text, file);
+    }
+    fputc('"', file);
+}
+
+static const char *text_of(const CsvCell *cell) { return csv_text(cell->csv, cell->row, cell->field); }
+
+/* "NAME: 'FIELD' what". */
+static bool refuse(const CsvCell *cell, Error *error, const char *what) {
+    const char *text = text_of(cell), *name = cell->column->name;
+    if (text[0] == '\0') return csv_error(cell->csv, cell->row, cell->field, error, "%s: the field is empty", name);
+    return csv_error(cell->csv, cell->row, cell->field, error, "%s: '%s' %s", name, csv_show(text).text, what);
+}
+
+static bool read_text(const CsvCell *cell, const char **member, Error *error) {
+    const char *text = text_of(cell);
+    const bool name = cell->column->kind == CSV_NAME;
+    const size_t most = name ? CSV_NAME_SIZE - 1 : (size_t)cell->column->maximum;
+    char what[64];
+    snprintf(what, sizeof what, "is longer than %zu bytes", most);
+    if (strlen(text) > most) return refuse(cell, error, what);
+    for (const char *c = text; name && *c != '\0'; c += csv_plain_length(c))
+        if (csv_plain_length(c) == 0)
+            return refuse(cell, error, "may only have letters, digits, spaces and -_.,:=+/()*[]");
+    *member = text;
+    return true;
+}
+
+static bool read_word(const CsvCell *cell, int *member, Error *error) {
+    const char *const *words = cell->column->words;
+    NameList known = {0};
+    char what[256];
+    *member = csv_word(words, text_of(cell));
+    if (*member >= 0) return true;
+    for (int i = 0; words[i] != NULL; i++) name_list_add(&known, words[i]);
+    snprintf(what, sizeof what, "is not one of %.200s", known.text);
+    return refuse(cell, error, what);
+}
+
+static bool is_in_range(const CsvCell *cell, double value, Error *error) {
+    const double minimum = cell->column->minimum, maximum = cell->column->maximum;
+    char what[64];
+    if (value >= minimum && value <= maximum) return true;
+    snprintf(what, sizeof what, "is %s than %g", value < minimum ? "less" : "greater",
+             value < minimum ? minimum : maximum);
+    return refuse(cell, error, what);
+}
+
+static bool read_integer(const CsvCell *cell, int *member, Error *error) {
+    int64_t value;
+    if (!parse_int(text_of(cell), INT64_MIN, INT64_MAX, &value)) return refuse(cell, error, "is not a whole number");
+    *member = (int)value;
+    return is_in_range(cell, (double)value, error);
+}
+
+static bool read_float(const CsvCell *cell, float *member, Error *error) {
+    return parse_float(text_of(cell), member) ? is_in_range(cell, (double)*member, error)
+                                              : refuse(cell, error, "is not a number");
+}
+
+static bool read_number(const CsvCell *cell, double *member, Error *error) {
+    const char *text = text_of(cell);
+    *member = NAN;
+    if (text[0] == '\0' && cell->column->kind == CSV_OPTIONAL) return true;
+    return parse_double(text, member) ? is_in_range(cell, *member, error) : refuse(cell, error, "is not a number");
+}
+
+bool csv_cell_read(const CsvCell *cell, void *row, Error *error) {
+    void *member = (char *)row + cell->column->offset;
+    switch (cell->column->kind) {
+    case CSV_TEXT:
+    case CSV_NAME: return read_text(cell, member, error);
+    case CSV_WORD: return read_word(cell, member, error);
+    case CSV_INTEGER: return read_integer(cell, member, error);
+    case CSV_FLOAT: return read_float(cell, member, error);
+    default: return read_number(cell, member, error);
+    }
+}

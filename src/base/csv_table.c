@@ -1,0 +1,268 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *text_of(const CsvColumn *column, const void *row) {
+    return *(const char *const *)((const char *)row + column->offset);
+}
+
+static int integer_of(const CsvColumn *column, const void *row) {
+    return *(const int *)((const char *)row + column->offset);
+}
+
+static double number_of(const CsvColumn *column, const void *row) {
+    const void *member = (const char *)row + column->offset;
+    return column->kind == CSV_FLOAT ? (double)*(const float *)member : *(const double *)member;
+}
+
+static bool is_printable(const char *text) {
+    for (; *text != '\0'; text++)
+        if ((unsigned char)*text < 0x20 || *text == 0x7f) return false;
+    return true;
+}
+
+static bool check_field(const char *where, const CsvColumn *column, const void *row, Error *error) {
+    switch (column->kind) {
+    case CSV_TEXT:
+    case CSV_NAME:
+        return is_printable(text_of(column, row)) || error_input(error, where, "%s: a control character in '%s'",
+                                                                 column->name, csv_show(text_of(column, row)).text);
+    case CSV_WORD:
+    case CSV_INTEGER: return true;
+    default: {
+        const double number = number_of(column, row);
+        return isfinite(number) || (isnan(number) && column->kind == CSV_OPTIONAL) ||
+               error_input(error, where, "%s: %g cannot be written", column->name, number);
+    }
+    }
+}
+
+static bool check_row(const char *where, const CsvLayout *layout, const void *row, Error *error) {
+    for (int i = 0; i < layout->column_count; i++)
+        if (!check_field(where, &layout->columns[i], row, error)) return false;
+    return true;
+}
+
+static void print_field(FILE *file, const CsvColumn *column, const void *row) {
+    switch (column->kind) {
+    case CSV_TEXT:
+    case CSV_NAME: csv_put(file, text_of(column, row), column->quoted); break;
+    case CSV_WORD: csv_put(file, column->words[integer_of(column, row)], false); break;
+    case CSV_INTEGER: fprintf(file, "%d", integer_of(column, row)); break;
+    default:
+        if (!isnan(number_of(column, row)))
+            fprintf(file, "%.*g", column->digits > 0 ? column->digits : 6, number_of(column, row));
+    }
+}
+
+static void print_row(FILE *file, const CsvLayout *layout, const void *row) {
+    for (int i = 0; i < layout->column_count; i++) {
+        print_field(file, &layout->columns[i], row);
+        fputc(i + 1 < layout->column_count ? ',' : '\n', file);
+    }
+}
+
+void csv_header_print(FILE *file, const CsvLayout *layout) {
+    for (int i = 0; i < layout->column_count; i++)
+        fprintf(file, "%s%c", layout->columns[i].name, i + 1 < layout->column_count ? ',' : '\n');
+}
+
+bool csv_row_print(FILE *file, const CsvLayout *layout, const void *row, Error *error) {
+    if (!check_row(layout->name, layout, row, error)) return false;
+    print_row(file, layout, row);
+    return true;
+}
+
+typedef struct Rows {
+    const CsvLayout *layout;
+    const char *rows;
+    int count;
+} Rows;
+
+static void print_table(FILE *file, const void *context) {
+    const Rows *all = context;
+    csv_header_print(file, all->layout);
+    for (int i = 0; i < all->count; i++) print_row(file, all->layout, all->rows + (size_t)i * all->layout->row_size);
+}
+
+bool csv_table_write(const char *path, const CsvLayout *layout, const void *rows, int count, Error *error) {
+    const Rows all = {layout, rows, count};
+    for (int i = 0; i < count; i++)
+        if (!check_row(path, layout, all.rows + (size_t)i * layout->row_size, error)) return false;
+    return file_write_text(path, print_table, &all, error);
+}
+
+/* Far more than any row of numbers and names takes. */
+enum { ROW_MAX_SIZE = 1200 };
+
+/* A file that is being read. */
+typedef struct Reading {
+    CsvTable *table;
+    const CsvLayout *layout;
+    Error *error;
+} Reading;
+
+size_t csv_plain_length(const char *text) {
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
+    enum { AFTER_CONTROLS = 0xA1 };
+    uint32_t character;
+    const size_t length = utf8_decode(text, strnlen(text, 4), &character);
+    return length > 1 ? (character >= AFTER_CONTROLS ? length : 0) : length == 1 && strchr(plain, *text) != NULL;
+}
+
+int csv_word(const char *const *words, const char *word) {
+    int i = 0;
+    while (words[i] != NULL && strcmp(words[i], word) != 0) i++;
+    return words[i] != NULL ? i : -1;
+}
+
+static bool read_field(const CsvCell *cell, void *row, Error *error) {
+    static const char *const empty = "";
+    if (cell->field >= 0) return csv_cell_read(cell, row, error);
+    if (cell->column->optional && cell->column->kind == CSV_TEXT)
+        memcpy((char *)row + cell->column->offset, &empty, sizeof empty);
+    return true;
+}
+
+static bool read_rows(const Reading *reading) {
+    const CsvLayout *layout = reading->layout;
+    CsvTable *table = reading->table;
+    table->count = table->csv.rows - 1;
+    table->rows = calloc((size_t)table->csv.rows, layout->row_size);
+    if (table->rows == NULL) return error_memory(reading->error, table->csv.path);
+    for (int row = 1; row <= table->count; row++)
+        for (int i = 0; i < layout->column_count; i++) {
+            const CsvCell cell = {&table->csv, row, table->fields[i], &layout->columns[i]};
+            void *target = (char *)table->rows + (size_t)(row - 1) * layout->row_size;
+            if (!read_field(&cell, target, reading->error)) return false;
+        }
+    return true;
+}
+
+static int find_column(const CsvLayout *layout, const char *name) {
+    int i = 0;
+    while (i < layout->column_count && strcmp(layout->columns[i].name, name) != 0) i++;
+    return i;
+}
+
+static bool refuse_column(const Reading *reading, int field) {
+    const CsvLayout *layout = reading->layout;
+    NameList names = {0};
+    for (int i = 0; i < layout->column_count; i++) name_list_add(&names, layout->columns[i].name);
+    return csv_error(&reading->table->csv, 0, field, reading->error, "unknown column '%s'; the columns are %s",
+                     csv_show(csv_text(&reading->table->csv, 0, field)).text, names.text);
+}
+
+static bool place_column(const Reading *reading, int field) {
+    const CsvLayout *layout = reading->layout;
+    const Csv *csv = &reading->table->csv;
+    const char *name = csv_text(csv, 0, field);
+    const int column = find_column(layout, name);
+    if (layout->header == CSV_EXACT && column != field && field < layout->column_count)
+        return csv_error(csv, 0, field, reading->error, "column %d must be '%s' (got '%s')", field + 1,
+                         layout->columns[field].name, csv_show(name).text);
+    if (column == layout->column_count) return layout->header == CSV_ALL || refuse_column(reading, field);
+    if (reading->table->fields[column] >= 0)
+        return csv_error(csv, 0, field, reading->error, "the column '%s' appears twice", name);
+    reading->table->fields[column] = field;
+    return true;
+}
+
+static bool read_header(const Reading *reading) {
+    const CsvLayout *layout = reading->layout;
+    const Csv *csv = &reading->table->csv;
+    for (int i = 0; i < CSV_MAX_COLUMNS; i++) reading->table->fields[i] = -1;
+    for (int field = 0; field < csv->width; field++)
+        if (!place_column(reading, field)) return false;
+    for (int i = 0; layout->header != CSV_SUBSET && i < layout->column_count; i++)
+        if (reading->table->fields[i] < 0 && !layout->columns[i].optional)
+            return csv_error(csv, 0, 0, reading->error, "the column '%s' is missing", layout->columns[i].name);
+    return true;
+}
+
+/* A row, as qsort() needs it. */
+typedef struct KeyedRow {
+    const Reading *reading;
+    int row;
+} KeyedRow;
+
+static int compare_keys(const void *left, const void *right) {
+    const KeyedRow *a = left, *b = right;
+    const CsvTable *table = a->reading->table;
+    const CsvLayout *layout = a->reading->layout;
+    for (int i = 0; i < layout->column_count; i++) {
+        if (!layout->columns[i].key || table->fields[i] < 0) continue;
+        int order =
+            strcmp(csv_text(&table->csv, a->row, table->fields[i]), csv_text(&table->csv, b->row, table->fields[i]));
+        if (order != 0) return order;
+    }
+    return 0;
+}
+
+static bool has_keys(const Reading *reading) {
+    for (int i = 0; i < reading->layout->column_count; i++)
+        if (reading->layout->columns[i].key && reading->table->fields[i] >= 0) return true;
+    return false;
+}
+
+/* Rows with equal keys are neighbours once sorted. */
+static bool check_keys(const Reading *reading) {
+    const CsvTable *table = reading->table;
+    if (!has_keys(reading) || table->count == 0) return true;
+    KeyedRow *sorted = malloc((size_t)table->count * sizeof *sorted);
+    if (sorted == NULL) return error_memory(reading->error, table->csv.path);
+    for (int i = 0; i < table->count; i++) sorted[i] = (KeyedRow){reading, i + 1};
+    qsort(sorted, (size_t)table->count, sizeof *sorted, compare_keys);
+    bool single = true;
+    for (int i = 1; single && i < table->count; i++) {
+        if (compare_keys(&sorted[i - 1], &sorted[i]) != 0) continue;
+        const int a = sorted[i - 1].row, b = sorted[i].row;
+        single = csv_error(&table->csv, a > b ? a : b, 0, reading->error, "the row repeats that of line %d",
+                           (a > b ? b : a) + 1);
+    }
+    free(sorted);
+    return single;
+}
+
+bool csv_table_read(CsvTable *table, const char *path, const CsvLayout *layout, Error *error) {
+    const Reading reading = {table, layout, error};
+    assert(layout->column_count <= CSV_MAX_COLUMNS);
+    *table = (CsvTable){.count = 0};
+    const size_t max_size = ((size_t)layout->max_rows + 1) * ROW_MAX_SIZE;
+    if (!csv_read(&table->csv, path, max_size, layout->min_rows, layout->max_rows, error)) return false;
+    if (read_header(&reading) && read_rows(&reading) && check_keys(&reading)) return true;
+    csv_table_free(table);
+    return false;
+}
+
+bool csv_table_path(char path[CSV_PATH_SIZE], const char *folder, const CsvLayout *layout, Error *error) {
+    return file_path(path, CSV_PATH_SIZE, error, "%s/%s.csv", folder, layout->name);
+}
+
+bool csv_table_read_from(CsvTable *table, const char *folder, const CsvLayout *layout, Error *error) {
+    char path[CSV_PATH_SIZE];
+    return csv_table_path(path, folder, layout, error) && csv_table_read(table, path, layout, error);
+}
+
+void csv_table_free(CsvTable *table) {
+    free(table->rows);
+    csv_free(&table->csv);
+    *table = (CsvTable){.count = 0};
+}
+
+bool csv_table_error(const CsvTable *table, int row, int column, Error *error, const char *format, ...) {
+    char what[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    const int field = table->fields[column];
+    return csv_error(&table->csv, row + 1, field < 0 ? 0 : field, error, "%s", what);
+}

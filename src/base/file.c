@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/file.h"
+
+#include "base/base.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <locale.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size) {
+    char *text = NULL;
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    FILE *out = c != (locale_t)0 ? memory_stream(&text, size) : NULL;
+    bool done = out != NULL;
+    if (done) {
+        locale_t previous = uselocale(c);
+        print(out, context);
+        uselocale(previous);
+        done = ferror(out) == 0;
+        done = fclose(out) == 0 && done;
+    }
+    if (c != (locale_t)0) freelocale(c);
+    if (done) return text;
+    free(text);
+    return NULL;
+}
+
+bool file_write_text(const char *path, void (*print)(FILE *out, const void *context), const void *context,
+                     Error *error) {
+    size_t size;
+    char *text = file_print(print, context, &size);
+    bool done = text != NULL ? file_write(path, text, size, error) : error_memory(error, path);
+    free(text);
+    return done;
+}
+
+bool lfs_pointer_refuse(const void *data, size_t size, const char *path, Error *error) {
+    static const char start[] = "version https://git-lfs.github.com/spec/";
+    if (size < sizeof start || memcmp(data, start, sizeof start - 1) != 0) return true;
+    return error_input(error, path, "a Git LFS pointer, not the file itself; run: git lfs pull");
+}
+
+static int copy_of_input = -1, reserved_output = -1;
+
+/* Readers accept no larger file. */
+static const uint64_t MOST = (UINT64_C(1) << 31) + 1;
+
+bool path_is_standard(const char *path) { return strcmp(path, "-") == 0; }
+
+static bool copy_input(int copy, Error *error) {
+    char block[1 << 16];
+    for (uint64_t size = 0;;) {
+        ssize_t got = read(STDIN_FILENO, block, sizeof block);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return error_system(error, "-", "cannot read standard input: %s", strerror(errno));
+        if (got == 0) return true;
+        size += (uint64_t)got;
+        if (size > MOST) return error_input(error, "-", "larger than 2 GiB");
+        if (!file_draft_write(copy, "-", block, (size_t)got, error)) return false;
+    }
+}
+
+int standard_input_open(Error *error) {
+    if (copy_of_input < 0) {
+        int copy = file_draft("-", error);
+        if (copy >= 0 && !copy_input(copy, error)) {
+            close(copy);
+            copy = -1;
+        }
+        if (copy < 0) return -1;
+        copy_of_input = copy;
+    }
+    char path[64];
+    snprintf(path, sizeof path, "/proc/self/fd/%d", copy_of_input);
+    const int input = open(path, O_RDONLY | O_CLOEXEC);
+    if (input < 0) error_system(error, "-", "cannot read standard input again: %s", strerror(errno));
+    return input;
+}
+
+bool standard_input_is_zip(void) {
+    Error ignored = {0};
+    char start[2];
+    const int input = standard_input_open(&ignored);
+    const bool is_zip = input >= 0 && read(input, start, sizeof start) == sizeof start && memcmp(start, "PK", 2) == 0;
+    if (input >= 0) close(input);
+    return is_zip;
+}
+
+bool standard_output_reserve(Error *error) {
+    if (reserved_output >= 0) return error_input(error, "-", "only one file can be written to standard output");
+    fflush(stdout);
+    reserved_output = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    return (reserved_output >= 0 && dup2(STDERR_FILENO, STDOUT_FILENO) >= 0) ||
+           error_system(error, "-", "cannot write to standard output: %s", strerror(errno));
+}
+
+bool standard_output_is_reserved(void) { return reserved_output >= 0; }
+
+int standard_output(void) { return reserved_output >= 0 ? reserved_output : STDOUT_FILENO; }
+
+/* Whole files in. */
+
+bool file_open_error(const char *path, Error *error) {
+    int cause = errno;
+    return cause_is_system(cause) ? error_system(error, path, "cannot open: %s", strerror(cause))
+                                  : error_input(error, path, "cannot open: %s", strerror(cause));
+}
+
+/* Reads to the end, not to the size that stat returns: the file may be growing. */
+static char *read_all(int file, const char *path, size_t limit, size_t expected, size_t *size, Error *error) {
+    void *data = NULL;
+    size_t capacity = 0, used = 0, wanted = expected + 2;
+    for (;;) {
+        if (!array_reserve(&data, &capacity, wanted, 1)) {
+            error_memory(error, path);
+            break;
+        }
+        ssize_t got = read(file, (char *)data + used, capacity - used - 1);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) {
+            error_system(error, path, "cannot read: %s", strerror(errno));
+            break;
+        }
+        used += (size_t)got;
+        if (used > limit) {
+            error_input(error, path, "larger than %zu bytes", limit);
+            break;
+        }
+        if (got == 0) {
+            ((char *)data)[used] = '\0';
+            *size = used;
+            return data;
+        }
+        wanted = used + 2;
+    }
+    free(data);
+    return NULL;
+}
+
+/* Without O_NONBLOCK, opening a FIFO waits for a writer. */
+enum { OPEN_TO_READ = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC };
+
+static char *read_and_close(int file, const char *path, size_t limit, size_t *size, Error *error) {
+    if (file < 0) {
+        file_open_error(path, error);
+        return NULL;
+    }
+    char *data = NULL;
+    struct stat status;
+    if (fstat(file, &status) != 0)
+        error_system(error, path, "cannot read: %s", strerror(errno));
+    else if (!S_ISREG(status.st_mode))
+        error_input(error, path, "not a regular file");
+    else if ((uintmax_t)status.st_size > limit)
+        error_input(error, path, "larger than %zu bytes", limit);
+    else
+        data = read_all(file, path, limit, (size_t)status.st_size, size, error);
+    close(file);
+    if (data != NULL) trace_line("read %s, %zu bytes", path, *size);
+    return data;
+}
+
+char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
+    if (path_is_standard(path)) {
+        const int input = standard_input_open(error);
+        return input >= 0 ? read_and_close(input, path, limit, size, error) : NULL;
+    }
+    return read_and_close(open(path, OPEN_TO_READ), path, limit, size, error);
+}
+
+char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error) {
+    return read_and_close(openat(folder, name, OPEN_TO_READ | O_NOFOLLOW), path, limit, size, error);
+}
+
+char *file_read_input(size_t limit, size_t *size, Error *error) {
+    static const char name[] = "standard input";
+    char *data = NULL;
+    size_t capacity = 0;
+    ssize_t count = 1;
+    *size = 0;
+    while (count > 0 && *size <= limit) {
+        void *items = data;
+        bool room = array_reserve(&items, &capacity, *size + (1 << 16) + 1, 1);
+        data = items;
+        if (!room) {
+            error_memory(error, name);
+            free(data);
+            return NULL;
+        }
+        do count = read(STDIN_FILENO, data + *size, 1 << 16);
+        while (count < 0 && errno == EINTR);
+        if (count > 0) *size += (size_t)count;
+    }
+    bool ok = count == 0 || (count < 0 ? error_system(error, name, "cannot read: %s", strerror(errno))
+                                       : error_input(error, name, "larger than %zu bytes", limit));
+    if (ok) {
+        data[*size] = '\0';
+        return data;
+    }
+    free(data);
+    return NULL;
+}
+
+ssize_t file_read_all(int file, void *data, size_t size) {
+    size_t used = 0;
+    while (used < size) {
+        const ssize_t got = read(file, (char *)data + used, size - used);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return -1;
+        if (got == 0) break;
+        used += (size_t)got;
+    }
+    return (ssize_t)used;
+}
+
+bool file_find(const char *path, bool *there, Error *error) {
+    struct stat status;
+    *there = stat(path, &status) == 0;
+    return *there || errno == ENOENT || errno == ENOTDIR ||
+           error_system(error, path, "cannot be read: %s", strerror(errno));
+}
+
+static bool is_directory(const char *path) {
+    struct stat status;
+    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+bool file_make_directory(const char *path, Error *error) {
+    char part[PATH_MAX];
+    size_t length = strlen(path);
+    if (length == 0 || length >= sizeof part)
+        return error_system(error, path, "cannot make the directory: %s",
+                            strerror(length == 0 ? ENOENT : ENAMETOOLONG));
+    for (size_t end = 1; end <= length; end++) {
+        if (path[end] != '/' && path[end] != '\0') continue;
+        snprintf(part, sizeof part, "%.*s", (int)end, path);
+        if (mkdir(part, 0777) == 0) continue;
+        const int cause = errno;
+        if (!is_directory(part)) return error_system(error, part, "cannot make the directory: %s", strerror(cause));
+    }
+    return true;
+}
+
+bool file_path(char *path, size_t size, Error *error, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(path, size, format, arguments);
+    va_end(arguments);
+    return (length >= 0 && (size_t)length < size) ||
+           error_input(error, "path", "%.200s... is longer than %zu bytes", path, size - 1);
+}
+
+bool file_name_ends_with(const char *name, const char *ending) {
+    const size_t length = strlen(name), tail = strlen(ending);
+    return length > tail && strcmp(name + length - tail, ending) == 0;
+}
+
+size_t file_folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash == NULL ? 0 : (size_t)(slash - path) + 1;
+}
+
+void file_name_clean(char *name) {
+    for (char *c = name; *c != '\0'; c++)
+        if (!isalnum((unsigned char)*c) && strchr("-_.=", *c) == NULL) *c = '_';
+    if (name[0] == '.') name[0] = '_';
+}
+
+bool folder_error(const char *path, Error *error) {
+    int cause = errno;
+    bool nameless = cause == ENOENT || cause == ENOTDIR || cause == ENAMETOOLONG || cause == ELOOP;
+    return nameless ? error_input(error, path, "cannot be read: %s", strerror(cause))
+                    : error_system(error, path, "cannot be read: %s", strerror(cause));
+}
+
+typedef struct Walk {
+    const char *root;
+    char real[PATH_MAX]; /* the root without links; "" until a link is met */
+    bool (*wanted)(const char *name);
+    bool recursive;
+    FolderList *list;
+    FolderList folders; /* below the root, with a slash at the end; those behind the current one are to be read */
+} Walk;
+
+/* Adds `folder` + `name` + `ending`. */
+static bool add(FolderList *list, const char *folder, const char *name, const char *ending, Error *error) {
+    size_t size = strlen(folder) + strlen(name) + strlen(ending) + 1;
+    char *whole = malloc(size);
+    if (whole == NULL || !array_reserve((void **)&list->names, &list->capacity, list->count + 1, sizeof *list->names)) {
+        free(whole);
+        return error_memory(error, name);
+    }
+    snprintf(whole, size, "%s%s%s", folder, name, ending);
+    list->names[list->count++] = whole;
+    return true;
+}
+
+static bool add_file(Walk *walk, const char *folder, const char *name, Error *error) {
+    if (walk->recursive || folder[0] == '\0') return add(walk->list, folder, name, "", error);
+    walk->list->skipped++;
+    return true;
+}
+
+/* Whether a link leads to a place that the walk reaches without it. */
+static bool check_link(Walk *walk, const char *path, Error *error) {
+    char target[PATH_MAX];
+    if (walk->real[0] == '\0' && realpath(walk->root, walk->real) == NULL) return folder_error(walk->root, error);
+    if (realpath(path, target) == NULL) return folder_error(path, error);
+    size_t length = strlen(walk->real);
+    if (length == 1) length = 0; /* "/" */
+    if (strncmp(target, walk->real, length) != 0 || (target[length] != '/' && target[length] != '\0'))
+        return error_input(error, path, "is a link to %s, out of %s; such links are not followed", target, walk->root);
+    return strstr(target + length, "/.") == NULL ||
+           error_input(error, path, "is a link to %s, which is hidden; such links are not followed", target);
+}
+
+static bool add_link(Walk *walk, int at, const char *folder, const char *name, Error *error) {
+    char path[PATH_MAX];
+    struct stat target;
+    if (!file_path(path, sizeof path, error, "%s/%s%s", walk->root, folder, name)) return false;
+    bool file = walk->wanted(name), inside = folder[0] != '\0';
+    if (fstatat(at, name, &target, 0) != 0)
+        return (!file && (errno == ENOENT || errno == ELOOP)) || folder_error(path, error);
+    bool is_folder = S_ISDIR(target.st_mode);
+    if ((!is_folder && !file) || (!walk->recursive && (is_folder || inside))) return true;
+    return check_link(walk, path, error) && (is_folder || add_file(walk, folder, name, error));
+}
+
+static bool add_entry(Walk *walk, int at, const char *folder, const char *name, Error *error) {
+    struct stat status;
+    if (name[0] == '.') return true;
+    if (fstatat(at, name, &status, AT_SYMLINK_NOFOLLOW) != 0)
+        return error_system(error, name, "in %s/%s: cannot be read: %s", walk->root, folder, strerror(errno));
+    if (S_ISLNK(status.st_mode)) return add_link(walk, at, folder, name, error);
+    if (S_ISDIR(status.st_mode)) return add(&walk->folders, folder, name, "/", error);
+    return !walk->wanted(name) || add_file(walk, folder, name, error);
+}
+
+static bool read_folder(Walk *walk, const char *folder, Error *error) {
+    char path[PATH_MAX];
+    if (!file_path(path, sizeof path, error, "%s/%s", walk->root, folder)) return false;
+    DIR *directory = opendir(path);
+    if (directory == NULL)
+        return folder[0] == '\0' ? folder_error(path, error)
+                                 : error_system(error, path, "cannot be read: %s", strerror(errno));
+    bool ok = true;
+    const struct dirent *entry = NULL;
+    do {
+        errno = 0; /* readdir() returns NULL at the end and on failure */
+        entry = readdir(directory);
+        if (entry != NULL)
+            ok = add_entry(walk, dirfd(directory), folder, entry->d_name, error);
+        else if (errno != 0)
+            ok = error_system(error, path, "cannot be read: %s", strerror(errno));
+    } while (ok && entry != NULL);
+    closedir(directory);
+    return ok;
+}
+
+static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+bool folder_list(FolderList *list, const char *folder, bool (*wanted)(const char *name), bool recursive, Error *error) {
+    *list = (FolderList){.count = 0};
+    Walk walk = {.root = folder, .wanted = wanted, .recursive = recursive, .list = list};
+    bool ok = read_folder(&walk, "", error);
+    for (size_t i = 0; ok && i < walk.folders.count; i++) ok = read_folder(&walk, walk.folders.names[i], error);
+    folder_list_free(&walk.folders);
+    if (ok && list->count > 0) qsort(list->names, list->count, sizeof *list->names, by_name);
+    if (!ok) folder_list_free(list);
+    return ok;
+}
+
+void folder_list_free(FolderList *list) {
+    for (size_t i = 0; i < list->count; i++) free(list->names[i]);
+    free(list->names);
+    *list = (FolderList){.count = 0};
+}

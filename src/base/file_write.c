@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/hash.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* OpenMP calls exit() when it gets no memory or no thread. */
+static TemporaryFile *held;
+
+static void remove_held(void) {
+    if (held != NULL) temporary_remove_name(held);
+}
+
+/* False if the process that had the file removed its name while this one waited. */
+static bool has_name(const TemporaryFile *lock) {
+    struct stat opened, named;
+    return fstat(lock->file, &opened) == 0 && stat(lock->name, &named) == 0 && opened.st_dev == named.st_dev &&
+           opened.st_ino == named.st_ino;
+}
+
+static bool take(TemporaryFile *lock, const char *path, Error *error) {
+    do {
+        if (lock->file >= 0) close(lock->file);
+        lock->file = open(lock->name, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (lock->file < 0) return error_system(error, path, "cannot be locked: %s", strerror(errno));
+        if (!lock_take(lock->file, path, "is making this file", error)) return false;
+    } while (!has_name(lock));
+    return true;
+}
+
+bool file_reserve(FileReservation *reservation, const char *path, Error *error) {
+    TemporaryFile *lock = &reservation->lock;
+    const size_t folder = file_folder_length(path);
+    struct stat status;
+    *lock = (TemporaryFile){.at = AT_FDCWD, .file = -1};
+    if (path_is_standard(path) || (stat(path, &status) == 0 && !S_ISREG(status.st_mode))) return true;
+    if (!file_path(lock->name, sizeof lock->name, error, "%.*s.twinbox-%016" PRIx64 ".tmp", (int)folder, path,
+                   hash_xxh3(path + folder, strlen(path + folder))))
+        return false;
+    if (!take(lock, path, error)) {
+        if (lock->file >= 0) close(lock->file);
+        return false;
+    }
+    if (held == NULL) atexit(remove_held);
+    held = lock;
+    return true;
+}
+
+bool file_release(FileReservation *reservation, Error *error) {
+    char name[PATH_MAX];
+    held = NULL;
+    strcpy(name, reservation->lock.name);
+    const bool done = temporary_remove_name(&reservation->lock) ||
+                      error_system(error, name, "cannot be removed: %s", strerror(errno));
+    temporary_close(&reservation->lock);
+    return done;
+}
+
+/* A command writes into two folders at most. */
+enum { FOLDERS = 8 };
+
+/* The reserved folders. Their files stay open. */
+static struct {
+    struct stat status[FOLDERS];
+    int files[FOLDERS], count;
+} reserved;
+
+static bool is_reserved(const struct stat *folder) {
+    for (int i = 0; i < reserved.count && i < FOLDERS; i++)
+        if (reserved.status[i].st_dev == folder->st_dev && reserved.status[i].st_ino == folder->st_ino) return true;
+    return false;
+}
+
+/* Of more, the oldest is given back. */
+static void keep(int file, const struct stat *folder) {
+    const int place = reserved.count++ % FOLDERS;
+    if (reserved.count > FOLDERS) close(reserved.files[place]);
+    reserved.files[place] = file;
+    reserved.status[place] = *folder;
+}
+
+bool folder_reserve(const char *folder, Error *error) {
+    struct stat status;
+    if (!file_make_directory(folder, error)) return false;
+    const int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    /* A folder that cannot be read may be one that can be written into. */
+    if (file < 0 && errno == EACCES) return true;
+    if (file < 0 || fstat(file, &status) != 0) {
+        error_system(error, folder, "cannot be opened: %s", strerror(errno));
+        if (file >= 0) close(file);
+        return false;
+    }
+    const bool known = is_reserved(&status),
+               done = known || lock_take(file, folder, "is writing into this folder", error);
+    if (done && !known)
+        keep(file, &status);
+    else
+        close(file);
+    return done;
+}
+
+/* Whole files out. */
+
+/* What a file is to hold: a block of memory, or all of an open file. */
+typedef struct Contents {
+    const char *data;
+    size_t size;
+    int draft; /* -1: the block */
+} Contents;
+
+bool file_write_all(int file, const void *data, size_t size) {
+    const char *bytes = data;
+    while (size > 0) {
+        ssize_t written = write(file, bytes, size);
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return false;
+        bytes += written;
+        size -= (size_t)written;
+    }
+    return true;
+}
+
+bool file_copy(int to, int from) {
+    enum { BLOCK = 1 << 17 };
+    char *block = malloc(BLOCK);
+    bool done = block != NULL;
+    off_t at = 0;
+    while (done) {
+        ssize_t got = pread(from, block, BLOCK, at);
+        if (got < 0 && errno == EINTR) continue;
+        if (got == 0) break;
+        done = got > 0 && file_write_all(to, block, (size_t)got);
+        if (done) at += got;
+    }
+    int cause = errno;
+    free(block);
+    errno = cause;
+    return done;
+}
+
+static bool write_contents(int file, const Contents *contents) {
+    return contents->draft >= 0 ? file_copy(file, contents->draft)
+                                : file_write_all(file, contents->data, contents->size);
+}
+
+/* An entry that cannot be opened or does not support fsync counts as synced. */
+static bool sync_entry(const char *path) {
+    int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return true;
+    bool done = fsync(file) == 0 || errno == EINVAL;
+    int cause = errno;
+    close(file);
+    errno = cause;
+    return done;
+}
+
+/* Also the directory entry must survive a power cut. */
+static bool sync_folder(int at, const char *path) {
+    char folder[PATH_MAX];
+    if (at != AT_FDCWD) return fsync(at) == 0 || errno == EINVAL;
+    int length = (int)file_folder_length(path);
+    snprintf(folder, sizeof folder, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
+    return sync_entry(folder);
+}
+
+/* Closes also after a failure, and keeps errno of the first failure. */
+static bool close_after(int file, bool done) {
+    int cause = errno;
+    if (close(file) != 0 && done) return false;
+    errno = cause;
+    return done;
+}
+
+/* What close() would report, while the lock lasts. */
+static bool flush(int file, bool wait) {
+    if (wait && fsync(file) != 0) return false;
+    const int copy = dup(file);
+    return copy >= 0 && close(copy) == 0;
+}
+
+/* A draft need not be copied where it can get the name itself. */
+static bool place_draft(int draft, const char *path) {
+    TemporaryFile whole = {.at = AT_FDCWD, .file = draft};
+    const bool done = temporary_rename(&whole, path);
+    temporary_remove_name(&whole);
+    return done;
+}
+
+static bool place_new(int at, const char *path, const Contents *contents, bool wait,
+                      bool (*place)(TemporaryFile *, const char *)) {
+    TemporaryFile new;
+    temporary_sweep(at, path);
+    if (!temporary_open(&new, at, path)) return false;
+    const bool done = write_contents(new.file, contents) && flush(new.file, wait) && place(&new, path);
+    temporary_close(&new);
+    return done;
+}
+
+static bool replace(int at, const char *path, const Contents *contents, bool wait) {
+    if (contents->draft >= 0 && at == AT_FDCWD) {
+        if (!flush(contents->draft, wait)) return false;
+        temporary_sweep(at, path);
+        if (place_draft(contents->draft, path)) return !wait || sync_folder(at, path);
+    }
+    return place_new(at, path, contents, wait, temporary_rename) && (!wait || sync_folder(at, path));
+}
+
+static bool is_standard_output(const struct stat *status) {
+    struct stat output;
+    return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
+}
+
+/* For devices, pipes and the target of /dev/stdout. */
+static bool write_into(int file, const Contents *contents) {
+    return file >= 0 && close_after(file, write_contents(file, contents));
+}
+
+static bool put(const char *path, const Contents *contents, bool wait) {
+    struct stat status;
+    if (path_is_standard(path)) return write_into(dup(standard_output()), contents);
+    if (lstat(path, &status) != 0) return errno == ENOENT && replace(AT_FDCWD, path, contents, wait);
+    bool is_link = S_ISLNK(status.st_mode);
+    if (is_link && stat(path, &status) != 0) return false;
+    if (is_standard_output(&status)) return write_into(dup(STDOUT_FILENO), contents);
+    if (!S_ISREG(status.st_mode)) return write_into(open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC), contents);
+    if (!is_link) return replace(AT_FDCWD, path, contents, wait);
+    char target[PATH_MAX];
+    return realpath(path, target) != NULL && replace(AT_FDCWD, target, contents, wait);
+}
+
+static bool finish(bool written, const char *path, size_t size, Error *error) {
+    if (!written) return error_system(error, path, "cannot write: %s", strerror(errno));
+    trace_line("wrote %s, %zu bytes", path, size);
+    return true;
+}
+
+bool file_append(const char *path, const void *data, size_t size, Error *error) {
+    const int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOCTTY | O_CLOEXEC, 0666);
+    return finish(write_into(file, &(Contents){data, size, -1}), path, size, error);
+}
+
+bool file_write(const char *path, const void *data, size_t size, Error *error) {
+    return finish(put(path, &(Contents){data, size, -1}, true), path, size, error);
+}
+
+bool file_create(const char *path, const void *data, size_t size, Error *error) {
+    const bool done = place_new(AT_FDCWD, path, &(Contents){data, size, -1}, true, temporary_link);
+    if (!done && errno == EEXIST) return error_input(error, path, "exists already, and is not overwritten");
+    return finish(done && sync_folder(AT_FDCWD, path), path, size, error);
+}
+
+bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error) {
+    return finish(replace(folder, name, &(Contents){data, size, -1}, true), path, size, error);
+}
+
+bool file_write_soon(const char *path, const void *data, size_t size, Error *error) {
+    return finish(put(path, &(Contents){data, size, -1}, false), path, size, error);
+}
+
+bool file_remove(const char *path, Error *error) {
+    return unlink(path) == 0 || errno == ENOENT || error_system(error, path, "cannot be removed: %s", strerror(errno));
+}
+
+bool file_sync(const char *path, Error *error) {
+    return sync_entry(path) || error_system(error, path, "cannot write: %s", strerror(errno));
+}
+
+/* A path in the folder where a draft of `path` can become that file; for pipes and devices in that for temporary files. */
+static bool draft_place(const char *path, char place[PATH_MAX]) {
+    struct stat status;
+    if (path_is_standard(path) ||
+        (stat(path, &status) == 0 && (!S_ISREG(status.st_mode) || is_standard_output(&status))))
+        return snprintf(place, PATH_MAX, "%s/draft", temporary_files_folder()) < PATH_MAX;
+    return realpath(path, place) != NULL || snprintf(place, PATH_MAX, "%s", path) < PATH_MAX;
+}
+
+int file_draft(const char *path, Error *error) {
+    char place[PATH_MAX];
+    errno = ENAMETOOLONG;
+    const int draft = draft_place(path, place) ? temporary_nameless(place) : -1;
+    if (draft < 0) error_system(error, path, "cannot write: %s", strerror(errno));
+    return draft;
+}
+
+bool file_draft_write(int draft, const char *path, const void *data, size_t size, Error *error) {
+    return file_write_all(draft, data, size) || error_system(error, path, "cannot write: %s", strerror(errno));
+}
+
+bool file_draft_publish(int draft, const char *path, Error *error) {
+    const off_t size = lseek(draft, 0, SEEK_END);
+    return finish(put(path, &(Contents){.draft = draft}, true), path, (size_t)size, error);
+}

@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/json.h"
+
+#include "base/base.h"
+#include "base/file.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void put_quoted(FILE *out, const char *text) {
+    putc('"', out);
+    for (size_t at = 0, size = strlen(text), length; at < size; at += length) {
+        uint32_t character;
+        length = utf8_decode(text + at, size - at, &character);
+        if (length == 0) {
+            fputs("\xef\xbf\xbd", out); /* U+FFFD */
+            length = 1;
+        } else if (character == '"' || character == '\\') {
+            fprintf(out, "\\%c", (char)character);
+        } else if (character < 0x20 || character == 0x7f || character == '<' || character == '>' || character == '&') {
+            fprintf(out, "\\u%04" PRIx32, character);
+        } else {
+            fwrite(text + at, 1, length, out);
+        }
+    }
+    putc('"', out);
+}
+
+/* The end of the value before, the line, and the key. */
+static void begin_value(JsonWriter *writer, const char *key) {
+    if (writer->depth > 0) {
+        bool one_line = writer->levels[writer->depth].one_line, any = writer->levels[writer->depth].any;
+        if (any) putc(',', writer->out);
+        if (!one_line)
+            fprintf(writer->out, "\n%*s", 2 * writer->depth, "");
+        else if (any)
+            putc(' ', writer->out);
+        writer->levels[writer->depth].any = true;
+    }
+    if (key == NULL) return;
+    put_quoted(writer->out, key);
+    fputs(": ", writer->out);
+}
+
+static void begin_container(JsonWriter *writer, const char *key, JsonLayout layout, const char *ends) {
+    begin_value(writer, key);
+    putc(ends[0], writer->out);
+    bool one_line = layout == JSON_ONE_LINE || (writer->depth > 0 && writer->levels[writer->depth].one_line);
+    assert(writer->depth < JSON_DEPTH_MAX);
+    writer->depth++;
+    writer->levels[writer->depth].end = ends[1];
+    writer->levels[writer->depth].one_line = one_line;
+    writer->levels[writer->depth].any = false;
+}
+
+void json_begin_object(JsonWriter *writer, const char *key, JsonLayout layout) {
+    begin_container(writer, key, layout, "{}");
+}
+
+void json_begin_array(JsonWriter *writer, const char *key, JsonLayout layout) {
+    begin_container(writer, key, layout, "[]");
+}
+
+void json_end(JsonWriter *writer) {
+    bool lines = !writer->levels[writer->depth].one_line && writer->levels[writer->depth].any;
+    char end = writer->levels[writer->depth--].end;
+    if (lines) fprintf(writer->out, "\n%*s", 2 * writer->depth, "");
+    putc(end, writer->out);
+    if (writer->depth == 0) putc('\n', writer->out);
+}
+
+void json_put_text(JsonWriter *writer, const char *key, const char *text) {
+    begin_value(writer, key);
+    if (text == NULL)
+        fputs("null", writer->out);
+    else
+        put_quoted(writer->out, text);
+}
+
+void json_put_int(JsonWriter *writer, const char *key, int64_t value) {
+    begin_value(writer, key);
+    fprintf(writer->out, "%" PRId64, value);
+}
+
+void json_put_number(JsonWriter *writer, const char *key, double value) {
+    char text[32] = "null";
+    begin_value(writer, key);
+    for (int digits = 15; isfinite(value) && digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    fputs(text, writer->out);
+}
+
+void json_put_bool(JsonWriter *writer, const char *key, bool value) {
+    begin_value(writer, key);
+    fputs(value ? "true" : "false", writer->out);
+}
+
+void json_put_hash(JsonWriter *writer, const char *key, uint64_t hash) {
+    begin_value(writer, key);
+    fprintf(writer->out, "\"%016" PRIx64 "\"", hash);
+}
+
+/* A stack that jansson's memory comes from. When it is full, longjmp leaves jansson: it (2.14, 2.15) must never see
+   malloc() fail, because it ignores a failure to lengthen a token and then runs past the end of its buffers. */
+typedef struct JsonMemory {
+    jmp_buf full;
+    size_t used; /* blocks */
+    max_align_t blocks[JSON_VALUE_MEMORY / sizeof(max_align_t)];
+} JsonMemory;
+
+/* Of the value that is being read: jansson's allocator has no context argument. */
+static JsonMemory *current;
+
+static void *memory_take(size_t size) {
+    size_t left = sizeof current->blocks / sizeof *current->blocks - current->used;
+    if (size > left * sizeof *current->blocks) longjmp(current->full, 1);
+    void *block = &current->blocks[current->used];
+    current->used += (size + sizeof *current->blocks - 1) / sizeof *current->blocks;
+    return block;
+}
+
+/* The memory is freed as a whole, before the next value. */
+static void memory_keep(void *block) { (void)block; }
+
+/* json_loadb(); false when the memory is full. */
+static bool load(JsonMemory *memory, const char *text, size_t size, json_t **value, json_error_t *failure) {
+    json_malloc_t allocate;
+    json_free_t release;
+    json_get_alloc_funcs(&allocate, &release);
+    memory->used = 0;
+    current = memory;
+    json_set_alloc_funcs(memory_take, memory_keep);
+    if (setjmp(memory->full) != 0) {
+        json_set_alloc_funcs(allocate, release);
+        return false;
+    }
+    *value = json_loadb(text, size, JSON_DECODE_ANY | JSON_DISABLE_EOF_CHECK | JSON_REJECT_DUPLICATES, failure);
+    json_set_alloc_funcs(allocate, release);
+    return true;
+}
+
+bool json_read_error(const JsonReader *reader, Error *error, const char *format, ...) {
+    char text[1024], where[PATH_MAX];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    snprintf(where, sizeof where, "%s:%d:%d", reader->path, reader->value_line, reader->value_column);
+    return error_input(error, where, "%s", text);
+}
+
+static void advance(JsonReader *reader, size_t size) {
+    for (const char *to = reader->at + size; reader->at < to; reader->at++) {
+        if (*reader->at == '\n') {
+            reader->line++;
+            reader->column = 1;
+        } else if ((*reader->at & 0xc0) != 0x80) { /* not inside a character of UTF-8 */
+            reader->column++;
+        }
+    }
+}
+
+/* Errors refer to the place after the white space. */
+static void skip_space(JsonReader *reader) {
+    while (reader->at < reader->end && *reader->at != '\0' && strchr(" \t\r\n", *reader->at) != NULL)
+        advance(reader, 1);
+    reader->value_line = reader->line;
+    reader->value_column = reader->column;
+}
+
+/* Sets jansson's error; its lines and columns are relative to the start of the value. */
+static void set_error(JsonReader *reader, json_error_t *failure, Error *error) {
+    /* Omits the excerpt of the file: it may contain terminal escape sequences. */
+    char *excerpt = strstr(failure->text, " near '");
+    if (excerpt != NULL) *excerpt = '\0';
+    int column = failure->column > 0 ? failure->column : 1;
+    reader->value_column = failure->line > 1 ? column : reader->value_column + column - 1;
+    reader->value_line += failure->line - 1;
+    json_read_error(reader, error, "%s", failure->text);
+}
+
+const json_t *json_read_value(JsonReader *reader, Error *error) {
+    json_t *value;
+    json_error_t failure;
+    skip_space(reader);
+    size_t left = (size_t)(reader->end - reader->at), size = left < JSON_VALUE_SIZE ? left : JSON_VALUE_SIZE;
+    if (!load(reader->memory, reader->at, size, &value, &failure)) {
+        json_read_error(reader, error, "a value must take at most %d bytes of memory", JSON_VALUE_MEMORY);
+        return NULL;
+    }
+    if (value != NULL)
+        advance(reader, (size_t)failure.position);
+    else if (size < left && (size_t)failure.position + 4 > size) /* or in the middle of a character of 4 bytes */
+        json_read_error(reader, error, "a value must have at most %d bytes", JSON_VALUE_SIZE);
+    else
+        set_error(reader, &failure, error);
+    return value;
+}
+
+bool json_read_char(JsonReader *reader, char c) {
+    skip_space(reader);
+    if (reader->at == reader->end || *reader->at != c) return false;
+    advance(reader, 1);
+    return true;
+}
+
+bool json_read_more(JsonReader *reader, char end, bool *more, Error *error) {
+    *more = json_read_char(reader, ',');
+    return *more || json_read_char(reader, end) || json_read_error(reader, error, "',' or '%c' expected", end);
+}
+
+bool json_read_end(JsonReader *reader, Error *error) {
+    skip_space(reader);
+    return reader->at == reader->end || json_read_error(reader, error, "end of file expected");
+}
+
+bool json_read_open(JsonReader *reader, const char *path, size_t max_size, Error *error) {
+    size_t size;
+    *reader = (JsonReader){.path = path, .line = 1, .column = 1, .value_line = 1, .value_column = 1};
+    reader->text = file_read(path, max_size, &size, error);
+    if (reader->text == NULL) return false;
+    reader->at = reader->text;
+    reader->end = reader->text + size;
+    reader->memory = malloc(sizeof *reader->memory);
+    if (reader->memory != NULL) return true;
+    json_read_close(reader);
+    return error_memory(error, path);
+}
+
+void json_read_close(JsonReader *reader) {
+    free(reader->memory);
+    free(reader->text);
+}

@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The header of one .npy array. */
+#include "base/base.h"
+#include "base/npz.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "arrays are stored little-endian and copied unconverted; this machine is not little-endian"
+#endif
+
+static const struct {
+    const char *code, *name;
+    unsigned size;
+} types[] = {
+    [NPZ_FLOAT32] = {"<f4", "float32", 4}, [NPZ_FLOAT64] = {"<f8", "float64", 8}, [NPZ_INT32] = {"<i4", "int32", 4},
+    [NPZ_UINT32] = {"<u4", "uint32", 4},   [NPZ_INT64] = {"<i8", "int64", 8},     [NPZ_UINT64] = {"<u8", "uint64", 8},
+    [NPZ_UINT8] = {"|u1", "uint8", 1},     [NPZ_INT8] = {"|i1", "int8", 1},       [NPZ_INT16] = {"<i2", "int16", 2},
+    [NPZ_UINT16] = {"<u2", "uint16", 2},   [NPZ_BOOL] = {"|b1", "bool", 1},       [NPZ_TEXT] = {"<U", "text", 4},
+};
+
+static const char MAGIC[] = "\x93NUMPY";
+enum {
+    MAGIC_SIZE = sizeof MAGIC - 1,
+    VERSION_1_SIZE = MAGIC_SIZE + 4,
+    VERSION_2_SIZE = MAGIC_SIZE + 6,
+    ALIGNMENT = 64
+};
+
+const char *npy_type_name(NpzType type) { return types[type].name; }
+
+size_t npy_type_size(NpzType type) { return types[type].size; }
+
+size_t npy_count(const NpyHead *head) { return (size_t)head->data_size / types[head->type].size; }
+
+bool npy_measure(NpyHead *head) {
+    uint64_t items = head->type == NPZ_TEXT ? (uint64_t)head->characters : 1;
+    if (items > NPZ_MAX_BYTES) return false;
+    for (int i = 0; i < head->rank; i++) {
+        if ((uint64_t)head->shape[i] > NPZ_MAX_BYTES) return false;
+        items *= (uint64_t)head->shape[i];
+        if (items > NPZ_MAX_BYTES) return false;
+    }
+    head->data_size = items * types[head->type].size;
+    return head->data_size <= NPZ_MAX_BYTES;
+}
+
+static size_t append(char *text, size_t used, const char *format, ...) PRINTF_LIKE(3, 4);
+
+static size_t append(char *text, size_t used, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text + used, NPY_HEAD_MAX - used, format, arguments);
+    va_end(arguments);
+    return used + (size_t)length;
+}
+
+void npy_write_head(NpyHead *head, char text[NPY_HEAD_MAX]) {
+    size_t used = append(text, VERSION_1_SIZE, "{'descr': '%s", types[head->type].code);
+    if (head->type == NPZ_TEXT) used = append(text, used, "%" PRId64, head->characters);
+    used = append(text, used, "', 'fortran_order': False, 'shape': (");
+    for (int i = 0; i < head->rank; i++) used = append(text, used, i == 0 ? "%" PRId64 : ", %" PRId64, head->shape[i]);
+    used = append(text, used, head->rank == 1 ? ",), }" : "), }");
+    head->head_size = (used + 1 + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    memset(text + used, ' ', head->head_size - used);
+    text[head->head_size - 1] = '\n';
+    memcpy(text, MAGIC, MAGIC_SIZE);
+    size_t length = head->head_size - VERSION_1_SIZE;
+    text[MAGIC_SIZE] = 1;
+    text[MAGIC_SIZE + 1] = 0;
+    text[MAGIC_SIZE + 2] = (char)(length & 0xff);
+    text[MAGIC_SIZE + 3] = (char)(length >> 8);
+}
+
+static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) PRINTF_LIKE(2, 3);
+
+static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, NPY_REASON_SIZE, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+/* Skips `word` if the text continues with it. */
+static bool take(const char **text, const char *word) {
+    size_t length = strlen(word);
+    if (strncmp(*text, word, length) != 0) return false;
+    *text += length;
+    return true;
+}
+
+static bool take_number(const char **text, int64_t *number) {
+    const char *digit = *text;
+    *number = 0;
+    while (*digit >= '0' && *digit <= '9' && *number < (INT64_MAX - 9) / 10) *number = *number * 10 + (*digit++ - '0');
+    if (digit == *text || (*digit >= '0' && *digit <= '9')) return false;
+    *text = digit;
+    return true;
+}
+
+static bool take_type(const char **text, NpyHead *head) {
+    head->big_endian = **text == '>';
+    for (head->type = NPZ_FLOAT32; head->type <= NPZ_TEXT; head->type++) {
+        const char *code = types[head->type].code, *rest = *text + 1;
+        if ((**text != code[0] && (!head->big_endian || code[0] != '<')) || !take(&rest, code + 1)) continue;
+        *text = rest;
+        return head->type != NPZ_TEXT || take_number(text, &head->characters);
+    }
+    return false;
+}
+
+/* "()", "(3,)", "(3, 2)" */
+static bool take_shape(const char **text, NpyHead *head) {
+    if (take(text, "()")) return true;
+    if (!take(text, "(")) return false;
+    do {
+        if (head->rank == NPZ_MAX_RANK || !take_number(text, &head->shape[head->rank++])) return false;
+    } while (take(text, ", "));
+    return (head->rank > 1 || take(text, ",")) && take(text, ")");
+}
+
+/* Reads the dictionary and the blanks up to the line feed. */
+static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_REASON_SIZE]) {
+    if (!take(&text, "{'descr': '")) return refuse(reason, "not a plain array (or not .npy)");
+    const char *type = text;
+    if (!take_type(&text, head) || *text != '\'') {
+        int length = (int)strspn(type, "<>|=?abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789[]");
+        return refuse(reason, "of the unsupported type '%.*s'", length < 32 ? length : 32, type);
+    }
+    if (!take(&text, "', 'fortran_order': ")) return refuse(reason, "with a damaged header");
+    head->fortran = take(&text, "True");
+    if ((!head->fortran && !take(&text, "False")) || !take(&text, ", 'shape': ") || !take_shape(&text, head) ||
+        !take(&text, ", }"))
+        return refuse(reason, "with a damaged header, or of more than %d dimensions", NPZ_MAX_RANK);
+    text += strspn(text, " ");
+    if (strcmp(text, "\n") != 0) return refuse(reason, "with a damaged header");
+    if (head->type == NPZ_TEXT && head->rank > 0) return refuse(reason, "an array of texts; expected a single text");
+    return npy_measure(head) || refuse(reason, "larger than 2 GiB");
+}
+
+bool npy_parse_head(NpyHead *head, const char *text, size_t size, char reason[NPY_REASON_SIZE]) {
+    const unsigned char *bytes = (const unsigned char *)text;
+    *head = (NpyHead){0};
+    if (size < VERSION_2_SIZE || memcmp(text, MAGIC, MAGIC_SIZE) != 0) return refuse(reason, "not a .npy array");
+    int version = bytes[MAGIC_SIZE];
+    if (version < 1 || version > 2 || bytes[MAGIC_SIZE + 1] != 0)
+        return refuse(reason, "in version %d.%d of .npy; expected 1.0 or 2.0", version, bytes[MAGIC_SIZE + 1]);
+    size_t start = version == 1 ? VERSION_1_SIZE : VERSION_2_SIZE;
+    uint64_t length = bytes[MAGIC_SIZE + 2] + 256U * bytes[MAGIC_SIZE + 3];
+    if (version == 2) length += ((uint64_t)bytes[MAGIC_SIZE + 4] << 16) + ((uint64_t)bytes[MAGIC_SIZE + 5] << 24);
+    if (length > size - start)
+        return refuse(reason, "with a header that is cut off or longer than %d bytes", NPY_HEAD_MAX);
+    char dictionary[NPY_HEAD_MAX + 1];
+    memcpy(dictionary, text + start, length);
+    dictionary[length] = '\0';
+    if (strlen(dictionary) != length) return refuse(reason, "with a damaged header");
+    head->head_size = start + length;
+    return parse_dictionary(head, dictionary, reason);
+}
+
+/* Arrays of other types and orders than those that twinbox writes. */
+
+/* A number of any type. Not a double alone: it does not hold every int64. */
+typedef struct Number {
+    enum { REAL, INTEGER, NATURAL } kind; /* which of the next three it is */
+    double real;
+    int64_t integer;
+    uint64_t natural;
+} Number;
+
+void npy_swap(const NpyHead *head, void *data) {
+    size_t size = npy_type_size(head->type), count = npy_count(head);
+    unsigned char *item = data;
+    for (size_t i = 0; i < count; i++, item += size)
+        for (size_t low = 0, high = size - 1; low < high; low++, high--) {
+            unsigned char byte = item[low];
+            item[low] = item[high];
+            item[high] = byte;
+        }
+}
+
+#define LOAD(type, which, member)                    \
+    do {                                             \
+        type loaded_;                                \
+        memcpy(&loaded_, item, sizeof loaded_);      \
+        return (Number){(which), .member = loaded_}; \
+    } while (0)
+
+static Number load(NpzType type, const void *item) {
+    switch (type) {
+    case NPZ_FLOAT32: LOAD(float, REAL, real);
+    case NPZ_FLOAT64: LOAD(double, REAL, real);
+    case NPZ_INT8: LOAD(int8_t, INTEGER, integer);
+    case NPZ_INT16: LOAD(int16_t, INTEGER, integer);
+    case NPZ_INT32: LOAD(int32_t, INTEGER, integer);
+    case NPZ_INT64: LOAD(int64_t, INTEGER, integer);
+    case NPZ_UINT16: LOAD(uint16_t, NATURAL, natural);
+    case NPZ_UINT32: LOAD(uint32_t, NATURAL, natural);
+    case NPZ_UINT64: LOAD(uint64_t, NATURAL, natural);
+    case NPZ_UINT8: LOAD(uint8_t, NATURAL, natural);
+    default: return (Number){NATURAL, .natural = *(const uint8_t *)item != 0}; /* a bool of a file may be any byte */
+    }
+}
+
+static bool store_float(const Number *number, float *item) {
+    *item = number->kind == REAL      ? (float)number->real
+            : number->kind == INTEGER ? (float)number->integer
+                                      : (float)number->natural;
+    return number->kind != REAL || !isinf(*item) || isinf(number->real);
+}
+
+static double as_double(const Number *number) {
+    return number->kind == REAL      ? number->real
+           : number->kind == INTEGER ? (double)number->integer
+                                     : (double)number->natural;
+}
+
+/* As an int64, if it is a whole number in its range. */
+static bool as_integer(const Number *number, int64_t *integer) {
+    const double end = 0x1p63;
+    if (number->kind == REAL) {
+        if (!(number->real >= -end && number->real < end) || rint(number->real) != number->real) return false;
+        *integer = (int64_t)number->real;
+    } else
+        *integer = number->kind == INTEGER ? number->integer : (int64_t)number->natural;
+    return number->kind != NATURAL || number->natural <= INT64_MAX;
+}
+
+static bool as_natural(const Number *number, uint64_t *natural) {
+    int64_t integer;
+    if (number->kind == NATURAL) {
+        *natural = number->natural;
+        return true;
+    }
+    if (!as_integer(number, &integer) || integer < 0) return false;
+    *natural = (uint64_t)integer;
+    return true;
+}
+
+#define STORE(type, value)                      \
+    do {                                        \
+        type stored_ = (type)(value);           \
+        memcpy(item, &stored_, sizeof stored_); \
+    } while (0)
+
+/* False if the number does not fit. */
+static bool store(NpzType type, const Number *number, void *item) {
+    int64_t integer = 0;
+    uint64_t natural = 0;
+    bool fits;
+    switch (type) {
+    case NPZ_FLOAT32: return store_float(number, item);
+    case NPZ_FLOAT64: STORE(double, as_double(number)); return true;
+    case NPZ_INT32:
+        fits = as_integer(number, &integer) && integer >= INT32_MIN && integer <= INT32_MAX;
+        STORE(int32_t, integer);
+        return fits;
+    case NPZ_INT64:
+        fits = as_integer(number, &integer);
+        STORE(int64_t, integer);
+        return fits;
+    case NPZ_UINT32:
+        fits = as_natural(number, &natural) && natural <= UINT32_MAX;
+        STORE(uint32_t, natural);
+        return fits;
+    case NPZ_UINT64:
+        fits = as_natural(number, &natural);
+        STORE(uint64_t, natural);
+        return fits;
+    default:
+        fits = as_natural(number, &natural) && natural <= UINT8_MAX;
+        STORE(uint8_t, natural);
+        return fits;
+    }
+}
+
+/* Where item i of the C order is stored. */
+static size_t fortran_index(const NpyHead *head, size_t i) {
+    size_t at = 0, stride[NPZ_MAX_RANK], size = 1;
+    for (int k = 0; k < head->rank; k++) {
+        stride[k] = size;
+        size *= (size_t)head->shape[k];
+    }
+    for (int k = head->rank - 1; k >= 0; k--) {
+        at += i % (size_t)head->shape[k] * stride[k];
+        i /= (size_t)head->shape[k];
+    }
+    return at;
+}
+
+/* "item [3, 0] is 1e+300, which is not a float32" */
+static bool npy_convert_refuse(const NpyHead *head, size_t i, const Number *number, NpzType type,
+                               char reason[NPY_REASON_SIZE]) {
+    int64_t index[NPZ_MAX_RANK] = {0};
+    for (int k = head->rank - 1; k >= 0; k--) {
+        index[k] = (int64_t)(i % (size_t)head->shape[k]);
+        i /= (size_t)head->shape[k];
+    }
+    int used = snprintf(reason, NPY_REASON_SIZE, head->rank > 0 ? "item [" : "its value");
+    for (int k = 0; k < head->rank; k++)
+        used += snprintf(reason + used, NPY_REASON_SIZE - (size_t)used, "%" PRId64 "%s", index[k],
+                         k + 1 < head->rank ? ", " : "]");
+    snprintf(reason + used, NPY_REASON_SIZE - (size_t)used, " is %.17g, which does not fit into %s", as_double(number),
+             npy_type_name(type));
+    return false;
+}
+
+bool npy_convert(const NpyHead *head, const void *data, NpzType type, void *converted, char reason[NPY_REASON_SIZE]) {
+    const size_t count = npy_count(head), from = npy_type_size(head->type), to = npy_type_size(type);
+    const bool reordered = head->fortran && head->rank > 1;
+    for (size_t i = 0; i < count; i++) {
+        size_t at = reordered ? fortran_index(head, i) : i;
+        Number number = load(head->type, (const char *)data + at * from);
+        if (!store(type, &number, (char *)converted + i * to))
+            return npy_convert_refuse(head, i, &number, type, reason);
+    }
+    return true;
+}

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whose a temporary file is. Several machines may share a folder, and their process ids and clocks may be equal; locks may
+   hold on one machine only, or nowhere. So the machine is in the name, and only there can a process be looked up. */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/machine.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <sys/utsname.h>
+#include <time.h>
+#include <unistd.h>
+
+static char machine[9];
+
+/* Names of machines may be equal, as those of copies of one are; this is drawn when a kernel starts. */
+static void read_boot_id(char *text, size_t size) {
+    const int file = open("/proc/sys/kernel/random/boot_id", O_RDONLY | O_CLOEXEC);
+    if (file < 0) return;
+    const ssize_t length = read(file, text, size - 1);
+    text[length > 0 ? length : 0] = '\0';
+    close(file);
+}
+
+/* Processes in containers cannot look each other up; each container is a machine. */
+static void identify(void) {
+    struct {
+        char boot[64], processes[64];
+        struct utsname names;
+    } known = {0};
+    read_boot_id(known.boot, sizeof known.boot);
+    if (readlink("/proc/self/ns/pid", known.processes, sizeof known.processes - 1) < 0) known.processes[0] = '\0';
+    if (uname(&known.names) != 0) memset(&known.names, 0, sizeof known.names);
+    snprintf(machine, sizeof machine, "%08" PRIx32, (uint32_t)hash_xxh3(&known, sizeof known));
+}
+
+static void temporary_owner(char owner[TEMPORARY_OWNER]) {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, identify);
+    snprintf(owner, TEMPORARY_OWNER, "%s-%ld-", machine, (long)getpid());
+}
+
+/* Whether the name begins with an owner on this machine whose process has ended. */
+static bool temporary_owner_ended(const char *name) {
+    char own[TEMPORARY_OWNER], *end;
+    /* MACHINE- has as many characters as the array that holds MACHINE. */
+    temporary_owner(own);
+    if (strncmp(name, own, sizeof machine) != 0) return false;
+    const long process = strtol(name + sizeof machine, &end, 10);
+    return *end == '-' && process > 0 && process == (pid_t)process && kill((pid_t)process, 0) != 0 && errno == ESRCH;
+}
+
+enum { ATTEMPTS = 100 };
+
+const char *temporary_files_folder(void) {
+    const char *chosen = getenv("TMPDIR");
+    return chosen != NULL && chosen[0] != '\0' ? chosen : "/tmp";
+}
+
+static bool print_name(TemporaryFile *temporary, const char *path, unsigned attempt) {
+    struct timespec now;
+    char owner[TEMPORARY_OWNER];
+    clock_gettime(CLOCK_REALTIME, &now);
+    temporary_owner(owner);
+    const int length = snprintf(temporary->name, sizeof temporary->name, "%.*s.twinbox-%s%lx-%u.tmp",
+                                (int)file_folder_length(path), path, owner, (unsigned long)now.tv_nsec, attempt);
+    if (length >= 0 && (size_t)length < sizeof temporary->name) return true;
+    errno = ENAMETOOLONG;
+    return false;
+}
+
+/* Takes the lock that files in use have, without waiting. False if another process has it, or if the file has lost its
+   name to a process that found it unlocked. True where the file system has no locks. */
+static bool temporary_lock(int file) {
+    struct stat status;
+    if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+    return fstat(file, &status) != 0 || status.st_nlink > 0;
+}
+
+/* Not mkstemp: its files are readable by their owner only, whatever the umask. */
+static bool open_named(TemporaryFile *temporary, const char *path) {
+    for (unsigned attempt = 0; attempt <= ATTEMPTS && print_name(temporary, path, attempt); attempt++) {
+        temporary->file = openat(temporary->at, temporary->name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (temporary->file >= 0 && temporary_lock(temporary->file)) return true;
+        if (temporary->file < 0 && errno != EEXIST) break;
+        if (temporary->file >= 0) temporary_close(temporary);
+    }
+    temporary->name[0] = '\0';
+    return false;
+}
+
+/* A file without a name gets one through /proc. */
+static int open_nameless(int at, const char *path) {
+    char folder[PATH_MAX];
+    const int length = (int)file_folder_length(path);
+    if (access("/proc/self/fd", X_OK) != 0) {
+        errno = EOPNOTSUPP;
+        return -1;
+    }
+    if (snprintf(folder, sizeof folder, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".") >= PATH_MAX) {
+        errno = ENAMETOOLONG;
+        return -1;
+    }
+    return openat(at, folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+}
+
+bool temporary_open(TemporaryFile *temporary, int at, const char *path) {
+    temporary->at = at;
+    temporary->name[0] = '\0';
+    temporary->file = open_nameless(at, path);
+    if (temporary->file >= 0) return true;
+    return (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL) && open_named(temporary, path);
+}
+
+int temporary_nameless(const char *path) {
+    TemporaryFile temporary;
+    temporary_sweep(AT_FDCWD, path);
+    if (!temporary_open(&temporary, AT_FDCWD, path)) return -1;
+    if (temporary_remove_name(&temporary)) return temporary.file;
+    temporary_close(&temporary);
+    return -1;
+}
+
+static bool link_to(const TemporaryFile *temporary, const char *path) {
+    char descriptor[64];
+    if (temporary->name[0] != '\0') return linkat(temporary->at, temporary->name, temporary->at, path, 0) == 0;
+    snprintf(descriptor, sizeof descriptor, "/proc/self/fd/%d", temporary->file);
+    return linkat(AT_FDCWD, descriptor, temporary->at, path, AT_SYMLINK_FOLLOW) == 0;
+}
+
+/* Locked before it has the name. */
+static bool give_name(TemporaryFile *temporary, const char *path) {
+    flock(temporary->file, LOCK_EX | LOCK_NB);
+    TemporaryFile named = *temporary;
+    for (unsigned attempt = 0; attempt <= ATTEMPTS && print_name(&named, path, attempt); attempt++) {
+        if (link_to(temporary, named.name)) {
+            *temporary = named;
+            return true;
+        }
+        if (errno != EEXIST) return false;
+    }
+    return false;
+}
+
+bool temporary_rename(TemporaryFile *temporary, const char *path) {
+    if (temporary->name[0] == '\0') {
+        /* A link, unlike a rename, needs no other name before, but cannot replace a file. */
+        if (link_to(temporary, path)) return true;
+        if (errno != EEXIST || !give_name(temporary, path)) return false;
+    }
+    if (renameat(temporary->at, temporary->name, temporary->at, path) != 0) return false;
+    temporary->name[0] = '\0';
+    return true;
+}
+
+bool temporary_link(TemporaryFile *temporary, const char *path) { return link_to(temporary, path); }
+
+bool temporary_remove_name(TemporaryFile *temporary) {
+    const bool done = temporary->name[0] == '\0' || unlinkat(temporary->at, temporary->name, 0) == 0;
+    temporary->name[0] = '\0';
+    return done;
+}
+
+void temporary_close(TemporaryFile *temporary) {
+    const int cause = errno;
+    temporary_remove_name(temporary);
+    if (temporary->file >= 0) close(temporary->file);
+    temporary->file = -1;
+    errno = cause;
+}
+
+/* Temporary files of killed processes of this machine, and reservations (file_reserve.h) that nobody has locked. */
+
+enum { REMEMBERED = 16 };
+
+/* The folders that this process has swept. */
+static struct {
+    pthread_mutex_t mutex;
+    struct stat folders[REMEMBERED];
+    int count;
+} swept = {.mutex = PTHREAD_MUTEX_INITIALIZER};
+
+static bool same_file(const struct stat *a, const struct stat *b) {
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+/* Whether this folder is met for the first time. The oldest of many is forgotten. */
+static bool remember(const struct stat *folder) {
+    bool known = false;
+    pthread_mutex_lock(&swept.mutex);
+    for (int i = 0; i < swept.count && i < REMEMBERED; i++) known = known || same_file(&swept.folders[i], folder);
+    if (!known) swept.folders[swept.count++ % REMEMBERED] = *folder;
+    pthread_mutex_unlock(&swept.mutex);
+    return !known;
+}
+
+/* The lock is held while the name is removed; else a process could take the file in between. Over NFS, only a file that is
+   open for writing can be locked. */
+static void remove_dead(int folder, const char *name, bool (*lock)(int)) {
+    struct stat status, named;
+    const int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (file < 0) return;
+    if (fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid() && lock(file) &&
+        fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && same_file(&status, &named))
+        unlinkat(folder, name, 0);
+    close(file);
+}
+
+static bool is_locked_now(int file) { return flock(file, LOCK_EX | LOCK_NB) == 0; }
+
+/* Reservations have no owner in their names. A temporary file may be in use by children of a process that has ended. */
+static void visit(int folder, const char *name) {
+    static const char start[] = ".twinbox-";
+    const char *owner = name + sizeof start - 1;
+    if (strncmp(name, start, sizeof start - 1) != 0 || !file_name_ends_with(name, ".tmp")) return;
+    if (strchr(owner, '-') == NULL)
+        remove_dead(folder, name, is_locked_now);
+    else if (temporary_owner_ended(owner))
+        remove_dead(folder, name, temporary_lock);
+}
+
+void temporary_sweep(int at, const char *path) {
+    char name[PATH_MAX];
+    struct stat status;
+    const int length = (int)file_folder_length(path);
+    if (snprintf(name, sizeof name, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".") >= PATH_MAX) return;
+    const int folder = openat(at, name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0) return;
+    DIR *entries = fstat(folder, &status) == 0 && remember(&status) ? fdopendir(folder) : NULL;
+    if (entries == NULL) {
+        close(folder);
+        return;
+    }
+    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) visit(folder, entry->d_name);
+    closedir(entries);
+}
+
+/* The process that has locked a file: flock() itself does not tell. 0: unknown, or it has ended. */
+static long find_holder(const struct stat *file) {
+    char line[256];
+    long holder = 0;
+    FILE *locks = fopen("/proc/locks", "re");
+    if (locks == NULL) return 0;
+    while (holder == 0 && fgets(line, sizeof line, locks) != NULL) {
+        long process;
+        unsigned major_number, minor_number;
+        unsigned long long inode;
+        if (sscanf(line, "%*d: FLOCK ADVISORY WRITE %ld %x:%x:%llu", &process, &major_number, &minor_number, &inode) ==
+                4 &&
+            inode == file->st_ino && major_number == major(file->st_dev) && minor_number == minor(file->st_dev))
+            holder = process;
+    }
+    fclose(locks);
+    return holder > 0 && (kill((pid_t)holder, 0) == 0 || errno == EPERM) ? holder : 0;
+}
+
+static bool refuse(const char *path, const char *what, long holder, Error *error) {
+    char name[48] = "another process";
+    if (holder > 0) snprintf(name, sizeof name, "another process (%ld)", holder);
+    return error_system(error, path, "%s %s; wait until it ends, or choose another name", name, what);
+}
+
+/* The drawing processes of a render that was killed end after their frame, which must not replace one drawn later. */
+bool lock_take(int file, const char *path, const char *what, Error *error) {
+    struct stat status;
+    static const double patience = 0.2, patience_with_children = 30; /* s */
+    const double begun = clock_seconds();
+    while (flock(file, LOCK_EX | LOCK_NB) != 0) {
+        if (errno == EINTR) continue;
+        if (errno != EWOULDBLOCK) return true;
+        if (fstat(file, &status) != 0) return error_system(error, path, "cannot be locked: %s", strerror(errno));
+        const long holder = find_holder(&status);
+        if (clock_seconds() - begun > (holder > 0 ? patience : patience_with_children))
+            return refuse(path, what, holder, error);
+        nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+    }
+    return true;
+}

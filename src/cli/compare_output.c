@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/json.h"
+#include "cli/cli.h"
+#include "cli/runs.h"
+#include "regression/naming.h"
+#include "regression/regression.h"
+#include "regression/report.h"
+#include "runs/trajectory.h"
+
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <time.h>
+
+/* The names of frames with this verdict. */
+static void print_names(const Regression *regression, PixelVerdict verdict, const char *folder) {
+    enum { NAMED = 10 };
+    int count = regression->by_verdict[verdict], named = 0;
+    if (count == 0) return;
+    printf("only in %s: %d %s:", folder, count, count == 1 ? "frame" : "frames");
+    for (int i = 0; i < regression->count && named < NAMED; i++)
+        if (regression->frames[i].pixels == verdict) {
+            printf(" %s", frame_name(&regression->frames[i]));
+            named++;
+        }
+    printf(count > NAMED ? " ...\n" : "\n");
+}
+
+static const char *differ(int count) { return count == 1 ? "differs" : "differ"; }
+
+/* The three largest regions. */
+static void print_regions(const FrameChanges *changes) {
+    enum { SHOWN = 3 };
+    if (changes == NULL) return;
+    int64_t more = changes->regions.count;
+    for (int i = 0; i < changes->regions.kept && i < SHOWN; i++, more--)
+        printf("  %s\n", region_words(changes, i).text);
+    if (more > 0) printf("  and %" PRId64 " more %s\n", more, more == 1 ? "region" : "regions");
+}
+
+static void print_first(const Regression *regression) {
+    for (int i = 0; i < regression->count; i++) {
+        const RegressionFrame *frame = &regression->frames[i];
+        if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
+        printf("first difference: %s: %s\n", frame_name(frame), frame_words(frame).text);
+        if (!isnan(frame->flip)) printf("  FLIP: mean %.3g, 99th percentile %.3g\n", frame->flip, frame->flip_p99);
+        print_regions(frame->changes);
+        return;
+    }
+}
+
+/* What the camera explains comes first: with another view, everything else is a consequence. */
+static void print_views(const Regression *regression) {
+    for (int i = 0; i < regression->cause_count && regression->causes[i].of_view; i++)
+        printf("%s\n", cause_words(&regression->causes[i]).text);
+}
+
+static void print_causes(const Regression *regression) {
+    enum { SHOWN = 8 };
+    int shown = 0, more = regression->causes_left_out;
+    for (int i = 0; i < regression->cause_count; i++) {
+        if (regression->causes[i].of_view) continue;
+        if (shown++ < SHOWN)
+            printf("%s\n", cause_words(&regression->causes[i]).text);
+        else
+            more++;
+    }
+    if (more > 0) printf("and %d more cause%s\n", more, plural(more));
+}
+
+static void print_counts(const Regression *regression) {
+    const int *by = regression->by_verdict, runs = regression->run_count, run_failed = regression->run_failed;
+    int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA];
+    int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
+    if (different > 0) printf("%d of %d frame%s %s", different, compared, plural(compared), differ(different));
+    if (different > 0 && run_failed > 0) printf(", ");
+    if (run_failed > 0)
+        printf("%d of %d %s %s", run_failed, runs, runs == 1 ? "trajectory" : "trajectories", differ(run_failed));
+    if (different > 0 || run_failed > 0) printf("\n");
+}
+
+static void print_difference(const Regression *regression) {
+    print_views(regression);
+    print_names(regression, PIXELS_MISSING, regression->sequences[EXPECTED]->folder);
+    print_names(regression, PIXELS_EXTRA, regression->sequences[ACTUAL]->folder);
+    print_first(regression);
+    print_causes(regression);
+    print_counts(regression);
+    RegressionText begin = regression_begin(regression);
+    if (begin.text[0] != '\0') printf("%s\n", begin.text);
+    printf("verdict: %s\n", regression_verdict(regression).text);
+}
+
+void compare_print(const Regression *regression) {
+    int within = regression->by_verdict[PIXELS_WITHIN], runs = regression->run_count;
+    if (!regression_passed(regression)) {
+        print_difference(regression);
+        return;
+    }
+    printf("%s: %d frame%s", within > 0 ? "passed" : "equal", regression->count, plural(regression->count));
+    if (within > 0) printf(", %d of them not equal, but within tolerance", within);
+    if (runs > 0) printf(", %d %s", runs, runs == 1 ? "trajectory" : "trajectories");
+    printf("\n");
+}
+
+typedef struct Runs {
+    const char *const *paths;
+    const Trajectory *runs[2];
+    const TrajectoryDifference *difference;
+} Runs;
+
+static void write_pictures(JsonWriter *json, const void *context) { regression_write_json(json, context); }
+
+bool compare_json_pictures(const Regression *regression, Error *error) {
+    return json_output("twinbox compare 1", write_pictures, regression, error);
+}
+
+static void write_first(JsonWriter *json, const TrajectoryDifference *difference) {
+    if (difference->frame < 0) {
+        json_put_text(json, "first", NULL);
+        return;
+    }
+    json_begin_object(json, "first", JSON_ONE_LINE);
+    json_put_int(json, "frame", difference->frame);
+    json_put_int(json, "body", difference->body);
+    json_put_number(json, "distance", difference->distance);
+    json_put_number(json, "angle", difference->angle);
+    json_put_number(json, "speed", difference->poses_only ? NAN : difference->speed);
+    json_end(json);
+}
+
+static void write_largest(JsonWriter *json, const TrajectoryDifference *difference) {
+    if (difference->max_frame < 0) {
+        json_put_text(json, "largest", NULL);
+        return;
+    }
+    json_begin_object(json, "largest", JSON_ONE_LINE);
+    json_put_int(json, "frame", difference->max_frame);
+    json_put_int(json, "body", difference->max_body);
+    json_put_number(json, "distance", difference->max_distance);
+    json_end(json);
+}
+
+static void write_runs(JsonWriter *json, const void *context) {
+    static const char *const keys[] = {"expected", "actual"};
+    const Runs *compared = context;
+    for (int i = 0; i < 2; i++) {
+        json_begin_object(json, keys[i], JSON_ONE_LINE);
+        json_put_text(json, "path", compared->paths[i]);
+        json_put_text(json, "scene", compared->runs[i]->scene);
+        json_put_text(json, "method", compared->runs[i]->method);
+        json_put_int(json, "frames", compared->runs[i]->frames);
+        json_put_int(json, "bodies", compared->runs[i]->bodies);
+        json_end(json);
+    }
+    json_put_bool(json, "passed", compared->difference->equal);
+    json_put_text(json, "words", compared->difference->what[0] != '\0' ? compared->difference->what : NULL);
+    json_put_bool(json, "poses_only", compared->difference->poses_only);
+    write_first(json, compared->difference);
+    write_largest(json, compared->difference);
+}
+
+bool compare_json_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b,
+                       const TrajectoryDifference *difference, Error *error) {
+    const Runs compared = {paths, {a, b}, difference};
+    return json_output("twinbox compare runs 1", write_runs, &compared, error);
+}
+
+/* Looks at the times and sizes of the files: unlike inotify, this also sees changes on network file systems, and needs
+   no watch per folder. */
+
+enum { LOOK_EVERY = 250 /* ms */, STILL = 2 /* looks */ };
+
+static bool is_watched(const char *name) {
+    const char *ending = strrchr(name, '.');
+    return ending != NULL && (strcasecmp(ending, ".png") == 0 || strcasecmp(ending, ".npz") == 0 ||
+                              strcmp(name + file_folder_length(name), RULES_NAME) == 0);
+}
+
+/* The time of the last change of the inode shows replaced files whose other times were kept. */
+static uint64_t hash_file(const char *path, const struct stat *status) {
+    const int64_t parts[] = {
+        (int64_t)hash_xxh3(path, strlen(path)), (int64_t)status->st_ino,          (int64_t)status->st_size,
+        (int64_t)status->st_mtim.tv_sec,        (int64_t)status->st_mtim.tv_nsec, (int64_t)status->st_ctim.tv_sec,
+        (int64_t)status->st_ctim.tv_nsec};
+    return hash_xxh3(parts, sizeof parts);
+}
+
+/* What cannot be listed counts as one state: the comparison tells why, and a change ends that state. */
+static uint64_t hash_folder(const char *folder) {
+    uint64_t hash = 0;
+    FolderList list;
+    if (!folder_list(&list, folder, is_watched, true, &(Error){0})) return 0;
+    for (size_t i = 0; i < list.count; i++) {
+        char path[PATH_MAX];
+        struct stat status;
+        if (!file_path(path, sizeof path, &(Error){0}, "%s/%s", folder, list.names[i]) || stat(path, &status) != 0)
+            continue;
+        const uint64_t both[] = {hash, hash_file(path, &status)};
+        hash = hash_xxh3(both, sizeof both);
+    }
+    folder_list_free(&list);
+    return hash;
+}
+
+static uint64_t hash_inputs(const CompareOptions *options) {
+    uint64_t hashes[3] = {0, 0, 0};
+    struct stat status;
+    if (options->rules != NULL && stat(options->rules, &status) == 0) hashes[2] = hash_file(options->rules, &status);
+    for (int i = 0; i < 2; i++) {
+        if (stat(options->paths[i], &status) != 0) continue;
+        hashes[i] =
+            1 + (S_ISDIR(status.st_mode) ? hash_folder(options->paths[i]) : hash_file(options->paths[i], &status));
+    }
+    return hash_xxh3(hashes, sizeof hashes);
+}
+
+/* Returns when the files are no longer those of `before` and have been still; also when interrupted. */
+static void wait_for_change(const CompareOptions *options, uint64_t before) {
+    const struct timespec pause = {.tv_nsec = LOOK_EVERY * 1000000L};
+    uint64_t last = before;
+    for (int still = 0; !interrupt_requested() && (last == before || still < STILL);) {
+        nanosleep(&pause, NULL);
+        uint64_t now = hash_inputs(options);
+        still = now == last ? still + 1 : 0;
+        last = now;
+    }
+}
+
+static void print_state(const CompareOptions *options, const Error *error) {
+    if (error->kind != ERROR_NONE) fprintf(stderr, "%s\n", error->message);
+    fflush(stdout);
+    if (note_level() == NOTES_QUIET) return;
+    char text[16] = "";
+    const time_t now = time(NULL);
+    struct tm local;
+    if (localtime_r(&now, &local) != NULL) strftime(text, sizeof text, "%H:%M:%S", &local);
+    printf("%s: watching %s and %s; Ctrl-C ends\n", text, options->paths[0], options->paths[1]);
+    fflush(stdout);
+}
+
+bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error) {
+    bool same = false, any = false;
+    interrupt_hold();
+    while (!interrupt_requested()) {
+        /* Before the comparison: a change during it leads to another one. */
+        uint64_t before = hash_inputs(options);
+        Error now = {0};
+        bool equal = compare(options, &now);
+        if (any && interrupt_requested() && now.kind != ERROR_NONE) break; /* it did not end */
+        same = equal, *error = now, any = true;
+        if (interrupt_requested()) break;
+        print_state(options, &now);
+        wait_for_change(options, before);
+    }
+    interrupt_release();
+    if (error->kind != ERROR_INTERRUPTED) interrupt_forget(); /* a signal is the usual end */
+    return same;
+}

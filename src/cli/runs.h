@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The runs that show what happened in a cell of a stability map. */
+#pragma once
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/json.h"
+#include "base/machine.h"
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "methods/methods.h"
+#include "regression/compare.h"
+#include "regression/regression.h"
+#include "runs/pieces.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+#include "studies/stability.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* The origin of a map's runs. */
+typedef struct ClipMap {
+    const char *name;                      /* as in maps.csv */
+    const char *scene;                     /* path of the scene file */
+    const char *x_parameter, *y_parameter; /* of the scene */
+} ClipMap;
+
+/* First the method that holds, if there is one, which is not the cell's own. */
+typedef struct CellRuns {
+    const MapCell *rows[2];
+    int count;
+    double dt; /* s, of a step */
+    Panels panels;
+} CellRuns;
+
+enum { CELL_NOTE_SIZE = 160 };
+
+/* Runs the cell's method and the first one that holds there, until three seconds after the frame that decided the verdict, at
+   most 60 frames per second. The runs have the verdicts of the table. `progress` NULL: each run has a bar. Errors name
+   `input`. cell_runs_free() also after a failure. */
+bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapTable *table, const MapCell *cell, const char *input,
+                    const Progress *progress, Error *error);
+void cell_runs_free(CellRuns *runs);
+
+/* A cell of a stability map, as named on the command line. */
+
+/* "MAP:METHOD:X,Y". The method may have settings, so it goes up to the last ':'. */
+typedef struct StabilityCell {
+    char map[CSV_NAME_SIZE], method[METHOD_TEXT_SIZE];
+    double x, y;
+} StabilityCell;
+
+bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error);
+
+/* The row of the table that the cell names. Numbers may be rounded as in the figure: the nearest within 1% counts. NULL
+   with error set if there is none; the error lists the known values. */
+const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *cell, Error *error);
+
+/* The first method that holds in the same cell, or NULL. */
+const MapCell *stability_cell_holder(const MapTable *table, const MapCell *row);
+
+/* The result of twinbox compare as JSON. */
+
+/* What results.json of a report has. */
+bool compare_json_pictures(const Regression *regression, Error *error);
+bool compare_json_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b,
+                       const TrajectoryDifference *difference, Error *error);
+
+/* The options of twinbox compare. */
+
+typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
+typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
+
+typedef struct CompareOptions {
+    const char *paths[2], *report;
+    int count, megabytes;
+    int max_pixels;
+    Tolerance tolerance;
+    const char *rules; /* a file; NULL: not given */
+    bool flat;
+    unsigned metadata;    /* CompareMetadata */
+    unsigned annotations; /* CompareAnnotations */
+    bool watch, json;
+    Mask mask;
+} CompareOptions;
+
+/* The pages of stability maps: each plays what happened in a cell beside the first method that holds there. */
+
+typedef struct StabilityPages {
+    const char *folder;  /* of maps.csv */
+    const ClipMap *maps; /* [map_count] */
+    int map_count;
+} StabilityPages;
+
+/* Runs cells again (studies/stability.h tells which) and writes folder/pages/MAP-METHOD-X_Y.html, map_pages.csv and
+   stability.html. A page begins six seconds before the verdict was decided. key: of the study (study/study_key.h). Prints how
+   many pages there are, and what was left out. */
+bool stability_pages_write(const StabilityPages *pages, uint64_t key, Error *error);
+
+/* The verdict on the run of `simulate`, found while its steps are made. */
+
+/* Begin with simulate_verdict_begin(); free with simulate_verdict_free(). */
+typedef struct SimulateVerdict {
+    const Scene *scene;
+    const char *method;
+    VerdictWatch watch;
+    VerdictReading reading; /* after simulate_verdict_end() */
+} SimulateVerdict;
+
+/* The scene and the method's text outlive the verdict. */
+bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error);
+
+/* To be called after every step; outlived by the verdict. */
+StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
+
+/* After the run; failure: why it failed, if it did. False if there is no verdict: the run failed for another reason than
+   a NaN or infinite state. */
+bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
+void simulate_verdict_free(SimulateVerdict *verdict);
+
+/* simulate() with the verdict in the run. */
+Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error);
+
+/* Writes that object as a file. */
+bool simulate_verdict_write(const SimulateVerdict *verdict, const char *path, Error *error);
+
+/* twinbox compare --watch. */
+
+typedef bool CompareRun(const CompareOptions *options, Error *error);
+
+/* Compares, and again whenever a picture or trajectory below the two inputs has changed and all have been still for half
+   a second, until Ctrl-C or SIGTERM. An error, such as a folder that is gone, is printed and does not end it. Returns
+   what the last comparison that ended returned, with its error. */
+bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error);
+
+/* "twinbox stability --plan": pieces, what they take, and how long 10, 1,000 and 100,000 cores need. */
+void stability_plan_print(const PiecesEstimate *estimate);
+
+/* Prints the result of a comparison of pictures. */
+
+void compare_print(const Regression *regression);
+
+/* The tables of a study of stability, for the terminal. */
+
+/* Prints the borders of folder/stability.csv and what folder/rest.csv has, a block a study, a line a method, and where the
+   tables are. */
+bool stability_print(const char *folder, Error *error);
+
+/* The video of one cell of a stability map. */
+
+typedef struct ClipOptions {
+    const char *folder;  /* of maps.csv */
+    const char *cell;    /* "MAP:METHOD:X,Y" */
+    const ClipMap *maps; /* [map_count] */
+    int map_count;
+    int width, height; /* of a frame, pixels */
+} ClipOptions;
+
+/* Runs the cell again and draws folder/clips/MAP-METHOD-X_Y/frame_000000.png ... and folder/clips/MAP-METHOD-X_Y.mp4,
+   from the start until three seconds after the frame that decided the verdict, at most 60 frames per second. Left: the
+   first method that holds there, which also sets the camera; right: the method of the cell. If that one holds, or none
+   does, it is alone. Captions give methods and verdicts. ERROR_INPUT: the cell does not exist, or the method cannot run
+   its scene; ERROR_SYSTEM: ffmpeg is missing. */
+bool stability_clip(const ClipOptions *options, Error *error);
+
+/* The kinds of network that `twinbox train` trains. To add a kind, write one file that defines train_NAME, and add one
+   line KIND(NAME) here. */
+
+/* The first is the default of --kind. */
+#define TRAIN_KINDS(KIND) \
+    KIND(pair_net)        \
+    KIND(scene_net)       \
+    KIND(sain)            \
+    KIND(hybrid)          \
+    KIND(gns)             \
+    KIND(subspace)
+
+/* What to train, as on the command line. */
+typedef struct TrainRequest {
+    const struct TrainKind *kind;
+    const char *input, *output;
+    const char *values[OPTIONS_MAX]; /* texts of the kind's options; NULL: neither given nor a standard; "": a flag */
+    PiecesRun run;                   /* of kinds with TRAIN_SHARD; of others zero */
+} TrainRequest;
+
+typedef struct TrainKind {
+    const char *name, *input, *summary; /* input: what the help calls the file to train on; NULL: none */
+    const char *file_kind;              /* of the file that is written (npz_check_kind) */
+    const Option *options;              /* in the order of a command; those not given have the value `standard` */
+    bool (*train)(const TrainRequest *request, Error *error);
+} TrainKind;
+
+/* The row of the option of kinds that use train_pieces(). No kind reads its value, and no network stores it. */
+#define TRAIN_SHARD                                                                                            \
+    "--shard", 0, "I/N",                                                                                       \
+        "Only record share I of N of the first round's launches and the held-out ones, which do not need the " \
+        "network; "                                                                                            \
+        "'twinbox merge' reads them and trains (default: as Slurm or MPI says, or all)",                       \
+        .read = NULL
+
+#define TRAIN_KIND_DECLARED(name) extern const TrainKind train_##name;
+TRAIN_KINDS(TRAIN_KIND_DECLARED)
+#undef TRAIN_KIND_DECLARED
+
+/* All kinds, ended by NULL. */
+extern const TrainKind *const train_kinds[];
+
+/* Reads the values into the Options of the kind. */
+bool train_read(const TrainRequest *request, void *options, Error *error);
+
+/* Sets the text of an option; NULL: as if it were not given. */
+void train_set(TrainRequest *request, const char *option, const char *value);
+
+/* What a training records before it has a network, in pieces: opens them, and does those of a shard, or checks those of a merge.
+   The whole training does no piece: pieces->mode tells. */
+bool train_pieces(const TrainRequest *request, const PiecePlan *plan, Pieces *pieces, Error *error);
+
+/* Of a text for train_describe(). */
+enum { TRAIN_COMMAND_SIZE = 2048 };
+
+/* The command line that trains the same network again, to be stored in it. */
+void train_describe(const TrainRequest *request, char *command, size_t size);

@@ -1,0 +1,376 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/runs.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
+#include "nets/nets.h"
+#include "runs/pieces.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The kind's option of that name ("--seed"), or -1. */
+static int train_find_option(const TrainKind *kind, const char *name) {
+    for (int i = 0; kind->options[i].name != NULL; i++)
+        if (strcmp(kind->options[i].name, name) == 0) return i;
+    return -1;
+}
+
+bool train_read(const TrainRequest *request, void *options, Error *error) {
+    for (int i = 0; request->kind->options[i].name != NULL; i++) {
+        const Option *option = &request->kind->options[i];
+        if (request->values[i] == NULL) continue;
+        if (!option->read(option, request->values[i], (char *)options + option->at, error)) return false;
+    }
+    return true;
+}
+
+void train_set(TrainRequest *request, const char *option, const char *value) {
+    const int i = train_find_option(request->kind, option);
+    assert(i >= 0);
+    request->values[i] = value;
+}
+
+static void append(char *command, size_t size, const char *before, const char *text) {
+    const size_t used = strlen(command);
+    snprintf(command + used, size - used, "%s%s", before, text);
+}
+
+void train_describe(const TrainRequest *request, char *command, size_t size) {
+    snprintf(command, size, "twinbox train");
+    if (request->kind != train_kinds[0]) append(command, size, " --kind ", request->kind->name);
+    if (request->input != NULL) append(command, size, " ", request->input);
+    append(command, size, " -o ", request->output);
+    for (int i = 0; request->kind->options[i].name != NULL; i++) {
+        const Option *option = &request->kind->options[i];
+        if (request->values[i] == NULL) continue;
+        append(command, size, " ", option->name);
+        /* A value that begins with '-' would be taken for an option. */
+        const bool negative = option->standard != NULL && option->standard[0] == '-';
+        if (option->value != NULL) append(command, size, negative ? "=" : " ", request->values[i]);
+    }
+}
+
+/* Takes the value of --shard, or the environment's, if the kind has the option. */
+static bool train_take_shard(TrainRequest *request, int argc, char **argv, Error *error) {
+    const int i = train_find_option(request->kind, "--shard");
+    if (i < 0)
+        return !shard_option_is_merge() ||
+               error_input(error, "--kind", "%s has no shards that could be merged", request->kind->name);
+    const char *text = request->values[i];
+    request->values[i] = NULL;
+    return shard_option_take(&request->run, text, argc, argv, error);
+}
+
+static bool train_is_shard(const TrainRequest *request) {
+    return request->run.request.shard.count > 1 || request->run.request.array.step > 0;
+}
+
+/* Hashes everything that determines the network: the command without its paths, and the file that it reads. */
+static bool find_key(const TrainRequest *request, StudyKey *key, Error *error) {
+    TrainRequest options = *request;
+    char command[TRAIN_COMMAND_SIZE];
+    options.input = NULL;
+    options.output = "";
+    train_describe(&options, command, sizeof command);
+    if (!study_key_begin(key, error)) return false;
+    study_key_add(key, command, strlen(command));
+    return request->input == NULL || study_key_add_file(key, request->input, error);
+}
+
+static bool do_pieces(const TrainRequest *request, const PiecePlan *plan, Pieces *pieces, Error *error) {
+    const bool ok = pieces_do(pieces, plan, progress_bar_begin("recorded launches"), error);
+    progress_bar_end();
+    if (ok && pieces->mode == PIECES_SHARD) shard_option_print(pieces, request->output);
+    return ok;
+}
+
+bool train_pieces(const TrainRequest *request, const PiecePlan *plan, Pieces *pieces, Error *error) {
+    StudyKey key = {0};
+    if (train_is_shard(request) && !output_is_file(request->output))
+        return error_input(error, request->output,
+                           "shards need the name of a file, beside which their pieces are kept");
+    const bool ok = find_key(request, &key, error) &&
+                    pieces_open(pieces, request->output, true, &key, &request->run, error) &&
+                    (pieces->mode == PIECES_WHOLE || do_pieces(request, plan, pieces, error));
+    study_key_free(&key);
+    return ok;
+}
+
+typedef struct TrainPairNetOptions {
+    TrainingOptions training;
+    const char *from; /* NET.npz, or NULL */
+} TrainPairNetOptions;
+
+static OptionRead read_layers, read_laws;
+
+static const Option pair_net_options[] = {
+    {"--layers", 0, "WIDTHS",
+     "Widths of the layers. 10-10-2: change of relative velocity, min-max outputs, as in the paper's 3.2. With two "
+     "hidden layers and all six changes: 10-8-8-6, standardised outputs, as in its 3.1",
+     OPTION_READ(read_layers, TrainPairNetOptions, training), .standard = "10-10-2"},
+    {"--optimizer", 0, "NAME", "adam, bfgs, gd (gradient descent) or lm (Levenberg-Marquardt)",
+     OPTION_TEXT(TrainPairNetOptions, training.optimizer), .standard = "adam"},
+    {"--iterations", 0, "N", "Full-batch steps", OPTION_INT(TrainPairNetOptions, training.iterations, 0, 1000000),
+     .standard = "2000"},
+    {"--seed", 0, "N", "Seed of the initial weights", OPTION_SEED(TrainPairNetOptions, training.seed), .standard = "1"},
+    {"--from", 0, "NET.npz",
+     "Continue from the weights of this network, such as one cut short by Ctrl-C. If NET.npz of -o has a smaller "
+     "held-out "
+     "error than the result, it is kept (exit status 1)",
+     OPTION_PATH(TrainPairNetOptions, from)},
+    {"--hidden", 0, "NAME", "Activation of the hidden layers: sigmoid (default), tanh or relu",
+     OPTION_TEXT(TrainPairNetOptions, training.hidden)},
+    {"--output-activation", 0, "NAME", "sigmoid or linear (default: sigmoid for two outputs, linear for six)",
+     OPTION_TEXT(TrainPairNetOptions, training.output_activation)},
+    {"--scale", 0, "NAME",
+     "Scale of the outputs: minmax or, with linear outputs, standard (default: minmax with sigmoid, standard with "
+     "linear)",
+     OPTION_TEXT(TrainPairNetOptions, training.scale)},
+    {"--loss", 0, "NAME",
+     "Loss of the outputs: mse (default), or smooth-l1, which is linear beyond 0.3 m/s, so that rare impacts weigh "
+     "less",
+     OPTION_TEXT(TrainPairNetOptions, training.loss)},
+    {"--laws", 0, "NAME=W,...",
+     "Weights of physical laws in the loss of six outputs: momentum, energy, approach, cone. Needs a dataset recorded "
+     "with --context",
+     OPTION_READ(read_laws, TrainPairNetOptions, training.laws)},
+    {0}};
+
+static bool read_laws(const Option *option, const char *text, void *value, Error *error) {
+    (void)option;
+    return law_weights_parse(text, value, error);
+}
+
+/* "10-10-2" -> widths; a layer of weights lies between two of them. */
+static bool read_layers(const Option *option, const char *text, void *value, Error *error) {
+    TrainingOptions *training = value;
+    int count = 0;
+    for (const char *rest = text; count <= NETWORK_MAX_LAYERS; rest++) {
+        size_t length = strcspn(rest, "-");
+        char width[16] = "";
+        int64_t parsed;
+        if (length < sizeof width) memcpy(width, rest, length);
+        if (!parse_int(width, 1, NETWORK_MAX_WIDTH, &parsed)) break;
+        training->widths[count++] = (int)parsed;
+        rest += length;
+        if (*rest != '\0') continue;
+        training->layers = count - 1;
+        if (count >= 2) return true;
+        break;
+    }
+    return error_input(error, option->name, "'%s' is not 2 to %d widths from 1 to %d, such as 10-10-2", text,
+                       NETWORK_MAX_LAYERS + 1, NETWORK_MAX_WIDTH);
+}
+
+static void print_score(void *context, const TrainingScore *score) {
+    (void)context;
+    progress_bar_clear();
+    printf("%9d  %10.6f  %10.6f  %13.6f  %14.6f\n", score->iteration, score->test, score->train, score->constant_test,
+           score->constant_train);
+    fflush(stdout);
+}
+
+static Network *train(const Dataset *dataset, TrainingOptions *training, Error *error) {
+    training->on_score = print_score;
+    printf("iteration   test score  train score  constant test  constant train\n");
+    Network *network = training_run(dataset, training, progress_bar_begin("training"), error);
+    progress_bar_end();
+    return network;
+}
+
+/* The held-out error as a share of that of always predicting the mean, so that networks of different scales compare. */
+static double share(const TrainingScore *score) { return score->test / score->constant_test; }
+
+static void print_verdict(const TrainingScore *score) {
+    printf("verdict: held-out error %.6f, %.4g of the constant predictor's%s\n", score->test, share(score),
+           share(score) < 1 ? "" : ": no better than the constant");
+}
+
+/* False, without an error, if a network would be replaced by a worse one. Only training that continues may: a new one is
+   begun on purpose. */
+static bool may_replace(const Dataset *dataset, const TrainRequest *request, const TrainingOptions *training,
+                        const TrainingScore *score, Error *error) {
+    TrainingScore before;
+    bool there;
+    if (training->start == NULL) return true;
+    if (!file_find(request->output, &there, error)) return false;
+    if (!there) return true;
+    Network *old = network_read(request->output, error);
+    if (old == NULL) return false;
+    const bool scored = training_score(dataset, old, training->loss, &before, error);
+    network_destroy(old);
+    if (!scored || !(share(score) > share(&before))) return scored;
+    printf("verdict: worse than the network in %s, which is kept: held-out error %.4g of the constant predictor's, not "
+           "%.4g\n",
+           request->output, share(&before), share(score));
+    return false;
+}
+
+static bool store(Network *network, const Dataset *dataset, const TrainRequest *request,
+                  const TrainingOptions *training, Error *error) {
+    TrainingScore score;
+    train_describe(request, network->command, sizeof network->command);
+    if (!training_score(dataset, network, training->loss, &score, error) ||
+        !may_replace(dataset, request, training, &score, error) || !network_write(network, request->output, error))
+        return false;
+    printf("%s%d parameters -> %s\n", interrupt_requested() ? "stopped early; " : "", network_parameter_count(network),
+           request->output);
+    print_verdict(&score);
+    return true;
+}
+
+static bool train_and_store(const Dataset *dataset, const TrainRequest *request, TrainingOptions *training,
+                            Error *error) {
+    Network *network = train(dataset, training, error);
+    bool ok = network != NULL && store(network, dataset, request, training, error);
+    network_destroy(network);
+    return ok;
+}
+
+static bool run(const TrainRequest *request, Error *error) {
+    TrainPairNetOptions given = {.from = NULL};
+    if (!train_read(request, &given, error)) return false;
+    Network *start = NULL;
+    if (given.from != NULL && (start = network_read(given.from, error)) == NULL) return false;
+    given.training.start = start;
+    Dataset *dataset = dataset_read(request->input, error);
+    bool ok = dataset != NULL && train_and_store(dataset, request, &given.training, error);
+    dataset_destroy(dataset);
+    network_destroy(start);
+    return ok;
+}
+
+const TrainKind train_pair_net = {"pair-net",
+                                  "DATA.npz",
+                                  "a network of pairs of bodies, from a dataset. Prints its mean squared error as the "
+                                  "paper's Table 1 does, beside that "
+                                  "of always predicting the mean",
+                                  "network",
+                                  pair_net_options,
+                                  run};
+
+#define TRAIN_KIND_ENTRY(name) &train_##name,
+const TrainKind *const train_kinds[] = {TRAIN_KINDS(TRAIN_KIND_ENTRY) NULL};
+
+enum { KINDS = sizeof train_kinds / sizeof *train_kinds - 1, TEXT_SIZE = 2048 };
+
+/* The options of all kinds, as given, before it is known what the kind takes. */
+typedef struct Options {
+    const char *kind, *input, *output;
+    int row_count;
+    Option rows[OPTIONS_MAX + 1];
+    const char *values[OPTIONS_MAX + 1]; /* of the rows */
+} Options;
+
+/* The texts of the help that are made from the kinds. */
+typedef struct HelpTexts {
+    char kind[TEXT_SIZE], headings[KINDS][TEXT_SIZE], usage[TEXT_SIZE];
+    const char *names[KINDS + 1]; /* ended by NULL */
+} HelpTexts;
+
+static bool remember(const Option *option, const char *text, void *value, Error *error) {
+    (void)error;
+    Options *options = value;
+    options->values[option - options->rows] = text != NULL ? text : "";
+    return true;
+}
+
+static void add_row(Options *options, Option row) {
+    assert(options->row_count < OPTIONS_MAX);
+    options->rows[options->row_count++] = row;
+}
+
+/* The kinds that have the option; NULL: all. */
+static NameList name_kinds(const char *option) {
+    NameList names = {0};
+    for (const TrainKind *const *kind = train_kinds; *kind != NULL; kind++)
+        if (option == NULL || train_find_option(*kind, option) >= 0) name_list_add(&names, (*kind)->name);
+    return names;
+}
+
+static void add_kind(Options *options, HelpTexts *texts, int k) {
+    const TrainKind *kind = train_kinds[k];
+    const size_t used = strlen(texts->usage);
+    snprintf(texts->usage + used, sizeof texts->usage - used, "%s%s%s%s", k == 0 ? "" : "\n--kind ",
+             k == 0 ? "" : kind->name, k == 0 || kind->input == NULL ? "" : " ",
+             kind->input != NULL ? kind->input : "");
+    snprintf(texts->headings[k], TEXT_SIZE, "%s%s: %s.", kind->name, k == 0 ? " (default)" : "", kind->summary);
+    add_row(options, (Option){.help = texts->headings[k]});
+    for (const Option *option = kind->options; option->name != NULL; option++) {
+        Option row = *option;
+        row.read = remember;
+        row.at = 0;
+        add_row(options, row);
+    }
+}
+
+static void make_table(Options *options, HelpTexts *texts) {
+    snprintf(texts->kind, TEXT_SIZE, "What to train: %s", name_kinds(NULL).text);
+    add_row(options, (Option){"--output", 'o', "NET.npz", "File that the network is written to",
+                              OPTION_BINARY(Options, output), .needed = "-o NET.npz is needed"});
+    for (int k = 0; k < KINDS; k++) texts->names[k] = train_kinds[k]->name;
+    add_row(options, (Option){"--kind", 0, "NAME", texts->kind, OPTION_TEXT(Options, kind), .names = texts->names,
+                              .standard = train_kinds[0]->name});
+    for (int k = 0; k < KINDS; k++) add_kind(options, texts, k);
+}
+
+static const TrainKind *find_kind(const char *name, Error *error) {
+    for (const TrainKind *const *kind = train_kinds; *kind != NULL; kind++)
+        if (strcmp((*kind)->name, name) == 0) return *kind;
+    const NameList known = name_kinds(NULL);
+    error_unknown(error, "--kind", name, "a kind", &known);
+    return NULL;
+}
+
+static bool make_request(const Options *options, TrainRequest *request, Error *error) {
+    *request =
+        (TrainRequest){.kind = find_kind(options->kind, error), .input = options->input, .output = options->output};
+    if (request->kind == NULL) return false;
+    if ((request->input == NULL) != (request->kind->input == NULL))
+        return request->input == NULL
+                   ? error_input(error, request->kind->name, "a file to train on is needed: %s", request->kind->input)
+                   : error_input(error, request->input, "%s takes no file to train on", request->kind->name);
+    for (int i = 0; request->kind->options[i].name != NULL; i++)
+        request->values[i] = request->kind->options[i].standard;
+    for (int i = 0; i < options->row_count; i++) {
+        if (options->values[i] == NULL) continue;
+        const char *name = options->rows[i].name;
+        const int option = train_find_option(request->kind, name);
+        if (option < 0)
+            return error_input(error, name, "is an option of %s, not of %s", name_kinds(name).text,
+                               request->kind->name);
+        request->values[option] = options->values[i];
+    }
+    return true;
+}
+
+bool command_train(int argc, char **argv, Error *error) {
+    Options options = {.kind = train_kinds[0]->name};
+    HelpTexts texts = {.usage = ""};
+    make_table(&options, &texts);
+    const CommandSpec spec = {
+        .options = options.rows,
+        .input = {.value = texts.usage, .needed = "a dataset (or scene) is needed", OPTION_PATH(Options, input)},
+        .inputs = {0, 1, "file"},
+        .help = "Train the network of a method, or its learned factors. Ctrl-C stops and keeps the best found so far.\v"
+                "Example: twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100\n"
+                "         twinbox train --kind scene-net scenes/stack.yaml -o scene-net.npz"};
+    TrainRequest request;
+    if (!options_parse(&spec, argc, argv, &options, error) || !make_request(&options, &request, error) ||
+        !output_check_npz(request.output, request.kind->file_kind, error) ||
+        !train_take_shard(&request, argc, argv, error))
+        return false;
+    char command[TRAIN_COMMAND_SIZE];
+    train_describe(&request, command, sizeof command);
+    note_verbose("with all options: %s", command);
+    if (train_is_shard(&request)) return request.kind->train(&request, error);
+    FileReservation reservation;
+    if (!file_reserve(&reservation, request.output, error)) return false;
+    const bool done = request.kind->train(&request, error);
+    return file_release(&reservation, error) && done;
+}

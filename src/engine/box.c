@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/engine.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+static double dot(Vec2 a, Vec2 b) { return (double)a.x * (double)b.x + (double)a.y * (double)b.y; }
+
+/* Half the extent of a box along an axis, m. */
+static double reach(const Box *box, Vec2 axis) {
+    return fabs(dot(box->rotation.column1, axis)) * (double)box->half.x +
+           fabs(dot(box->rotation.column2, axis)) * (double)box->half.y;
+}
+
+/* The overlap along one axis. */
+static double along(const Box *a, const Box *b, Vec2 axis) {
+    return reach(a, axis) + reach(b, axis) - fabs(dot(b->position, axis) - dot(a->position, axis));
+}
+
+double overlap_depth(const Box *a, const Box *b) {
+    return fmin(fmin(along(a, b, a->rotation.column1), along(a, b, a->rotation.column2)),
+                fmin(along(a, b, b->rotation.column1), along(a, b, b->rotation.column2)));
+}
+
+static double largest(const Box *box) {
+    return fmax(fabs((double)box->position.x), fabs((double)box->position.y)) +
+           fmax((double)box->half.x, (double)box->half.y);
+}
+
+/* Positions are sums of a first one and a spacing: two roundings for each box. */
+static double rounding(const Box *a, const Box *b) { return 2 * (double)FLT_EPSILON * (largest(a) + largest(b)); }
+
+bool overlap_exceeds(const Box *a, const Box *b, double depth) {
+    const double limit = depth + rounding(a, b);
+    return along(a, b, a->rotation.column1) > limit && along(a, b, a->rotation.column2) > limit &&
+           along(a, b, b->rotation.column1) > limit && along(a, b, b->rotation.column2) > limit;
+}
+
+/* Cuts the span to the x at which the projections on the axis overlap by more than the limit. */
+static void cut(OverlapSpan *span, const Box *a, const Box *b, Vec2 axis, double both, double limit) {
+    const double least = 1e-9, room = both - limit;
+    const double across = ((double)b->position.y - (double)a->position.y) * (double)axis.y;
+    if (room <= 0 || (fabs((double)axis.x) < least && fabs(across) >= room)) *span = (OverlapSpan){0, 0};
+    if (fabs((double)axis.x) < least) return;
+    const double first = (double)a->position.x + (-room - across) / (double)axis.x;
+    const double second = (double)a->position.x + (room - across) / (double)axis.x;
+    span->from = fmax(span->from, fmin(first, second));
+    span->to = fmin(span->to, fmax(first, second));
+}
+
+OverlapSpan overlap_span(const Box *a, const Box *b, double depth, bool any_rotation) {
+    const Vec2 axes[] = {a->rotation.column1, a->rotation.column2, b->rotation.column1, b->rotation.column2};
+    const double radius = vec2_distance(b->half, vec2(0, 0)), limit = depth + rounding(a, b);
+    OverlapSpan span = {-INFINITY, INFINITY};
+    for (int i = 0; i < (any_rotation ? 2 : 4); i++)
+        cut(&span, a, b, axes[i], reach(a, axes[i]) + (any_rotation ? radius : reach(b, axes[i])), limit);
+    return span;
+}
+
+/* Bounds of a box along the axis of the sweep. */
+typedef struct Entry {
+    float low, high;
+    int body;
+} Entry;
+
+static int by_low(const void *a, const void *b) {
+    const Entry *left = a, *right = b;
+    if (left->low != right->low) return left->low < right->low ? -1 : 1;
+    return left->body - right->body;
+}
+
+/* The axis along which the boxes are further apart. */
+static bool spread_along_y(const Box *boxes, int count) {
+    Vec2 low = boxes[0].position, high = low;
+    for (int i = 1; i < count; i++) {
+        low = vec2(fminf(low.x, boxes[i].position.x), fminf(low.y, boxes[i].position.y));
+        high = vec2(fmaxf(high.x, boxes[i].position.x), fmaxf(high.y, boxes[i].position.y));
+    }
+    return high.y - low.y > high.x - low.x;
+}
+
+static BodyPair sweep(const Entry *entries, const Box *boxes, const bool *fixed, int count, double depth) {
+    for (int i = 0; i < count; i++)
+        for (int k = i + 1; k < count && entries[k].low <= entries[i].high; k++) {
+            const int a = entries[i].body, b = entries[k].body;
+            if ((fixed[a] && fixed[b]) || !overlap_exceeds(&boxes[a], &boxes[b], depth)) continue;
+            return (BodyPair){a < b ? a : b, a < b ? b : a};
+        }
+    return (BodyPair){-1, -1};
+}
+
+bool overlap_find(const Box *boxes, const bool *fixed, int count, double depth, BodyPair *found) {
+    *found = (BodyPair){-1, -1};
+    if (count == 0) return true;
+    Entry *entries = malloc((size_t)count * sizeof *entries);
+    if (entries == NULL) return false;
+    const bool along_y = spread_along_y(boxes, count);
+    for (int i = 0; i < count; i++) {
+        const Bounds bounds = bounds_of_box(&boxes[i]);
+        entries[i] = (Entry){along_y ? bounds.low.y : bounds.low.x, along_y ? bounds.high.y : bounds.high.x, i};
+    }
+    qsort(entries, (size_t)count, sizeof *entries, by_low);
+    *found = sweep(entries, boxes, fixed, count, depth);
+    free(entries);
+    return true;
+}
+
+/* The order of all float operations is fixed: reference trajectories are compared bit by bit. */
+
+Box box_make(Vec2 position, Vec2 size, float angle) {
+    return (Box){position, vec2_scale(0.5f, size), mat22_rotation(angle)};
+}
+
+/* A vertex during clipping, with the edges that meet in it. */
+typedef struct ClipVertex {
+    Vec2 position;
+    uint8_t in_reference, out_reference; /* edges of the reference box that cut here */
+    uint8_t in_incident, out_incident;   /* edges of the incident box */
+} ClipVertex;
+
+/* The reference face. */
+typedef struct ReferenceFace {
+    bool of_b;        /* the reference box is b */
+    bool along_y;     /* the face's normal is the box's y axis */
+    float separation; /* m along the normal, <= 0 */
+    Vec2 normal;      /* unit, from a to b */
+} ReferenceFace;
+
+/* A later axis must be better than the best so far by this much, or the reference face would alternate from step to
+   step. */
+static bool clearly_better(float separation, float best, float half) {
+    const float relative_tolerance = 0.95f, absolute_tolerance = 0.01f;
+    return separation > relative_tolerance * best + absolute_tolerance * half;
+}
+
+static Vec2 toward(float distance, Vec2 axis) { return distance > 0.0f ? axis : vec2_negate(axis); }
+
+/* False if an axis separates the boxes. */
+static bool find_reference_face(ReferenceFace *face, const Box *a, const Box *b) {
+    Mat22 to_a = mat22_transpose(a->rotation), to_b = mat22_transpose(b->rotation);
+    Vec2 between = vec2_sub(b->position, a->position);
+    Vec2 in_a = mat22_multiply(to_a, between), in_b = mat22_multiply(to_b, between);
+    Mat22 turn = mat22_abs(mat22_product(to_a, b->rotation));
+
+    Vec2 face_a = vec2_sub(vec2_sub(vec2_abs(in_a), a->half), mat22_multiply(turn, b->half));
+    if (face_a.x > 0.0f || face_a.y > 0.0f) return false;
+    Vec2 face_b = vec2_sub(vec2_sub(vec2_abs(in_b), mat22_multiply(mat22_transpose(turn), a->half)), b->half);
+    if (face_b.x > 0.0f || face_b.y > 0.0f) return false;
+
+    *face = (ReferenceFace){false, false, face_a.x, toward(in_a.x, a->rotation.column1)};
+    if (clearly_better(face_a.y, face->separation, a->half.y))
+        *face = (ReferenceFace){false, true, face_a.y, toward(in_a.y, a->rotation.column2)};
+    if (clearly_better(face_b.x, face->separation, b->half.x))
+        *face = (ReferenceFace){true, false, face_b.x, toward(in_b.x, b->rotation.column1)};
+    if (clearly_better(face_b.y, face->separation, b->half.y))
+        *face = (ReferenceFace){true, true, face_b.y, toward(in_b.y, b->rotation.column2)};
+    return true;
+}
+
+/* The end of an edge, counter-clockwise. */
+static inline ClipVertex edge_end(const Box *box, Edge edge) {
+    static const Vec2 corners[] = {
+        [EDGE_TOP] = {-1, 1}, [EDGE_LEFT] = {-1, -1}, [EDGE_BOTTOM] = {1, -1}, [EDGE_RIGHT] = {1, 1}};
+    Vec2 end = vec2(corners[edge].x * box->half.x, corners[edge].y * box->half.y);
+    Edge next = edge == EDGE_RIGHT ? EDGE_TOP : edge + 1;
+    Vec2 position = vec2_add(box->position, mat22_multiply(box->rotation, end));
+    return (ClipVertex){position, NO_EDGE, NO_EDGE, (uint8_t)edge, (uint8_t)next};
+}
+
+/* The edge of the incident box that is most anti-parallel to the reference normal. */
+static void find_incident_edge(ClipVertex edge[2], const Box *box, Vec2 reference_normal) {
+    Vec2 n = vec2_negate(mat22_multiply(mat22_transpose(box->rotation), reference_normal));
+    Vec2 size = vec2_abs(n);
+    Edge facing;
+    if (size.x > size.y)
+        facing = n.x < 0.0f ? EDGE_LEFT : EDGE_RIGHT;
+    else
+        facing = n.y < 0.0f ? EDGE_BOTTOM : EDGE_TOP;
+    edge[0] = edge_end(box, facing == EDGE_TOP ? EDGE_RIGHT : facing - 1);
+    edge[1] = edge_end(box, facing);
+}
+
+/* Clips to the half-plane normal . x <= offset; `clip_edge` is the reference edge on that line. False if fewer than two
+   points remain. */
+static inline bool clip(ClipVertex out[2], const ClipVertex in[2], Vec2 normal, float offset, Edge clip_edge) {
+    int count = 0;
+    float distance0 = vec2_dot(normal, in[0].position) - offset;
+    float distance1 = vec2_dot(normal, in[1].position) - offset;
+    if (distance0 <= 0.0f) out[count++] = in[0];
+    if (distance1 <= 0.0f) out[count++] = in[1];
+    if (distance0 * distance1 < 0.0f) {
+        float t = distance0 / (distance0 - distance1);
+        ClipVertex cut = distance0 > 0.0f ? in[0] : in[1];
+        cut.position = vec2_add(in[0].position, vec2_scale(t, vec2_sub(in[1].position, in[0].position)));
+        if (distance0 > 0.0f) {
+            cut.in_reference = (uint8_t)clip_edge;
+            cut.in_incident = NO_EDGE;
+        } else {
+            cut.out_reference = (uint8_t)clip_edge;
+            cut.out_incident = NO_EDGE;
+        }
+        out[count++] = cut;
+    }
+    return count == 2;
+}
+
+static uint32_t feature_of(const ClipVertex *v, bool reference_is_b) {
+    uint32_t reference = v->in_reference | (uint32_t)v->out_reference << 8;
+    uint32_t incident = v->in_incident | (uint32_t)v->out_incident << 8;
+    return reference_is_b ? incident | reference << 16 : reference | incident << 16;
+}
+
+void manifold_compute(Manifold *manifold, const Box *a, const Box *b) {
+    manifold->count = 0;
+    ReferenceFace face;
+    if (!find_reference_face(&face, a, b)) return;
+    manifold->normal = face.normal;
+
+    const Box *reference = face.of_b ? b : a, *incident = face.of_b ? a : b;
+    Vec2 front_normal = face.of_b ? vec2_negate(face.normal) : face.normal;
+    Vec2 side_normal = face.along_y ? reference->rotation.column1 : reference->rotation.column2;
+    float front_half = face.along_y ? reference->half.y : reference->half.x;
+    float side_half = face.along_y ? reference->half.x : reference->half.y;
+    float front = vec2_dot(reference->position, front_normal) + front_half;
+    float side = vec2_dot(reference->position, side_normal);
+
+    ClipVertex edge[2], half_clipped[2], clipped[2];
+    find_incident_edge(edge, incident, front_normal);
+    if (!clip(half_clipped, edge, vec2_negate(side_normal), -side + side_half, face.along_y ? EDGE_LEFT : EDGE_BOTTOM))
+        return;
+    if (!clip(clipped, half_clipped, side_normal, side + side_half, face.along_y ? EDGE_RIGHT : EDGE_TOP)) return;
+
+    for (int i = 0; i < 2; i++) {
+        float separation = vec2_dot(front_normal, clipped[i].position) - front;
+        if (separation > 0.0f) continue;
+        /* Projected onto the reference face, so that both lever arms end in the same point. */
+        Vec2 position = vec2_sub(clipped[i].position, vec2_scale(separation, front_normal));
+        manifold->points[manifold->count++] = (ManifoldPoint){position, separation, feature_of(&clipped[i], face.of_b)};
+    }
+}

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A step writes per-body data to arrays of body_capacity items, so that a failed step leaves `bodies` and `last`
+   unchanged. */
+struct World {
+    WorldDef def;
+    int body_count, marked;
+    int posed; /* bodies whose boxes and bounds are valid: for the pose in `moved`, after a failed step in `bodies` */
+    size_t body_capacity;
+    Body *bodies, *moved; /* before and after the step in progress */
+    bool *fixed;
+    float *friction;
+    Box *boxes;
+    Bounds *bounds;
+    ProblemBody *problem_bodies;
+    BodyVelocity *velocities;
+    SortAndSweep broad_phase;
+    PairList pairs;
+    ContactSet last, next;
+    ContactProblem problem;
+    ContactSolution solution;
+};
+
+World *world_create(const WorldDef *def, Error *error) {
+    World *world = calloc(1, sizeof *world);
+    if (world == NULL) {
+        error_memory(error, "world");
+        return NULL;
+    }
+    world->def = *def;
+    world->marked = world->problem.marked = -1;
+    return world;
+}
+
+void world_destroy(World *world) {
+    if (world == NULL) return;
+    free(world->bodies);
+    free(world->moved);
+    free(world->fixed);
+    free(world->friction);
+    free(world->boxes);
+    free(world->bounds);
+    free(world->problem_bodies);
+    free(world->velocities);
+    sort_and_sweep_free(&world->broad_phase);
+    free(world->pairs.pairs);
+    contact_set_free(&world->last);
+    contact_set_free(&world->next);
+    free(world);
+}
+
+static bool reserve_bodies(World *world, size_t count) {
+    struct {
+        void **items;
+        size_t size;
+    } arrays[] = {{(void **)&world->bodies, sizeof(Body)},
+                  {(void **)&world->moved, sizeof(Body)},
+                  {(void **)&world->fixed, sizeof(bool)},
+                  {(void **)&world->friction, sizeof(float)},
+                  {(void **)&world->boxes, sizeof(Box)},
+                  {(void **)&world->bounds, sizeof(Bounds)},
+                  {(void **)&world->problem_bodies, sizeof(ProblemBody)},
+                  {(void **)&world->velocities, sizeof(BodyVelocity)}};
+    size_t capacity = world->body_capacity;
+    bool ok = true;
+    for (size_t i = 0; ok && i < sizeof arrays / sizeof arrays[0]; i++) {
+        capacity = world->body_capacity;
+        ok = array_reserve(arrays[i].items, &capacity, count, arrays[i].size);
+    }
+    if (ok) world->body_capacity = capacity;
+    /* The arrays of the last step's problem and solution may have moved. */
+    if (world->problem.bodies != NULL) world->problem.bodies = world->problem_bodies;
+    if (world->solution.velocities != NULL) world->solution.velocities = world->velocities;
+    return ok;
+}
+
+bool world_add_body(World *world, const BodyDef *def, Error *error) {
+    if (!reserve_bodies(world, (size_t)world->body_count + 1)) return error_memory(error, "world");
+    Body body = {def->position, def->angle, def->velocity, def->angular_velocity, def->size, def->friction, 0, 0};
+    if (!def->fixed) {
+        float inertia = def->mass * (def->size.x * def->size.x + def->size.y * def->size.y) / 12.0f;
+        body.inv_mass = 1.0f / def->mass;
+        body.inv_inertia = 1.0f / inertia;
+    }
+    world->fixed[world->body_count] = def->fixed;
+    world->friction[world->body_count] = def->friction;
+    world->bodies[world->body_count++] = body;
+    return true;
+}
+
+void world_remove_last_body(World *world) {
+    int body = --world->body_count;
+    contact_set_forget(&world->last, body);
+    /* A body added in its place must not reuse its box. */
+    if (world->posed > body) world->posed = body;
+    if (world->marked == body) world->marked = -1;
+}
+
+bool world_copy(World *to, const World *from, Error *error) {
+    to->def = from->def;
+    to->marked = from->marked;
+    to->problem = (ContactProblem){.marked = -1};
+    to->posed = 0;
+    to->body_count = from->body_count;
+    if (!reserve_bodies(to, (size_t)from->body_count) || !contact_set_copy(&to->last, &from->last)) {
+        to->body_count = 0;
+        return error_memory(error, "world");
+    }
+    size_t count = (size_t)from->body_count;
+    if (count == 0) return true;
+    memcpy(to->bodies, from->bodies, count * sizeof *to->bodies);
+    memcpy(to->fixed, from->fixed, count * sizeof *to->fixed);
+    memcpy(to->friction, from->friction, count * sizeof *to->friction);
+    return true;
+}
+
+void world_mark(World *world, int body) { world->marked = body; }
+int world_body_count(const World *world) { return world->body_count; }
+const Body *world_bodies(const World *world) { return world->bodies; }
+const ContactProblem *world_problem(const World *world) { return &world->problem; }
+const ContactSolution *world_solution(const World *world) { return &world->solution; }
+
+static bool same_pose(const Body *x, const Body *y) {
+    return memcmp(&x->position, &y->position, sizeof x->position) == 0 &&
+           memcmp(&x->angle, &y->angle, sizeof x->angle) == 0;
+}
+
+static bool collide(World *world) {
+    for (int i = 0; i < world->body_count; i++) {
+        const Body *body = &world->bodies[i];
+        if (i < world->posed && same_pose(body, &world->moved[i])) continue;
+        world->boxes[i] = box_make(body->position, body->size, body->angle);
+        world->bounds[i] = bounds_of_box(&world->boxes[i]);
+    }
+    return sort_and_sweep_find(&world->broad_phase, &world->pairs, world->bounds, world->fixed, world->body_count) &&
+           contact_set_collide(&world->next, &world->pairs, world->boxes);
+}
+
+/* The bodies of the contact problem, with gravity in their velocities. */
+static void apply_gravity(World *world, float dt) {
+    for (int i = 0; i < world->body_count; i++) {
+        const Body *body = &world->bodies[i];
+        ProblemBody *out = &world->problem_bodies[i];
+        *out = (ProblemBody){body->position, body->angle,           body->size, body->inv_mass, body->inv_inertia,
+                             body->velocity, body->angular_velocity};
+        if (body->inv_mass == 0.0f) continue;
+        out->velocity = vec2_add(body->velocity, vec2_scale(dt, world->def.gravity));
+        /* No torque, but this turns -0 into 0, as Box2D-Lite does. */
+        out->angular_velocity += 0.0f;
+    }
+}
+
+static bool is_finite_body(const Body *body) {
+    return isfinite(body->position.x) && isfinite(body->position.y) && isfinite(body->angle) &&
+           isfinite(body->velocity.x) && isfinite(body->velocity.y) && isfinite(body->angular_velocity);
+}
+
+/* Moves one body: semi-implicit Euler, with the new velocity. */
+static void move_body(World *world, int i) {
+    float dt = world->problem.dt;
+    Body *body = &world->moved[i];
+    *body = world->bodies[i];
+    body->velocity = world->velocities[i].linear;
+    body->angular_velocity = world->velocities[i].angular;
+    body->position = vec2_add(body->position, vec2_scale(dt, body->velocity));
+    body->angle += dt * body->angular_velocity;
+}
+
+static bool check_finite(const World *world, Error *error) {
+    for (int i = 0; i < world->body_count; i++)
+        if (!is_finite_body(&world->moved[i]))
+            return error_input(error, "world", "the state of body %d is NaN or infinite (its velocity was %g, %g m/s)",
+                               i, (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
+    return true;
+}
+
+/* After success: swaps the new state with the old one, which the next step overwrites. */
+static void commit(World *world) {
+    Body *bodies = world->bodies;
+    world->bodies = world->moved;
+    world->moved = bodies;
+    world->posed = world->body_count;
+    ContactSet last = world->last;
+    world->last = world->next;
+    world->next = last;
+}
+
+bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSolution **solution, Error *error) {
+    if (!collide(world))
+        return world->broad_phase.too_many
+                   ? error_input(error, "world", "more than %d pairs of boxes overlap; move the boxes apart",
+                                 BROAD_PHASE_MAX_PAIRS)
+                   : error_memory(error, "world");
+    if (world->def.warm_starting) contact_set_match(&world->next, &world->last);
+    apply_gravity(world, dt);
+    contact_set_prepare(&world->next, world->problem_bodies, world->friction, dt, world->def.position_correction);
+    *problem = (ContactProblem){.body_count = world->body_count,
+                                .contact_count = world->next.contact_count,
+                                .marked = world->marked,
+                                .dt = dt,
+                                .bodies = world->problem_bodies,
+                                .contacts = world->next.contacts};
+    world->problem = *problem;
+    world->solution = (ContactSolution){world->velocities, world->next.impulses, 0, {0}};
+    *solution = &world->solution;
+    return true;
+}
+
+bool world_end_step(World *world, Error *error) {
+    for (int i = 0; i < world->body_count; i++) move_body(world, i);
+    if (!check_finite(world, error)) return false;
+    commit(world);
+    return true;
+}
+
+bool world_end_step_at(World *world, const BodyPose *poses, Error *error) {
+    for (int i = 0; i < world->body_count; i++) {
+        move_body(world, i);
+        world->moved[i].position = poses[i].position;
+        world->moved[i].angle = poses[i].angle;
+    }
+    if (!check_finite(world, error)) return false;
+    commit(world);
+    return true;
+}
+
+bool world_step(World *world, ContactSolve *solve, void *state, float dt, Error *error) {
+    ContactProblem problem;
+    ContactSolution *solution;
+    return world_begin_step(world, dt, &problem, &solution, error) && solve(state, &problem, solution, error) &&
+           world_end_step(world, error);
+}
+
+double body_energy(const Body *body, Vec2 gravity) {
+    if (body->inv_mass == 0) return 0;
+    double x = body->velocity.x, y = body->velocity.y, spin = body->angular_velocity;
+    double potential = (double)gravity.x * body->position.x + (double)gravity.y * body->position.y;
+    return (0.5 * (x * x + y * y) - potential) / body->inv_mass + 0.5 * spin * spin / body->inv_inertia;
+}
+
+double bodies_energy(const Body *bodies, int count, Vec2 gravity) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += body_energy(&bodies[i], gravity);
+    return sum;
+}
+
+double world_energy(const World *world, Vec2 gravity) {
+    return bodies_energy(world_bodies(world), world_body_count(world), gravity);
+}
+
+double world_penetration(const World *world) {
+    const ContactProblem *problem = world_problem(world);
+    double depth = 0;
+    for (int i = 0; i < problem->contact_count; i++)
+        if (-problem->contacts[i].separation > depth) depth = -problem->contacts[i].separation;
+    return depth;
+}

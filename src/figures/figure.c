@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "figures/figure.h"
+
+#include "base/base.h"
+#include "base/file.h"
+#include "figures/internal.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "runs/trajectory.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const FigureKind *const kinds[] = {
+    &figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, &figure_network, &figure_pair, NULL};
+
+const FigureKind *const *figure_kinds(void) { return kinds; }
+
+/* Truncated at its end. */
+static void append(char title[SKETCH_TEXT_SIZE], const char *before, const char *part) {
+    const size_t used = strlen(title);
+    snprintf(title + used, SKETCH_TEXT_SIZE - used, "%s%s", before, part);
+}
+
+static bool check_contacts(const FigureKind *kind, const FigureSpec *spec, Error *error) {
+    for (int i = 0; kind->needs_contacts && i < spec->run_count; i++)
+        if (spec->runs[i]->no_contacts)
+            return error_input(error, spec->paths[i], "the run has no contacts, which the kind %s shows", kind->name);
+    return true;
+}
+
+bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error) {
+    if (!check_contacts(kind, spec, error) || !kind->draw(sketch, spec, error)) return false;
+    append(sketch->title, "", kind->name);
+    if (spec->network != NULL)
+        append(sketch->title, " of ", spec->network + file_folder_length(spec->network));
+    else
+        append(sketch->title, " of ", spec->runs[0]->scene);
+    for (int i = 0; i < spec->run_count; i++)
+        append(sketch->title, i == 0 ? ": " : ", ", run_name(spec, spec->runs[i]).text);
+    return true;
+}
+
+const FigureKind *figure_kind(const char *name, Error *error) {
+    NameList known = {0};
+    for (int i = 0; kinds[i] != NULL; i++) {
+        if (strcmp(kinds[i]->name, name) == 0) return kinds[i];
+        name_list_add(&known, kinds[i]->name);
+    }
+    error_unknown(error, "figure", name, "a kind of figure", &known);
+    return NULL;
+}
+
+/* Characters with a meaning, and those that the font encoding OT1 has only in some fonts. */
+static const char *command_for(char character) {
+    switch (character) {
+    case '\\': return "\\textbackslash{}";
+    case '~': return "\\textasciitilde{}";
+    case '^': return "\\textasciicircum{}";
+    case '<': return "\\textless{}";
+    case '>': return "\\textgreater{}";
+    case '|': return "\\textbar{}";
+    default: return NULL;
+    }
+}
+
+/* Fonts join "--", "''", "``", ",,", "?`" and "!`" to one sign. */
+static int joins(char before, char character) {
+    return (before == character && strchr("-'`,", character) != NULL) ||
+           (character == '`' && (before == '?' || before == '!'));
+}
+
+void latex_text(FILE *out, const char *text) {
+    for (char before = '\0'; *text != '\0'; before = *text++) {
+        const char *command = command_for(*text);
+        if (command != NULL) {
+            fputs(command, out);
+            continue;
+        }
+        if (strchr("#$%&_{}", *text) != NULL) putc('\\', out);
+        if (before != '\0' && joins(before, *text)) fputs("{}", out);
+        putc(*text, out);
+    }
+}
+
+void latex_code(FILE *out, const char *text) {
+    fputs("\\texttt{", out);
+    latex_text(out, text);
+    fputs("}", out);
+}
+
+/* What stands before item `index` of a list of `count`: nothing, a comma or "and". */
+static const char *latex_between(int index, int count) {
+    if (index == 0) return "";
+    return index < count - 1 ? ", " : " and ";
+}
+
+enum { TIMES_LISTED = 8 };
+
+/* The sweeps that the method's text leaves to the scene, or NULL. */
+static const char *sweeps_of_scene(Settings *all, const Trajectory *run) {
+    Method method;
+    Error ignored = {0};
+    const bool known = method_parse(&method, run->method, &ignored) && settings_get(&method.settings, "k") == NULL;
+    return known && method_all_settings(all, run->method, run->iterations) ? settings_get(all, "k") : NULL;
+}
+
+void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
+    const MethodDescription *method = method_describe(run->method);
+    const RunName shown = run_name(spec, run);
+    char name[TRAJECTORY_NAME_SIZE];
+    Settings all;
+    method_name(name, sizeof name, run->method);
+    const bool own = strcmp(shown.text, name) != 0, described = method != NULL && method->caption != NULL;
+    if (own) {
+        latex_text(out, shown.text);
+        fputs(" (", out);
+    }
+    latex_code(out, name);
+    if (described) {
+        fputs(own ? ", " : " (", out);
+        latex_text(out, method->caption);
+        const char *sweeps = sweeps_of_scene(&all, run);
+        if (sweeps != NULL) fprintf(out, ", \\texttt{k=%s}", sweeps);
+    }
+    if (own || described) fputs(")", out);
+}
+
+void caption_runs(FILE *out, const FigureSpec *spec, int first) {
+    for (int i = first; i < spec->run_count; i++) {
+        fputs(latex_between(i - first, spec->run_count - first), out);
+        caption_run(out, spec, spec->runs[i]);
+    }
+}
+
+void caption_scene(FILE *out, const FigureSpec *spec) {
+    fputs("scene ", out);
+    latex_code(out, spec->runs[0]->scene);
+}
+
+/* To a millisecond, without zeros at the end. */
+static void write_time(FILE *out, double seconds) {
+    char text[64];
+    int end = snprintf(text, sizeof text, "%.3f", seconds);
+    while (text[end - 1] == '0') end--;
+    if (text[end - 1] == '.') end--;
+    fprintf(out, "%.*s", end, text);
+}
+
+void caption_times(FILE *out, const FigureSpec *spec) {
+    const FigureFacts *facts = spec->facts;
+    const double dt = (double)spec->runs[0]->dt;
+    const int count = facts->frame_count;
+    if (count > TIMES_LISTED) {
+        fprintf(out, " at %d moments from ", count);
+        write_time(out, facts->frames[0] * dt);
+        fputs(" to ", out);
+        write_time(out, facts->frames[count - 1] * dt);
+    } else {
+        fputs(" at ", out);
+        for (int i = 0; i < count; i++) {
+            fputs(latex_between(i, count), out);
+            write_time(out, facts->frames[i] * dt);
+        }
+    }
+    fputs("~s", out);
+}
+
+/* A kind, and what it has drawn. */
+typedef struct Caption {
+    const FigureKind *kind;
+    const FigureSpec *spec;
+} Caption;
+
+static void print(FILE *out, const void *context) {
+    const Caption *caption = context;
+    fputs("\\caption{", out);
+    caption->kind->caption(out, caption->spec);
+    fputs(" Drawn with twinbox~", out);
+    latex_text(out, TWINBOX_VERSION);
+    fputs(".}\n", out);
+}
+
+bool figure_write_caption(const FigureKind *kind, const FigureSpec *spec, const char *path, Error *error) {
+    return file_write_text(path, print, &(Caption){kind, spec}, error);
+}

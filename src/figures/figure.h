@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Figures of stored runs and networks for papers: scenes as pixels, everything else as vector graphics and text. */
+#pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "figures/sketch.h"
+#include "pictures/picture.h"
+#include "runs/trajectory.h"
+
+enum { FIGURE_RUNS_MAX = RENDER_PANELS_MAX, FIGURE_MOMENTS_MAX = 60, FIGURE_BODIES_MAX = 64 };
+
+#define FIGURE_WIDTH_MIN 40.0
+#define FIGURE_WIDTH_MAX 400.0
+#define FIGURE_HEIGHT_MIN 20.0
+#define FIGURE_HEIGHT_MAX 240.0 /* mm; higher figures are scaled down or refused */
+#define FIGURE_POINTS 8.0       /* font size */
+#define FIGURE_POINTS_MIN 5.0
+#define FIGURE_POINTS_MAX 14.0
+
+/* What was drawn, for the caption. */
+typedef struct FigureFacts {
+    int frame_count, frames[FIGURE_MOMENTS_MAX]; /* shown */
+    int bodies[2];                               /* narrow-phase: the pair */
+    int shifted;                                 /* divergence: the number of bodies shifted for the band; 0: no band */
+    char network[SKETCH_TEXT_SIZE];              /* network: its file, layers and number of parameters */
+} FigureFacts;
+
+/* What to draw. Zero it, then fill it in; all pointers belong to the caller. */
+typedef struct FigureSpec {
+    double width, points, dpi; /* mm; font size; resolution of pictures */
+    double height;             /* mm; 0: the kind chooses */
+    int run_count;
+    const Trajectory *runs[FIGURE_RUNS_MAX];
+    const char *paths[FIGURE_RUNS_MAX];    /* file names of the runs, for messages */
+    const char *captions[FIGURE_RUNS_MAX]; /* instead of the names of the runs' methods; NULL or "": these */
+    int time_count;                        /* 0: the kind chooses */
+    double times[FIGURE_MOMENTS_MAX];      /* s, ascending */
+    int moments;                           /* number of equidistant moments; 0: the kind chooses */
+    const char *scene;                     /* divergence: scene of the first run, for the band of chaotic divergence;
+                                           NULL: no band */
+    const char *network;                   /* network: the file */
+    CameraView view;                       /* the part of the world to show; width 0: that of `view_from` */
+    const Trajectory *view_from;           /* the run whose bodies set the view; NULL: the first */
+    int body_count;                        /* 0: the kind chooses */
+    int bodies[FIGURE_BODIES_MAX];         /* narrow-phase: the pair; strip: those that must be in view */
+    FigureFacts *facts;                    /* filled in by drawing; NULL: not wanted */
+    const Progress *progress;              /* of simulations run for the figure, or NULL */
+} FigureSpec;
+
+typedef struct FigureKind {
+    const char *name, *summary;
+    const char *example;    /* arguments after `twinbox figure` */
+    int min_runs, max_runs; /* 0, 0: takes a network's file instead */
+    bool takes_times, takes_moments, takes_scene, takes_height, takes_view;
+    bool needs_contacts;        /* runs without are refused */
+    int min_bodies, max_bodies; /* 0, 0: takes none */
+    /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
+       failure. */
+    bool (*draw)(Sketch *sketch, const FigureSpec *spec, Error *error);
+    /* Writes sentences for LaTeX (figures/internal.h) from the facts of a figure that was drawn. */
+    void (*caption)(FILE *out, const FigureSpec *spec);
+} FigureKind;
+
+/* All kinds; ends with NULL. */
+const FigureKind *const *figure_kinds(void);
+
+/* Draws a kind with the title of its files: "strip of stack: engine, momentum:k=20". As FigureKind.draw. */
+bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error);
+
+/* Writes \caption{...} for LaTeX to a file: what the figure shows, of which scene, by which methods, at which times, and
+   the version. spec->facts are those of the figure, which was drawn. */
+bool figure_write_caption(const FigureKind *kind, const FigureSpec *spec, const char *path, Error *error);
+
+/* NULL with error set, which lists the kinds, if there is no such kind. */
+const FigureKind *figure_kind(const char *name, Error *error);
+
+/* The separating axis theorem, computed for display: two boxes overlap if their projections on all four axes do, and
+   the axis of the least overlap is the contact normal. engine/box.c has the optimised version. */
+
+/* The projections of boxes a and b on an axis. */
+typedef struct AxisOverlap {
+    int box;                /* owner of the axis: 0 is a, 1 is b */
+    char letter;            /* 'x' or 'y', the axis in its box */
+    Vec2 axis;              /* unit */
+    double low[2], high[2]; /* m from the world's origin: the projections of a and of b */
+    double depth;           /* m that b must move to separate; negative if separated */
+} AxisOverlap;
+
+enum { SEPARATING_AXES = 4 };
+
+/* The axes of a, x first, then those of b. */
+void separating_axes(AxisOverlap overlaps[SEPARATING_AXES], const Box *a, const Box *b);
+
+/* The index of the least depth. */
+int least_overlap(const AxisOverlap overlaps[SEPARATING_AXES]);
+
+/* The collision of two boxes, and the two halves of its picture. Of a View passed in, only the corners are used. */
+
+/* A pair in a step, as the narrow phase found it. */
+typedef struct Collision {
+    Box boxes[2];
+    int bodies[2], bomb, step;
+    Manifold manifold;
+    AxisOverlap overlaps[SEPARATING_AXES];
+    int least;         /* index of the overlap whose axis is the manifold's normal */
+    const char *label; /* label of that overlap: "smallest overlap" */
+    char names[2][16];
+    double points; /* font size */
+    Vec2 normal;   /* the manifold's, in world coordinates (the picture is rotated) */
+} Collision;
+
+/* Computes manifold and overlaps of the boxes. False if they do not touch. */
+bool collision_find(Collision *collision);
+
+/* Rotates everything about the origin so that the reference box is below the other. Returns the rotated down
+   direction, unit. */
+Vec2 collision_turn_up(Collision *collision);
+
+static inline bool is_bomb(const Collision *collision, int i) { return collision->bodies[i] == collision->bomb; }
+
+/* Gives two boxes different colours. */
+static inline bool is_second_box(const Collision *collision, int i) { return i == 1 && !is_bomb(collision, 0); }
+
+static inline uint32_t fill_of(const Collision *collision, int i) {
+    return is_bomb(collision, i) ? BOMB.fill : is_second_box(collision, i) ? NETWORK_COLOUR : BOX_COLOUR;
+}
+
+static inline uint32_t ink_of(const Collision *collision, int i) {
+    return is_bomb(collision, i) ? BOMB.line : is_second_box(collision, i) ? NETWORK_INK : BOX_INK;
+}
+
+static inline const char *name_of(const Collision *collision, int i) { return collision->names[i]; }
+
+/* Draws the projections of both boxes on the axes of each, and their overlaps, centred in the window. */
+void draw_overlaps(Sketch *sketch, View window, const Collision *collision);
+
+/* Draws an enlarged view of the overlap: edges, normal and contact points, centred in the window. */
+void draw_contact_closeup(Sketch *sketch, View window, const Collision *collision);

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The largest distance of any body from its position in the first run, over time. The band shows the distance of the
+   first run from copies with one body shifted by a micrometre: two runs inside it diverge no faster than by chaos. */
+#include "base/base.h"
+#include "base/machine.h"
+#include "figures/figure.h"
+#include "figures/internal.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "pictures/picture.h"
+#include "pixels/png.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BAND_BODIES = 5 }; /* bodies shifted, one at a time */
+
+static const uint32_t band_colour = 0xD3D8DF;
+static const double sample = 6; /* mm, line sample in the legend */
+
+typedef struct Divergence {
+    const FigureSpec *spec;
+    MethodColour colours[FIGURE_RUNS_MAX];
+    int frames;                        /* of the first run */
+    double *distance[FIGURE_RUNS_MAX]; /* [frames] m; NaN after the end of either run; NULL for the first run */
+    double *low, *high;                /* [frames] m, the band; NULL: none. NaN after its end */
+    int shifted;                       /* number of bodies shifted for the band */
+} Divergence;
+
+static void free_all(Divergence *d) {
+    for (int i = 0; i < FIGURE_RUNS_MAX; i++) free(d->distance[i]);
+    free(d->low);
+    free(d->high);
+}
+
+static bool measure(Divergence *d, Error *error) {
+    const FigureSpec *spec = d->spec;
+    const Trajectory *first = spec->runs[0];
+    d->frames = first->frames;
+    for (int i = 1; i < spec->run_count; i++) {
+        if ((d->distance[i] = malloc((size_t)d->frames * sizeof *d->distance[i])) == NULL)
+            return error_memory(error, "figure");
+        for (int frame = 0; frame < d->frames; frame++)
+            d->distance[i][frame] =
+                frame < spec->runs[i]->frames ? trajectory_distance(first, spec->runs[i], frame) : NAN;
+    }
+    return true;
+}
+
+/* The bomb, and other bodies spread evenly over the order of bodies. */
+static int choose_bodies(const Trajectory *run, int bodies[BAND_BODIES]) {
+    int count = 0, others = 0, wanted = BAND_BODIES, seen = 0;
+    for (int i = 0; i < run->bodies; i++) others += !run->fixed[i] && i != run->bomb;
+    if (run->bomb >= 0 && !run->fixed[run->bomb]) bodies[count++] = run->bomb, wanted--;
+    if (wanted > others) wanted = others;
+    for (int i = 0; i < run->bodies; i++) {
+        if (run->fixed[i] || i == run->bomb) continue;
+        /* the k-th of `wanted` has index k (others - 1) / (wanted - 1) */
+        int taken = run->bomb >= 0 ? count - 1 : count;
+        if (taken < wanted && seen == (wanted > 1 ? taken * (others - 1) / (wanted - 1) : 0)) bodies[count++] = i;
+        seen++;
+    }
+    return count;
+}
+
+static bool widen_band(Divergence *d, int body, const Progress *progress, Error *error) {
+    Chaos chaos;
+    if (!chaos_run(&chaos, d->spec->scene, d->spec->runs[0], body, d->frames, progress, error)) return false;
+    bool same = chaos.rerun_differs < 0;
+    for (int i = 0; same && i < d->frames; i++) {
+        /* a run with NaN or infinite states ends the band */
+        double distance = i < chaos.frames ? chaos.distance[i] : NAN;
+        bool there = !isnan(distance) && !isnan(d->low[i]);
+        /* distance 0: the shifted body appears later */
+        d->low[i] = !there ? NAN : distance > 0 ? fmin(d->low[i], distance) : d->low[i];
+        d->high[i] = there ? fmax(d->high[i], distance) : NAN;
+    }
+    int other = chaos.rerun_differs;
+    chaos_free(&chaos);
+    return same || error_input(error, d->spec->paths[0],
+                               "%s run again differs from this run from frame %d on: it was made "
+                               "with other options or by another version",
+                               d->spec->scene, other);
+}
+
+static bool make_band(Divergence *d, Error *error) {
+    int bodies[BAND_BODIES] = {0};
+    d->low = malloc((size_t)d->frames * sizeof *d->low);
+    d->high = malloc((size_t)d->frames * sizeof *d->high);
+    if (d->low == NULL || d->high == NULL) return error_memory(error, "figure");
+    for (int i = 0; i < d->frames; i++) d->low[i] = HUGE_VAL, d->high[i] = 0;
+    d->shifted = choose_bodies(d->spec->runs[0], bodies);
+    if (d->shifted == 0) return error_input(error, d->spec->scene, "the scene has no dynamic body to shift");
+    for (int i = 0; i < d->shifted; i++) {
+        ProgressStage stage = {d->spec->progress, (double)i / d->shifted, 1.0 / d->shifted, false};
+        if (!widen_band(d, bodies[i], &(Progress){progress_stage, &stage}, error)) return false;
+    }
+    return true;
+}
+
+static void include(PlotRange *range, const double *values, int count) {
+    for (int i = 0; values != NULL && i < count; i++) plot_range_include(range, values[i]);
+}
+
+/* The points of a line up to its next gap. */
+static int gather(const Divergence *d, const PlotPanel *plot, const double *values, int from, Point *points) {
+    int count = 0;
+    for (int i = from; i < d->frames && values[i] > 0; i++)
+        points[count++] = plot_place(plot, i * (double)d->spec->runs[0]->dt, values[i]);
+    return count;
+}
+
+/* The colour of the method; the dashes tell lines apart in grey. */
+static Pen line_pen(const Divergence *d, int run) {
+    return pen_line(plot_method_colour(d->colours[run]), 2.2, plot_style(run - 1).dashes);
+}
+
+static void draw_line(const Divergence *d, Sketch *sketch, const PlotPanel *plot, int run, Point *points) {
+    const Pen pen = line_pen(d, run);
+    for (int i = 0; i < d->frames; i++) {
+        int count = gather(d, plot, d->distance[run], i, points);
+        sketch_path(sketch, points, count, &pen);
+        i += count;
+    }
+}
+
+static void draw_band(const Divergence *d, Sketch *sketch, const PlotPanel *plot, Point *points) {
+    int first = 0;
+    while (first < d->frames && !(d->high[first] > 0)) first++;
+    int count = gather(d, plot, d->high, first, points);
+    for (int i = count - 1; i >= 0; i--)
+        points[count + (count - 1 - i)] =
+            plot_place(plot, (first + i) * (double)d->spec->runs[0]->dt, d->low[first + i]);
+    /* the outline stays visible while the band has no height */
+    sketch_shape(sketch, points, 2 * count, &(Pen){band_colour, 1, band_colour, 2.2, NULL});
+}
+
+static bool ever_diverges(const double *distance, int frames) {
+    for (int i = 0; i < frames; i++)
+        if (distance[i] > 0) return true;
+    return false;
+}
+
+static void draw_legend_row(Sketch *sketch, Point at, double points, double width, char *words, size_t size) {
+    text_fit(words, size, points, width - sample - 1.5);
+    sketch_text(sketch, (Point){at.x + sample + 1.5, at.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s",
+                words);
+}
+
+/* Rows above the plot, down from `top`. */
+static void draw_legend(const Divergence *d, Sketch *sketch, double left, double top, double width) {
+    const FigureSpec *spec = d->spec;
+    const double line = line_height(spec->points);
+    char words[2 * CAPTION_TEXT_SIZE + 64];
+    Point at = {left, top - line / 2};
+    for (int i = 1; i < spec->run_count; i++, at.y -= line) {
+        const Pen pen = line_pen(d, i);
+        bool ever = ever_diverges(d->distance[i], d->frames);
+        if (ever) sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
+        snprintf(words, sizeof words, "%s vs %s%s", run_name(spec, spec->runs[i]).text,
+                 run_name(spec, spec->runs[0]).text, ever ? "" : ": identical");
+        draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
+    }
+    if (d->low == NULL) return;
+    sketch_rectangle(sketch, (Point){at.x, at.y - 0.3 * line}, (Point){at.x + sample, at.y + 0.3 * line},
+                     &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
+    snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec, spec->runs[0]).text,
+             d->shifted);
+    draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
+}
+
+static void draw_impact(const Divergence *d, Sketch *sketch, const PlotPanel *plot) {
+    const Trajectory *run = d->spec->runs[0];
+    const int touch = trajectory_impact(run);
+    if (touch < 0) return;
+    const double x = plot_axis_place(&plot->x, touch * (double)run->dt);
+    const Pen pen = pen_line(INK_SOFT, 1.2, "(4,4)");
+    const bool right = x > (plot->x.from + plot->x.to) / 2;
+    sketch_line(sketch, (Point){x, plot->y.from}, (Point){x, plot->y.to}, &pen);
+    sketch_text(sketch, (Point){x + (right ? -0.8 : 0.8), plot->y.from + 0.7 * line_height(d->spec->points)},
+                &(TextStyle){d->spec->points, right ? TEXT_RIGHT : TEXT_LEFT, INK_SOFT, 0, true}, "impact");
+}
+
+static bool draw_plot(const Divergence *d, Sketch *sketch, PlotRange range, Error *error) {
+    const FigureSpec *spec = d->spec;
+    const double shape = 0.55, tallest = 75, line = line_height(spec->points), room = 3;
+    const double left = plot_left_margin(spec->points), bottom = plot_bottom_margin(spec->points);
+    const double height = fmin(shape * spec->width, tallest), rows = spec->run_count - 1 + (d->low != NULL);
+    PlotPanel plot = {.box = {left, bottom, spec->width - room - left, height},
+                      .x = plot_linear_axis(0, (d->frames - 1) * (double)spec->runs[0]->dt, "time (s)"),
+                      .y = plot_log_axis(range.least, range.most, "largest distance (m)"),
+                      .points = spec->points,
+                      .guides = true};
+    plot.y.powers = true;
+    plot_panel_place(&plot);
+    sketch_begin(sketch, spec->width, bottom + height + rows * line + 2);
+    Point *points = malloc(2 * (size_t)d->frames * sizeof *points);
+    if (points == NULL) return error_memory(error, "figure");
+    if (d->low != NULL) draw_band(d, sketch, &plot, points);
+    plot_panel_draw(sketch, &plot);
+    draw_impact(d, sketch, &plot);
+    for (int i = 1; i < spec->run_count; i++) draw_line(d, sketch, &plot, i, points);
+    draw_legend(d, sketch, left, sketch->height, spec->width - left);
+    free(points);
+    return true;
+}
+
+static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+    Divergence d = {.spec = spec};
+    run_colours(spec, d.colours);
+    PlotRange range = plot_range();
+    bool done = run_check_worlds(spec, error) && measure(&d, error) && (spec->scene == NULL || make_band(&d, error));
+    for (int i = 1; done && i < spec->run_count; i++) include(&range, d.distance[i], d.frames);
+    if (done) include(&range, d.low, d.frames), include(&range, d.high, d.frames);
+    if (done && range.most == 0)
+        done =
+            error_input(error, spec->paths[1], "never diverges from %s: there is no distance to draw", spec->paths[0]);
+    done = done && draw_plot(&d, sketch, range, error);
+    if (spec->facts != NULL) spec->facts->shifted = d.shifted;
+    free_all(&d);
+    return done;
+}
+
+static void caption(FILE *out, const FigureSpec *spec) {
+    const Trajectory *first = spec->runs[0];
+    fputs("Runs of the ", out);
+    caption_scene(out, spec);
+    fputs(" by ", out);
+    caption_runs(out, spec, 1);
+    fputs(": largest distance of a body from its position in the run by ", out);
+    caption_run(out, spec, first);
+    fputs(", over time.", out);
+    if (spec->facts->shifted > 0)
+        fprintf(out,
+                " The band shows further runs by the first method, each with one of %d bodies shifted by 1~$\\mu$m.",
+                spec->facts->shifted);
+    if (trajectory_impact(first) >= 0)
+        fprintf(out, " The dashed vertical line marks the impact of the bomb at %.2f~s.",
+                trajectory_impact(first) * (double)first->dt);
+}
+
+const FigureKind figure_divergence = {
+    .name = "divergence",
+    .summary = "distance from the first run over time, with a band of chaotic divergence",
+    .example = "divergence engine.npz momentum.npz --scene scenes/stack.yaml -o divergence.svg",
+    .min_runs = 2,
+    .max_runs = FIGURE_RUNS_MAX,
+    .takes_scene = true,
+    .draw = draw,
+    .caption = caption,
+};

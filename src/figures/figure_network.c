@@ -1,0 +1,471 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A picture per matrix. If it has more weights than pixels, each pixel shows the largest weight that it covers. */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/npz.h"
+#include "figures/figure.h"
+#include "figures/internal.h"
+#include "figures/sketch.h"
+#include "nets/kinds.h"
+#include "nets/nets.h"
+#include "pictures/picture.h"
+#include "pixels/png.h"
+#include "pixels/type.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MATRICES_MAX = NETWORK_MAX_LAYERS };
+
+static const double network_matrices_max_width = 56, network_matrices_min_width = 36, network_matrices_gap = 4,
+                    aspect = 0.6; /* mm, width of a picture and gap; height /
+                                                                          width */
+static const double network_matrices_small_type = 0.85;
+
+typedef struct Matrix {
+    const char *name;
+    const char *activation;
+    const float *weights; /* [outputs, inputs], or with by_input [inputs, outputs] */
+    int inputs, outputs;
+    bool by_input;
+} Matrix;
+
+typedef struct Matrices {
+    const FigureSpec *spec;
+    int count, columns, rows;
+    const Matrix *matrices;
+    double width, height, row; /* mm: size of a picture; distance between rows of pictures */
+} Matrices;
+
+static double weight_at(const Matrix *matrix, int input, int output) {
+    size_t i = matrix->by_input ? (size_t)input * (size_t)matrix->outputs + (size_t)output
+                                : (size_t)output * (size_t)matrix->inputs + (size_t)input;
+    return (double)matrix->weights[i];
+}
+
+static double network_matrices_find_largest(const Matrix *matrix) {
+    double largest = 0;
+    for (size_t i = 0; i < (size_t)matrix->inputs * (size_t)matrix->outputs; i++)
+        largest = fmax(largest, fabs((double)matrix->weights[i]));
+    return largest;
+}
+
+/* The weight of the largest magnitude that the pixel covers. */
+static double weight_of_pixel(const Matrix *matrix, int x, int y, int columns, int rows) {
+    int first = (int)((int64_t)x * matrix->inputs / columns), top = (int)((int64_t)y * matrix->outputs / rows);
+    int end = (int)((int64_t)(x + 1) * matrix->inputs / columns),
+        bottom = (int)((int64_t)(y + 1) * matrix->outputs / rows);
+    double largest = 0;
+    for (int output = top; output < bottom || output == top; output++)
+        for (int input = first; input < end || input == first; input++) {
+            double weight = weight_at(matrix, input, output);
+            if (fabs(weight) > fabs(largest)) largest = weight;
+        }
+    return largest;
+}
+
+static bool network_matrices_draw_weights(const Matrices *all, Sketch *sketch, const Matrix *matrix, Point low,
+                                          double largest, Error *error) {
+    const double dots = all->spec->dpi / 25.4;
+    const int columns = (int)fmax(rint(all->width * dots), 1), rows = (int)fmax(rint(all->height * dots), 1);
+    Image *image = image_create(columns, rows, error);
+    if (image == NULL) return false;
+    for (int y = 0; y < rows; y++)
+        for (int x = 0; x < columns; x++) {
+            double weight = weight_of_pixel(matrix, x, y, columns, rows);
+            uint32_t colour = weight_colour(largest > 0 ? weight / largest : 0);
+            uint8_t *pixel = image->pixels + 4 * ((size_t)y * (size_t)columns + (size_t)x);
+            pixel[0] = (uint8_t)(colour >> 16), pixel[1] = (uint8_t)(colour >> 8), pixel[2] = (uint8_t)colour;
+            pixel[3] = 255;
+        }
+    sketch_image(sketch, image, low, columns / dots);
+    image_destroy(image);
+    return true;
+}
+
+static double network_title_height(const FigureSpec *spec);
+
+static bool draw_matrix(const Matrices *all, Sketch *sketch, int i, Error *error) {
+    const Matrix *matrix = &all->matrices[i];
+    const double points = all->spec->points, line = line_height(points), small = network_matrices_small_type * points;
+    const double largest = network_matrices_find_largest(matrix), column = i % all->columns;
+    const double top = sketch->height - network_title_height(all->spec) - (i / all->columns) * all->row;
+    const Point low = {0.2 + column * (all->width + network_matrices_gap), top - line - all->height};
+    char words[96];
+    if (!network_matrices_draw_weights(all, sketch, matrix, low, largest, error)) return false;
+    sketch_rectangle(sketch, low, (Point){low.x + all->width, low.y + all->height},
+                     &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
+    snprintf(words, sizeof words, "%s%s%s", matrix->name, matrix->activation[0] != '\0' ? ", " : "",
+             matrix->activation);
+    text_fit(words, sizeof words, points, all->width);
+    sketch_text(sketch, (Point){low.x, top - line / 2}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s", words);
+    snprintf(words, sizeof words, "%d to %d, max |w| %.2g", matrix->inputs, matrix->outputs, largest);
+    text_fit(words, sizeof words, small, all->width);
+    sketch_text(sketch, (Point){low.x, low.y - 0.6 * line}, &(TextStyle){small, TEXT_LEFT, INK_SOFT, 0, false}, "%s",
+                words);
+    return true;
+}
+
+/* The colour scale, from the most negative to the most positive weight. */
+static void draw_color_scale(const Matrices *all, Sketch *sketch) {
+    enum { STEPS = 20 };
+    const double points = network_matrices_small_type * all->spec->points, y = 0.5 * line_height(points), high = 2,
+                 cell = 1;
+    const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
+    sketch_text(sketch, (Point){0.2, y}, &words, "negative");
+    double x = 0.2 + type_width("negative", points) + 1.2;
+    const double start = x;
+    for (int i = 0; i < STEPS; i++, x += cell) {
+        const Pen pen = {weight_colour(2.0 * i / (STEPS - 1) - 1), 1, NO_COLOUR, 0, NULL};
+        sketch_rectangle(sketch, (Point){x, y - high / 2}, (Point){x + cell, y + high / 2}, &pen);
+    }
+    sketch_rectangle(sketch, (Point){start, y - high / 2}, (Point){x, y + high / 2},
+                     &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
+    sketch_text(sketch, (Point){x + 1.2, y}, &words, "positive; columns: inputs, rows: outputs");
+}
+
+static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *title);
+
+static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matrices, int count, const char *title,
+                     Error *error) {
+    Matrices all = {.spec = spec, .count = count, .matrices = matrices};
+    const double usable = spec->width - 0.4, line = line_height(spec->points);
+    all.columns =
+        (int)fmax(floor((usable + network_matrices_gap) / (network_matrices_min_width + network_matrices_gap)), 1);
+    if (all.columns > count) all.columns = count;
+    all.rows = (count + all.columns - 1) / all.columns;
+    all.width = fmin((usable - (all.columns - 1) * network_matrices_gap) / all.columns, network_matrices_max_width);
+    all.height = aspect * all.width;
+    all.row = all.height + 2.5 * line;
+    sketch_begin(sketch, spec->width, network_title_height(spec) + all.rows * all.row + 1.2 * line);
+    for (int i = 0; i < count; i++)
+        if (!draw_matrix(&all, sketch, i, error)) return false;
+    draw_color_scale(&all, sketch);
+    draw_network_title(sketch, spec, title);
+    return true;
+}
+
+static const char *activation_name(Activation activation);
+static void format_widths(char text[WIDTHS_TEXT_SIZE], const Network *network);
+
+static bool draw_dense_matrices(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
+    Matrix matrices[MATRICES_MAX];
+    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE], names[MATRICES_MAX][24];
+    for (int i = 0; i < network->layers; i++) {
+        snprintf(names[i], sizeof names[i], "layer %d", i + 1);
+        matrices[i] = (Matrix){names[i],
+                               activation_name(network->activations[i]),
+                               network->weights[i],
+                               network->widths[i],
+                               network->widths[i + 1],
+                               false};
+    }
+    format_widths(widths, network);
+    snprintf(title, sizeof title, "%s: %s, %d parameters", spec->network + file_folder_length(spec->network), widths,
+             network_parameter_count(network));
+    return draw_all(sketch, spec, matrices, network->layers, title, error);
+}
+
+static Matrix projection_matrix(const char *name, const Projection *projection) {
+    return (Matrix){name, "", projection->rows, projection->from, projection->to, true};
+}
+
+static Matrix layer_matrix(const char *name, const SlotLayer *layer) {
+    return (Matrix){name, "tanh", layer->rows, layer->from, layer->to, true};
+}
+
+static bool draw_slot_matrices(Sketch *sketch, const FigureSpec *spec, const SlotNetwork *network, Error *error) {
+    const Matrix matrices[] = {
+        projection_matrix("bomb's state", &network->bomb_state),
+        projection_matrix("other bodies' state", &network->state),
+        projection_matrix("contact flags", &network->present),
+        projection_matrix("warm-start impulses", &network->warm),
+        layer_matrix("layer 1", &network->first),
+        layer_matrix("layer 2", &network->second),
+        {"impulses", "linear", network->rows, network->second.to, 2 * network->slot_count, false},
+    };
+    char title[NETWORK_TEXT_SIZE + 160];
+    snprintf(title, sizeof title, "%s: %d bodies, %d contacts, %zu parameters",
+             spec->network + file_folder_length(spec->network), network->body_count, network->slot_count,
+             network->parameter_count);
+    return draw_all(sketch, spec, matrices, (int)(sizeof matrices / sizeof *matrices), title, error);
+}
+
+/* A network: its layers, their widths, its weights. */
+
+/* "sigmoid" */
+static const char *activation_name(Activation activation) {
+    static const char *const words[] = {[ACTIVATION_LINEAR] = "linear",
+                                        [ACTIVATION_SIGMOID] = "sigmoid",
+                                        [ACTIVATION_TANH] = "tanh",
+                                        [ACTIVATION_RELU] = "relu"};
+    return words[activation];
+}
+
+static void format_widths(char text[WIDTHS_TEXT_SIZE], const Network *network) {
+    int used = 0;
+    for (int i = 0; i <= network->layers; i++)
+        used += snprintf(text + used, (size_t)(WIDTHS_TEXT_SIZE - used), "%s%d", i > 0 ? "-" : "", network->widths[i]);
+}
+
+/* Mixes a colour with white. */
+static uint32_t mix(uint32_t colour, double share) {
+    uint32_t mixed = 0;
+    for (int shift = 0; shift < 24; shift += 8) {
+        double channel = (double)(colour >> shift & 255);
+        mixed |= (uint32_t)lrint(255 + share * (channel - 255)) << shift;
+    }
+    return mixed;
+}
+
+uint32_t weight_colour(double share) {
+    const uint32_t above = 0x004C80, below = 0xE69F00;
+    return mix(share > 0 ? above : below, fmin(fabs(share), 1));
+}
+
+/* In mm. */
+static double network_title_height(const FigureSpec *spec) { return 1.5 * line_height(spec->points); }
+
+/* A title, shortened to the page's width. */
+static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *title) {
+    const double line = line_height(spec->points);
+    char words[NETWORK_TEXT_SIZE];
+    snprintf(words, sizeof words, "%s", title);
+    if (spec->facts != NULL) snprintf(spec->facts->network, sizeof spec->facts->network, "%s", title);
+    text_fit(words, sizeof words, spec->points, sketch->width);
+    sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false},
+                "%s", words);
+}
+
+static bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error);
+
+static bool draw_dense(Sketch *sketch, const FigureSpec *spec, Error *error) {
+    Network *network = network_read(spec->network, error);
+    if (network == NULL) return false;
+    int widest = 0;
+    for (int i = 0; i <= network->layers; i++) widest = network->widths[i] > widest ? network->widths[i] : widest;
+    bool done = widest <= UNITS_MAX ? draw_units(sketch, spec, network, error)
+                                    : draw_dense_matrices(sketch, spec, network, error);
+    network_destroy(network);
+    return done;
+}
+
+static bool draw_slots(Sketch *sketch, const FigureSpec *spec, Error *error) {
+    SlotNetwork *network = slot_network_read(spec->network, error);
+    bool done = network != NULL && draw_slot_matrices(sketch, spec, network, error);
+    slot_network_destroy(network);
+    return done;
+}
+
+static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+    char kind[64] = "";
+    NpzFile *file = npz_open(spec->network, error);
+    if (file == NULL) return false;
+    Error cause = {0};
+    bool known = npz_has(file, "kind") && npz_read_text(file, "kind", kind, sizeof kind, &cause);
+    npz_close(file);
+    if (cause.kind == ERROR_SYSTEM) {
+        *error = cause;
+        return false;
+    }
+    if (known && strcmp(kind, "network") == 0) return draw_dense(sketch, spec, error);
+    if (known && strcmp(kind, "scene-net") == 0) return draw_slots(sketch, spec, error);
+    return error_input(error, spec->network, "contains no network with layers%s", known ? "" : ": it states no kind");
+}
+
+static void caption(FILE *out, const FigureSpec *spec) {
+    const char *name = spec->network + file_folder_length(spec->network), *facts = spec->facts->network;
+    fputs("Layers and weights of the network ", out);
+    latex_code(out, name);
+    latex_text(out, strncmp(facts, name, strlen(name)) == 0 ? facts + strlen(name) : "");
+    fputs(".", out);
+}
+
+const FigureKind figure_network = {
+    .name = "network",
+    .summary = "layers, sizes and weights of a network's file",
+    .example = "network scenes/networks/pair-net.npz --width column -o network.pdf",
+    .draw = draw,
+    .caption = caption,
+};
+
+/* A column of units per layer, and a line per weight: stronger ones are darker and wider. */
+
+static const double network_units_small_type = 0.85; /* font size of names / the figure's font size */
+static const double network_units_min_width = 0.5, network_units_max_width = 4.5; /* LINE_UNIT */
+static const double max_height = 120, max_step = 5.2,
+                    network_units_gap = 1.5; /* mm: height of the largest layer; between units;
+                                                                 beside a name */
+
+typedef struct Units {
+    const FigureSpec *spec;
+    const Network *network;
+    double left, right; /* mm, x of the first and the last column */
+    double middle, step, radius;
+    double largest; /* weight */
+} Units;
+
+static Point unit_place(const Units *units, int layer, int i) {
+    double share = (double)layer / units->network->layers;
+    double up = ((units->network->widths[layer] - 1) / 2.0 - i) * units->step;
+    return (Point){units->left + share * (units->right - units->left), units->middle + up};
+}
+
+/* The i-th word of a list such as "dx dy v1x"; false if it has not `count` words. */
+static bool nth_word(const char *words, int i, int count, char *word, size_t size) {
+    int found = 0;
+    for (const char *at = words; *at != '\0';) {
+        size_t length = strcspn(at, " ");
+        if (length > 0 && found++ == i) snprintf(word, size, "%.*s", (int)length, at);
+        at += length + (at[length] == ' ');
+    }
+    return found == count;
+}
+
+static void unit_name(const char *words, int i, int count, char name[32]) {
+    if (!nth_word(words, i, count, name, 32)) snprintf(name, 32, "%d", i + 1);
+}
+
+static double widest_name(const Units *units, const char *words, int count) {
+    double widest = 0;
+    for (int i = 0; i < count; i++) {
+        char name[32];
+        unit_name(words, i, count, name);
+        widest = fmax(widest, type_width(name, network_units_small_type * units->spec->points));
+    }
+    return widest;
+}
+
+static double network_units_find_largest(const Network *network) {
+    double largest = 0;
+    for (int l = 0; l < network->layers; l++)
+        for (int i = 0; i < network->widths[l] * network->widths[l + 1]; i++)
+            largest = fmax(largest, fabs((double)network->weights[l][i]));
+    return largest;
+}
+
+typedef struct WeightLine {
+    double share; /* relative to the largest weight, -1 .. 1 */
+    int layer, from, to;
+} WeightLine;
+
+/* The strongest last, drawn on top. */
+static int by_strength(const void *a, const void *b) {
+    const WeightLine *p = a, *q = b;
+    double difference = fabs(p->share) - fabs(q->share);
+    if (difference != 0) return difference > 0 ? 1 : -1;
+    if (p->layer != q->layer) return p->layer - q->layer;
+    return p->from != q->from ? p->from - q->from : p->to - q->to;
+}
+
+static Pen weight_pen(double share) {
+    return pen_line(weight_colour(share),
+                    network_units_min_width + (network_units_max_width - network_units_min_width) * fabs(share), NULL);
+}
+
+static bool network_units_draw_weights(const Units *units, Sketch *sketch, Error *error) {
+    const Network *network = units->network;
+    int count = 0;
+    for (int l = 0; l < network->layers; l++) count += network->widths[l] * network->widths[l + 1];
+    WeightLine *lines = malloc((size_t)count * sizeof *lines);
+    if (lines == NULL) return error_memory(error, "figure");
+    count = 0;
+    for (int l = 0; l < network->layers; l++)
+        for (int to = 0; to < network->widths[l + 1]; to++)
+            for (int from = 0; from < network->widths[l]; from++) {
+                double weight = (double)network->weights[l][to * network->widths[l] + from];
+                lines[count++] = (WeightLine){units->largest > 0 ? weight / units->largest : 0, l, from, to};
+            }
+    qsort(lines, (size_t)count, sizeof *lines, by_strength);
+    for (int i = 0; i < count; i++) {
+        const Pen pen = weight_pen(lines[i].share);
+        sketch_line(sketch, unit_place(units, lines[i].layer, lines[i].from),
+                    unit_place(units, lines[i].layer + 1, lines[i].to), &pen);
+    }
+    free(lines);
+    return true;
+}
+
+static void draw_unit_dots(const Units *units, Sketch *sketch) {
+    const Network *network = units->network;
+    const double small = network_units_small_type * units->spec->points, beside = units->radius + network_units_gap;
+    const Pen pen = {0xFFFFFF, 1, INK, 1.4, NULL};
+    const int last = network->layers;
+    for (int layer = 0; layer <= last; layer++)
+        for (int i = 0; i < network->widths[layer]; i++) {
+            const Point at = unit_place(units, layer, i);
+            char name[32];
+            sketch_dot(sketch, at, units->radius, &pen);
+            if (layer > 0 && layer < last) continue;
+            unit_name(layer == 0 ? network->inputs : network->outputs, i, network->widths[layer], name);
+            sketch_text(sketch, (Point){at.x + (layer == 0 ? -beside : beside), at.y},
+                        &(TextStyle){small, layer == 0 ? TEXT_RIGHT : TEXT_LEFT, INK, 0, false}, "%s", name);
+        }
+}
+
+/* Below the columns the layers' sizes and activations, below these the meaning of lines. */
+static void draw_footer(const Units *units, Sketch *sketch) {
+    const Network *network = units->network;
+    const double line = line_height(units->spec->points), points = units->spec->points;
+    const TextStyle center = {points, TEXT_CENTER, INK, 0, false}, left = {points, TEXT_LEFT, INK, 0, false};
+    const double sample = 7;
+    for (int layer = 0; layer <= network->layers; layer++) {
+        const double x = unit_place(units, layer, 0).x;
+        sketch_text(sketch, (Point){x, 2.6 * line}, &center, "%d %s", network->widths[layer],
+                    layer == 0                 ? network->widths[0] == 1 ? "input" : "inputs"
+                    : layer == network->layers ? network->widths[layer] == 1 ? "output" : "outputs"
+                                               : "units");
+        if (layer > 0)
+            sketch_text(sketch, (Point){x, 1.7 * line},
+                        &(TextStyle){network_units_small_type * points, TEXT_CENTER, INK_SOFT, 0, false}, "%s",
+                        activation_name(network->activations[layer - 1]));
+    }
+    double x = 0.2;
+    for (int sign = 1; sign >= -1; sign -= 2) {
+        const Pen pen = weight_pen(sign);
+        const Point from = {x, 0.6 * line}, to = {x + sample, 0.6 * line};
+        char words[64];
+        snprintf(words, sizeof words, "weight %s", show_decimals(sign * units->largest, 2).text);
+        sketch_line(sketch, from, to, &pen);
+        sketch_text(sketch, (Point){to.x + 1.2, to.y}, &left, "%s", words);
+        x = to.x + 1.2 + type_width(words, points) + 4;
+    }
+}
+
+static bool check_room(const Units *units, Error *error) {
+    const double least = 8 * units->network->layers;
+    return units->right - units->left >= least ||
+           error_input(error, units->spec->network,
+                       "the names of inputs and outputs leave %.1f mm for %d layers at a width of %g mm; at least %g "
+                       "mm are needed",
+                       fmax(units->right - units->left, 0), units->network->layers, units->spec->width, least);
+}
+
+/* Each begins the sketch. */
+static bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
+    const double line = line_height(spec->points), foot = 3.3 * line;
+    const int last = network->layers;
+    int most = 0;
+    for (int i = 0; i <= last; i++) most = network->widths[i] > most ? network->widths[i] : most;
+    Units units = {.spec = spec, .network = network, .largest = network_units_find_largest(network)};
+    units.step = fmin(max_step, max_height / most);
+    units.radius = fmin(0.3 * units.step, 1.4);
+    const double beside = units.radius + network_units_gap, words = type_width("99 outputs", spec->points) / 2;
+    units.left = fmax(widest_name(&units, network->inputs, network->widths[0]) + beside, words) + 0.3;
+    units.right =
+        spec->width - fmax(widest_name(&units, network->outputs, network->widths[last]) + beside, words) - 0.3;
+    if (!check_room(&units, error)) return false;
+    units.middle = foot + most * units.step / 2;
+    sketch_begin(sketch, spec->width, foot + most * units.step + network_title_height(spec));
+    bool done = network_units_draw_weights(&units, sketch, error);
+    draw_unit_dots(&units, sketch);
+    draw_footer(&units, sketch);
+    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE];
+    format_widths(widths, network);
+    snprintf(title, sizeof title, "%s: %s, %d parameters", spec->network + file_folder_length(spec->network), widths,
+             network_parameter_count(network));
+    draw_network_title(sketch, spec, title);
+    return done;
+}

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "figures/figure.h"
+#include "figures/internal.h"
+#include "figures/sketch.h"
+#include "pictures/picture.h"
+#include "pixels/png.h"
+#include "runs/trajectory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static double dot(Vec2 a, Vec2 b) { return (double)a.x * (double)b.x + (double)a.y * (double)b.y; }
+
+static void project_box(AxisOverlap *overlap, int i, const Box *box) {
+    double middle = dot(box->position, overlap->axis);
+    double reach = (double)box->half.x * fabs(dot(box->rotation.column1, overlap->axis)) +
+                   (double)box->half.y * fabs(dot(box->rotation.column2, overlap->axis));
+    overlap->low[i] = middle - reach;
+    overlap->high[i] = middle + reach;
+}
+
+void separating_axes(AxisOverlap overlaps[SEPARATING_AXES], const Box *a, const Box *b) {
+    for (int i = 0; i < SEPARATING_AXES; i++) {
+        AxisOverlap *overlap = &overlaps[i];
+        const Mat22 *rotation = i < 2 ? &a->rotation : &b->rotation;
+        overlap->box = i / 2;
+        overlap->letter = i % 2 == 0 ? 'x' : 'y';
+        overlap->axis = i % 2 == 0 ? rotation->column1 : rotation->column2;
+        project_box(overlap, 0, a);
+        project_box(overlap, 1, b);
+        overlap->depth = fmin(overlap->high[0] - overlap->low[1], overlap->high[1] - overlap->low[0]);
+    }
+}
+
+int least_overlap(const AxisOverlap overlaps[SEPARATING_AXES]) {
+    int least = 0;
+    for (int i = 1; i < SEPARATING_AXES; i++)
+        if (overlaps[i].depth < overlaps[least].depth) least = i;
+    return least;
+}
+
+/* The narrow phase of a contact of a run: the axis along which two boxes touch, and their contact points. The poses
+   are those before the step, for which the contact was found. */
+
+static const double min_tilt = 10;      /* degrees; with less, the axes of the two boxes look the same */
+static const double max_ratio = 4.5;    /* of sides; beyond, one box hides the details of the other */
+static const double side_by_side = 130; /* mm; from this width on, both halves fit side by side */
+
+/* How instructive a pair is; SHOWS_NOTHING: not the requested one. */
+enum { SHOWS_NOTHING, SHOWS_SOMETHING, SHOWS_BOMB, SHOWS_ALL };
+
+static Box box_of(const Trajectory *run, int frame, int body) {
+    size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    return box_make(run->position[i], run->size[body], run->angle[i]);
+}
+
+static double tilt(const Trajectory *run, int frame, int a, int b) {
+    const float *angle = run->angle + (size_t)frame * (size_t)run->bodies;
+    double turned = fmod(fabs((double)angle[b] - (double)angle[a]) * 180 / M_PI, 90);
+    return fmin(turned, 90 - turned);
+}
+
+static int rate_pair(const FigureSpec *spec, int step, int a, int b, int points) {
+    const Trajectory *run = spec->runs[0];
+    const int *requested = spec->bodies;
+    if (spec->body_count > 0)
+        return (requested[0] == a && requested[1] == b) || (requested[0] == b && requested[1] == a) ? SHOWS_ALL
+                                                                                                    : SHOWS_NOTHING;
+    if (run->fixed[a] || run->fixed[b]) return SHOWS_NOTHING;
+    if (a != run->bomb && b != run->bomb) return SHOWS_SOMETHING;
+    return points == 2 && tilt(run, step - 1, a, b) >= min_tilt ? SHOWS_ALL : SHOWS_BOMB;
+}
+
+/* Finds the most instructive pair of the first step from `first` on in which the bomb or the requested pair touches;
+   if there is none, the first pair. */
+static int find_pair(const FigureSpec *spec, int first, int end, Collision *collision) {
+    const Trajectory *run = spec->runs[0];
+    int best = SHOWS_NOTHING;
+    for (int step = first; step < end && best < SHOWS_BOMB; step++)
+        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1];) {
+            const TrajectoryContact *contact = &run->contacts[i];
+            int points = 0;
+            for (; i < run->contact_start[step + 1] && run->contacts[i].a == contact->a &&
+                   run->contacts[i].b == contact->b;
+                 i++)
+                points++;
+            int shows = rate_pair(spec, step, contact->a, contact->b, points);
+            if (shows <= best) continue;
+            best = shows;
+            *collision = (Collision){.bodies = {contact->a, contact->b}, .step = step};
+        }
+    return best;
+}
+
+static bool refuse_no_pair(const FigureSpec *spec, Error *error) {
+    const char *when = spec->time_count > 0 ? " in that step" : "";
+    if (spec->body_count > 0)
+        return error_input(error, spec->paths[0], "bodies %d and %d do not touch%s", spec->bodies[0], spec->bodies[1],
+                           when);
+    return error_input(error, spec->paths[0], "no two dynamic bodies touch%s", when);
+}
+
+static bool check_sizes(const FigureSpec *spec, const Collision *collision, Error *error) {
+    double sides[2][2];
+    for (int i = 0; i < 2; i++) {
+        Vec2 size = spec->runs[0]->size[collision->bodies[i]];
+        sides[i][0] = fmin((double)size.x, (double)size.y), sides[i][1] = fmax((double)size.x, (double)size.y);
+    }
+    double least = fmin(sides[0][0], sides[1][0]), most = fmax(sides[0][1], sides[1][1]);
+    return most <= max_ratio * least ||
+           error_input(error, spec->paths[0],
+                       "bodies %d and %d have sides from %g to %g m: the ratio must be at most %g",
+                       collision->bodies[0], collision->bodies[1], least, most, max_ratio);
+}
+
+static bool choose(const FigureSpec *spec, Collision *collision, Error *error) {
+    const Trajectory *run = spec->runs[0];
+    int frames[FIGURE_MOMENTS_MAX], count, first = 1, end = run->frames;
+    if (spec->time_count > 1)
+        return error_input(error, "--at", "this kind of figure shows one moment (got %d)", spec->time_count);
+    for (int i = 0; i < 2; i++)
+        if (spec->bodies[i] >= run->bodies)
+            return error_input(error, "--bodies", "there is no body %d; the run has %d bodies", spec->bodies[i],
+                               run->bodies);
+    if (spec->time_count > 0) {
+        if (!run_frames(spec, 1, 1, frames, &count, error)) return false;
+        first = frames[0] + 1, end = first + 1;
+    }
+    if (find_pair(spec, first, end, collision) == SHOWS_NOTHING) return refuse_no_pair(spec, error);
+    for (int i = 0; i < 2; i++) {
+        int body = collision->bodies[i];
+        collision->boxes[i] = box_of(run, collision->step - 1, body);
+        snprintf(collision->names[i], sizeof collision->names[i], body == run->bomb ? "bomb" : "box %d", body);
+    }
+    collision->bomb = run->bomb;
+    collision->points = spec->points;
+    if (!check_sizes(spec, collision, error)) return false;
+    return collision_find(collision) ||
+           error_input(error, spec->paths[0],
+                       "bodies %d and %d touch in the step after %g s, but not at the poses stored for it",
+                       collision->bodies[0], collision->bodies[1], (collision->step - 1) * (double)run->dt);
+}
+
+/* The picture is rotated: an arrow shows where down is. */
+static void draw_down_arrow(Sketch *sketch, const Collision *collision, const View *view, Vec2 down) {
+    const double reach = 3.5, x = (double)down.x, y = (double)down.y;
+    const Point middle = {view->low.x + 5, view->low.y + 14};
+    sketch_arrow(sketch, (Point){middle.x - reach * x, middle.y - reach * y},
+                 (Point){middle.x + reach * x, middle.y + reach * y}, HEAD_AT_END, INK_SOFT, 2);
+    sketch_text(sketch, (Point){middle.x + 5, middle.y}, &(TextStyle){collision->points, TEXT_LEFT, INK_SOFT, 0, false},
+                "down");
+}
+
+static void draw_halves(Sketch *sketch, const Collision *collision, View overlaps, View contact, Vec2 down) {
+    const double line = line_height(collision->points);
+    const TextStyle words = {collision->points, TEXT_LEFT, INK, 0, false};
+    draw_overlaps(sketch, overlaps, collision);
+    draw_down_arrow(sketch, collision, &overlaps, down);
+    draw_contact_closeup(sketch, contact, collision);
+    sketch_text(sketch, (Point){overlaps.low.x, overlaps.high.y + 0.6 * line}, &words,
+                "Overlaps along the axes of both boxes");
+    sketch_text(sketch, (Point){contact.low.x, contact.high.y + 0.6 * line}, &words,
+                "Contact points: separations along the normal");
+}
+
+static void draw_title(Sketch *sketch, const FigureSpec *spec, const Collision *collision) {
+    const Trajectory *run = spec->runs[0];
+    char title[CAPTION_TEXT_SIZE + 96];
+    snprintf(title, sizeof title, "%s, %.3f s, bodies %d and %d", run_name(spec, run).text,
+             (collision->step - 1) * (double)run->dt, collision->bodies[0], collision->bodies[1]);
+    text_fit(title, sizeof title, spec->points, sketch->width - 0.4);
+    sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line_height(spec->points)},
+                &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s", title);
+}
+
+static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+    Collision collision;
+    if (!choose(spec, &collision, error)) return false;
+    if (spec->facts != NULL)
+        *spec->facts = (FigureFacts){
+            .frame_count = 1, .frames = {collision.step - 1}, .bodies = {collision.bodies[0], collision.bodies[1]}};
+    const Vec2 down = collision_turn_up(&collision);
+    const double width = spec->width, line = line_height(spec->points), edge = 0.2, gap = 3;
+    if (width >= side_by_side) {
+        const double side = 0.44 * width;
+        sketch_begin(sketch, width, side + 2.6 * line + edge);
+        draw_halves(sketch, &collision, (View){.low = {edge, edge}, .high = {width - side - gap, side + edge}},
+                    (View){.low = {width - side - edge, edge}, .high = {width - edge, side + edge}}, down);
+    } else {
+        const double upper = width, lower = 0.8 * width, middle = lower + 2 * line + edge;
+        sketch_begin(sketch, width, middle + upper + 2.6 * line);
+        draw_halves(sketch, &collision, (View){.low = {edge, middle}, .high = {width - edge, middle + upper}},
+                    (View){.low = {edge, edge}, .high = {width - edge, lower}}, down);
+    }
+    draw_title(sketch, spec, &collision);
+    return true;
+}
+
+static void caption_body(FILE *out, const FigureSpec *spec, int body) {
+    fprintf(out, body == spec->runs[0]->bomb ? "the bomb" : "body~%d", body);
+}
+
+static void caption(FILE *out, const FigureSpec *spec) {
+    fputs("Narrow phase of ", out);
+    caption_body(out, spec, spec->facts->bodies[0]);
+    fputs(" and ", out);
+    caption_body(out, spec, spec->facts->bodies[1]);
+    fputs(" in the ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(
+        ": overlaps along the axes of both boxes, and contact points with their separations along the normal. Method: ",
+        out);
+    caption_run(out, spec, spec->runs[0]);
+    fputs(".", out);
+}
+
+const FigureKind figure_pair = {
+    .name = "narrow-phase",
+    .summary = "contact of two boxes of a run: overlaps, normal, points",
+    .example = "narrow-phase engine.npz --bodies 2,11 -o narrow-phase.svg",
+    .min_runs = 1,
+    .max_runs = 1,
+    .takes_times = true,
+    .min_bodies = 2,
+    .max_bodies = 2,
+    .needs_contacts = true,
+    .draw = draw,
+    .caption = caption,
+};

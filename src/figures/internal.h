@@ -1,0 +1,209 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A network is drawn as units, or as matrices if it has too many units. */
+#pragma once
+#include "base/base.h"
+#include "figures/figure.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "nets/kinds.h"
+#include "nets/nets.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
+#include "pixels/png.h"
+#include "pixels/type.h"
+#include "runs/trajectory.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+/* With more units in a layer, the matrices are drawn. */
+enum { UNITS_MAX = 40 };
+
+/* The colour of a weight, `share` of the largest, -1 .. 1: blue above 0, orange below, white at 0. The blue is
+   darker, which distinguishes the signs in grey prints. */
+uint32_t weight_colour(double share);
+
+/* "10-10-2" */
+enum { WIDTHS_TEXT_SIZE = 64 };
+
+/* The kinds of figures, one per file figure_NAME.c. */
+
+extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe, figure_network, figure_pair;
+
+/* Shared by figures of runs: the frames, the part of the world, and its rendered pixels. */
+
+/* The frames of the spec's times, or of `moments` equidistant times over the whole run, in
+   frames[FIGURE_MOMENTS_MAX]. ERROR_INPUT for times outside a run. `after`: number of frames that must follow. */
+bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int *count, Error *error);
+
+/* ERROR_INPUT for runs with different worlds or time steps. */
+bool run_check_worlds(const FigureSpec *spec, Error *error);
+
+/* A part of the world, m. */
+typedef struct WorldWindow {
+    double left, bottom, width, height;
+} WorldWindow;
+
+/* The spec's view. Without one, that of the run that the spec takes it from, or of the first: the view that its scene
+   sets, or framing_in_frames() with a margin. */
+WorldWindow run_window(const FigureSpec *spec, const int *frames, int count);
+
+/* Widens the window on both sides to this aspect ratio (width / height), if it is narrower. */
+void run_window_widen(WorldWindow *window, double shape);
+
+/* Widens the window on both sides, or raises its top, to this aspect ratio. */
+void run_window_fill(WorldWindow *window, double shape);
+
+/* Whether a body is there with its centre outside the window; and the number of such dynamic bodies. */
+bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window);
+int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window);
+
+/* Cells of equal size on the page that show a window of the world, and their renderer. */
+typedef struct RunCells {
+    WorldWindow window;
+    double width, height; /* mm, a whole number of pixels */
+    double scale;         /* mm per metre */
+    Camera camera;
+    int columns, rows; /* pixels */
+    Still *still;
+} RunCells;
+
+/* Chooses the largest size that fits into width x height mm. Free the cells also after a failure. */
+bool run_cells_begin(RunCells *cells, const WorldWindow *window, double width, double height, double dpi, Error *error);
+void run_cells_free(RunCells *cells);
+
+/* Renders part of a frame into a new image of a cell's size. */
+Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, MethodColour colour, StillParts parts,
+                        Error *error);
+
+/* Renders a frame onto the page, lower left corner at `low`. */
+bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, MethodColour colour,
+                    Error *error);
+
+/* The mapping from metres to the page in a cell. */
+View run_cells_view(const RunCells *cells, Point low);
+
+/* Draws a scale bar below the cells: a round length of at most a quarter of a cell, from `left`. */
+void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left, double points);
+
+/* Line height of text, mm. */
+double line_height(double points);
+
+/* The caption of one of the figure's runs, or the name of its method (methods/methods.h). */
+typedef struct RunName {
+    char text[CAPTION_TEXT_SIZE];
+} RunName;
+RunName run_name(const FigureSpec *spec, const Trajectory *run);
+
+/* The runs' colours, FIGURE_RUNS_MAX of them. */
+void run_colours(const FigureSpec *spec, MethodColour *colours);
+
+/* Draws the contacts of a step over a picture of its bodies: points, normals, and impulses as arrows and numbers. */
+
+typedef struct ContactLook {
+    double ring;        /* mm, radius of a point's mark */
+    double arrow_scale; /* mm per N s */
+    double largest;     /* N s, largest impulse of all panels */
+    double points;      /* font size */
+} ContactLook;
+
+/* Font size of the numbers / the figure's font size. */
+#define CONTACT_TYPE 0.85
+
+/* In N s. */
+double impulse_magnitude(const TrajectoryContact *contact);
+
+/* False for NaN or infinity, which a damaged file may contain. */
+bool contact_is_finite(const TrajectoryContact *contact);
+
+/* Draws the contacts inside the view. *numbered of *count have their impulse as a number; for the others there was
+   no room. */
+bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
+                   int *count, int *numbered, Error *error);
+
+/* A sample for the legend: a contact's mark with its label. */
+void draw_contact_sample(Sketch *sketch, Point at, const ContactLook *look);
+
+/* Text for LaTeX. */
+
+/* A text in which every character stands for itself, in any font encoding; bytes beyond ASCII stay as they are (UTF-8). */
+void latex_text(FILE *out, const char *text);
+
+/* The same as \texttt{...}. */
+void latex_code(FILE *out, const char *text);
+
+/* The caption of a figure for LaTeX: \caption{...} with scene, methods, times and version. */
+
+/* What kinds write in their captions. A run's method, what that is, and the sweeps that the scene sets:
+   "\texttt{engine} (sequential impulses, \texttt{k=10})", behind the run's caption if it has one. */
+void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run);
+
+/* All runs of the spec from `first` on. */
+void caption_runs(FILE *out, const FigureSpec *spec, int first);
+
+/* "scene \texttt{stack}" */
+void caption_scene(FILE *out, const FigureSpec *spec);
+
+/* " at 0.5, 0.6 and 0.8~s"; many moments by their number, the first and the last. */
+void caption_times(FILE *out, const FigureSpec *spec);
+
+/* A polygon rasteriser with antialiasing by scan-line coverage. Pixels, y down.
+   Why our own: sketch_formats.h. */
+
+typedef struct RasterEdge {
+    double x0, y0, x1, y1; /* y0 < y1 */
+    int winding;           /* 1 or -1 */
+} RasterEdge;
+
+/* Initialise with zeros. */
+typedef struct Raster {
+    RasterEdge *edges;
+    size_t count, capacity;
+    bool failed; /* out of memory */
+} Raster;
+
+/* Blends one colour, alpha 0 .. 255, over a pixel. */
+void pixel_over(uint8_t *pixel, const uint8_t colour[3], int alpha);
+
+/* Shared by the writers of the three formats. Each returns a malloc'ed block, or NULL with error set.
+
+   Why our own writers: a figure has the same bytes on Debian 12 and 13. Tests compare bytes with stored hashes:
+   test_sketch_files.c for the writers, test_figure.sh and test_paper.sh for figures. cairo's bytes depend on its
+   version: with a fixed creation date, cairo 1.16.0 (Debian 12) and 1.18.4 (Debian 13) write different PDF and
+   SVG files, and different pixels of text. zlib, which compresses our PNG files and PDF streams, gives the same
+   bytes in versions 1.2.13 and 1.3.1. */
+
+char *sketch_as_png(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
+char *sketch_as_svg(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
+char *sketch_as_pdf(const Sketch *sketch, const SketchOutput *output, size_t *size, Error *error);
+
+/* The font that the texts need. */
+FontFile sketch_font(const Sketch *sketch);
+
+/* The marks' indices from bottom to top, [mark_count]; NULL if out of memory. */
+size_t *sketch_order(const Sketch *sketch);
+
+enum { DASHES_MAX = 4 };
+
+/* Returns the number of a pen's dashes and gaps, and their lengths in mm; 0: solid. */
+int pen_dashes(const Pen *pen, double dashes[DASHES_MAX]);
+
+/* The start of a text on its baseline, and the unit vector along it. */
+typedef struct TextPlace {
+    Point from;
+    double cosine, sine, em; /* mm per em */
+} TextPlace;
+TextPlace text_place(const Sketch *sketch, const SketchMark *mark);
+
+/* Halo thickness on each side / em. */
+#define HALO_SHARE 0.14
+
+static inline bool has_alpha(const Image *image) {
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+        if (image->pixels[4 * i + 3] != 255) return true;
+    return false;
+}
+
+/* The picture as PNG, with alpha if any pixel is not opaque; dpi 0: without resolution. drawn: of lines and text alone, which
+   take a tenth to a quarter less room without filters. */
+char *picture_as_png(const Image *image, double dpi, bool drawn, size_t *size, Error *error);

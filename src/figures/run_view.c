@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "figures/figure.h"
+#include "figures/internal.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
+#include "pixels/png.h"
+#include "pixels/type.h"
+#include "runs/trajectory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NORMAL_RINGS 3.1 /* length of a normal on either side / radius of the point's mark */
+
+static const double min_arrow = 1;     /* mm */
+static const double long_arrow = 3;    /* mm; the number is at its tip, else at its point */
+static const double crowd = 5;         /* mm; numbers of points nearer than this to each other stand apart from them */
+static const double large_share = 0.3; /* impulses above this share of the largest always get a number */
+
+enum { MAX_NUMBERS = 600 };
+
+/* A contact in page coordinates. */
+typedef struct ShownContact {
+    Point at;
+    Vec2 normal, impulse; /* N s, on the body with the higher number */
+    double size;          /* magnitude of the impulse */
+} ShownContact;
+
+static Vec2 impulse_of(const TrajectoryContact *contact) {
+    Vec2 tangent = vec2(contact->normal.y, -contact->normal.x);
+    return vec2_add(vec2_scale(contact->normal_impulse, contact->normal),
+                    vec2_scale(contact->tangent_impulse, tangent));
+}
+
+double impulse_magnitude(const TrajectoryContact *contact) { return vec2_distance(impulse_of(contact), vec2(0, 0)); }
+
+bool contact_is_finite(const TrajectoryContact *contact) {
+    Vec2 impulse = impulse_of(contact);
+    return isfinite(impulse.x) && isfinite(impulse.y) && isfinite(contact->point.x) && isfinite(contact->point.y);
+}
+
+static int by_size(const void *a, const void *b) {
+    const ShownContact *p = a, *q = b;
+    if (p->size != q->size) return p->size < q->size ? 1 : -1;
+    /* a total order, so that every qsort gives the same result */
+    if (p->at.y != q->at.y) return p->at.y < q->at.y ? 1 : -1;
+    return (p->at.x > q->at.x) - (p->at.x < q->at.x);
+}
+
+/* The contacts inside the cell, largest impulse first. NULL if out of memory. */
+static ShownContact *gather(const Trajectory *run, int step, const View *view, int *count) {
+    int64_t first = run->contact_start[step], end = run->contact_start[step + 1];
+    ShownContact *shown = malloc((size_t)(end - first + 1) * sizeof *shown);
+    *count = 0;
+    for (int64_t i = first; shown != NULL && i < end; i++) {
+        const TrajectoryContact *contact = &run->contacts[i];
+        Point at = view_place(view, contact->point);
+        if (!contact_is_finite(contact) || at.x < view->low.x || at.x > view->high.x || at.y < view->low.y ||
+            at.y > view->high.y)
+            continue;
+        Vec2 impulse = impulse_of(contact);
+        shown[(*count)++] = (ShownContact){at, contact->normal, impulse, impulse_magnitude(contact)};
+    }
+    if (shown != NULL) qsort(shown, (size_t)*count, sizeof *shown, by_size);
+    return shown;
+}
+
+static Point arrow_tip(const ContactLook *look, const ShownContact *contact) {
+    return (Point){contact->at.x + look->arrow_scale * (double)contact->impulse.x,
+                   contact->at.y + look->arrow_scale * (double)contact->impulse.y};
+}
+
+/* The point and its normal, `normal` long on either side. */
+static void draw_contact_point(Sketch *sketch, Point at, Point normal, double ring) {
+    const Pen circle = {0xFFFFFF, 1, ACCENT, 1.4, NULL}, thin = pen_line(INK_SOFT, 1.3, NULL);
+    sketch_line(sketch, (Point){at.x - normal.x, at.y - normal.y}, (Point){at.x + normal.x, at.y + normal.y}, &thin);
+    sketch_dot(sketch, at, ring, &circle);
+}
+
+void draw_contact_sample(Sketch *sketch, Point at, const ContactLook *look) {
+    const double reach = NORMAL_RINGS * look->ring;
+    draw_contact_point(sketch, at, (Point){reach, 0}, look->ring);
+    sketch_text(sketch, (Point){at.x + reach + 1, at.y},
+                &(TextStyle){CONTACT_TYPE * look->points, TEXT_LEFT, INK, 0, false}, "contact, normal");
+}
+
+static void draw_contact(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
+    const Point at = contact->at, tip = arrow_tip(look, contact);
+    const double ring = look->ring, x = NORMAL_RINGS * ring * (double)contact->normal.x,
+                 y = NORMAL_RINGS * ring * (double)contact->normal.y;
+    draw_contact_point(sketch, at, (Point){x, y}, ring);
+    label_add_box(field, (PageBox){at.x - ring, at.y - ring, at.x + ring, at.y + ring});
+    label_add_segment(field, (Segment){at.x - x, at.y - y, at.x + x, at.y + y});
+    if (contact->size * look->arrow_scale < min_arrow) return;
+    sketch_arrow(sketch, at, tip, HEAD_AT_END, ACCENT, 2.4);
+    label_add_segment(field, (Segment){at.x, at.y, tip.x, tip.y});
+}
+
+/* Three significant digits, or "0". */
+static void format_number(char text[32], double value) {
+    if (value < 0.005) {
+        snprintf(text, 32, "0");
+        return;
+    }
+    int decimals = value >= 99.95 ? 0 : value >= 9.995 ? 1 : 2;
+    snprintf(text, 32, "%.*f", decimals, value);
+}
+
+/* Finds a place beside the arrow's tip, or beside the point, with a line to it if it is not near. */
+static bool place_number(const ContactLook *look, const ShownContact *contact, LabelField *field, LabelWish wish,
+                         PageBox *box, Segment *leader, bool *led) {
+    const Point tip = arrow_tip(look, contact);
+    const bool must = contact->size >= large_share * look->largest;
+    const bool arrow = contact->size * look->arrow_scale >= long_arrow;
+    *led = false;
+    if (arrow && label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, false, box)) return true;
+    if (label_place_led(field, &wish, box, leader, led)) return true;
+    wish.nearest = 0;
+    if (label_place_led(field, &wish, box, leader, led)) return true;
+    return must && label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, true, box);
+}
+
+/* Numbers stand outside the pile of contacts, whose middle is at `middle`. */
+static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field,
+                        double middle, bool crowded) {
+    const double points = CONTACT_TYPE * look->points, em = points * MM_PER_POINT, farthest = 12;
+    char text[32];
+    PageBox box;
+    Segment leader;
+    bool led;
+    format_number(text, contact->size);
+    const LabelWish wish = {contact->at.x,
+                            contact->at.y,
+                            look->ring,
+                            crowded ? crowd : 0,
+                            farthest,
+                            type_width(text, points) + 0.25 * em,
+                            em,
+                            contact->at.x < middle};
+    if (!place_number(look, contact, field, wish, &box, &leader, &led)) return false;
+    const Pen thin = pen_line(ACCENT, 0.8, NULL);
+    if (led) sketch_line(sketch, (Point){leader.x0, leader.y0}, (Point){leader.x1, leader.y1}, &thin);
+    sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
+                &(TextStyle){points, TEXT_CENTER, ACCENT, 0, true}, "%s", text);
+    return true;
+}
+
+/* Another contact is so near that a number between them could belong to either. */
+static bool is_crowded(const ShownContact *contacts, int count, int contact) {
+    for (int i = 0; i < count; i++)
+        if (i != contact &&
+            hypot(contacts[i].at.x - contacts[contact].at.x, contacts[i].at.y - contacts[contact].at.y) < crowd)
+            return true;
+    return false;
+}
+
+static double middle_of(const ShownContact *contacts, int count) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += contacts[i].at.x;
+    return sum / fmax(count, 1);
+}
+
+bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
+                   int *count, int *numbered, Error *error) {
+    ShownContact *contacts = gather(run, step, view, count);
+    LabelField *field = calloc(1, sizeof *field);
+    const bool done = (contacts != NULL && field != NULL) || error_memory(error, "figure");
+    *numbered = 0;
+    if (done) {
+        field->frame = (PageBox){view->low.x + 0.3, view->low.y + 0.3, view->high.x - 0.3, view->high.y - 0.3};
+        for (int i = *count - 1; i >= 0; i--) draw_contact(look, sketch, &contacts[i], field);
+        const double middle = middle_of(contacts, *count);
+        for (int i = 0; i < *count && i < MAX_NUMBERS; i++)
+            *numbered += draw_number(look, sketch, &contacts[i], field, middle, is_crowded(contacts, *count, i));
+    }
+    free(contacts);
+    free(field);
+    return done;
+}
+
+static double last_time(const Trajectory *run, int after) { return (run->frames - 1 - after) * (double)run->dt; }
+
+static bool check_time(const FigureSpec *spec, double time, int after, Error *error) {
+    for (int i = 0; i < spec->run_count; i++) {
+        double last = last_time(spec->runs[i], after);
+        if (time < 0 || time > last + (double)spec->runs[i]->dt / 2)
+            return error_input(error, spec->paths[i], "has no moment at %g s%s; its moments are 0 to %g s", time,
+                               after > 0 ? " with a step after it" : "", last);
+    }
+    return true;
+}
+
+bool run_frames(const FigureSpec *spec, int moments, int after, int *frames, int *count, Error *error) {
+    const double dt = (double)spec->runs[0]->dt;
+    if (!check_time(spec, 0, after, error)) return false;
+    double last = HUGE_VAL;
+    for (int i = 0; i < spec->run_count; i++) last = fmin(last, last_time(spec->runs[i], after));
+    *count = spec->time_count > 0 ? spec->time_count : spec->moments > 0 ? spec->moments : moments;
+    for (int i = 0; i < *count; i++) {
+        double time = spec->time_count > 0 ? spec->times[i] : *count > 1 ? last * i / (*count - 1) : last;
+        if (!check_time(spec, time, after, error)) return false;
+        frames[i] = (int)lrint(time / dt);
+    }
+    if (spec->facts != NULL) {
+        spec->facts->frame_count = *count;
+        memcpy(spec->facts->frames, frames, (size_t)*count * sizeof *frames);
+    }
+    return true;
+}
+
+bool run_check_worlds(const FigureSpec *spec, Error *error) {
+    char what[256];
+    for (int i = 1; i < spec->run_count; i++)
+        if (trajectory_different_worlds(spec->runs[0], spec->runs[i], what, sizeof what))
+            return error_input(error, spec->paths[i], "cannot be shown beside %s: %s", spec->paths[0], what);
+    return true;
+}
+
+static WorldWindow window_of_view(const CameraView *view) {
+    return (WorldWindow){view->x - view->width / 2, view->y - view->height / 2, view->width, view->height};
+}
+
+WorldWindow run_window(const FigureSpec *spec, const int *frames, int count) {
+    const double margin_share = 0.04, least_margin = 0.4; /* m */
+    const Trajectory *run = spec->view_from != NULL ? spec->view_from : spec->runs[0];
+    CameraView set;
+    if (spec->view.width > 0) return window_of_view(&spec->view);
+    if (camera_view_of(run, &set)) return window_of_view(&set);
+    const Extent all = framing_in_frames(run, frames, count);
+    if (extent_is_empty(&all)) return (WorldWindow){-1, -1, 2, 2};
+    double margin = fmax(margin_share * extent_side(&all), least_margin);
+    return (WorldWindow){all.left - margin, all.bottom - margin, all.right - all.left + 2 * margin,
+                         all.top - all.bottom + 2 * margin};
+}
+
+void run_window_widen(WorldWindow *window, double shape) {
+    double more = fmax(shape * window->height - window->width, 0);
+    window->left -= more / 2;
+    window->width += more;
+}
+
+void run_window_fill(WorldWindow *window, double shape) {
+    run_window_widen(window, shape);
+    window->height = fmax(window->height, window->width / shape);
+}
+
+bool run_is_outside(const Trajectory *run, int frame, int body, const WorldWindow *window) {
+    if (!trajectory_has(run, frame, body)) return false;
+    const Vec2 at = run->position[(size_t)frame * (size_t)run->bodies + (size_t)body];
+    const double x = (double)at.x - window->left, y = (double)at.y - window->bottom;
+    return !(x >= 0 && x <= window->width && y >= 0 && y <= window->height);
+}
+
+int run_count_outside(const Trajectory *run, int frame, const WorldWindow *window) {
+    int count = 0;
+    for (int body = 0; body < run->bodies; body++)
+        count += !run->fixed[body] && run_is_outside(run, frame, body, window);
+    return count;
+}
+
+bool run_cells_begin(RunCells *cells, const WorldWindow *window, double width, double height, double dpi,
+                     Error *error) {
+    const double dots = dpi / 25.4, scale = fmin(width / window->width, height / window->height);
+    *cells = (RunCells){.window = *window};
+    cells->columns = (int)fmax(floor(dots * scale * window->width), 1);
+    cells->rows = (int)fmax(floor(dots * scale * window->height), 1);
+    cells->width = cells->columns / dots;
+    cells->height = cells->rows / dots;
+    cells->scale = scale;
+    cells->camera = (Camera){dots * scale, -dots * scale * window->left, cells->rows + dots * scale * window->bottom};
+    if (!sketch_check_pixels(cells->width, cells->height, dpi, error)) return false;
+    cells->still = still_create(cells->columns, cells->rows, error);
+    return cells->still != NULL;
+}
+
+void run_cells_free(RunCells *cells) {
+    still_destroy(cells->still);
+    cells->still = NULL;
+}
+
+Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, MethodColour colour, StillParts parts,
+                        Error *error) {
+    const StillShot shot = {run, frame, colour, parts, cells->camera};
+    Image *image = image_create(cells->columns, cells->rows, error);
+    if (image == NULL || still_draw(cells->still, &shot, image, error)) return image;
+    image_destroy(image);
+    return NULL;
+}
+
+bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, MethodColour colour,
+                    Error *error) {
+    Image *image = run_cells_render(cells, run, frame, colour, STILL_ALL, error);
+    if (image == NULL) return false;
+    sketch_image(sketch, image, low, cells->width);
+    image_destroy(image);
+    return true;
+}
+
+View run_cells_view(const RunCells *cells, Point low) {
+    const WorldWindow *window = &cells->window;
+    /* The camera's origin is the cell's lower left corner. */
+    return (View){low,
+                  {low.x + cells->width, low.y + cells->height},
+                  {window->left + cells->width / 2 / cells->scale, window->bottom + cells->height / 2 / cells->scale},
+                  cells->scale};
+}
+
+void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left, double points) {
+    sketch_scale_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
+}
+
+double line_height(double points) { return 1.35 * points * MM_PER_POINT; }
+
+RunName run_name(const FigureSpec *spec, const Trajectory *run) {
+    RunName name;
+    for (int i = 0; i < spec->run_count; i++) {
+        if (spec->runs[i] != run || spec->captions[i] == NULL || spec->captions[i][0] == '\0') continue;
+        snprintf(name.text, sizeof name.text, "%s", spec->captions[i]);
+        return name;
+    }
+    method_name(name.text, sizeof name.text, run->method);
+    return name;
+}
+
+void run_colours(const FigureSpec *spec, MethodColour *colours) {
+    const MethodDescription *methods[FIGURE_RUNS_MAX];
+    for (int i = 0; i < spec->run_count; i++) methods[i] = method_describe(spec->runs[i]->method);
+    method_colours_assign(methods, spec->run_count, colours);
+}

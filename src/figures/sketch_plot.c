@@ -1,0 +1,451 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "pixels/png.h"
+#include "pixels/type.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Of a logarithmic axis, at both ends, so that marks and labels do not touch the frame. */
+static const double padding = 0.07;
+
+/* Distance of 0 left of the least value: decades, or a share of the axis if that is more. */
+static const double to_zero = 0.5, share_to_zero = 0.18;
+
+/* Outside this range numbers are powers of ten. */
+static const double plain_least = 1e-3, plain_most = 1e4;
+
+/* Decades; on a longer axis, ticks at 2 and 5 are too dense. mm: a shorter decade has no minor ticks. */
+static const double long_axis = 2.3, least_decade = 4;
+
+PlotRange plot_range(void) { return (PlotRange){INFINITY, 0}; }
+
+void plot_range_include(PlotRange *range, double value) {
+    if (!(value > 0) || isinf(value)) return;
+    range->least = fmin(range->least, value);
+    range->most = fmax(range->most, value);
+}
+
+PlotAxis plot_linear_axis(double low, double high, const char *label) {
+    return (PlotAxis){.scale = PLOT_LINEAR, .low = low, .high = high, .to = 1, .least = -INFINITY, .label = label};
+}
+
+PlotAxis plot_log_axis(double least, double most, const char *label) {
+    double low = log10(least), high = log10(most), room = fmax((high - low) * padding, (1 - (high - low)) / 2);
+    PlotAxis axis = {
+        .scale = PLOT_LOG, .low = pow(10, low - room), .high = pow(10, high + room), .to = 1, .label = label};
+    axis.least = axis.low;
+    return axis;
+}
+
+PlotAxis plot_range_axis(PlotRange range, double lowest, double highest, bool with_zero, const char *label) {
+    double most = fmin(fmax(range.most, lowest), highest), least = fmin(fmax(range.least, lowest), most);
+    double decades = fmax(to_zero, share_to_zero * log10(most / least)), zero = least / pow(10, decades);
+    PlotAxis axis = plot_log_axis(with_zero ? zero : least, most, label);
+    axis.powers = axis.low < plain_least || axis.high > plain_most;
+    if (with_zero) axis.zero = zero, axis.least = least * 0.999;
+    return axis;
+}
+
+double plot_axis_place(const PlotAxis *axis, double value) {
+    if (axis->low == axis->high) return (axis->from + axis->to) / 2;
+    const double share = axis->scale == PLOT_LINEAR ? (value - axis->low) / (axis->high - axis->low)
+                                                    : log(value / axis->low) / log(axis->high / axis->low);
+    return axis->from + (axis->to - axis->from) * share;
+}
+
+double plot_axis_clamp(const PlotAxis *axis, double value, bool *beyond) {
+    if (isnan(value)) return value;
+    if (isinf(value)) return value < 0 ? axis->low : axis->high;
+    if (axis->scale == PLOT_LINEAR) return value;
+    if (axis->zero > 0 && value <= 0) return axis->zero;
+    const double on = fmin(fmax(value, axis->least), axis->high);
+    if (on != value) *beyond = true;
+    return on;
+}
+
+void plot_tick_add(PlotTicks *ticks, double value, bool minor, const char *text) {
+    if (ticks->count == PLOT_TICKS) return;
+    PlotTick *tick = &ticks->items[ticks->count++];
+    *tick = (PlotTick){.value = value, .minor = minor};
+    snprintf(tick->text, sizeof tick->text, "%s", text);
+}
+
+double plot_tick_width(const PlotTick *tick, double points) {
+    return tick->digit > 0 ? sketch_power_width(points, tick->digit, tick->power) : type_width(tick->text, points);
+}
+
+/* mm: between the middles of two numbers one above the other, and between two side by side. */
+static bool is_crowded(const PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
+    const double em = points * MM_PER_POINT, between = across ? 0.4 * em : 1.35 * em;
+    const PlotTick *before = NULL;
+    for (int i = 0; i < ticks->count; i++) {
+        const PlotTick *tick = &ticks->items[i];
+        if (tick->text[0] == '\0' && tick->digit == 0) continue;
+        const double sizes =
+            across && before != NULL ? (plot_tick_width(before, points) + plot_tick_width(tick, points)) / 2 : 0;
+        if (before != NULL &&
+            fabs(plot_axis_place(axis, tick->value) - plot_axis_place(axis, before->value)) < sizes + between)
+            return true;
+        before = tick;
+    }
+    return false;
+}
+
+static bool is_on(const PlotAxis *axis, double value) {
+    const double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
+    const double slack = axis->scale == PLOT_LINEAR ? 1e-9 * (high - low) : 0;
+    return value >= fmax(low, axis->least) - slack && value <= high + slack;
+}
+
+/* Multiples of the step, so that 0 is exactly 0. */
+static void add_steps(PlotTicks *ticks, const PlotAxis *axis, double step) {
+    const double low = fmin(axis->low, axis->high);
+    const int decimals = step >= 0.99 ? 0 : (int)ceil(-log10(step) - 1e-9);
+    const bool plain = fmax(fabs(axis->low), fabs(axis->high)) < 1e6 && decimals < 7;
+    for (int i = 0; i < 24; i++) {
+        const double value = (ceil(low / step - 1e-9) + i) * step;
+        char text[48];
+        if (!is_on(axis, value)) break;
+        if (plain)
+            snprintf(text, sizeof text, "%s", show_decimals(value, decimals).text);
+        else
+            snprintf(text, sizeof text, "%.6g", value);
+        plot_tick_add(ticks, value, false, text);
+    }
+}
+
+static void choose_steps(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
+    static const double digits[] = {1, 2, 5};
+    const double most_steps = 8, length = fabs(axis->high - axis->low);
+    char text[48];
+    if (length == 0) {
+        snprintf(text, sizeof text, "%.4g", axis->low);
+        plot_tick_add(ticks, axis->low, false, text);
+        return;
+    }
+    for (int decade = (int)floor(log10(length / most_steps)), i = 0; i < 12; i++) {
+        const double step = digits[i % 3] * pow(10, decade + i / 3);
+        if (step < length / most_steps) continue;
+        ticks->count = 0;
+        add_steps(ticks, axis, step);
+        if (!is_crowded(ticks, axis, points, across)) return;
+    }
+}
+
+/* Numbers at these digits in every `step`-th decade. */
+static void add_decades(PlotTicks *ticks, const PlotAxis *axis, const char *digits, int step) {
+    const double decade_length = fabs(axis->to - axis->from) / fabs(log10(axis->high / axis->low));
+    const int first = (int)floor(log10(axis->low)), last = (int)ceil(log10(axis->high));
+    for (int decade = first; decade <= last; decade++)
+        for (int digit = 1; digit <= 9; digit++) {
+            const double value = digit * pow(10, decade);
+            const bool numbered = decade % step == 0 && strchr(digits, '0' + digit) != NULL;
+            char text[48] = "";
+            if (!is_on(axis, value) || (!numbered && digit > 1 && decade_length < least_decade)) continue;
+            if (numbered && !axis->powers) snprintf(text, sizeof text, "%g", value);
+            plot_tick_add(ticks, value, !numbered, text);
+            if (numbered && axis->powers && ticks->count > 0) {
+                ticks->items[ticks->count - 1].digit = digit;
+                ticks->items[ticks->count - 1].power = decade;
+            }
+        }
+}
+
+static void choose_decades(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
+    const bool short_axis = log10(axis->high / axis->low) < long_axis;
+    for (int step = short_axis ? 0 : 1; step <= 12; step++) {
+        ticks->count = 0;
+        if (axis->zero > 0) plot_tick_add(ticks, axis->zero, false, "0");
+        add_decades(ticks, axis, step == 0 ? "125" : "1", step == 0 ? 1 : step);
+        if (!is_crowded(ticks, axis, points, across)) return;
+    }
+}
+
+static void choose_doublings(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
+    for (int step = 1; step <= 12; step++) {
+        ticks->count = 0;
+        for (int power = 0; power <= 30; power += step) {
+            char text[48];
+            snprintf(text, sizeof text, "%d", 1 << power);
+            if (is_on(axis, 1 << power)) plot_tick_add(ticks, 1 << power, false, text);
+        }
+        if (!is_crowded(ticks, axis, points, across)) return;
+    }
+}
+
+void plot_ticks_choose(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
+    ticks->count = 0;
+    switch (axis->scale) {
+    case PLOT_LINEAR: choose_steps(ticks, axis, points, across); break;
+    case PLOT_LOG: choose_decades(ticks, axis, points, across); break;
+    case PLOT_DOUBLING: choose_doublings(ticks, axis, points, across); break;
+    }
+}
+
+/* The hues of pictures/theme.c; `ink` is darker, for text. */
+static const struct {
+    uint32_t colour, ink;
+} colours[METHOD_COLOURS] = {
+    [METHOD_BLACK] = {0x000000, 0x000000},  [METHOD_VERMILION] = {0xD55E00, 0xA84A00},
+    [METHOD_BLUE] = {0x0072B2, 0x005A8C},   [METHOD_GREEN] = {0x009E73, 0x00704F},
+    [METHOD_PURPLE] = {0xCC79A7, 0x95457A}, [METHOD_SKY] = {0x56B4E9, 0x20719F},
+    [METHOD_ORANGE] = {0xE69F00, 0x8F6200}, [METHOD_WINE] = {0x882255, 0x882255},
+};
+
+/* For series that are no methods. */
+static const MethodColour colour_order[] = {METHOD_BLACK,  METHOD_VERMILION, METHOD_BLUE,  METHOD_GREEN,
+                                            METHOD_PURPLE, METHOD_SKY,       METHOD_ORANGE};
+
+/* For series that are no methods: filled, then open; then crosses. */
+enum { SHAPES = 6, STYLES = 2 * SHAPES + 3 };
+static const int shapes[SHAPES] = {
+    METHOD_CIRCLE, METHOD_SQUARE, METHOD_TRIANGLE, METHOD_DIAMOND, METHOD_INVERTED_TRIANGLE, METHOD_PENTAGON};
+
+static const char *const dashes[] = {NULL, "(5,2.5)", "(1.6,1.6)", "(6,1.8,1.4,1.8)", "(9,2.5)", "(3.2,1.8,3.2,4)"};
+
+enum { COLOUR_ORDER = sizeof colour_order / sizeof *colour_order, DASHES = sizeof dashes / sizeof *dashes };
+
+PlotStyle plot_style(int i) {
+    const int place = i % STYLES;
+    const MethodColour colour = colour_order[i % COLOUR_ORDER];
+    return (PlotStyle){place < 2 * SHAPES ? shapes[place % SHAPES] : PLOT_PLUS + place - 2 * SHAPES,
+                       place >= SHAPES && place < 2 * SHAPES, colours[colour].colour, colours[colour].ink,
+                       dashes[i % (DASHES - 1)]};
+}
+
+uint32_t plot_method_colour(MethodColour colour) { return colours[colour].colour; }
+
+/* The looks of one colour in the order in which they are tried: the symbol, filled, then open; then the other symbols. */
+enum { VARIANTS = 2 * METHOD_SYMBOLS };
+
+static PlotStyle variant_of(MethodLook look, int variant) {
+    const int symbol = ((int)look.symbol + variant / 2) % METHOD_SYMBOLS;
+    return (PlotStyle){symbol, variant % 2 == 1, colours[look.colour].colour, colours[look.colour].ink, dashes[symbol]};
+}
+
+static bool is_taken(const PlotStyle *styles, int count, const PlotStyle *style) {
+    for (int i = 0; i < count; i++)
+        if (styles[i].symbol == style->symbol && styles[i].open == style->open && styles[i].colour == style->colour)
+            return true;
+    return false;
+}
+
+void plot_method_styles(const MethodDescription *const *methods, int count, PlotStyle *styles) {
+    for (int i = 0, unknown = 0; i < count; i++) {
+        MethodLook look = methods[i] != NULL ? methods[i]->look : (MethodLook){METHOD_NO_COLOUR, METHOD_CIRCLE};
+        const bool stated = look.colour != METHOD_NO_COLOUR;
+        do {
+            if (!stated)
+                look = (MethodLook){(MethodColour)(1 + unknown % (METHOD_COLOURS - 1)),
+                                    (MethodSymbol)(METHOD_PENTAGON - unknown % METHOD_SYMBOLS)};
+            unknown += !stated;
+            for (int variant = 0; variant < VARIANTS; variant++) {
+                styles[i] = variant_of(look, variant);
+                if (!is_taken(styles, i, &styles[i])) break;
+            }
+        } while (!stated && is_taken(styles, i, &styles[i]));
+    }
+}
+
+/* Corners, the angle of the first one and the radius, such that all look equally large. */
+static const struct {
+    int corners;
+    double first, radius;
+} polygons[METHOD_SYMBOLS] = {
+    [METHOD_CIRCLE] = {24, 0, 1},     [METHOD_SQUARE] = {4, 45, 1.25},   [METHOD_TRIANGLE] = {3, 90, 1.35},
+    [METHOD_DIAMOND] = {4, 90, 1.27}, [METHOD_PENTAGON] = {5, 90, 1.15}, [METHOD_INVERTED_TRIANGLE] = {3, -90, 1.35}};
+
+static void draw_polygon(Sketch *sketch, Point at, int symbol, double radius, const Pen *pen) {
+    Point corners[24];
+    const int count = polygons[symbol].corners;
+    for (int i = 0; i < count; i++) {
+        const double angle = polygons[symbol].first * M_PI / 180 + 2 * M_PI * i / count;
+        const double reach = radius * polygons[symbol].radius;
+        corners[i] = (Point){at.x + reach * cos(angle), at.y + reach * sin(angle)};
+    }
+    sketch_shape(sketch, corners, count, pen);
+}
+
+static void draw_strokes(Sketch *sketch, Point at, const PlotStyle *style, double radius, double line) {
+    const Pen pen = pen_line(style->colour, line, NULL);
+    for (int i = 0; i < 4; i++) {
+        if ((style->symbol == PLOT_PLUS && i % 2 == 1) || (style->symbol == PLOT_CROSS && i % 2 == 0)) continue;
+        const double x = radius * cos(M_PI / 4 * i), y = radius * sin(M_PI / 4 * i);
+        sketch_line(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y}, &pen);
+    }
+}
+
+static void draw_bar(Sketch *sketch, Point at, const PlotStyle *style, double radius) {
+    const double across = 0.4 * radius; /* an upright bar is seen behind a dot */
+    const double x = style->symbol == PLOT_LEVEL ? 1.4 * radius : across;
+    const double y = style->symbol == PLOT_LEVEL ? across : 2 * radius;
+    sketch_rectangle(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y},
+                     &(Pen){style->colour, 1, NO_COLOUR, 0, NULL});
+}
+
+void plot_mark(Sketch *sketch, Point at, const PlotStyle *style, double radius, double line) {
+    if (style->symbol >= PLOT_UPRIGHT)
+        draw_bar(sketch, at, style, radius);
+    else if (style->symbol >= METHOD_SYMBOLS)
+        draw_strokes(sketch, at, style, radius, line);
+    else if (style->open) {
+        const Pen pen = {NO_COLOUR, 1, style->colour, line, NULL};
+        draw_polygon(sketch, at, style->symbol, radius - line * LINE_UNIT / 2, &pen);
+    } else
+        draw_polygon(sketch, at, style->symbol, radius, &(Pen){style->colour, 1, NO_COLOUR, 0, NULL});
+}
+
+void plot_marks(Sketch *sketch, const Point *points, int count, const PlotStyle *style) {
+    const double halo = 0.22; /* mm */
+    for (int i = 0; i < count && style->symbol < METHOD_SYMBOLS; i++)
+        draw_polygon(sketch, points[i], style->symbol, MARK_RADIUS + halo, &(Pen){0xFFFFFF, 1, NO_COLOUR, 0, NULL});
+    for (int i = 0; i < count; i++) plot_mark(sketch, points[i], style, MARK_RADIUS, 1.6);
+}
+
+void label_add_box(LabelField *field, PageBox box) {
+    if (field->box_count < LABEL_MAX_BOXES) field->boxes[field->box_count++] = box;
+}
+
+void label_add_segment(LabelField *field, Segment segment) {
+    if (field->segment_count < LABEL_MAX_SEGMENTS) field->segments[field->segment_count++] = segment;
+}
+
+static bool boxes_touch(const PageBox *a, const PageBox *b) {
+    return a->left < b->right && b->left < a->right && a->bottom < b->top && b->bottom < a->top;
+}
+
+/* Clips [*from, *to], the range of t for which p + t d is in [low, high], along one axis. */
+static void clip(double p, double d, double low, double high, double *from, double *to) {
+    if (d == 0) {
+        if (p < low || p > high) *to = -1;
+        return;
+    }
+    double a = (low - p) / d, b = (high - p) / d;
+    *from = fmax(*from, fmin(a, b));
+    *to = fmin(*to, fmax(a, b));
+}
+
+/* Liang and Barsky 1984. */
+static bool crosses(const Segment *s, const PageBox *box) {
+    double from = 0, to = 1;
+    clip(s->x0, s->x1 - s->x0, box->left, box->right, &from, &to);
+    clip(s->y0, s->y1 - s->y0, box->bottom, box->top, &from, &to);
+    return from < to;
+}
+
+static bool is_free(const LabelField *field, const PageBox *box) {
+    const PageBox *frame = &field->frame;
+    if (box->left < frame->left || box->right > frame->right || box->bottom < frame->bottom || box->top > frame->top)
+        return false;
+    for (int i = 0; i < field->box_count; i++)
+        if (boxes_touch(box, &field->boxes[i])) return false;
+    return true;
+}
+
+/* mm, for the width of lines. */
+static const double clearance = 0.35;
+
+static int crossed(const LabelField *field, const PageBox *box) {
+    int count = 0;
+    PageBox wide = {box->left - clearance, box->bottom - clearance, box->right + clearance, box->top + clearance};
+    for (int i = 0; i < field->segment_count; i++) count += crosses(&field->segments[i], &wide);
+    return count;
+}
+
+/* Right, left, above, below, then the corners. -1, 0, 1: the side of the mark. */
+static const struct { int x, y; } sides[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+
+static PageBox box_beside(double x, double y, int side, double distance, double width, double height) {
+    /* Diagonally, both offsets contribute. */
+    double reach = sides[side].x != 0 && sides[side].y != 0 ? 0.6 * distance : distance;
+    double centre_x = x + sides[side].x * (reach + width / 2), centre_y = y + sides[side].y * (reach + height / 2);
+    return (PageBox){centre_x - width / 2, centre_y - height / 2, centre_x + width / 2, centre_y + height / 2};
+}
+
+bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
+                 PageBox *place) {
+    /* A label farther away would seem to belong to another mark. */
+    double farthest = must ? 6 * distance : 1.5 * distance;
+    int fewest = -1;
+    for (double d = distance; d <= farthest; d += 0.25 * distance)
+        for (int side = 0; side < (int)(sizeof sides / sizeof *sides); side++) {
+            PageBox box = box_beside(x, y, side, d, width, height);
+            if (!is_free(field, &box)) continue;
+            int count = crossed(field, &box);
+            if ((count > 0 && !must) || (fewest >= 0 && count >= fewest)) continue;
+            fewest = count;
+            *place = box;
+        }
+    if (fewest >= 0) label_add_box(field, *place);
+    return fewest >= 0;
+}
+
+/* From one side to the other around the mark: 16 directions, the sides first. */
+static double angle_of(int direction, bool left) {
+    static const int order[] = {0, 1, 15, 2, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8};
+    const double angle = order[direction] * M_PI / 8;
+    return left ? M_PI - angle : angle;
+}
+
+static double turn(double ax, double ay, double bx, double by, double cx, double cy) {
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+}
+
+static bool segments_cross(const Segment *a, const Segment *b) {
+    return turn(a->x0, a->y0, a->x1, a->y1, b->x0, b->y0) * turn(a->x0, a->y0, a->x1, a->y1, b->x1, b->y1) < 0 &&
+           turn(b->x0, b->y0, b->x1, b->y1, a->x0, a->y0) * turn(b->x0, b->y0, b->x1, b->y1, a->x1, a->y1) < 0;
+}
+
+static double distance_to(const Segment *line, double x, double y) {
+    const double dx = line->x1 - line->x0, dy = line->y1 - line->y0, square = dx * dx + dy * dy;
+    const double share = square > 0 ? fmin(fmax(((x - line->x0) * dx + (y - line->y0) * dy) / square, 0), 1) : 0;
+    return hypot(x - line->x0 - share * dx, y - line->y0 - share * dy);
+}
+
+/* Crossing, or ending on it: a line along another would hide it. */
+static bool segments_meet(const Segment *a, const Segment *b) {
+    return segments_cross(a, b) || distance_to(a, b->x0, b->y0) < clearance || distance_to(a, b->x1, b->y1) < clearance;
+}
+
+/* The mark's own box contains the start of its leader. */
+static bool line_is_free(const LabelField *field, const Segment *line, const LabelWish *wish) {
+    const double reach = hypot(line->x1 - wish->x, line->y1 - wish->y);
+    for (int i = 0; i < field->segment_count; i++)
+        if (segments_meet(line, &field->segments[i])) return false;
+    for (int i = 0; i < field->box_count; i++) {
+        const PageBox *box = &field->boxes[i];
+        const bool own = wish->x >= box->left && wish->x <= box->right && wish->y >= box->bottom && wish->y <= box->top;
+        if (!own && reach > 0 && crosses(line, box)) return false;
+    }
+    return true;
+}
+
+static PageBox box_towards(const LabelWish *wish, double angle, double distance) {
+    const double x = wish->x + distance * cos(angle) + wish->width / 2 * cos(angle);
+    const double y = wish->y + distance * sin(angle) + wish->height / 2 * sin(angle);
+    return (PageBox){x - wish->width / 2, y - wish->height / 2, x + wish->width / 2, y + wish->height / 2};
+}
+
+static Segment leader_to(const LabelWish *wish, const PageBox *box) {
+    const double x = fmin(fmax(wish->x, box->left), box->right), y = fmin(fmax(wish->y, box->bottom), box->top);
+    const double length = hypot(x - wish->x, y - wish->y), share = length > 0 ? fmin(1, wish->clear / length) : 1;
+    return (Segment){wish->x + share * (x - wish->x), wish->y + share * (y - wish->y), x, y};
+}
+
+bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, Segment *leader, bool *led) {
+    const double step = 0.6, shortest = 0.9, gap = 0.4;
+    for (double distance = fmax(wish->clear + gap, wish->nearest); distance <= wish->farthest; distance += step)
+        for (int direction = 0; direction < 16; direction++) {
+            *place = box_towards(wish, angle_of(direction, wish->left), distance);
+            *leader = leader_to(wish, place);
+            if (!is_free(field, place) || crossed(field, place) > 0 || !line_is_free(field, leader, wish)) continue;
+            *led = hypot(leader->x1 - leader->x0, leader->y1 - leader->y0) > shortest;
+            label_add_box(field, *place);
+            if (*led) label_add_segment(field, *leader);
+            return true;
+        }
+    return false;
+}

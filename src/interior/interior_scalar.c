@@ -1,5 +1,0 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The kernels for any CPU. */
-#define KERNELS interior_scalar
-#define KERNELS_NAME "scalar"
-#include "interior/interior_code.h"

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Poses of a scene's launches, recorded for training. */
+#pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "base/npz.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/pair.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct LaunchRuns {
+    int count;        /* of launches */
+    int frames;       /* of each: steps + 1 */
+    int bodies;       /* with the bomb, the last */
+    Launch *launches; /* [count] */
+    BodyPose *poses;  /* [count, frames, bodies] NaN while the bomb does not exist */
+} LaunchRuns;
+
+/* Runs the launches [count] of a scene with a bomb by a method, in parallel; the same bits for any number of threads. False
+   with error set if a run fails, the poses take more than 1 GiB, or progress requests a stop. Free it in any case. */
+bool launch_runs_record(LaunchRuns *runs, const Scene *scene, const Method *method, const Launch *launches, int count,
+                        const Progress *progress, Error *error);
+void launch_runs_free(LaunchRuns *runs);
+
+/* The poses[bodies] of a frame; frame 0 is the state before the first step. */
+static inline const BodyPose *launch_runs_frame(const LaunchRuns *runs, int launch, int frame) {
+    return runs->poses + ((size_t)launch * (size_t)runs->frames + (size_t)frame) * (size_t)runs->bodies;
+}
+
+/* The paper's data (Avatavului, Ifrim, Voncila 2023, section 3.1): inputs and changes by the solver, for touching pairs
+   of bodies. A row is a pair in a step, or for TARGET_IMPULSE a pair in one sweep of a step. */
+
+enum { DATASET_VERSION = 3, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
+
+/* The source of the changes: the engine's solution, or the converged solution of the same contact problem
+   (methods/reference.h), the paper's more accurate source. */
+typedef enum DatasetLabels { DATASET_BY_ENGINE, DATASET_BY_REFERENCE, DATASET_LABELS } DatasetLabels;
+
+extern const char *const dataset_label_names[DATASET_LABELS + 1]; /* ends with NULL */
+
+typedef struct Dataset {
+    PairView view;
+    PairTarget target;
+    DatasetLabels labels;
+    int64_t rows;
+    float *inputs;   /* [rows, pair_views[view].count]: pair_inputs() */
+    float *changes;  /* [rows, pair_change_count(target)]: pair_step_changes() */
+    float *context;  /* [rows, PAIR_CONTEXT]: pair_context(), for laws in the loss; NULL if not recorded */
+    int32_t *launch; /* [rows] launch of the row */
+    int32_t *frame;  /* [rows] number of the step */
+    int32_t *bodies; /* [rows, 2] */
+    int launches;
+    int32_t *launch_scene;                           /* [launches] index into scenes */
+    float *launch_x, *launch_rotation, *launch_spin; /* [launches] of the bomb; m, rad, rad/s */
+    uint8_t *launch_test; /* [launches] 1: held out for the test score (80/20, drawn with the seed) */
+    int scene_count;
+    char scenes[DATASET_MAX_SCENES][DATASET_NAME_SIZE];
+} Dataset;
+
+/* Number of inputs. */
+static inline int dataset_inputs(const Dataset *dataset) { return pair_views[dataset->view].count; }
+
+/* True if the row's launch is held out. */
+static inline bool dataset_is_test(const Dataset *dataset, int64_t row) {
+    return dataset->launch_test[dataset->launch[row]] != 0;
+}
+
+typedef struct DatasetOptions {
+    const char *const *scenes; /* paths of scene files */
+    int scene_count;
+    /* Launches of each scene. None of the three: 201 of its family. */
+    const LaunchTable *table; /* with neither of the others; NULL: none */
+    const char *table_path;   /* its file */
+    FloatRange bomb_x;        /* m: swept, with the scene's rotation and spin; count may be 0 */
+    int random;               /* random: x in +-15 m, rotation +-1.5 rad, spin +-20 rad/s (3.3) */
+    PairView view;
+    PairTarget target;
+    DatasetLabels labels;
+    int every;     /* keep every n-th row of a launch, from the first on; 0 or 1: all */
+    bool context;  /* record the context; for TARGET_PAIR */
+    uint64_t seed; /* of the random launches and of the 80/20 split by launch */
+} DatasetOptions;
+
+/* Runs every launch of every scene with the engine and records it. The result does not depend on the number of threads.
+   ERROR_INPUT if a scene cannot be read, has no bomb or needs a family and has none, the launches vary in mass or frame,
+   there are fewer than 5 launches per scene (one must be held out), the target has no such labels, or progress
+   requests a stop. */
+Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
+void dataset_destroy(Dataset *dataset);
+
+bool dataset_write(const Dataset *dataset, const char *path, Error *error);
+Dataset *dataset_read(const char *path, Error *error);
+
+/* The rows of one launch. */
+
+/* One touching pair in one step, or in one sweep of it. */
+typedef struct PairRow {
+    float inputs[PAIR_INPUTS_MAX], changes[PAIR_CHANGES], context[PAIR_CONTEXT];
+    int32_t frame, bodies[2];
+} PairRow;
+
+/* The rows of one launch. */
+typedef struct LaunchRows {
+    PairRow *rows;
+    size_t count, capacity;
+    size_t start; /* index of its first row in the dataset */
+} LaunchRows;
+
+/* Runs a launched scene with the engine, and appends the rows for the dataset's view, target and labels. */
+bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRows *rows, Error *error);
+
+/* What a recording is made of: scenes and launches. Ranges of launches can be recorded one by one. */
+
+typedef struct DatasetRecording {
+    const DatasetOptions *options;
+    Scene *scenes[DATASET_MAX_SCENES];
+    Dataset *dataset; /* its launches, and no rows yet */
+} DatasetRecording;
+
+/* ERROR_INPUT if there are no rows. */
+bool dataset_check_rows(int64_t rows, Error *error);
+
+void dataset_free_rows(Dataset *dataset);
+
+/* The launches of a dataset. */
+
+/* Launches of each scene. */
+int dataset_launches_each(const DatasetOptions *options);
+
+/* Fills the launch tables; a fifth of each scene's launches, at least one, is held out. */
+Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error);
+
+/* Launch i of the dataset in its scene; shares the scene's bodies. */
+Scene dataset_launch(const Dataset *dataset, Scene *const *scenes, int i);
+
+/* Subsets of the training launches, with the same held-out launches. */
+
+/* A copy with the rows of all held-out launches and of the training launches for which keep[launches] is true. Launches
+   keep their numbers: those left out remain listed without rows. ERROR_INPUT if no training rows remain. */
+Dataset *dataset_subset(const Dataset *dataset, const bool *keep, Error *error);
+
+/* The same with `count` training launches drawn from those with rows. With the same seed, a larger subset contains a
+   smaller one. ERROR_INPUT if there are not enough. */
+Dataset *dataset_draw_subset(const Dataset *dataset, int count, uint64_t seed, Error *error);
+
+/* The arrays of a dataset file, for its writers. */
+
+/* Words and the tables of launches come first, then the arrays of rows. */
+enum {
+    DATASET_WORDS = 6,
+    DATASET_ROW_ARRAYS = 6,
+    DATASET_FIRST_ROWS = DATASET_WORDS + 5,
+    DATASET_ARRAYS = DATASET_FIRST_ROWS + DATASET_ROW_ARRAYS,
+    DATASET_SCENES_SIZE = DATASET_MAX_SCENES * DATASET_NAME_SIZE
+};
+
+typedef struct DatasetArrays {
+    NpzArray list[DATASET_ARRAYS]; /* the last is the context */
+    char scenes[DATASET_SCENES_SIZE];
+} DatasetArrays;
+
+/* The arrays in the order of the file; they point to the dataset and to *arrays. Of a dataset without rows, the arrays of
+   rows have no data: rows can be appended (base/npz.h). Returns their number, which is one less without context. */
+int dataset_arrays(const Dataset *dataset, bool context, DatasetArrays *arrays);
+
+/* A dataset file in pieces (runs/pieces.h): the rows of some launches each. */
+
+/* dataset_pieces_free(). */
+typedef struct DatasetPieces {
+    DatasetRecording recording;
+    PieceRanges launches; /* a group for each scene */
+    PiecePlan plan;
+} DatasetPieces;
+
+/* Errors as dataset_record(). The options and *pieces must stay where they are. */
+bool dataset_pieces_make(DatasetPieces *pieces, const DatasetOptions *options, Error *error);
+void dataset_pieces_free(DatasetPieces *pieces);
+
+/* Hashes everything that determines the file. */
+bool dataset_pieces_key(const DatasetPieces *pieces, StudyKey *key, Error *error);
+
+/* The number of rows in the results of a piece, which are the arrays of rows one after the other. -1 with error set: the
+   results, which are those of the file `path`, are not of these launches. */
+int64_t dataset_piece_rows(const DatasetPieces *pieces, int64_t piece, const char *results, size_t size,
+                           const char *path, Error *error);
+
+/* Writes the file that dataset_write() writes of dataset_record(), in bounded memory. *rows: in the file. Without rows,
+   nothing is written: dataset_check_rows() refuses that. */
+bool dataset_pieces_write(const DatasetPieces *pieces, const Pieces *done, const char *path, int64_t *rows,
+                          const Progress *progress, Error *error);

@@ -1,0 +1,303 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "learning/hybrid_training.h"
+
+#include "base/base.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/learning.h"
+#include "learning/scene_training.h"
+#include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/solvers.h"
+#include "methods/tabulation.h"
+#include "nets/kinds.h"
+#include "runs/runs.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STORE_EVERY = 50 }; /* launches */
+
+/* Of turned launches, unless the scene has a family of them; rad, rad/s. As in training of scene-net. */
+static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
+
+typedef struct Trainer {
+    const Scene *scene;
+    const TabulationTraining *training;
+    LaunchSteps *runs;
+    Launch *launches; /* [training->launches] */
+    AskedSteps asked; /* of the launch; at first of all launches so far */
+    ContactSolver interior;
+    ContactSolution answer, converged; /* [bodies], [contacts]: work space */
+    size_t answer_bodies, answer_contacts, converged_bodies, converged_contacts;
+    Tabulation *memory; /* NULL until the directions are fitted */
+} Trainer;
+
+static float draw(uint64_t *state, const SceneSpan *span, const SceneSpan *otherwise) {
+    const double share = (double)(split_mix(state) >> 11) / 9007199254740992.0; /* 2^53 */
+    return scene_span_at(scene_span_varies(span) ? span : otherwise, share);
+}
+
+/* Depends on the seed and i only. */
+Launch tabulation_launch(const Scene *scene, uint64_t seed, int i, bool turns) {
+    const SceneBomb *bomb = &scene->bomb;
+    uint64_t state = seed;
+    state = split_mix(&state) + (uint64_t)i;
+    Launch launch = launch_of(scene);
+    launch.x = draw(&state, &bomb->x, &bomb->x);
+    launch.rotation = draw(&state, &bomb->rotation, turns ? &turned : &bomb->rotation);
+    launch.spin = draw(&state, &bomb->spin, turns ? &spinning : &bomb->spin);
+    return launch;
+}
+
+static void draw_launches(Trainer *trainer) {
+    const TabulationTraining *training = trainer->training;
+    for (int i = 0; i < training->launches; i++)
+        trainer->launches[i] = tabulation_launch(trainer->scene, training->seed, i,
+                                                 training->turned_from >= 0 && i >= training->turned_from);
+}
+
+static bool reserve(ContactSolution *solution, size_t *bodies, size_t *contacts, const ContactProblem *problem) {
+    return array_reserve((void **)&solution->velocities, bodies, (size_t)problem->body_count,
+                         sizeof *solution->velocities) &&
+           array_reserve((void **)&solution->impulses, contacts, (size_t)problem->contact_count + 1,
+                         sizeof *solution->impulses);
+}
+
+static bool fit_keys(Trainer *trainer, Error *error) {
+    const AskedSteps *asked = &trainer->asked;
+    if (asked->count == 0)
+        return error_input(error, trainer->scene->name, "no launch has an impact whose residual reaches the gate");
+    const ContactProblem *first = &asked->items[0].problem;
+    Tabulation *memory = trainer->memory =
+        tabulation_create(first->body_count, first->marked, trainer->training->components, error);
+    if (memory == NULL) return false;
+    memory->gate = hybrid_gate;
+    memory->tolerance = trainer->training->tolerance;
+    snprintf(memory->scene, sizeof memory->scene, "%s", trainer->scene->name);
+    snprintf(memory->command, sizeof memory->command, "%s", trainer->training->command);
+    const size_t width = (size_t)memory->numbers;
+    float *others = malloc((size_t)asked->count * width * sizeof *others);
+    if (others == NULL) return error_memory(error, "hybrid");
+    for (int i = 0; i < asked->count; i++)
+        memcpy(others + (size_t)i * width, asked->items[i].others, width * sizeof *others);
+    const bool ok = key_fit(memory, others, asked->count, trainer->training->seed, error);
+    free(others);
+    return ok;
+}
+
+static bool check(Trainer *trainer, SolvedStep *step, int entry, TabulationLaunch *launch, Error *error) {
+    if (!reserve(&trainer->converged, &trainer->converged_bodies, &trainer->converged_contacts, step->problem))
+        return error_memory(error, "hybrid");
+    step->solution = &trainer->converged;
+    if (!trainer->interior.kind->solve(trainer->interior.state, step->problem, &trainer->converged, error))
+        return false;
+    launch->error += (double)entry_check(trainer->memory, entry, step, &trainer->answer);
+    launch->checked++;
+    return true;
+}
+
+static bool learn_step(Trainer *trainer, const AskedStep *asked, bool checks, TabulationLaunch *launch, Error *error) {
+    float key[TABULATION_KEY_MAX];
+    tabulation_key(trainer->memory, asked->bomb, asked->others, key);
+    SolvedStep step = {&asked->problem, &asked->solution, {asked->hash, asked->problem.contact_count, key}};
+    if (!reserve(&trainer->answer, &trainer->answer_bodies, &trainer->answer_contacts, &asked->problem))
+        return error_memory(error, "hybrid");
+    if (asked->entry >= 0) return !checks || check(trainer, &step, asked->entry, launch, error);
+    Lesson lesson;
+    if (!entry_learn(trainer->memory, &step, trainer->training->limit, &trainer->answer, &lesson, error)) return false;
+    launch->grown += lesson == LESSON_GROWN;
+    launch->added += lesson == LESSON_ADDED;
+    launch->full += lesson == LESSON_FULL;
+    const TabulationTraining *training = trainer->training;
+    if (lesson != LESSON_ADDED || training->on_added == NULL) return true;
+    const double begin = clock_thread_seconds();
+    const bool ok = training->on_added(training->context, step.problem, error);
+    launch->learning -= clock_thread_seconds() - begin;
+    return ok;
+}
+
+/* Runs a launch and learns from it. The launches before the directions are fitted are learned together. */
+static bool do_launch(Trainer *trainer, int i, Error *error) {
+    TabulationLaunch launch = {.number = i + 1};
+    const int before = trainer->asked.count, last = trainer->training->launches - 1;
+    const int64_t steps_before = trainer->asked.steps;
+    const double seconds_before = trainer->asked.seconds;
+    if (!launch_steps_run(trainer->runs, &trainer->launches[i], trainer->memory, trainer->training->steps,
+                          &trainer->asked, error))
+        return false;
+    launch.asked = trainer->asked.count - before;
+    launch.steps = trainer->asked.steps - steps_before;
+    const double copying = trainer->asked.seconds - seconds_before;
+    for (int k = before; k < trainer->asked.count; k++) launch.answered += trainer->asked.items[k].entry >= 0;
+    const double begin = clock_thread_seconds();
+    const bool first = trainer->memory == NULL;
+    if (first && (i + 1 == TABULATION_FIRST || i == last) && !fit_keys(trainer, error)) return false;
+    if (trainer->memory != NULL) {
+        const bool checks = i % TABULATION_CHECK_EVERY == 0;
+        for (int k = 0; k < trainer->asked.count; k++)
+            if (!learn_step(trainer, &trainer->asked.items[k], checks, &launch, error)) return false;
+        asked_steps_clear(&trainer->asked);
+        trainer->memory->launches = i + 1;
+    }
+    launch.learning += clock_thread_seconds() - begin + copying;
+    launch.memory = trainer->memory;
+    const TabulationTraining *training = trainer->training;
+    return training->on_launch == NULL || training->on_launch(training->context, &launch, error);
+}
+
+/* A state of the same command, or nothing. */
+static bool resume(Trainer *trainer, Error *error) {
+    const TabulationTraining *training = trainer->training;
+    bool there;
+    if (training->state_path == NULL) return true;
+    if (!file_find(training->state_path, &there, error)) return false;
+    if (!there) return true;
+    trainer->memory = tabulation_read(training->state_path, error);
+    if (trainer->memory == NULL) return false;
+    if (strcmp(trainer->memory->command, training->command) == 0 && trainer->memory->launches <= training->launches)
+        return true;
+    tabulation_destroy(trainer->memory);
+    trainer->memory = NULL;
+    return true;
+}
+
+static bool store(const Trainer *trainer, Error *error) {
+    const Tabulation *memory = trainer->memory;
+    if (trainer->training->state_path == NULL || memory == NULL || memory->entry_count == 0) return true;
+    return tabulation_write(memory, trainer->training->state_path, error);
+}
+
+static bool tabulation_training_train(Trainer *trainer, const Progress *progress, Error *error) {
+    const int launches = trainer->training->launches;
+    if (!launches_check(trainer->scene, trainer->launches, launches, error) || !resume(trainer, error)) return false;
+    trainer->runs = launch_steps_create(trainer->scene, error);
+    if (trainer->runs == NULL || !hybrid_make(&trainer->interior, NULL, NULL, error)) return false;
+    for (int i = trainer->memory != NULL ? trainer->memory->launches : 0; i < launches; i++) {
+        if (!do_launch(trainer, i, error)) return false;
+        const bool goes_on = progress_report(progress, i + 1, launches);
+        if ((!goes_on || (i + 1) % STORE_EVERY == 0) && !store(trainer, error)) return false;
+        if (!goes_on) break;
+    }
+    return trainer->memory != NULL || error_interrupted(error, "hybrid", "stopped before anything was learned");
+}
+
+Tabulation *tabulation_training_run(const Scene *scene, const TabulationTraining *training, const Progress *progress,
+                                    Error *error) {
+    if (!scene->bomb.present) {
+        error_input(error, scene->name, "has no bomb to launch");
+        return NULL;
+    }
+    Trainer trainer = {.scene = scene,
+                       .training = training,
+                       .launches = malloc((size_t)training->launches * sizeof *trainer.launches)};
+    bool ok = trainer.launches != NULL || error_memory(error, "hybrid");
+    if (ok) {
+        draw_launches(&trainer);
+        ok = tabulation_training_train(&trainer, progress, error);
+    }
+    launch_steps_destroy(trainer.runs);
+    if (trainer.interior.kind != NULL) trainer.interior.kind->destroy(trainer.interior.state);
+    asked_steps_free(&trainer.asked);
+    free(trainer.launches);
+    free(trainer.answer.velocities);
+    free(trainer.answer.impulses);
+    free(trainer.converged.velocities);
+    free(trainer.converged.impulses);
+    if (ok) return trainer.memory;
+    tabulation_destroy(trainer.memory);
+    return NULL;
+}
+
+/* As `train --kind scene-net` has them, but for the rate: it stays, as there is no end to decay to. */
+enum { SWEEPS = 14 };
+static const SlotWidths widths = {.state = 16, .present = 32, .warm = 16, .hidden = 32};
+static const double impulse_weight = 0.02, rate = 1e-3;
+
+struct OnlineNet {
+    uint64_t seed;
+    SlotSamples first; /* until there is a network */
+    SlotNetwork *network;
+    SlotLoss loss;
+    Adam adam;
+    float *gradient; /* [parameter_count] */
+    double *slopes;  /* [parameter_count] */
+    double factors[SWEEPS];
+};
+
+OnlineNet *online_net_create(uint64_t seed, Error *error) {
+    OnlineNet *net = calloc(1, sizeof *net);
+    if (net == NULL) {
+        error_memory(error, "scene-net");
+        return NULL;
+    }
+    net->seed = seed;
+    for (int s = 0; s < SWEEPS; s++) net->factors[s] = (double)momentum_factor_tuned(s, SWEEPS);
+    return net;
+}
+
+void online_net_destroy(OnlineNet *net) {
+    if (net == NULL) return;
+    slot_samples_free(&net->first);
+    slot_network_destroy(net->network);
+    slot_loss_free(&net->loss);
+    adam_free(&net->adam);
+    free(net->gradient);
+    free(net->slopes);
+    free(net);
+}
+
+static bool begin(OnlineNet *net, Error *error) {
+    net->network = slot_network_from_samples(&net->first, &widths, net->seed, error);
+    if (net->network == NULL) return false;
+    const size_t count = net->network->parameter_count;
+    if (!adam_create(&net->adam, (int64_t)count, ADAM_SQUARE_DECAY, error)) return false;
+    net->gradient = calloc(count, sizeof *net->gradient);
+    net->slopes = calloc(count, sizeof *net->slopes);
+    if (net->gradient == NULL || net->slopes == NULL) return error_memory(error, "scene-net");
+    for (size_t i = 0; i < count; i++) net->adam.weights[i] = (double)net->network->parameters[i];
+    slot_samples_free(&net->first);
+    return true;
+}
+
+/* One step on one sample. */
+static bool online_net_train(OnlineNet *net, const SlotSample *sample, double *wrong, Error *error) {
+    const SlotTask task = {impulse_weight, 1, SWEEPS, net->factors};
+    SlotNetwork *network = net->network;
+    SlotScore score;
+    for (size_t i = 0; i < network->parameter_count; i++) net->gradient[i] = 0;
+    if (!slot_loss(&net->loss, network, sample, &task, net->gradient, NULL, &score))
+        return error_memory(error, "scene-net");
+    if (!isfinite(score.loss)) return error_input(error, "scene-net", "training diverged");
+    for (size_t i = 0; i < network->parameter_count; i++) net->slopes[i] = (double)net->gradient[i];
+    adam_step(&net->adam, net->slopes, rate);
+    for (size_t i = 0; i < network->parameter_count; i++) network->parameters[i] = (float)net->adam.weights[i];
+    slot_network_pack_layers(network);
+    *wrong = score.error;
+    return true;
+}
+
+static bool learn_now(OnlineNet *net, const ContactProblem *problem, double *wrong, double *seconds, Error *error) {
+    SlotSamples one = {0};
+    double begin = 0;
+    const bool ok = (slot_samples_add(&one, problem, 0, 0) || error_memory(error, "scene-net")) &&
+                    slot_samples_label(&one, 0, NULL, error) &&
+                    (begin = clock_thread_seconds(), slot_samples_compute_inputs(&one, 0, net->network, error)) &&
+                    online_net_train(net, &one.items[0], wrong, error);
+    *seconds = clock_thread_seconds() - begin;
+    slot_samples_free(&one);
+    return ok;
+}
+
+bool online_net_learn(OnlineNet *net, const ContactProblem *problem, double *wrong, double *seconds, Error *error) {
+    *wrong = NAN;
+    *seconds = 0;
+    if (net->network != NULL) return learn_now(net, problem, wrong, seconds, error);
+    if (!slot_samples_add(&net->first, problem, 0, 0)) return error_memory(error, "scene-net");
+    if (!slot_samples_label(&net->first, net->first.count - 1, NULL, error)) return false;
+    return net->first.count < ONLINE_FIRST || begin(net, error);
+}

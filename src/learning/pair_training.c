@@ -1,0 +1,375 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Dataset rows -> normalised blocks. */
+#include "learning/pair_training.h"
+
+#include "base/base.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "learning/pair_training_internal.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
+
+#include <float.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static float input_at(const Dataset *dataset, int64_t row, int column) {
+    return dataset->inputs[row * dataset_inputs(dataset) + column];
+}
+
+static float target_at(const Dataset *dataset, int64_t row, int outputs, int column) {
+    const float *changes = dataset->changes + row * pair_change_count(dataset->target);
+    return outputs == pair_change_count(dataset->target) ? changes[column] : changes[column + 3] - changes[column];
+}
+
+typedef struct Spread {
+    double minimum, maximum, mean, deviation;
+} Spread;
+
+/* Over the training rows; outputs == 0 selects an input column. Two passes: with one, the rounding of the squares would
+   swamp the deviation of a column far from 0. */
+static Spread column_spread(const Dataset *dataset, int outputs, int column) {
+    Spread spread = {.minimum = INFINITY, .maximum = -INFINITY};
+    for (int pass = 0; pass < 2; pass++) {
+        double sum = 0;
+        int64_t count = 0;
+        for (int64_t row = 0; row < dataset->rows; row++) {
+            if (dataset_is_test(dataset, row)) continue;
+            double x = outputs == 0 ? input_at(dataset, row, column) : target_at(dataset, row, outputs, column);
+            spread.minimum = fmin(spread.minimum, x);
+            spread.maximum = fmax(spread.maximum, x);
+            sum += pass == 0 ? x : (x - spread.mean) * (x - spread.mean);
+            count++;
+        }
+        if (pass == 0)
+            spread.mean = sum / (double)count;
+        else
+            spread.deviation = sqrt(sum / (double)count);
+    }
+    return spread;
+}
+
+/* A constant column has a width of exactly 0: sums of equal float32 are exact in double. */
+static void set_scale(Normalisation *normalisation, int column, double offset, double width) {
+    float scale = (float)(1 / width);
+    normalisation->offset[column] = (float)offset;
+    normalisation->scale[column] = isfinite(scale) && scale > 0 ? scale : 1;
+}
+
+void samples_fit_normalisation(const Dataset *dataset, OutputScale scale, Network *network) {
+    int outputs = network->widths[network->layers];
+    for (int i = 0; i < network->widths[0]; i++) {
+        Spread spread = column_spread(dataset, 0, i);
+        set_scale(&network->input, i, spread.mean, spread.deviation);
+    }
+    for (int k = 0; k < outputs; k++) {
+        Spread spread = column_spread(dataset, outputs, k);
+        network->output_mean[k] = (float)spread.mean;
+        if (scale == SCALE_STANDARD)
+            set_scale(&network->output, k, spread.mean, spread.deviation);
+        else
+            set_scale(&network->output, k, spread.minimum, spread.maximum - spread.minimum);
+    }
+}
+
+/* The same float32 expression as in network_predict(), so that training and inference see the same inputs. */
+static float normalise(const Normalisation *normalisation, int column, float x) {
+    return (x - normalisation->offset[column]) * normalisation->scale[column];
+}
+
+static void store_row(Samples *samples, int64_t to, const Dataset *dataset, int64_t row, const Network *network) {
+    int64_t b = to / BLOCK_ROWS, r = to % BLOCK_ROWS;
+    for (int i = 0; i < samples->inputs; i++)
+        samples->x[(b * samples->inputs + i) * BLOCK_ROWS + r] =
+            normalise(&network->input, i, input_at(dataset, row, i));
+    for (int k = 0; k < samples->outputs; k++)
+        samples->y[(b * samples->outputs + k) * BLOCK_ROWS + r] =
+            normalise(&network->output, k, target_at(dataset, row, samples->outputs, k));
+}
+
+Samples *samples_create(const Dataset *dataset, const Network *network, bool test, Error *error) {
+    Samples *samples = calloc(1, sizeof *samples);
+    if (samples == NULL) return error_memory(error, "training"), NULL;
+    samples->inputs = network->widths[0];
+    samples->outputs = network->widths[network->layers];
+    for (int64_t row = 0; row < dataset->rows; row++) samples->rows += dataset_is_test(dataset, row) == test;
+    samples->blocks = (samples->rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
+    size_t padded = (size_t)samples->blocks * BLOCK_ROWS;
+    samples->x = calloc(padded * (size_t)samples->inputs, sizeof *samples->x);
+    samples->y = calloc(padded * (size_t)samples->outputs, sizeof *samples->y);
+    if (samples->x == NULL || samples->y == NULL)
+        return error_memory(error, "training"), samples_destroy(samples), NULL;
+    int64_t to = 0;
+    for (int64_t row = 0; row < dataset->rows; row++)
+        if (dataset_is_test(dataset, row) == test) store_row(samples, to++, dataset, row, network);
+    return samples;
+}
+
+void samples_destroy(Samples *samples) {
+    if (samples == NULL) return;
+    free(samples->x);
+    free(samples->y);
+    free(samples);
+}
+
+static const float *target_column(const Samples *samples, int64_t b, int k) {
+    return samples->y + (b * samples->outputs + k) * BLOCK_ROWS;
+}
+
+void samples_mean(const Samples *samples, double *mean) {
+    for (int k = 0; k < samples->outputs; k++) {
+        double sum = 0;
+        for (int64_t b = 0; b < samples->blocks; b++)
+            for (int r = 0; r < samples_in_block(samples, b); r++) sum += target_column(samples, b, k)[r];
+        mean[k] = sum / (double)samples->rows;
+    }
+}
+
+typedef struct Word {
+    const char *name; /* NULL ends a list */
+    int value;
+} Word;
+
+static const Word hidden_words[] = {
+    {"sigmoid", ACTIVATION_SIGMOID}, {"tanh", ACTIVATION_TANH}, {"relu", ACTIVATION_RELU}, {NULL, 0}};
+static const Word output_words[] = {{"sigmoid", ACTIVATION_SIGMOID}, {"linear", ACTIVATION_LINEAR}, {NULL, 0}};
+static const Word scale_words[] = {{"minmax", SCALE_MINMAX}, {"standard", SCALE_STANDARD}, {NULL, 0}};
+static const Word loss_words[] = {{"mse", LOSS_MSE}, {"smooth-l1", LOSS_SMOOTH_L1}, {NULL, 0}};
+
+/* If name is NULL, value keeps its default. */
+static bool choose(const char *option, const char *name, const Word *words, int *value, Error *error) {
+    if (name == NULL) return true;
+    NameList known = {0};
+    for (int i = 0; words[i].name != NULL; i++) {
+        if (strcmp(words[i].name, name) == 0) return *value = words[i].value, true;
+        name_list_add(&known, words[i].name);
+    }
+    return error_unknown(error, option, name, "a valid value", &known);
+}
+
+/* ERROR_INPUT: an unknown word. */
+static bool loss_kind_parse(LossKind *kind, const TrainingOptions *options, Error *error) {
+    int loss = LOSS_MSE;
+    if (!choose("loss", options->loss, loss_words, &loss, error)) return false;
+    *kind = (LossKind)loss;
+    return true;
+}
+
+/* NULL words take the defaults of training.h. ERROR_INPUT: an unknown word, or output targets outside the range of the
+   output activation. */
+static bool network_config_parse(NetworkConfig *config, const TrainingOptions *options, Error *error) {
+    bool two = options->widths[options->layers] == 2;
+    int hidden = ACTIVATION_SIGMOID, output = two ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;
+    if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
+        !choose("output activation", options->output_activation, output_words, &output, error))
+        return false;
+    int scale = output == ACTIVATION_LINEAR ? SCALE_STANDARD : SCALE_MINMAX;
+    if (!choose("scale", options->scale, scale_words, &scale, error)) return false;
+    if (output == ACTIVATION_SIGMOID && scale == SCALE_STANDARD)
+        return error_input(error, "scale", "standard needs linear outputs: a sigmoid stays between 0 and 1");
+    *config = (NetworkConfig){(Activation)hidden, (Activation)output, (OutputScale)scale};
+    return true;
+}
+
+bool network_config_matches(const Network *start, const TrainingOptions *options, Error *error) {
+    if (options->scale != NULL)
+        return error_input(error, "scale", "the start network keeps its own scale; omit this option");
+    int last = start->layers - 1, hidden = ACTIVATION_SIGMOID, output = (int)start->activations[last];
+    if (!choose("hidden", options->hidden, hidden_words, &hidden, error) ||
+        !choose("output activation", options->output_activation, output_words, &output, error))
+        return false;
+    for (int l = 0; options->hidden != NULL && l < last; l++)
+        if (start->activations[l] != (Activation)hidden)
+            return error_input(error, "hidden", "the start network has a hidden activation other than %s",
+                               options->hidden);
+    if (start->activations[last] == (Activation)output) return true;
+    return error_input(error, "output activation", "the start network's is not %s", options->output_activation);
+}
+
+const Optimizer *const optimizers[] = {&optimizer_adam, &optimizer_bfgs, &optimizer_gd, &optimizer_lm, NULL};
+
+static const Optimizer *find_optimizer(const char *name, Error *error) {
+    NameList known = {0};
+    for (int i = 0; optimizers[i] != NULL; i++) {
+        if (strcmp(optimizers[i]->name, name) == 0) return optimizers[i];
+        name_list_add(&known, optimizers[i]->name);
+    }
+    error_unknown(error, "optimizer", name, "an optimizer", &known);
+    return NULL;
+}
+
+/* Glorot and Bengio, "Understanding the difficulty of training deep feedforward neural networks" (2010):
+   uniform in +- sqrt(6 / (inputs + outputs)), biases 0. */
+static void draw_weights(Network *network, const gsl_rng *rng) {
+    for (int l = 0; l < network->layers; l++) {
+        int inputs = network->widths[l], outputs = network->widths[l + 1];
+        double limit = sqrt(6.0 / (inputs + outputs));
+        for (int i = 0; i < inputs * outputs; i++)
+            network->weights[l][i] = (float)(limit * (2 * gsl_rng_uniform(rng) - 1));
+    }
+}
+
+static bool set_random_weights(Network *network, uint64_t seed, Error *error) {
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    if (rng == NULL) return error_memory(error, "training");
+    gsl_rng_set(rng, (unsigned long)((seed ^ seed >> 32) & UINT32_MAX)); /* the generator takes 32 bits */
+    draw_weights(network, rng);
+    gsl_rng_free(rng);
+    return true;
+}
+
+static Network *new_network(const Dataset *dataset, const TrainingOptions *options, Error *error) {
+    NetworkConfig config = {0};
+    if (!network_config_parse(&config, options, error)) return NULL;
+    Network *network = network_create(options->layers, options->widths, error);
+    if (network == NULL) return NULL;
+    for (int l = 0; l < network->layers; l++) network->activations[l] = config.hidden;
+    network->activations[network->layers - 1] = config.output;
+    snprintf(network->inputs, sizeof network->inputs, "%s", pair_views[dataset->view].inputs);
+    snprintf(network->outputs, sizeof network->outputs, "%s",
+             pair_output_names(dataset->view, dataset->target, options->widths[options->layers]));
+    snprintf(network->target, sizeof network->target, "%s", pair_target_names[dataset->target]);
+    samples_fit_normalisation(dataset, config.scale, network);
+    if (set_random_weights(network, options->seed, error)) return network;
+    network_destroy(network);
+    return NULL;
+}
+
+/* 0, 10, 50, 100, 1000, 2000 as the paper's Table 1, then 5000, 10000, 20000, ... */
+static bool is_scored(int iteration) {
+    static const int early[] = {0, 10, 50, 100};
+    for (size_t i = 0; i < sizeof early / sizeof early[0]; i++)
+        if (iteration == early[i]) return true;
+    if (iteration < 1000) return false;
+    while (iteration % 10 == 0) iteration /= 10;
+    return iteration == 1 || iteration == 2 || iteration == 5;
+}
+
+static void report_score(Trainer *trainer) {
+    if (trainer->scored == trainer->iteration || trainer->options->on_score == NULL) return;
+    trainer->scored = trainer->iteration;
+    const double *now = trainer->now;
+    const double train =
+        trainer->laws == NULL ? trainer->loss_now : loss_value(trainer->loss, trainer->train, NULL, now);
+    TrainingScore score = {.iteration = trainer->iteration,
+                           .test = loss_value(trainer->loss, trainer->test, NULL, now),
+                           .train = train,
+                           .constant_test = trainer->constant_test,
+                           .constant_train = trainer->constant_train};
+    trainer->options->on_score(trainer->options->context, &score);
+}
+
+/* Also false if a parameter overflows the network's float32. */
+static bool is_finite(const double *parameters, int count, double loss) {
+    if (!isfinite(loss)) return false;
+    for (int p = 0; p < count; p++)
+        if (!(fabs(parameters[p]) <= FLT_MAX)) return false;
+    return true;
+}
+
+bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss, Error *error) {
+    size_t size = (size_t)trainer->parameters * sizeof *parameters;
+    trainer->iteration++;
+    if (!is_finite(parameters, trainer->parameters, train_loss))
+        return error_input(error, "training", "diverged: NaN or infinite in iteration %d", trainer->iteration);
+    memcpy(trainer->now, parameters, size);
+    trainer->loss_now = train_loss;
+    if (trainer->iteration == 0 || train_loss < trainer->best_loss) {
+        memcpy(trainer->best, parameters, size);
+        trainer->best_loss = train_loss;
+    }
+    if (is_scored(trainer->iteration)) report_score(trainer);
+    trainer->finished = !progress_report(trainer->progress, trainer->iteration, trainer->options->iterations) ||
+                        trainer->iteration == trainer->options->iterations;
+    return true;
+}
+
+static bool score_constant(Trainer *trainer, Error *error) {
+    double *mean = malloc((size_t)trainer->train->outputs * sizeof *mean);
+    if (mean == NULL) return error_memory(error, "training");
+    samples_mean(trainer->train, mean);
+    trainer->constant_test = loss_of_constant(trainer->loss, trainer->test, mean);
+    trainer->constant_train = loss_of_constant(trainer->loss, trainer->train, mean);
+    free(mean);
+    return true;
+}
+
+/* Runs the optimiser and stores the best weights in the network. All its parameters are one block from weights[0]. */
+static bool minimize(Trainer *trainer, const Optimizer *optimizer, Network *network, Error *error) {
+    size_t count = (size_t)trainer->parameters;
+    double *numbers = calloc(3 * count, sizeof *numbers);
+    if (numbers == NULL) return error_memory(error, "training");
+    double *parameters = numbers;
+    trainer->now = numbers + count;
+    trainer->best = numbers + 2 * count;
+    for (size_t p = 0; p < count; p++) parameters[p] = (double)network->weights[0][p];
+    bool ok = optimizer->minimize(trainer, parameters, error);
+    if (ok) {
+        report_score(trainer);
+        for (size_t p = 0; p < count; p++) network->weights[0][p] = (float)trainer->best[p];
+    }
+    free(numbers);
+    return ok;
+}
+
+static bool train(Network *network, const Dataset *dataset, const Optimizer *optimizer, const TrainingOptions *options,
+                  const Progress *progress, Error *error) {
+    const bool with_laws = law_weights_any(&options->laws);
+    Laws *laws = with_laws ? laws_create(dataset, network, &options->laws, error) : NULL;
+    LossKind kind = LOSS_MSE;
+    Loss *loss = loss_kind_parse(&kind, options, error) ? loss_create(network, kind, error) : NULL;
+    Samples *train_samples = samples_create(dataset, network, false, error);
+    Samples *test_samples = samples_create(dataset, network, true, error);
+    Trainer trainer = {.options = options,
+                       .progress = progress,
+                       .network = network,
+                       .train = train_samples,
+                       .test = test_samples,
+                       .loss_kind = kind,
+                       .loss = loss,
+                       .laws = laws,
+                       .parameters = network_parameter_count(network),
+                       .iteration = -1,
+                       .scored = -1};
+    bool ok = (laws != NULL || !with_laws) && loss != NULL && train_samples != NULL && test_samples != NULL &&
+              score_constant(&trainer, error) && minimize(&trainer, optimizer, network, error);
+    samples_destroy(test_samples);
+    samples_destroy(train_samples);
+    loss_destroy(loss);
+    laws_destroy(laws);
+    return ok;
+}
+
+Network *training_run(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error) {
+    /* GSL's default handler aborts. */
+    gsl_set_error_handler_off();
+    const Optimizer *optimizer = find_optimizer(options->optimizer, error);
+    if (optimizer == NULL || !training_check(dataset, options, error)) return NULL;
+    Network *network =
+        options->start != NULL ? network_copy(options->start, error) : new_network(dataset, options, error);
+    if (network != NULL && !train(network, dataset, optimizer, options, progress, error)) {
+        network_destroy(network);
+        network = NULL;
+    }
+    return network;
+}
+
+static void keep_score(void *context, const TrainingScore *score) { *(TrainingScore *)context = *score; }
+
+bool training_score(const Dataset *dataset, const Network *network, const char *loss, TrainingScore *score,
+                    Error *error) {
+    TrainingOptions options = {.layers = network->layers,
+                               .optimizer = optimizers[0]->name,
+                               .loss = loss,
+                               .on_score = keep_score,
+                               .context = score,
+                               .start = network};
+    memcpy(options.widths, network->widths, sizeof options.widths);
+    Network *same = training_run(dataset, &options, NULL, error);
+    network_destroy(same);
+    return same != NULL;
+}

@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "learning/sain_training.h"
+
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/learning.h"
+#include "learning/scene_training.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "methods/relation_view.h"
+#include "methods/solvers.h"
+#include "scenes/scenes.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void relation_samples_free(RelationSamples *samples) {
+    free(samples->items);
+    free(samples->rows);
+    *samples = (RelationSamples){.form = samples->form};
+}
+
+/* The engine of sain, and what it fills. */
+typedef struct Engine {
+    void *state;
+    ContactSolution solution;
+    size_t velocity_capacity, impulse_capacity;
+    RelationView view;
+} Engine;
+
+static bool relation_samples_begin(Engine *engine, Error *error) {
+    Settings settings;
+    if (!settings_parse(&settings, RELATION_ENGINE_SETTINGS, solver_engine.description.settings, "sain", error))
+        return false;
+    engine->state = solver_engine.create(&settings, error);
+    return engine->state != NULL;
+}
+
+static void end(Engine *engine) {
+    if (engine->state != NULL) solver_engine.destroy(engine->state);
+    free(engine->solution.velocities);
+    free(engine->solution.impulses);
+    relation_view_free(&engine->view);
+}
+
+static bool look(Engine *engine, const ContactProblem *problem, RelationForm form, Error *error) {
+    ContactSolution *solution = &engine->solution;
+    return (array_reserve((void **)&solution->velocities, &engine->velocity_capacity, (size_t)problem->body_count + 1,
+                          sizeof *solution->velocities) &&
+            array_reserve((void **)&solution->impulses, &engine->impulse_capacity, (size_t)problem->contact_count + 1,
+                          sizeof *solution->impulses) &&
+            solver_engine.solve(engine->state, problem, solution, error) &&
+            relation_view_make(&engine->view, problem, solution->velocities, form)) ||
+           error_memory(error, "sain");
+}
+
+static bool reserve(RelationSamples *samples, const RelationView *view) {
+    return array_reserve((void **)&samples->items, &samples->item_capacity,
+                         samples->count + (size_t)view->body_count + 1, sizeof *samples->items) &&
+           array_reserve((void **)&samples->rows, &samples->row_capacity,
+                         samples->row_count + (size_t)view->row_count + 1, sizeof *samples->rows);
+}
+
+static void add_body(RelationSamples *samples, const RelationView *view, int b, const ReferenceVelocity *converged) {
+    const RelationBody *body = &view->bodies[b];
+    RelationSample *sample = &samples->items[samples->count++];
+    double target[RELATION_OUTPUTS];
+    *sample = (RelationSample){.first = (int)samples->row_count, .rows = body->rows, .scale = body->scale};
+    relation_target(body, converged->x, converged->y, converged->spin, target);
+    for (int o = 0; o < RELATION_OUTPUTS; o++) sample->target[o] = (float)target[o];
+    for (int i = 0; i < RELATION_BODY_INPUTS; i++) sample->body[i] = view->body_inputs[i * view->body_count + b];
+    for (int r = body->first; r < body->first + body->rows; r++, samples->row_count++)
+        for (int i = 0; i < RELATION_PAIR_INPUTS; i++)
+            samples->rows[samples->row_count].numbers[i] = view->pair_inputs[i * view->row_count + r];
+}
+
+bool relation_samples_add(RelationSamples *samples, const ImpactProblems *problems, bool impacts_only, Error *error) {
+    Engine engine = {0};
+    bool ok = relation_samples_begin(&engine, error);
+    for (size_t p = 0; ok && p < problems->count; p++) {
+        const ImpactProblem *item = &problems->items[p];
+        if (impacts_only && !item->impact) continue;
+        ok = look(&engine, &item->problem, samples->form, error) &&
+             (reserve(samples, &engine.view) || error_memory(error, "sain"));
+        for (int b = 0; ok && b < engine.view.body_count; b++)
+            add_body(samples, &engine.view, b, &item->reference[engine.view.bodies[b].body]);
+        samples->problems += engine.view.body_count > 0;
+    }
+    end(&engine);
+    return ok;
+}
+
+/* Every so many frames after the impact and at rest; they differ little. */
+enum { AFTER_STEP = 6, REST_EVERY = 30, FACTORIZATIONS_MAX = 120 /* 95% of the impacts on pyramids take fewer */ };
+
+static const double converged = 1e-6; /* m/s */
+
+typedef struct Runs {
+    const RelationRecording *recording;
+    ImpactProblems *of; /* [launches] */
+} Runs;
+
+/* One launch. */
+typedef struct Run {
+    ImpactProblems *problems;
+    Reference reference;
+    PhaseTracker tracker;
+} Run;
+
+static bool keep(Run *run, const ContactProblem *problem, int frame, Error *error) {
+    const Phase phase = phase_next(&run->tracker, problem, frame);
+    const bool wanted = phase == PHASE_IMPACT ||
+                        (phase == PHASE_AFTER ? (frame - run->tracker.touch) % AFTER_STEP : frame % REST_EVERY) == 0;
+    if (!wanted || problem->contact_count == 0) return true;
+    if (!reference_solve_to(&run->reference, problem, converged, FACTORIZATIONS_MAX, error)) return false;
+    if (run->reference.residual > converged) return true;
+    return impact_problems_add(run->problems, problem, run->reference.velocities, phase == PHASE_IMPACT) ||
+           error_memory(error, "recording");
+}
+
+static bool is_over(const Run *run, int frame) {
+    return run->tracker.touch > 0 && frame >= run->tracker.touch + run->tracker.impact_frames + AFTER_FRAMES;
+}
+
+static bool run_world(Run *run, const Scene *scene, World *world, const ContactSolver *solver, Error *error) {
+    for (int frame = 1; frame <= scene->frames && !is_over(run, frame); frame++) {
+        Error failure = {0};
+        if (!world_step(world, solver->kind->solve, solver->state, scene->dt, &failure))
+            return failure.kind == ERROR_INPUT || (*error = failure, false);
+        if (!keep(run, world_problem(world), frame, error)) return false;
+        if (frame == scene->bomb.frame && !scene_add_bomb(scene, world, error)) return false;
+    }
+    return true;
+}
+
+static bool piece(void *context, int i, Error *error) {
+    const Runs *runs = context;
+    const RelationRecording *recording = runs->recording;
+    const Scene launched = launch_scene(recording->scene, &recording->launches[i]);
+    ContactSolver solver = {0};
+    Run run = {.problems = &runs->of[i], .tracker = {.impact_frames = launched.bomb.impact_frames}};
+    World *world = scene_world(&launched, error);
+    const bool ok = world != NULL && recording->make_solver(recording->context, i, &solver, error) &&
+                    run_world(&run, &launched, world, &solver, error);
+    world_destroy(world);
+    if (solver.kind != NULL) solver.kind->destroy(solver.state);
+    reference_free(&run.reference);
+    return ok;
+}
+
+/* Appends to the problems in the order of launches and frames, for any number of threads. Omits problems whose
+   reference does not converge. A launch ends 60 frames after its impact, or if its state becomes NaN or infinite. */
+static bool relation_record(const RelationRecording *recording, ImpactProblems *problems, const Progress *progress,
+                            Error *error) {
+    Runs runs = {recording, calloc((size_t)recording->count + 1, sizeof *runs.of)};
+    if (runs.of == NULL) return error_memory(error, "recording");
+    const ParallelWork work = {piece, &runs};
+    bool ok = parallel_for(&work, recording->count, "launches", progress, error);
+    for (int i = 0; i < recording->count; i++)
+        if (ok)
+            ok = impact_problems_move(problems, &runs.of[i]) || error_memory(error, "recording");
+        else
+            impact_problems_free(&runs.of[i]);
+    free(runs.of);
+    return ok;
+}
+
+static bool make_by_name(const ContactSolverKind *kind, const char *text, ContactSolver *solver, Error *error) {
+    Settings settings;
+    if (!settings_parse(&settings, text, kind->description.settings, kind->description.name, error)) return false;
+    void *state = kind->create(&settings, error);
+    if (state != NULL) *solver = (ContactSolver){kind, state};
+    return state != NULL;
+}
+
+static bool make_solver(void *context, int i, ContactSolver *solver, Error *error) {
+    const RelationDriver *driver = ((const RelationLaunches *)context)->driver;
+    if (driver != NULL) return sain_make(solver, driver->network, driver->form, error);
+    return i % 2 == 0 ? make_by_name(&solver_engine, RELATION_ENGINE_SETTINGS, solver, error)
+                      : make_by_name(&solver_momentum, "k=50", solver, error);
+}
+
+/* Launches rise along the family: a round takes every so manieth, so that each covers the family. */
+static bool record_scene(const RelationLaunches *from, const Scene *scene, ImpactProblems *problems,
+                         const Progress *progress, Error *error) {
+    const int all = from->rounds * from->launches;
+    Launch *launches = malloc((size_t)all * sizeof *launches);
+    if (launches == NULL) return error_memory(error, scene->name);
+    bool ok = from->held_out ? launches_for_scoring(scene, all, launches, error)
+                             : launches_for_training(scene, all, launches, error);
+    for (int i = 0; ok && i < from->launches; i++) launches[i] = launches[i * from->rounds + from->round];
+    RelationLaunches context = *from;
+    const RelationRecording recording = {scene, launches, from->launches, make_solver, &context};
+    ok = ok && relation_record(&recording, problems, progress, error);
+    free(launches);
+    return ok;
+}
+
+bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *problems, const Progress *progress,
+                              Error *error) {
+    for (int s = 0; s < launches->scene_count; s++)
+        if (!record_scene(launches, launches->scenes[s], problems, progress, error)) return false;
+    return true;
+}
+
+static const double first_rate = 0.003;
+
+/* The weights of the state: of each form, those in training, then those that drove each round but the first. */
+enum { SETS = 1 + RELATION_ROUNDS_MAX };
+
+typedef struct Trainer {
+    const RelationTraining *training;
+    RelationNetworks *networks;
+    int weights; /* of a form */
+    FitState state;
+    ImpactProblems first, held_out; /* of the first round */
+    RelationSamples samples, held_out_samples;
+    RelationFit fit;
+    ProgressStage stage;
+    Progress progress; /* of the stage */
+} Trainer;
+
+static size_t set_at(const Trainer *trainer, int form, int set) {
+    return ((size_t)form * SETS + (size_t)set) * (size_t)trainer->weights;
+}
+
+static int stage_form(const Trainer *trainer) { return trainer->state.stage / trainer->training->rounds; }
+
+static int stage_round(const Trainer *trainer) { return trainer->state.stage % trainer->training->rounds; }
+
+/* Adam over the weights in training. */
+static Adam active(const Trainer *trainer, int64_t steps) {
+    const Adam *all = &trainer->state.adam;
+    const size_t at = set_at(trainer, stage_form(trainer), 0);
+    return adam_over(all->weights + at, all->mean + at, all->square + at, trainer->weights, steps, all->square_decay);
+}
+
+static void next_stage(Trainer *trainer, double share) {
+    trainer->stage.begin += trainer->stage.share;
+    trainer->stage.share = share;
+}
+
+/* Ranges and normalisation follow from the samples; the driver's weights from the state. */
+static bool record_round(Trainer *trainer, int form, int round, Error *error) {
+    const RelationTraining *training = trainer->training;
+    RelationNetwork *network = &trainer->networks->forms[form];
+    ImpactProblems problems = {0};
+    if (round == 0) {
+        trainer->samples.form = (RelationForm)form;
+        trainer->held_out_samples.form = (RelationForm)form;
+        if (!relation_samples_add(&trainer->held_out_samples, &trainer->held_out, true, error) ||
+            !relation_samples_add(&trainer->samples, &trainer->first, false, error))
+            return false;
+        relation_normalise(network, &trainer->samples);
+    } else {
+        relation_set_weights(network, trainer->state.adam.weights + set_at(trainer, form, round));
+        const RelationDriver driver = {network, (RelationForm)form};
+        const RelationLaunches launches = {
+            training->scenes, training->scene_count, training->launches, training->rounds, round, false, &driver};
+        const bool ok = relation_launches_record(&launches, &problems, &trainer->progress, error) &&
+                        relation_samples_add(&trainer->samples, &problems, false, error);
+        impact_problems_free(&problems);
+        if (!ok) return false;
+    }
+    relation_set_ranges(network, &trainer->samples);
+    return true;
+}
+
+static bool report(Trainer *trainer, double loss, Error *error) {
+    const RelationTraining *training = trainer->training;
+    const int form = stage_form(trainer);
+    RelationScore score = {
+        (RelationForm)form, stage_round(trainer), trainer->samples.problems, trainer->samples.count, loss, {0, 0, 0}};
+    if (training->on_score == NULL) return true;
+    if (!relation_fit_errors(&trainer->fit, trainer->state.adam.weights + set_at(trainer, form, 0),
+                             &trainer->held_out_samples, &score.held_out, error))
+        return false;
+    training->on_score(training->context, &score);
+    return true;
+}
+
+/* The rate falls from the first to 0 in equal steps; each round begins with half that of the round before. */
+static bool fit_round(Trainer *trainer, Error *error) {
+    const RelationTraining *training = trainer->training;
+    const uint64_t seed = training->seed + (uint64_t)(trainer->state.stage + 1) * 1000003;
+    const double rate = first_rate / (1 << stage_round(trainer));
+    Adam adam = active(trainer, trainer->state.adam.steps);
+    double loss = 0, sum = 0;
+    for (int step = (int)adam.steps; step < training->steps; step++) {
+        if (!relation_fit_step(&trainer->fit, &adam, seed, step, rate * (1 - (double)step / training->steps), &loss,
+                               error))
+            return false;
+        sum += loss;
+        if ((step + 1) % training->saved != 0 && step + 1 < training->steps) continue;
+        trainer->state.adam.steps = adam.steps;
+        if (!fit_state_write(&trainer->state, training->state_path, error)) return false;
+        if (!progress_report(&trainer->progress, step + 1, training->steps)) return true;
+        loss = sum / training->saved;
+        sum = 0;
+    }
+    return report(trainer, loss, error);
+}
+
+static bool run_stage(Trainer *trainer, Error *error) {
+    const int form = stage_form(trainer);
+    RelationNetwork *network = &trainer->networks->forms[form];
+    if (trainer->samples.count == 0) return error_input(error, "sain", "no box is touched: more launches needed");
+    if (!relation_fit_begin(&trainer->fit, network, &trainer->samples, trainer->training->batch, error)) return false;
+    const bool ok = fit_round(trainer, error);
+    relation_fit_free(&trainer->fit);
+    relation_set_weights(network, trainer->state.adam.weights + set_at(trainer, form, 0));
+    return ok;
+}
+
+/* What drives the round is what was trained before it. Moments start with the round: its samples are others. */
+static bool begin_stage(Trainer *trainer, int stage, Error *error) {
+    Adam *all = &trainer->state.adam;
+    trainer->state.stage = stage;
+    const int form = stage_form(trainer), round = stage_round(trainer);
+    double *weights = all->weights + set_at(trainer, form, 0);
+    if (round > 0)
+        memcpy(all->weights + set_at(trainer, form, round), weights, (size_t)trainer->weights * sizeof *weights);
+    else
+        relation_first_weights(&trainer->networks->forms[form], trainer->training->seed, weights);
+    adam_restart(all);
+    return fit_state_write(&trainer->state, trainer->training->state_path, error);
+}
+
+/* The samples of the rounds of a form up to this one, and the form's network as it was. */
+static bool gather(Trainer *trainer, int form, int last, Error *error) {
+    relation_samples_free(&trainer->samples);
+    relation_samples_free(&trainer->held_out_samples);
+    for (int round = 0; round <= last; round++)
+        if (!record_round(trainer, form, round, error)) return false;
+    return true;
+}
+
+static bool record_first(Trainer *trainer, Error *error) {
+    const RelationTraining *training = trainer->training;
+    const RelationLaunches
+        first = {training->scenes, training->scene_count, training->launches, training->rounds, 0, false, NULL},
+        others = {training->scenes, training->scene_count, training->launches / 4 + 1, 1, 0, true, NULL};
+    return relation_launches_record(&first, &trainer->first, &trainer->progress, error) &&
+           relation_launches_record(&others, &trainer->held_out, &trainer->progress, error);
+}
+
+/* The state is written first: an output folder that cannot be written to is refused before any work. */
+static bool relation_training_begin(Trainer *trainer, Error *error) {
+    bool found;
+    for (int f = 0; f < RELATION_FORMS; f++)
+        if (!relation_network_create(&trainer->networks->forms[f], error)) return false;
+    trainer->weights = relation_weight_count(&trainer->networks->forms[0]);
+    trainer->state.command = trainer->training->command;
+    if (!adam_create(&trainer->state.adam, (int64_t)set_at(trainer, RELATION_FORMS, 0), ADAM_SQUARE_DECAY, error) ||
+        !fit_state_read(&trainer->state, trainer->training->state_path, &found, error) ||
+        (!found && !begin_stage(trainer, 0, error)))
+        return false;
+    const int stages = RELATION_FORMS * trainer->training->rounds;
+    if (trainer->state.stage >= stages || trainer->state.adam.steps > trainer->training->steps)
+        return error_input(error, trainer->training->state_path, "stage %d, step %lld is not one of this training",
+                           (int)trainer->state.stage, (long long)trainer->state.adam.steps);
+    trainer->stage.share = 0.05;
+    return record_first(trainer, error);
+}
+
+/* A form whose training is over before this run: its network follows from samples and weights. */
+static bool restore_form(Trainer *trainer, int form, Error *error) {
+    if (!gather(trainer, form, trainer->training->rounds - 1, error)) return false;
+    relation_set_weights(&trainer->networks->forms[form], trainer->state.adam.weights + set_at(trainer, form, 0));
+    return true;
+}
+
+static bool run(Trainer *trainer, Error *error) {
+    const int rounds = trainer->training->rounds, stages = RELATION_FORMS * rounds;
+    if (!relation_training_begin(trainer, error)) return false;
+    for (int form = 0; form < stage_form(trainer); form++)
+        if (!restore_form(trainer, form, error)) return false;
+    const double share = 0.95 / (stages - trainer->state.stage);
+    bool gathered = false;
+    for (;;) {
+        next_stage(trainer, 0.2 * share);
+        if (stage_round(trainer) == 0 || !gathered) {
+            if (!gather(trainer, stage_form(trainer), stage_round(trainer), error)) return false;
+        } else if (!record_round(trainer, stage_form(trainer), stage_round(trainer), error)) {
+            return false;
+        }
+        gathered = true;
+        next_stage(trainer, 0.8 * share);
+        if (!run_stage(trainer, error)) return false;
+        if (trainer->stage.stopped || trainer->state.stage + 1 == stages) return true;
+        if (!begin_stage(trainer, trainer->state.stage + 1, error)) return false;
+    }
+}
+
+bool relation_training_run(const RelationTraining *training, RelationNetworks *networks, const Progress *progress,
+                           Error *error) {
+    Trainer trainer = {.training = training, .networks = networks, .stage = {.whole = progress}};
+    trainer.progress = (Progress){progress_stage, &trainer.stage};
+    *networks = (RelationNetworks){0};
+    bool ok = run(&trainer, error);
+    if (ok && trainer.stage.stopped)
+        ok = error_interrupted(error, training->state_path, "stopped; the same command continues");
+    adam_free(&trainer.state.adam);
+    relation_samples_free(&trainer.samples);
+    relation_samples_free(&trainer.held_out_samples);
+    impact_problems_free(&trainer.first);
+    impact_problems_free(&trainer.held_out);
+    return ok;
+}

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/scene_training.h"
+#include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "methods/solvers.h"
+#include "nets/kinds.h"
+#include "runs/pieces.h"
+#include "runs/runs.h"
+#include "scenes/scenes.h"
+
+#include <gsl/gsl_errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void free_item(ImpactProblem *item) {
+    free((void *)item->problem.bodies);
+    free((void *)item->problem.contacts);
+    free(item->reference);
+}
+
+void impact_problems_free(ImpactProblems *problems) {
+    for (size_t i = 0; i < problems->count; i++) free_item(&problems->items[i]);
+    free(problems->items);
+    *problems = (ImpactProblems){0};
+}
+
+bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem, const ReferenceVelocity *reference,
+                         bool impact) {
+    if (!array_reserve((void **)&problems->items, &problems->capacity, problems->count + 1, sizeof *problems->items))
+        return false;
+    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    ProblemBody *body_copy = malloc((bodies + 1) * sizeof *body_copy);
+    ContactPoint *contact_copy = malloc((contacts + 1) * sizeof *contact_copy);
+    ImpactProblem item = {*problem, malloc((bodies + 1) * sizeof *item.reference), impact};
+    item.problem.bodies = body_copy;
+    item.problem.contacts = contact_copy;
+    problems->items[problems->count++] = item;
+    if (body_copy == NULL || contact_copy == NULL || item.reference == NULL) return false;
+    memcpy(body_copy, problem->bodies, bodies * sizeof *body_copy);
+    memcpy(contact_copy, problem->contacts, contacts * sizeof *contact_copy);
+    memcpy(item.reference, reference, bodies * sizeof *reference);
+    return true;
+}
+
+bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from) {
+    const bool ok = array_reserve((void **)&problems->items, &problems->capacity, problems->count + from->count,
+                                  sizeof *problems->items);
+    if (ok && from->count > 0)
+        memcpy(problems->items + problems->count, from->items, from->count * sizeof *from->items);
+    if (ok) {
+        problems->count += from->count;
+        from->count = 0;
+    }
+    impact_problems_free(from);
+    return ok;
+}
+
+/* STEPS_AFTER: steps after the scene's impact frames that are samples too. */
+enum { STEPS_AFTER = 2, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
+
+/* Launches of a piece, and about the time of one: steps up to the impact, and its references. */
+enum { PIECE_LAUNCHES = 100 };
+static const double launch_seconds = 0.02;
+
+/* Of turned launches, unless the scene has a family of them; rad, rad/s. */
+static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
+/* The setting `near` (residual) of scene-net in the runs that record training samples. */
+static const float rollout_near = 0.05f; /* m/s */
+
+static float draw(const SceneRecording *recording, const SceneSpan *span, const SceneSpan *otherwise) {
+    return scene_span_at(scene_span_varies(span) ? span : otherwise, gsl_rng_uniform(recording->generator));
+}
+
+/* Every second launch has a random rotation and spin. The mass is the scene's: a network is for one mass. */
+static void draw_launches(const SceneRecording *recording, Launch *launches, int count) {
+    const SceneBomb *bomb = &recording->scene->bomb;
+    for (int i = 0; i < count; i++) {
+        Launch launch = launch_of(recording->scene);
+        launch.x = draw(recording, &bomb->x, &bomb->x);
+        if (i % 2 == 1) {
+            launch.rotation = draw(recording, &bomb->rotation, &turned);
+            launch.spin = draw(recording, &bomb->spin, &spinning);
+        }
+        launches[i] = launch;
+    }
+}
+
+/* Where the launches of a set begin; of the number of sets: where all end. */
+static int first_of(const SceneRecording *recording, int set) { return (int)recording->ranges.first_item[set]; }
+
+static Launch *round_launches(const SceneRecording *recording) {
+    return recording->launches + first_of(recording, SCENE_BY_MOMENTUM);
+}
+
+typedef struct Driver {
+    SceneSet set;
+    const SlotNetwork *network; /* or NULL: that of the set */
+} Driver;
+
+static bool make_driver(void *context, ContactSolver *solver, Error *error) {
+    const Driver *driver = context;
+    if (driver->network != NULL) return scene_net_make(solver, driver->network, rollout_near, error);
+    Settings settings;
+    const bool momentum = driver->set != SCENE_BY_REFERENCE;
+    const ContactSolverKind *kind = momentum ? &solver_momentum : &solver_reference;
+    if (!settings_parse(&settings, momentum ? "k=20" : "", kind->description.settings, kind->description.name, error))
+        return false;
+    void *state = kind->create(&settings, error);
+    if (state == NULL) return false;
+    *solver = (ContactSolver){kind, state};
+    return true;
+}
+
+/* Runs launches first to end - 1 and labels their samples. */
+static bool run(const SceneRecording *recording, Driver driver, int first, int end, SlotSamples *samples,
+                const Progress *progress, Error *error) {
+    const SlotRollout rollout = {.scene = recording->scene,
+                                 .launches = recording->launches + first,
+                                 .launch_count = end - first,
+                                 .first_launch = first + recording->round * recording->training->launches,
+                                 .steps = recording->scene->bomb.impact_frames + STEPS_AFTER,
+                                 .gate = SCENE_RECORDING_GATE,
+                                 .make_solver = make_driver,
+                                 .context = &driver};
+    const int had = samples->count;
+    return slot_rollout(&rollout, samples, NULL, error) && slot_samples_label(samples, had, progress, error);
+}
+
+static void describe(void *context, int64_t piece, PieceInfo *info) {
+    static const char *const names[SCENE_SETS] = {"held-out launches", "launches by momentum", "launches by reference"};
+    const SceneRecording *recording = context;
+    int64_t first, end;
+    const int set = piece_ranges_find(&recording->ranges, piece, &first, &end), begin = first_of(recording, set);
+    snprintf(info->name, sizeof info->name, "%s %" PRId64 "-%" PRId64, names[set], first - begin + 1, end - begin);
+    info->weight = launch_seconds * (double)(end - first);
+}
+
+static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+    const SceneRecording *recording = context;
+    int64_t first, end;
+    const Driver driver = {(SceneSet)piece_ranges_find(&recording->ranges, piece, &first, &end), NULL};
+    SlotSamples samples = {0};
+    const bool ok = run(recording, driver, (int)first, (int)end, &samples, progress, error);
+    if (ok) slot_samples_write(&samples, results);
+    slot_samples_free(&samples);
+    return ok;
+}
+
+static bool read_piece(const SceneRecording *recording, int64_t piece, SlotSamples *samples, Error *error) {
+    char path[PIECES_PATH_SIZE];
+    size_t size;
+    if (!pieces_path(recording->training->recorded, piece, path, error)) return false;
+    char *results = pieces_read(recording->training->recorded, piece, &size, NULL, error);
+    const bool ok =
+        results != NULL && slot_samples_read(samples, results, size, recording->scene->body_count + 1, path, error);
+    free(results);
+    return ok;
+}
+
+bool scene_recording_take(const SceneRecording *recording, SceneSet set, SlotSamples *samples, const Progress *progress,
+                          Error *error) {
+    if (recording->training->recorded == NULL)
+        return run(recording, (Driver){set, NULL}, first_of(recording, (int)set), first_of(recording, (int)set + 1),
+                   samples, progress, error);
+    const int64_t first = recording->ranges.first_piece[set], end = recording->ranges.first_piece[set + 1];
+    for (int64_t piece = first; piece < end; piece++) {
+        if (!read_piece(recording, piece, samples, error)) return false;
+        if (!progress_report(progress, (double)(piece - first + 1), (double)(end - first)))
+            return error_interrupted(error, "scene-net", "stopped");
+    }
+    return true;
+}
+
+bool scene_recording_next(SceneRecording *recording, const SlotNetwork *network, SlotSamples *samples,
+                          const Progress *progress, Error *error) {
+    const int first = first_of(recording, SCENE_BY_MOMENTUM);
+    recording->round++;
+    draw_launches(recording, round_launches(recording), recording->training->launches);
+    return run(recording, (Driver){SCENE_BY_MOMENTUM, network}, first, first_of(recording, SCENE_SETS), samples,
+               progress, error);
+}
+
+static bool check_scene(const Scene *scene, Error *error) {
+    if (!scene->bomb.present) return error_input(error, scene->name, "has no bomb to launch");
+    return scene_span_varies(&scene->bomb.x) ||
+           error_input(error, scene->name, "the bomb has one x; write a family of launches, x: {from: A, to: B}");
+}
+
+/* Held-out launches have their own random seed. */
+static bool draw_held_out(const SceneRecording *recording, Error *error) {
+    const int count = first_of(recording, SCENE_BY_MOMENTUM);
+    gsl_rng_set(recording->generator, (unsigned long)recording->training->seed + HELD_OUT_SEED);
+    draw_launches(recording, recording->launches, count);
+    return launches_check(recording->scene, recording->launches, count, error);
+}
+
+static bool check_rounds(const SceneRecording *recording, Error *error) {
+    const SceneTraining *training = recording->training;
+    gsl_rng_set(recording->generator, (unsigned long)training->seed);
+    for (int round = 0; round < training->rounds; round++) {
+        draw_launches(recording, round_launches(recording), training->launches);
+        if (!launches_check(recording->scene, round_launches(recording), training->launches, error)) return false;
+    }
+    return true;
+}
+
+static void plan_sets(SceneRecording *recording) {
+    const int launches = recording->training->launches, half = launches / 2;
+    const int counts[SCENE_SETS] = {launches < HELD_OUT_LAUNCHES ? launches : HELD_OUT_LAUNCHES, half, launches - half};
+    for (int set = 0; set < SCENE_SETS; set++)
+        piece_ranges_add(&recording->ranges, counts[set], (double)counts[set] / PIECE_LAUNCHES);
+    recording->plan = (PiecePlan){
+        .count = piece_ranges_count(&recording->ranges), .describe = describe, .work = work, .context = recording};
+}
+
+bool scene_recording_begin(SceneRecording *recording, const Scene *scene, const SceneTraining *training, Error *error) {
+    *recording = (SceneRecording){.scene = scene, .training = training};
+    if (!check_scene(scene, error)) return false;
+    plan_sets(recording);
+    gsl_set_error_handler_off(); /* its default aborts */
+    recording->generator = gsl_rng_alloc(gsl_rng_mt19937);
+    recording->launches = malloc((size_t)first_of(recording, SCENE_SETS) * sizeof *recording->launches);
+    if (recording->generator == NULL || recording->launches == NULL) return error_memory(error, "scene-net");
+    if (!check_rounds(recording, error) || !draw_held_out(recording, error)) return false;
+    gsl_rng_set(recording->generator, (unsigned long)training->seed);
+    draw_launches(recording, round_launches(recording), training->launches);
+    return true;
+}
+
+void scene_recording_end(SceneRecording *recording) {
+    if (recording->generator != NULL) gsl_rng_free(recording->generator);
+    free(recording->launches);
+    *recording = (SceneRecording){.scene = NULL};
+}

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "learning/scene_training.h"
+
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "methods/solvers.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Sweeps of the timed rivals, between which time is linear; most sweeps; turns of all rivals. */
+enum { FEW_SWEEPS = 10, MANY_SWEEPS = 60, MOST_SWEEPS = 200, PASSES = 7 };
+
+/* No sweeps follow by the stopping rule. */
+static const float never = 1e9f; /* m/s */
+
+/* Space for a solution of any sample. */
+static bool make_solution(ContactSolution *solution, const SlotSamples *samples, Error *error) {
+    size_t bodies = 1, contacts = 1;
+    for (int i = 0; i < samples->count; i++) {
+        const ContactProblem *problem = &samples->items[i].problem;
+        if ((size_t)problem->body_count > bodies) bodies = (size_t)problem->body_count;
+        if ((size_t)problem->contact_count > contacts) contacts = (size_t)problem->contact_count;
+    }
+    *solution = (ContactSolution){.velocities = calloc(bodies, sizeof *solution->velocities),
+                                  .impulses = calloc(contacts, sizeof *solution->impulses)};
+    return (solution->velocities != NULL && solution->impulses != NULL) || error_memory(error, "scene-net");
+}
+
+/* Solves all samples. s: the time of the solver alone, if shorter than before. m/s: the mean error. */
+static bool solve_all(ContactSolver *solver, const SlotSamples *samples, ContactSolution *solution, double *seconds,
+                      double *mean, Error *error) {
+    double sum = 0, passed = 0;
+    for (int i = 0; i < samples->count; i++) {
+        const SlotSample *sample = &samples->items[i];
+        const double begin = clock_seconds();
+        if (!solver->kind->solve(solver->state, &sample->problem, solution, error)) return false;
+        passed += clock_seconds() - begin;
+        sum += solution_error(&sample->problem, solution->velocities, sample->reference).rms;
+    }
+    if (passed < *seconds) *seconds = passed;
+    *mean = sum / samples->count;
+    return true;
+}
+
+static bool make_momentum(ContactSolver *solver, int sweeps, Error *error) {
+    char text[16];
+    Settings settings;
+    snprintf(text, sizeof text, "k=%d", sweeps);
+    const MethodDescription *description = &solver_momentum.description;
+    if (!settings_parse(&settings, text, description->settings, description->name, error)) return false;
+    *solver = (ContactSolver){&solver_momentum, solver_momentum.create(&settings, error)};
+    return solver->state != NULL;
+}
+
+static void destroy(ContactSolver *solver) {
+    if (solver->state != NULL) solver->kind->destroy(solver->state);
+}
+
+static bool scene_net_verdict_momentum_error(const SlotSamples *samples, int sweeps, ContactSolution *solution,
+                                             double *mean, Error *error) {
+    ContactSolver solver = {.state = NULL};
+    double unused = INFINITY;
+    const bool ok =
+        make_momentum(&solver, sweeps, error) && solve_all(&solver, samples, solution, &unused, mean, error);
+    destroy(&solver);
+    return ok;
+}
+
+/* The number of sweeps whose time is nearest. */
+static int sweeps_of(double seconds, double few, double many) {
+    const double sweep = (many - few) / (MANY_SWEEPS - FEW_SWEEPS);
+    const double sweeps = sweep > 0 ? round(FEW_SWEEPS + (seconds - few) / sweep) : MOST_SWEEPS;
+    return (int)fmin(fmax(sweeps, 1), MOST_SWEEPS);
+}
+
+static bool measure(ContactSolver rivals[3], const SlotSamples *samples, ContactSolution *solution,
+                    SceneNetVerdict *verdict, Error *error) {
+    double seconds[3] = {INFINITY, INFINITY, INFINITY}, mean[3];
+    for (int pass = 0; pass < PASSES; pass++)
+        for (int i = 0; i < 3; i++)
+            if (!solve_all(&rivals[i], samples, solution, &seconds[i], &mean[i], error)) return false;
+    verdict->samples = samples->count;
+    verdict->network = mean[0];
+    verdict->microseconds = 1e6 * seconds[0] / samples->count;
+    verdict->sweeps = sweeps_of(seconds[0], seconds[1], seconds[2]);
+    return scene_net_verdict_momentum_error(samples, verdict->sweeps, solution, &verdict->at_equal_time, error) &&
+           scene_net_verdict_momentum_error(samples, 20, solution, &verdict->at_20, error);
+}
+
+/* Solves the samples by the method scene-net and by momentum, in turns, and keeps the shortest time of each. The errors
+   are the same on every machine; `sweeps` depends on it. */
+static bool scene_net_verdict(const SlotNetwork *network, const SlotSamples *held_out, SceneNetVerdict *verdict,
+                              Error *error) {
+    ContactSolver rivals[3] = {{.state = NULL}, {.state = NULL}, {.state = NULL}};
+    ContactSolution solution = {.velocities = NULL};
+    *verdict = (SceneNetVerdict){.samples = 0};
+    bool ok = held_out->count == 0 ||
+              (make_solution(&solution, held_out, error) && scene_net_make(&rivals[0], network, never, error) &&
+               make_momentum(&rivals[1], FEW_SWEEPS, error) && make_momentum(&rivals[2], MANY_SWEEPS, error) &&
+               measure(rivals, held_out, &solution, verdict, error));
+    for (int i = 0; i < 3; i++) destroy(&rivals[i]);
+    free(solution.velocities);
+    free(solution.impulses);
+    return ok;
+}
+
+enum { MOMENTUM_SWEEPS = 20 };
+
+/* Mean error of the network and its sweeps. */
+static bool network_error(const SlotNetwork *network, const SlotSamples *samples, double *result, Error *error) {
+    double *errors = malloc(((size_t)samples->count + 1) * sizeof *errors), sum = 0;
+    bool ok = errors != NULL || error_memory(error, "scene-net");
+    ok = ok && slot_errors(network, samples, 0, errors, error);
+    for (int i = 0; ok && i < samples->count; i++) sum += errors[i];
+    *result = samples->count > 0 ? sum / samples->count : NAN;
+    free(errors);
+    return ok;
+}
+
+/* Mean error of momentum with warm start. */
+static bool scene_net_score_momentum_error(const SlotSamples *samples, double *result, Error *error) {
+    float factors[MOMENTUM_SWEEPS];
+    for (int s = 0; s < MOMENTUM_SWEEPS; s++) factors[s] = momentum_factor_tuned(s, MOMENTUM_SWEEPS);
+    Momentum momentum = {0};
+    double sum = 0;
+    bool ok = true;
+    for (int i = 0; ok && i < samples->count; i++) {
+        const ContactProblem *problem = &samples->items[i].problem;
+        ContactSolution solution = {
+            .velocities = malloc(((size_t)problem->body_count + 1) * sizeof *solution.velocities),
+            .impulses = malloc(((size_t)problem->contact_count + 1) * sizeof *solution.impulses)};
+        ok = (solution.velocities != NULL && solution.impulses != NULL) || error_memory(error, "scene-net");
+        ok = ok && momentum_solve(&momentum, problem, factors, MOMENTUM_SWEEPS, &solution, error);
+        if (ok) sum += solution_error(problem, solution.velocities, samples->items[i].reference).rms;
+        free(solution.velocities);
+        free(solution.impulses);
+    }
+    momentum_free(&momentum);
+    *result = samples->count > 0 ? sum / samples->count : NAN;
+    return ok;
+}
+
+/* Fills all except `round`; NaN for an empty set. Both sets have the network's inputs (slot_samples_compute_inputs). */
+static bool scene_net_score(const SlotNetwork *network, const SlotSamples *samples, const SlotSamples *held_out,
+                            SceneNetScore *score, Error *error) {
+    score->samples = samples->count;
+    return network_error(network, samples, &score->train, error) &&
+           network_error(network, held_out, &score->held_out, error) &&
+           scene_net_score_momentum_error(held_out, &score->momentum, error);
+}
+
+static const double impulse_weight = 0.02, first_rate = 3e-3;
+
+typedef struct Trainer {
+    const Scene *scene;
+    const SceneTraining *training;
+    SceneRecording recording;
+    SlotSamples samples, held_out;
+    SlotNetwork *network;
+    ProgressStage stage;
+    Progress progress; /* of the stage */
+} Trainer;
+
+static void next_stage(Trainer *trainer, double share) {
+    trainer->stage.begin += trainer->stage.share;
+    trainer->stage.share = share;
+}
+
+static bool take(Trainer *trainer, SceneSet set, SlotSamples *samples, double share, Error *error) {
+    next_stage(trainer, share);
+    return scene_recording_take(&trainer->recording, set, samples, &trainer->progress, error);
+}
+
+/* The range of each input over the samples, with a margin. */
+static void find_bounds(SlotNetwork *network, const SlotSamples *samples) {
+    const float margin = 0.1f;
+    for (int k = 0; k < slot_network_inputs(network); k++) {
+        float low = samples->items[0].inputs[k], high = low;
+        for (int i = 1; i < samples->count; i++) {
+            low = fminf(low, samples->items[i].inputs[k]);
+            high = fmaxf(high, samples->items[i].inputs[k]);
+        }
+        network->low[k] = low - margin * (high - low) - 1e-6f;
+        network->high[k] = high + margin * (high - low) + 1e-6f;
+    }
+}
+
+static bool first_round(Trainer *trainer, Error *error) {
+    const SceneTraining *training = trainer->training;
+    if (!take(trainer, SCENE_BY_MOMENTUM, &trainer->samples, 0.1, error) ||
+        !take(trainer, SCENE_BY_REFERENCE, &trainer->samples, 0.1, error))
+        return false;
+    trainer->network = slot_network_from_samples(&trainer->samples, &training->widths, training->seed, error);
+    if (trainer->network == NULL) return false;
+    SlotNetwork *network = trainer->network;
+    snprintf(network->scene, sizeof network->scene, "%s", trainer->scene->name);
+    network->gate = SCENE_RECORDING_GATE;
+    network->bomb_inv_mass = trainer->samples.items[0].problem.bodies[network->bomb].inv_mass;
+    network->sweeps = training->sweeps;
+    for (int s = 0; s < training->sweeps && training->momentum; s++)
+        network->factors[s] = momentum_factor_tuned(s, training->sweeps);
+    return true;
+}
+
+static bool next_round(Trainer *trainer, double share, Error *error) {
+    const int had = trainer->samples.count;
+    next_stage(trainer, share);
+    return scene_recording_next(&trainer->recording, trainer->network, &trainer->samples, &trainer->progress, error) &&
+           slot_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
+}
+
+static bool score(const Trainer *trainer, int round, Error *error) {
+    SceneNetScore result = {.round = round};
+    if (!scene_net_score(trainer->network, &trainer->samples, &trainer->held_out, &result, error)) return false;
+    if (trainer->training->on_score != NULL) trainer->training->on_score(trainer->training->context, &result);
+    return true;
+}
+
+static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
+    const SceneTraining *training = trainer->training;
+    const int epochs = round == 0 ? training->epochs : (training->epochs + 1) / 2;
+    const SlotFit fit = {.impulse_weight = impulse_weight,
+                         .impulse_epochs = round == 0 ? epochs / 12 : 0,
+                         .epochs = epochs,
+                         .rate = round == 0 ? first_rate : first_rate / 2,
+                         .learn_factors = training->momentum,
+                         .seed = training->seed + (uint64_t)round};
+    next_stage(trainer, share);
+    if (!slot_fit(trainer->network, &trainer->samples, &fit, &trainer->progress, error)) return false;
+    find_bounds(trainer->network, &trainer->samples);
+    return score(trainer, round, error);
+}
+
+static bool train(Trainer *trainer, Error *error) {
+    const int rounds = trainer->training->rounds;
+    const double share = 0.78 / rounds;
+    if (!scene_recording_begin(&trainer->recording, trainer->scene, trainer->training, error) ||
+        !take(trainer, SCENE_HELD_OUT, &trainer->held_out, 0.02, error) || !first_round(trainer, error) ||
+        !slot_samples_compute_inputs(&trainer->held_out, 0, trainer->network, error) ||
+        !fit_round(trainer, 0, share, error))
+        return false;
+    for (int round = 1; round < rounds && !trainer->stage.stopped; round++) {
+        Error failure = {0};
+        if (next_round(trainer, 0.3 * share, &failure)) {
+            if (!fit_round(trainer, round, 0.7 * share, error)) return false;
+        } else if (!trainer->stage.stopped) {
+            *error = failure;
+            return false;
+        }
+    }
+    return true;
+}
+
+SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress,
+                                Error *error) {
+    Trainer trainer = {.scene = scene, .training = training, .stage = {.whole = progress}};
+    trainer.progress = (Progress){progress_stage, &trainer.stage};
+    bool ok = train(&trainer, error);
+    if (ok && training->verdict != NULL)
+        ok = scene_net_verdict(trainer.network, &trainer.held_out, training->verdict, error);
+    scene_recording_end(&trainer.recording);
+    slot_samples_free(&trainer.samples);
+    slot_samples_free(&trainer.held_out);
+    if (ok) return trainer.network;
+    slot_network_destroy(trainer.network);
+    return NULL;
+}

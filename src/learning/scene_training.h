@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Differentiable momentum sweeps (methods/solvers.h, in colour order) in double: reverse-mode derivatives of a loss of
+   the final velocities with respect to the start impulses and the momentum factors. A network that predicts the start
+   of a solve can thus be trained on the result of the solve.
+
+   A sweep is piecewise linear. The backward pass uses the piece that each visit took in the forward pass, so the
+   derivative is exact, except at a kink, where it is that of one of the two pieces. Sources: Griewank and Walther,
+   "Evaluating Derivatives" (2008), chapter 3 (reverse mode); Monga, Li, Eldar, "Algorithm Unrolling" (2021) (training
+   through an unrolled solver).
+
+   by_x denotes the derivative of the loss with respect to x. */
+#pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "methods/reference.h"
+#include "methods/solvers.h"
+#include "nets/kinds.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
+
+#include <gsl/gsl_rng.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* One contact point. `normal` and `tangent` are Jacobian rows: linear part for b (negated for a), angular part for a
+   and for b. Their product with the velocities is the relative velocity of the contact point of b along the
+   direction. */
+typedef struct UnrolledContact {
+    int a, b;
+    double normal[4], tangent[4];     /* x, y, -cross(arm_a, direction), cross(arm_b, direction) */
+    double mass_normal, mass_tangent; /* kg */
+    double friction;
+    double bias;     /* m/s */
+    double coupling; /* tangential m/s caused by a normal impulse of 1 N s */
+} UnrolledContact;
+
+typedef struct UnrolledProblem {
+    int body_count, contact_count;
+    UnrolledContact *contacts; /* [contact_count] */
+    int32_t *visits;           /* [contact_count] contacts in colour order */
+    double *inv_mass;          /* [body_count] 1/kg */
+    double *inv_inertia;       /* [body_count] 1/(kg m^2) */
+    double *free;              /* [3 body_count] velocity x, y (m/s) and spin (rad/s) before any impulse */
+} UnrolledProblem;
+
+/* Free with unrolled_problem_free(). False if out of memory. */
+bool unrolled_problem_make(UnrolledProblem *unrolled, const ContactProblem *problem);
+void unrolled_problem_free(UnrolledProblem *problem);
+
+/* Work space of a thread. Zero-initialise; arrays grow and are reused. A state is velocities [3 body_count], then
+   impulses [2 contact_count]. */
+typedef struct Unrolled {
+    double *velocities; /* [3 body_count] result of unrolled_run(), in `states` */
+    double *impulses;   /* [2 contact_count] N s, normal and tangent of each contact, in `states` */
+    int sweeps;
+    double *states;   /* [sweeps + 1, state] the start, and after each sweep */
+    uint8_t *pieces;  /* [sweeps + 1, contact_count] pieces of the start's projection and of each visit */
+    double *factors;  /* [sweeps] */
+    double *adjoints; /* [2, state] */
+    size_t state_capacity, piece_capacity, factor_capacity, adjoint_capacity;
+} Unrolled;
+
+void unrolled_free(Unrolled *unrolled);
+
+/* Projects start[2 contact_count] (N s, normal and tangent of each contact) into the friction cone (Pn = max(Pn, 0),
+   Pt = clamp(Pt, -mu Pn, mu Pn)), then runs sweeps >= 0 sweeps. factors[s] extrapolates before sweep s; factors[0] is
+   ignored. False if out of memory. */
+bool unrolled_run(Unrolled *unrolled, const UnrolledProblem *problem, const double *start, const double *factors,
+                  int sweeps);
+
+/* Backward pass, after unrolled_run() of the same problem; may be repeated. by_velocity[3 body_count] refers to the
+   final velocities. Writes by_start[2 contact_count] and adds to by_factors[sweeps], if by_factors != NULL. */
+void unrolled_back(Unrolled *unrolled, const UnrolledProblem *problem, const double *by_velocity, double *by_start,
+                   double *by_factors);
+
+/* Training samples of a slot network: contact problems of impacts with their converged solutions. */
+
+typedef struct SlotSample {
+    ContactProblem problem; /* owns its arrays */
+    int launch, since;      /* number of the launch; steps since the bomb's first touch */
+    /* After slot_samples_label: */
+    ReferenceVelocity *reference; /* [body_count] */
+    ContactImpulse *goal;         /* [contact_count] impulses of the reference */
+    UnrolledProblem unrolled;
+    /* After slot_samples_compute_inputs: */
+    SceneView view;
+    float *inputs; /* [slot_network_inputs] */
+} SlotSample;
+
+/* Zero-initialise. */
+typedef struct SlotSamples {
+    SlotSample *items;
+    int count;
+    size_t capacity;
+} SlotSamples;
+
+void slot_samples_free(SlotSamples *samples);
+
+/* Appends a copy of a problem. False if out of memory. */
+bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int launch, int since);
+
+/* Moves all of `from` to the end of the samples. False if out of memory. */
+bool slot_samples_move(SlotSamples *samples, SlotSamples *from);
+
+/* Solves the samples from index `first` by the reference. */
+bool slot_samples_label(SlotSamples *samples, int first, const Progress *progress, Error *error);
+
+/* Computes the view and the network inputs of the samples from index `first`. The inputs are valid only if the network
+   has projections. */
+bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error);
+
+/* Labelled samples as bytes, without view and inputs, which follow from the network. Whether writing failed is for the stream
+   to tell. */
+void slot_samples_write(const SlotSamples *samples, FILE *out);
+
+/* Appends what slot_samples_write() wrote. ERROR_INPUT, naming the file `path`, if the bytes are damaged, or the problems do not
+   have a bomb and `bodies` bodies. */
+bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int bodies, const char *path, Error *error);
+
+/* Errors of a scene network and of its untrained baseline. */
+
+typedef struct SceneNetScore {
+    int round, samples;
+    double train, held_out; /* m/s: mean error of network + sweeps on training and on held-out launches */
+    double momentum;        /* m/s: mean error of momentum with 20 sweeps and warm start, held-out launches */
+} SceneNetScore;
+
+/* A trained scene network beside momentum in the same time, on held-out launches. */
+
+typedef struct SceneNetVerdict {
+    int samples;
+    double network;       /* m/s: mean error of the network and its sweeps, without sweeps by the stopping rule */
+    double at_equal_time; /* m/s: of momentum with `sweeps` */
+    double at_20;         /* m/s: of momentum with 20 sweeps */
+    int sweeps;           /* of momentum, that take as long as the network and its sweeps: 1 .. 200 */
+    double microseconds;  /* of a step by the network and its sweeps */
+} SceneNetVerdict;
+
+/* Initialises a slot network from samples of a scene: slots, input projections, output scales, random weights. */
+
+typedef struct SlotWidths {
+    int state, present, warm; /* number of input components of each projection */
+    int hidden;
+} SlotWidths;
+
+/* Makes an untrained network for labelled samples and computes their inputs. Slots are the contacts that occur in at
+   least 3 samples. NULL with error set: no samples, memory, or a shape out of bounds (slot_network_create). */
+SlotNetwork *slot_network_from_samples(SlotSamples *samples, const SlotWidths *widths, uint64_t seed, Error *error);
+
+/* Trains a network for the impacts of one scene (methods/scene_net.c). The first round runs launches, solves their
+   impacts by the reference and fits the network through the sweeps that follow it. Later rounds run launches with the
+   network and fit it to the aggregated impacts (DAgger). Source: Ross, Gordon, Bagnell, "A Reduction of Imitation
+   Learning and Structured Prediction to No-Regret Online Learning" (2011). */
+
+typedef struct SceneTraining {
+    int launches;  /* per round, drawn from the scene's family; half of them with a random rotation and spin */
+    int rounds;    /* the first is run by momentum and by the reference, the others by the network */
+    int epochs;    /* of the first round; later rounds have half as many */
+    int sweeps;    /* after the network */
+    bool momentum; /* learn momentum factors for the sweeps */
+    SlotWidths widths;
+    uint64_t seed;
+    /* Called after each round; may be NULL. */
+    void (*on_score)(void *context, const SceneNetScore *score);
+    void *context;
+    SceneNetVerdict *verdict; /* on the network that is returned; or NULL */
+    const Pieces *recorded;   /* what the first round runs is read from these (scene_recording.h); or NULL */
+} SceneTraining;
+
+/* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN
+   or infinite. If progress stops the training after the first network was made, returns the network as it is.
+   `command` is left empty. Same bits for any number of threads. */
+SlotNetwork *scene_training_run(const Scene *scene, const SceneTraining *training, const Progress *progress,
+                                Error *error);
+
+/* Contact problems that runs have recorded, with their converged velocities. */
+
+typedef struct ImpactProblem {
+    ContactProblem problem; /* owns its arrays */
+    ReferenceVelocity *reference;
+    bool impact;
+} ImpactProblem;
+
+typedef struct ImpactProblems {
+    ImpactProblem *items;
+    size_t count, capacity;
+} ImpactProblems;
+
+void impact_problems_free(ImpactProblems *problems);
+
+/* Appends a copy. reference: [body_count]. False when memory is short. */
+bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem, const ReferenceVelocity *reference,
+                         bool impact);
+
+/* Appends the items of `from`, which is empty afterwards. False when memory is short. */
+bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from);
+
+/* The launches of a training of a scene network. Those that are held out, and those of the first round, do not depend on the
+   network: they can be recorded in pieces (runs/pieces.h), and be read by the training. */
+
+/* RMS residual of the warm start over the contacts, m/s: below it at rest, above it during a shock. Only the latter are samples. */
+#define SCENE_RECORDING_GATE 0.3f
+
+/* Launches by who runs them. */
+typedef enum SceneSet { SCENE_HELD_OUT, SCENE_BY_MOMENTUM, SCENE_BY_REFERENCE, SCENE_SETS } SceneSet;
+
+/* scene_recording_end(). */
+typedef struct SceneRecording {
+    const Scene *scene;
+    const SceneTraining *training;
+    gsl_rng *generator; /* of the next round */
+    int round;
+    Launch *launches;   /* of the sets, in their order; the last two are the round's */
+    PieceRanges ranges; /* a group for each set */
+    PiecePlan plan;
+} SceneRecording;
+
+/* Draws the launches of the first round, and checks those of all rounds: the last round must not be the first to be refused.
+   ERROR_INPUT also for a scene without a bomb or with one x. All pointers must outlive the recording, which must stay where
+   it is. */
+bool scene_recording_begin(SceneRecording *recording, const Scene *scene, const SceneTraining *training, Error *error);
+void scene_recording_end(SceneRecording *recording);
+
+/* Appends the labelled samples of a set, in the order of launches: from training->recorded, or by running them. */
+bool scene_recording_take(const SceneRecording *recording, SceneSet set, SlotSamples *samples, const Progress *progress,
+                          Error *error);
+
+/* Draws the launches of the next round, runs them with the network and appends their labelled samples. */
+bool scene_recording_next(SceneRecording *recording, const SlotNetwork *network, SlotSamples *samples,
+                          const Progress *progress, Error *error);

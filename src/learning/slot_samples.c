@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/scene_training.h"
+#include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "methods/solvers.h"
+#include "methods/sweeps.h"
+#include "nets/kinds.h"
+#include "runs/runs.h"
+#include "scenes/scenes.h"
+
+#include <assert.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void free_sample(SlotSample *sample) {
+    free((void *)sample->problem.bodies);
+    free((void *)sample->problem.contacts);
+    free(sample->reference);
+    free(sample->goal);
+    unrolled_problem_free(&sample->unrolled);
+    scene_view_free(&sample->view);
+    free(sample->inputs);
+}
+
+void slot_samples_free(SlotSamples *samples) {
+    for (int i = 0; i < samples->count; i++) free_sample(&samples->items[i]);
+    free(samples->items);
+    *samples = (SlotSamples){0};
+}
+
+static bool reserve(SlotSamples *samples, int count) {
+    return array_reserve((void **)&samples->items, &samples->capacity, (size_t)samples->count + (size_t)count,
+                         sizeof *samples->items);
+}
+
+bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int launch, int since) {
+    if (!reserve(samples, 1)) return false;
+    const size_t bodies = (size_t)problem->body_count * sizeof(ProblemBody);
+    const size_t contacts = (size_t)problem->contact_count * sizeof(ContactPoint);
+    ProblemBody *body_copy = malloc(bodies + 1);
+    ContactPoint *contact_copy = malloc(contacts + 1);
+    SlotSample *sample = &samples->items[samples->count++];
+    *sample = (SlotSample){.problem = *problem, .launch = launch, .since = since};
+    sample->problem.bodies = body_copy;
+    sample->problem.contacts = contact_copy;
+    if (body_copy == NULL || contact_copy == NULL) return false;
+    memcpy(body_copy, problem->bodies, bodies);
+    if (contacts > 0) memcpy(contact_copy, problem->contacts, contacts);
+    return true;
+}
+
+bool slot_samples_move(SlotSamples *samples, SlotSamples *from) {
+    if (!reserve(samples, from->count + 1)) return false;
+    for (int i = 0; i < from->count; i++) samples->items[samples->count++] = from->items[i];
+    free(from->items);
+    *from = (SlotSamples){0};
+    return true;
+}
+
+typedef struct Labels {
+    SlotSample *items;
+    Reference *references; /* [threads] */
+} Labels;
+
+/* Everything of a label but the goal's impulses. */
+static bool begin_label(SlotSample *sample, const ReferenceVelocity *velocities) {
+    const size_t bodies = (size_t)sample->problem.body_count, contacts = (size_t)sample->problem.contact_count;
+    sample->reference = malloc(bodies * sizeof *sample->reference + 1);
+    sample->goal = malloc(contacts * sizeof *sample->goal + 1);
+    if (sample->reference == NULL || sample->goal == NULL ||
+        !unrolled_problem_make(&sample->unrolled, &sample->problem))
+        return false;
+    memcpy(sample->reference, velocities, bodies * sizeof *sample->reference);
+    return true;
+}
+
+static bool label(void *context, int i, Error *error) {
+    const Labels *labels = context;
+    SlotSample *sample = &labels->items[i];
+    Reference *reference = &labels->references[omp_get_thread_num()];
+    if (!reference_solve(reference, &sample->problem, NULL, error)) return false;
+    if (!begin_label(sample, reference->velocities)) return error_memory(error, "labels");
+    for (int k = 0; k < sample->problem.contact_count; k++)
+        sample->goal[k] = (ContactImpulse){(float)reference->impulses[k].normal, (float)reference->impulses[k].tangent};
+    return true;
+}
+
+bool slot_samples_label(SlotSamples *samples, int first, const Progress *progress, Error *error) {
+    const int threads = omp_get_max_threads();
+    Reference *references = calloc((size_t)threads, sizeof *references);
+    if (references == NULL) return error_memory(error, "labels");
+    Labels labels = {samples->items + first, references};
+    const ParallelWork work = {label, &labels};
+    bool ok = parallel_for(&work, samples->count - first, "labels", progress, error);
+    for (int i = 0; i < threads; i++) reference_free(&references[i]);
+    free(references);
+    return ok;
+}
+
+bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error) {
+    bool ok = true;
+#pragma omp parallel for schedule(dynamic, 64) reduction(&& : ok)
+    for (int i = first; i < samples->count; i++) {
+        SlotSample *sample = &samples->items[i];
+        bool fine = scene_view_take(&sample->view, network, &sample->problem);
+        if (fine && sample->inputs == NULL)
+            sample->inputs = malloc((size_t)slot_network_inputs(network) * sizeof *sample->inputs);
+        fine = fine && sample->inputs != NULL;
+        if (fine) slot_network_look(network, &sample->view.slots, sample->inputs);
+        ok = ok && fine;
+    }
+    return ok || error_memory(error, "samples");
+}
+
+void slot_samples_write(const SlotSamples *samples, FILE *out) {
+    for (int i = 0; i < samples->count; i++) {
+        const SlotSample *sample = &samples->items[i];
+        const int32_t place[2] = {sample->launch, sample->since};
+        fwrite(place, sizeof place, 1, out);
+        problem_bytes_write(&sample->problem, out);
+        stream_put(out, sample->reference, sizeof *sample->reference, (size_t)sample->problem.body_count);
+        stream_put(out, sample->goal, sizeof *sample->goal, (size_t)sample->problem.contact_count);
+    }
+}
+
+/* The numbers of reference and goal are not checked: a reference that diverged is NaN in the training, too. */
+static bool read_label(SlotSample *sample, const ReferenceVelocity *velocities, ProblemBytes *bytes, Error *error) {
+    return (begin_label(sample, velocities) || error_memory(error, bytes->path)) &&
+           problem_bytes_take(bytes, sample->goal, (size_t)sample->problem.contact_count, sizeof *sample->goal, error);
+}
+
+static bool read_sample(SlotSamples *samples, ProblemBytes *bytes, int bodies, Error *error) {
+    int32_t place[2];
+    ContactProblem problem = {0};
+    ReferenceVelocity *velocities = malloc((size_t)bodies * sizeof *velocities);
+    bool ok = velocities != NULL || error_memory(error, bytes->path);
+    ok = ok && problem_bytes_take(bytes, place, 1, sizeof place, error) && problem_bytes_read(&problem, bytes, error);
+    if (ok && (place[0] < 0 || place[1] < 0 || problem.body_count != bodies || problem.marked < 0))
+        ok = problem_bytes_refuse(bytes, error);
+    ok = ok && problem_bytes_take(bytes, velocities, (size_t)bodies, sizeof *velocities, error) &&
+         (slot_samples_add(samples, &problem, place[0], place[1]) || error_memory(error, bytes->path)) &&
+         read_label(&samples->items[samples->count - 1], velocities, bytes, error);
+    problem_bytes_free(&problem);
+    free(velocities);
+    return ok;
+}
+
+bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int bodies, const char *path,
+                       Error *error) {
+    ProblemBytes bytes = {data, size, path};
+    bool ok = true;
+    while (ok && bytes.left > 0) ok = read_sample(samples, &bytes, bodies, error);
+    return ok;
+}
+
+typedef struct Runs {
+    const SlotRollout *rollout;
+    World *prefix;          /* the world just before the bomb is added; shared by all launches */
+    ContactSolver *solvers; /* [threads] */
+    World **worlds;         /* [threads] */
+    Sweeps *sweeps;         /* [threads] */
+    SlotSamples *samples;   /* [launches] */
+} Runs;
+
+/* One step; `problem` is its contact problem. *finite: false if the new state is NaN or infinite. */
+static bool step(const SlotRollout *rollout, const ContactSolver *solver, World *world, ContactProblem *problem,
+                 bool *finite, Error *error) {
+    ContactSolution *solution;
+    if (!world_begin_step(world, rollout->scene->dt, problem, &solution, error) ||
+        !solver->kind->solve(solver->state, problem, solution, error))
+        return false;
+    Error failure = {0};
+    *finite = world_end_step(world, &failure);
+    if (*finite || failure.kind == ERROR_INPUT) return true;
+    *error = failure;
+    return false;
+}
+
+static bool run_launch(void *context, int i, Error *error) {
+    const Runs *runs = context;
+    const SlotRollout *rollout = runs->rollout;
+    const int thread = omp_get_thread_num();
+    const Scene launched = launch_scene(rollout->scene, &rollout->launches[i]);
+    World *world = runs->worlds[thread];
+    if (!world_copy(world, runs->prefix, error) || !scene_add_bomb(&launched, world, error)) return false;
+    PhaseTracker tracker = {.impact_frames = rollout->steps};
+    bool finite = true;
+    for (int frame = launched.bomb.frame + 1; finite && frame <= launched.frames; frame++) {
+        ContactProblem problem;
+        if (!step(rollout, &runs->solvers[thread], world, &problem, &finite, error)) return false;
+        const Phase phase = phase_next(&tracker, &problem, frame);
+        if (phase == PHASE_AFTER) return true;
+        if (phase != PHASE_IMPACT) continue;
+        Sweeps *sweeps = &runs->sweeps[thread];
+        if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), &problem)) return error_memory(error, "samples");
+        if (residual_reaches(sweeps, problem.contact_count, rollout->gate) &&
+            !slot_samples_add(&runs->samples[i], &problem, rollout->first_launch + i, frame - tracker.touch))
+            return error_memory(error, "samples");
+    }
+    return true;
+}
+
+/* Runs the scene without its bomb up to the bomb's frame. */
+static bool run_prefix(Runs *runs, Error *error) {
+    Scene quiet = *runs->rollout->scene;
+    quiet.bomb.present = false;
+    runs->prefix = scene_world(&quiet, error);
+    bool ok = runs->prefix != NULL, finite = true;
+    for (int frame = 1; ok && frame <= runs->rollout->scene->bomb.frame; frame++) {
+        ContactProblem problem;
+        ok = step(runs->rollout, &runs->solvers[0], runs->prefix, &problem, &finite, error) &&
+             (finite || error_input(error, quiet.name, "a body's state is NaN or infinite before the bomb is added"));
+    }
+    return ok;
+}
+
+static bool begin(Runs *runs, int threads, Error *error) {
+    assert(threads > 0);
+    runs->solvers = calloc((size_t)threads, sizeof *runs->solvers);
+    runs->worlds = calloc((size_t)threads, sizeof(World *));
+    runs->sweeps = calloc((size_t)threads, sizeof *runs->sweeps);
+    runs->samples = calloc((size_t)runs->rollout->launch_count, sizeof *runs->samples);
+    if (runs->sweeps == NULL || runs->solvers == NULL || runs->worlds == NULL || runs->samples == NULL)
+        return error_memory(error, "samples");
+    for (int i = 0; i < threads; i++) {
+        runs->worlds[i] = scene_world(runs->rollout->scene, error);
+        if (runs->worlds[i] == NULL || !runs->rollout->make_solver(runs->rollout->context, &runs->solvers[i], error))
+            return false;
+    }
+    return run_prefix(runs, error);
+}
+
+static void end(Runs *runs, int threads) {
+    for (int i = 0; i < threads; i++) {
+        if (runs->solvers != NULL && runs->solvers[i].kind != NULL)
+            runs->solvers[i].kind->destroy(runs->solvers[i].state);
+        if (runs->worlds != NULL) world_destroy(runs->worlds[i]);
+        if (runs->sweeps != NULL) sweeps_free(&runs->sweeps[i]);
+    }
+    world_destroy(runs->prefix);
+    for (int i = 0; runs->samples != NULL && i < runs->rollout->launch_count; i++) slot_samples_free(&runs->samples[i]);
+    free(runs->solvers);
+    free(runs->worlds);
+    free(runs->sweeps);
+    free(runs->samples);
+}
+
+bool slot_rollout(const SlotRollout *rollout, SlotSamples *samples, const Progress *progress, Error *error) {
+    Runs runs = {.rollout = rollout};
+    const int threads = omp_get_max_threads();
+    const ParallelWork work = {run_launch, &runs};
+    bool ok = begin(&runs, threads, error) && parallel_for(&work, rollout->launch_count, "launches", progress, error);
+    for (int i = 0; ok && i < rollout->launch_count; i++)
+        ok = slot_samples_move(samples, &runs.samples[i]) || error_memory(error, "samples");
+    end(&runs, threads);
+    return ok;
+}

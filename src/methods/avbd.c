@@ -1,0 +1,427 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The parts of avbd (avbd.c): its state in a step, the step's start, and its passes. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+#include "methods/sweeps.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define AVBD_PENALTY_MIN 1.0f /* N/m */
+#define AVBD_PENALTY_MAX 1e9f /* N/m */
+
+/* A displacement or its gradient. */
+typedef struct Vec3 {
+    float x, y, turn;
+} Vec3;
+
+typedef struct AvbdBody {
+    Vec3 moved, free;    /* displacement in this step; without contacts */
+    Vec2 start;          /* m/s, velocity at the start of the step */
+    float mass, inertia; /* over dt^2; 0: static */
+    int first, count;    /* its visits */
+} AvbdBody;
+
+/* Along the normal or the tangent of a contact. */
+typedef struct AvbdRow {
+    Vec3 of_a, of_b; /* gradient of the gap */
+    float start;     /* m, gap at the start of the step */
+    float penalty;   /* N/m */
+    float force;     /* N, the multiplier; on b */
+} AvbdRow;
+
+typedef struct AvbdContact {
+    int a, b;
+    float friction;
+    Vec2 point_a, point_b; /* m, on each body, in its own frame */
+    bool sticks;
+    AvbdRow normal, tangent;
+} AvbdContact;
+
+typedef struct Avbd {
+    int iterations;
+    float alpha, beta, gamma; /* alpha < 0: post-stabilization */
+    StepMemory memory;
+    AvbdBody *bodies;
+    Mat22 *rotations;             /* [bodies] */
+    BodyPose *poses;              /* [bodies] */
+    Vec2 *before;                 /* [bodies of the last step] velocity at its start */
+    AvbdContact *contacts, *last; /* [contacts] of this step and the last */
+    int *visits;                  /* [2 contacts] contacts of a body, body after body */
+    int body_count, contact_count;
+    size_t body_capacity, rotation_capacity, pose_capacity, before_capacity, contact_capacity, last_capacity,
+        visit_capacity;
+} Avbd;
+
+/* The start of a step of avbd: where bodies and contacts begin, with what forces and penalties. */
+
+#define COLLISION_MARGIN 0.0005f /* m, overlap at rest */
+
+static bool reserve(Avbd *avbd, const ContactProblem *problem) {
+    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    return array_reserve((void **)&avbd->bodies, &avbd->body_capacity, bodies, sizeof *avbd->bodies) &&
+           array_reserve((void **)&avbd->rotations, &avbd->rotation_capacity, bodies, sizeof *avbd->rotations) &&
+           array_reserve((void **)&avbd->poses, &avbd->pose_capacity, bodies, sizeof *avbd->poses) &&
+           array_reserve((void **)&avbd->before, &avbd->before_capacity, bodies, sizeof *avbd->before) &&
+           array_reserve((void **)&avbd->contacts, &avbd->contact_capacity, contacts, sizeof *avbd->contacts) &&
+           array_reserve((void **)&avbd->last, &avbd->last_capacity, contacts, sizeof *avbd->last) &&
+           array_reserve((void **)&avbd->visits, &avbd->visit_capacity, 2 * contacts, sizeof *avbd->visits);
+}
+
+/* The share of gravity that the last step's acceleration had: 0 at rest, 1 in free fall. */
+static float falling(const Avbd *avbd, const Body *body, int i, Vec2 gravity, float dt) {
+    float square = vec2_dot(gravity, gravity);
+    if (!avbd->memory.known[i] || !(square > 0)) return 0;
+    Vec2 acceleration = vec2_scale(1.0f / dt, vec2_sub(body->velocity, avbd->before[i]));
+    return contact_clamp(vec2_dot(acceleration, gravity) / square, 0, 1);
+}
+
+/* A body begins where it would be if its contacts gave it the acceleration of the last step. */
+static void begin_body(Avbd *avbd, const Body *body, int i, Vec2 gravity, float dt) {
+    avbd->poses[i] = (BodyPose){body->position, body->angle};
+    avbd->rotations[i] = mat22_rotation(body->angle);
+    avbd->bodies[i] = (AvbdBody){0};
+    if (!(body->inv_mass > 0)) return;
+    const Vec2 way = vec2_scale(dt, body->velocity), fall = vec2_scale(dt * dt, gravity);
+    const Vec2 guess = vec2_add(way, vec2_scale(falling(avbd, body, i, gravity, dt), fall));
+    const float turn = dt * body->angular_velocity, inverse = 1.0f / (dt * dt);
+    avbd->bodies[i] = (AvbdBody){.moved = {guess.x, guess.y, turn},
+                                 .free = {way.x + fall.x, way.y + fall.y, turn},
+                                 .start = body->velocity,
+                                 .mass = inverse / body->inv_mass,
+                                 .inertia = inverse / body->inv_inertia};
+}
+
+static AvbdRow make_row(Vec2 axis, Vec2 arm_a, Vec2 arm_b, float start) {
+    return (AvbdRow){.of_a = {-axis.x, -axis.y, -vec2_cross(arm_a, axis)},
+                     .of_b = {axis.x, axis.y, vec2_cross(arm_b, axis)},
+                     .start = start};
+}
+
+/* A contact that was there begins with the penalty that it had; a new one with the smallest. In a step of unknown past,
+   only the impulse tells which it is: then the penalty is that at which a pass moves as far as a rigid contact would. */
+static float first_penalty(const Avbd *avbd, const AvbdRow *last, bool loaded, float mass, float dt) {
+    float penalty = last != NULL ? avbd->gamma * last->penalty : loaded ? mass / (dt * dt) : 0;
+    return contact_clamp(penalty, AVBD_PENALTY_MIN, AVBD_PENALTY_MAX);
+}
+
+/* Multipliers are the world's impulses, so that a copy of a world has them. */
+static void warm_start(const Avbd *avbd, AvbdContact *contact, const ContactPoint *point, const AvbdContact *last,
+                       float dt) {
+    const float decay = avbd->alpha < 0 ? 1.0f : avbd->alpha * avbd->gamma;
+    const bool loaded = point->warm_normal > 0;
+    AvbdRow *normal = &contact->normal, *tangent = &contact->tangent;
+    normal->force = decay * point->warm_normal / dt;
+    tangent->force = decay * point->warm_tangent / dt;
+    normal->penalty = first_penalty(avbd, last != NULL ? &last->normal : NULL, loaded, point->mass_normal, dt);
+    tangent->penalty = first_penalty(avbd, last != NULL ? &last->tangent : NULL, loaded, point->mass_tangent, dt);
+}
+
+static void begin_contact(Avbd *avbd, const ContactPoint *point, int i, float dt) {
+    const int before = avbd->memory.before[i];
+    const AvbdContact *last = before >= 0 ? &avbd->last[before] : NULL;
+    const Mat22 *of_a = &avbd->rotations[point->a], *of_b = &avbd->rotations[point->b];
+    AvbdContact contact = {.a = point->a, .b = point->b, .friction = point->friction};
+    if (last != NULL && last->sticks) {
+        contact.point_a = last->point_a;
+        contact.point_b = last->point_b;
+    } else {
+        Vec2 overlap = vec2_scale(point->separation, point->normal);
+        contact.point_a = mat22_multiply(mat22_transpose(*of_a), point->arm_a);
+        contact.point_b = mat22_multiply(mat22_transpose(*of_b), vec2_add(point->arm_b, overlap));
+    }
+    Vec2 arm_a = mat22_multiply(*of_a, contact.point_a), arm_b = mat22_multiply(*of_b, contact.point_b);
+    Vec2 centres = vec2_sub(avbd->poses[point->b].position, avbd->poses[point->a].position);
+    Vec2 gap = vec2_add(centres, vec2_sub(arm_b, arm_a)), tangent = vec2_cross_scalar(point->normal, 1.0f);
+    contact.normal = make_row(point->normal, arm_a, arm_b, vec2_dot(gap, point->normal) + COLLISION_MARGIN);
+    contact.tangent = make_row(tangent, arm_a, arm_b, vec2_dot(gap, tangent));
+    warm_start(avbd, &contact, point, last, dt);
+    avbd->contacts[i] = contact;
+}
+
+/* The contacts of each body, in their order. */
+static void list_visits(Avbd *avbd) {
+    for (int i = 0; i < avbd->contact_count; i++) {
+        avbd->bodies[avbd->contacts[i].a].count++;
+        avbd->bodies[avbd->contacts[i].b].count++;
+    }
+    for (int i = 0, first = 0; i < avbd->body_count; i++) {
+        avbd->bodies[i].first = first;
+        first += avbd->bodies[i].count;
+        avbd->bodies[i].count = 0;
+    }
+    for (int i = 0; i < avbd->contact_count; i++) {
+        AvbdBody *a = &avbd->bodies[avbd->contacts[i].a], *b = &avbd->bodies[avbd->contacts[i].b];
+        avbd->visits[a->first + a->count++] = i;
+        avbd->visits[b->first + b->count++] = i;
+    }
+}
+
+/* Fills the state for a step of the world that has begun. False when memory is short. */
+static bool avbd_begin(Avbd *avbd, const World *world, const ContactProblem *problem, const Step *step) {
+    if (!step_memory_match(&avbd->memory, world, step) || !reserve(avbd, problem)) return false;
+    avbd->body_count = problem->body_count;
+    avbd->contact_count = problem->contact_count;
+    for (int i = 0; i < avbd->body_count; i++)
+        begin_body(avbd, &world_bodies(world)[i], i, step->scene->gravity, problem->dt);
+    for (int i = 0; i < avbd->contact_count; i++) begin_contact(avbd, &problem->contacts[i], i, problem->dt);
+    list_visits(avbd);
+    return true;
+}
+
+/* The passes of avbd over all bodies. */
+
+#define STICK_DISTANCE 0.01f /* m, by which points that stick may slide */
+
+static float dot(const Vec3 *a, const Vec3 *b) { return a->x * b->x + a->y * b->y + a->turn * b->turn; }
+
+/* The gap, with this share of what it was at the start. */
+static float gap(const Avbd *avbd, const AvbdContact *contact, const AvbdRow *row, float share) {
+    return share * row->start + dot(&row->of_a, &avbd->bodies[contact->a].moved) +
+           dot(&row->of_b, &avbd->bodies[contact->b].moved);
+}
+
+static float normal_force(const AvbdRow *row, float gap) {
+    float force = row->force - row->penalty * gap;
+    return 0.0f > force ? 0.0f : force;
+}
+
+static float tangent_force(const AvbdRow *row, float gap, float most) {
+    return contact_clamp(row->force - row->penalty * gap, -most, most);
+}
+
+/* The symmetric system of a body: rows of the lower triangle and the right-hand side. */
+typedef struct System {
+    float xx, yx, yy, tx, ty, tt;
+    Vec3 right;
+} System;
+
+static void add_row(System *system, const Vec3 *j, float penalty, float force) {
+    const Vec3 scaled = {penalty * j->x, penalty * j->y, penalty * j->turn};
+    system->xx += scaled.x * j->x;
+    system->yx += scaled.y * j->x;
+    system->yy += scaled.y * j->y;
+    system->tx += scaled.turn * j->x;
+    system->ty += scaled.turn * j->y;
+    system->tt += scaled.turn * j->turn;
+    system->right.x += force * j->x;
+    system->right.y += force * j->y;
+    system->right.turn += force * j->turn;
+}
+
+/* By its factors L D L^T. */
+static Vec3 solved(const System *system) {
+    const float d1 = system->xx, l21 = system->yx / d1, l31 = system->tx / d1;
+    const float d2 = system->yy - l21 * l21 * d1, l32 = (system->ty - l21 * l31 * d1) / d2;
+    const float d3 = system->tt - l31 * l31 * d1 - l32 * l32 * d2;
+    const float y1 = system->right.x, y2 = system->right.y - l21 * y1, y3 = system->right.turn - l31 * y1 - l32 * y2;
+    const float turn = y3 / d3, y = y2 / d2 - l32 * turn, x = y1 / d1 - l21 * y - l31 * turn;
+    return (Vec3){x, y, turn};
+}
+
+static void visit_body(Avbd *avbd, int i, float share) {
+    AvbdBody *body = &avbd->bodies[i];
+    System system = {.xx = body->mass, .yy = body->mass, .tt = body->inertia};
+    system.right = (Vec3){body->mass * (body->free.x - body->moved.x), body->mass * (body->free.y - body->moved.y),
+                          body->inertia * (body->free.turn - body->moved.turn)};
+    for (int v = body->first; v < body->first + body->count; v++) {
+        const AvbdContact *contact = &avbd->contacts[avbd->visits[v]];
+        const AvbdRow *normal = &contact->normal, *tangent = &contact->tangent;
+        const bool is_a = contact->a == i;
+        const float most = contact->friction * normal->force;
+        add_row(&system, is_a ? &normal->of_a : &normal->of_b, normal->penalty,
+                normal_force(normal, gap(avbd, contact, normal, share)));
+        add_row(&system, is_a ? &tangent->of_a : &tangent->of_b, tangent->penalty,
+                tangent_force(tangent, gap(avbd, contact, tangent, share), most));
+    }
+    const Vec3 change = solved(&system);
+    body->moved = (Vec3){body->moved.x + change.x, body->moved.y + change.y, body->moved.turn + change.turn};
+}
+
+/* From the last body to the first, as the 2D program does: gravity enters a stack at its top. */
+static void visit_bodies(Avbd *avbd, float share) {
+    for (int i = avbd->body_count - 1; i >= 0; i--)
+        if (avbd->bodies[i].mass > 0) visit_body(avbd, i, share);
+}
+
+static void raise_penalty(const Avbd *avbd, AvbdRow *row, float gap) {
+    row->penalty = contact_clamp(row->penalty + avbd->beta * fabsf(gap), AVBD_PENALTY_MIN, AVBD_PENALTY_MAX);
+}
+
+/* The friction bound is that of the normal force before this update, as in the visits. */
+static void update_multipliers(Avbd *avbd, float share) {
+    for (int i = 0; i < avbd->contact_count; i++) {
+        AvbdContact *contact = &avbd->contacts[i];
+        AvbdRow *normal = &contact->normal, *tangent = &contact->tangent;
+        const float most = contact->friction * normal->force;
+        const float apart = gap(avbd, contact, normal, share), slid = gap(avbd, contact, tangent, share);
+        normal->force = normal_force(normal, apart);
+        tangent->force = tangent_force(tangent, slid, most);
+        if (normal->force > 0) raise_penalty(avbd, normal, apart);
+        if (fabsf(tangent->force) < most) raise_penalty(avbd, tangent, slid);
+        contact->sticks =
+            fabsf(tangent->force) < contact->friction * normal->force && fabsf(tangent->start) < STICK_DISTANCE;
+    }
+}
+
+/* Makes the passes of a step: moves the bodies, fills the velocities of the solution. */
+/* The velocities of the solution come from the displacements before the pass that only moves bodies out. */
+static void avbd_solve(Avbd *avbd, const Step *step, const ContactProblem *problem, ContactSolution *solution) {
+    const bool correct = step->scene->position_correction, stabilize = avbd->alpha < 0 && correct;
+    const float share = avbd->alpha < 0 || !correct ? 0.0f : 1.0f - avbd->alpha, inverse_dt = 1.0f / problem->dt;
+    for (int k = 0; k < avbd->iterations; k++) {
+        visit_bodies(avbd, share);
+        update_multipliers(avbd, share);
+    }
+    for (int i = 0; i < avbd->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        const Vec3 *moved = &avbd->bodies[i].moved;
+        solution->velocities[i] =
+            (BodyVelocity){vec2_scale(inverse_dt, vec2(moved->x, moved->y)), inverse_dt * moved->turn};
+        if (!(body->inv_mass > 0)) solution->velocities[i] = (BodyVelocity){body->velocity, body->angular_velocity};
+    }
+    if (stabilize) visit_bodies(avbd, 1);
+}
+
+/* Augmented vertex block descent (AVBD): a step is implicit Euler, solved on positions, body after body. Chris Giles,
+   Elie Diaz and Cem Yuksel, "Augmented Vertex Block Descent" (SIGGRAPH 2025), with the choices of their 2D program.
+
+   d is the displacement of a body in the step (x, y, angle), y = v dt + g dt^2 what it would be without contacts, J the
+   gradient of a contact's gap C(d) = C0 + J d. A visit of a body solves one 3 x 3 system,
+
+       (M / dt^2 + sum k J J^T) delta = -M / dt^2 (d - y) + sum J f,   f = l - k C,   f >= 0 or |f| <= mu l_normal
+
+   and adds delta to d. After each pass over the bodies, every contact takes l = f, and the penalty k rises by beta |C|
+   while f is inside its bounds. l and k are those of the step before, k times gamma. So the forces come from the
+   multipliers l, and k need not be large.
+
+   Overlap does not change velocities: C0 is left out of the passes, the velocity is d / dt after the last of them, and
+   one more pass with C0 moves the bodies out (post-stabilization, the default of the 2D program). With the setting
+   alpha, every pass has (1 - alpha) C0 and multipliers decay by alpha gamma, as in the paper.
+
+   Contacts that stick keep their points on both bodies, so that a slope does not creep. The gap ends at
+   COLLISION_MARGIN, or resting contacts would come and go.
+
+   Fails where passes are few: bodies move by what their neighbours did before, so momentum is not conserved until the
+   passes have converged, and a shock moves up a stack one box a pass. New contacts begin soft. */
+
+static const SettingSpec settings[] = {
+    {"k", "passes over all bodies per step (default: 10)"},
+    {"alpha", "share of the overlap that a step leaves (default: one more pass removes it instead)"},
+    {"beta", "rise of a penalty, N/m for each m of gap and pass (default: 1e5)"},
+    {"gamma", "share of a penalty that the next step begins with (default: 0.99)"},
+    {NULL, NULL}};
+
+static void destroy(void *state) {
+    Avbd *avbd = state;
+    step_memory_free(&avbd->memory);
+    free(avbd->bodies);
+    free(avbd->rotations);
+    free(avbd->poses);
+    free(avbd->before);
+    free(avbd->contacts);
+    free(avbd->last);
+    free(avbd->visits);
+    free(avbd);
+}
+
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    (void)scene;
+    Avbd *avbd = calloc(1, sizeof *avbd);
+    if (avbd == NULL) {
+        error_memory(error, "avbd");
+        return NULL;
+    }
+    *avbd = (Avbd){.iterations = 10, .alpha = -1, .beta = 1e5f, .gamma = 0.99f};
+    if (settings_int(chosen, "k", 1, 10000, &avbd->iterations, error) &&
+        settings_float(chosen, "alpha", 0, 1, &avbd->alpha, error) &&
+        settings_float(chosen, "beta", 0, 1e12f, &avbd->beta, error) &&
+        settings_float(chosen, "gamma", 0, 1, &avbd->gamma, error))
+        return avbd;
+    destroy(avbd);
+    return NULL;
+}
+
+/* The momentum that no contact force accounts for: 0 once the passes have converged. */
+static float momentum_error(const Avbd *avbd, const ContactProblem *problem, const ContactSolution *solution) {
+    float sum = 0;
+    for (int i = 0; i < avbd->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        if (!(body->inv_mass > 0)) continue;
+        Vec2 change = vec2_scale(1.0f / body->inv_mass, vec2_sub(solution->velocities[i].linear, body->velocity));
+        for (int v = avbd->bodies[i].first; v < avbd->bodies[i].first + avbd->bodies[i].count; v++) {
+            const ContactPoint *point = &problem->contacts[avbd->visits[v]];
+            const ContactImpulse *impulse = &solution->impulses[avbd->visits[v]];
+            Vec2 given = vec2_add(vec2_scale(impulse->normal, point->normal),
+                                  vec2_scale(impulse->tangent, vec2_cross_scalar(point->normal, 1.0f)));
+            change = point->b == i ? vec2_sub(change, given) : vec2_add(change, given);
+        }
+        sum += sqrtf(vec2_dot(change, change));
+    }
+    return sum;
+}
+
+/* False if an impulse is NaN or infinite. */
+static bool end(Avbd *avbd, const ContactProblem *problem, ContactSolution *solution) {
+    bool finite = true;
+    for (int i = 0; i < avbd->body_count; i++) {
+        const Vec3 *moved = &avbd->bodies[i].moved;
+        avbd->poses[i].position = vec2_add(avbd->poses[i].position, vec2(moved->x, moved->y));
+        avbd->poses[i].angle += moved->turn;
+    }
+    for (int i = 0; i < avbd->contact_count; i++) {
+        const AvbdContact *contact = &avbd->contacts[i];
+        solution->impulses[i] =
+            (ContactImpulse){problem->dt * contact->normal.force, problem->dt * contact->tangent.force};
+        finite &= isfinite(solution->impulses[i].normal) && isfinite(solution->impulses[i].tangent);
+    }
+    return finite;
+}
+
+/* What the next step begins with. */
+static void keep(Avbd *avbd, const World *world) {
+    AvbdContact *contacts = avbd->last;
+    size_t capacity = avbd->last_capacity;
+    avbd->last = avbd->contacts;
+    avbd->last_capacity = avbd->contact_capacity;
+    avbd->contacts = contacts;
+    avbd->contact_capacity = capacity;
+    for (int i = 0; i < avbd->body_count; i++) avbd->before[i] = avbd->bodies[i].start;
+    step_memory_keep(&avbd->memory, world);
+}
+
+static bool step(void *state, World *world, const Step *which, Error *error) {
+    Avbd *avbd = state;
+    ContactProblem problem;
+    ContactSolution *solution;
+    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
+    step_solving_begins(which);
+    bool begun = avbd_begin(avbd, world, &problem, which);
+    if (begun) avbd_solve(avbd, which, &problem, solution);
+    bool finite = begun && end(avbd, &problem, solution);
+    step_solving_ends(which);
+    if (!begun) return error_memory(error, "avbd");
+    if (!finite) return error_input(error, "avbd", "an impulse is NaN or infinite");
+    solution->momentum_error = momentum_error(avbd, &problem, solution);
+    if (!world_end_step_at(world, avbd->poses, error)) return false;
+    keep(avbd, world);
+    return true;
+}
+
+const SteppingKind stepping_avbd = {
+    .description = {.name = "avbd",
+                    .summary = "augmented vertex block descent: implicit positions, body after body",
+                    .caption = "augmented vertex block descent",
+                    .look = {METHOD_GREEN, METHOD_DIAMOND},
+                    .settings = settings,
+                    .own_settings = "k=10",
+                    .no_push_out = true,
+                    .chart = METHOD_RUNS("k=4", "k=10", "k=20", "k=50"),
+                    .chart_quick = METHOD_RUNS("k=10"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

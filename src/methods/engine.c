@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The physics engine: sequential impulses with warm starting, as in Box2D-Lite. Method, source and where it fails:
+   methods/sweeps_scalar.c. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/solvers.h"
+#include "methods/sweeps.h"
+
+#include <stdlib.h>
+
+typedef struct SequentialImpulses {
+    int sweep_count;
+    StoppingRule rule;
+    SequentialOptions options;
+    SweepKernel kernel;
+    Sweeps sweeps;
+} SequentialImpulses;
+
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
+    {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)"},
+    {"warm", "on|off: warm start from the previous step's impulses (default: on)"},
+    STOPPING_SETTINGS,
+    {NULL, NULL}};
+
+static void *create(const Settings *chosen, Error *error) {
+    SequentialImpulses values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
+    values.kernel = sweeps_best_kernel();
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error) ||
+        !settings_bool(chosen, "accumulate", &values.options.accumulate, error) ||
+        !settings_bool(chosen, "warm", &values.options.warm, error) || !stopping_read(&values.rule, chosen, error))
+        return NULL;
+    SequentialImpulses *solver = malloc(sizeof *solver);
+    if (solver == NULL)
+        error_memory(error, "engine");
+    else
+        *solver = values;
+    return solver;
+}
+
+static void solve_scalar(const SequentialImpulses *solver, const ContactProblem *problem, ContactSolution *solution) {
+    sequential_impulses_solve(problem, &solver->options, solver->sweep_count, solution);
+    for (int done = 0; stopping_needs_more_scalar(&solver->rule, done, problem, solution); done += STOPPING_BLOCK)
+        for (int i = 0; i < STOPPING_BLOCK; i++) sequential_impulses_sweep(problem, &solver->options, solution);
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    SequentialImpulses *solver = state;
+    const SequentialOptions *options = &solver->options;
+    if (options->accumulate) {
+        if (!sweeps_begin(&solver->sweeps, solver->kernel, problem, options->warm, options->relaxation) ||
+            !stopping_run(&solver->rule, &solver->sweeps, problem, solver->sweep_count, sweeps_run))
+            return error_memory(error, "engine");
+        if (sweeps_end(&solver->sweeps, solution)) return true;
+    }
+    solve_scalar(solver, problem, solution);
+    return true;
+}
+
+static void destroy(void *state) {
+    SequentialImpulses *solver = state;
+    if (solver == NULL) return;
+    sweeps_free(&solver->sweeps);
+    free(solver);
+}
+
+const ContactSolverKind solver_engine = {
+    .description = {.name = "engine",
+                    .summary = "sequential impulses with warm starting: the physics engine",
+                    .caption = "physics engine, sequential impulses",
+                    .look = {METHOD_BLUE, METHOD_CIRCLE},
+                    .settings = settings,
+                    .shipped = "k=10",
+                    .chart = METHOD_RUNS("k=1", "k=4", "k=10", "k=20", "k=50", "k=100"),
+                    .chart_quick = METHOD_RUNS("k=4", "k=10", "k=50"),
+                    .stability = METHOD_RUNS("k=4", "", "k=50"),
+                    .stability_place = 1},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Graph network-based simulator: boxes are particles, and a network learned how they move. Alvaro Sanchez-Gonzalez, Jonathan
+   Godwin, Tobias Pfaff, Rex Ying, Jure Leskovec and Peter Battaglia, "Learning to Simulate Complex Physics with Graph
+   Networks" (ICML 2020, arXiv 2002.09405).
+
+   Each box is nine particles. Edges connect particles within a radius, of one box or two. A network passes messages along
+   them (nets/kinds.h) and returns each particle's acceleration besides gravity's, and then
+
+       v' = v + dt (g + a),   x' = x + dt v'       (semi-implicit Euler)
+
+   There are no contacts and no solver: collision detection serves measurement only. With rigid=on each box takes the pose
+   that fits its particles best, and the particles their places on it; with rigid=off, as in the paper, particles stay where
+   they are, and that pose is only shown. The paper's network also learns gravity; here it is given, so that net=off is the
+   same without what was learned: boxes in free fall.
+
+   A particle's past is kept from step to step. A box in another state than the last step left it in, or new, begins with a
+   past of constant velocity.
+
+   Fails where it was not trained: nothing in the method keeps boxes apart, or momentum. It is as good as its data for that
+   motion, and slow: its cost is that of tens of edges of each particle, M times. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Accelerations beyond this multiple of the strongest in training are discarded. */
+static const float beyond_strongest = 2.0f;
+
+static const SettingSpec settings[] = {{"network", "file of the network (default: the scene's)"},
+                                       {"net", "off: gravity alone (default: on)"},
+                                       {"rigid", "off: particles are not put back to rigid boxes (default: on)"},
+                                       {NULL, NULL}};
+
+typedef struct Gns {
+    GnsNet net;
+    bool uses_net, rigid;
+    GnsParticles particles, last; /* of this step, and as the last step left them */
+    int *body, *place; /* [particles.bodies] bodies of the world; [bodies of the world] its place in `last`, or -1 */
+    Box *ground;       /* [ground_count] static boxes */
+    int ground_count;
+    BodyPose *poses; /* [bodies of the world] after the step */
+    bool *touched;   /* [bodies of the world] */
+    StepMemory memory;
+    GnsGraph graph;
+    GnsPass pass;
+    size_t body_capacity, body_list_capacity, place_capacity, ground_capacity, pose_capacity, touched_capacity,
+        position_capacity, velocity_capacity, last_position_capacity, last_velocity_capacity;
+} Gns;
+
+static void destroy(void *state) {
+    Gns *gns = state;
+    gns_net_free(&gns->net);
+    free(gns->particles.body);
+    free(gns->particles.position);
+    free(gns->particles.velocity);
+    free(gns->last.position);
+    free(gns->last.velocity);
+    free(gns->body);
+    free(gns->place);
+    free(gns->ground);
+    free(gns->poses);
+    free(gns->touched);
+    step_memory_free(&gns->memory);
+    gns_graph_free(&gns->graph);
+    gns_pass_free(&gns->pass);
+    free(gns);
+}
+
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    Gns *gns = calloc(1, sizeof *gns);
+    if (gns == NULL) {
+        error_memory(error, "gns");
+        return NULL;
+    }
+    gns->uses_net = gns->rigid = true;
+    const char *path = settings_get(chosen, "network");
+    if (path == NULL) path = scene_network(scene, "gns");
+    bool ok = settings_bool(chosen, "net", &gns->uses_net, error) && settings_bool(chosen, "rigid", &gns->rigid, error);
+    if (ok && gns->uses_net)
+        ok = path != NULL ? gns_net_read(&gns->net, path, error)
+                          : error_input(error, "gns", "needs a network: network=FILE, or the scene's `networks`");
+    if (ok) return gns;
+    destroy(gns);
+    return NULL;
+}
+
+static bool reserve(Gns *gns, int bodies) {
+    const size_t count = (size_t)bodies, particles = count * BOX_PARTICLES;
+    GnsParticles *now = &gns->particles, *last = &gns->last;
+    return array_reserve((void **)&now->body, &gns->body_capacity, count, sizeof *now->body) &&
+           array_reserve((void **)&gns->body, &gns->body_list_capacity, count, sizeof *gns->body) &&
+           array_reserve((void **)&gns->place, &gns->place_capacity, count, sizeof *gns->place) &&
+           array_reserve((void **)&gns->ground, &gns->ground_capacity, count, sizeof *gns->ground) &&
+           array_reserve((void **)&gns->poses, &gns->pose_capacity, count, sizeof *gns->poses) &&
+           array_reserve((void **)&gns->touched, &gns->touched_capacity, count, sizeof *gns->touched) &&
+           array_reserve((void **)&now->position, &gns->position_capacity, particles, sizeof *now->position) &&
+           array_reserve((void **)&now->velocity, &gns->velocity_capacity, particles, sizeof *now->velocity) &&
+           array_reserve((void **)&last->position, &gns->last_position_capacity, particles, sizeof *last->position) &&
+           array_reserve((void **)&last->velocity, &gns->last_velocity_capacity, particles, sizeof *last->velocity);
+}
+
+/* A past of constant velocity and spin: the particles of the poses dt, 2 dt, ... ago. */
+static void begin_past(Gns *gns, int i, const Body *body, float dt) {
+    Vec2 *now = gns->particles.position + (ptrdiff_t)i * BOX_PARTICLES, before[BOX_PARTICLES], after[BOX_PARTICLES];
+    Vec2(*velocity)[GNS_HISTORY] = gns->particles.velocity + (ptrdiff_t)i * BOX_PARTICLES;
+    box_particles_place(now, body->size, &(BodyPose){body->position, body->angle});
+    memcpy(after, now, sizeof after);
+    for (int k = GNS_HISTORY - 1; k >= 0; k--) {
+        const float back = dt * (float)(GNS_HISTORY - k);
+        const BodyPose pose = {vec2_sub(body->position, vec2_scale(back, body->velocity)),
+                               body->angle - back * body->angular_velocity};
+        box_particles_place(before, body->size, &pose);
+        for (int p = 0; p < BOX_PARTICLES; p++) velocity[p][k] = vec2_scale(1.0f / dt, vec2_sub(after[p], before[p]));
+        memcpy(after, before, sizeof after);
+    }
+}
+
+static void take_past(Gns *gns, int i, int place) {
+    const ptrdiff_t to = (ptrdiff_t)i * BOX_PARTICLES, from = (ptrdiff_t)place * BOX_PARTICLES;
+    memcpy(gns->particles.position + to, gns->last.position + from, BOX_PARTICLES * sizeof *gns->last.position);
+    memcpy(gns->particles.velocity + to, gns->last.velocity + from, BOX_PARTICLES * sizeof *gns->last.velocity);
+}
+
+/* Particles of all bodies that move, and the boxes that do not. */
+static bool begin(Gns *gns, const World *world, const ContactProblem *problem, const Step *step) {
+    if (!reserve(gns, problem->body_count + 1) || !step_memory_match(&gns->memory, world, step)) return false;
+    const Body *bodies = world_bodies(world);
+    gns->particles.bodies = gns->ground_count = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        const Body *body = &bodies[i];
+        gns->poses[i] = (BodyPose){body->position, body->angle};
+        if (!problem_body_moves(&problem->bodies[i])) {
+            gns->ground[gns->ground_count++] = box_make(body->position, body->size, body->angle);
+            continue;
+        }
+        const int at = gns->particles.bodies++;
+        gns->particles.body[at] = (GnsBody){body->size, 1.0f / body->inv_mass, i == problem->marked};
+        gns->body[at] = i;
+        if (gns->memory.known[i])
+            take_past(gns, at, gns->place[i]);
+        else
+            begin_past(gns, at, body, problem->dt);
+    }
+    return true;
+}
+
+/* False for a body with an acceleration that is NaN, infinite or far beyond the training's. */
+static bool credible(const Gns *gns, int i) {
+    const float most = beyond_strongest * gns->net.scales.strongest / gns->net.scales.acceleration;
+    const float *outputs = gns->pass.outputs + (ptrdiff_t)i * BOX_PARTICLES * GNS_OUTPUTS;
+    bool ok = true;
+    for (int k = 0; k < BOX_PARTICLES * GNS_OUTPUTS; k++) ok = ok && fabsf(outputs[k]) <= most;
+    return ok;
+}
+
+static void move_particles(Gns *gns, int i, Vec2 gravity, float dt, NetworkFallbacks *fallbacks) {
+    const bool learned = gns->uses_net && credible(gns, i);
+    if (gns->uses_net && !learned) fallbacks->not_finite++;
+    for (int p = i * BOX_PARTICLES; p < (i + 1) * BOX_PARTICLES; p++) {
+        Vec2 *velocity = gns->particles.velocity[p], change = vec2_scale(dt, gravity);
+        if (learned) {
+            const float unit = dt * gns->net.scales.acceleration;
+            const float *outputs = gns->pass.outputs + (ptrdiff_t)p * GNS_OUTPUTS;
+            change = vec2_add(change, vec2(unit * outputs[0], unit * outputs[1]));
+        }
+        const Vec2 newest = vec2_add(velocity[GNS_HISTORY - 1], change);
+        memmove(velocity, velocity + 1, (GNS_HISTORY - 1) * sizeof *velocity);
+        velocity[GNS_HISTORY - 1] = newest;
+        gns->particles.position[p] = vec2_add(gns->particles.position[p], vec2_scale(dt, newest));
+    }
+}
+
+/* The particles of the box's pose; their newest velocities lead there. */
+static void make_rigid(Gns *gns, int i, const BodyPose *before, const BodyPose *after, float dt) {
+    const Vec2 size = gns->particles.body[i].size;
+    Vec2 from[BOX_PARTICLES], *to = gns->particles.position + (ptrdiff_t)i * BOX_PARTICLES;
+    Vec2(*velocity)[GNS_HISTORY] = gns->particles.velocity + (ptrdiff_t)i * BOX_PARTICLES;
+    box_particles_place(from, size, before);
+    box_particles_place(to, size, after);
+    for (int p = 0; p < BOX_PARTICLES; p++)
+        velocity[p][GNS_HISTORY - 1] = vec2_scale(1.0f / dt, vec2_sub(to[p], from[p]));
+}
+
+/* Poses and velocities of the bodies that move, from their particles. */
+static void end_body(Gns *gns, int i, const ContactProblem *problem, ContactSolution *solution) {
+    const int body = gns->body[i];
+    const BodyPose before = gns->poses[body];
+    BodyPose *pose = &gns->poses[body];
+    *pose =
+        box_particles_fit(gns->particles.position + (ptrdiff_t)i * BOX_PARTICLES, gns->particles.body[i].size, &before);
+    if (gns->rigid) make_rigid(gns, i, &before, pose, problem->dt);
+    const float per = 1.0f / problem->dt;
+    solution->velocities[body] =
+        (BodyVelocity){vec2_scale(per, vec2_sub(pose->position, before.position)), per * (pose->angle - before.angle)};
+}
+
+static bool solve(Gns *gns, const World *world, const ContactProblem *problem, const Step *step,
+                  ContactSolution *solution) {
+    if (!begin(gns, world, problem, step)) return false;
+    if (gns->uses_net) {
+        if (!gns_graph_build(&gns->graph, &gns->particles, gns->ground, gns->ground_count, &gns->net.scales) ||
+            !gns_forward(&gns->pass, &gns->net.layout, gns->net.parameters, &gns->graph))
+            return false;
+        solution->fallbacks.beyond_training += gns->graph.beyond ? 1 : 0;
+    }
+    for (int i = 0; i < problem->body_count; i++) solution->velocities[i] = (BodyVelocity){{0, 0}, 0};
+    for (int i = 0; i < gns->particles.bodies; i++) {
+        move_particles(gns, i, step->scene->gravity, problem->dt, &solution->fallbacks);
+        end_body(gns, i, problem, solution);
+    }
+    return true;
+}
+
+/* What the next step begins with. */
+static void keep(Gns *gns, const World *world) {
+    Vec2 *position = gns->last.position;
+    Vec2(*velocity)[GNS_HISTORY] = gns->last.velocity;
+    const size_t positions = gns->last_position_capacity, velocities = gns->last_velocity_capacity;
+    gns->last.position = gns->particles.position;
+    gns->last.velocity = gns->particles.velocity;
+    gns->last_position_capacity = gns->position_capacity;
+    gns->last_velocity_capacity = gns->velocity_capacity;
+    gns->particles.position = position;
+    gns->particles.velocity = velocity;
+    gns->position_capacity = positions;
+    gns->velocity_capacity = velocities;
+    for (int i = 0; i < gns->particles.bodies; i++) gns->place[gns->body[i]] = i;
+    step_memory_keep(&gns->memory, world);
+}
+
+static bool step(void *state, World *world, const Step *which, Error *error) {
+    Gns *gns = state;
+    ContactProblem problem;
+    ContactSolution *solution;
+    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
+    step_solving_begins(which);
+    const bool solved = solve(gns, world, &problem, which, solution);
+    step_solving_ends(which);
+    if (!solved) return error_memory(error, "gns");
+    for (int i = 0; i < problem.contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+    solution->momentum_error = free_flight_momentum(&problem, solution, gns->touched);
+    if (!world_end_step_at(world, gns->poses, error)) return false;
+    keep(gns, world);
+    return true;
+}
+
+float gns_shape_distance(const void *state) {
+    const Gns *gns = state;
+    float sum = 0;
+    for (int i = 0; i < gns->particles.bodies; i++)
+        sum += box_particles_distance(gns->last.position + (ptrdiff_t)i * BOX_PARTICLES, gns->particles.body[i].size,
+                                      &gns->poses[gns->body[i]]);
+    return gns->particles.bodies > 0 ? sum / (float)gns->particles.bodies : 0;
+}
+
+const SteppingKind stepping_gns = {
+    .description = {.name = "gns",
+                    .summary = "graph network-based simulator: boxes as particles, moved by a learned network",
+                    .caption = "graph network on particles",
+                    .look = {METHOD_PURPLE, METHOD_CIRCLE},
+                    .settings = settings,
+                    .no_contacts = true,
+                    .falls_back = true,
+                    .needs_network = true,
+                    .twin = "gns:net=off",
+                    .own_settings = "",
+                    .chart = METHOD_RUNS("", "net=off"),
+                    .chart_quick = METHOD_NO_RUNS,
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A memory answers familiar impacts; others are solved to convergence. A step whose warm start has a residual of the gate
+   or more is looked up in the memory (methods/tabulation.h): an entry with the same contacts whose ellipsoid of
+   accuracy contains the state answers with its impulses and a linear map,
+
+       P = P0 + A (x - x0)     if (x - x0)^T M (x - x0) <= 1,
+
+   clamped to the friction cones. Impulses act on both bodies alike, so momentum is conserved whatever is stored. All other
+   steps are those of `interior:near=0.001` (interior.c), which the reference helps out. The memory does not change while
+   it answers: the same file gives the same run. It grows between launches (tabulation_training/).
+
+   Sources: Pope, "Computationally efficient implementation of combustion chemistry using in situ adaptive tabulation"
+   (1997); Lu, Pope, "An improved algorithm for in situ adaptive tabulation" (2009). The combination of engine and memory is
+   the paper's description of Ajay et al. (2019). Fails where impacts do not come back: in a pile each impact has contacts
+   of its own, and a new family of launches starts from nothing. Where an ellipsoid grew over a place it was never
+   checked at, an answer can be wrong by more than the tolerance, and nothing tells at run time. */
+#include "base/base.h"
+#include "base/hash.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/solvers.h"
+#include "methods/sweeps.h"
+#include "methods/tabulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CONVERGED "near=0.001" /* settings of interior */
+
+const float hybrid_gate = 0.3f;
+
+/* m/s and rad/s: no answer is trusted beyond it. */
+static const float speed_max = 1e4f;
+
+/* What decides whether two steps have the same contacts, for the hash: no padding. */
+typedef struct ContactWords {
+    int32_t a, b;
+    uint32_t feature;
+    float friction;
+} ContactWords;
+
+typedef struct BodyWords {
+    float width, height, inv_mass, inv_inertia;
+} BodyWords;
+
+typedef struct Hybrid {
+    Tabulation *own;          /* or NULL */
+    char *path;               /* of its file, or NULL */
+    const Tabulation *memory; /* the same, or the caller's; NULL: empty */
+    bool retrieves;
+    HybridWatch watch; /* see NULL: none */
+    void *interior;    /* state of solver_interior */
+    float *others;     /* [6 (body_count - 1)] */
+    char *words;       /* BodyWords[body_count], dt, ContactWords[contact_count] */
+    size_t other_capacity, word_capacity;
+    float bomb[TABULATION_NUMBERS], key[TABULATION_KEY_MAX];
+} Hybrid;
+
+static const SettingSpec settings[] = {
+    {"network", "file of the memory (default: the scene's; without one nothing is answered)"},
+    {"net", "on|off: off solves every step to convergence, as interior:near=0.001 (default: on)"},
+    {NULL, NULL}};
+
+static void destroy(void *state) {
+    Hybrid *hybrid = state;
+    if (hybrid == NULL) return;
+    tabulation_destroy(hybrid->own);
+    free(hybrid->path);
+    if (hybrid->interior != NULL) solver_interior.destroy(hybrid->interior);
+    free(hybrid->others);
+    free(hybrid->words);
+    free(hybrid);
+}
+
+static Hybrid *make(Error *error) {
+    Settings converged;
+    const MethodDescription *interior = &solver_interior.description;
+    if (!settings_parse(&converged, CONVERGED, interior->settings, interior->name, error)) return NULL;
+    Hybrid *hybrid = calloc(1, sizeof *hybrid);
+    if (hybrid == NULL) {
+        error_memory(error, "hybrid");
+        return NULL;
+    }
+    hybrid->retrieves = true;
+    hybrid->interior = solver_interior.create(&converged, error);
+    if (hybrid->interior != NULL) return hybrid;
+    destroy(hybrid);
+    return NULL;
+}
+
+static void *create(const Settings *chosen, Error *error) {
+    Hybrid *hybrid = make(error);
+    const char *path = settings_get(chosen, "network");
+    if (hybrid == NULL) return NULL;
+    bool ok = settings_bool(chosen, "net", &hybrid->retrieves, error);
+    if (ok && path != NULL)
+        ok = ((hybrid->path = strdup(path)) != NULL || error_memory(error, "hybrid")) &&
+             (hybrid->memory = hybrid->own = tabulation_read(path, error)) != NULL;
+    if (ok) return hybrid;
+    destroy(hybrid);
+    return NULL;
+}
+
+bool hybrid_make(ContactSolver *solver, const Tabulation *memory, const HybridWatch *watch, Error *error) {
+    Hybrid *hybrid = make(error);
+    *solver = (ContactSolver){&solver_hybrid, hybrid};
+    if (hybrid == NULL) return false;
+    hybrid->memory = memory;
+    if (watch != NULL) hybrid->watch = *watch;
+    return true;
+}
+
+/* Before the bomb appears there is one body less. */
+static bool fits(const Hybrid *hybrid, const ContactProblem *problem, Error *error) {
+    const Tabulation *memory = hybrid->memory;
+    const char *where = hybrid->path != NULL ? hybrid->path : "hybrid";
+    const int bodies = problem->marked < 0 ? memory->body_count - 1 : memory->body_count;
+    if (problem->body_count != bodies)
+        return error_input(error, where, "the memory is of the scene %s of %d bodies; this one has %d", memory->scene,
+                           bodies, problem->body_count);
+    if (problem->marked < 0 || problem->marked == memory->bomb) return true;
+    return error_input(error, where, "the memory is of the scene %s, with the bomb as body %d; here it is body %d",
+                       memory->scene, memory->bomb, problem->marked);
+}
+
+static bool reserve(Hybrid *hybrid, const ContactProblem *problem) {
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    return array_reserve((void **)&hybrid->others, &hybrid->other_capacity, bodies * TABULATION_NUMBERS,
+                         sizeof *hybrid->others) &&
+           array_reserve((void **)&hybrid->words, &hybrid->word_capacity,
+                         bodies * sizeof(BodyWords) + sizeof problem->dt + contacts * sizeof(ContactWords), 1);
+}
+
+static uint64_t hash_contacts(const Hybrid *hybrid, const ContactProblem *problem) {
+    char *at = hybrid->words;
+    for (int i = 0; i < problem->body_count; i++, at += sizeof(BodyWords)) {
+        const ProblemBody *body = &problem->bodies[i];
+        memcpy(at, &(BodyWords){body->size.x, body->size.y, body->inv_mass, body->inv_inertia}, sizeof(BodyWords));
+    }
+    memcpy(at, &problem->dt, sizeof problem->dt);
+    at += sizeof problem->dt;
+    for (int i = 0; i < problem->contact_count; i++, at += sizeof(ContactWords)) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const bool of_bomb = contact->a == problem->marked || contact->b == problem->marked;
+        const uint32_t feature = of_bomb ? scene_view_feature(problem, contact) : contact->feature;
+        memcpy(at, &(ContactWords){contact->a, contact->b, feature, contact->friction}, sizeof(ContactWords));
+    }
+    return hash_xxh3(hybrid->words, (size_t)(at - hybrid->words));
+}
+
+/* Fills `others`, and the key if there is a memory. */
+static TabulationQuery make_query(Hybrid *hybrid, const ContactProblem *problem) {
+    const ProblemBody *bomb = &problem->bodies[problem->marked];
+    float *others = hybrid->others;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        if (i == problem->marked) continue;
+        tabulation_numbers(body, body->angle, problem->dt, others);
+        others += TABULATION_NUMBERS;
+    }
+    tabulation_numbers(bomb, scene_view_angle(bomb), problem->dt, hybrid->bomb);
+    TabulationQuery query = {hash_contacts(hybrid, problem), problem->contact_count, NULL};
+    if (hybrid->memory == NULL) return query;
+    tabulation_key(hybrid->memory, hybrid->bomb, hybrid->others, hybrid->key);
+    query.key = hybrid->key;
+    return query;
+}
+
+static void push_all(const ContactProblem *problem, ContactSolution *solution) {
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        solution->velocities[i] = (BodyVelocity){body->velocity, body->angular_velocity};
+    }
+    for (int i = 0; i < problem->contact_count; i++)
+        contact_push(solution->velocities, &problem->contacts[i], problem->bodies, solution->impulses[i]);
+}
+
+static bool is_impact(const Hybrid *hybrid, const ContactProblem *problem, ContactSolution *solution) {
+    if (problem->marked < 0) return false;
+    for (int i = 0; i < problem->contact_count; i++)
+        solution->impulses[i] = (ContactImpulse){problem->contacts[i].warm_normal, problem->contacts[i].warm_tangent};
+    push_all(problem, solution);
+    return residual_reaches_scalar(problem, solution, hybrid->memory != NULL ? hybrid->memory->gate : hybrid_gate);
+}
+
+static int clamp(const ContactProblem *problem, ContactImpulse *impulses) {
+    int outside = 0;
+    for (int i = 0; i < problem->contact_count; i++) {
+        ContactImpulse *impulse = &impulses[i], given = *impulse;
+        impulse->normal = given.normal > 0 ? given.normal : 0;
+        const float most = problem->contacts[i].friction * impulse->normal;
+        impulse->tangent = contact_clamp(given.tangent, -most, most);
+        outside += given.normal != impulse->normal || given.tangent != impulse->tangent;
+    }
+    return outside;
+}
+
+/* False for a NaN too. */
+static bool is_bounded(const ContactProblem *problem, const ContactSolution *solution) {
+    bool bounded = true;
+    for (int i = 0; i < problem->body_count; i++) {
+        const BodyVelocity *v = &solution->velocities[i];
+        bounded = bounded && fabsf(v->linear.x) <= speed_max && fabsf(v->linear.y) <= speed_max &&
+                  fabsf(v->angular) <= speed_max;
+    }
+    return bounded;
+}
+
+void hybrid_answer(const Tabulation *memory, int entry, const float *key, const ContactProblem *problem,
+                   ContactSolution *solution) {
+    tabulation_answer(memory, entry, key, solution->impulses);
+    solution->fallbacks.outside_cone += clamp(problem, solution->impulses);
+    push_all(problem, solution);
+}
+
+/* The fallbacks so far are added to those of interior. */
+static bool converge(Hybrid *hybrid, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    const NetworkFallbacks before = solution->fallbacks;
+    solution->fallbacks = (NetworkFallbacks){0};
+    if (!solver_interior.solve(hybrid->interior, problem, solution, error)) return false;
+    network_fallbacks_add(&solution->fallbacks, &before);
+    return true;
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    Hybrid *hybrid = state;
+    if (hybrid->memory != NULL && !fits(hybrid, problem, error)) return false;
+    solution->fallbacks = (NetworkFallbacks){0};
+    const bool asks = hybrid->retrieves && (hybrid->memory != NULL || hybrid->watch.see != NULL);
+    if (!asks || !is_impact(hybrid, problem, solution)) return converge(hybrid, problem, solution, error);
+    if (!reserve(hybrid, problem)) return error_memory(error, "hybrid");
+    const TabulationQuery query = make_query(hybrid, problem);
+    HybridStep step = {problem, solution, query, hybrid->bomb, hybrid->others, -1};
+    if (hybrid->memory != NULL) step.entry = tabulation_find(hybrid->memory, &step.query);
+    if (step.entry >= 0) {
+        hybrid_answer(hybrid->memory, step.entry, step.query.key, problem, solution);
+        if (!is_bounded(problem, solution)) {
+            solution->fallbacks = (NetworkFallbacks){.not_finite = 1};
+            step.entry = -1;
+        }
+    } else {
+        solution->fallbacks.beyond_training = 1;
+    }
+    if (step.entry < 0 && !converge(hybrid, problem, solution, error)) return false;
+    return hybrid->watch.see == NULL || hybrid->watch.see(hybrid->watch.context, &step, error);
+}
+
+const ContactSolverKind solver_hybrid = {
+    .description = {.name = "hybrid",
+                    .summary = "a memory answers familiar impacts; others are solved to convergence",
+                    .caption = "memory of solved impacts",
+                    .look = {METHOD_GREEN, METHOD_SQUARE},
+                    .settings = settings,
+                    .falls_back = true,
+                    .needs_network = true,
+                    .twin = "hybrid:net=off",
+                    .chart = METHOD_RUNS("", "net=off"),
+                    .chart_quick = METHOD_NO_RUNS,
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What an iteration does with the contacts of a group, between the solves: targets, linearisation, correction, limits.
+   Included by interior_code.h. The compiler may use wider registers, but not change the order of operations. */
+#include "methods/block_lu.h"
+#include "methods/interior_point_internal.h"
+
+#include <math.h>
+
+/* In an iteration l and z keep at least this share of themselves, as do p and q, and the distances of t to its bounds. */
+static const double kept = 0.2, kept_slip = 0.11, kept_distance = 0.27;
+/* The targets of friction, as a multiple of those of normal impulses. */
+static const double slip_aim = 4;
+/* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. */
+static const double stiffest = 1e12;
+
+typedef long long Mask4 __attribute__((vector_size(32), aligned(16), may_alias));
+
+static inline Vec4 choose(Mask4 mask, Vec4 x, Vec4 y) { return (Vec4)((mask & (Mask4)x) | (~mask & (Mask4)y)); }
+static inline Vec4 smaller(Vec4 x, Vec4 y) { return choose((Mask4)(x < y), x, y); }
+static inline Vec4 larger(Vec4 x, Vec4 y) { return choose((Mask4)(x > y), x, y); }
+static inline Vec4 clamp4(Vec4 x, Vec4 limit) { return larger(smaller(x, limit), -limit); }
+static inline Vec4 all4(double x) { return (Vec4){x, x, x, x}; }
+static inline double sum4(Vec4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+
+/* The targets of the products. */
+static inline void aim(InteriorGroup *g, double tau2) {
+    const Vec4 softest = all4(1 / stiffest), bound = g->friction * g->l;
+    g->aim_normal = larger(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
+    g->aim_tangent =
+        larger(slip_aim * tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
+}
+
+/* Impulses on the contacts of a group. */
+typedef struct Impulses {
+    Vec4 normal, tangent;
+} Impulses;
+
+/* Those of the right-hand side. */
+static inline Impulses right_side(const InteriorGroup *g) {
+    return (Impulses){g->l + g->rn, g->t + g->rt + g->s * g->rn};
+}
+
+/* The impulses that are eliminated: D_n, D_t, s, r_n, r_t. One division for all quotients: with the distances u and w
+   of t to its bounds, D_t = u w / (p w + q u). */
+static inline void linearise(InteriorGroup *g) {
+    const Vec4 bound = g->friction * g->l, u = bound - g->t, w = bound + g->t;
+    const Vec4 p = g->p * w, q = g->q * u, both = u * w, sum = p + q, all = both * sum;
+    const Vec4 over = 1 / (g->z * all), over_both = over * (g->z * sum), over_sum = over * (g->z * both);
+    g->over_z = over * all;
+    g->upper = over_both * w;
+    g->lower = over_both * u;
+    g->dn = g->l * g->over_z;
+    g->dt = both * over_sum;
+    g->s = g->friction * (p - q) * over_sum;
+    g->rn = g->aim_normal * g->over_z - g->l - g->dn * (g->normal - g->bias - g->z);
+    g->rt = -g->dt * (g->tangent + g->aim_tangent * g->upper - g->aim_tangent * g->lower);
+}
+
+/* J_n x and J_t x */
+typedef struct Relative {
+    Vec4 normal, tangent;
+} Relative;
+
+/* The changes of a group by a solve, before any limit. */
+typedef struct Changes {
+    Vec4 l, z, t, p, q;
+    Vec4 upper, lower; /* of mu l - t and mu l + t */
+} Changes;
+
+static inline Changes changes_of(const InteriorGroup *g, Relative dv, Vec4 second_p, Vec4 second_q) {
+    Changes by;
+    by.l = g->rn - g->dn * dv.normal;
+    by.z = dv.normal + (g->normal - g->bias - g->z);
+    by.t = g->rt - g->dt * dv.tangent + g->s * by.l;
+    by.upper = g->friction * by.l - by.t;
+    by.lower = g->friction * by.l + by.t;
+    by.p = (g->aim_tangent + second_p - g->p * by.upper) * g->upper - g->p;
+    by.q = (g->aim_tangent + second_q - g->q * by.lower) * g->lower - g->q;
+    return by;
+}
+
+/* The products of second order that the first solve predicts, limited to the size of the terms themselves. */
+static inline void correct(InteriorGroup *g, Relative dv) {
+    const Changes by = changes_of(g, dv, all4(0), all4(0));
+    const Vec4 bound = g->friction * g->l;
+    g->rn -= clamp4(by.l * by.z, larger(g->aim_normal, g->l * g->z)) * g->over_z;
+    g->second_p = -clamp4(by.p * by.upper, larger(g->aim_tangent, g->p * (bound - g->t)));
+    g->second_q = -clamp4(by.q * by.lower, larger(g->aim_tangent, g->q * (bound + g->t)));
+    g->rt -= g->dt * (g->second_p * g->upper - g->second_q * g->lower);
+}
+
+static inline Vec4 missing_normal(const InteriorGroup *g) {
+    return smaller(g->answer_normal * g->inverse_normal, g->normal - g->bias);
+}
+
+static inline Vec4 missing_tangent(const InteriorGroup *g) {
+    const Vec4 bound = g->friction * g->answer_normal;
+    const Vec4 wanted = clamp4(g->answer_tangent - g->mass_tangent * g->tangent, bound);
+    return (g->answer_tangent - wanted) * g->inverse_tangent;
+}
+
+static inline Vec4 square(Vec4 x) { return x * x; }
+static inline Vec4 squared_residual(const InteriorGroup *g) {
+    return square(missing_normal(g)) + square(missing_tangent(g));
+}
+
+/* The iterate stays inside all bounds. */
+static inline void limit(InteriorGroup *g, const Changes *by) {
+    const Vec4 l = larger(g->l + by->l, kept * g->l), bound = g->friction * l, before = g->friction * g->l;
+    const Vec4 share = 1 - kept_distance * (1 - larger(g->t, -g->t) / before);
+    g->t = clamp4(g->t + by->t, smaller(share, all4(1 - 1e-13)) * bound);
+    g->l = l;
+    g->z = larger(g->z + by->z, kept * g->z);
+    g->p = larger(g->p + by->p, kept_slip * g->p);
+    g->q = larger(g->q + by->q, kept_slip * g->q);
+}
+
+/* The next iterate, and the answer: the full step, inside the cone. Returns the answer's squared residual at the
+   velocities of the full step, and the squared changes by the projection. */
+static inline Vec4 advance(InteriorGroup *g, Relative dv) {
+    const Changes by = changes_of(g, dv, g->second_p, g->second_q);
+    const Vec4 l = g->l + by.l, t = g->t + by.t;
+    g->answer_normal = larger(l, all4(0));
+    g->answer_tangent = clamp4(t, g->friction * g->answer_normal);
+    limit(g, &by);
+    g->normal += dv.normal;
+    g->tangent += dv.tangent;
+    return squared_residual(g) + square((l - g->answer_normal) * g->inverse_normal) +
+           square((t - g->answer_tangent) * g->inverse_tangent);
+}
+
+/* The numbers of the iterations; included once by each interior_*.c. The compiler may use wider registers, but not
+   change the order of operations. */
+#include "methods/block_lu_code.h"
+
+/* x = M (v' - v) */
+static void momentum_left(const Interior *s, Vec4 *x) {
+    for (int k = 0; k < s->lu.count; k++) x[k] = s->masses[k] * (s->start[k] - s->velocities[k]);
+    x[s->lu.count] = all4(0);
+}
+
+/* x += J^T impulses */
+static inline void push(const InteriorPair pairs[GROUP_PAIRS], Impulses by, Vec4 *x) {
+    for (int half = 0, slot = 0; half < GROUP_PAIRS; half++, slot += 2) {
+        const InteriorPair *pair = &pairs[half];
+        const Vec4 force = (pair->normal[0] * by.normal[slot] + pair->tangent[0] * by.tangent[slot]) +
+                           (pair->normal[1] * by.normal[slot + 1] + pair->tangent[1] * by.tangent[slot + 1]);
+        x[pair->a] += as_body_a(force);
+        x[pair->b] += force;
+    }
+}
+
+/* The pair's J^T D J in its own coordinates, by columns. The first two rows of J are those of the normal, for both
+   contacts. */
+static inline void stiffness(const InteriorGroup *g, const InteriorPair *pair, int slot, Vec4 columns[4]) {
+    const Vec4 *n = pair->normal, *t = pair->tangent;
+    const Vec4 along[2] = {(n[0] + t[0] * g->s[slot]) * g->dn[slot], (n[1] + t[1] * g->s[slot + 1]) * g->dn[slot + 1]};
+    const Vec4 across[2] = {t[0] * g->dt[slot], t[1] * g->dt[slot + 1]};
+    const Vec4 both_along = along[0] + along[1], both_across = across[0] + across[1];
+    const double x = g->normal_x[slot], y = g->normal_y[slot];
+    columns[0] = both_along * x + both_across * y;
+    columns[1] = both_along * y - both_across * x;
+    columns[2] = (along[0] * g->normal_b[slot] + across[0] * g->tangent_b[slot]) +
+                 (along[1] * g->normal_b[slot + 1] + across[1] * g->tangent_b[slot + 1]);
+    columns[3] = (along[0] * g->normal_a[slot] + across[0] * g->tangent_a[slot]) +
+                 (along[1] * g->normal_a[slot + 1] + across[1] * g->tangent_a[slot + 1]);
+}
+
+/* The masses, and zeros elsewhere. */
+static void begin_blocks(const Interior *s, BlockLu *lu) {
+    for (int k = 0; k < lu->count; k++) {
+        const Vec4 m = s->masses[k];
+        lu->blocks[k] = (Block3){{vec4(m[0], 0, 0, 0), vec4(0, m[1], 0, 0), vec4(0, 0, m[2], 0)}};
+    }
+    const Block3 zero = {{all4(0), all4(0), all4(0)}};
+    for (int i = lu->count; i < lu->count + 2 * lu->below + 3; i++) lu->blocks[i] = zero;
+}
+
+/* The matrix and the right-hand side. */
+static void assemble(Interior *s, double target, Vec4 *right) {
+    begin_blocks(s, &s->lu);
+    momentum_left(s, right);
+    for (int i = 0; i < s->group_count; i++) {
+        InteriorGroup *g = &s->groups[i];
+        const InteriorPair *pairs = &s->pairs[GROUP_PAIRS * i];
+        aim(g, target);
+        linearise(g);
+        push(pairs, right_side(g), right);
+        for (int half = 0; half < GROUP_PAIRS; half++) {
+            Vec4 columns[4];
+            stiffness(g, &pairs[half], 2 * half, columns);
+            block_add_pair(s->lu.blocks, pairs[half].a, pairs[half].b, pairs[half].place, columns);
+        }
+    }
+}
+
+static inline Relative relative(const InteriorGroup *g, const InteriorPair pairs[GROUP_PAIRS], const Vec4 *x) {
+    const Vec4 a = x[pairs[0].a], b = x[pairs[0].b], c = x[pairs[1].a], d = x[pairs[1].b], ab = b - a, cd = d - c;
+    const Vec4 along_x = vec4(ab[0], ab[0], cd[0], cd[0]), along_y = vec4(ab[1], ab[1], cd[1], cd[1]);
+    const Vec4 spin_a = vec4(a[2], a[2], c[2], c[2]), spin_b = vec4(b[2], b[2], d[2], d[2]);
+    return (Relative){(g->normal_x * along_x + g->normal_y * along_y) + (g->normal_b * spin_b + g->normal_a * spin_a),
+                      (g->normal_y * along_x - g->normal_x * along_y) +
+                          (g->tangent_b * spin_b + g->tangent_a * spin_a)};
+}
+
+static void correct_all(Interior *s, const Vec4 *x, Vec4 *right) {
+    momentum_left(s, right);
+    for (int i = 0; i < s->group_count; i++) {
+        InteriorGroup *g = &s->groups[i];
+        const InteriorPair *pairs = &s->pairs[GROUP_PAIRS * i];
+        correct(g, relative(g, pairs, x));
+        push(pairs, right_side(g), right);
+    }
+}
+
+static double mean_root(const Interior *s, Vec4 sum) {
+    return s->contact_count > 0 ? sqrt(sum4(sum) / s->contact_count) : 0;
+}
+
+static double advance_all(Interior *s, const Vec4 *x) {
+    Vec4 sum = all4(0);
+    for (int k = 0; k < s->lu.count; k++) s->velocities[k] += x[k];
+    for (int i = 0; i < s->group_count; i++) {
+        InteriorGroup *g = &s->groups[i];
+        sum += advance(g, relative(g, &s->pairs[GROUP_PAIRS * i], x));
+    }
+    return mean_root(s, sum);
+}
+
+static void solve_changes(const Interior *s, Vec4 *x) {
+    block_lu_solve(&s->lu, x);
+    x[s->lu.count] = all4(0);
+}
+
+static double iterate(Interior *s, double target) {
+    assemble(s, target, s->changes);
+    block_lu_factor(&s->lu);
+    solve_changes(s, s->changes);
+    correct_all(s, s->changes, s->corrected);
+    solve_changes(s, s->corrected);
+    return advance_all(s, s->corrected);
+}
+
+static double answer(Interior *s) {
+    Vec4 *x = s->changes, sum = all4(0);
+    for (int k = 0; k <= s->lu.count; k++) x[k] = all4(0);
+    for (int i = 0; i < s->group_count; i++)
+        push(&s->pairs[GROUP_PAIRS * i], (Impulses){s->groups[i].answer_normal, s->groups[i].answer_tangent}, x);
+    for (int k = 0; k <= s->lu.count; k++) {
+        x[k] *= s->inverses[k];
+        s->velocities[k] = s->start[k] + x[k];
+    }
+    for (int i = 0; i < s->group_count; i++) {
+        InteriorGroup *g = &s->groups[i];
+        const Relative dv = relative(g, &s->pairs[GROUP_PAIRS * i], x);
+        g->normal = g->free_normal + dv.normal;
+        g->tangent = g->free_tangent + dv.tangent;
+        sum += squared_residual(g);
+    }
+    return mean_root(s, sum);
+}
+
+const InteriorKernels KERNELS = {KERNELS_NAME, block_lu_factor, block_lu_solve, iterate, answer};

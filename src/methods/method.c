@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "scenes/scenes.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+size_t method_name(char *name, size_t size, const char *text) {
+    size_t used = 0;
+    name[0] = '\0';
+    while (*text != '\0' && used < size) {
+        size_t length = strcspn(text, ":=,");
+        const char *end = text + length, *start = text;
+        if (length > 4 && strncmp(end - 4, ".npz", 4) == 0)
+            for (const char *c = text; c < end; c++)
+                if (*c == '/') start = c + 1;
+        if (*end != '\0') end++;
+        used += (size_t)snprintf(name + used, size - used, "%.*s", (int)(end - start), start);
+        text = end;
+    }
+    return used < size ? used : size - 1;
+}
+
+size_t method_name_head(const char *name) { return strcspn(name, ":"); }
+
+void method_colours_assign(const MethodDescription *const *methods, int count, MethodColour *colours) {
+    bool taken[METHOD_COLOURS] = {[METHOD_NO_COLOUR] = true};
+    assert(count < METHOD_COLOURS);
+    for (int i = 0; i < count; i++) {
+        MethodColour stated = methods[i] != NULL ? methods[i]->look.colour : METHOD_NO_COLOUR;
+        colours[i] = taken[stated] ? METHOD_NO_COLOUR : stated;
+        taken[stated] = true;
+    }
+    for (int i = 0, next = METHOD_NO_COLOUR; i < count; i++) {
+        if (colours[i] != METHOD_NO_COLOUR) continue;
+        while (taken[next]) next++;
+        colours[i] = (MethodColour)next;
+        taken[next] = true;
+    }
+}
+
+/* The method in `name` or `name:key=value,...`, or NULL. */
+static const MethodKind *find(const char *text) {
+    size_t length = strcspn(text, ":");
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
+        if (strlen(kind->description->name) == length && strncmp(kind->description->name, text, length) == 0)
+            return kind;
+    return NULL;
+}
+
+const MethodDescription *method_describe(const char *text) {
+    const MethodKind *kind = find(text);
+    return kind != NULL ? kind->description : NULL;
+}
+
+static bool unknown_method(const char *text, Error *error) {
+    NameList known = {0};
+    for (int i = 0; method_kinds[i].description != NULL; i++) name_list_add(&known, method_kinds[i].description->name);
+    return error_unknown(error, "method", text, "a method", &known);
+}
+
+bool method_parse(Method *method, const char *text, Error *error) {
+    if (strlen(text) >= sizeof method->text)
+        return error_input(error, text, "a method's text has at most %zu characters", sizeof method->text - 1);
+    strcpy(method->text, text);
+    size_t length = strcspn(text, ":");
+    char name[METHOD_TEXT_SIZE];
+    memcpy(name, text, length);
+    name[length] = '\0';
+    method->kind = find(text);
+    if (method->kind == NULL) return unknown_method(name, error);
+    return settings_parse(&method->settings, text[length] == ':' ? text + length + 1 : "",
+                          method->kind->description->settings, name, error);
+}
+
+static bool add_defaults(Settings *settings, const MethodDescription *method, const char *defaults) {
+    Settings own;
+    Error ignored = {0};
+    if (!settings_parse(&own, defaults, method->settings, method->name, &ignored)) return false;
+    for (int i = 0; i < own.count; i++)
+        if (!settings_default(settings, own.items[i].key, own.items[i].value)) return false;
+    return true;
+}
+
+bool method_all_settings(Settings *settings, const char *text, int iterations) {
+    Method method;
+    Error ignored = {0};
+    char sweeps[24] = "";
+    if (!method_parse(&method, text, &ignored)) return false;
+    const MethodDescription *description = method.kind->description;
+    *settings = method.settings;
+    if (description->own_settings != NULL) return add_defaults(settings, description, description->own_settings);
+    if (iterations > 0 && settings_known(description->settings, "k"))
+        snprintf(sweeps, sizeof sweeps, "k=%d", iterations);
+    return add_defaults(settings, description, sweeps);
+}
+
+bool method_with_network(Method *method, const char *name, const char *path, Error *error) {
+    return method_parse(method, name, error) && (settings_default(&method->settings, "network", path) ||
+                                                 error_input(error, path, "the name is too long for a setting"));
+}
+
+static void trace(const ContactSolverKind *kind, const Settings *settings) {
+    char text[1024] = "";
+    for (int i = 0; i < settings->count; i++)
+        text_add(text, sizeof text, "%s%s=%s", i > 0 ? "," : ":", settings->items[i].key, settings->items[i].value);
+    trace_line("method %s%s", kind->description.name, text);
+}
+
+bool method_create_solver(const Method *method, const Scene *scene, ContactSolver *solver, Error *error) {
+    const ContactSolverKind *kind = method->kind->solver;
+    if (kind == NULL) return error_input(error, method->text, "is not a contact solver; this needs one");
+    Settings settings = method->settings;
+    char iterations[16];
+    snprintf(iterations, sizeof iterations, "%d", scene->iterations);
+    const struct {
+        const char *key, *value;
+    } scene_settings[] = {{"k", iterations},
+                          {"accumulate", scene->accumulate_impulses ? "on" : "off"},
+                          {"network", scene_network(scene, kind->description.name)}};
+    for (size_t i = 0; i < sizeof scene_settings / sizeof scene_settings[0]; i++) {
+        if (scene_settings[i].value == NULL || !settings_known(kind->description.settings, scene_settings[i].key))
+            continue;
+        if (!settings_default(&settings, scene_settings[i].key, scene_settings[i].value))
+            return error_input(error, scene->name, "%s does not fit a setting", scene_settings[i].key);
+    }
+    trace(kind, &settings);
+    solver->kind = kind;
+    solver->state = kind->create(&settings, error);
+    return solver->state != NULL;
+}
+
+bool method_lacks_network(const Method *method, const Scene *scene) {
+    const MethodDescription *description = method->kind->description;
+    return description->needs_network && settings_get(&method->settings, "network") == NULL &&
+           scene_network(scene, description->name) == NULL;
+}
+
+struct Stepper {
+    const MethodDescription *description;
+    ContactSolver solver;         /* in the standard step */
+    const SteppingKind *stepping; /* or NULL */
+    void *state;
+};
+
+Stepper *stepper_create(const Method *method, const Scene *scene, Error *error) {
+    Stepper *stepper = calloc(1, sizeof *stepper);
+    if (stepper == NULL) {
+        error_memory(error, method->text);
+        return NULL;
+    }
+    stepper->description = method->kind->description;
+    stepper->stepping = method->kind->stepping;
+    if (stepper->stepping != NULL) {
+        stepper->state = stepper->stepping->create(&method->settings, scene, error);
+        if (stepper->state != NULL) return stepper;
+    } else if (method_create_solver(method, scene, &stepper->solver, error)) {
+        return stepper;
+    }
+    free(stepper);
+    return NULL;
+}
+
+void stepper_destroy(Stepper *stepper) {
+    if (stepper == NULL) return;
+    if (stepper->stepping != NULL)
+        stepper->stepping->destroy(stepper->state);
+    else
+        stepper->solver.kind->destroy(stepper->solver.state);
+    free(stepper);
+}
+
+const MethodDescription *stepper_describe(const Stepper *stepper) { return stepper->description; }
+
+/* A contact solver whose cost a step meters. */
+typedef struct MeteredSolver {
+    const ContactSolver *solver;
+    const Step *step;
+} MeteredSolver;
+
+static bool solve_metered(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    const MeteredSolver *metered = state;
+    step_solving_begins(metered->step);
+    bool solved = metered->solver->kind->solve(metered->solver->state, problem, solution, error);
+    step_solving_ends(metered->step);
+    return solved;
+}
+
+bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
+    if (stepper->stepping != NULL) return stepper->stepping->step(stepper->state, world, step, error);
+    MeteredSolver metered = {&stepper->solver, step};
+    return world_step(world, solve_metered, &metered, step->scene->dt, error);
+}

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sequential impulses with momentum extrapolation between sweeps: before each sweep the impulses, and the velocities,
+   which are linear in them, continue along their last change. With p[s] and v[s] after sweep s,
+
+       p = p[s] + beta[s] (p[s] - p[s-1]),   v = v[s] + beta[s] (v[s] - v[s-1])
+
+   is where sweep s + 1 begins; the sweep projects the impulses back into their cones. Source: Nesterov, "A Method of
+   Solving a Convex Programming Problem with Convergence Rate O(1/k^2)" (1983); for contacts Mazhar, Heyn, Negrut,
+   Tasora, "Using Nesterov's Method to Accelerate Multibody Dynamics with Friction and Contact" (2015), with full
+   gradient steps in place of sweeps. Sweeps visit contacts in the order of colours: as accurate, and faster
+   (tests/bench/colours). Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the
+   first sweeps of an impact gain little. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/solvers.h"
+#include "methods/sweeps.h"
+
+#include <stdlib.h>
+
+/* Adds factor times the change since *before to *now. A factor or change of 0 must keep all bits: + 0 turns -0 into 0,
+   and x - 0 is x even for x = -0. */
+static void extrapolate(float *now, float *before, float factor) {
+    float next = *now - (factor * (*before - *now) + 0.0f);
+    *before = *now;
+    *now = next;
+}
+
+static void extrapolate_all(const ContactProblem *problem, float factor, ContactSolution *before,
+                            ContactSolution *now) {
+    for (int i = 0; i < problem->body_count; i++) {
+        extrapolate(&now->velocities[i].linear.x, &before->velocities[i].linear.x, factor);
+        extrapolate(&now->velocities[i].linear.y, &before->velocities[i].linear.y, factor);
+        extrapolate(&now->velocities[i].angular, &before->velocities[i].angular, factor);
+    }
+    for (int i = 0; i < problem->contact_count; i++) {
+        extrapolate(&now->impulses[i].normal, &before->impulses[i].normal, factor);
+        extrapolate(&now->impulses[i].tangent, &before->impulses[i].tangent, factor);
+    }
+}
+
+static void begin_scalar(const ContactProblem *problem, const int32_t *visits, ContactSolution *solution) {
+    static const SequentialOptions cold = {.accumulate = false};
+    sequential_impulses_begin(problem, &cold, solution);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[visits[i]];
+        const ContactImpulse warm = {contact->warm_normal, contact->warm_tangent};
+        solution->impulses[visits[i]] = warm;
+        contact_push(solution->velocities, contact, problem->bodies, warm);
+    }
+}
+
+void momentum_solve_scalar(const ContactProblem *problem, const int32_t *visits, const float *factors, int count,
+                           ContactSolution *before, ContactSolution *solution) {
+    static const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
+    begin_scalar(problem, visits, solution);
+    begin_scalar(problem, visits, before);
+    for (int sweep = 0; sweep < count; sweep++) {
+        extrapolate_all(problem, factors[sweep], before, solution);
+        for (int i = 0; i < problem->contact_count; i++)
+            sequential_impulses_visit(problem, &options, visits[i], 1, solution);
+    }
+}
+
+float momentum_factor_tuned(int sweep, int count) {
+    float rising = (float)sweep / ((float)sweep + 1.4f), most = 1.0f - 7.0f / (15.0f + (float)count);
+    return rising < most ? rising : most;
+}
+
+float *momentum_factors_make(int count) {
+    float *factors = malloc((size_t)count * sizeof *factors);
+    for (int s = 0; factors != NULL && s < count; s++) factors[s] = momentum_factor_tuned(s, count);
+    return factors;
+}
+
+void momentum_free(Momentum *momentum) {
+    sweeps_free(&momentum->sweeps);
+    free(momentum->before.velocities);
+    free(momentum->before.impulses);
+    free(momentum->more_factors);
+    *momentum = (Momentum){0};
+}
+
+/* Without a stopping rule momentum_solve() has `count` sweeps. */
+static bool read_rule(Momentum *momentum, const Settings *chosen, Error *error) {
+    StoppingRule *rule = &momentum->rule;
+    if (!stopping_read(rule, chosen, error)) return false;
+    if (rule->more == 0) return true;
+    momentum->more_factors = momentum_factors_make(rule->more);
+    return momentum->more_factors != NULL || error_memory(error, "momentum");
+}
+
+bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors) {
+    for (int done = 0; stopping_needs_more(rule, done, sweeps, problem); done += STOPPING_BLOCK)
+        if (!(done == 0 ? sweeps_run_momentum(sweeps, factors, STOPPING_BLOCK)
+                        : sweeps_continue_momentum(sweeps, factors + done, STOPPING_BLOCK)))
+            return false;
+    return true;
+}
+
+bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,
+                    ContactSolution *solution, Error *error) {
+    if (!sweeps_begin_coloured(&momentum->sweeps, sweeps_best_kernel(), problem) ||
+        !sweeps_run_momentum(&momentum->sweeps, factors, count) ||
+        !momentum_run_more(&momentum->sweeps, problem, &momentum->rule, momentum->more_factors))
+        return error_memory(error, "momentum");
+    if (sweeps_end(&momentum->sweeps, solution)) return true;
+    ContactSolution *before = &momentum->before;
+    if (!array_reserve((void **)&before->velocities, &momentum->body_capacity, (size_t)problem->body_count,
+                       sizeof *before->velocities) ||
+        !array_reserve((void **)&before->impulses, &momentum->contact_capacity, (size_t)problem->contact_count,
+                       sizeof *before->impulses))
+        return error_memory(error, "momentum");
+    momentum_solve_scalar(problem, momentum->sweeps.colours.visits, factors, count, before, solution);
+    return true;
+}
+
+typedef struct State {
+    Momentum momentum;
+    int sweep_count;
+    float *factors; /* [sweep_count] */
+} State;
+
+static const SettingSpec settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, STOPPING_SETTINGS, {NULL, NULL}};
+
+static void destroy(void *state) {
+    State *solver = state;
+    if (solver == NULL) return;
+    momentum_free(&solver->momentum);
+    free(solver->factors);
+    free(solver);
+}
+
+static void *create(const Settings *chosen, Error *error) {
+    int sweep_count = 10;
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error)) return NULL;
+    State *solver = calloc(1, sizeof *solver);
+    if (solver != NULL) solver->factors = momentum_factors_make(sweep_count);
+    if (solver == NULL || solver->factors == NULL) {
+        destroy(solver);
+        error_memory(error, "momentum");
+        return NULL;
+    }
+    solver->sweep_count = sweep_count;
+    if (read_rule(&solver->momentum, chosen, error)) return solver;
+    destroy(solver);
+    return NULL;
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    State *solver = state;
+    return momentum_solve(&solver->momentum, problem, solver->factors, solver->sweep_count, solution, error);
+}
+
+const ContactSolverKind solver_momentum = {
+    .description = {.name = "momentum",
+                    .summary = "sequential impulses with momentum extrapolation between sweeps",
+                    .caption = "sequential impulses with momentum",
+                    .look = {METHOD_GREEN, METHOD_TRIANGLE},
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100", "near=0.5,more=200",
+                                         "near=0.1,more=200", "near=0.02,more=200", "near=0.005,more=200"),
+                    .chart_quick = METHOD_RUNS("k=10", "k=20"),
+                    .stability = METHOD_RUNS("", "k=20"),
+                    .stability_place = 3},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

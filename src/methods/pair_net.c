@@ -1,0 +1,515 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/pair.h"
+#include "methods/solvers.h"
+#include "methods/sweeps.h"
+#include "nets/nets.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void pair_network_free(PairNetwork *pair) {
+    network_destroy(pair->network);
+    free(pair->scratch);
+    free(pair->numbers);
+    pair_moment_free(&pair->moment);
+    *pair = (PairNetwork){0};
+}
+
+static bool refuse_inputs(const Network *network, const char *path, Error *error) {
+    NameList known = {0};
+    for (int v = 0; v < PAIR_VIEWS; v++) {
+        char view[64];
+        snprintf(view, sizeof view, "%s (%d)", pair_views[v].name, pair_views[v].count);
+        name_list_add(&known, view);
+    }
+    return error_input(error, path, "the network has %d inputs (%.80s); it needs those of %s", network->widths[0],
+                       network->inputs, known.text);
+}
+
+static bool refuse_target(const Network *network, const char *path, Error *error) {
+    NameList known = {0};
+    for (int t = 0; t < PAIR_TARGETS; t++) name_list_add(&known, pair_target_names[t]);
+    return error_unknown(error, path, network->target, "a target of pair networks", &known);
+}
+
+static bool find_target(const char *name, PairTarget *target) {
+    for (PairTarget t = 0; t < PAIR_TARGETS; t++) {
+        if (strcmp(pair_target_names[t], name) != 0) continue;
+        *target = t;
+        return true;
+    }
+    return false;
+}
+
+/* Whether the view has the inputs that the target needs. */
+static bool check_view(const PairNetwork *pair, const char *path, Error *error) {
+    if (pair->target == TARGET_POINTS && !pair_views[pair->view].by_contact)
+        return error_input(
+            error, path, "the network has the target points and the inputs %s; it needs those of contact or neighbours",
+            pair_views[pair->view].name);
+    if (pair->target == TARGET_IMPULSE && pair->view == PAIR_NEIGHBOURS)
+        return error_input(
+            error, path,
+            "the network has the target impulse and the inputs neighbours, which change at every visit; it "
+            "needs those of another view");
+    return true;
+}
+
+static bool check_outputs(const PairNetwork *pair, const char *path, Error *error) {
+    const int outputs = pair_network_outputs(pair);
+    const char *names = pair_output_names(pair->view, pair->target, outputs);
+    if (names != NULL && strcmp(names, pair->network->outputs) == 0) return true;
+    char needed[128];
+    if (pair->target == TARGET_POINTS)
+        snprintf(needed, sizeof needed, "%d (%s)", PAIR_POINT_CHANGES,
+                 pair_output_names(pair->view, pair->target, PAIR_POINT_CHANGES));
+    else
+        snprintf(needed, sizeof needed, "2 (%s) or %d (%s)", pair_output_names(pair->view, pair->target, 2),
+                 PAIR_CHANGES, pair_output_names(pair->view, pair->target, PAIR_CHANGES));
+    return error_input(
+        error, path, "the network has the inputs %s, the target %s and %d outputs (%.80s); it needs outputs %s",
+        pair_views[pair->view].name, pair_target_names[pair->target], outputs, pair->network->outputs, needed);
+}
+
+bool pair_network_read(PairNetwork *pair, const char *path, Error *error) {
+    Network *network = pair->network = network_read(path, error);
+    if (network == NULL) return false;
+    bool seen = pair_view_of_inputs(network->inputs, &pair->view) && network->widths[0] == pair_views[pair->view].count;
+    bool ok = (seen || refuse_inputs(network, path, error)) &&
+              (find_target(network->target, &pair->target) || refuse_target(network, path, error)) &&
+              check_view(pair, path, error) && check_outputs(pair, path, error);
+    if (ok) {
+        pair->scratch = malloc(network_batch_scratch(network) * sizeof *pair->scratch);
+        ok = pair->scratch != NULL || error_memory(error, path);
+    }
+    if (!ok) pair_network_free(pair);
+    return ok;
+}
+
+static int pair_network_count_pairs(const ContactProblem *problem) {
+    int pairs = 0;
+    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) pairs++;
+    return pairs;
+}
+
+/* The moment of the step for all pairs; *now is NULL for the problem's own velocities. */
+static bool find_moment(PairNetwork *pair, const ContactProblem *problem, const PairMoment **now) {
+    *now = NULL;
+    if (!pair_views[pair->view].by_contact) return true;
+    if (!pair_moment_reserve(&pair->moment, problem)) return false;
+    static const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
+    ContactSolution begun = pair_moment_solution(&pair->moment);
+    sequential_impulses_begin(problem, &options, &begun);
+    if (pair->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&pair->moment, problem);
+    *now = &pair->moment;
+    return true;
+}
+
+const float *pair_network_predict(PairNetwork *pair, const ContactProblem *problem, int *pairs) {
+    const int count = *pairs = pair_network_count_pairs(problem), width = pair_views[pair->view].count;
+    const size_t inputs_size = (size_t)count * (size_t)width;
+    const size_t outputs_size = (size_t)count * (size_t)pair_network_outputs(pair);
+    if (!array_reserve((void **)&pair->numbers, &pair->capacity, inputs_size + outputs_size + 1, sizeof(float)))
+        return NULL;
+    float *inputs = pair->numbers, *outputs = pair->numbers + inputs_size;
+    if (count == 0) return outputs;
+    if (pair->constant) {
+        for (size_t i = 0; i < outputs_size; i++) outputs[i] = pair->network->output_mean[i / (size_t)count];
+        return outputs;
+    }
+    const PairMoment *now;
+    if (!find_moment(pair, problem, &now)) return NULL;
+    for (int first = 0, p = 0; first < problem->contact_count; first += pair_contact_count(problem, first), p++) {
+        float numbers[PAIR_INPUTS_MAX];
+        pair_inputs(problem, now, first, pair->view, numbers);
+        for (int i = 0; i < width; i++) inputs[i * count + p] = numbers[i];
+    }
+    network_predict_batch(pair->network, inputs, pair->scratch, outputs, count);
+    return outputs;
+}
+
+void pair_network_predict_one(PairNetwork *pair, const ContactProblem *problem, const PairMoment *now, int first,
+                              float *outputs) {
+    if (pair->constant) {
+        memcpy(outputs, pair->network->output_mean, (size_t)pair_network_outputs(pair) * sizeof *outputs);
+        return;
+    }
+    float inputs[PAIR_INPUTS_MAX];
+    pair_inputs(problem, now, first, pair->view, inputs);
+    network_predict(pair->network, inputs, pair->scratch, outputs);
+}
+
+/* The mean of the pair's contact points, from a body's centre. */
+static Vec2 mean_arm(const ContactProblem *problem, int first, int count, Vec2 center) {
+    Vec2 sum = vec2(0, 0);
+    for (int i = first; i < first + count; i++) sum = vec2_add(sum, problem->contacts[i].position);
+    return vec2_sub(vec2_scale(1.0f / (float)count, sum), center);
+}
+
+/* Six changes from that of the relative velocity, by equal and opposite impulses. */
+static void share_relative_change(const ContactProblem *problem, int first, Vec2 change, float changes[PAIR_CHANGES]) {
+    const int count = pair_contact_count(problem, first);
+    const ProblemBody *a = &problem->bodies[problem->contacts[first].a];
+    const ProblemBody *b = &problem->bodies[problem->contacts[first].b];
+    Vec2 impulse = vec2_scale(1.0f / (a->inv_mass + b->inv_mass), change);
+    Vec2 arm_a = mean_arm(problem, first, count, a->position), arm_b = mean_arm(problem, first, count, b->position);
+    changes[0] = -a->inv_mass * impulse.x;
+    changes[1] = -a->inv_mass * impulse.y;
+    changes[2] = -a->inv_inertia * vec2_cross(arm_a, impulse);
+    changes[3] = b->inv_mass * impulse.x;
+    changes[4] = b->inv_mass * impulse.y;
+    changes[5] = b->inv_inertia * vec2_cross(arm_b, impulse);
+}
+
+/* Converts outputs (one number every `stride`) to changes of the two bodies in world axes: of velocity (2) and angular
+   velocity (1) of a, then of b. Six outputs are these changes. Two outputs are the change of the relative velocity: the
+   bodies get the effect of the impulse that makes it, at the mean of the contact points. Not for TARGET_POINTS. */
+static void pair_network_changes(const PairNetwork *pair, const ContactProblem *problem, int first,
+                                 const float *outputs, int stride, float changes[PAIR_CHANGES]) {
+    const bool two = pair_network_outputs(pair) == 2;
+    for (int i = 0; i < PAIR_CHANGES; i++) changes[i] = two ? 0 : outputs[i * stride];
+    if (two) changes[3] = outputs[0], changes[4] = outputs[stride];
+    if (pair_views[pair->view].by_contact) pair_from_contact_frame(&problem->contacts[first], changes);
+    if (two) share_relative_change(problem, first, vec2(changes[3], changes[4]), changes);
+}
+
+void pair_solver_destroy(void *state) {
+    PairSolver *solver = state;
+    if (solver == NULL) return;
+    pair_network_free(&solver->network);
+    free(solver->pair_counts);
+    free(solver);
+}
+
+PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *error) {
+    const char *path = settings_get(chosen, "network");
+    if (path == NULL) {
+        error_input(error, name, "the scene names no network for it: use %s:network=FILE", name);
+        return NULL;
+    }
+    PairSolver *solver = calloc(1, sizeof *solver);
+    if (solver == NULL) {
+        error_memory(error, name);
+        return NULL;
+    }
+    solver->sweep_count = 10;
+    bool predicts = true;
+    if (settings_int(chosen, "k", 1, SWEEPS_MAX, &solver->sweep_count, error) &&
+        settings_bool(chosen, "net", &predicts, error) && pair_network_read(&solver->network, path, error)) {
+        solver->network.constant = !predicts;
+        return solver;
+    }
+    pair_solver_destroy(solver);
+    return NULL;
+}
+
+static BodyVelocity changed(const BodyVelocity *velocity, const ProblemBody *body, const float changes[3]) {
+    if (body->inv_mass == 0.0f) return *velocity;
+    return (BodyVelocity){vec2_add(velocity->linear, vec2(changes[0], changes[1])), velocity->angular + changes[2]};
+}
+
+static bool is_finite_velocity(const BodyVelocity *velocity) {
+    return isfinite(velocity->linear.x) && isfinite(velocity->linear.y) && isfinite(velocity->angular);
+}
+
+/* The total momentum that changes of a pair create, N s. */
+static double created_momentum(const ProblemBody *a, const ProblemBody *b, const float changes[PAIR_CHANGES]) {
+    if (a->inv_mass == 0.0f || b->inv_mass == 0.0f) return 0;
+    const double mass_a = 1.0 / a->inv_mass, mass_b = 1.0 / b->inv_mass;
+    const double x = mass_a * changes[0] + mass_b * changes[3], y = mass_a * changes[1] + mass_b * changes[4];
+    return sqrt(x * x + y * y);
+}
+
+/* A change with a NaN or infinite number is discarded and counted. */
+static void add_changes(const PairNetwork *network, const ContactProblem *problem, int first,
+                        const float changes[PAIR_CHANGES], ContactSolution *solution) {
+    const int a = problem->contacts[first].a, b = problem->contacts[first].b;
+    const ProblemBody *body_a = &problem->bodies[a], *body_b = &problem->bodies[b];
+    const BodyVelocity of_a = changed(&solution->velocities[a], body_a, changes);
+    const BodyVelocity of_b = changed(&solution->velocities[b], body_b, changes + 3);
+    if (!is_finite_velocity(&of_a) || !is_finite_velocity(&of_b)) {
+        solution->fallbacks.not_finite++;
+        return;
+    }
+    solution->velocities[a] = of_a;
+    solution->velocities[b] = of_b;
+    if (network->target == TARGET_NET || pair_network_outputs(network) == PAIR_CHANGES)
+        solution->momentum_error += (float)created_momentum(body_a, body_b, changes);
+}
+
+static bool pair_solver_count_pairs(PairSolver *solver, const ContactProblem *problem) {
+    const size_t bodies = (size_t)problem->body_count + 1;
+    if (!array_reserve((void **)&solver->pair_counts, &solver->count_capacity, bodies, sizeof *solver->pair_counts))
+        return false;
+    memset(solver->pair_counts, 0, bodies * sizeof *solver->pair_counts);
+    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
+        solver->pair_counts[problem->contacts[first].a]++;
+        solver->pair_counts[problem->contacts[first].b]++;
+    }
+    return true;
+}
+
+/* TARGET_NET: every pair of a body predicts its whole change, so the body takes their mean. */
+static void take_shares(const PairSolver *solver, const ContactPoint *contact, float changes[PAIR_CHANGES]) {
+    for (int i = 0; i < PAIR_CHANGES; i++)
+        changes[i] /= (float)solver->pair_counts[i < PAIR_CHANGES / 2 ? contact->a : contact->b];
+}
+
+/* TARGET_IMPULSE: sweeps over the pairs, each predicted from the current velocities. */
+static void visit_pairs(PairSolver *solver, const ContactProblem *problem, ContactSolution *solution) {
+    const PairMoment now = {.velocities = solution->velocities};
+    for (int sweep = 0; sweep < solver->sweep_count; sweep++)
+        for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
+            float outputs[PAIR_CHANGES], changes[PAIR_CHANGES];
+            pair_network_predict_one(&solver->network, problem, &now, first, outputs);
+            pair_network_changes(&solver->network, problem, first, outputs, 1, changes);
+            add_changes(&solver->network, problem, first, changes, solution);
+        }
+}
+
+static ContactImpulse into_cone(ContactImpulse impulse, float friction) {
+    const float normal = impulse.normal > 0.0f ? impulse.normal : 0.0f, most = friction * normal;
+    return (ContactImpulse){normal, contact_clamp(impulse.tangent, -most, most)};
+}
+
+/* outputs: one number of the pair every `stride`. A point without outputs, or with NaN or infinite ones, keeps its warm
+   start. */
+static void push_points(const ContactProblem *problem, int first, const float *outputs, int stride,
+                        ContactSolution *solution) {
+    const int count = pair_contact_count(problem, first);
+    const float inverse_mass = pair_inverse_mass(problem, first);
+    for (int i = 0; i < count; i++) {
+        const ContactPoint *contact = &problem->contacts[first + i];
+        ContactImpulse impulse = {contact->warm_normal, contact->warm_tangent};
+        if (i < PAIR_POINTS) {
+            const float *beyond = outputs + 2 * i * stride;
+            const ContactImpulse predicted = {impulse.normal + beyond[0] / inverse_mass,
+                                              impulse.tangent + beyond[stride] / inverse_mass};
+            if (isfinite(predicted.normal) && isfinite(predicted.tangent))
+                impulse = predicted;
+            else
+                solution->fallbacks.not_finite++;
+        }
+        solution->impulses[first + i] = into_cone(impulse, contact->friction);
+        solution->fallbacks.outside_cone += impulse.normal != solution->impulses[first + i].normal ||
+                                            impulse.tangent != solution->impulses[first + i].tangent;
+        contact_push(solution->velocities, contact, problem->bodies, solution->impulses[first + i]);
+    }
+}
+
+bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    PairSolver *solver = state;
+    PairNetwork *network = &solver->network;
+    for (int i = 0; i < problem->body_count; i++)
+        solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
+    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+    solution->momentum_error = 0;
+    solution->fallbacks = (NetworkFallbacks){0};
+    if (network->target == TARGET_IMPULSE) {
+        visit_pairs(solver, problem, solution);
+        return true;
+    }
+    int pairs;
+    const float *outputs = pair_network_predict(network, problem, &pairs);
+    if (outputs == NULL || (network->target == TARGET_NET && !pair_solver_count_pairs(solver, problem)))
+        return error_memory(error, "pair network");
+    for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first), outputs++) {
+        if (network->target == TARGET_POINTS) {
+            push_points(problem, first, outputs, pairs, solution);
+            continue;
+        }
+        float changes[PAIR_CHANGES];
+        pair_network_changes(network, problem, first, outputs, pairs, changes);
+        if (network->target == TARGET_NET) take_shares(solver, &problem->contacts[first], changes);
+        add_changes(network, problem, first, changes, solution);
+    }
+    return true;
+}
+
+/* A network of contact points, beyond the paper. It predicts impulses, so every action has an equal reaction.
+
+   The network sees each pair after the warm start, in the frame of its contact. For each contact point it predicts how
+   far the impulse p = (normal, tangent) goes beyond the warm start p0, as a change d of the relative velocity. The
+   result is projected onto the friction cone:
+
+       p = P(p0 + d / (1/ma + 1/mb)),   P: pn' = max(pn, 0), pt' = clamp(pt, -mu pn', mu pn')
+
+   Momentum and angular momentum are conserved by construction, and p is the warm start of the next step. Cone and
+   accumulation are those of sequential impulses (Catto 2006). Fails on chains of boxes: all pairs are predicted from
+   the same velocities, so an impulse travels one pair per step, and a box between two others is pushed twice. */
+
+static const SettingSpec contact_net_settings[] = {
+    {"network", "file of a network with the target points (default: the scene's)"}, PAIR_SOLVER_NET, {NULL, NULL}};
+
+static void *contact_net_create(const Settings *chosen, Error *error) {
+    PairSolver *solver = pair_solver_create("contact-net", chosen, error);
+    if (solver == NULL || solver->network.target == TARGET_POINTS) return solver;
+    error_input(error, settings_get(chosen, "network"),
+                "the network has the target %s, which is for pair-net; contact-net needs the target points",
+                pair_target_names[solver->network.target]);
+    pair_solver_destroy(solver);
+    return NULL;
+}
+
+const ContactSolverKind solver_contact_net = {
+    .description = {.name = "contact-net",
+                    .summary =
+                        "beyond the paper: a network predicts impulses at contact points, clamped to the friction cone",
+                    .caption = "neural network for contact points",
+                    .look = {METHOD_WINE, METHOD_TRIANGLE},
+                    .settings = contact_net_settings,
+                    .needs_network = true,
+                    .twin = "contact-net:net=off",
+                    .chart = METHOD_RUNS("", "net=off"),
+                    .chart_quick = METHOD_RUNS("", "net=off"),
+                    .stability = METHOD_RUNS("", "net=off")},
+    .create = contact_net_create,
+    .solve = pair_solver_solve,
+    .destroy = pair_solver_destroy};
+
+/* Sequential impulses (sequential_impulses.c) written as a network of rectifiers, relu(x) = max(x, 0). With m = mu Pn'
+   and w = Pt - mass_t vt,
+
+       Pn' = relu(Pn - mass_n (vn - bias)),   Pt' = -m + relu(w + m) - relu(w - m)
+
+   because max(x, 0) is a rectifier and a clamp is a difference of two: below -m both are 0, between -m and m only the
+   second is 0, and above m they differ by 2 m. All other operations are linear: velocities at a contact, the effect of
+   an impulse, accumulation. So k sweeps are a network with 2 k layers per contact, of one and of two rectifiers, whose
+   weights are computed from the contact problem: nothing is trained, and it is valid for every scene. Apart from
+   rounding it equals the engine: tangent impulses come from a sum and a difference.
+
+   It is neither faster nor more accurate, but shows what a network can achieve. A network that sees one contact at a
+   time, its velocity and its accumulated impulse, does not fail for lack of neurons: three are enough to equal the
+   engine. What the engine lacks in stacks and pyramids is information beyond the contact, which more neurons per
+   contact do not add. Source of ReLU networks as piecewise linear functions, and of these functions as networks: Arora,
+   Basu, Mianjy, Mukherjee, "Understanding Deep Neural Networks with Rectified Linear Units" (2018). */
+
+typedef struct ReluNet {
+    int sweep_count;
+} ReluNet;
+
+static const SettingSpec relu_net_settings[] = {
+    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, {NULL, NULL}};
+
+static void *relu_net_create(const Settings *chosen, Error *error) {
+    ReluNet values = {.sweep_count = 10};
+    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error)) return NULL;
+    ReluNet *solver = malloc(sizeof *solver);
+    if (solver == NULL)
+        error_memory(error, "relu-net");
+    else
+        *solver = values;
+    return solver;
+}
+
+/* The layers of one contact: the normal impulse, then the tangent impulse from the velocities that result. */
+static void visit(const ContactPoint *contact, const ProblemBody *bodies, BodyVelocity *velocities,
+                  ContactImpulse *sum) {
+    BodyVelocity *a = &velocities[contact->a], *b = &velocities[contact->b];
+    const float separating = vec2_dot(contact_relative_velocity(a, b, contact), contact->normal);
+    const float normal = relu_float(sum->normal - contact->mass_normal * (separating - contact->bias));
+    contact_apply(a, b, contact, bodies, vec2_scale(normal - sum->normal, contact->normal));
+
+    const Vec2 direction = vec2_cross_scalar(contact->normal, 1.0f);
+    const float sliding = vec2_dot(contact_relative_velocity(a, b, contact), direction);
+    const float stopping = sum->tangent - contact->mass_tangent * sliding, limit = contact->friction * normal;
+    const float tangent = -limit + relu_float(stopping + limit) - relu_float(stopping - limit);
+    contact_apply(a, b, contact, bodies, vec2_scale(tangent - sum->tangent, direction));
+    *sum = (ContactImpulse){normal, tangent};
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    (void)error;
+    static const SequentialOptions start = {.accumulate = true, .warm = true, .relaxation = 1.0f};
+    const ReluNet *solver = state;
+    sequential_impulses_begin(problem, &start, solution);
+    for (int sweep = 0; sweep < solver->sweep_count; sweep++)
+        for (int i = 0; i < problem->contact_count; i++)
+            visit(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i]);
+    return true;
+}
+
+const ContactSolverKind solver_relu_net = {
+    .description = {.name = "relu-net",
+                    .summary = "sequential impulses written as a ReLU network; nothing is trained",
+                    .caption = "sequential impulses as a ReLU network",
+                    .look = {METHOD_WINE, METHOD_CIRCLE},
+                    .settings = relu_net_settings,
+                    .chart = METHOD_NO_RUNS,
+                    .chart_quick = METHOD_NO_RUNS,
+                    .stability = METHOD_NO_RUNS},
+    .create = relu_net_create,
+    .solve = solve,
+    .destroy = free};
+
+/* The paper's network in place of constraint solving (Avatavului, Ifrim, Voncila 2023, sections 3.1 to 3.3).
+
+   The network sees one pair of bodies at a time and predicts the change of their velocities, which is added to them.
+
+   With two outputs it predicts the change of b's velocity relative to a's. The paper leaves open how the two bodies
+   share this change and how their spins change. Here it is the effect of one impulse at the mean of the contact points,
+   so momentum is conserved. With six outputs it predicts the change of both velocities and spins, added as it is:
+   momentum is not conserved.
+
+   The paper also leaves open which change the network is trained to predict, its target:
+
+     pair     all pairs are predicted from the velocities before the solve, as in the training data; the order does not
+              matter;
+     net      the same, but each body takes the mean of the changes that its pairs predict: each is the body's whole
+              change, so a sum would count it several times;
+     impulse  k sweeps over the pairs, each predicted from the current velocities. The network has no warm start, so the
+              sweeps begin from the velocities before the solve.
+
+   momentum_error adds up the momentum that six outputs, or means of net changes, create, pair by pair and visit by
+   visit. It counts even correct net changes, since parts of them come from other pairs.
+
+   Fails on stacks: the network sees a single pair, so no impulse travels through a chain of boxes, and what remains of
+   a velocity that should be zero adds up to sinking. With inputs in the frame of the contact, its warm starts are 0 in
+   its own runs, since it returns no impulses, but those of the engine in its training data. */
+
+static const SettingSpec settings[] = {
+    {"network", "file of the trained network (default: the scene's)"},
+    {"k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)"},
+    PAIR_SOLVER_NET,
+    {NULL, NULL}};
+
+static bool check(const PairNetwork *network, const char *path, Error *error) {
+    if (network->target == TARGET_POINTS)
+        return error_input(
+            error, path,
+            "the network has the target points, which is for contact-net; pair-net needs the target pair, "
+            "net or impulse");
+    if (network->target == TARGET_IMPULSE && pair_views[network->view].by_contact)
+        return error_input(error, path,
+                           "the network has the target impulse and the inputs %s, which include accumulated impulses; "
+                           "pair-net has none",
+                           pair_views[network->view].name);
+    return true;
+}
+
+static void *create(const Settings *chosen, Error *error) {
+    PairSolver *solver = pair_solver_create("pair-net", chosen, error);
+    if (solver == NULL || check(&solver->network, settings_get(chosen, "network"), error)) return solver;
+    pair_solver_destroy(solver);
+    return NULL;
+}
+
+const ContactSolverKind solver_pair_net = {
+    .description = {.name = "pair-net",
+                    .summary = "the paper's network: predicts the change of velocities, pair by pair",
+                    .caption = "neural network for pairs",
+                    .look = {METHOD_ORANGE, METHOD_DIAMOND},
+                    .settings = settings,
+                    .needs_network = true,
+                    .twin = "pair-net:net=off",
+                    .chart = METHOD_RUNS("", "net=off"),
+                    .chart_quick = METHOD_RUNS("", "net=off"),
+                    .stability = METHOD_RUNS("", "net=off")},
+    .create = create,
+    .solve = pair_solver_solve,
+    .destroy = pair_solver_destroy};

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Playback: replays the velocities of the nearest recorded launch, frame by frame, without physics. A baseline: a
+   method has learned something only if it is more accurate.
+
+   It records launches of the training family, solved close to convergence, from the frame of the bomb on. The frames
+   before the bomb are the same in all of them and recorded once. The nearest launch has the smallest sum of differences
+   in position, rotation, spin and mass of the bomb, each in its own unit. A recording starts at the frame of the bomb,
+   whichever that is.
+
+   Fails on launches far from the recorded ones: it does not use the positions of the boxes. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The limit of recorded velocities, 600 MB. */
+enum { PLAYBACK_MAX_STATES = 50000000 };
+
+static const char recorder[] = "momentum:k=100";
+
+typedef struct Playback {
+    int launch_count, bodies;         /* bodies: with the bomb */
+    int frames_before, frames;        /* before and after the bomb appears */
+    Launch *launches;                 /* [launch_count] */
+    BodyVelocity *before;             /* [frames_before, bodies - 1] */
+    BodyVelocity *after;              /* [launch_count, frames, bodies] */
+    Launch last;                      /* the last launch played back, */
+    const BodyVelocity *last_nearest; /* and its nearest recording, [frames, bodies] */
+} Playback;
+
+static const SettingSpec settings[] = {
+    {"launches", "recorded launches, spread over the training family (default: 100)"}, {NULL, NULL}};
+
+static void destroy(void *state) {
+    Playback *playback = state;
+    free(playback->launches);
+    free(playback->before);
+    free(playback->after);
+    free(playback);
+}
+
+/* Steps world from after step `first` - 1 to step `last`; out: [steps, bodies of world]. */
+static bool record(Stepper *stepper, World *world, const Scene *scene, int first, int last, BodyVelocity *out,
+                   Error *error) {
+    for (int frame = first; frame <= last; frame++) {
+        const Step step = {.scene = scene, .frame = frame};
+        if (!stepper_step(stepper, world, &step, error)) return false;
+        const Body *bodies = world_bodies(world);
+        for (int i = 0; i < world_body_count(world); i++)
+            *out++ = (BodyVelocity){bodies[i].velocity, bodies[i].angular_velocity};
+    }
+    return true;
+}
+
+static bool record_launches(Playback *playback, Stepper *stepper, const Scene *scene, World *start, World *world,
+                            Error *error) {
+    if (!record(stepper, start, scene, 1, playback->frames_before, playback->before, error)) return false;
+    size_t size = (size_t)playback->frames * (size_t)playback->bodies;
+    for (int i = 0; i < playback->launch_count; i++) {
+        Scene launched = launch_scene(scene, &playback->launches[i]);
+        if (!world_copy(world, start, error) || !scene_add_bomb(&launched, world, error) ||
+            !record(stepper, world, &launched, playback->frames_before + 1, scene->frames,
+                    playback->after + (size_t)i * size, error))
+            return false;
+    }
+    return true;
+}
+
+static bool allocate(Playback *playback, const Scene *scene, Error *error) {
+    playback->bodies = scene->body_count + 1;
+    playback->frames_before = scene->bomb.frame;
+    playback->frames = scene->frames - scene->bomb.frame;
+    size_t before = (size_t)playback->frames_before * (size_t)scene->body_count;
+    size_t after = (size_t)playback->launch_count * (size_t)playback->frames * (size_t)playback->bodies;
+    if (before + after > PLAYBACK_MAX_STATES)
+        return error_input(error, "playback", "%d launches of scene %s are too many to record", playback->launch_count,
+                           scene->name);
+    playback->launches = calloc((size_t)playback->launch_count, sizeof *playback->launches);
+    playback->before = malloc((before + 1) * sizeof *playback->before);
+    playback->after = malloc((after + 1) * sizeof *playback->after);
+    if (playback->launches == NULL || playback->before == NULL || playback->after == NULL)
+        return error_memory(error, "playback");
+    return launches_for_training(scene, playback->launch_count, playback->launches, error);
+}
+
+/* Makes the recordings. */
+static bool fill(Playback *playback, const Scene *scene, Error *error) {
+    Method method;
+    Scene without = *scene;
+    without.bomb.present = false;
+    if (!method_parse(&method, recorder, error)) return false;
+    Stepper *stepper = stepper_create(&method, scene, error);
+    World *start = scene_world(&without, error), *world = scene_world(&without, error);
+    bool ok = stepper != NULL && start != NULL && world != NULL &&
+              record_launches(playback, stepper, scene, start, world, error);
+    stepper_destroy(stepper);
+    world_destroy(start);
+    world_destroy(world);
+    return ok;
+}
+
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    Playback *playback = calloc(1, sizeof *playback);
+    if (playback == NULL) {
+        error_memory(error, "playback");
+        return NULL;
+    }
+    playback->launch_count = 100;
+    bool ok = settings_int(chosen, "launches", 1, 10000, &playback->launch_count, error);
+    if (ok && (!scene->bomb.present || scene->bomb.frame > scene->frames))
+        ok = error_input(error, "playback", "scene %s has no bomb: nothing to play back", scene->name);
+    if (ok && allocate(playback, scene, error) && fill(playback, scene, error)) return playback;
+    destroy(playback);
+    return NULL;
+}
+
+static float distance(const Launch *a, const Launch *b) {
+    return fabsf(a->x - b->x) + fabsf(a->rotation - b->rotation) + fabsf(a->spin - b->spin) + fabsf(a->mass - b->mass);
+}
+
+/* The recording nearest to a launch. */
+static const BodyVelocity *nearest(Playback *playback, const Launch *launch) {
+    if (playback->last_nearest != NULL && memcmp(launch, &playback->last, sizeof *launch) == 0)
+        return playback->last_nearest;
+    int best = 0;
+    for (int i = 1; i < playback->launch_count; i++)
+        if (distance(launch, &playback->launches[i]) < distance(launch, &playback->launches[best])) best = i;
+    playback->last = *launch;
+    playback->last_nearest = playback->after + (size_t)best * (size_t)playback->frames * (size_t)playback->bodies;
+    return playback->last_nearest;
+}
+
+/* The recorded velocities of a step; after the end of a recording those of its last frame. */
+static const BodyVelocity *recorded(Playback *playback, const Step *which, int *bodies) {
+    bool before = which->frame <= which->scene->bomb.frame;
+    int frame = before ? which->frame : which->frame - which->scene->bomb.frame;
+    int frames = before ? playback->frames_before : playback->frames;
+    if (frame > frames) frame = frames;
+    *bodies = before ? playback->bodies - 1 : playback->bodies;
+    if (frame == 0) return NULL;
+    const Launch launch = launch_of(which->scene);
+    const BodyVelocity *run = before ? playback->before : nearest(playback, &launch);
+    return run + (size_t)(frame - 1) * (size_t)*bodies;
+}
+
+static bool step(void *state, World *world, const Step *which, Error *error) {
+    ContactProblem problem;
+    ContactSolution *solution;
+    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
+    step_solving_begins(which);
+    int bodies;
+    const BodyVelocity *velocities = recorded(state, which, &bodies);
+    for (int i = 0; i < problem.body_count; i++)
+        solution->velocities[i] = velocities != NULL && i < bodies ? velocities[i] : (BodyVelocity){{0, 0}, 0};
+    for (int i = 0; i < problem.contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+    step_solving_ends(which);
+    return world_end_step(world, error);
+}
+
+const SteppingKind stepping_playback = {
+    .description = {.name = "playback",
+                    .summary = "baseline without physics: replays the velocities of the nearest recorded launch",
+                    .caption = "nearest recorded launch",
+                    .look = {METHOD_BLACK, METHOD_INVERTED_TRIANGLE},
+                    .settings = settings,
+                    .role = METHOD_BASELINE,
+                    .chart = METHOD_RUNS("launches=25", "launches=100"),
+                    .chart_quick = METHOD_RUNS("launches=25"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

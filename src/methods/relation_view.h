@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A contact problem as a relation network sees it: bodies, and for each moving body that touches something (a receiver)
+   one row for each body that touches it (its senders). Two boxes that touch make two rows, a box on the ground makes
+   one. Source: Battaglia, Pascanu, Lai, Rezende, Kavukcuoglu, "Interaction Networks for Learning about Objects,
+   Relations and Physics" (2016); with an engine: Ajay, Bauza, Wu, Fazeli, Tenenbaum, Rodriguez, Kaelbling, "Combining
+   Physical Simulators and Object-Based Networks for Control" (2019).
+
+   Frame: the axes of the receiver, turned by quarter turns so that its first axis is as near to the world's x as
+   possible. A contact problem has no preferred direction, as its velocities have felt gravity already, so the same
+   collision looks the same at any tilt, and a box after a quarter turn looks as before.
+
+   Scale: impulses are proportional to velocities, but for friction and stopping, so velocities are divided by the
+   receiver's pace, which sums up what happens to it: the same network serves a touch and a crash. Velocities relative
+   to the world have no bound even then and become v / (pace + |v|). The pose of a sender is where and along which
+   normal the two touch: the centre of the ground, ten metres below, says nothing. Mass is the receiver's share of the
+   inverse masses, which is all that velocities depend on. */
+#pragma once
+#include "engine/engine.h"
+
+#include <stddef.h>
+
+/* What a network knows of the engine. */
+typedef enum RelationForm {
+    RELATION_ENGINE,   /* its change of each body's velocity */
+    RELATION_ALONE,    /* nothing: an interaction network; the inputs on the engine are 0 */
+    RELATION_SHUFFLED, /* its change of another body's velocity: that of the moving body half a list further on */
+    RELATION_FORMS
+} RelationForm;
+
+#define RELATION_ENGINE_SETTINGS "k=10" /* of the method engine: as Box2D's own standard */
+
+extern const char *const relation_form_names[RELATION_FORMS + 1]; /* "on", "off", "shuffled"; ends in NULL */
+
+enum { RELATION_PAIR_INPUTS = 27, RELATION_BODY_INPUTS = 10, RELATION_OUTPUTS = 3 };
+
+/* A receiver. */
+typedef struct RelationBody {
+    int body;          /* in the problem */
+    int first, rows;   /* of its senders */
+    Vec2 axis;         /* first axis of its frame, in the world */
+    float radius;      /* m, of gyration: spins are multiplied by it */
+    float pace, scale; /* m/s: of the inputs, of the outputs */
+    BodyVelocity base; /* to which outputs are added */
+} RelationBody;
+
+/* Work space; zero-initialise, free with relation_view_free. */
+typedef struct RelationView {
+    int body_count, row_count;
+    RelationBody *bodies; /* [body_count] by rising index in the problem */
+    float *pair_inputs;   /* [RELATION_PAIR_INPUTS, row_count] */
+    float *body_inputs;   /* [RELATION_BODY_INPUTS, body_count] */
+    /* while it is made: */
+    BodyVelocity
+        *changed; /* [bodies of the problem] velocities after what the engine did, as far as the form shows it */
+    BodyVelocity *warmed; /* [bodies of the problem] velocities after the impulses of the step before */
+    int *receivers;       /* [bodies of the problem] index in bodies, or -1 */
+    struct RelationRow *rows;
+    size_t body_capacity, pair_capacity, input_capacity, changed_capacity, warmed_capacity, receiver_capacity,
+        row_capacity;
+} RelationView;
+
+void relation_view_free(RelationView *view);
+
+/* Looks at a problem. engine: its velocities [problem->body_count] after the step; not used by RELATION_ALONE. False
+   when memory is short. Allocates nothing for a problem that is not larger than one before. */
+bool relation_view_make(RelationView *view, const ContactProblem *problem, const BodyVelocity *engine,
+                        RelationForm form);
+
+/* A vector of the world in the receiver's frame, and back. */
+static inline Vec2 relation_into_frame(const RelationBody *body, Vec2 v) {
+    return vec2(vec2_dot(body->axis, v), vec2_cross(body->axis, v));
+}
+
+static inline Vec2 relation_out_of_frame(const RelationBody *body, Vec2 v) {
+    return mat22_multiply((Mat22){body->axis, vec2(-body->axis.y, body->axis.x)}, v);
+}
+
+/* The velocity of a receiver for these outputs[RELATION_OUTPUTS]: base + scale * outputs, turned back. */
+BodyVelocity relation_corrected(const RelationBody *body, const float *outputs);
+
+/* The outputs that would give this velocity (double: a converged one), times the scale, m/s. */
+void relation_target(const RelationBody *body, double x, double y, double spin, double target[RELATION_OUTPUTS]);

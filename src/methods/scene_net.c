@@ -1,0 +1,429 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The prediction of a slot network (nets/kinds.h) for a contact problem. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/solvers.h"
+#include "methods/sweeps.h"
+#include "nets/kinds.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Zero-initialise; arrays grow and are reused. */
+typedef struct ScenePrediction {
+    SceneView view;
+    float inputs[4 * SLOT_WIDTH_MAX], first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX];
+    float *outputs;         /* [2 slots present] */
+    ContactImpulse *change; /* [contact_count] from the warm start to the prediction */
+    size_t output_capacity, change_capacity;
+} ScenePrediction;
+
+static const float quarter_turn = 1.57079632679489662f; /* rad */
+
+void scene_view_free(SceneView *view) {
+    free(view->contacts);
+    free(view->base);
+    free(view->state);
+    free(view->ones);
+    free(view->warm);
+    free(view->present);
+    free(view->impulses);
+    *view = (SceneView){0};
+}
+
+static bool scene_view_reserve(SceneView *view, const ContactProblem *problem) {
+    const size_t contacts = (size_t)problem->contact_count + 1, bodies = (size_t)problem->body_count;
+    if (!array_reserve((void **)&view->state, &view->state_capacity, bodies * SLOT_BODY_NUMBERS, sizeof(float)) ||
+        !array_reserve((void **)&view->warm, &view->warm_capacity, 2 * contacts, sizeof(float)) ||
+        !array_reserve((void **)&view->present, &view->present_capacity, contacts, sizeof(int32_t)) ||
+        !array_reserve((void **)&view->impulses, &view->impulse_capacity, 2 * contacts, sizeof(int32_t)) ||
+        !array_reserve((void **)&view->contacts, &view->contact_capacity, contacts, sizeof(int32_t)) ||
+        !array_reserve((void **)&view->base, &view->base_capacity, contacts, sizeof *view->base))
+        return false;
+    const size_t had = view->ones_capacity;
+    if (!array_reserve((void **)&view->ones, &view->ones_capacity, contacts, sizeof(float))) return false;
+    for (size_t i = had; i < view->ones_capacity; i++) view->ones[i] = 1;
+    return true;
+}
+
+static void load_body(float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) {
+    numbers[0] = body->position.x;
+    numbers[1] = body->position.y;
+    numbers[2] = body->angle;
+    numbers[3] = body->velocity.x;
+    numbers[4] = body->velocity.y;
+    numbers[5] = body->angular_velocity;
+}
+
+/* Quarter turns that map the box onto itself, as many as leave the smallest angle. */
+static float turns_of(const ProblemBody *body) {
+    const float step = body->size.x == body->size.y ? 1 : 2;
+    return step * floorf(body->angle / (step * quarter_turn) + 0.5f);
+}
+
+float scene_view_angle(const ProblemBody *body) { return body->angle - quarter_turn * turns_of(body); }
+
+/* Two bytes of a feature, edges of one box, renamed for so many quarter turns. */
+static uint32_t turn_edges(uint32_t edges, int turns) {
+    uint32_t turned = 0;
+    for (int shift = 0; shift < 16; shift += 8) {
+        const uint32_t edge = edges >> shift & 0xff;
+        const bool known = edge >= EDGE_TOP && edge <= EDGE_RIGHT;
+        turned |= (known ? (edge - EDGE_TOP + (uint32_t)turns) % 4 + EDGE_TOP : edge) << shift;
+    }
+    return turned;
+}
+
+static uint32_t turn_feature(uint32_t feature, bool of_a, int turns) {
+    const uint32_t a = feature & 0xffff, b = feature >> 16;
+    return of_a ? turn_edges(a, turns) | b << 16 : a | turn_edges(b, turns) << 16;
+}
+
+/* 0 .. 3 */
+static int turns_modulo_4(float turns) { return (int)(turns - 4 * floorf(turns / 4)); }
+
+/* With the bomb rotated back by so many quarter turns. */
+static uint32_t feature_of(const ContactProblem *problem, const ContactPoint *contact, int turns) {
+    if (contact->a != problem->marked && contact->b != problem->marked) return contact->feature;
+    return turn_feature(contact->feature, contact->a == problem->marked, turns);
+}
+
+uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact) {
+    const int bomb = problem->marked;
+    return feature_of(problem, contact, bomb < 0 ? 0 : turns_modulo_4(turns_of(&problem->bodies[bomb])));
+}
+
+static void load_contact(SceneView *view, const SlotNetwork *network, const ContactProblem *problem, int turns, int i) {
+    const ContactPoint *contact = &problem->contacts[i];
+    ContactImpulse *base = &view->base[i];
+    *base = (ContactImpulse){contact->warm_normal, contact->warm_tangent};
+    const int slot = slot_network_find(network, contact->a, contact->b, feature_of(problem, contact, turns));
+    if (slot < 0) return;
+    const int k = view->slots.slot_count++;
+    view->contacts[k] = i;
+    view->present[k] = slot;
+    view->impulses[2 * k] = 2 * slot;
+    view->impulses[2 * k + 1] = 2 * slot + 1;
+    view->warm[2 * k] = base->normal;
+    view->warm[2 * k + 1] = base->tangent;
+    base->normal = contact_clamp(base->normal, 0, network->cap[slot]);
+    const float most = contact->friction * base->normal;
+    base->tangent = contact_clamp(base->tangent, -most, most);
+}
+
+bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
+    if (!scene_view_reserve(view, problem)) return false;
+    const ProblemBody *bomb = &problem->bodies[network->bomb];
+    load_body(view->bomb, bomb);
+    const float turns = turns_of(bomb);
+    const int features_turn = turns_modulo_4(turns);
+    view->bomb[2] -= quarter_turn * turns;
+    for (int i = 0, k = 0; i < problem->body_count; i++)
+        if (i != network->bomb) load_body(view->state + SLOT_BODY_NUMBERS * k++, &problem->bodies[i]);
+    view->slots = (SlotView){view->bomb, view->state, 0, view->present, view->impulses, view->ones, view->warm};
+    for (int i = 0; i < problem->contact_count; i++) load_contact(view, network, problem, features_turn, i);
+    return true;
+}
+
+static void scene_prediction_free(ScenePrediction *prediction) {
+    scene_view_free(&prediction->view);
+    free(prediction->outputs);
+    free(prediction->change);
+    *prediction = (ScenePrediction){0};
+}
+
+static bool scene_prediction_reserve(ScenePrediction *prediction, size_t contacts) {
+    return array_reserve((void **)&prediction->outputs, &prediction->output_capacity, 2 * contacts,
+                         sizeof *prediction->outputs) &&
+           array_reserve((void **)&prediction->change, &prediction->change_capacity, contacts,
+                         sizeof *prediction->change);
+}
+
+/* *known: whether all inputs are within the range of the training data. The problem must have the network's bodies.
+   False when memory is short. */
+static bool scene_prediction_in_range(ScenePrediction *prediction, const SlotNetwork *network,
+                                      const ContactProblem *problem, bool *known) {
+    if (!scene_view_take(&prediction->view, network, problem) ||
+        !scene_prediction_reserve(prediction, (size_t)problem->contact_count))
+        return false;
+    slot_network_look(network, &prediction->view.slots, prediction->inputs);
+    int within = 1; /* branchless, so that the loop is vectorised */
+    for (int i = 0; i < slot_network_inputs(network); i++)
+        within &= (prediction->inputs[i] >= network->low[i]) & (prediction->inputs[i] <= network->high[i]);
+    *known = within != 0;
+    return true;
+}
+
+/* After scene_prediction_in_range() of the same problem: fills `change`, with the predicted impulses clamped to their
+   friction cones, and counts those that were outside. NaN or infinite if the network's outputs are. */
+static void scene_prediction_make(ScenePrediction *prediction, const SlotNetwork *network,
+                                  const ContactProblem *problem, NetworkFallbacks *fallbacks) {
+    const SceneView *view = &prediction->view;
+    slot_network_predict(network, prediction->inputs, &view->slots, prediction->first, prediction->second,
+                         prediction->outputs);
+    for (int i = 0; i < problem->contact_count; i++) prediction->change[i] = view->base[i];
+    for (int k = 0; k < view->slots.slot_count; k++) {
+        ContactImpulse *to = &prediction->change[view->contacts[k]];
+        const float limit = problem->contacts[view->contacts[k]].friction;
+        to->normal += prediction->outputs[2 * k];
+        to->tangent += prediction->outputs[2 * k + 1];
+        const ContactImpulse predicted = *to;
+        to->normal = to->normal > 0 ? to->normal : 0;
+        to->tangent = contact_clamp(to->tangent, -limit * to->normal, limit * to->normal);
+        fallbacks->outside_cone += predicted.normal != to->normal || predicted.tangent != to->tangent;
+    }
+    for (int i = 0; i < problem->contact_count; i++) {
+        prediction->change[i].normal -= problem->contacts[i].warm_normal;
+        prediction->change[i].tangent -= problem->contacts[i].warm_tangent;
+    }
+}
+
+/* A network for the impacts of one scene. It sees all bodies and contacts at once and predicts where the impulses will
+   end; a few sweeps then correct the prediction. Sweeps alone carry a shock through a stack one contact per sweep.
+
+   The network is used only if the residual of the warm start (residual.h) reaches the gate and the step resembles the
+   training data: the same mass of the bomb, and all inputs within their range. All other steps are solved as by
+   momentum (momentum.c). The residual after the sweeps correlates with the error, also on held-out launches: so few
+   sweeps follow at first, and more if the residual is still large. Impulses act on both bodies alike and sweeps clamp
+   them to their cones, so momentum is conserved whatever the network predicts. Source: a warm start by a network for
+   the whole problem, as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization
+   Algorithms" (2024), which also trains through the iterations that follow. Fails on other scenes, which have other
+   slots; it refuses them. */
+
+enum { REST_SWEEPS = 20, CALM_MORE = 24 };
+
+/* More sweeps follow the network while the residual is this large; for a calm step, while it is this share of it. */
+static const float near_default = 0.02f; /* m/s, RMS over the contacts */
+static const float calm_share = 0.15f;
+
+/* How a step is solved. */
+typedef enum Route {
+    ROUTE_MOMENTUM, /* `rest` sweeps with momentum */
+    ROUTE_CALM,   /* the bomb is there, with the mass of the training, but the residual is below the gate: half as many
+                       sweeps, and up to CALM_MORE more while the residual is too large */
+    ROUTE_NETWORK /* the network, `after` sweeps, and more while the residual is too large */
+} Route;
+
+/* Sweeps cannot correct velocities beyond this: rounding alone would leave errors above 1e-3 m/s. */
+static const float speed_max = 1e4f; /* m/s and rad/s */
+
+typedef struct SceneNet {
+    SlotNetwork *own;           /* or NULL */
+    const SlotNetwork *network; /* the same, or the caller's */
+    Momentum momentum;
+    ScenePrediction prediction;
+    bool predicts;                        /* false: the network is not evaluated */
+    int after, rest, half;                /* sweeps after the network, and without it */
+    StoppingRule rule;                    /* after the network; after calm steps a share of it */
+    float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
+    bool after_without_momentum;          /* all of them are 0 */
+    float *rest_factors, *half_factors;   /* [rest], [half] */
+    float *more_factors;                  /* [rule.more] of the sweeps that follow if the residual is too large */
+} SceneNet;
+
+/* What settings choose. */
+typedef struct SceneNetChoice {
+    int after, rest;
+    bool predicts;
+    StoppingRule rule;
+} SceneNetChoice;
+
+static const SettingSpec settings[] = {
+    {"network", "file of the trained network (default: the scene's)"},
+    {"after", "sweeps after the network (default: as in its training)"},
+    {"near", "residual, m/s: after those, blocks of 8 follow while it is at least this (default: 0.02)"},
+    {"more", "sweeps that may follow, rounded up to whole blocks (default: 48)"},
+    {"rest", "sweeps with momentum in steps without the network (default: 20; half in calm steps)"},
+    {"net", "on|off: off leaves out all that is learned, the prediction and the factors (default: on)"},
+    {NULL, NULL}};
+
+static void destroy(void *state) {
+    SceneNet *solver = state;
+    if (solver == NULL) return;
+    slot_network_destroy(solver->own);
+    momentum_free(&solver->momentum);
+    scene_prediction_free(&solver->prediction);
+    free(solver->rest_factors);
+    free(solver->half_factors);
+    free(solver->more_factors);
+    free(solver);
+}
+
+/* Learned factors are valid only for the number of sweeps they were learned for. */
+static void choose_factors(SceneNet *solver) {
+    const SlotNetwork *network = solver->network;
+    bool learned = false;
+    for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
+    learned |= !solver->predicts;
+    solver->after_without_momentum = !learned;
+    for (int s = 0; s < solver->after; s++)
+        solver->after_factors[s] = solver->after == network->sweeps && solver->predicts ? network->factors[s]
+                                   : learned ? momentum_factor_tuned(s, solver->after)
+                                             : 0;
+}
+
+static SceneNet *make(const SlotNetwork *network, const SceneNetChoice *choice, Error *error) {
+    SceneNet *solver = calloc(1, sizeof *solver);
+    if (solver == NULL) {
+        error_memory(error, "scene-net");
+        return NULL;
+    }
+    solver->network = network;
+    solver->predicts = choice->predicts;
+    solver->after = choice->after;
+    solver->rest = choice->rest;
+    solver->rule = choice->rule;
+    solver->half = (choice->rest + 1) / 2;
+    solver->rest_factors = momentum_factors_make(solver->rest);
+    solver->half_factors = momentum_factors_make(solver->half);
+    solver->more_factors = momentum_factors_make(solver->rule.more);
+    if (solver->rest_factors == NULL || solver->half_factors == NULL || solver->more_factors == NULL) {
+        destroy(solver);
+        error_memory(error, "scene-net");
+        return NULL;
+    }
+    choose_factors(solver);
+    return solver;
+}
+
+static void *create(const Settings *chosen, Error *error) {
+    const char *path = settings_get(chosen, "network");
+    if (path == NULL) {
+        error_input(error, "scene-net", "the scene names no network for it: use scene-net:network=FILE");
+        return NULL;
+    }
+    SlotNetwork *network = slot_network_read(path, error);
+    if (network == NULL) return NULL;
+    SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {near_default, STOPPING_MORE}};
+    SceneNet *solver = NULL;
+    if (settings_int(chosen, "after", 0, SLOT_SWEEPS_MAX, &choice.after, error) &&
+        settings_int(chosen, "rest", 1, SWEEPS_MAX, &choice.rest, error) &&
+        settings_bool(chosen, "net", &choice.predicts, error) && stopping_read(&choice.rule, chosen, error))
+        solver = make(network, &choice, error);
+    if (solver == NULL)
+        slot_network_destroy(network);
+    else
+        solver->own = network;
+    return solver;
+}
+
+/* Before the bomb appears there is one body less. */
+static bool fits(const SlotNetwork *network, const ContactProblem *problem, Error *error) {
+    const int bodies = problem->marked < 0 ? network->body_count - 1 : network->body_count;
+    if (problem->body_count != bodies)
+        return error_input(error, "scene-net", "the network is for the scene %s of %d bodies; this one has %d",
+                           network->scene, bodies, problem->body_count);
+    if (problem->marked < 0 || problem->marked == network->bomb) return true;
+    return error_input(error, "scene-net",
+                       "the network is for the scene %s, with the bomb as body %d; here it is body %d", network->scene,
+                       network->bomb, problem->marked);
+}
+
+static int within(float speed) { return fabsf(speed) <= speed_max; }
+
+/* Checks velocities, and the effect of each impulse on the lightest body: large impulses that cancel each other leave
+   rounding errors, too. */
+static bool is_bounded(const Sweeps *sweeps) {
+    int bounded = 1;
+    float inverse = 0; /* 1/kg, of the lightest */
+    for (int i = 0; i < sweeps->body_count; i++) {
+        const SweepBody *body = &sweeps->bodies[i];
+        bounded &= within(body->x) & within(body->y) & within(body->spin);
+        inverse = body->inv_mass > inverse ? body->inv_mass : inverse;
+    }
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const ContactImpulse *sums = sweeps->pairs[i].sums;
+        for (int k = 0; k < 2; k++) bounded &= within(inverse * sums[k].normal) & within(inverse * sums[k].tangent);
+    }
+    return bounded != 0;
+}
+
+static bool run_after(SceneNet *solver) {
+    Sweeps *sweeps = &solver->momentum.sweeps;
+    return solver->after_without_momentum ? sweeps_run(sweeps, solver->after)
+                                          : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
+}
+
+static bool run_more(SceneNet *solver, const ContactProblem *problem, const StoppingRule *rule) {
+    return momentum_run_more(&solver->momentum.sweeps, problem, rule, solver->more_factors);
+}
+
+static bool run(SceneNet *solver, const ContactProblem *problem, Route route) {
+    Sweeps *sweeps = &solver->momentum.sweeps;
+    const StoppingRule *rule = &solver->rule;
+    const StoppingRule calm = {calm_share * rule->near, rule->more < CALM_MORE ? rule->more : CALM_MORE};
+    switch (route) {
+    case ROUTE_CALM:
+        return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) && run_more(solver, problem, &calm);
+    case ROUTE_NETWORK: return run_after(solver) && run_more(solver, problem, rule);
+    case ROUTE_MOMENTUM: break;
+    }
+    return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
+}
+
+/* After the warm start. */
+static bool choose_route(SceneNet *solver, const ContactProblem *problem, Route *route, NetworkFallbacks *fallbacks,
+                         Error *error) {
+    const SlotNetwork *network = solver->network;
+    *route = ROUTE_MOMENTUM;
+    if (problem->marked < 0) return true;
+    bool known = problem->bodies[network->bomb].inv_mass == network->bomb_inv_mass;
+    if (!residual_reaches(&solver->momentum.sweeps, problem->contact_count, network->gate)) {
+        if (known) *route = ROUTE_CALM;
+        return true;
+    }
+    if (known && !scene_prediction_in_range(&solver->prediction, network, problem, &known))
+        return error_memory(error, "scene-net");
+    if (known) *route = ROUTE_NETWORK;
+    fallbacks->beyond_training += !known;
+    return true;
+}
+
+static bool solve_without(SceneNet *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->rest, solution, error);
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    SceneNet *solver = state;
+    Sweeps *sweeps = &solver->momentum.sweeps;
+    if (!fits(solver->network, problem, error)) return false;
+    if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem)) return error_memory(error, "scene-net");
+    Route route;
+    solution->fallbacks = (NetworkFallbacks){0};
+    if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
+    if (route == ROUTE_NETWORK && solver->predicts) {
+        scene_prediction_make(&solver->prediction, solver->network, problem, &solution->fallbacks);
+        sweeps_push(sweeps, solver->prediction.change);
+        if (!is_bounded(sweeps)) {
+            solution->fallbacks.not_finite++;
+            return solve_without(solver, problem, solution, error);
+        }
+    }
+    if (!run(solver, problem, route)) return error_memory(error, "scene-net");
+    if (sweeps_end(sweeps, solution)) return true;
+    solution->fallbacks.not_finite += route == ROUTE_NETWORK && solver->predicts;
+    return solve_without(solver, problem, solution, error);
+}
+
+const ContactSolverKind solver_scene_net = {
+    .description = {.name = "scene-net",
+                    .summary = "a network predicts all impulses of a scene at impacts; sweeps follow",
+                    .caption = "neural network for a scene",
+                    .look = {METHOD_SKY, METHOD_DIAMOND},
+                    .settings = settings,
+                    .needs_network = true,
+                    .twin = "scene-net:net=off",
+                    .chart = METHOD_RUNS("", "near=3", "more=200", "net=off", "more=200,net=off"),
+                    .chart_quick = METHOD_RUNS("", "net=off"),
+                    .stability = METHOD_RUNS("", "net=off")},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};
+
+bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error) {
+    solver->kind = &solver_scene_net;
+    const SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {near, STOPPING_MORE}};
+    solver->state = make(network, &choice, error);
+    return solver->state != NULL;
+}

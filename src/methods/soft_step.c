@@ -1,0 +1,340 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The parts of soft-step (soft_step.c): its state in a step, and its substeps. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+#include "methods/sweeps.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* c, 1 - c and c r of the equation in soft_step.c. */
+typedef struct Softness {
+    float mass_share, impulse_share, bias_rate;
+} Softness;
+
+typedef struct SoftBody {
+    Vec2 velocity;
+    float spin, inv_mass, inv_inertia;
+    Vec2 moved; /* m, since the step began */
+    Vec2 turn;  /* (cos, sin) of the rotation since the step began */
+} SoftBody;
+
+typedef struct SoftPoint {
+    Vec2 arm_a, arm_b;
+    float base;                      /* m, separation if the arms had no length */
+    float mass_normal, mass_tangent; /* kg */
+    ContactImpulse impulse;          /* N s, of a substep: what the next one begins with */
+    ContactImpulse total;            /* N s, of the step */
+} SoftPoint;
+
+typedef struct SoftPair {
+    int a, b, first, count; /* bodies; points */
+    Vec2 normal;
+    float friction;
+    const Softness *softness;
+} SoftPair;
+
+typedef struct SoftStep {
+    int substeps;
+    float hertz, damping;
+    Softness moving, fixed; /* of contacts between moving bodies; with a static body: twice the frequency */
+    StepMemory memory;
+    SoftBody *bodies;
+    BodyPose *poses;
+    SoftPair *pairs;
+    SoftPoint *points;
+    ContactImpulse *kept; /* [contacts of the last step] impulses of its last substep */
+    int pair_count, body_count, point_count;
+    size_t body_capacity, pose_capacity, pair_capacity, point_capacity, kept_capacity;
+} SoftStep;
+
+/* The substeps of soft-step. */
+
+#define PUSH_OUT_SPEED 3.0f /* m/s, the limit of correction */
+
+static void push(SoftBody *a, SoftBody *b, const SoftPoint *point, Vec2 impulse) {
+    a->velocity = vec2_sub(a->velocity, vec2_scale(a->inv_mass, impulse));
+    a->spin -= a->inv_inertia * vec2_cross(point->arm_a, impulse);
+    b->velocity = vec2_add(b->velocity, vec2_scale(b->inv_mass, impulse));
+    b->spin += b->inv_inertia * vec2_cross(point->arm_b, impulse);
+}
+
+static Vec2 relative_velocity(const SoftBody *a, const SoftBody *b, const SoftPoint *point) {
+    Vec2 of_a = vec2_add(a->velocity, scalar_cross_vec2(a->spin, point->arm_a));
+    Vec2 of_b = vec2_add(b->velocity, scalar_cross_vec2(b->spin, point->arm_b));
+    return vec2_sub(of_b, of_a);
+}
+
+static Vec2 turned(Vec2 turn, Vec2 v) { return vec2(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y); }
+
+static float separation(const SoftBody *a, const SoftBody *b, const SoftPoint *point, Vec2 normal) {
+    Vec2 arms = vec2_sub(turned(b->turn, point->arm_b), turned(a->turn, point->arm_a));
+    return point->base + vec2_dot(vec2_add(vec2_sub(b->moved, a->moved), arms), normal);
+}
+
+/* Gravity and warm start of a substep. */
+static void apply_forces(SoftStep *stepping, Vec2 fall) {
+    for (int i = 0; i < stepping->body_count; i++)
+        if (stepping->bodies[i].inv_mass > 0)
+            stepping->bodies[i].velocity = vec2_add(stepping->bodies[i].velocity, fall);
+    for (const SoftPair *pair = stepping->pairs; pair < stepping->pairs + stepping->pair_count; pair++) {
+        Vec2 tangent = vec2_cross_scalar(pair->normal, 1.0f);
+        for (SoftPoint *point = &stepping->points[pair->first]; point < &stepping->points[pair->first + pair->count];
+             point++) {
+            const ContactImpulse *impulse = &point->impulse;
+            point->total.normal += impulse->normal;
+            point->total.tangent += impulse->tangent;
+            push(&stepping->bodies[pair->a], &stepping->bodies[pair->b], point,
+                 vec2_add(vec2_scale(impulse->normal, pair->normal), vec2_scale(impulse->tangent, tangent)));
+        }
+    }
+}
+
+static void solve_normal(const SoftPair *pair, SoftPoint *point, SoftBody *a, SoftBody *b, const Softness *softness,
+                         float inverse_h) {
+    const float gap = separation(a, b, point, pair->normal);
+    float bias = gap * inverse_h, mass_share = 1, impulse_share = 0;
+    if (!(gap > 0)) {
+        bias = contact_clamp(softness->bias_rate * gap, -PUSH_OUT_SPEED, 0);
+        mass_share = softness->mass_share;
+        impulse_share = softness->impulse_share;
+    }
+    float velocity = vec2_dot(relative_velocity(a, b, point), pair->normal), old = point->impulse.normal;
+    float sum = old - point->mass_normal * (mass_share * velocity + bias) - impulse_share * old;
+    point->impulse.normal = 0.0f > sum ? 0.0f : sum;
+    point->total.normal += point->impulse.normal - old;
+    push(a, b, point, vec2_scale(point->impulse.normal - old, pair->normal));
+}
+
+static void solve_friction(const SoftPair *pair, SoftPoint *point, SoftBody *a, SoftBody *b) {
+    const Vec2 tangent = vec2_cross_scalar(pair->normal, 1.0f);
+    float velocity = vec2_dot(relative_velocity(a, b, point), tangent), old = point->impulse.tangent;
+    float most = pair->friction * point->impulse.normal;
+    point->impulse.tangent = contact_clamp(old - point->mass_tangent * velocity, -most, most);
+    point->total.tangent += point->impulse.tangent - old;
+    push(a, b, point, vec2_scale(point->impulse.tangent - old, tangent));
+}
+
+/* One visit of all contacts; relaxing: without the springs, with friction. */
+static void sweep(SoftStep *stepping, bool relaxing, float inverse_h) {
+    static const Softness rigid = {1, 0, 0};
+    for (const SoftPair *pair = stepping->pairs; pair < stepping->pairs + stepping->pair_count; pair++) {
+        SoftPoint *points = &stepping->points[pair->first];
+        SoftBody a = stepping->bodies[pair->a], b = stepping->bodies[pair->b];
+        const Softness *softness = relaxing ? &rigid : pair->softness;
+        for (int k = 0; k < pair->count; k++) solve_normal(pair, &points[k], &a, &b, softness, inverse_h);
+        for (int k = 0; relaxing && k < pair->count; k++) solve_friction(pair, &points[k], &a, &b);
+        stepping->bodies[pair->a] = a;
+        stepping->bodies[pair->b] = b;
+    }
+}
+
+/* The rotation by its tangent, scaled to length 1, as in Box2D: a cosine for each substep would cost more than its
+   contacts. */
+static void integrate(SoftStep *stepping, float h) {
+    for (int i = 0; i < stepping->body_count; i++) {
+        SoftBody *body = &stepping->bodies[i];
+        BodyPose *pose = &stepping->poses[i];
+        Vec2 way = vec2_scale(h, body->velocity);
+        float angle = h * body->spin;
+        Vec2 turn = vec2(body->turn.x - angle * body->turn.y, body->turn.y + angle * body->turn.x);
+        body->turn = vec2_scale(1.0f / sqrtf(vec2_dot(turn, turn)), turn);
+        body->moved = vec2_add(body->moved, way);
+        pose->position = vec2_add(pose->position, way);
+        pose->angle += angle;
+    }
+}
+
+/* Takes all substeps of a step that has begun: moves bodies and poses, fills the points' impulses. */
+static void soft_step_solve(SoftStep *stepping, Vec2 gravity, float dt) {
+    const float h = dt / (float)stepping->substeps, inverse_h = 1.0f / h;
+    for (int i = 0; i < stepping->substeps; i++) {
+        apply_forces(stepping, vec2_scale(h, gravity));
+        sweep(stepping, false, inverse_h);
+        integrate(stepping, h);
+        sweep(stepping, true, inverse_h);
+    }
+}
+
+/* Soft step: the solver of Box2D v3. One collision pass, then n substeps of h = dt / n; each applies its gravity and
+   the impulses of the substep before, visits all contacts once as damped springs, moves the bodies, and visits all
+   contacts once more without the springs (relaxation), with friction, so that the velocity that corrects overlap does
+   not stay in the bodies. Erin Catto, "Solver2D" (box2d.org, 2024) and "Soft Constraints" (GDC 2011).
+
+   A contact of effective mass m with overlap s < 0, relative normal velocity v and impulse p of this substep gets
+
+       dp = -m (c v + c r s) - (1 - c) p,   c = w h (2 z + w h) / (1 + w h (2 z + w h)),   r = w / (2 z + w h),
+
+   w = 2 pi hertz, z the damping ratio; c r s is at least -3 m/s. While s > 0, dp = -m (v + s / h): the gap may close,
+   no more. The arms of impulses stay those of the collision pass; s follows the poses.
+
+   Box2D sees contacts before boxes touch. Here they must overlap, so surfaces are SKIN inside the boxes; without it
+   contacts would come and go. Left out are Box2D's bounds on speed, its continuous collision, sleep and restitution. It
+   visits one contact after the other, not four at a time.
+
+   Fails as few sweeps do: n substeps carry a shock through about 2 n boxes. Heavy boxes sink into light ones. */
+
+#define SKIN 0.005f /* m, Box2D's linear slop */
+
+static const SettingSpec settings[] = {{"substeps", "substeps per step (default: 4)"},
+                                       {"hertz", "frequency of the contacts' springs (default: 30)"},
+                                       {"damping", "their damping ratio (default: 10)"},
+                                       {NULL, NULL}};
+
+static void destroy(void *state) {
+    SoftStep *stepping = state;
+    step_memory_free(&stepping->memory);
+    free(stepping->bodies);
+    free(stepping->poses);
+    free(stepping->pairs);
+    free(stepping->points);
+    free(stepping->kept);
+    free(stepping);
+}
+
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    (void)scene;
+    SoftStep *stepping = calloc(1, sizeof *stepping);
+    if (stepping == NULL) {
+        error_memory(error, "soft-step");
+        return NULL;
+    }
+    stepping->substeps = 4;
+    stepping->hertz = 30;
+    stepping->damping = 10;
+    if (settings_int(chosen, "substeps", 1, 1000, &stepping->substeps, error) &&
+        settings_float(chosen, "hertz", 0.01f, 1e4f, &stepping->hertz, error) &&
+        settings_float(chosen, "damping", 0, 1e3f, &stepping->damping, error))
+        return stepping;
+    destroy(stepping);
+    return NULL;
+}
+
+static Softness make_softness(float hertz, float damping, float h) {
+    const float omega = 6.28318531f * hertz;
+    float rate = 2.0f * damping + h * omega, stiffness = h * omega * rate, rigid = 1.0f / (1.0f + stiffness);
+    return (Softness){stiffness * rigid, rigid, stiffness * rigid * (omega / rate)};
+}
+
+/* A spring of a higher frequency than an eighth of the substeps' would swing. */
+static void set_softness(SoftStep *stepping, const Scene *scene, float h) {
+    const float highest = 0.125f / h, hertz = stepping->hertz < highest ? stepping->hertz : highest;
+    const Softness rigid = {1, 0, 0};
+    stepping->moving = scene->position_correction ? make_softness(hertz, stepping->damping, h) : rigid;
+    stepping->fixed = scene->position_correction ? make_softness(2.0f * hertz, stepping->damping, h) : rigid;
+}
+
+static bool reserve(SoftStep *stepping, const ContactProblem *problem) {
+    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    return array_reserve((void **)&stepping->bodies, &stepping->body_capacity, bodies, sizeof *stepping->bodies) &&
+           array_reserve((void **)&stepping->poses, &stepping->pose_capacity, bodies, sizeof *stepping->poses) &&
+           array_reserve((void **)&stepping->pairs, &stepping->pair_capacity, contacts, sizeof *stepping->pairs) &&
+           array_reserve((void **)&stepping->points, &stepping->point_capacity, contacts, sizeof *stepping->points) &&
+           array_reserve((void **)&stepping->kept, &stepping->kept_capacity, contacts, sizeof *stepping->kept);
+}
+
+/* The impulses of the last substep; in an unknown step an equal share of those of the last step. */
+static ContactImpulse warm_start(const SoftStep *stepping, const ContactPoint *contact, int i) {
+    if (stepping->memory.before[i] >= 0) return stepping->kept[stepping->memory.before[i]];
+    const float share = 1.0f / (float)stepping->substeps;
+    return (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
+}
+
+/* In a step of unknown past, a contact that carries load has closed: in the engine's runs, overlaps below CONTACT_SLOP
+   are at rest. */
+static float first_gap(const SoftStep *stepping, const ContactPoint *contact, int i) {
+    const float gap = contact->separation + SKIN;
+    const bool closed = stepping->memory.before[i] < 0 && contact->warm_normal > 0;
+    return closed && gap > 0 ? 0 : gap;
+}
+
+static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) {
+    const ContactPoint *contact = &problem->contacts[i];
+    SoftPair *last = stepping->pair_count > 0 ? &stepping->pairs[stepping->pair_count - 1] : NULL;
+    if (last != NULL && last->a == contact->a && last->b == contact->b) {
+        last->count++;
+    } else {
+        bool moving = stepping->bodies[contact->a].inv_mass > 0 && stepping->bodies[contact->b].inv_mass > 0;
+        stepping->pairs[stepping->pair_count++] = (SoftPair){contact->a,
+                                                             contact->b,
+                                                             i,
+                                                             1,
+                                                             contact->normal,
+                                                             contact->friction,
+                                                             moving ? &stepping->moving : &stepping->fixed};
+    }
+    const Vec2 between = vec2_sub(contact->arm_b, contact->arm_a);
+    stepping->points[i] = (SoftPoint){.arm_a = contact->arm_a,
+                                      .arm_b = contact->arm_b,
+                                      .base = first_gap(stepping, contact, i) - vec2_dot(between, contact->normal),
+                                      .mass_normal = contact->mass_normal,
+                                      .mass_tangent = contact->mass_tangent,
+                                      .impulse = warm_start(stepping, contact, i)};
+}
+
+static bool begin(SoftStep *stepping, const World *world, const ContactProblem *problem, const Step *step) {
+    if (!step_memory_match(&stepping->memory, world, step) || !reserve(stepping, problem)) return false;
+    set_softness(stepping, step->scene, problem->dt / (float)stepping->substeps);
+    stepping->body_count = problem->body_count;
+    stepping->point_count = problem->contact_count;
+    stepping->pair_count = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        const Body *body = &world_bodies(world)[i];
+        stepping->bodies[i] = (SoftBody){.velocity = body->velocity,
+                                         .spin = body->angular_velocity,
+                                         .inv_mass = body->inv_mass,
+                                         .inv_inertia = body->inv_inertia,
+                                         .turn = vec2(1, 0)};
+        stepping->poses[i] = (BodyPose){body->position, body->angle};
+    }
+    for (int i = 0; i < problem->contact_count; i++) add_point(stepping, problem, i);
+    return true;
+}
+
+/* False if an impulse is NaN or infinite. */
+static bool end(SoftStep *stepping, ContactSolution *solution) {
+    bool finite = true;
+    for (int i = 0; i < stepping->body_count; i++)
+        solution->velocities[i] = (BodyVelocity){stepping->bodies[i].velocity, stepping->bodies[i].spin};
+    for (int i = 0; i < stepping->point_count; i++) {
+        solution->impulses[i] = stepping->points[i].total;
+        finite &= isfinite(solution->impulses[i].normal) && isfinite(solution->impulses[i].tangent);
+    }
+    return finite;
+}
+
+static bool step(void *state, World *world, const Step *which, Error *error) {
+    SoftStep *stepping = state;
+    ContactProblem problem;
+    ContactSolution *solution;
+    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
+    step_solving_begins(which);
+    bool begun = begin(stepping, world, &problem, which);
+    if (begun) soft_step_solve(stepping, which->scene->gravity, problem.dt);
+    bool finite = begun && end(stepping, solution);
+    step_solving_ends(which);
+    if (!begun) return error_memory(error, "soft-step");
+    if (!finite) return error_input(error, "soft-step", "an impulse is NaN or infinite");
+    if (!world_end_step_at(world, stepping->poses, error)) return false;
+    step_memory_keep(&stepping->memory, world);
+    for (int i = 0; i < stepping->point_count; i++) stepping->kept[i] = stepping->points[i].impulse;
+    return true;
+}
+
+const SteppingKind stepping_soft_step = {
+    .description = {.name = "soft-step",
+                    .summary = "Box2D v3's solver: soft contacts, substeps and relaxation",
+                    .caption = "Box2D v3's solver",
+                    .look = {METHOD_BLUE, METHOD_SQUARE},
+                    .settings = settings,
+                    .own_settings = "substeps=4",
+                    .no_push_out = true,
+                    .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=8", "substeps=16"),
+                    .chart_quick = METHOD_RUNS("substeps=4"),
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

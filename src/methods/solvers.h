@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The networks of sain (methods/sain.c). A relation network answers each row of a view with effects; the effects of a
+   receiver's rows are added; an object network answers its own state and the sum with its outputs. Here the first has
+   two hidden layers of 32 units and 16 effects, the second one of 32. The interaction network of Battaglia et al.
+   (2016) has four of 150 and 50 effects, and one of 100; a reimplementation of Ajay et al. (2019) has 128, 64, 32 and
+   16. */
+#pragma once
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/pair.h"
+#include "methods/relation_view.h"
+#include "methods/sweeps.h"
+#include "methods/tabulation.h"
+#include "nets/kinds.h"
+#include "nets/nets.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum {
+    RELATION_VERSION = 1,
+    RELATION_EFFECTS = 16,
+    RELATION_HIDDEN = 32,
+    RELATION_OBJECT_INPUTS = RELATION_BODY_INPUTS + RELATION_EFFECTS,
+    RELATION_COMMAND_SIZE = 512,
+    RELATION_ANSWER_MAX = 100 /* times the scale: larger corrections are not trained */
+};
+
+/* The networks of one form. */
+typedef struct RelationNetwork {
+    Network *relation; /* RELATION_PAIR_INPUTS to RELATION_EFFECTS */
+    Network *object;   /* body inputs, then the sum of effects, to RELATION_OUTPUTS */
+    /* Ranges of the training data; outputs beyond +-limit are discarded. */
+    float pair_low[RELATION_PAIR_INPUTS], pair_high[RELATION_PAIR_INPUTS];
+    float body_low[RELATION_BODY_INPUTS], body_high[RELATION_BODY_INPUTS];
+    float limit[RELATION_OUTPUTS];
+} RelationNetwork;
+
+/* A file holds the networks of all forms. */
+typedef struct RelationNetworks {
+    RelationNetwork forms[RELATION_FORMS];
+    char command[RELATION_COMMAND_SIZE]; /* that trained them */
+} RelationNetworks;
+
+/* Weights and ranges 0. False with error set when memory is short; destroy it in any case. */
+bool relation_network_create(RelationNetwork *network, Error *error);
+void relation_network_destroy(RelationNetwork *network);
+
+bool relation_networks_write(const RelationNetworks *networks, const char *path, Error *error);
+
+/* False with error set, and nothing to be destroyed: not such a file, of other widths, or a number that is NaN,
+   infinite or out of range. */
+bool relation_networks_read(RelationNetworks *networks, const char *path, Error *error);
+void relation_networks_destroy(RelationNetworks *networks);
+
+/* Answers to a view. Zero-initialise, free with relation_answers_free. */
+typedef struct RelationAnswers {
+    float *outputs; /* [body_count, RELATION_OUTPUTS] */
+    bool *known;    /* [body_count] all inputs of the body and its rows are within the ranges of the training data */
+    float *effects, *inputs, *columns, *scratch;
+    size_t output_capacity, known_capacity, effect_capacity, input_capacity, column_capacity, scratch_capacity;
+} RelationAnswers;
+
+void relation_answers_free(RelationAnswers *answers);
+
+/* clamp: inputs beyond the ranges are moved to their ends. False when memory is short. */
+bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, RelationView *view, bool clamp);
+
+/* The method sain with a network in memory, for training. */
+
+/* The networks remain the caller's and must outlive the solver. False with error set when memory is short. */
+bool sain_make(ContactSolver *solver, const RelationNetwork *network, RelationForm form, Error *error);
+
+/* The stopping rule of the iterative methods: after the first k sweeps, blocks of 8 follow while the residual
+   (residual.h) is at least `near`, up to `more` sweeps. Most steps need few sweeps and an impact needs many, so the rule
+   spends them where they are needed. Fails where the residual is small and the error is not: an error that is spread
+   over a whole stack leaves each contact close to its target. */
+
+enum {
+    STOPPING_BLOCK = 8, /* sweeps; the residual is read before each block */
+    STOPPING_MORE = 48  /* the default of `more` */
+};
+
+/* The rule's settings, for a method's table. */
+#define STOPPING_SETTINGS                                                                                             \
+    {"near", "residual, m/s: after k sweeps, blocks of 8 follow while it is at least this (default: none follow)"}, { \
+        "more", "with near: sweeps that may follow, rounded up to whole blocks (default: 48)"                         \
+    }
+
+/* Zero: no sweeps follow. */
+typedef struct StoppingRule {
+    float near; /* m/s, RMS over the contacts */
+    int more;   /* a multiple of STOPPING_BLOCK */
+} StoppingRule;
+
+/* Overwrites the rule, which has the method's defaults, with the settings. ERROR_INPUT for a value out of range, and
+   for `more` where no rule is. */
+bool stopping_read(StoppingRule *rule, const Settings *chosen, Error *error);
+
+/* True if another block must follow the first k sweeps and `done` more. */
+bool stopping_needs_more(const StoppingRule *rule, int done, const Sweeps *sweeps, const ContactProblem *problem);
+
+/* The same for a scalar reference implementation. */
+bool stopping_needs_more_scalar(const StoppingRule *rule, int done, const ContactProblem *problem,
+                                const ContactSolution *solution);
+
+/* k sweeps, and more by the rule. run: sweeps_run or sweeps_run_blocks. False when memory is short. */
+bool stopping_run(const StoppingRule *rule, Sweeps *sweeps, const ContactProblem *problem, int k,
+                  bool (*run)(Sweeps *, int));
+
+/* Sweeps with momentum: a scalar reference implementation, and the fast one of the solvers, which visits contacts in
+   the order of colours (methods/sweeps.h). The solvers choose the factors. */
+
+/* Scalar reference implementation: `count` sweeps over the contacts visits[contact_count]; before each sweep s > 0 the
+   extrapolation by factors[s] >= 0. `before`: work space, a solution of the same size. sweeps_run_momentum gives the
+   same bits. */
+void momentum_solve_scalar(const ContactProblem *problem, const int32_t *visits, const float *factors, int count,
+                           ContactSolution *before, ContactSolution *solution);
+
+/* The hand-tuned factor before sweep s of `count`, counted from 0: s / (s + 1.4), at most 1 - 7 / (15 + count). The
+   limit is lower for few sweeps, as they have no time to correct the overshoot of a large factor. Tuned on launches of
+   the stack and the pyramids together. */
+float momentum_factor_tuned(int sweep, int count);
+
+/* The hand-tuned factors of `count` sweeps; the caller frees them. NULL when memory is short. */
+float *momentum_factors_make(int count);
+
+/* Zero-initialise; arrays grow and are reused. */
+typedef struct Momentum {
+    Sweeps sweeps;
+    ContactSolution before; /* work space of the scalar implementation */
+    size_t body_capacity, contact_capacity;
+    StoppingRule rule;
+    float *more_factors; /* [rule.more] */
+} Momentum;
+
+/* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb
+   on a whole stack, which need momentum with large factors: so this is one run of sweeps with momentum, not many short
+   ones. False when memory is short. */
+bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors);
+
+void momentum_free(Momentum *momentum);
+
+/* Uses the fast sweeps with the stopping rule, or `count` of the scalar implementation if these end with a NaN or
+   infinite number. */
+bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,
+                    ContactSolution *solution, Error *error);
+
+/* The method hybrid with a memory that its caller fills, for learning. */
+
+/* A step that asked the memory. */
+typedef struct HybridStep {
+    const ContactProblem *problem;
+    const ContactSolution *solution;
+    TabulationQuery query; /* key NULL if there is no memory */
+    const float *bomb;     /* [6] its numbers */
+    const float *others;   /* [6 (body_count - 1)] the numbers of the bodies but the bomb */
+    int entry;             /* that answered, or -1: solved to convergence */
+} HybridStep;
+
+/* Called after each such step; false with error set stops the step. */
+typedef struct HybridWatch {
+    bool (*see)(void *context, const HybridStep *step, Error *error);
+    void *context;
+} HybridWatch;
+
+/* m/s: the gate, RMS residual of the warm start, where no memory sets it. As in scene-net: below it at rest, above during a
+   shock. */
+extern const float hybrid_gate;
+
+/* memory: the caller's, or NULL: no step is answered. It must outlive the solver, and may grow between launches. watch: or
+   NULL. */
+bool hybrid_make(ContactSolver *solver, const Tabulation *memory, const HybridWatch *watch, Error *error);
+
+/* The answer of an entry: impulses clamped to their friction cones, and the velocities that follow; adds to
+   fallbacks.outside_cone. The problem has the entry's contacts. */
+void hybrid_answer(const Tabulation *memory, int entry, const float *key, const ContactProblem *problem,
+                   ContactSolution *solution);
+
+/* A network trained on pairs (learning/pair_training.h), ready to predict: its inputs, its outputs and what they mean. */
+
+/* Zero-initialise. */
+typedef struct PairNetwork {
+    Network *network;
+    PairView view;
+    PairTarget target;
+    bool constant; /* predict the mean of the training data, whatever the inputs */
+    /* Work space; grows and is reused: */
+    float *scratch; /* of a prediction */
+    float *numbers; /* inputs[inputs, pairs], then outputs[outputs, pairs], of the step's pairs */
+    size_t capacity;
+    PairMoment moment; /* needed by views by contact */
+} PairNetwork;
+
+/* Number of outputs per pair. */
+static inline int pair_network_outputs(const PairNetwork *pair) { return pair->network->widths[pair->network->layers]; }
+
+/* ERROR_INPUT, with the file, if it is not a network or its inputs, outputs and target do not fit each other; the
+   message states what it has and what is needed. */
+bool pair_network_read(PairNetwork *pair, const char *path, Error *error);
+void pair_network_free(PairNetwork *pair);
+
+/* outputs[outputs, pairs] for all pairs of the step, in their order, from the velocities before the warm start or, for
+   views by contact, after it. Not for TARGET_IMPULSE. Valid until the next call. NULL: no memory. */
+const float *pair_network_predict(PairNetwork *pair, const ContactProblem *problem, int *pairs);
+
+/* outputs[outputs] for the pair whose contacts begin at `first`, at any moment of the step (pair_inputs). */
+void pair_network_predict_one(PairNetwork *pair, const ContactProblem *problem, const PairMoment *now, int first,
+                              float *outputs);
+
+/* The common part of pair-net, contact-net and constant, which accept different networks. */
+
+typedef struct PairSolver {
+    PairNetwork network;
+    int sweep_count;  /* for TARGET_IMPULSE */
+    int *pair_counts; /* [body_count] number of pairs of each body */
+    size_t count_capacity;
+} PairSolver;
+
+#define PAIR_SOLVER_NET \
+    { "net", "on|off: off predicts the mean of the training data for every pair (default: on)" }
+
+/* Reads the settings network, k (default: 10) and net. NULL with error set if one is refused. name: of the method. */
+PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *error);
+void pair_solver_destroy(void *state);
+
+/* Solves the step with the network, as its target requires: pair_net.c and contact_net.c. */
+bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);
+
+/* The residual of the impulses in a set of sweeps: how far contacts are from their target velocities. After the warm
+   start it is near zero while boxes rest, and metres per second while a shock travels through them; so it tells whether
+   a step is worth a network. After sweeps it tells whether they have converged. */
+
+/* True if the root mean square over the contacts of (bias - normal velocity) is at least `limit` (m/s). Separating
+   contacts without an impulse do not count as error. */
+bool residual_reaches(const Sweeps *sweeps, int contact_count, float limit);
+
+/* The same of a solution. Where the sweeps visit contacts in the problem's order, with the same answer. */
+bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit);
+
+/* True if the root mean square over the contacts of what one more visit would change, normal and tangent velocity, is at
+   least `limit` (m/s), or NaN. This is the residual of methods/interior_point_internal.h. */
+bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float limit);
+
+/* True if the bodies of a contact move relative to each other by at least `limit` (m/s) there without any impulse, in any
+   direction, or by NaN. A step of gravity makes 0.17 at rest, whatever the masses. */
+bool residual_motion_reaches(const ContactProblem *problem, float limit);
+
+/* A contact problem as the inputs of a slot network (nets/kinds.h). A bomb rotated by a quarter turn is the
+   same box with its edges renamed. So the view rotates it back to within an eighth of a turn (a quarter if it is
+   oblong), and renames the features of its contacts. Otherwise the network would have to learn each quarter turn
+   separately. */
+
+/* Zero-initialise; arrays grow and are reused. */
+typedef struct SceneView {
+    SlotView slots;
+    int32_t *contacts;    /* [slots.slot_count] the contact of each slot */
+    ContactImpulse *base; /* [contact_count] impulses without the network: the warm start, for contacts with a slot
+                             up to its cap and inside the cone */
+    /* The arrays that `slots` points to: */
+    float bomb[SLOT_BODY_NUMBERS], *state, *ones, *warm;
+    int32_t *present, *impulses;
+    size_t state_capacity, ones_capacity, warm_capacity, present_capacity, impulse_capacity, contact_capacity,
+        base_capacity;
+} SceneView;
+
+void scene_view_free(SceneView *view);
+
+/* The feature of one of the problem's contacts, with the bomb rotated back. */
+uint32_t scene_view_feature(const ContactProblem *problem, const ContactPoint *contact);
+
+/* rad: the angle of a body, turned back by quarter turns (half turns if it is oblong) to the smallest. */
+float scene_view_angle(const ProblemBody *body);
+
+/* The problem must have the network's bodies. False when memory is short. */
+bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem);
+
+/* The method scene-net with a network in memory, for training. */
+
+/* The network remains the caller's and must outlive the solver. near: the setting, m/s. */
+bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error);

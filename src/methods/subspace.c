@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Subspace neural physics: no collision detection and no solver; a network predicts where all bodies of one scene are
+   next, as principal components of their poses (nets/kinds.h has the equations). Source: Holden, Duong, Datta,
+   Nowrouzezahrai, "Subspace Neural Physics: Fast Data-Driven Interactive Simulation" (SCA 2019).
+
+   A step predicts the components, clamps them to their range in training, and reconstructs the poses from them; a velocity
+   is the difference of two poses over dt. A state that the method has not reached itself, as in the first step, is
+   projected: its poses, and those one step before, from the velocities. Before the bomb appears all launches are the same
+   run, so the file has that run's poses and the method repeats them. With net=off the linear term predicts alone.
+
+   The step is begun, so contacts are detected, only for those who measure them: the method reads none of it.
+
+   Fails by what it does not know: nothing keeps boxes apart or momentum constant; poses that differ from all launches of
+   the training have no components. Another scene, and another size or mass of its bodies, is refused. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COMPONENTS_DEFAULT = 32 };
+
+static const SettingSpec settings[] = {
+    {"network", "file of the trained network (default: the scene's)"},
+    {"components", "8|32|128: principal components, at most as many as the scene has (default: 32)"},
+    {"net", "on|off: off leaves out the network; the linear term predicts alone (default: on)"},
+    {NULL, NULL}};
+
+typedef struct SubspaceStepper {
+    SubspaceNet *net;
+    Subspace subspace;
+    Body *after;     /* [after_count] the world's bodies when the last step ended in the subspace */
+    int after_count; /* 0: it did not */
+    BodyPose *poses; /* [bodies of the world] */
+    bool *touched;   /* [bodies of the world] */
+    size_t after_capacity, pose_capacity, touched_capacity;
+    float *start; /* [2, 4 bodies] numbers of the state before and of the state */
+} SubspaceStepper;
+
+uint64_t subspace_physics(const Scene *scene) {
+    Scene plain = *scene;
+    plain.iterations = 1;
+    plain.warm_starting = plain.accumulate_impulses = plain.position_correction = true;
+    BodyDef *bomb = &plain.bomb.body;
+    bomb->position.x = bomb->angle = bomb->angular_velocity = 0;
+    bomb->mass = plain.bomb.mass.value;
+    plain.bomb.frame = 0;
+    plain.bomb.present = true; /* a launch may be run without its bomb, to check the scene */
+    return scene_hash(&plain);
+}
+
+void subspace_launch(const Scene *launched, float launch[SUBSPACE_LAUNCH]) {
+    const BodyDef *bomb = &launched->bomb.body;
+    const float numbers[SUBSPACE_LAUNCH] = {bomb->position.x, bomb->angle, bomb->angular_velocity, bomb->mass};
+    memcpy(launch, numbers, sizeof numbers);
+}
+
+void subspace_pose_numbers(Vec2 size, Vec2 position, float angle, float numbers[SUBSPACE_POSE]) {
+    const Mat22 turn = mat22_rotation(angle);
+    const float radius = sqrtf(vec2_dot(size, size) / 12.0f);
+    numbers[0] = position.x;
+    numbers[1] = position.y;
+    numbers[2] = radius * turn.column1.y;
+    numbers[3] = radius * turn.column1.x;
+}
+
+static void destroy(void *state) {
+    SubspaceStepper *method = state;
+    if (method == NULL) return;
+    subspace_free(&method->subspace);
+    subspace_net_destroy(method->net);
+    free(method->after);
+    free(method->poses);
+    free(method->touched);
+    free(method->start);
+    free(method);
+}
+
+static bool read_components(const Settings *chosen, int *components, Error *error) {
+    *components = COMPONENTS_DEFAULT;
+    if (!settings_int(chosen, "components", 1, SUBSPACE_COMPONENTS_MAX, components, error)) return false;
+    return *components == 8 || *components == 32 || *components == 128 ||
+           error_input(error, "subspace", "components must be 8, 32 or 128 (got %d)", *components);
+}
+
+static bool check_scene(const SubspaceNet *net, const Scene *scene, const char *path, Error *error) {
+    int moving = 1;
+    for (int i = 0; i < scene->body_count; i++) moving += !scene->bodies[i].fixed;
+    if (moving != net->shape.bodies)
+        return error_input(error, path, "the network is for scene %s with %d bodies that move; scene %s has %d",
+                           net->scene, net->shape.bodies, scene->name, moving);
+    return net->physics == subspace_physics(scene) ||
+           error_input(error, path,
+                       "the network is for scene %s; bodies, bomb, gravity or time step of scene %s differ", net->scene,
+                       scene->name);
+}
+
+static bool prepare(SubspaceStepper *method, const char *path, const Settings *chosen, const Scene *scene,
+                    Error *error) {
+    int components;
+    bool corrects = true;
+    if (!read_components(chosen, &components, error) || !settings_bool(chosen, "net", &corrects, error) ||
+        (method->net = subspace_net_read(path, error)) == NULL || !check_scene(method->net, scene, path, error))
+        return false;
+    method->start = calloc(2 * SUBSPACE_POSE * (size_t)method->net->shape.bodies, sizeof *method->start);
+    if (method->start == NULL) return error_memory(error, "subspace");
+    return subspace_make(&method->subspace, method->net, subspace_net_choose(method->net, components), corrects, error);
+}
+
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    const char *path = settings_get(chosen, "network");
+    if (path == NULL) path = scene_network(scene, "subspace");
+    if (path == NULL) {
+        error_input(error, "subspace", "the scene names no network for it: use subspace:network=FILE");
+        return NULL;
+    }
+    SubspaceStepper *method = calloc(1, sizeof *method);
+    if (method == NULL) {
+        error_memory(error, "subspace");
+        return NULL;
+    }
+    if (prepare(method, path, chosen, scene, error)) return method;
+    destroy(method);
+    return NULL;
+}
+
+/* Whether the world is, bit for bit, where the last step left it; a body has no padding. */
+static bool goes_on(const SubspaceStepper *method, const Body *bodies, int count, int frame) {
+    return frame > 1 && method->after_count == count &&
+           memcmp(method->after, bodies, (size_t)count * sizeof *bodies) == 0;
+}
+
+/* Projects the poses of the world and those one step before. */
+static void start(SubspaceStepper *method, const Body *bodies, int count, float dt) {
+    float *last = method->start, *now = last + SUBSPACE_POSE * method->net->shape.bodies;
+    for (int i = 0; i < count; i++) {
+        const Body *body = &bodies[i];
+        if (body->inv_mass == 0) continue;
+        subspace_pose_numbers(body->size, vec2_sub(body->position, vec2_scale(dt, body->velocity)),
+                              body->angle - dt * body->angular_velocity, last);
+        subspace_pose_numbers(body->size, body->position, body->angle, now);
+        last += SUBSPACE_POSE, now += SUBSPACE_POSE;
+    }
+    subspace_start(&method->subspace, method->start, method->start + SUBSPACE_POSE * method->net->shape.bodies);
+}
+
+/* Bodies whose numbers are not finite stay where they are; returns how many. */
+static int pose_bodies(SubspaceStepper *method, const Body *bodies, int body_count) {
+    const float *numbers = method->subspace.numbers;
+    int discarded = 0;
+    for (int i = 0; i < body_count; i++) {
+        if (bodies[i].inv_mass == 0) continue;
+        const BodyPose pose = {vec2(numbers[0], numbers[1]), turn_angle(numbers[2], numbers[3], bodies[i].angle)};
+        if (isfinite(pose.position.x) && isfinite(pose.position.y) && isfinite(pose.angle))
+            method->poses[i] = pose;
+        else
+            discarded++;
+        numbers += SUBSPACE_POSE;
+    }
+    return discarded;
+}
+
+/* Poses after a step in which the bomb is there. */
+static NetworkFallbacks predict(SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
+                                const Step *which) {
+    Subspace *subspace = &method->subspace;
+    float launch[SUBSPACE_LAUNCH];
+    const Scene *scene = which->scene;
+    if (!goes_on(method, bodies, problem->body_count, which->frame))
+        start(method, bodies, problem->body_count, problem->dt);
+    subspace_launch(scene, launch);
+    const SubspaceReport report = subspace_step(subspace, launch);
+    subspace_reconstruct(subspace);
+    const bool other_mass =
+        scene->bomb.body.mass < scene->bomb.mass.from || scene->bomb.body.mass > scene->bomb.mass.to;
+    return (NetworkFallbacks){.not_finite = report.not_finite + pose_bodies(method, bodies, problem->body_count),
+                              .beyond_training = report.beyond > 0 || other_mass};
+}
+
+/* Poses after a step before the bomb appears; after the end of the recorded run, its last. */
+static void repeat(SubspaceStepper *method, const Body *bodies, int body_count, int frame) {
+    const SubspaceShape *shape = &method->net->shape;
+    if (shape->frames_before == 0) return;
+    const int row = (frame <= shape->frames_before ? frame : shape->frames_before) - 1;
+    const float *pose = method->net->before + (size_t)row * (size_t)(shape->bodies - 1) * 3;
+    for (int i = 0; i < body_count; i++) {
+        if (bodies[i].inv_mass == 0) continue;
+        method->poses[i] = (BodyPose){vec2(pose[0], pose[1]), pose[2]};
+        pose += 3;
+    }
+}
+
+/* Velocities from the poses. */
+static void fill(const SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
+                 ContactSolution *solution) {
+    const float rate = 1 / problem->dt;
+    for (int i = 0; i < problem->body_count; i++) {
+        const BodyPose *pose = &method->poses[i];
+        solution->velocities[i] = (BodyVelocity){vec2_scale(rate, vec2_sub(pose->position, bodies[i].position)),
+                                                 rate * (pose->angle - bodies[i].angle)};
+    }
+    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+}
+
+static bool reserve(SubspaceStepper *method, size_t bodies, Error *error) {
+    return (array_reserve((void **)&method->after, &method->after_capacity, bodies, sizeof *method->after) &&
+            array_reserve((void **)&method->poses, &method->pose_capacity, bodies, sizeof *method->poses) &&
+            array_reserve((void **)&method->touched, &method->touched_capacity, bodies, sizeof *method->touched)) ||
+           error_memory(error, "subspace");
+}
+
+/* The network's bodies must be those of the world: a caller may step any world of the scene. */
+static bool check_world(const SubspaceStepper *method, const Body *bodies, const ContactProblem *problem,
+                        Error *error) {
+    int moving = problem->marked < 0;
+    for (int i = 0; i < problem->body_count; i++) moving += bodies[i].inv_mass != 0;
+    return moving == method->net->shape.bodies ||
+           error_input(error, "subspace", "the world has %d bodies that move, with the bomb; the network is for %d",
+                       moving, method->net->shape.bodies);
+}
+
+static bool step(void *state, World *world, const Step *which, Error *error) {
+    SubspaceStepper *method = state;
+    ContactProblem problem;
+    ContactSolution *solution;
+    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error) ||
+        !reserve(method, (size_t)problem.body_count, error))
+        return false;
+    const Body *bodies = world_bodies(world);
+    if (!check_world(method, bodies, &problem, error)) return false;
+    step_solving_begins(which);
+    for (int i = 0; i < problem.body_count; i++) method->poses[i] = (BodyPose){bodies[i].position, bodies[i].angle};
+    if (problem.marked >= 0)
+        solution->fallbacks = predict(method, bodies, &problem, which);
+    else
+        repeat(method, bodies, problem.body_count, which->frame);
+    fill(method, bodies, &problem, solution);
+    step_solving_ends(which);
+    solution->momentum_error = free_flight_momentum(&problem, solution, method->touched);
+    if (!world_end_step_at(world, method->poses, error)) return false;
+    method->after_count = problem.marked >= 0 ? problem.body_count : 0;
+    memcpy(method->after, world_bodies(world), (size_t)problem.body_count * sizeof *method->after);
+    return true;
+}
+
+const SteppingKind stepping_subspace = {
+    .description = {.name = "subspace",
+                    .summary = "no solver: a network predicts principal components of all poses",
+                    .caption = "principal components",
+                    .look = {METHOD_SKY, METHOD_CIRCLE},
+                    .settings = settings,
+                    .needs_network = true,
+                    .twin = "subspace:net=off",
+                    .own_settings = "components=32",
+                    .no_push_out = true,
+                    .no_contacts = true,
+                    .chart = METHOD_RUNS("", "components=8", "components=128", "net=off"),
+                    .chart_quick = METHOD_NO_RUNS,
+                    .stability = METHOD_NO_RUNS},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+#include "methods/sweeps.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void step_memory_free(StepMemory *memory) {
+    free(memory->bodies);
+    free(memory->contacts);
+    free(memory->known);
+    free(memory->before);
+    *memory = (StepMemory){0};
+}
+
+static bool step_memory_reserve(StepMemory *memory, size_t bodies, size_t contacts) {
+    return array_reserve((void **)&memory->bodies, &memory->body_capacity, bodies, sizeof *memory->bodies) &&
+           array_reserve((void **)&memory->contacts, &memory->contact_capacity, contacts, sizeof *memory->contacts) &&
+           array_reserve((void **)&memory->known, &memory->known_capacity, bodies, sizeof *memory->known) &&
+           array_reserve((void **)&memory->before, &memory->before_capacity, contacts, sizeof *memory->before);
+}
+
+/* A body has no padding: eleven floats. */
+static bool same_body(const Body *x, const Body *y) { return memcmp(x, y, sizeof *x) == 0; }
+
+static bool earlier(const KeptContact *kept, const ContactPoint *contact) {
+    return kept->a < contact->a || (kept->a == contact->a && kept->b < contact->b);
+}
+
+/* Both lists rise by (a, b). */
+static void match_contacts(StepMemory *memory, const ContactProblem *problem) {
+    for (int i = 0, first = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        memory->before[i] = -1;
+        if (!memory->known[contact->a] || !memory->known[contact->b]) continue;
+        while (first < memory->contact_count && earlier(&memory->contacts[first], contact)) first++;
+        for (int j = first; j < memory->contact_count; j++) {
+            const KeptContact *kept = &memory->contacts[j];
+            if (kept->a != contact->a || kept->b != contact->b) break;
+            if (kept->feature == contact->feature) memory->before[i] = j;
+        }
+    }
+}
+
+bool step_memory_match(StepMemory *memory, const World *world, const Step *step) {
+    const ContactProblem *problem = world_problem(world);
+    const Body *bodies = world_bodies(world);
+    if (step->frame == 1) memory->body_count = memory->contact_count = 0;
+    if (!step->scene->warm_starting) memory->contact_count = 0;
+    if (!step_memory_reserve(memory, (size_t)problem->body_count, (size_t)problem->contact_count)) return false;
+    for (int i = 0; i < problem->body_count; i++)
+        memory->known[i] = i < memory->body_count && same_body(&bodies[i], &memory->bodies[i]);
+    match_contacts(memory, problem);
+    return true;
+}
+
+void step_memory_keep(StepMemory *memory, const World *world) {
+    const ContactProblem *problem = world_problem(world);
+    memory->body_count = problem->body_count;
+    memory->contact_count = problem->contact_count;
+    if (problem->body_count > 0)
+        memcpy(memory->bodies, world_bodies(world), (size_t)problem->body_count * sizeof *memory->bodies);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        memory->contacts[i] = (KeptContact){contact->a, contact->b, contact->feature};
+    }
+}
+
+float free_flight_momentum(const ContactProblem *problem, const ContactSolution *solution, bool *touched) {
+    float sum = 0;
+    memset(touched, 0, (size_t)problem->body_count * sizeof *touched);
+    for (int i = 0; i < problem->contact_count; i++)
+        touched[problem->contacts[i].a] = touched[problem->contacts[i].b] = true;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        if (touched[i] || body->inv_mass == 0) continue;
+        const Vec2 change = vec2_sub(solution->velocities[i].linear, body->velocity);
+        sum += sqrtf(vec2_dot(change, change)) / body->inv_mass;
+    }
+    return sum;
+}
+
+/* Substepping: one collision pass, then n small steps of dt / n, each with its share of gravity, k sweeps of sequential
+   impulses, and integration (Macklin et al., "Small Steps in Physics Simulation", 2019; temporal Gauss-Seidel).
+
+   Normals, lever arms and effective masses stay those of the collision pass; a separation changes by the velocity along
+   its normal. Impulses accumulate over the whole step and are clamped as a sum, so that an impulse that stops a fall in
+   one small step is not applied again in the next. The warm start is applied in n equal shares, as gravity is. The bias
+   velocity that corrects penetration is that of the whole step: so the step ends with the velocities of a converged
+   solve of the whole step.
+
+   Fails as n k sweeps of one whole step do: a shock travels no further through a stack. It is slower, because sweeps of
+   different small steps cannot overlap. */
+
+typedef struct Substepping {
+    int substeps, sweeps_each;
+    Sweeps sweeps;
+    BodyPose *poses;       /* [bodies] */
+    BodyVelocity *pushes;  /* [bodies] change by gravity and warm start in each small step */
+    ContactImpulse *share; /* [contacts] share of the warm start in each small step */
+    float *separations;    /* [contacts] current */
+    size_t pose_capacity, push_capacity, share_capacity, separation_capacity;
+} Substepping;
+
+static const SettingSpec settings[] = {
+    {"substeps", "small steps per step (default: 4)"}, {"k", "sweeps per small step (default: 1)"}, {NULL, NULL}};
+
+static void destroy(void *state) {
+    Substepping *stepping = state;
+    sweeps_free(&stepping->sweeps);
+    free(stepping->poses);
+    free(stepping->pushes);
+    free(stepping->share);
+    free(stepping->separations);
+    free(stepping);
+}
+
+static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    (void)scene;
+    Substepping *stepping = calloc(1, sizeof *stepping);
+    if (stepping == NULL) {
+        error_memory(error, "substepping");
+        return NULL;
+    }
+    stepping->substeps = 4;
+    stepping->sweeps_each = 1;
+    if (settings_int(chosen, "substeps", 1, 1000, &stepping->substeps, error) &&
+        settings_int(chosen, "k", 1, SWEEPS_MAX, &stepping->sweeps_each, error))
+        return stepping;
+    destroy(stepping);
+    return NULL;
+}
+
+static bool reserve(Substepping *stepping, const ContactProblem *problem) {
+    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    return array_reserve((void **)&stepping->poses, &stepping->pose_capacity, bodies, sizeof *stepping->poses) &&
+           array_reserve((void **)&stepping->pushes, &stepping->push_capacity, bodies, sizeof *stepping->pushes) &&
+           array_reserve((void **)&stepping->share, &stepping->share_capacity, contacts, sizeof *stepping->share) &&
+           array_reserve((void **)&stepping->separations, &stepping->separation_capacity, contacts,
+                         sizeof *stepping->separations);
+}
+
+/* The same for every small step, as arms and masses do not change. */
+static void find_pushes(Substepping *stepping, Vec2 gravity) {
+    Sweeps *sweeps = &stepping->sweeps;
+    for (int i = 0; i < sweeps->body_count; i++) {
+        SweepBody *body = &sweeps->bodies[i];
+        Vec2 fall = body->inv_mass > 0 ? gravity : vec2(0, 0);
+        stepping->pushes[i] = (BodyVelocity){vec2(body->x, body->y), body->spin};
+        body->x += fall.x;
+        body->y += fall.y;
+    }
+    sweeps_push(sweeps, stepping->share);
+    for (int i = 0; i < sweeps->body_count; i++) {
+        SweepBody *body = &sweeps->bodies[i];
+        BodyVelocity *push = &stepping->pushes[i], before = *push;
+        *push = (BodyVelocity){vec2(body->x - before.linear.x, body->y - before.linear.y), body->spin - before.angular};
+    }
+}
+
+/* Bodies before gravity, plus the push of the first small step; contacts from the collision pass. */
+static bool begin(Substepping *stepping, const World *world, const ContactProblem *problem, Vec2 gravity) {
+    if (!reserve(stepping, problem) || !sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false, 1))
+        return false;
+    const Body *now = world_bodies(world);
+    for (int i = 0; i < problem->body_count; i++) {
+        stepping->sweeps.bodies[i].x = now[i].velocity.x;
+        stepping->sweeps.bodies[i].y = now[i].velocity.y;
+        stepping->poses[i] = (BodyPose){now[i].position, now[i].angle};
+    }
+    const float share = 1.0f / (float)stepping->substeps;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        stepping->share[i] = (ContactImpulse){share * contact->warm_normal, share * contact->warm_tangent};
+        stepping->separations[i] = contact->separation;
+    }
+    find_pushes(stepping, vec2_scale(share * problem->dt, gravity));
+    return true;
+}
+
+/* Applies gravity and warm start of one more small step. */
+static void push(Substepping *stepping) {
+    Sweeps *sweeps = &stepping->sweeps;
+    for (int i = 0; i < sweeps->body_count; i++) {
+        SweepBody *body = &sweeps->bodies[i];
+        body->x += stepping->pushes[i].linear.x;
+        body->y += stepping->pushes[i].linear.y;
+        body->spin += stepping->pushes[i].angular;
+    }
+    const ContactImpulse *share = stepping->share;
+    for (int i = 0; i < sweeps->pair_count; i++)
+        for (int k = 0; k < sweep_pair_points(&sweeps->pairs[i]); k++, share++) {
+            sweeps->pairs[i].sums[k].normal += share->normal;
+            sweeps->pairs[i].sums[k].tangent += share->tangent;
+        }
+}
+
+static void integrate(Substepping *stepping, float dt) {
+    for (int i = 0; i < stepping->sweeps.body_count; i++) {
+        const SweepBody *body = &stepping->sweeps.bodies[i];
+        BodyPose *pose = &stepping->poses[i];
+        pose->position = vec2_add(pose->position, vec2_scale(dt, vec2(body->x, body->y)));
+        pose->angle += dt * body->spin;
+    }
+}
+
+/* Velocity of b's point relative to a's, along the normal. */
+static float normal_velocity(const Sweeps *sweeps, const ContactPoint *contact) {
+    const SweepBody *a = &sweeps->bodies[contact->a], *b = &sweeps->bodies[contact->b];
+    Vec2 of_a = vec2_add(vec2(a->x, a->y), scalar_cross_vec2(a->spin, contact->arm_a));
+    Vec2 of_b = vec2_add(vec2(b->x, b->y), scalar_cross_vec2(b->spin, contact->arm_b));
+    return vec2_dot(vec2_sub(of_b, of_a), contact->normal);
+}
+
+/* The next small step corrects the penetration that remains. inverse_dt: of the whole step. */
+static void update_biases(Substepping *stepping, const ContactProblem *problem, float dt, float inverse_dt) {
+    Sweeps *sweeps = &stepping->sweeps;
+    for (int i = 0, contact = 0; i < sweeps->pair_count; i++)
+        for (int k = 0; k < sweep_pair_points(&sweeps->pairs[i]); k++, contact++) {
+            stepping->separations[contact] += dt * normal_velocity(sweeps, &problem->contacts[contact]);
+            sweeps->pairs[i].points[k].bias = contact_bias(stepping->separations[contact], inverse_dt);
+        }
+}
+
+static bool solve(Substepping *stepping, const Scene *scene, const ContactProblem *problem) {
+    const float dt = problem->dt / (float)stepping->substeps;
+    for (int i = 0; i < stepping->substeps; i++) {
+        if (i > 0) push(stepping);
+        if (!sweeps_run(&stepping->sweeps, stepping->sweeps_each)) return false;
+        integrate(stepping, dt);
+        if (scene->position_correction) update_biases(stepping, problem, dt, 1.0f / problem->dt);
+    }
+    return true;
+}
+
+static bool step(void *state, World *world, const Step *which, Error *error) {
+    Substepping *stepping = state;
+    ContactProblem problem;
+    ContactSolution *solution;
+    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
+    step_solving_begins(which);
+    bool solved = begin(stepping, world, &problem, which->scene->gravity) && solve(stepping, which->scene, &problem);
+    /* The world refuses a NaN or infinite result. */
+    if (solved) sweeps_end(&stepping->sweeps, solution);
+    step_solving_ends(which);
+    if (!solved) return error_memory(error, "substepping");
+    return world_end_step_at(world, stepping->poses, error);
+}
+
+const SteppingKind stepping_substepping = {
+    .description = {.name = "substepping",
+                    .summary = "one collision pass, then small steps of sequential impulses",
+                    .caption = "small steps of sequential impulses",
+                    .look = {METHOD_PURPLE, METHOD_SQUARE},
+                    .settings = settings,
+                    .own_settings = "substeps=4,k=1",
+                    .chart = METHOD_RUNS("substeps=2", "substeps=4", "substeps=10", "substeps=20", "substeps=50"),
+                    .chart_quick = METHOD_RUNS("substeps=10"),
+                    .stability_place = 4},
+    .create = create,
+    .step = step,
+    .destroy = destroy};

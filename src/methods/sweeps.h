@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Islands: bodies that contacts connect, through bodies that move. */
+#pragma once
+#include "engine/engine.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+/* Work space. Zero-initialise; arrays grow and are reused. */
+typedef struct Islands {
+    int32_t *parent, *loops; /* [body_count] */
+    size_t parent_capacity, loop_capacity;
+} Islands;
+
+void islands_free(Islands *islands);
+
+/* The loops of the island that has most: touching pairs of its moving bodies that could open without dividing it. A
+   stack has none, a pyramid or a wall almost as many as boxes. A factorization fills in only where loops are. -1 when
+   memory is short. */
+int islands_most_loops(Islands *islands, const ContactProblem *problem);
+
+/* The scalar reference implementation of sequential impulses. The vectorised sweeps (sweeps.h) must have its bits. */
+
+typedef struct SequentialOptions {
+    bool accumulate;  /* clamp accumulated impulses, not each impulse */
+    bool warm;        /* start from the problem's warm-start impulses, not from zero */
+    float relaxation; /* factor of every impulse; 1: none */
+} SequentialOptions;
+
+/* Sets velocities and impulses before the first sweep. */
+void sequential_impulses_begin(const ContactProblem *problem, const SequentialOptions *options,
+                               ContactSolution *solution);
+
+/* Visits `count` contacts, from `first` on. */
+void sequential_impulses_visit(const ContactProblem *problem, const SequentialOptions *options, int first, int count,
+                               ContactSolution *solution);
+
+/* One sweep. */
+void sequential_impulses_sweep(const ContactProblem *problem, const SequentialOptions *options,
+                               ContactSolution *solution);
+
+/* Begins, then `count` sweeps. */
+void sequential_impulses_solve(const ContactProblem *problem, const SequentialOptions *options, int count,
+                               ContactSolution *solution);
+
+/* The scalar reference implementation of the block solver (block.c), and its data for the two points of a pair. */
+
+/* K of two normals, 1/kg: K x is the change of the two normal velocities by the normal impulses x. */
+typedef struct Block {
+    float k11, k12, k22;
+    float inverse_determinant; /* kg^2; 0 if the points are solved separately */
+} Block;
+
+/* first, second: points of the same pair. They are solved separately if K is ill-conditioned. */
+Block block_make(const ContactPoint *first, const ContactPoint *second, const ProblemBody *bodies);
+
+/* `count` sweeps, after the warm start. */
+void block_solve(const ContactProblem *problem, int count, ContactSolution *solution);
+
+/* Graph colouring of the contacts: pairs of one colour share no moving body, so their visits commute. A sweep in this
+   order has one level (sweeps.h) per colour, instead of one per body of the longest chain, and a schedule needs two
+   sweeps only.
+
+   Greedy, from the last pair to the first: each takes the lowest colour that neither of its moving bodies has yet.
+   Bodies are numbered from the ground up and the bomb last, so the bomb's contacts are visited first. Source: Harada,
+   "A Parallel Constraint Solver for a Rigid Body Simulation" (2011), which batches contacts this way for a GPU. Fails
+   sooner than the engine's order, from the ground up, for a tall stack under a heavy load. The engine keeps its own
+   order, for the bits of Box2D-Lite. */
+
+enum { COLOURS = 64 };
+
+/* Zero-initialise; arrays grow and are reused. */
+typedef struct Colours {
+    int32_t *visits; /* [contact_count] the contacts in the order of visits; the two of a pair stay adjacent */
+    int32_t *pairs;  /* [pairs + 1] the first contact of each pair, and the end */
+    uint8_t *colour; /* [pairs] */
+    uint64_t *taken; /* [body_count] one bit per colour */
+    size_t visit_capacity, pair_capacity, colour_capacity, taken_capacity;
+} Colours;
+
+void colours_free(Colours *colours);
+
+/* Returns the lowest colour that is free in `taken` (one bit per colour) for both moving bodies of the contact, and
+   takes it. If all are taken: the last colour, whose visits do not commute and keep their order. */
+static inline int colours_take(uint64_t *taken, const ContactProblem *problem, const ContactPoint *contact) {
+    uint64_t *a = &taken[contact->a], *b = &taken[contact->b];
+    const uint64_t open = ~(*a | *b);
+    const int colour = open != 0 ? __builtin_ctzll(open) : COLOURS - 1;
+    *a |= (uint64_t)problem_body_moves(&problem->bodies[contact->a]) << colour;
+    *b |= (uint64_t)problem_body_moves(&problem->bodies[contact->b]) << colour;
+    return colour;
+}
+
+/* Fills colours->visits. False when memory is short. */
+bool colours_order(Colours *colours, const ContactProblem *problem);
+
+/* Vectorised sweeps over contacts, with the bits of the scalar reference implementation (sequential_impulses.c).
+
+   Contacts that share no moving body commute exactly. sweeps_schedule.c sorts the visits of several sweeps into levels
+   of independent visits, and a level is solved in the lanes of a vector, one pair of bodies per lane (sweeps_lanes.h).
+   For few contacts, or on a processor without such vectors, visits run one by one on the same packed records. Visits
+   follow the order of the problem's contacts, which is the engine's, or colours (colours.h): fewer levels, other bits.
+
+   Exact as long as all numbers are finite; sweeps_end() returns false otherwise. */
+
+enum { SWEEPS_MAX = 1000000 }; /* of one step, for any method */
+
+/* The kernels; sweeps_can() tells which ones the processor supports. */
+typedef enum SweepKernel { SWEEP_ONE_BY_ONE, SWEEP_AVX2, SWEEP_KERNELS } SweepKernel;
+
+bool sweeps_can(SweepKernel kernel);
+
+/* The fastest kernel that the processor supports. */
+SweepKernel sweeps_best_kernel(void);
+
+/* A body's row: one vector register of four. */
+typedef struct SweepBody {
+    float x, y, spin; /* velocity, m/s and rad/s */
+    float inv_mass;   /* 1/kg */
+} SweepBody;
+
+/* One contact point of a pair, as in ContactPoint. */
+typedef struct SweepPoint {
+    Vec2 arm_a, arm_b;
+    float mass_normal, mass_tangent, bias;
+    float extra; /* point 0: inverse inertia of b; point 1: -1 if the pair has a second point, else 0 */
+} SweepPoint;
+
+/* One or two contact points of the same two bodies, in rows of four for the lanes. */
+typedef struct SweepPair {
+    ContactImpulse sums[2];
+    Vec2 normal;
+    float friction, inv_inertia_a;
+    SweepPoint points[2];
+    Block block; /* only for the block solver */
+} SweepPair;
+
+enum {
+    LEVEL_WIDTH = 16,
+    PAIR_FLOATS = sizeof(SweepPair) / sizeof(float),
+    SUMS_FLOATS = 2 * sizeof(ContactImpulse) / sizeof(float),
+    BODY_FLOATS = sizeof(SweepBody) / sizeof(float)
+};
+
+/* Visits that commute: the offsets of their records, in floats. Slots without a visit have the spare body and pair,
+   which are all zeros. */
+typedef struct SweepLevel {
+    int32_t pair[LEVEL_WIDTH], a[LEVEL_WIDTH], b[LEVEL_WIDTH];
+} SweepLevel;
+
+/* With momentum extrapolation: the offsets, in floats, of a visit's sums after the previous sweep and of those of this
+   sweep (which overwrite the sums of two sweeps ago), and the sweep's number in the schedule. */
+typedef struct SweepTurns {
+    int32_t from[LEVEL_WIDTH], to[LEVEL_WIDTH], sweep[LEVEL_WIDTH];
+} SweepTurns;
+
+/* The same for a body, before the levels from `level` on. */
+typedef struct SweepBodyTurn {
+    int32_t from, to, sweep, level;
+} SweepBodyTurn;
+
+/* The levels of `sweeps` sweeps. */
+typedef struct SweepSchedule {
+    int sweeps, level_count;
+    SweepLevel *levels;
+    int32_t *filled; /* [level_count] number of visits */
+    int32_t *open;   /* [level_count] a level, at or after this one, that may have room */
+    size_t level_capacity, filled_capacity, open_capacity;
+    /* Only with momentum extrapolation: */
+    SweepTurns *turns;         /* [level_count] */
+    SweepBodyTurn *body_turns; /* [body_turn_count] by level */
+    SweepBodyTurn *unsorted;   /* [body_turn_count] while scheduling */
+    int32_t *turns_end;        /* [level_count + 1] the end of each level's body_turns */
+    int body_turn_count;
+    size_t turn_capacity, body_turn_capacity, unsorted_capacity, turns_end_capacity;
+} SweepSchedule;
+
+/* The two bodies of a pair. A body that no impulse moves is stored as ~index: its visits commute. */
+typedef struct SweepEnds {
+    int32_t a, b;
+} SweepEnds;
+
+/* The body's index, whether it moves or not. */
+static inline int32_t sweep_body_at(int32_t end) { return end < 0 ? ~end : end; }
+
+/* Zero-initialise; arrays grow and are reused. */
+typedef struct Sweeps {
+    SweepKernel kernel;
+    int body_count, pair_count;
+    int block;            /* the caller's: more runs of this many sweeps may follow a run, so schedules are made for
+                             them, too; 0: none. No bit depends on it. */
+    SweepBody *bodies;    /* [2, body_count + 1]; the second half only with momentum extrapolation */
+    SweepPair *pairs;     /* [pair_count + 1] in the order of visits */
+    int32_t *first;       /* [pair_count] the first contact of each pair in the problem */
+    SweepEnds *ends;      /* [pair_count] */
+    SweepEnds *scheduled; /* [scheduled_count] the ends that the schedules are for */
+    int scheduled_count, scheduled_bodies;
+    bool scheduled_turns; /* they are for momentum extrapolation */
+    bool coloured;        /* the pairs are in the order of colours */
+    Colours colours;
+    ContactImpulse
+        *sums; /* [2, pair_count + 1, 2] with momentum extrapolation: of this sweep and the previous one, alternating */
+    SweepSchedule whole, rest; /* of as many sweeps as fit, run repeatedly, and of the remaining sweeps */
+    bool *moves;               /* [body_count] an impulse can change the body's velocity */
+    int64_t *quiet_since;      /* [pair_count] one by one: the visit since which the pair is unchanged; 0: none */
+    int64_t *changed_at;       /* [body_count] one by one: number of the visit that last changed the body */
+    int32_t *ready;            /* [body_count] while scheduling: the first level that may visit the body */
+    int32_t *seen; /* [body_count] while scheduling with momentum extrapolation: sweeps that have visited the body */
+    size_t sums_capacity, seen_capacity, quiet_capacity, changed_capacity;
+    size_t body_capacity, pair_capacity, ends_capacity, scheduled_capacity, moves_capacity, ready_capacity;
+    size_t first_capacity;
+} Sweeps;
+
+void sweeps_free(Sweeps *sweeps);
+
+/* Loads a problem and applies its warm start. Effective masses are multiplied by `relaxation` (1: unchanged). False
+   when memory is short. */
+bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation);
+
+/* The same with visits in the order of colours (colours.h): faster, with other bits. With warm start, without
+   relaxation. */
+bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem);
+
+/* `count` sweeps over all contacts. False when memory is short. */
+bool sweeps_run(Sweeps *sweeps, int count);
+
+/* The same with momentum extrapolation before each sweep but the first, with the bits of the scalar reference
+   implementation in momentum.c: velocities and sums advance by factors[sweep] (>= 0) times the change by the previous
+   sweep, including its extrapolation. */
+bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
+
+/* Continues after sweeps_run_momentum() or itself, as if in one run: here factors[0] counts. Both counts are even. */
+bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count);
+
+/* The same for the block solver, with the bits of block.c. Only for processors with lanes. */
+bool sweeps_begin_blocks(Sweeps *sweeps, const ContactProblem *problem);
+bool sweeps_run_blocks(Sweeps *sweeps, int count);
+
+/* Applies additional impulses [contact_count] and adds them to the sums. */
+void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses);
+
+static inline int sweep_pair_points(const SweepPair *pair) { return pair->points[1].extra < 0.0f ? 2 : 1; }
+
+/* Stores velocities and impulses. False if a velocity is NaN or infinite: then the bits may depend on the order of
+   visits. */
+bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution);
+
+/* Impulses and relative velocities at contacts, for the scalar reference implementations. The order of all float
+   operations is part of the engine's result. */
+
+/* True if both contacts are of the same bodies and normal. */
+static inline bool contact_shares_surface(const ContactPoint *first, const ContactPoint *second) {
+    return first->a == second->a && first->b == second->b &&
+           memcmp(&first->normal, &second->normal, sizeof first->normal) == 0 &&
+           memcmp(&first->friction, &second->friction, sizeof first->friction) == 0;
+}
+
+/* The number of contacts (1 or 2) of the pair and normal that begin at contact `first`. */
+static inline int contact_surface_points(const ContactProblem *problem, int first) {
+    const ContactPoint *contact = &problem->contacts[first];
+    return first + 1 < problem->contact_count && contact_shares_surface(contact, contact + 1) ? 2 : 1;
+}
+
+/* Applies impulse to b and its opposite to a. */
+static inline void contact_apply(BodyVelocity *a, BodyVelocity *b, const ContactPoint *contact,
+                                 const ProblemBody *bodies, Vec2 impulse) {
+    const ProblemBody *body_a = &bodies[contact->a], *body_b = &bodies[contact->b];
+    a->linear = vec2_sub(a->linear, vec2_scale(body_a->inv_mass, impulse));
+    a->angular -= body_a->inv_inertia * vec2_cross(contact->arm_a, impulse);
+    b->linear = vec2_add(b->linear, vec2_scale(body_b->inv_mass, impulse));
+    b->angular += body_b->inv_inertia * vec2_cross(contact->arm_b, impulse);
+}
+
+/* The same for an impulse along normal and tangent. */
+static inline void contact_push(BodyVelocity *velocities, const ContactPoint *contact, const ProblemBody *bodies,
+                                ContactImpulse push) {
+    Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
+    Vec2 impulse = vec2_add(vec2_scale(push.normal, contact->normal), vec2_scale(push.tangent, tangent));
+    contact_apply(&velocities[contact->a], &velocities[contact->b], contact, bodies, impulse);
+}
+
+/* Velocity of b's point relative to a's. */
+static inline Vec2 contact_relative_velocity(const BodyVelocity *a, const BodyVelocity *b,
+                                             const ContactPoint *contact) {
+    Vec2 of_b = vec2_add(b->linear, scalar_cross_vec2(b->angular, contact->arm_b));
+    return vec2_sub(vec2_sub(of_b, a->linear), scalar_cross_vec2(a->angular, contact->arm_a));
+}
+
+static inline float contact_clamp(float value, float low, float high) {
+    float capped = value < high ? value : high;
+    return low > capped ? low : capped;
+}
+
+/* Internal functions of sweeps.c and sweeps_load.c. */
+
+enum { SWEEPS_AT_ONCE = 16 }; /* sweeps in one schedule, which is run repeatedly */
+
+bool sweeps_have_avx2(void);
+
+/* Solves the levels one after the other, eight pairs at a time. factors: one for each of the schedule's sweeps, or NULL
+   without momentum extrapolation. */
+void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors);
+
+/* The same with the normal impulses of a pair solved together. */
+void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule);
+
+/* Applies the initial impulses in the sums. */
+void sweeps_warm_start(Sweeps *sweeps);
+
+/* Sweeps pair by pair, and stops early after a sweep without a change: later ones would change nothing. */
+void sweeps_run_one_by_one(Sweeps *sweeps, const float *factors, int count);

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "nets/kernels.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+void row_kernels_list(const RowKernels *list[ROW_KERNELS_MAX + 1]) {
+    int count = 0;
+#ifdef TWINBOX_AVX
+    if (__builtin_cpu_supports("avx512f")) list[count++] = &row_kernels_avx512;
+    if (__builtin_cpu_supports("avx2")) list[count++] = &row_kernels_avx2;
+#endif
+    list[count++] = &row_kernels_scalar;
+    list[count] = NULL;
+}
+
+const RowKernels *row_kernels_best(void) {
+    const RowKernels *list[ROW_KERNELS_MAX + 1];
+    row_kernels_list(list);
+    return list[0];
+}
+
+enum { STEPS = INT8_MAX };
+
+static const float nothing =
+    1e-30f; /* a row with no larger number becomes 0, because the reciprocal of its unit is infinite */
+
+bool packed_rows_make(PackedRows *packed, int count, int width) {
+    *packed =
+        (PackedRows){count, width, calloc((size_t)count * (size_t)width, 1), calloc((size_t)count, sizeof(float))};
+    return packed->numbers != NULL && packed->units != NULL;
+}
+
+void packed_rows_free(PackedRows *packed) {
+    free(packed->numbers);
+    free(packed->units);
+    *packed = (PackedRows){0};
+}
+
+static float largest(const float *row, int width) {
+    float most = 0;
+    for (int i = 0; i < width; i++) most = fabsf(row[i]) > most ? fabsf(row[i]) : most;
+    return most;
+}
+
+static int8_t nearest(float number) { return (int8_t)(number + (number < 0 ? -0.5f : 0.5f)); }
+
+void packed_rows_fill(PackedRows *packed, const float *rows) {
+    for (int64_t i = 0; i < packed->count; i++) {
+        const float *row = rows + i * packed->width;
+        int8_t *numbers = packed->numbers + i * packed->width;
+        const float most = largest(row, packed->width), steps = most > nothing ? STEPS / most : 0;
+        packed->units[i] = most > nothing ? most / STEPS : 0;
+        for (int k = 0; k < packed->width; k++) numbers[k] = nearest(row[k] * steps);
+    }
+}
+
+void gns_kernels_list(const GnsKernels *list[GNS_KERNELS_MAX + 1]) {
+    int count = 0;
+#ifdef TWINBOX_AVX
+    if (__builtin_cpu_supports("avx2")) list[count++] = &gns_kernels_avx2;
+#endif
+    list[count++] = &gns_kernels_scalar;
+    list[count] = NULL;
+}
+
+const GnsKernels *gns_kernels_best(void) {
+    const GnsKernels *list[GNS_KERNELS_MAX + 1];
+    gns_kernels_list(list);
+    return list[0];
+}
+
+void kernels_list(const Kernels *list[KERNELS_MAX + 1]) {
+    int count = 0;
+#ifdef TWINBOX_AVX
+    if (__builtin_cpu_supports("avx512f")) list[count++] = &kernels_avx512;
+    if (__builtin_cpu_supports("avx2")) list[count++] = &kernels_avx2;
+#endif
+    list[count++] = &kernels_scalar;
+    list[count] = NULL;
+}
+
+const Kernels *kernels_best(void) {
+    const Kernels *list[KERNELS_MAX + 1];
+    kernels_list(list);
+    return list[0];
+}

@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Errors and times of a memory on launches that it has not learned. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/hybrid_training.h"
+#include "methods/methods.h"
+#include "methods/solvers.h"
+#include "methods/tabulation.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct HybridTimes HybridTimes;
+
+/* As in HybridRow; NAN where no step is answered, or none is not. */
+typedef struct HybridMeasures {
+    double error, error_95;
+    double us_answer, us_solve, us_question, us_step, us_step_solve;
+} HybridMeasures;
+
+/* The launches have numbers from UNLEARNED on, which no learning reaches. */
+enum { TIMED = 20, QUICK_TIMED = 4, REPETITIONS = 9, QUICK_REPETITIONS = 3, UNLEARNED = 2 * TABULATION_LAUNCHES_MAX };
+
+struct HybridTimes {
+    const Scene *scene;
+    LaunchSteps *runs;
+    int steps, launches, repetitions;
+    uint64_t seed;
+};
+
+/* The scene must outlive it; steps: of each launch, from the first touch. NULL with error set. */
+static HybridTimes *hybrid_times_create(const Scene *scene, int steps, uint64_t seed, bool quick, Error *error) {
+    HybridTimes *times = calloc(1, sizeof *times);
+    if (times == NULL) {
+        error_memory(error, "hybrid");
+        return NULL;
+    }
+    *times = (HybridTimes){.scene = scene,
+                           .runs = launch_steps_create(scene, error),
+                           .steps = steps,
+                           .launches = quick ? QUICK_TIMED : TIMED,
+                           .repetitions = quick ? QUICK_REPETITIONS : REPETITIONS,
+                           .seed = seed};
+    if (times->runs != NULL) return times;
+    free(times);
+    return NULL;
+}
+
+static void hybrid_times_destroy(HybridTimes *times) {
+    if (times == NULL) return;
+    launch_steps_destroy(times->runs);
+    free(times);
+}
+
+/* The rivals: hybrid, and interior by itself. */
+enum { RIVALS = 2 };
+
+typedef struct Measuring {
+    const HybridTimes *times;
+    AskedSteps asked;
+    ContactSolver rivals[RIVALS];
+    ContactSolution solutions[RIVALS];
+    double *values; /* [asked, RIVALS, repetitions] us */
+    double *errors; /* [asked] of answers */
+    int answers;
+} Measuring;
+
+static bool run_launches(Measuring *measuring, const Tabulation *memory, bool turned, Error *error) {
+    const HybridTimes *times = measuring->times;
+    for (int i = 0; i < times->launches; i++) {
+        const Launch launch = tabulation_launch(times->scene, times->seed, UNLEARNED + i, turned);
+        if (!launch_steps_run(times->runs, &launch, memory, times->steps, &measuring->asked, error)) return false;
+    }
+    return true;
+}
+
+static bool reserve(Measuring *measuring, const Tabulation *memory, Error *error) {
+    const size_t count = (size_t)measuring->asked.count, bodies = (size_t)memory->body_count;
+    size_t contacts = 1;
+    for (size_t i = 0; i < count; i++) {
+        const size_t own = (size_t)measuring->asked.items[i].problem.contact_count;
+        contacts = own > contacts ? own : contacts;
+    }
+    measuring->values = malloc((count + 1) * RIVALS * (size_t)measuring->times->repetitions * sizeof(double));
+    measuring->errors = malloc((count + 1) * sizeof(double));
+    bool ok = measuring->values != NULL && measuring->errors != NULL;
+    for (int r = 0; r < RIVALS; r++) {
+        ContactSolution *solution = &measuring->solutions[r];
+        solution->velocities = calloc(bodies, sizeof *solution->velocities);
+        solution->impulses = calloc(contacts, sizeof *solution->impulses);
+        ok = ok && solution->velocities != NULL && solution->impulses != NULL;
+    }
+    return ok || error_memory(error, "hybrid");
+}
+
+/* All steps by both rivals, once. */
+static bool pass(Measuring *measuring, int repetition, int64_t overhead, Error *error) {
+    const int repetitions = measuring->times->repetitions;
+    measuring->answers = 0;
+    for (int i = 0; i < measuring->asked.count; i++) {
+        const AskedStep *step = &measuring->asked.items[i];
+        for (int r = 0; r < RIVALS; r++) {
+            const ContactSolver *solver = &measuring->rivals[r];
+            const int64_t begin = meter_time();
+            if (!solver->kind->solve(solver->state, &step->problem, &measuring->solutions[r], error)) return false;
+            const int64_t passed = meter_without(meter_time() - begin, overhead);
+            measuring->values[(i * RIVALS + r) * repetitions + repetition] = 1e-3 * (double)passed;
+        }
+        if (step->entry >= 0)
+            measuring->errors[measuring->answers++] = (double)velocity_error(
+                &step->problem, measuring->solutions[0].velocities, measuring->solutions[1].velocities);
+    }
+    return true;
+}
+
+/* NAN for 0, by which nothing is divided. */
+static double or_nan(int count) { return count > 0 ? (double)count : (double)NAN; }
+
+static void summarise(Measuring *measuring, HybridMeasures *measures) {
+    const int repetitions = measuring->times->repetitions, count = measuring->asked.count;
+    double sums[2][RIVALS] = {{0}}; /* of steps that are not answered, and that are */
+    for (int i = 0; i < count; i++)
+        for (int r = 0; r < RIVALS; r++)
+            sums[measuring->asked.items[i].entry >= 0][r] +=
+                statistics_quantile(measuring->values + (i * RIVALS + r) * repetitions, repetitions, 0.5);
+    const double answers = or_nan(measuring->answers), others = or_nan(count - measuring->answers), all = or_nan(count);
+    *measures = (HybridMeasures){.error = statistics_mean(measuring->errors, measuring->answers),
+                                 .error_95 = statistics_quantile(measuring->errors, measuring->answers, 0.95),
+                                 .us_answer = sums[1][0] / answers,
+                                 .us_solve = sums[1][1] / answers,
+                                 .us_question = fmax(sums[0][0] - sums[0][1], 0) / others,
+                                 .us_step = (sums[0][0] + sums[1][0]) / all,
+                                 .us_step_solve = (sums[0][1] + sums[1][1]) / all};
+}
+
+static bool measure(Measuring *measuring, Error *error) {
+    const int64_t overhead = meter_time_overhead();
+    bool ok = true;
+    meter_pin();
+    for (int r = 0; ok && r < measuring->times->repetitions; r++) ok = pass(measuring, r, overhead, error);
+    meter_unpin();
+    return ok;
+}
+
+/* Runs some launches with the memory, then solves each step with an impact in turns by hybrid and by interior:near=0.001,
+   with medians over repetitions. turned: with a random rotation and spin. */
+static bool hybrid_measure(HybridTimes *times, const Tabulation *memory, bool turned, HybridMeasures *measures,
+                           Error *error) {
+    Measuring measuring = {.times = times};
+    const bool ok = hybrid_make(&measuring.rivals[0], memory, NULL, error) &&
+                    hybrid_make(&measuring.rivals[1], NULL, NULL, error) &&
+                    run_launches(&measuring, memory, turned, error) && reserve(&measuring, memory, error) &&
+                    measure(&measuring, error);
+    if (ok) summarise(&measuring, measures);
+    for (int r = 0; r < RIVALS; r++) {
+        if (measuring.rivals[r].state != NULL) measuring.rivals[r].kind->destroy(measuring.rivals[r].state);
+        free(measuring.solutions[r].velocities);
+        free(measuring.solutions[r].impulses);
+    }
+    asked_steps_free(&measuring.asked);
+    free(measuring.values);
+    free(measuring.errors);
+    return ok;
+}
+
+/* A family changes after CHANGE launches; in the quick study after QUICK_CHANGE. */
+enum {
+    LAUNCHES = 1000,
+    CHANGE = 500,
+    QUICK_LAUNCHES = 60,
+    QUICK_CHANGE = 50,
+    ONLINE_ENTRIES = 5000,
+    IMPACT_STEPS = 14,
+    ALL_STEPS = 66,
+    MEMORY_LIMIT = 64 << 20
+};
+
+static const int checkpoints[] = {TABULATION_FIRST, 100, 200, 300, 400, 500, 600, 700, 800, 900, 1000};
+enum { CHECKPOINTS = sizeof checkpoints / sizeof *checkpoints };
+
+#define HYBRID_NUMBER(member) \
+    { #member, CSV_OPTIONAL, .offset = offsetof(HybridRow, member), .minimum = -1e9, .maximum = 1e9 }
+
+static const CsvColumn columns[] = {
+    {"scene", CSV_WORD, .offset = offsetof(HybridRow, scene), .words = paper_scene_names},
+    {"tolerance", CSV_NUMBER, .offset = offsetof(HybridRow, tolerance), .minimum = 1e-6, .maximum = 1000},
+    {"changes", CSV_INTEGER, .offset = offsetof(HybridRow, changes), .maximum = 1},
+    {"turned", CSV_INTEGER, .offset = offsetof(HybridRow, turned), .maximum = 1},
+    {"launches", CSV_NUMBER, .offset = offsetof(HybridRow, launches), .minimum = 1, .maximum = TABULATION_LAUNCHES_MAX},
+    {"share", CSV_OPTIONAL, .offset = offsetof(HybridRow, share), .maximum = 1},
+    {"share_all", CSV_OPTIONAL, .offset = offsetof(HybridRow, share_all), .maximum = 1},
+    HYBRID_NUMBER(error),
+    HYBRID_NUMBER(error_95),
+    HYBRID_NUMBER(us_answer),
+    HYBRID_NUMBER(us_solve),
+    HYBRID_NUMBER(us_question),
+    HYBRID_NUMBER(us_step),
+    HYBRID_NUMBER(us_step_solve),
+    HYBRID_NUMBER(online_error),
+    HYBRID_NUMBER(online_us),
+    HYBRID_NUMBER(entries),
+    HYBRID_NUMBER(kib),
+    HYBRID_NUMBER(learning_ms),
+    HYBRID_NUMBER(saved_ms),
+    HYBRID_NUMBER(paid),
+};
+const CsvLayout hybrid_layout =
+    CSV_LAYOUT("system_hybrid", columns, HybridRow, .min_rows = 1, .max_rows = HYBRID_ROWS_MAX);
+
+typedef struct Learning {
+    int scene;
+    float tolerance;
+    int steps;
+    bool changes, online;
+} Learning;
+
+/* Steps that a scene's launches are followed for: a pyramid has few impacts after the first steps. The tolerances are
+   compared on the stack; there the second form learns, too, from the first ONLINE_ENTRIES entries of the whole study. */
+static const Learning learnings[] = {
+    {0, 0.1f, ALL_STEPS, false, false},    {1, 0.1f, ALL_STEPS, false, true},   {2, 0.1f, IMPACT_STEPS, false, false},
+    {3, 0.1f, IMPACT_STEPS, false, false}, {0, 0.1f, ALL_STEPS, true, false},   {1, 0.1f, ALL_STEPS, true, false},
+    {3, 0.1f, IMPACT_STEPS, true, false},  {1, 0.02f, ALL_STEPS, false, false}, {1, 0.5f, ALL_STEPS, false, false}};
+
+/* A learning in progress. */
+typedef struct Run {
+    const SystemStudy *study;
+    const Learning *learning;
+    const Scene *scene;
+    FILE *lines;
+    int launches, change;
+    HybridTimes *times;
+    TabulationLaunch since[LAUNCHES]; /* [count] since the last row */
+    int count;
+    double learned, saved; /* s */
+    double paid;           /* NAN: not yet */
+    OnlineNet *online;     /* or NULL */
+    double online_error, online_seconds;
+    int online_steps, online_entries; /* since the last row; in all */
+} Run;
+
+static bool is_checkpoint(const Run *run, int launch) {
+    if (launch == run->launches) return true;
+    for (int i = 0; i < CHECKPOINTS; i++)
+        if (checkpoints[i] == launch) return true;
+    return run->study->quick && launch == run->change;
+}
+
+static double or_zero(double x) { return isnan(x) ? 0 : x; }
+
+/* Adds up the launches since the last row, in seconds. */
+static void account(Run *run, const HybridMeasures *measures, HybridRow *row) {
+    int64_t steps = 0;
+    int asked = 0, answered = 0;
+    for (int i = 0; i < run->count; i++) {
+        const TabulationLaunch *launch = &run->since[i];
+        steps += launch->steps;
+        asked += launch->asked;
+        answered += launch->answered;
+        run->learned += launch->learning;
+        run->saved += 1e-6 * launch->answered * or_zero(measures->us_solve - measures->us_answer) -
+                      1e-6 * (launch->asked - launch->answered) * or_zero(measures->us_question) - launch->learning;
+        if (run->saved < 0)
+            run->paid = NAN;
+        else if (isnan(run->paid))
+            run->paid = launch->number;
+    }
+    run->count = 0;
+    row->share = asked > 0 ? (double)answered / asked : NAN;
+    row->share_all = steps > 0 ? (double)answered / (double)steps : NAN;
+}
+
+static bool add_row(Run *run, const TabulationLaunch *launch, Error *error) {
+    HybridMeasures measures;
+    HybridRow row = {.scene = run->learning->scene,
+                     .tolerance = (double)run->learning->tolerance,
+                     .changes = run->learning->changes,
+                     .turned = run->learning->changes && launch->number > run->change,
+                     .launches = launch->number};
+    if (!hybrid_measure(run->times, launch->memory, row.turned != 0, &measures, error)) return false;
+    account(run, &measures, &row);
+    row.error = measures.error;
+    row.error_95 = measures.error_95;
+    row.us_answer = measures.us_answer;
+    row.us_solve = measures.us_solve;
+    row.us_question = measures.us_question;
+    row.us_step = measures.us_step;
+    row.us_step_solve = measures.us_step_solve;
+    row.online_error = run->online_steps > 0 ? run->online_error / run->online_steps : (double)NAN;
+    row.online_us = run->online_steps > 0 ? 1e6 * run->online_seconds / run->online_steps : (double)NAN;
+    run->online_error = run->online_seconds = run->online_steps = 0;
+    row.entries = launch->memory->entry_count;
+    row.kib = (double)tabulation_bytes(launch->memory) / 1024;
+    row.learning_ms = 1e3 * run->learned;
+    row.saved_ms = 1e3 * run->saved;
+    row.paid = run->paid;
+    return piece_tables_print(run->lines, &hybrid_layout, -1, &row, error);
+}
+
+static bool note(void *context, const TabulationLaunch *launch, Error *error) {
+    Run *run = context;
+    run->since[run->count++] = *launch;
+    return launch->memory == NULL || !is_checkpoint(run, launch->number) || add_row(run, launch, error);
+}
+
+static bool note_entry(void *context, const ContactProblem *problem, Error *error) {
+    Run *run = context;
+    double wrong, seconds;
+    if (run->online_entries++ >= ONLINE_ENTRIES) return true;
+    if (!online_net_learn(run->online, problem, &wrong, &seconds, error)) return false;
+    if (isnan(wrong)) return true;
+    run->online_error += wrong;
+    run->online_seconds += seconds;
+    run->online_steps++;
+    return true;
+}
+
+static bool learn(Run *run, const Progress *progress, Error *error) {
+    const TabulationTraining training = {.launches = run->launches,
+                                         .turned_from = run->learning->changes ? run->change : -1,
+                                         .steps = run->learning->steps,
+                                         .components = TABULATION_STANDARD_COMPONENTS,
+                                         .tolerance = run->learning->tolerance,
+                                         .limit = MEMORY_LIMIT,
+                                         .seed = run->study->seed,
+                                         .command = "",
+                                         .on_launch = note,
+                                         .on_added = run->online != NULL ? note_entry : NULL,
+                                         .context = run};
+    Tabulation *memory = tabulation_training_run(run->scene, &training, progress, error);
+    const bool whole = memory != NULL && memory->launches == run->launches;
+    tabulation_destroy(memory);
+    return whole || (memory == NULL ? false : error_interrupted(error, "hybrid", "stopped"));
+}
+
+static bool write_learning(const SystemStudy *study, int index, FILE *lines, const Progress *progress, Error *error) {
+    const Learning *learning = &learnings[index];
+    char path[CSV_PATH_SIZE];
+    if (snprintf(path, sizeof path, "%s/%s.yaml", study->scenes, paper_scene_names[learning->scene]) >=
+        (int)sizeof path)
+        return error_input(error, study->scenes, "the name is too long");
+    Scene *scene = scene_read(path, error);
+    Run *run = scene != NULL ? calloc(1, sizeof *run) : NULL;
+    if (run == NULL) {
+        scene_destroy(scene);
+        return scene == NULL ? false : error_memory(error, "hybrid");
+    }
+    *run = (Run){.study = study, .learning = learning, .scene = scene, .lines = lines, .paid = NAN};
+    run->launches = study->quick ? QUICK_LAUNCHES : LAUNCHES;
+    run->change = study->quick ? QUICK_CHANGE : CHANGE;
+    run->times = hybrid_times_create(scene, learning->steps, study->seed, study->quick, error);
+    const bool online = learning->online && !study->quick;
+    if (online) run->online = online_net_create(study->seed, error);
+    const bool ok = run->times != NULL && (run->online != NULL || !online) && learn(run, progress, error);
+    online_net_destroy(run->online);
+    hybrid_times_destroy(run->times);
+    free(run);
+    scene_destroy(scene);
+    return ok;
+}
+
+const SystemPart hybrid_parts[] = {
+    {"single", .weight = 2, .quick_weight = 0.1, .index = 0, .write = write_learning, .timed = true},
+    {"stack", .weight = 20, .quick_weight = 0.2, .index = 1, .write = write_learning, .timed = true},
+    {"pyramid", .weight = 4, .quick_weight = 0.2, .index = 2, .write = write_learning, .timed = true},
+    {"pyramid_settled", .weight = 15, .quick_weight = 0.5, .index = 3, .write = write_learning, .timed = true},
+    {"single-change", .weight = 2, .quick_weight = 0.1, .index = 4, .write = write_learning, .timed = true},
+    {"stack-change", .weight = 7, .quick_weight = 0.2, .index = 5, .write = write_learning, .timed = true},
+    {"pyramid_settled-change", .weight = 15, .quick_weight = 0.5, .index = 6, .write = write_learning, .timed = true},
+    {"stack-narrow", .weight = 7, .quick_weight = 0.2, .index = 7, .write = write_learning, .timed = true},
+    {"stack-wide", .weight = 7, .quick_weight = 0.2, .index = 8, .write = write_learning, .timed = true},
+    {0}};

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "paper/paper.h"
+
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
+#include "paper/paper_internal.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+#include <stdlib.h>
+
+const PaperSize paper_whole_size = {
+    .data = {.swept = "-5:5:0.4",
+             .mixed = "-5:5:0.8",
+             .fine = "-5:5:0.1",
+             .finest = "-5:5:0.025",
+             .paper = "-5:5:0.05",
+             .random = 26,
+             .mixed_random = 13,
+             .impulse_every = 11,
+             .finest_every = 23},
+    .iterations = 2000,
+    .rate_launches = 20,
+    .closed_launches = 5,
+    .repetitions = 7,
+    .sampling = {.after = 6, .rest = 30},
+    .seeds = 3,
+    .law_iterations = 500,
+    .transfer_iterations = 300,
+    .weights = {0.01, 0.1, 1, 10},
+    .launches = {1, 2, 4, 8, 16},
+    .transfer_x = {"-5:5:0.5", "-5:5:0.5", "-5:5:0.5"},
+    .system_launches = 10,
+    .system_timed_frames = 90,
+    .system_repetitions = 3,
+};
+
+const PaperSize paper_quick_size = {
+    .data = {.swept = "-5:5:1",
+             .mixed = "-5:5:2",
+             .fine = "-5:5:0.5",
+             .finest = "-5:5:0.5",
+             .paper = "-5:5:0.5",
+             .random = 11,
+             .mixed_random = 5,
+             .impulse_every = 11,
+             .finest_every = 11},
+    .iterations = 100,
+    .rate_launches = 2,
+    .closed_launches = 1,
+    .repetitions = 3,
+    .sampling = {.after = 20, .rest = 120},
+    .seeds = 3,
+    .law_iterations = 30,
+    .transfer_iterations = 30,
+    .weights = {1},
+    .launches = {1, 4},
+    .transfer_x = {"-5:5:2", "-5:5:2", "-5:5:2"},
+    .system_launches = 1,
+    .system_frames = 60,
+    .system_timed_frames = 20,
+    .system_repetitions = 1,
+};
+
+const double target_aims[PAIR_TARGETS] = {[TARGET_PAIR] = 0.4, [TARGET_NET] = 0.4, [TARGET_IMPULSE] = 0.1};
+
+const PublishedScore published_scores[PUBLISHED_SCORES] = {
+    {0, 0.105798, 0.106044},   {10, 0.051244, 0.051222},   {50, 0.015246, 0.015388},
+    {100, 0.007767, 0.007789}, {1000, 0.001212, 0.001225}, {2000, 0.000728, 0.000730},
+};
+
+void launched_free(Launched *launched) {
+    for (int i = 0; launched->states != NULL && i < launched->count; i++) snapshots_free(&launched->states[i]);
+    free(launched->states);
+    free(launched->launches);
+    scene_destroy(launched->scene);
+    *launched = (Launched){0};
+}
+
+bool launched_begin(Launched *launched, const char *path, int count, Error *error) {
+    *launched = (Launched){.scene = scene_read(path, error), .count = count};
+    if (launched->scene == NULL) return false;
+    Launch *launches = malloc((size_t)count * sizeof *launches);
+    launched->launches = malloc((size_t)count * sizeof *launched->launches);
+    launched->states = calloc((size_t)count, sizeof *launched->states);
+    bool ok = launches != NULL && launched->launches != NULL && launched->states != NULL;
+    if (!ok) error_memory(error, path);
+    if (ok && !launched->scene->bomb.present) ok = error_input(error, path, "the scene has no bomb");
+    ok = ok && launches_for_scoring(launched->scene, count, launches, error);
+    for (int i = 0; ok && i < count; i++) launched->launches[i] = launch_scene(launched->scene, &launches[i]);
+    free(launches);
+    if (!ok) launched_free(launched);
+    return ok;
+}
+
+typedef struct Watch {
+    const Progress *progress;
+    bool stopped;
+} Watch;
+
+static bool report(void *context, double done, double total) {
+    Watch *watch = context;
+    if (!progress_report(watch->progress, done, total)) watch->stopped = true;
+    return !watch->stopped;
+}
+
+Network *whole_training(const Dataset *dataset, const TrainingOptions *options, const Progress *progress,
+                        Error *error) {
+    Watch watch = {.progress = progress};
+    const Progress watched = {report, &watch};
+    Network *network = training_run(dataset, options, &watched, error);
+    if (network == NULL || !watch.stopped) return network;
+    network_destroy(network);
+    return error_interrupted(error, "training", "stopped"), NULL;
+}
+
+/* The study's parameters, for the report. */
+static bool write_facts(const PaperPlan *plan, Error *error) {
+    const PaperSize *size = plan->size;
+    const double values[] = {(double)plan->options->seed, plan->network_count, size->iterations,
+                             size->data.random,           size->rate_launches, size->closed_launches};
+    char numbers[sizeof values / sizeof *values][24], path[CSV_PATH_SIZE];
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+        snprintf(numbers[i], sizeof numbers[i], "%.0f", values[i]);
+    const FactRow facts[] = {{"quick", plan->options->quick ? "on" : "off"},
+                             {"seed", numbers[0]},
+                             {"networks", numbers[1]},
+                             {"iterations", numbers[2]},
+                             {"launches_swept", size->data.swept},
+                             {"launches_swept_finely", size->data.fine},
+                             {"launches_swept_most_finely", size->data.finest},
+                             {"launches_swept_as_in_the_paper", size->data.paper},
+                             {"launches_random", numbers[3]},
+                             {"launches_rated", numbers[4]},
+                             {"launches_in_closed_loop", numbers[5]}};
+    return csv_table_path(path, plan->options->folder, &paper_fact_layout, error) &&
+           csv_table_write(path, &paper_fact_layout, facts, sizeof facts / sizeof *facts, error);
+}
+
+static bool write_tables(const PaperPlan *plan, Error *error) {
+    enum { TABLES_MAX = 32 };
+    const char *folder = plan->options->folder;
+    const CsvLayout *layouts[TABLES_MAX] = {&paper_score_layout,       &paper_trained_layout, &paper_rate_layout,
+                                            &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout,
+                                            &system_score_layout};
+    int count = 7;
+    for (int i = 0; paper_systems[i] != NULL; i++) layouts[count++] = paper_systems[i]->table;
+    return piece_tables_write(plan->pieces, folder, layouts, count, NULL, 0, error) &&
+           system_claims_write(paper_systems, folder, error) && write_facts(plan, error);
+}
+
+/* A hash of all that decides the result: the program, the options, the scenes. */
+static bool find_key(const PaperPlan *plan, StudyKey *key, Error *error) {
+    if (!study_key_begin(key, error)) return false;
+    study_key_add(key, &plan->options->quick, sizeof plan->options->quick);
+    study_key_add(key, &plan->options->seed, sizeof plan->options->seed);
+    for (int i = 0; i < PAPER_SCENES; i++)
+        if (!study_key_add_file(key, plan->datasets.scenes[i], error)) return false;
+    return true;
+}
+
+/* A report whose columns of times are partly empty would state what it did not measure. */
+static bool check_times(const Pieces *pieces, Error *error) {
+    return !pieces->cpus_differ || pieces->mode != PIECES_MERGE ||
+           error_input(error, pieces->folder,
+                       "times were measured on different processors, on %s and on others; a report needs times of one: "
+                       "delete those pieces, and run their shard again",
+                       pieces->cpu);
+}
+
+/* What follows from the parts, once all are there. */
+static bool finish(const PaperPlan *plan, Error *error) {
+    const PaperOptions *options = plan->options;
+    return check_times(plan->pieces, error) && folder_reserve(options->folder, error) && write_tables(plan, error) &&
+           options->draw(options, error) && pieces_end(plan->pieces, error);
+}
+
+/* Shards share a folder; a whole study has it to itself. */
+static bool do_parts(PaperPlan *plan, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
+    const PaperOptions *options = plan->options;
+    plan->pieces = pieces;
+    return pieces_open(pieces, options->folder, false, key, options->run, error) &&
+           (pieces->mode != PIECES_WHOLE || folder_reserve(options->folder, error)) &&
+           (pieces->mode == PIECES_MERGE || file_make_directory(plan->networks_folder, error)) &&
+           pieces_do(pieces, &plan->plan, progress, error) && (pieces->mode == PIECES_SHARD || finish(plan, error));
+}
+
+bool paper_run(const PaperOptions *options, Pieces *pieces, const Progress *progress, Error *error) {
+    PaperPlan *plan = malloc(sizeof *plan);
+    StudyKey key = {0};
+    if (plan == NULL) return error_memory(error, "paper");
+    const bool ok = paper_plan_make(plan, options, error) && find_key(plan, &key, error) &&
+                    do_parts(plan, pieces, &key, progress, error);
+    pieces->plan = NULL;
+    study_key_free(&key);
+    paper_plan_free(plan);
+    free(plan);
+    return ok;
+}

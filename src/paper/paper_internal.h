@@ -1,0 +1,499 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The study of gns: how far its runs are from those that it was trained on, by rounds of messages and with noise or without;
+   how the shapes of boxes last; large piles; what the paper's own size costs. */
+#pragma once
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
+#include "methods/pair.h"
+#include "methods/relation_view.h"
+#include "nets/nets.h"
+#include "paper/paper.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+#include <stdio.h>
+
+/* What a row of system_gns.csv is about. */
+typedef enum GnsMeasure { GNS_ROLLOUT, GNS_LARGE, GNS_COST } GnsMeasure;
+enum { GNS_MEASURES = GNS_COST + 1, GNS_MAX_ROWS = 1000 };
+extern const char *const gns_measure_words[GNS_MEASURES + 1]; /* rollout, large, cost */
+
+/* NAN where a number is not applicable. */
+typedef struct GnsRow {
+    int measure;         /* GnsMeasure */
+    const char *variant; /* of gns_variants; of a cost "width 128, M = 10" */
+    const char *scene;
+    double seconds; /* s from the bomb's launch on */
+    double boxes;   /* that move, with the bomb */
+    double error;   /* m: distance of a box from its place in the run of the method that made the training data,
+                                   mean over boxes and launches */
+    double shape;   /* m: gns_shape_distance, mean over launches */
+    double moved, moved_engine; /* boxes that moved more than 0.5 m, at most 5 s after the launch */
+    double ms_step;             /* ms of a simulation step on one thread: neighbour search, network, projection */
+    double ms_gradient;         /* ms of a gradient step with the paper's batch, on all threads */
+    double hours;               /* for the paper's number of gradient steps */
+} GnsRow;
+
+/* What the rollouts compare, each trained by scenes/networks/train in the same number of steps. */
+typedef struct GnsVariant {
+    const char *name, *network, *settings; /* network: a file of the folder `networks` beside the scenes */
+    int rounds;
+} GnsVariant;
+
+enum { GNS_SHIPPED, GNS_TWO_ROUNDS, GNS_ONE_ROUND, GNS_NO_NOISE, GNS_NOT_RIGID, GNS_VARIANTS };
+extern const GnsVariant gns_variants[GNS_VARIANTS];
+
+extern const CsvLayout gns_table_layout;
+
+/* States the claims from the table. */
+bool gns_claims(const Claims *claims, Error *error);
+
+/* A run of gns beside the run of the method that made its training data. */
+
+enum { GNS_TIMES = 9 };
+extern const double gns_times[GNS_TIMES]; /* s after the bomb's launch, rising */
+
+typedef struct GnsRollout {
+    int boxes;               /* that move, with the bomb */
+    double error[GNS_TIMES]; /* m: mean distance between the boxes of both; at times after the scene's end those of its
+                                       last frame. A run that breaks off keeps its last places */
+    double shape[GNS_TIMES]; /* m: gns_shape_distance */
+    double moved, moved_teacher; /* boxes that are more than 0.5 m off their place of the launch, at the last time */
+    double seconds_a_step;       /* of gns's own work, mean */
+} GnsRollout;
+
+/* launched: a scene with its launch. network: a file; settings: further ones of gns ("rigid=off", ""). */
+bool gns_rollout_run(GnsRollout *rollout, const Scene *launched, const char *network, const char *settings,
+                     Error *error);
+
+/* system_subspace.csv: what a step of subspace costs and how far its runs end up, beside the engines that it replaces and
+   beside what its components alone lose. Source: Holden et al. 2019 (nets/kinds.h). */
+
+enum { SUBSPACE_STUDY_ROWS_MAX = 100 };
+
+/* Distances are those of positions from the runs of the offline engine that recorded the training launches
+   (SUBSPACE_OFFLINE), over all bodies, frames and held-out launches; NAN where a number is not applicable. */
+typedef struct SubspaceStudyRow {
+    int scene;                      /* of paper_scene_names */
+    const char *method;             /* as on the command line */
+    double components;              /* 0: an engine */
+    double launches, frames;        /* how many; frames of each with the bomb */
+    double us_step;                 /* microseconds: an engine's whole step; the method's whole own work */
+    double rms, frames_near;        /* m; frames until a body is 0.1 m away, median */
+    double floor_rms, floor_near;   /* the same of the recorded poses, projected and reconstructed */
+    double linear_rms, linear_near; /* the same of the linear term alone */
+} SubspaceStudyRow;
+
+extern const CsvLayout subspace_study_layout;
+
+/* The offline engine of the claims: the converged solution of each step. */
+#define SUBSPACE_STUDY_OFFLINE "reference"
+
+/* States the claims (PaperSystem.claim). */
+bool subspace_claim(const Claims *claims, Error *error);
+
+/* The row of a method in a scene of paper_scene_names, or NULL. */
+const SubspaceStudyRow *subspace_study_find(const SubspaceStudyRow *rows, int count, int scene, const char *method);
+
+/* The study of sain: networks trained on launches of the stack alone, scored on impacts of held-out launches of the
+   stack and of the settled pyramid. */
+
+typedef enum SainScene { SAIN_STACK, SAIN_PYRAMID, SAIN_SCENES } SainScene;
+
+extern const char *const sain_scene_words[SAIN_SCENES + 1]; /* scene files without .yaml */
+
+/* A training, scored on one scene. RMS velocity errors of all bodies that touch another, m/s. */
+typedef struct SainRow {
+    int scene, form; /* SainScene, RelationForm */
+    int launches;    /* of the stack, trained on */
+    int seed;
+    double error, engine, constant; /* the network; 10 sweeps alone; the mean correction of the training data */
+} SainRow;
+
+extern const CsvLayout sain_layout; /* system_sain.csv */
+
+enum { SAIN_MAX_LAUNCHES = 64, SAIN_LITTLE = 16 /* launches: "little data" */ };
+
+/* The median over seeds; NaN without rows. of: the row's number. */
+typedef double SainNumber(const SainRow *row);
+double sain_median(const CsvTable *table, SainScene scene, RelationForm form, int launches, SainNumber *of);
+
+SainNumber sain_error, sain_engine_error, sain_constant_error;
+
+/* The most launches of any row. */
+int sain_most_launches(const CsvTable *table);
+
+bool sain_claims_state(const Claims *claims, Error *error);
+
+/* What the memory of hybrid learns over the launches, what it costs and what it saves. */
+
+enum { HYBRID_ROWS_MAX = 500 };
+
+/* system_hybrid.csv: a learning (tabulation_training/) at some number of launches. Shares are of the launches since the row
+   before, each answered by the memory as it was before the launch. Errors and times are of launches that it has not
+   learned, by the memory so far. NAN where nothing was answered. */
+typedef struct HybridRow {
+    int scene;        /* of paper_scene_names */
+    double tolerance; /* m/s */
+    int changes; /* 1: a learning whose family changes half way: from then on bombs have a random rotation and spin; 0: not */
+    int turned;           /* 1: they have */
+    double launches;      /* so far */
+    double share;         /* of the steps with an impact: answered */
+    double share_all;     /* of all steps with the bomb */
+    double error;         /* m/s: RMS velocity error of answers against the converged solution, mean */
+    double error_95;      /* their 95% quantile */
+    double us_answer;     /* microseconds of an answered step, with key and search */
+    double us_solve;      /* of the same steps by interior:near=0.001 */
+    double us_question;   /* what a step that is not answered takes beyond that */
+    double us_step;       /* of a step with an impact, answered or not */
+    double us_step_solve; /* of the same by interior:near=0.001 */
+    double
+        online_error; /* m/s: of the second form (learning/hybrid_training.h) on the entries since the row before, each
+                            before it was trained on it, mean; NAN: not run */
+    double online_us; /* processor time of such a training step, without the solution that it is trained on */
+    double entries, kib;
+    double learning_ms; /* spent on learning so far */
+    double saved_ms;    /* solving less answering, questions and learning so far */
+    double paid;        /* the launch from which on saved_ms was never below 0 again; NAN: it still is */
+} HybridRow;
+
+extern const CsvLayout hybrid_layout;
+
+/* Parts of the study, ended by a name of NULL. */
+extern const SystemPart hybrid_parts[];
+
+bool hybrid_claim(const Claims *claims, Error *error);
+
+/* Training with laws of physics in the loss, and the engine's own violations of these laws: the paper's outlook. */
+
+/* The network is the paper's 10-8-8-6 (3.1) by Adam, standardised, with the default activations. */
+typedef struct LawStudy {
+    const char *laws; /* none, momentum, energy, approach, cone, all */
+    double weight;    /* of each law */
+    uint64_t seed;
+    int iterations;
+} LawStudy;
+
+typedef struct LawResult {
+    double test, constant; /* mean squared error on the test rows, and the constant predictor's; NAN for labels */
+    LawNumbers violations; /* means over the test rows (laws_measure), in the laws' units */
+} LawResult;
+
+/* Trains one network; the dataset must have context (laws_check). Scores and violations are those of the network with
+   the lowest loss on the training rows. False with error set as by training_run, or if progress_report() stops it. */
+bool law_study_train(const Dataset *dataset, const LawStudy *study, LawResult *result, const Progress *progress,
+                     Error *error);
+
+/* Measures the violations of the labels. */
+bool law_study_labels(const Dataset *dataset, LawResult *result, Error *error);
+
+/* A scene with some of its held-out launches. */
+
+enum { LAUNCHED_MAX = 64 };
+
+typedef struct Launched {
+    Scene *scene;
+    int count;
+    Scene *launches;      /* [count] launches_for_scoring() */
+    SnapshotList *states; /* [count] empty until sampled */
+} Launched;
+
+/* count: at most LAUNCHED_MAX. ERROR_INPUT for a scene that cannot be read, or without a bomb or a family of launches. On
+   failure nothing is to be freed. */
+bool launched_begin(Launched *launched, const char *path, int count, Error *error);
+void launched_free(Launched *launched);
+
+/* Rates and closed-loop runs of the networks in one scene, as parts of the study (paper_plan.h). */
+
+typedef struct PaperScoring {
+    int scene;                    /* of paper_scene_names */
+    const char *path;             /* of the scene's file */
+    const char *folder;           /* of the trained networks */
+    const PaperNetwork *networks; /* [count] */
+    int count;
+    int rate_launches, closed_launches; /* launches to score on; none is a training launch */
+    Sampling sampling;
+    int repetitions; /* of the time measurements */
+} PaperScoring;
+
+/* Lines of the table rates: every network, and the warm start alone. context: a PaperScoring. */
+bool paper_rates_write(void *context, FILE *lines, const Progress *progress, Error *error);
+
+/* Lines of the table closed_loop: every network that can take a step. */
+bool paper_closed_loop_write(void *context, FILE *lines, const Progress *progress, Error *error);
+
+/* Transfer learning, the paper's outlook: does a network that was trained on the single box and the stack need fewer
+   launches of the pyramid than one trained from scratch? */
+
+/* All with one view and the target pair. single and stack may be NULL for training from scratch. */
+typedef struct TransferData {
+    const Dataset *single, *stack, *pyramid;
+} TransferData;
+
+/* The network is 10-10-2 (its inputs are the view's), with linear standardised outputs, trained with Adam. */
+typedef struct TransferStudy {
+    bool transfer;  /* false: from scratch. true: trained on single, then on stack, then on the pyramid */
+    uint64_t seed;  /* of the initial weights and the drawn launches */
+    int launches;   /* of the pyramid, to train on, drawn with the seed (dataset_draw_subset) */
+    int iterations; /* of each stage; transfer has three stages, of which the pyramid is the last */
+} TransferStudy;
+
+/* RMS errors of the change of relative velocity, over both components, on held-out launches of the pyramid, m/s. */
+typedef struct TransferResult {
+    double error;    /* of the network */
+    double constant; /* of the mean of the pyramid's training rows */
+} TransferResult;
+
+/* Trains in one or three stages. A network keeps the normalisation of its first stage (TrainingOptions.start): with
+   transfer, the pyramid is learned in the units of the single box. Progress restarts with each stage. False with error
+   set as by training_run, if there are fewer launches than `launches`, or if progress_report() stops it. */
+bool transfer_study_run(const TransferData *data, const TransferStudy *study, TransferResult *result,
+                        const Progress *progress, Error *error);
+
+/* Rates of right predictions. The paper does not define its "successful prediction rate" (section 4: 60 to 91%), so
+   this measures three definitions of it, on steps sampled from the engine's runs (frozen.h). Each rate is beside those
+   of the constant predictor and of the engine with fewer sweeps:
+
+     range     both components of a pair's change of relative velocity are within 5% of their range in the engine's
+               sampled steps
+     absolute  the change of relative velocity is within 0.1 m/s, as a vector
+     bodies    bodies whose velocity after the step is right, compared with the reference (methods/reference.h)
+
+   Networks with the target net or impulse are rated on net changes or single impulses. Single impulses are the engine's
+   own visits, so all its rates are 1 for them. */
+
+typedef enum RateDefinition { RATE_RANGE, RATE_ABSOLUTE, RATE_BODIES, RATE_DEFINITIONS } RateDefinition;
+typedef enum RateColumn {
+    RATE_NETWORK,
+    RATE_CONSTANT,
+    RATE_ENGINE1,
+    RATE_ENGINE4,
+    RATE_ENGINE10,
+    RATE_COLUMNS
+} RateColumn;
+
+enum { RATE_PHASES = PHASES + 1, RATE_ALL = PHASES };
+
+extern const char *const rate_definition_names[RATE_DEFINITIONS + 1]; /* ends in NULL */
+
+/* Shares, 0 to 1; NAN without anything to count, or for a network that cannot take a step. RATE_ALL weights the phases
+   by the inverse of their sampling. */
+typedef struct PairRates {
+    double share[RATE_DEFINITIONS][RATE_PHASES][RATE_COLUMNS];
+} PairRates;
+
+/* path: a network's file; NULL: the warm start, without a constant predictor. lists[count]: sampled by `sampling` from
+   launches of the scene. */
+bool pair_rates_measure(const char *path, const Scene *scene, const SnapshotList *lists, int count,
+                        const Sampling *sampling, PairRates *rates, Error *error);
+
+/* Sizes of the whole study, and of the quick one, which runs every part briefly. */
+
+enum { PAPER_WEIGHTS = 5, PAPER_LAUNCHES = 8 };
+
+typedef struct PaperSize {
+    PaperDataSize data;
+    int iterations; /* of every training, at most */
+    int rate_launches, closed_launches, repetitions;
+    Sampling sampling;
+    int seeds, law_iterations, transfer_iterations; /* of the outlook */
+    double weights[PAPER_WEIGHTS];                  /* of laws, ended by 0 */
+    int launches[PAPER_LAUNCHES];                   /* of transfer, ended by 0 */
+    const char *transfer_x[3];                      /* single, stack, pyramid */
+    /* Of the scores of systems (paper/paper.h). */
+    int system_launches, system_frames, system_timed_frames, system_repetitions;
+} PaperSize;
+
+extern const PaperSize paper_whole_size, paper_quick_size;
+
+/* What the study is to reach. */
+
+enum {
+    PAPER_TARGETS = 3,  /* TARGET_PAIR, TARGET_NET, TARGET_IMPULSE: the readings of what the paper's networks predict */
+    SMALL_NETWORK = 500 /* parameters, at most, of the networks that the aims for targets are for */
+};
+
+/* For each target: the highest test error, over the constant predictor's, that its best network may have; 0: no aim. */
+extern const double target_aims[PAIR_TARGETS];
+
+/* The paper's outlook (section 5) as parts of the study: laws of physics in the loss, and transfer learning. */
+
+/* Datasets shared by the parts, recorded at their first use. Zero-initialise all but `datasets` and `bomb_x`. */
+typedef struct PaperOutlook {
+    const PaperDatasets *datasets;
+    const char *bomb_x[3]; /* launches of single, stack and pyramid for transfer, m: "-5:5:0.5" */
+    Dataset *laws;
+    Dataset *scenes[3]; /* single, stack, pyramid */
+} PaperOutlook;
+
+void paper_outlook_free(PaperOutlook *outlook);
+
+/* A row of laws.csv: a training, or with laws NULL the labels. context: a PaperLaws. */
+typedef struct PaperLaws {
+    PaperOutlook *outlook;
+    LawStudy study;
+} PaperLaws;
+
+bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Error *error);
+
+/* A row of transfer.csv: a training. context: a PaperTransfer. */
+typedef struct PaperTransfer {
+    PaperOutlook *outlook;
+    TransferStudy study;
+} PaperTransfer;
+
+bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, Error *error);
+
+/* One network of the paper's study: trained, scored and stored. */
+
+typedef struct PaperTraining {
+    PaperDatasets *datasets;
+    PaperNetwork network;
+    const char *folder; /* of the trained networks */
+    uint64_t seed;      /* of the first weights */
+} PaperTraining;
+
+/* Trains, writes folder/NAME.npz, and writes lines of the tables table1 and networks (studies/chart.h), and a note of
+   the file's hash. A PaperPart's write(); context is the PaperTraining. A training that is stopped fails: the name is of a
+   whole training. */
+bool paper_training_write(void *context, FILE *lines, const Progress *progress, Error *error);
+
+/* *there: whether folder/NAME.npz is the network of these lines. False with error set if the system cannot tell. */
+bool paper_training_whole(const PaperTraining *training, const char *lines, bool *there, Error *error);
+
+/* The share of test rows for which all outputs are within 5% of their range over the training rows; NaN without test rows.
+   The paper does not define the accuracy of its gate (section 3: 90%); this is a guess. False with error set when memory is
+   short. */
+bool paper_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error);
+
+/* The paper's study as a list of parts, its pieces (runs/pieces.h): trained networks, their scores, the outlook, the
+   systems. Each uses all threads by itself. */
+
+typedef struct PaperPart {
+    char name[PIECE_NAME_SIZE];
+    double weight; /* about the seconds on two cores */
+    bool timed;
+    bool needs_networks; /* the trained ones, all of them */
+    bool (*write)(void *context, FILE *lines, const Progress *progress, Error *error);
+    union {
+        PaperTraining training;
+        PaperScoring scoring;
+        PaperLaws laws;
+        PaperTransfer transfer;
+        SystemWork system;
+        SystemScoring scores;
+    } of; /* the context of write */
+} PaperPart;
+
+/* paper_plan_free(), also after a failure. Parts point into it: it stays where it was made. */
+typedef struct PaperPlan {
+    PiecePlan plan;
+    PaperPart *parts; /* [count] the first train networks[network_count] */
+    size_t count, capacity;
+    const PaperOptions *options;
+    const PaperSize *size;
+    PaperDatasets datasets;
+    PaperOutlook outlook;
+    SystemStudy systems;
+    char networks_folder[PAPER_PATH_SIZE];
+    PaperNetwork *networks;
+    int network_count;
+    int64_t first_timed;  /* parts that are timed are done by one shard, so that times of a report are of one machine */
+    const Pieces *pieces; /* to be set: what the plan is done by */
+} PaperPlan;
+
+/* ERROR_INPUT for a scene that cannot be read. The options must outlive the plan. */
+bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error);
+void paper_plan_free(PaperPlan *plan);
+
+/* The CSV files that the paper's study writes: their rows and layouts (base/csv.h), for the study and for the
+   figures and the report that read them. NAN where a number is not applicable. */
+
+enum { PAPER_MAX_ROWS = 5000, PAPER_MAX_NETWORKS = 200, PAPER_MAX_LOOPS = 240, PAPER_MAX_LAUNCHES = 1 << 20 };
+
+/* Indices of paper_law_words: a law by itself (LawName), or one of these. */
+enum { LAW_SET_ALL = LAWS, LAW_SET_NONE, LAW_SET_ENGINE, LAW_WORDS };
+extern const char *const paper_law_words[LAW_WORDS + 1];
+
+enum { PAPER_OPTIMIZERS = 4 };
+extern const char *const paper_optimizer_words[PAPER_OPTIMIZERS + 1]; /* adam, gd, bfgs, lm */
+
+extern const char *const paper_phase_words[RATE_PHASES + 1]; /* impact, after, rest, all */
+
+/* table1.csv: mean squared errors of normalised outputs during a training. */
+typedef struct ScoreRow {
+    const char *network;
+    int target; /* PairTarget */
+    int optimizer;
+    double iteration, test, train, constant; /* constant: the constant predictor's */
+} ScoreRow;
+
+/* networks.csv: a trained network; the texts are those of a PaperNetwork. */
+typedef struct TrainedRow {
+    const char *network, *factor, *value, *inputs, *data, *labels;
+    int target; /* PairTarget */
+    const char *layers, *hidden, *output, *scale, *optimizer, *loss;
+    double iterations, parameters, test, train, constant;
+    double ratio;    /* test over constant */
+    double accuracy; /* paper_accuracy() */
+} TrainedRow;
+
+/* rates.csv: shares of right predictions. */
+typedef struct RateRow {
+    const char *network;
+    int scene;      /* of paper_scene_names */
+    int definition; /* RateDefinition */
+    int phase;      /* Phase, or RATE_ALL */
+    double share[RATE_COLUMNS];
+} RateRow;
+
+/* closed_loop.csv: a network in place of the solver (studies/chart.h). */
+typedef struct ClosedLoopRow {
+    const char *network;
+    int scene; /* of paper_scene_names */
+    double frames_until_apart, penetration_max, momentum_error, energy_ratio, us_step, us_step_engine;
+} ClosedLoopRow;
+
+/* laws.csv: a training with laws in the loss (LawStudy, LawResult); or the labels by themselves. */
+typedef struct LawRow {
+    int laws; /* of paper_law_words */
+    double weight, seed, test, constant;
+    double violation[LAWS];
+} LawRow;
+
+/* transfer.csv: a training (TransferStudy, TransferResult). */
+typedef struct TransferRow {
+    int transfer; /* 0: from scratch */
+    double seed, launches, error, constant;
+} TransferRow;
+
+/* study.csv: what was done, as text. */
+typedef struct FactRow {
+    const char *key, *value;
+} FactRow;
+
+extern const CsvLayout paper_score_layout, paper_trained_layout, paper_rate_layout, paper_closed_loop_layout,
+    paper_law_layout, paper_transfer_layout, paper_fact_layout;
+
+/* Numbers that the paper states (Avatavului, Ifrim, Voncila 2023). */
+
+enum { PUBLISHED_SCORES = 6 };
+
+/* Table 1: mean squared errors after so many iterations. */
+typedef struct PublishedScore {
+    double iteration, test, train;
+} PublishedScore;
+
+extern const PublishedScore published_scores[PUBLISHED_SCORES];
+
+/* A network goes into the engine if it is right in more than this share of cases (section 3). */
+#define PUBLISHED_GATE 0.9
+
+/* A training that fails if it is stopped: results of half a training must not enter the study. */
+
+/* As training_run, but NULL with error set if progress_report() stops it. */
+Network *whole_training(const Dataset *dataset, const TrainingOptions *options, const Progress *progress, Error *error);

@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "methods/pair.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
+#include "runs/pieces.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const law_names[] = {"all", "momentum", "energy", "approach", "cone"};
+
+enum { LAW_SETS = sizeof law_names / sizeof law_names[0] };
+
+/* A new part, to be filled in. NULL with error set when memory is short. */
+static PaperPart *add_part(PaperPlan *plan, double weight,
+                           bool (*write)(void *context, FILE *lines, const Progress *progress, Error *error),
+                           Error *error) {
+    if (!array_reserve((void **)&plan->parts, &plan->capacity, plan->count + 1, sizeof *plan->parts)) {
+        error_memory(error, "paper");
+        return NULL;
+    }
+    PaperPart *part = &plan->parts[plan->count++];
+    *part = (PaperPart){.weight = weight, .write = write};
+    return part;
+}
+
+static void choose_networks(PaperPlan *plan) {
+    for (int i = 0; i < paper_network_count; i++) {
+        PaperNetwork network = paper_network(i);
+        if (plan->options->quick && !network.quick) continue;
+        if (network.iterations > plan->size->iterations) network.iterations = plan->size->iterations;
+        plan->networks[plan->network_count++] = network;
+    }
+}
+
+/* About the seconds on two cores for 2000 iterations. */
+static double training_weight(const PaperNetwork *network) {
+    static const double of_data[PAPER_DATA] = {
+        [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_FINEST] = 10, [DATA_PAPER] = 16};
+    double weight = of_data[network->data];
+    if (strcmp(network->optimizer, "lm") == 0) weight *= 35;
+    if (strcmp(network->optimizer, "bfgs") == 0) weight *= 3;
+    if (pair_views[network->view].by_contact) weight *= network->target == TARGET_POINTS ? 8 : 4;
+    return weight * network->iterations / 2000;
+}
+
+static bool add_trainings(PaperPlan *plan, Error *error) {
+    for (int i = 0; i < plan->network_count; i++) {
+        const PaperNetwork *network = &plan->networks[i];
+        PaperPart *part = add_part(plan, training_weight(network), paper_training_write, error);
+        if (part == NULL) return false;
+        snprintf(part->name, sizeof part->name, "network-%s", network->name);
+        part->of.training = (PaperTraining){&plan->datasets, *network, plan->networks_folder, plan->options->seed};
+    }
+    return true;
+}
+
+static bool add_scoring(PaperPlan *plan, int scene, bool closed, Error *error) {
+    const PaperSize *size = plan->size;
+    PaperPart *part = add_part(plan, scene < PAPER_TRAINING_SCENES ? 2 : 10,
+                               closed ? paper_closed_loop_write : paper_rates_write, error);
+    if (part == NULL) return false;
+    snprintf(part->name, sizeof part->name, "%s-%s", closed ? "closed-loop" : "rates", paper_scene_names[scene]);
+    part->timed = closed;
+    part->needs_networks = true;
+    part->of.scoring = (PaperScoring){.scene = scene,
+                                      .path = plan->datasets.scenes[scene],
+                                      .folder = plan->networks_folder,
+                                      .networks = plan->networks,
+                                      .count = plan->network_count,
+                                      .rate_launches = size->rate_launches,
+                                      .closed_launches = size->closed_launches,
+                                      .sampling = size->sampling,
+                                      .repetitions = size->repetitions};
+    return true;
+}
+
+static bool add_scorings(PaperPlan *plan, Error *error) {
+    for (int i = 0; i < PAPER_SCENES; i++)
+        if (!add_scoring(plan, i, false, error) || !add_scoring(plan, i, true, error)) return false;
+    return true;
+}
+
+static bool add_law_set(PaperPlan *plan, const char *laws, double law_weight, Error *error) {
+    for (int seed = 0; seed < (laws == NULL ? 1 : plan->size->seeds); seed++) {
+        PaperPart *part = add_part(plan, laws == NULL ? 0.1 : 2, paper_laws_write, error);
+        if (part == NULL) return false;
+        snprintf(part->name, sizeof part->name, "laws-%s-%g-%d", laws == NULL ? "engine" : laws, law_weight, seed);
+        part->of.laws = (PaperLaws){
+            &plan->outlook, {laws, law_weight, plan->options->seed + (uint64_t)seed, plan->size->law_iterations}};
+    }
+    return true;
+}
+
+static bool add_laws(PaperPlan *plan, Error *error) {
+    if (!add_law_set(plan, NULL, 0, error) || !add_law_set(plan, "none", 0, error)) return false;
+    for (int law = 0; law < LAW_SETS; law++)
+        for (int w = 0; w < PAPER_WEIGHTS && plan->size->weights[w] > 0; w++)
+            if (!add_law_set(plan, law_names[law], plan->size->weights[w], error)) return false;
+    return true;
+}
+
+static bool add_transfer(PaperPlan *plan, bool transfer, int seed, int launches, Error *error) {
+    PaperPart *part = add_part(plan, launches + 2 * transfer, paper_transfer_write, error);
+    if (part == NULL) return false;
+    snprintf(part->name, sizeof part->name, "transfer-%d-%d-%d", transfer, seed, launches);
+    part->of.transfer = (PaperTransfer){&plan->outlook,
+                                        {.transfer = transfer,
+                                         .seed = plan->options->seed + (uint64_t)seed,
+                                         .launches = launches,
+                                         .iterations = plan->size->transfer_iterations}};
+    return true;
+}
+
+static bool add_transfers(PaperPlan *plan, Error *error) {
+    const PaperSize *size = plan->size;
+    for (int transfer = 0; transfer < 2; transfer++)
+        for (int seed = 0; seed < size->seeds; seed++)
+            for (int n = 0; n < PAPER_LAUNCHES && size->launches[n] > 0; n++)
+                if (!add_transfer(plan, transfer == 1, seed, size->launches[n], error)) return false;
+    return true;
+}
+
+/* About the seconds on two cores. */
+static double scoring_weight(const PaperSize *size, int scene) {
+    const double run = scene < PAPER_TRAINING_SCENES ? 1 : 8, whole_frames = 300;
+    return size->system_launches * run * (size->system_frames > 0 ? size->system_frames / whole_frames : 1);
+}
+
+static bool add_system_scores(PaperPlan *plan, Error *error) {
+    const PaperSize *size = plan->size;
+    for (int i = 0; i < PAPER_SCENES; i++) {
+        PaperPart *part = add_part(plan, scoring_weight(size, i), system_scores_write, error);
+        if (part == NULL) return false;
+        snprintf(part->name, sizeof part->name, "systems-%s", paper_scene_names[i]);
+        part->timed = true;
+        part->of.scores = (SystemScoring){.systems = paper_systems,
+                                          .scene = i,
+                                          .path = plan->datasets.scenes[i],
+                                          .launches = size->system_launches,
+                                          .frames = size->system_frames,
+                                          .timed_frames = size->system_timed_frames,
+                                          .repetitions = size->system_repetitions};
+    }
+    return true;
+}
+
+static bool add_systems(PaperPlan *plan, Error *error) {
+    for (int i = 0; paper_systems[i] != NULL; i++)
+        for (const SystemPart *own = paper_systems[i]->parts; own->name != NULL; own++) {
+            const double weight = plan->systems.quick ? own->quick_weight : own->weight;
+            PaperPart *part = add_part(plan, weight, system_part_write, error);
+            if (part == NULL) return false;
+            snprintf(part->name, sizeof part->name, "system-%s-%s", paper_systems[i]->name, own->name);
+            part->timed = own->timed;
+            part->of.system = (SystemWork){&plan->systems, own};
+        }
+    return add_system_scores(plan, error);
+}
+
+static void describe(void *context, int64_t piece, PieceInfo *info) {
+    const PaperPlan *plan = context;
+    const PaperPart *part = &plan->parts[piece];
+    memcpy(info->name, part->name, sizeof info->name);
+    info->weight = part->weight;
+    info->alone = true;
+    info->timed = part->timed;
+    if (part->timed) info->with = plan->first_timed;
+}
+
+static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+    PaperPart *part = &((PaperPlan *)context)->parts[piece];
+    return part->write(&part->of, results, progress, error);
+}
+
+/* Networks of an earlier study in the folder do not count: those of this one have a piece. */
+static bool ready(void *context, int64_t piece) {
+    const PaperPlan *plan = context;
+    bool done = true;
+    for (int i = 0; done && plan->parts[piece].needs_networks && i < plan->network_count; i++)
+        done = pieces_find(plan->pieces, i, &done, NULL, &(Error){0}) && done;
+    return done;
+}
+
+static bool whole(void *context, int64_t piece, const char *results, size_t size, bool *there, Error *error) {
+    const PaperPlan *plan = context;
+    (void)size;
+    *there = true;
+    return piece >= plan->network_count || paper_training_whole(&plan->parts[piece].of.training, results, there, error);
+}
+
+static bool begin(PaperPlan *plan, const PaperOptions *options, Error *error) {
+    plan->options = options;
+    plan->size = options->quick ? &paper_quick_size : &paper_whole_size;
+    plan->systems = (SystemStudy){options->scenes, options->quick, options->seed};
+    plan->outlook.datasets = &plan->datasets;
+    for (int i = 0; i < 3; i++) plan->outlook.bomb_x[i] = plan->size->transfer_x[i];
+    plan->networks = malloc((size_t)paper_network_count * sizeof *plan->networks);
+    if (plan->networks == NULL) return error_memory(error, "paper");
+    choose_networks(plan);
+    return file_path(plan->networks_folder, sizeof plan->networks_folder, error, "%s/networks", options->folder) &&
+           paper_datasets_begin(&plan->datasets, options->scenes, &plan->size->data, options->seed, error);
+}
+
+bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error) {
+    *plan = (PaperPlan){0};
+    if (!begin(plan, options, error) || !add_trainings(plan, error) || !add_scorings(plan, error) ||
+        !add_laws(plan, error) || !add_transfers(plan, error) || !add_systems(plan, error))
+        return false;
+    while (!plan->parts[plan->first_timed].timed) plan->first_timed++;
+    plan->plan = (PiecePlan){.count = (int64_t)plan->count,
+                             .describe = describe,
+                             .work = work,
+                             .ready = ready,
+                             .whole = whole,
+                             .context = plan};
+    return true;
+}
+
+void paper_plan_free(PaperPlan *plan) {
+    free(plan->parts);
+    free(plan->networks);
+    paper_outlook_free(&plan->outlook);
+    paper_datasets_free(&plan->datasets);
+    *plan = (PaperPlan){0};
+}

@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
+#include "studies/chart.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const paper_data_names[PAPER_DATA] = {
+    "swept", "random", "mixed", "swept finely", "swept most finely", "swept as in the paper"};
+
+#define SEARCHED(form) \
+    { .name = "layers-" form, .factor = "layers", .value = form, .layers = form }
+
+/* Searched widths are around 6, the mean of ten inputs and two outputs. The networks of the factor "best" are the best
+   that a search with Adam found for each target within 500 parameters, among 20 to 40 layouts with inputs of all views.
+   */
+const PaperNetwork paper_networks[] = {
+    {.name = "baseline", .factor = "baseline", .value = "10-10-2", .quick = true},
+    {.name = "inputs-raw", .factor = "inputs", .value = "raw", .view = PAIR_RAW, .layers = "12-10-2", .quick = true},
+    {.name = "inputs-raw-unturned", .factor = "inputs", .value = "raw-unturned", .view = PAIR_RAW_UNTURNED},
+    {.name = "outputs-six", .factor = "outputs", .value = "six", .layers = "10-10-6", .output = "sigmoid"},
+    {.name = "outputs-six-two-layers",
+     .factor = "outputs",
+     .value = "six, 10-8-8-6",
+     .layers = "10-8-8-6",
+     .output = "linear",
+     .quick = true},
+    {.name = "target-net", .factor = "target", .value = "net", .target = TARGET_NET, .quick = true},
+    {.name = "target-impulse", .factor = "target", .value = "impulse", .target = TARGET_IMPULSE, .quick = true},
+    {.name = "data-random", .factor = "data", .value = "random", .data = DATA_RANDOM},
+    {.name = "data-mixed", .factor = "data", .value = "mixed", .data = DATA_MIXED},
+    {.name = "data-paper", .factor = "data", .value = "201 launches", .data = DATA_PAPER},
+    {.name = "labels-reference",
+     .factor = "labels",
+     .value = "reference",
+     .labels = DATASET_BY_REFERENCE,
+     .quick = true},
+    {.name = "scaling-linear", .factor = "scaling", .value = "min-max, linear", .output = "linear", .scale = "minmax"},
+    {.name = "scaling-standard", .factor = "scaling", .value = "standard, linear", .output = "linear", .quick = true},
+    {.name = "hidden-tanh", .factor = "hidden", .value = "tanh", .hidden = "tanh"},
+    {.name = "hidden-relu", .factor = "hidden", .value = "relu", .hidden = "relu"},
+    SEARCHED("10-4-2"),
+    SEARCHED("10-6-2"),
+    SEARCHED("10-8-2"),
+    SEARCHED("10-4-4-2"),
+    SEARCHED("10-6-6-2"),
+    SEARCHED("10-8-8-2"),
+    SEARCHED("10-4-4-4-2"),
+    SEARCHED("10-6-6-6-2"),
+    SEARCHED("10-8-8-8-2"),
+    SEARCHED("10-4-4-4-4-2"),
+    SEARCHED("10-6-6-6-6-2"),
+    SEARCHED("10-8-8-8-8-2"),
+    {.name = "optimizer-gd", .factor = "optimizer", .value = "gd", .optimizer = "gd"},
+    {.name = "optimizer-bfgs", .factor = "optimizer", .value = "bfgs", .optimizer = "bfgs"},
+    {.name = "optimizer-lm", .factor = "optimizer", .value = "lm", .optimizer = "lm", .quick = true},
+    {.name = "net-gd", .factor = "optimizer", .value = "gd", .target = TARGET_NET, .optimizer = "gd"},
+    {.name = "net-bfgs", .factor = "optimizer", .value = "bfgs", .target = TARGET_NET, .optimizer = "bfgs"},
+    {.name = "net-lm", .factor = "optimizer", .value = "lm", .target = TARGET_NET, .optimizer = "lm"},
+    {.name = "impulse-gd", .factor = "optimizer", .value = "gd", .target = TARGET_IMPULSE, .optimizer = "gd"},
+    {.name = "impulse-bfgs", .factor = "optimizer", .value = "bfgs", .target = TARGET_IMPULSE, .optimizer = "bfgs"},
+    {.name = "impulse-lm", .factor = "optimizer", .value = "lm", .target = TARGET_IMPULSE, .optimizer = "lm"},
+    {.name = "best-pair",
+     .factor = "best",
+     .value = "pair",
+     .data = DATA_FINE,
+     .view = PAIR_NEIGHBOURS,
+     .layers = "32-12-6-2",
+     .hidden = "tanh",
+     .output = "linear"},
+    {.name = "best-net",
+     .factor = "best",
+     .value = "net",
+     .data = DATA_FINE,
+     .view = PAIR_NEIGHBOURS,
+     .target = TARGET_NET,
+     .layers = "32-12-6-2",
+     .hidden = "tanh",
+     .output = "linear"},
+    {.name = "best-impulse",
+     .factor = "best",
+     .value = "impulse",
+     .data = DATA_FINEST,
+     .view = PAIR_CONTACT,
+     .target = TARGET_IMPULSE,
+     .layers = "20-21-2",
+     .hidden = "relu",
+     .output = "linear"},
+    {.name = "contact-net",
+     .factor = "contact-net",
+     .value = "contact-net",
+     .data = DATA_FINE,
+     .view = PAIR_NEIGHBOURS,
+     .target = TARGET_POINTS,
+     .layers = "32-24-12-4",
+     .hidden = "relu",
+     .output = "linear",
+     .loss = "smooth-l1",
+     .quick = true},
+};
+
+const int paper_network_count = sizeof paper_networks / sizeof paper_networks[0];
+
+PaperNetwork paper_network(int i) {
+    PaperNetwork network = paper_networks[i];
+    if (network.layers == NULL) network.layers = "10-10-2";
+    if (network.hidden == NULL) network.hidden = "sigmoid";
+    if (network.output == NULL) network.output = "sigmoid";
+    if (network.scale == NULL) network.scale = strcmp(network.output, "linear") == 0 ? "standard" : "minmax";
+    if (network.optimizer == NULL) network.optimizer = "adam";
+    if (network.loss == NULL) network.loss = "mse";
+    if (network.iterations == 0) network.iterations = 2000;
+    return network;
+}
+
+static const double near_share = 0.05; /* of the outputs' range */
+
+enum { NOTE_SIZE = 64, NETWORK_MAX_SIZE = 1 << 26 };
+
+/* text: "10-10-2". */
+static void read_layers(const char *text, TrainingOptions *options) {
+    int count = 0;
+    for (char *rest = (char *)text; *rest != '\0';) {
+        options->widths[count++] = (int)strtol(rest, &rest, 10);
+        if (*rest == '-') rest++;
+    }
+    options->layers = count - 1;
+}
+
+/* Writes the scores of a training. */
+typedef struct ScoreWriter {
+    FILE *lines;
+    const PaperNetwork *network;
+    TrainingScore last;
+    bool ok;
+    Error *error;
+} ScoreWriter;
+
+static void write_score(void *context, const TrainingScore *score) {
+    ScoreWriter *writer = context;
+    const PaperNetwork *network = writer->network;
+    const ScoreRow row = {.network = network->name,
+                          .target = (int)network->target,
+                          .optimizer = csv_word(paper_optimizer_words, network->optimizer),
+                          .iteration = score->iteration,
+                          .test = score->test,
+                          .train = score->train,
+                          .constant = score->constant_test};
+    writer->last = *score;
+    writer->ok = writer->ok && piece_tables_print(writer->lines, &paper_score_layout, -1, &row, writer->error);
+}
+
+/* Label of output k: one of all changes, or the change of b's velocity relative to a's. */
+static double change_of(const Dataset *dataset, int64_t row, int outputs, int k) {
+    const int count = pair_change_count(dataset->target);
+    const float *changes = dataset->changes + row * count;
+    return (double)(outputs == count ? changes[k] : changes[k + 3] - changes[k]);
+}
+
+static bool held_out(const Dataset *dataset, int64_t row) { return dataset->launch_test[dataset->launch[row]] != 0; }
+
+static void find_ranges(const Dataset *dataset, int outputs, double range[PAIR_CHANGES]) {
+    for (int k = 0; k < outputs; k++) {
+        double least = INFINITY, most = -INFINITY;
+        for (int64_t row = 0; row < dataset->rows; row++) {
+            if (held_out(dataset, row)) continue;
+            least = fmin(least, change_of(dataset, row, outputs, k));
+            most = fmax(most, change_of(dataset, row, outputs, k));
+        }
+        range[k] = most - least;
+    }
+}
+
+bool paper_accuracy(const Network *network, const Dataset *dataset, double *accuracy, Error *error) {
+    const int outputs = network->widths[network->layers], inputs = network->widths[0];
+    double range[PAIR_CHANGES];
+    float *scratch = malloc(2 * (size_t)network_scratch_width(network) * sizeof *scratch), output[PAIR_CHANGES];
+    if (scratch == NULL) return error_memory(error, "paper");
+    find_ranges(dataset, outputs, range);
+    int64_t rows = 0, right = 0;
+    for (int64_t row = 0; row < dataset->rows; row++) {
+        if (!held_out(dataset, row)) continue;
+        network_predict(network, dataset->inputs + row * inputs, scratch, output);
+        bool near = true;
+        for (int k = 0; k < outputs; k++)
+            near &= fabs((double)output[k] - change_of(dataset, row, outputs, k)) <= near_share * range[k];
+        right += near;
+        rows++;
+    }
+    free(scratch);
+    *accuracy = rows > 0 ? (double)right / (double)rows : NAN;
+    return true;
+}
+
+static bool write_network(FILE *lines, const PaperNetwork *of, const Network *network, const TrainingScore *score,
+                          double accuracy, Error *error) {
+    const TrainedRow row = {.network = of->name,
+                            .factor = of->factor,
+                            .value = of->value,
+                            .inputs = pair_views[of->view].name,
+                            .data = paper_data_names[of->data],
+                            .labels = dataset_label_names[of->labels],
+                            .target = (int)of->target,
+                            .layers = of->layers,
+                            .hidden = of->hidden,
+                            .output = of->output,
+                            .scale = of->scale,
+                            .optimizer = of->optimizer,
+                            .loss = of->loss,
+                            .iterations = score->iteration,
+                            .parameters = network_parameter_count(network),
+                            .test = score->test,
+                            .train = score->train,
+                            .constant = score->constant_test,
+                            .ratio = score->test / score->constant_test,
+                            .accuracy = accuracy};
+    return piece_tables_print(lines, &paper_trained_layout, -1, &row, error);
+}
+
+static bool network_path(const PaperTraining *training, char path[PAPER_PATH_SIZE], Error *error) {
+    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", training->folder, training->network.name);
+}
+
+/* The note that tells a network from one of the same name. */
+static bool print_note(char note[NOTE_SIZE], const char *path, Error *error) {
+    size_t size;
+    char *data = file_read(path, NETWORK_MAX_SIZE, &size, error);
+    if (data == NULL) return false;
+    snprintf(note, NOTE_SIZE, "# network %016" PRIx64 "\n", hash_xxh3(data, size));
+    free(data);
+    return true;
+}
+
+bool paper_training_whole(const PaperTraining *training, const char *lines, bool *there, Error *error) {
+    char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
+    Error reason = {0};
+    *there = false;
+    if (!network_path(training, path, error)) return false;
+    if (print_note(note, path, &reason)) *there = strstr(lines, note) != NULL;
+    if (reason.kind == ERROR_NONE || reason.kind == ERROR_INPUT) return true;
+    *error = reason;
+    return false;
+}
+
+static bool store(const PaperTraining *training, Network *network, FILE *lines, Error *error) {
+    char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
+    snprintf(network->command, sizeof network->command, "twinbox paper: %s", training->network.name);
+    if (!network_path(training, path, error) || !network_write(network, path, error) || !print_note(note, path, error))
+        return false;
+    fputs(note, lines);
+    return true;
+}
+
+bool paper_training_write(void *context, FILE *lines, const Progress *progress, Error *error) {
+    const PaperTraining *training = context;
+    const PaperNetwork *of = &training->network;
+    const Dataset *dataset = paper_dataset(training->datasets, of, error);
+    if (dataset == NULL) return false;
+    ScoreWriter writer = {lines, of, {0}, true, error};
+    TrainingOptions options = {.optimizer = of->optimizer,
+                               .iterations = of->iterations,
+                               .seed = training->seed,
+                               .hidden = of->hidden,
+                               .output_activation = of->output,
+                               .scale = of->scale,
+                               .loss = of->loss,
+                               .on_score = write_score,
+                               .context = &writer};
+    read_layers(of->layers, &options);
+    Network *network = whole_training(dataset, &options, progress, error);
+    if (network == NULL) return false;
+    /* The score of the weights that are kept, which are not the last ones. */
+    TrainingScore score = {.iteration = writer.last.iteration};
+    const int iterations = score.iteration;
+    bool ok = writer.ok && training_score(dataset, network, of->loss, &score, error);
+    score.iteration = iterations;
+    double accuracy = NAN;
+    ok = ok && paper_accuracy(network, dataset, &accuracy, error) &&
+         write_network(lines, of, network, &score, accuracy, error) && store(training, network, lines, error);
+    network_destroy(network);
+    return ok;
+}

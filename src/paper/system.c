@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "methods/methods.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const rivals[] = {"engine", "momentum:k=20", "interior", NULL};
+
+/* Times are beside the engine's, which is the first of the rivals. */
+enum { ENGINE = 0 };
+
+/* A method to score. */
+typedef struct Scored {
+    const char *system;
+    Contender contender; /* its method, for timing */
+    LaunchLoop *loops;   /* [launches] */
+    StepCost closed[PHASES], frozen[PHASES];
+} Scored;
+
+/* A scene's scores in progress. */
+typedef struct Scores {
+    const SystemScoring *scoring;
+    Launched launched;
+    RunLog *engine, *converged; /* [launches] */
+    int count;
+    Scored *methods; /* [count] */
+    LaunchLoop *loops;
+} Scores;
+
+static int count_methods(const SystemScoring *scoring) {
+    int count = sizeof rivals / sizeof *rivals - 1;
+    for (int i = 0; scoring->systems[i] != NULL; i++)
+        for (int k = 0; scoring->systems[i]->methods[k] != NULL; k++) count++;
+    return count;
+}
+
+/* Methods without a network for this scene are left out. */
+static bool add_methods(Scores *scores, const char *system, const char *const *texts, Error *error) {
+    for (; *texts != NULL; texts++) {
+        Scored *method = &scores->methods[scores->count];
+        method->system = system;
+        if (!method_parse(&method->contender.method, *texts, error)) return false;
+        if (method_lacks_network(&method->contender.method, scores->launched.scene)) continue;
+        method->loops = scores->loops + (size_t)scores->count++ * (size_t)scores->launched.count;
+    }
+    return true;
+}
+
+static void shorten(Scores *scores) {
+    const int frames = scores->scoring->frames;
+    for (int i = 0; i < scores->launched.count; i++)
+        if (frames > 0 && frames < scores->launched.launches[i].frames) scores->launched.launches[i].frames = frames;
+}
+
+static bool scores_begin(Scores *scores, const SystemScoring *scoring, Error *error) {
+    *scores = (Scores){.scoring = scoring};
+    if (!launched_begin(&scores->launched, scoring->path, scoring->launches, error)) return false;
+    const size_t most = (size_t)count_methods(scoring), launches = (size_t)scoring->launches;
+    scores->methods = calloc(most, sizeof *scores->methods);
+    scores->loops = calloc(most * launches, sizeof *scores->loops);
+    scores->engine = calloc(launches, sizeof *scores->engine);
+    scores->converged = calloc(launches, sizeof *scores->converged);
+    if (scores->methods == NULL || scores->loops == NULL || scores->engine == NULL || scores->converged == NULL)
+        return error_memory(error, scoring->path);
+    shorten(scores);
+    bool ok = add_methods(scores, SYSTEM_RIVAL, rivals, error);
+    for (int i = 0; ok && scoring->systems[i] != NULL; i++)
+        ok = add_methods(scores, scoring->systems[i]->name, scoring->systems[i]->methods, error);
+    return ok;
+}
+
+static void scores_end(Scores *scores) {
+    for (int i = 0; i < scores->launched.count; i++) {
+        if (scores->engine != NULL) run_log_free(&scores->engine[i]);
+        if (scores->converged != NULL) run_log_free(&scores->converged[i]);
+    }
+    free(scores->engine);
+    free(scores->converged);
+    free(scores->methods);
+    free(scores->loops);
+    launched_free(&scores->launched);
+}
+
+static bool log_launch(void *context, int i, Error *error) {
+    Scores *scores = context;
+    const Scene *launched = &scores->launched.launches[i];
+    return closed_loop_log(&scores->engine[i], "engine", launched, error) &&
+           closed_loop_log(&scores->converged[i], "reference", launched, error);
+}
+
+static bool run_launch(void *context, int i, Error *error) {
+    Scores *scores = context;
+    const int launch = i % scores->launched.count;
+    Scored *method = &scores->methods[i / scores->launched.count];
+    Rollout rollout = {0};
+    const bool ok =
+        closed_loop_launch(&rollout, &method->contender.method, &scores->launched.launches[launch],
+                           &scores->engine[launch], &scores->converged[launch], &method->loops[launch], error);
+    rollout_free(&rollout);
+    return ok;
+}
+
+/* Each method in turns with the engine, and not with all others: a method that is slow would let the engine's code and
+   data leave the caches. */
+static bool time_method(const Scores *scores, Scored *method, StepCost engine[PHASES], Error *error) {
+    const Contender *const turns[] = {&scores->methods[ENGINE].contender, &method->contender};
+    const Scene *launched = &scores->launched.launches[0];
+    const int last = scores->scoring->timed_frames + launched->bomb.frame;
+    const TimingOptions options = {.launches = launched,
+                                   .launch_count = 1,
+                                   .repetitions = scores->scoring->repetitions,
+                                   .last_frame = last < launched->frames ? last : launched->frames,
+                                   .no_instructions = true};
+    StepCost closed[2][PHASES], frozen[2][PHASES];
+    const SnapshotList none = {0};
+    if (!timing_measure(turns, 2, &options, &none, closed, frozen, NULL, error)) return false;
+    memcpy(engine, closed[0], sizeof closed[0]);
+    memcpy(method->closed, closed[1], sizeof closed[1]);
+    return true;
+}
+
+/* Of frames_engine; or of frames_converged. */
+static double median_frames(const Scores *scores, const Scored *method, bool converged) {
+    double frames[LAUNCHED_MAX];
+    const int count = scores->launched.count;
+    for (int i = 0; i < count; i++)
+        frames[i] = converged ? method->loops[i].frames_converged : method->loops[i].frames_engine;
+    return statistics_quantile(frames, count, 0.5);
+}
+
+static void sum_loops(const Scores *scores, const Scored *method, SystemScoreRow *row) {
+    double steps = 0;
+    for (int i = 0; i < scores->launched.count; i++) {
+        const LaunchLoop *loop = &method->loops[i];
+        row->moved += loop->moved / scores->launched.count;
+        row->penetration_max = fmax(row->penetration_max, loop->penetration);
+        row->energy_created = fmax(row->energy_created, loop->energy_most - loop->energy_put_in);
+        row->momentum_error += loop->momentum_error;
+        row->fallback_share += loop->fallen_back;
+        steps += loop->steps;
+    }
+    row->momentum_error = steps > 0 ? row->momentum_error / steps : NAN;
+    row->fallback_share = steps > 0 ? row->fallback_share / steps : NAN;
+}
+
+static bool write_method(const Scores *scores, Scored *method, FILE *lines, Error *error) {
+    StepCost engine[PHASES];
+    if (!time_method(scores, method, engine, error)) return false;
+    const Method *of = &method->contender.method;
+    SystemScoreRow row = {.system = method->system,
+                          .method = of->text,
+                          .scene = scores->scoring->scene,
+                          .launches = scores->launched.count,
+                          .frames = scores->launched.launches[0].frames,
+                          .frames_engine = median_frames(scores, method, false),
+                          .frames_converged = median_frames(scores, method, true),
+                          .us_step = step_cost_mean(method->closed, of->kind->description->no_contacts),
+                          .us_step_engine = step_cost_mean(engine, false)};
+    sum_loops(scores, method, &row);
+    return piece_tables_print(lines, &system_score_layout, -1, &row, error);
+}
+
+bool system_scores_write(void *context, FILE *lines, const Progress *progress, Error *error) {
+    Scores scores;
+    ProgressStage runs = {.whole = progress, .share = 0.7}, times = {.whole = progress, .begin = 0.7, .share = 0.3};
+    const Progress of_runs = {progress_stage, &runs}, of_times = {progress_stage, &times};
+    bool ok = scores_begin(&scores, context, error);
+    const ParallelWork logging = {log_launch, &scores}, running = {run_launch, &scores};
+    ok = ok && parallel_for(&logging, scores.launched.count, "launches", NULL, error) &&
+         parallel_for(&running, scores.count * scores.launched.count, "runs of systems", &of_runs, error);
+    for (int i = 0; ok && i < scores.count; i++)
+        ok = write_method(&scores, &scores.methods[i], lines, error) &&
+             (progress_report(&of_times, i + 1, scores.count) || error_interrupted(error, "systems", "stopped"));
+    scores_end(&scores);
+    return ok;
+}
+
+#define MOST 1e30
+
+static const CsvColumn columns[] = {
+    {"system", CSV_NAME, .offset = offsetof(SystemScoreRow, system), .key = true},
+    {"method", CSV_TEXT, .offset = offsetof(SystemScoreRow, method), .maximum = SYSTEM_NAME_SIZE, .key = true},
+    {"scene", CSV_WORD, .offset = offsetof(SystemScoreRow, scene), .words = paper_scene_names, .key = true},
+    {"launches", CSV_NUMBER, .offset = offsetof(SystemScoreRow, launches), .minimum = 1, .maximum = LAUNCHED_MAX},
+    {"frames", CSV_NUMBER, .offset = offsetof(SystemScoreRow, frames), .minimum = 1, .maximum = 1e6},
+    {"frames_engine", CSV_NUMBER, .offset = offsetof(SystemScoreRow, frames_engine), .maximum = 1e6},
+    {"frames_converged", CSV_NUMBER, .offset = offsetof(SystemScoreRow, frames_converged), .maximum = 1e6},
+    {"moved", CSV_NUMBER, .offset = offsetof(SystemScoreRow, moved), .maximum = 1e6},
+    {"penetration_max", CSV_NUMBER, .offset = offsetof(SystemScoreRow, penetration_max), .maximum = MOST},
+    {"energy_created", CSV_NUMBER, .offset = offsetof(SystemScoreRow, energy_created), .maximum = MOST},
+    {"momentum_error", CSV_OPTIONAL, .offset = offsetof(SystemScoreRow, momentum_error), .maximum = MOST},
+    {"fallback_share", CSV_OPTIONAL, .offset = offsetof(SystemScoreRow, fallback_share), .maximum = 1},
+    {"us_step", CSV_OPTIONAL, .offset = offsetof(SystemScoreRow, us_step), .maximum = MOST},
+    {"us_step_engine", CSV_OPTIONAL, .offset = offsetof(SystemScoreRow, us_step_engine), .maximum = MOST},
+};
+const CsvLayout system_score_layout =
+    CSV_LAYOUT("system_scores", columns, SystemScoreRow, .min_rows = 1, .max_rows = SYSTEM_SCORES_MAX);
+
+const SystemScoreRow *system_score_find(const SystemScoreRow *rows, int count, const char *method, int scene) {
+    for (int i = 0; i < count; i++)
+        if (rows[i].scene == scene && strcmp(rows[i].method, method) == 0) return &rows[i];
+    return NULL;
+}
+
+#define SYSTEM_LISTED(name) &system_##name,
+const PaperSystem *const paper_systems[] = {SYSTEMS(SYSTEM_LISTED) NULL};
+
+bool system_part_write(void *context, FILE *lines, const Progress *progress, Error *error) {
+    const SystemWork *work = context;
+    return work->part->write(work->study, work->part->index, lines, progress, error);
+}

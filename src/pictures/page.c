@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pictures/page.h"
+
+#include "base/base.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+/* XML 1.0, section 2.2. */
+static bool is_xml(uint32_t character) {
+    return character == '\t' || character == '\n' || character == '\r' ||
+           (character >= 0x20 && character != 0xFFFE && character != 0xFFFF);
+}
+
+void html_put(FILE *file, const char *text) {
+    while (*text != '\0') {
+        const char *begin = text;
+        uint32_t character = utf8_next(&text);
+        switch (character) {
+        case '&': fputs("&amp;", file); break;
+        case '<': fputs("&lt;", file); break;
+        case '>': fputs("&gt;", file); break;
+        case '"': fputs("&quot;", file); break;
+        case '\'': fputs("&#39;", file); break;
+        case 0xFFFD: fputs("\xef\xbf\xbd", file); break; /* also a byte that is not UTF-8 */
+        default:
+            if (is_xml(character))
+                fwrite(begin, 1, (size_t)(text - begin), file);
+            else
+                fputs("\xef\xbf\xbd", file);
+        }
+    }
+}
+
+void html_put_address(FILE *file, const char *name) {
+    for (; *name != '\0'; name++)
+        fprintf(file, isalnum((unsigned char)*name) || strchr("-._~", *name) != NULL ? "%c" : "%%%02X",
+                (unsigned char)*name);
+}
+
+void house_page_begin(FILE *out, const char *title, const char *style) {
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src 'self' file: data:; "
+          "style-src 'unsafe-inline'\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
+          out);
+    html_put(out, title);
+    fprintf(out, "</title>\n<style>\n%s%s</style>\n</head>\n<body>\n<main>\n", house_css, style);
+}
+
+void house_page_end(FILE *out) { fputs("</main>\n</body>\n</html>\n", out); }
+
+static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+static void put_group(const uint8_t *bytes, size_t left, char *to) {
+    uint32_t group = (uint32_t)bytes[0] << 16;
+    if (left > 1) group |= (uint32_t)bytes[1] << 8;
+    if (left > 2) group |= bytes[2];
+    to[0] = digits[group >> 18];
+    to[1] = digits[group >> 12 & 63];
+    to[2] = left > 1 ? digits[group >> 6 & 63] : '=';
+    to[3] = left > 2 ? digits[group & 63] : '=';
+}
+
+void base64_put(FILE *file, const void *data, size_t size) {
+    char text[4096];
+    size_t used = 0;
+    for (size_t i = 0; i < size; i += 3, used += 4) {
+        if (used == sizeof text) {
+            fwrite(text, 1, used, file); /* an error stays in the file, for the caller */
+            used = 0;
+        }
+        put_group((const uint8_t *)data + i, size - i, text + used);
+    }
+    fwrite(text, 1, used, file);
+}

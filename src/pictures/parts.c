@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/engine.h"
+#include "pictures/internal.h"
+#include "pictures/picture.h"
+#include "pixels/gl.h"
+#include "pixels/png.h"
+#include "runs/trajectory.h"
+
+/* In units of a box's shorter side; the values are chosen by eye. */
+static const double CORNER = 0.11, OUTLINE = 0.045, BAND = 0.13, TARGET = 0.30;
+static const double MIN_OUTLINE = 1.0;       /* pixels */
+static const double MIN_OUTLINED_SIDE = 5.0; /* pixels; a smaller box has no outline */
+static const double MAX_CORNER = 0.009;      /* relative to shorter side of the panel */
+static const double MAX_OUTLINE = 0.0026;
+static const double GHOST_OUTLINE =
+    0.0034; /* thickness of an outline drawn without its box / shorter side of the panel */
+static const double MIN_GHOST_OUTLINE = 1.6; /* pixels */
+static const double NESTED_TOTAL = 1.2;      /* overlay: the first outline is at most this many thicknesses thicker than
+                                           the last */
+static const double NESTED_STEP = 0.7;       /* from one outline to the next, at most */
+static const double FADE = 0.55;             /* share of the panel's colour in boxes behind outlines */
+
+/* A box of the given width and height in pixels, not rotated, at (0, 0). */
+static Shape styled_box(const Picture *picture, double width, double height, const BodyColors *colors) {
+    Rect panel = picture->layout.panels[0];
+    double side = fmin(width, height), limit = fmin(panel.right - panel.left, panel.bottom - panel.top);
+    double outline = fmin(fmax(OUTLINE * side, MIN_OUTLINE), fmax(MAX_OUTLINE * limit, MIN_OUTLINE));
+    return (Shape){.half_width = width / 2,
+                   .half_height = height / 2,
+                   .cosine = 1,
+                   .radius = fmin(CORNER * side, MAX_CORNER * limit),
+                   .outline = side < MIN_OUTLINED_SIDE ? 0 : outline,
+                   .fill = colors->fill,
+                   .line = colors->line,
+                   .band = (side < MIN_OUTLINED_SIDE ? 0 : outline) + BAND * side,
+                   .band_color = colors->band};
+}
+
+static void place(Shape *shape, const Picture *picture, int panel, const Pose *pose) {
+    Point at = panel_point(picture, panel, pose->x, pose->y);
+    shape->x = at.x, shape->y = at.y;
+    shape->cosine = cos(pose->angle), shape->sine = sin(pose->angle);
+}
+
+static void draw_part(Shape part, const Shape *whole, double up, const Rect *clip, Drawing *drawing) {
+    part.cosine = whole->cosine, part.sine = whole->sine;
+    part.x = whole->x - up * whole->sine, part.y = whole->y - up * whole->cosine;
+    drawing_add_shape(drawing, &part, clip);
+}
+
+/* A dot in a ring, and a bar from the ring towards the local top. */
+static void draw_target(const Shape *bomb, double radius, uint32_t light, const Rect *clip, Drawing *drawing) {
+    Shape bar = {.half_width = radius / 7, .half_height = 0.3 * radius, .fill = light};
+    Shape ring = {.half_width = radius, .half_height = radius, .radius = radius, .outline = radius / 3};
+    Shape dot = {.half_width = radius / 3, .half_height = radius / 3, .radius = radius / 3, .fill = light};
+    ring.fill = bomb->fill, ring.line = light;
+    draw_part(bar, bomb, 1.2 * radius, clip, drawing);
+    draw_part(ring, bomb, 0, clip, drawing);
+    draw_part(dot, bomb, 0, clip, drawing);
+}
+
+/* Filled by the colour scale of the distance; the band contrasts with both its ends. Grey if there is no distance. */
+static BodyColors distance_colors(const Picture *picture, int run, Moment moment, int body) {
+    const Theme *theme = picture->theme;
+    const Trajectory *first = picture->runs[0], *other = picture->runs[run];
+    uint32_t line = picture_body_colors(picture, run)->line;
+    bool ended = moment.frame >= first->frames || moment.frame >= other->frames;
+    double distance = pose_distance(pose_at(first, moment, body), pose_at(other, moment, body));
+    if (ended || isnan(distance)) return (BodyColors){theme->ground, line, theme->ground_line};
+    double share = scales_share(&picture->scales, distance);
+    uint32_t fill = theme_ramp(theme, share), white = 0xFFFFFF;
+    bool is_light = (fill >> 8 & 255) > 140; /* green dominates luminance */
+    return (BodyColors){fill, line, is_light ? theme_mix(fill, 0, 0.6) : theme_mix(fill, white, 0.7)};
+}
+
+static BodyColors colors_of(const Picture *picture, int run, Moment moment, int body) {
+    const Theme *theme = picture->theme;
+    const Trajectory *trajectory = picture->runs[run];
+    if (trajectory->fixed[body]) return (BodyColors){theme->ground, theme->ground_line, theme->ground};
+    if (picture_colors_distance(picture, run)) return distance_colors(picture, run, moment, body);
+    BodyColors colors = body == trajectory->bomb ? theme->bomb : *picture_body_colors(picture, run);
+    if (picture->look.compare != LOOK_OVERLAY) return colors;
+    return (BodyColors){theme_mix(colors.fill, theme->panel, FADE), colors.line,
+                        theme_mix(colors.band, theme->panel, FADE)};
+}
+
+static Shape body_shape(const Picture *picture, int panel, int run, Moment moment, int body, const BodyColors *colors) {
+    const Trajectory *trajectory = picture->runs[run];
+    double scale = picture->camera.scale;
+    Shape shape =
+        styled_box(picture, scale * (double)trajectory->size[body].x, scale * (double)trajectory->size[body].y, colors);
+    Pose pose = pose_at(trajectory, moment, body);
+    place(&shape, picture, panel, &pose);
+    return shape;
+}
+
+void body_draw(const Picture *picture, int panel, int run, Moment moment, int body, Drawing *drawing) {
+    const Trajectory *trajectory = picture->runs[run];
+    const Rect *clip = &picture->layout.panels[panel];
+    bool fixed = trajectory->fixed[body], bomb = body == trajectory->bomb;
+    BodyColors colors = colors_of(picture, run, moment, body);
+    Shape shape = body_shape(picture, panel, run, moment, body, &colors);
+    if (fixed) shape.radius = 0;
+    if (fixed || bomb) shape.band = 0;
+    drawing_add_shape(drawing, &shape, clip);
+    double side = 2 * fmin(shape.half_width, shape.half_height);
+    if (bomb) draw_target(&shape, TARGET * side, colors.band, clip, drawing);
+}
+
+void body_draw_all(const Picture *picture, int panel, int run, Moment moment, bool fixed, Drawing *drawing) {
+    const Trajectory *trajectory = picture->runs[run];
+    for (int body = 0; body < trajectory->bodies; body++)
+        if ((trajectory->fixed[body] != 0) == fixed && body != trajectory->bomb)
+            body_draw(picture, panel, run, moment, body, drawing);
+}
+
+/* The first run's bomb keeps its colour; the others have the colour of their run. */
+static uint32_t outline_color(const Picture *picture, int run, Moment moment, int body) {
+    const Theme *theme = picture->theme;
+    if (picture_colors_distance(picture, run)) return colors_of(picture, run, moment, body).fill;
+    if (run > 0) return picture_body_colors(picture, run)->fill;
+    return body == picture->runs[0]->bomb ? theme->bomb.fill : picture_ghost_color(picture, 0);
+}
+
+/* Coincident outlines of several runs: later ones are thinner, so all are visible. */
+void body_draw_outlines(const Picture *picture, int panel, int run, Moment moment, Drawing *drawing) {
+    const Trajectory *trajectory = picture->runs[run];
+    int above = picture->look.compare == LOOK_OVERLAY ? picture->count - 1 - run : 0;
+    double thickness = fmax(GHOST_OUTLINE * panel_side(picture), MIN_GHOST_OUTLINE) *
+                       (1 + above * fmin(NESTED_STEP, NESTED_TOTAL / picture->count));
+    for (int body = 0; body < trajectory->bodies; body++) {
+        if (trajectory->fixed[body]) continue;
+        Shape shape = body_shape(picture, panel, run, moment, body, picture_body_colors(picture, run));
+        shape.hollow = true;
+        shape.line = outline_color(picture, run, moment, body);
+        shape.outline = thickness;
+        drawing_add_shape(drawing, &shape, &picture->layout.panels[panel]);
+    }
+}
+
+int body_draw_swatch(const Picture *picture, int run, bool hollow, int left, int baseline, int pixels,
+                     Drawing *drawing) {
+    int side = pixels * 3 / 4;
+    const BodyColors *colors = picture_body_colors(picture, run);
+    Shape shape = styled_box(picture, side, side, colors);
+    shape.x = left + side / 2.0;
+    shape.y = baseline - side / 2.0;
+    shape.hollow = hollow;
+    if (hollow)
+        shape.line = run == 0 ? picture_ghost_color(picture, 0) : colors->fill, shape.outline = fmax(2, side / 8.0);
+    drawing_add_shape(drawing, &shape, &(Rect){left, baseline - side, left + side, baseline});
+    return left + side;
+}
+
+static const double DOT = 0.0052, LINE = 0.0034; /* relative to shorter side of the panel */
+static const double MIN_DOT = 2.2,
+                    MIN_LINE = 1.4; /* pixels; smaller where boxes are so small that these would cover them */
+static const double DOT_BOX = 0.13, LINE_BOX = 0.085; /* relative to the median box, at most */
+static const double FINEST = 0.6;                     /* pixels; the smallest dot and the thinnest line */
+static const double TRAIL_DURATION = 2.0;             /* s, duration of a trail */
+static const double MIN_TRAIL = 0.5;                  /* m; a body that moved less in this time has no trail */
+static const double OLDEST_OPACITY = 0.15;            /* opacity of a trail's oldest end */
+static const double MIN_SPEED = 0.05; /* m/s; slower bodies have no arrow, or every resting body would show one */
+static const double TOLERANCE = 0.4;  /* pixels; largest deviation of a segment from the trail */
+enum { TRAIL_FRAMES_MAX = 600, TRAIL_EVERY = 2, SEGMENT_FRAMES = 8 };
+
+static double mark_size(const Picture *picture, double share, double least, double box_share) {
+    return fmax(fmin(fmax(share * panel_side(picture), least), box_share * picture->scales.box), FINEST);
+}
+
+double marks_dot_radius(const Picture *picture) { return mark_size(picture, DOT, MIN_DOT, DOT_BOX); }
+
+double marks_line_thickness(const Picture *picture) { return mark_size(picture, LINE, MIN_LINE, LINE_BOX); }
+
+ArrowStyle marks_arrow_style(const Picture *picture, uint32_t color) {
+    return (ArrowStyle){marks_line_thickness(picture), color, picture->theme->panel};
+}
+
+static int trail_frames(const Trajectory *run) {
+    double frames = rint(TRAIL_DURATION / (double)run->dt);
+    return frames < TRAIL_FRAMES_MAX ? (int)frames : TRAIL_FRAMES_MAX;
+}
+
+/* The first frame of a trail, always an even one, so that the trail's points keep their positions as it advances. */
+static int trail_start(const Trajectory *run, Moment moment, int body) {
+    int first = moment.frame - trail_frames(run);
+    if (first < 0) first = 0;
+    first += first % TRAIL_EVERY;
+    while (first < moment.frame && !trajectory_has(run, first, body)) first += TRAIL_EVERY;
+    return first;
+}
+
+static bool moved_far(const Trajectory *run, Moment moment, int body, int first) {
+    Pose now = pose_at(run, moment, body);
+    for (int frame = first; frame < moment.frame; frame += TRAIL_EVERY) {
+        Pose pose = pose_stored(run, frame, body);
+        if (pose_distance(pose, now) > MIN_TRAIL) return true;
+    }
+    return false;
+}
+
+static Pose trail_pose(const Trajectory *run, Moment moment, int body, int frame) {
+    return frame >= moment.frame ? pose_at(run, moment, body) : pose_stored(run, frame, body);
+}
+
+/* The largest distance (m) of the trail's points between two frames from the chord. */
+static double max_deviation(const Trajectory *run, Moment moment, int body, int first, int end) {
+    Pose a = trail_pose(run, moment, body, first), b = trail_pose(run, moment, body, end);
+    double length = pose_distance(a, b), most = 0;
+    for (int frame = first + TRAIL_EVERY; frame < end; frame += TRAIL_EVERY) {
+        Pose p = pose_stored(run, frame, body);
+        double off = fabs((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x));
+        most = fmax(most, length > 0 ? off / length : pose_distance(a, p));
+    }
+    return most;
+}
+
+/* The end of the trail segment that starts at `first`; fewer segments are faster to draw. */
+static int segment_end(const Trajectory *run, Moment moment, int body, int first, double tolerance) {
+    int end = first + TRAIL_EVERY;
+    while (end < moment.frame && end + TRAIL_EVERY <= first + SEGMENT_FRAMES &&
+           max_deviation(run, moment, body, first, end + TRAIL_EVERY) < tolerance)
+        end += TRAIL_EVERY;
+    return end;
+}
+
+static void draw_trail(const Picture *picture, int panel, int run, Moment moment, int body, Drawing *drawing) {
+    const Trajectory *trajectory = picture->runs[run];
+    const Theme *theme = picture->theme;
+    moment = pose_moment(trajectory, moment);
+    int first = trail_start(trajectory, moment, body), length = trail_frames(trajectory);
+    if (!moved_far(trajectory, moment, body, first)) return;
+    uint32_t color = body == trajectory->bomb ? theme->bomb.fill : picture_body_colors(picture, run)->fill;
+    for (int frame = first, end; frame <= moment.frame; frame = end) {
+        end = segment_end(trajectory, moment, body, frame, TOLERANCE / picture->camera.scale);
+        Pose a = trail_pose(trajectory, moment, body, frame), b = trail_pose(trajectory, moment, body, end);
+        double age = fmin(1, (moment.frame + moment_fraction(moment) - frame) / length);
+        Point from = panel_point(picture, panel, a.x, a.y), to = panel_point(picture, panel, b.x, b.y);
+        stroke_line(drawing, from, to, marks_line_thickness(picture),
+                    theme_mix(theme->panel, color, 1 - (1 - OLDEST_OPACITY) * age), &picture->layout.panels[panel]);
+    }
+}
+
+/* An overlay draws the marks of all runs; otherwise each panel those of its run. */
+static int runs_end(const Picture *picture, int first) {
+    return picture->look.compare == LOOK_OVERLAY ? picture->count : first + 1;
+}
+
+void marks_draw_below(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
+    int first = picture_run(picture, panel);
+    if ((picture->look.show & LOOK_TRAILS) == 0) return;
+    for (int run = first; run < runs_end(picture, first); run++)
+        for (int body = 0; body < picture->runs[run]->bodies; body++)
+            if (!picture->runs[run]->fixed[body]) draw_trail(picture, panel, run, moment, body, drawing);
+}
+
+/* An arrow with `scale` pixels per unit; y up. */
+static void draw_arrow(const Picture *picture, int panel, Point from, double x, double y, double scale, uint32_t color,
+                       Drawing *drawing) {
+    double length = scale * sqrt(x * x + y * y), max_arrow = picture->scales.max_arrow;
+    bool truncated = length > max_arrow;
+    double pixels = truncated ? scale * max_arrow / length : scale;
+    ArrowStyle style = marks_arrow_style(picture, color);
+    stroke_arrow(drawing, from, (Point){from.x + pixels * x, from.y - pixels * y}, truncated, &style,
+                 &picture->layout.panels[panel]);
+}
+
+static void draw_velocities(const Picture *picture, int panel, int run, Moment moment, Drawing *drawing) {
+    const Trajectory *trajectory = picture->runs[run];
+    moment = pose_moment(trajectory, moment);
+    for (int body = 0; body < trajectory->bodies; body++) {
+        if (trajectory->fixed[body] || !trajectory_has(trajectory, moment.frame, body)) continue;
+        Vec2 v = trajectory->velocity[(size_t)moment.frame * (size_t)trajectory->bodies + (size_t)body];
+        double x = (double)v.x, y = (double)v.y;
+        if (!(x * x + y * y > MIN_SPEED * MIN_SPEED)) continue;
+        Pose pose = pose_at(trajectory, moment, body);
+        draw_arrow(picture, panel, panel_point(picture, panel, pose.x, pose.y), x, y, picture->scales.velocity,
+                   picture->theme->velocity, drawing);
+    }
+}
+
+/* The impulse on body b at the contact point; body a receives the opposite. */
+static void draw_impulse(const Picture *picture, int panel, const TrajectoryContact *contact, Drawing *drawing) {
+    double nx = (double)contact->normal.x, ny = (double)contact->normal.y;
+    double normal = (double)contact->normal_impulse, tangent = (double)contact->tangent_impulse;
+    Point at = panel_point(picture, panel, (double)contact->point.x, (double)contact->point.y);
+    draw_arrow(picture, panel, at, normal * nx + tangent * ny, normal * ny - tangent * nx, picture->scales.impulse,
+               picture->theme->impulse, drawing);
+}
+
+/* The contacts of the next step, which result from these poses; in the last frame, those of the last step. */
+static void draw_contacts(const Picture *picture, int panel, int run, Moment moment, Drawing *drawing) {
+    const Trajectory *trajectory = picture->runs[run];
+    const Theme *theme = picture->theme;
+    moment = pose_moment(trajectory, moment);
+    int step = moment.frame + 1 < trajectory->frames ? moment.frame + 1 : moment.frame;
+    int64_t first = trajectory->contact_start[step], end = trajectory->contact_start[step + 1];
+    for (int64_t i = first; i < end && (picture->look.show & LOOK_IMPULSES) != 0; i++)
+        draw_impulse(picture, panel, &trajectory->contacts[i], drawing);
+    for (int64_t i = first; i < end && (picture->look.show & LOOK_CONTACTS) != 0; i++) {
+        Vec2 at = trajectory->contacts[i].point;
+        stroke_dot(drawing, panel_point(picture, panel, (double)at.x, (double)at.y), marks_dot_radius(picture),
+                   theme->panel, theme->impulse, &picture->layout.panels[panel]);
+    }
+}
+
+void marks_draw_above(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
+    int first = picture_run(picture, panel);
+    for (int run = first; run < runs_end(picture, first); run++) {
+        if (picture->look.show & LOOK_VELOCITIES) draw_velocities(picture, panel, run, moment, drawing);
+        if (picture->look.show & (LOOK_CONTACTS | LOOK_IMPULSES)) draw_contacts(picture, panel, run, moment, drawing);
+    }
+}
+
+/* Searches only the frames before the earliest divergence found so far. */
+static void find_divergence(Events *events, const Trajectory *const *runs, int other) {
+    const Trajectory *a = runs[0], *b = runs[other];
+    int frames = a->frames < b->frames ? a->frames : b->frames;
+    if (events->divergence >= 0 && events->divergence < frames) frames = events->divergence;
+    for (int frame = 0; frame < frames; frame++)
+        for (int body = 0; body < a->bodies; body++)
+            if (trajectory_state_difference(a, b, frame, body).distance > EVENTS_VISIBLE_DISTANCE) {
+                events->divergence = frame, events->run = other, events->body = body;
+                return;
+            }
+}
+
+Events events_find(const Trajectory *const *runs, int count) {
+    Events events = {.impact = -1, .divergence = -1, .run = -1, .body = -1};
+    char what[256];
+    for (int i = 0; i < count && events.impact < 0; i++) events.impact = trajectory_impact(runs[i]);
+    for (int i = 1; i < count; i++)
+        if (!trajectory_different_worlds(runs[0], runs[i], what, sizeof what)) find_divergence(&events, runs, i);
+    return events;
+}
+
+const char *const part_names[] = {"header", "caption", "axis", "legend", "timeline"};
+
+enum { MARK_REACH = 8 }; /* pixels that the mark of the present time reaches beyond the curves, at most */
+
+/* The heights of a line of text above and below its baseline. */
+static int above(const Font *font) { return font->pixels; }
+static int below(const Font *font) { return font->pixels * 3 / 8; }
+
+static int max(int a, int b) { return a > b ? a : b; }
+
+static int add(Part *parts, int count, PartKind kind, int panel, Rect rect) {
+    parts[count] = (Part){kind, panel, rect};
+    return count + 1;
+}
+
+/* Labels at an end of an axis reach beyond it by half their size. The left axis is beside the first column only. */
+static int add_panel(Part *parts, int count, const Layout *layout, int panel) {
+    const Rect *rect = &layout->panels[panel];
+    const int baseline = rect->top - layout->title_rise, line = layout->hairline, half = layout->axis.pixels / 2;
+    count = add(parts, count, PART_CAPTION, panel,
+                (Rect){rect->left, baseline - above(&layout->title), rect->right, rect->top - line});
+    count = add(parts, count, PART_AXIS, panel,
+                (Rect){rect->left - layout->axis.pixels, rect->bottom, rect->right + line,
+                       rect->bottom + layout->axis_drop + below(&layout->axis)});
+    if (panel % layout->columns != 0) return count;
+    return add(parts, count, PART_AXIS, panel, (Rect){0, rect->top - half, rect->left, rect->bottom + half});
+}
+
+/* Half of the distance between rows, and a pixel for rounding, above and below the middle of the text: arrows are higher
+   than characters. */
+static Rect legend_rect(const Layout *layout) {
+    const int middle = layout->legend_baseline - below(&layout->axis), half = layout->legend_pitch / 2 + 1;
+    return (Rect){0, middle - half, layout->width, middle + (layout->legend_rows - 1) * layout->legend_pitch + half};
+}
+
+/* The lane above the curves keeps the mark below their top where there is text, and the row of the key is above. */
+static Rect timeline_rect(const Layout *layout) {
+    const Rect *plot = &layout->timeline;
+    const bool text = layout->axis.glyphs != NULL;
+    const int foot = text ? max(layout->axis_drop + below(&layout->axis), MARK_REACH) : MARK_REACH;
+    const int top = text ? layout->key_baseline - above(&layout->method) : plot->top - layout->left;
+    return (Rect){0, top, layout->width, plot->bottom + foot};
+}
+
+int parts_find(const Picture *picture, Part parts[PARTS_MAX]) {
+    const Layout *layout = &picture->layout;
+    const bool text = layout->axis.glyphs != NULL;
+    int count = 0;
+    if (text)
+        count = add(parts, count, PART_HEADER, -1,
+                    (Rect){0, 0, layout->width,
+                           layout->header_baseline + (layout->header_lines - 1) * layout->header_pitch +
+                               below(&layout->scene)});
+    for (int panel = 0; text && panel < picture->panel_count; panel++) count = add_panel(parts, count, layout, panel);
+    if (layout->legend_baseline > 0) count = add(parts, count, PART_LEGEND, -1, legend_rect(layout));
+    if (picture->curves != NULL) count = add(parts, count, PART_TIMELINE, -1, timeline_rect(layout));
+    return count;
+}

@@ -1,0 +1,116 @@
+/* Where a picture has its panels and texts: src/pictures/picture.c and panels_arrange.c, in CSS pixels. Where text would be
+   smaller than 12 pixels, it and its rows keep that size; larger pictures have the layout of `render`. */
+const {abs, ceil, cos, floor, hypot, log10, max, min, round, sin, trunc} = Math;
+
+/* What is being laid out or drawn, and how: the context and its first transform, the theme, plan, camera, frame, sizes of marks
+   and the panel. */
+let pen, base, look, lay, eye, now, sizes, here;
+
+const LEAST = 600;         /* pixels of a picture below which rows of text do not shrink with it */
+const NUMBER_EMS = 1.7442; /* the width of "-50" in Inter: the margin must not depend on the browser's fonts */
+const shows = what => view.show.has(what);
+const ruler = document.createElement("canvas").getContext("2d");
+
+/* Ties to even, as in C. */
+const rint = value => round(value) - value === 0.5 ? 2 * round(value / 2) : round(value);
+
+function text_width(font, text) {
+  ruler.font = font.css;
+  return ceil(ruler.measureText(text).width);
+}
+
+/* The text, or its beginning and an ellipsis, in at most `room` pixels. */
+function fitting(font, text, room) {
+  let letters = [...text.slice(0, max(0, 5 * room / font.em))], cut = letters.join("");
+  for (; letters.length > 0 && (text_width(font, cut) > room || cut === "\u2026"); letters.pop())
+    cut = letters.join("").trimEnd() + "\u2026";
+  return letters.length > 0 ? cut : "";
+}
+
+function measures(width, height, legend_rows) {
+  const unit = min(height, 0.75 * width), of = share => rint(share * max(unit, LEAST));
+  const font = (weight, share) => { /* the sizes that `render` has: 12, 13 .. 16, 18 .. 32, 36 .. */
+    const size = max(share * unit, 12), step = size < 17 ? 1 : size < 34 ? 2 : 4, em = floor(size / step) * step;
+    return {em, css: `${weight} ${em}px Inter, system-ui, sans-serif`};
+  };
+  const margin = max(rint(0.03 * unit), 4), header = margin + of(0.026), end = height - rint(0.016 * unit);
+  const title_row = of(0.058), axis_row = of(0.038), tick = of(0.006), axis = font(400, 0.017);
+  const pitch = of(0.035), more = (legend_rows - 1) * pitch;
+  return {
+    width, height, margin, header, axis, tick, pitch, rise: of(0.016), drop: of(0.0275), row_gap: title_row + axis_row,
+    overlay: view.compare === "overlay", difference: view.compare === "difference",
+    scene: font(600, 0.03), status: font(400, 0.0225), title: font(600, 0.0225), method: font(400, 0.0205),
+    left: margin + ceil(NUMBER_EMS * axis.em) + 2 * tick, right: width - margin, top: header + of(0.006) + title_row,
+    bottom: end - axis_row - (legend_rows > 0 ? of(0.046) + more : 0), legend: end - of(0.012) - more,
+  };
+}
+
+/* Panels of equal size in so many columns. */
+function grid_of(count, columns) {
+  const rows = ceil(count / columns);
+  return {
+    columns, rows, left: lay.left, top: lay.top,
+    width: max(1, trunc((lay.right - lay.left - (columns - 1) * lay.margin) / columns)),
+    height: max(1, trunc((lay.bottom - lay.top - (rows - 1) * lay.row_gap) / rows)),
+  };
+}
+
+const scale_in = ({width, height}, needs) => min(width / needs.x, height / needs.y);
+
+/* The grid in which the scene is largest; an unusual one only if the scene gains, more where names would be cut. Their widths
+   are those of `render`'s font. */
+function choose_grid(count, needs) {
+  const few = count > 3 ? 2 : 1, usual = grid_of(count, lay.height > lay.width ? few : ceil(count / few));
+  const {title, method} = lay, distance = ceil(data.distance_ems * method.em);
+  const wide = max(...runs.map(({ems}, run) => ceil(ems * title.em) + (run > 0 ? distance : 0))) +
+    swatch_side(title) + 2 * (title.em >> 1);
+  let best = usual, most = scale_in(usual, needs);
+  for (let columns = 1; columns <= count; columns++) {
+    const grid = grid_of(count, columns), worth = scale_in(grid, needs) / (grid.width >= wide ? 1.05 : 1.5);
+    if (worth > most) [most, best] = [worth, grid];
+  }
+  return best;
+}
+
+/* Panels that a long or high scene would leave almost empty have its shape. The names of an overlay need all the width. */
+function shrink(grid, needs) {
+  const {left, top, columns, rows} = grid, scale = scale_in(grid, needs), {em} = lay.title;
+  const side = (whole, needed, share, ems) =>
+    needed >= share * whole ? whole : min(whole, ceil(max(needed / 0.65, ems * em)));
+  const width = lay.overlay ? grid.width : side(grid.width, scale * needs.x, 0.2, 22);
+  const height = side(grid.height, scale * needs.y, 0.4, 5);
+  return {columns, width, height, left: left + trunc(columns * (grid.width - width) / 2),
+    top: top + trunc(rows * (grid.height - height) / 2)};
+}
+
+/* What a panel shows: the bodies of a run, and those of others as outlines. Runs that cannot be compared have their own. */
+function arrange(width, height, legend_rows) {
+  const {left, right, bottom, top} = data.framing;
+  const needs = {x: Math.fround(right - left), y: Math.fround(top - bottom)};
+  lay = measures(width, height, legend_rows);
+  const {overlay, difference} = lay, shown = runs.map((_, run) => run)
+    .filter(run => overlay ? !others.includes(run) : run > 0 || !difference);
+  const ghosts = difference || shows("ghosts") ? [0] : [];
+  lay.pair = runs.length === 2 && others.length === 1 && shown.length === 2;
+  const grid = lay.grid = shrink(choose_grid(shown.length, needs), needs);
+  lay.side = min(grid.width, grid.height);
+  lay.panels = shown.map((run, i) => ({
+    run, outlines: overlay ? (run === 0 ? others : []) : others.includes(run) ? ghosts : [],
+    left: grid.left + i % grid.columns * (grid.width + lay.margin), width: grid.width, height: grid.height,
+    top: grid.top + trunc(i / grid.columns) * (grid.height + lay.row_gap),
+  }));
+  lay.fit = fit_camera(grid);
+  sizes = mark_sizes(lay.fit.scale);
+}
+
+/* The plan of a picture of this size. It depends on what is compared and shown, not on the frame. The legend's entries depend
+   on the room that its rows leave. */
+function plan(width, height) {
+  let needed = 0;
+  for (let rows = 0; rows <= needed; rows++) {
+    arrange(width, height, rows);
+    needed = place_entries(false);
+  }
+  arrange(width, height, needed);
+  return lay;
+}

@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The states of some stored frames of a run, without loss; page/codec.js is the decoder.
+
+   For vx, vy, omega, x, y, angle in turn: each body's values in the order of frames, as the difference of the float's bits
+   from those of a prediction. That of a velocity is its value in the frame before. That of a pose is the one that a step
+   with the new velocity leads to, x + dt * vx in float: this is how the engine moves bodies, so most differences are 0. In
+   the first frame of a chunk the prediction is 0, so that each chunk can be decoded by itself. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "pictures/picture.h"
+#include "pictures/player_internal.h"
+#include "runs/trajectory.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+enum { RAW_WINDOW = -15, MOST_MEMORY = 9 };
+
+bool bytes_deflate(Bytes *bytes, const void *data, size_t size, Error *error) {
+    z_stream stream = {0};
+    *bytes = (Bytes){0};
+    if (size > UINT_MAX / 2 ||
+        deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, RAW_WINDOW, MOST_MEMORY, Z_DEFAULT_STRATEGY) != Z_OK)
+        return error_memory(error, "page");
+    const uLong bound = deflateBound(&stream, (uLong)size);
+    bytes->data = malloc(bound);
+    stream.next_in = (z_const Bytef *)data, stream.avail_in = (uInt)size;
+    stream.next_out = bytes->data, stream.avail_out = (uInt)bound;
+    const bool ok = bytes->data != NULL && deflate(&stream, Z_FINISH) == Z_STREAM_END;
+    bytes->size = ok ? stream.total_out : 0;
+    deflateEnd(&stream);
+    return ok || error_memory(error, "page");
+}
+
+enum { COMPONENTS = 6, POSES = 3 }; /* velocities first, then poses */
+
+static float component(const Trajectory *run, size_t i, int which) {
+    switch (which) {
+    case 0: return run->velocity[i].x;
+    case 1: return run->velocity[i].y;
+    case 2: return run->angular_velocity[i];
+    case 3: return run->position[i].x;
+    case 4: return run->position[i].y;
+    default: return run->angle[i];
+    }
+}
+
+static uint32_t bits_of(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+/* A NaN has no bits that all machines agree on: then the value before is the prediction. */
+static uint32_t predict_pose(float before, float velocity, float dt) {
+    const float after = before + dt * velocity;
+    return bits_of(isnan(after) ? before : after);
+}
+
+static void put_component(uint8_t *planes, const Trajectory *run, const PlayerFrames *frames, int begin, int end,
+                          int which) {
+    const size_t bodies = (size_t)run->bodies, length = (size_t)(end - begin), count = bodies * length;
+    const float dt = player_dt(frames, run);
+    for (size_t body = 0; body < bodies; body++)
+        for (size_t k = 0; k < length; k++) {
+            const size_t at = (size_t)player_frame(frames, begin + (int)k) * bodies + body;
+            const size_t before = at - (size_t)frames->every * bodies;
+            uint32_t predicted = 0;
+            if (k > 0 && which < POSES) predicted = bits_of(component(run, before, which));
+            if (k > 0 && which >= POSES)
+                predicted = predict_pose(component(run, before, which), component(run, at, which - POSES), dt);
+            bytes_put(planes, count, body * length + k, bytes_zigzag(bits_of(component(run, at, which)) - predicted));
+        }
+}
+
+/* Stored frames [begin, end) of a run. */
+static bool state_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrames *frames, int begin, int end,
+                        Error *error) {
+    const size_t size = (size_t)run->bodies * (size_t)(end - begin) * sizeof(float);
+    uint8_t *planes = malloc(COMPONENTS * size + 1);
+    if (planes == NULL) return error_memory(error, "page");
+    for (int which = 0; which < COMPONENTS; which++)
+        put_component(planes + (size_t)which * size, run, frames, begin, end, which);
+    const bool ok = bytes_deflate(chunk, planes, COMPONENTS * size, error);
+    free(planes);
+    return ok;
+}
+
+enum {
+    KEYS = 3,          /* a, b, feature */
+    VALUES = 6,        /* point, normal, impulses */
+    SEARCH = 16,       /* contacts of the frame before that may be the same one, after the last that was */
+    FRACTION_BITS = 5, /* of a logarithm: 32 steps per octave */
+    MANTISSA_BITS = 23,
+    SHIFT = MANTISSA_BITS - FRACTION_BITS,
+    ONE = 127 << FRACTION_BITS, /* the logarithm of 1 */
+    MOST = 1 << 30
+};
+static const double NORMAL = 256, SHARE = 64;
+
+typedef struct Rounded {
+    uint32_t keys[KEYS];
+    int32_t values[VALUES];
+} Rounded;
+
+static int32_t round_to(double value) {
+    return value >= MOST ? MOST : value <= -MOST ? -MOST : isnan(value) ? 0 : (int32_t)rint(value);
+}
+
+/* A logarithm by the bits of 1 + |impulse| / unit: the same on every machine. */
+static int32_t round_impulse(float impulse, float unit) {
+    const float shifted = 1 + fabsf(impulse) / unit;
+    uint32_t bits;
+    if (!isfinite(shifted)) return 0;
+    memcpy(&bits, &shifted, sizeof bits);
+    const int32_t steps = (int32_t)((bits + (1u << (SHIFT - 1))) >> SHIFT) - ONE;
+    return impulse < 0 ? -steps : steps;
+}
+
+static Rounded round_contact(const TrajectoryContact *contact, Vec2 center, const ContactUnits *units) {
+    Rounded rounded = {.keys = {(uint32_t)contact->a, (uint32_t)contact->b, contact->feature}};
+    const double unit = (double)units->length;
+    if (!isfinite(center.x) || !isfinite(center.y)) center = vec2(0, 0);
+    rounded.values[0] = round_to(((double)contact->point.x - (double)center.x) / unit);
+    rounded.values[1] = round_to(((double)contact->point.y - (double)center.y) / unit);
+    rounded.values[2] = round_to(NORMAL * (double)contact->normal.x);
+    rounded.values[3] = round_to(NORMAL * (double)contact->normal.y);
+    rounded.values[4] = round_impulse(contact->normal_impulse, units->impulse);
+    rounded.values[5] = round_to(SHARE * (double)contact->tangent_impulse /
+                                 (fabs((double)contact->normal_impulse) + (double)units->impulse));
+    return rounded;
+}
+
+/* The contact with these keys from `from` on; NULL: not among the next ones. */
+static const Rounded *find(const Rounded *before, size_t count, size_t *from, const uint32_t keys[KEYS]) {
+    for (size_t i = *from; i < count && i < *from + SEARCH; i++)
+        if (memcmp(before[i].keys, keys, sizeof before[i].keys) == 0) {
+            *from = i + 1;
+            return &before[i];
+        }
+    return NULL;
+}
+
+/* The step whose contacts a stored frame has. */
+static int step_of(const Trajectory *run, const PlayerFrames *frames, int stored) {
+    const int frame = player_frame(frames, stored);
+    return frame + 1 < run->frames ? frame + 1 : frame;
+}
+
+/* Rounds the contacts of a stored frame. Returns their number. */
+static size_t round_frame(Rounded *rounded, const Trajectory *run, const PlayerFrames *frames, int stored,
+                          const ContactUnits *units) {
+    const int step = step_of(run, frames, stored);
+    const size_t first = (size_t)run->contact_start[step], count = (size_t)run->contact_start[step + 1] - first;
+    const Vec2 *centers = run->position + (size_t)player_frame(frames, stored) * (size_t)run->bodies;
+    for (size_t i = 0; i < count; i++) {
+        const TrajectoryContact *contact = &run->contacts[first + i];
+        rounded[i] = round_contact(contact, centers[contact->b], units);
+    }
+    return count;
+}
+
+/* Puts a frame's contacts as numbers `at` and following of `total` into the columns. */
+static void put_frame(uint8_t *columns, size_t total, size_t at, const Rounded *now, size_t count,
+                      const Rounded *before, size_t before_count) {
+    for (size_t i = 0, from = 0; i < count; i++) {
+        const Rounded *same = find(before, before_count, &from, now[i].keys);
+        for (size_t key = 0; key < KEYS; key++) bytes_put(columns + key * 4 * total, total, at + i, now[i].keys[key]);
+        for (size_t value = 0; value < VALUES; value++) {
+            const uint32_t old = same != NULL ? (uint32_t)same->values[value] : 0;
+            bytes_put(columns + (KEYS + value) * 4 * total, total, at + i,
+                      bytes_zigzag((uint32_t)now[i].values[value] - old));
+        }
+    }
+}
+
+static size_t count_contacts(const Trajectory *run, const PlayerFrames *frames, int begin, int end, size_t *most) {
+    size_t total = 0;
+    *most = 0;
+    for (int stored = begin; stored < end; stored++) {
+        const int step = step_of(run, frames, stored);
+        const size_t count = (size_t)(run->contact_start[step + 1] - run->contact_start[step]);
+        total += count;
+        if (count > *most) *most = count;
+    }
+    return total;
+}
+
+/* Stored frames [begin, end) of a run. */
+static bool contact_chunk(Bytes *chunk, const Trajectory *run, const PlayerFrames *frames, int begin, int end,
+                          const ContactUnits *units, Error *error) {
+    size_t most, length = (size_t)(end - begin), before_count = 0;
+    const size_t total = count_contacts(run, frames, begin, end, &most), size = 4 * (length + (KEYS + VALUES) * total);
+    uint8_t *planes = malloc(size + 1);
+    Rounded *rows = malloc(2 * (most + 1) * sizeof *rows), *now = rows, *before = rows + most + 1;
+    bool ok = planes != NULL && rows != NULL;
+    for (size_t k = 0, at = 0; ok && k < length; k++) {
+        const size_t count = round_frame(now, run, frames, begin + (int)k, units);
+        bytes_put(planes, length, k, (uint32_t)count);
+        put_frame(planes + 4 * length, total, at, now, count, before, before_count);
+        Rounded *swapped = now;
+        now = before, before = swapped;
+        before_count = count;
+        at += count;
+    }
+    ok = ok ? bytes_deflate(chunk, planes, size, error) : error_memory(error, "page");
+    free(planes);
+    free(rows);
+    return ok;
+}
+
+/* The chunks of all runs, within the size of a page. */
+
+enum { HEAD = 256 << 10 }; /* bytes for all that is no chunk of a run; a frame of a run has hash and distance besides */
+
+static double base64_size(double bytes) { return bytes * 4 / 3; }
+
+static double fixed_size(const Player *player) {
+    const double per_frame = base64_size(sizeof(uint64_t) + sizeof(float));
+    const double per_body = base64_size(2 * sizeof(float)) + 1;
+    double size = HEAD;
+    for (int i = 0; i < player->picture.count; i++)
+        size += per_frame * player->runs[i].frames + per_body * player->picture.runs[i]->bodies;
+    return size;
+}
+
+/* If no state could be packed. */
+static double unpacked_size(const Player *player) {
+    double size = fixed_size(player);
+    for (int i = 0; i < player->picture.count; i++)
+        size += base64_size(6.0 * sizeof(float)) * player->runs[i].frames * player->picture.runs[i]->bodies;
+    return size;
+}
+
+/* `done` of all chunks take `size` bytes. If frames are left out, the prediction of poses is worse: they take up to twice the
+   room. */
+static bool refuse(const Player *player, double size, int done, int chunks, Error *error) {
+    const double all = size * chunks / done, worst = fmin(2 * all, unpacked_size(player));
+    const int every = player->frames.every * ((int)(worst / player->most_bytes) + 1);
+    return error_input(
+        error, "page",
+        "it would take about %.3g MB, more than %.3g; use --every %d, or keep a part of the run with --frames",
+        all / 1e6, player->most_bytes / 1e6, every);
+}
+
+static int chunk_end(const PlayerRun *run, int chunk) {
+    const int end = (chunk + 1) * PLAYER_CHUNK;
+    return end < run->frames ? end : run->frames;
+}
+
+static bool pack_states(Player *player, double *size, Error *error) {
+    int chunks = 0, done = 0;
+    for (int i = 0; i < player->picture.count; i++) chunks += player->runs[i].chunks;
+    for (int i = 0; i < player->picture.count; i++) {
+        PlayerRun *run = &player->runs[i];
+        run->states = calloc((size_t)run->chunks, sizeof *run->states);
+        if (run->states == NULL) return error_memory(error, "page");
+        for (int k = 0; k < run->chunks; k++) {
+            if (!state_chunk(&run->states[k], player->picture.runs[i], &player->frames, k * PLAYER_CHUNK,
+                             chunk_end(run, k), error))
+                return false;
+            *size += base64_size((double)run->states[k].size);
+            if (*size > player->most_bytes) return refuse(player, *size, done + 1, chunks, error);
+            done++;
+        }
+    }
+    return true;
+}
+
+static void free_chunks(Bytes **chunks, int count) {
+    for (int k = 0; *chunks != NULL && k < count; k++) free((*chunks)[k].data);
+    free(*chunks);
+    *chunks = NULL;
+}
+
+static bool pack_contacts_of(Player *player, int index, double *size, Error *error) {
+    PlayerRun *run = &player->runs[index];
+    run->contacts = calloc((size_t)run->chunks, sizeof *run->contacts);
+    if (run->contacts == NULL) return error_memory(error, "page");
+    for (int k = 0; k < run->chunks && *size <= player->most_bytes; k++) {
+        if (!contact_chunk(&run->contacts[k], player->picture.runs[index], &player->frames, k * PLAYER_CHUNK,
+                           chunk_end(run, k), &player->units, error))
+            return false;
+        *size += base64_size((double)run->contacts[k].size);
+    }
+    return true;
+}
+
+bool player_pack(Player *player, Error *error) {
+    double size = fixed_size(player);
+    if (size > player->most_bytes) return refuse(player, size, 1, 1, error);
+    if (!pack_states(player, &size, error)) return false;
+    for (int i = 0; i < player->picture.count; i++)
+        if (!player->picture.runs[i]->no_contacts && !pack_contacts_of(player, i, &size, error)) return false;
+    player->left_contacts = size > player->most_bytes;
+    for (int i = 0; player->left_contacts && i < player->picture.count; i++)
+        free_chunks(&player->runs[i].contacts, player->runs[i].chunks);
+    return true;
+}
+
+void player_free(Player *player) {
+    for (int i = 0; i < player->picture.count; i++) {
+        free_chunks(&player->runs[i].states, player->runs[i].chunks);
+        free_chunks(&player->runs[i].contacts, player->runs[i].chunks);
+        free(player->runs[i].hashes);
+        free(player->runs[i].distances);
+    }
+    free(player->viewer.data);
+    picture_free(&player->picture);
+}

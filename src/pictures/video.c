@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "pictures/render.h"
+#include "pictures/render_internal.h"
+#include "pixels/png.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { ARGUMENTS_MAX = 64, DRAFT_NAME_SIZE = 64, WORDS_SIZE = 1024 };
+
+typedef struct VideoFormat {
+    const char *ending, *muxer; /* ffmpeg's name of the format */
+    bool subsampled;            /* 4:2:0 subsampling: both sides must be even */
+    double max_rate;            /* highest frame rate, Hz; 0: any */
+    double usual_rate;          /* the same unless a rate was chosen */
+    const char *encoder[24];    /* arguments for ffmpeg */
+    const char *ahead;          /* its argument for the number of frames that it looks ahead, */
+    int ahead_frames;           /* and its default; NULL: none */
+} VideoFormat;
+
+/* Convert to BT.709 and tag the stream: untagged, players guess the matrix from the picture size. */
+#define BT709 \
+    "-vf", "scale=out_color_matrix=bt709", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"
+
+/* GIFs are for pages, where 800 pixels are wide, and their bytes grow with every pixel that changes. */
+#define GIF_SCALE "scale=w='min(800,iw)':h='min(800,ih)':force_original_aspect_ratio=decrease:flags=area"
+
+static const VideoFormat formats[] = {
+    {".mp4",
+     "mp4",
+     true,
+     0,
+     0,
+     {BT709, "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart"},
+     "-rc-lookahead",
+     40},
+    {".webm",
+     "webm",
+     true,
+     0,
+     0,
+     /* bitexact: the file has no random number. */
+     {BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4", "-pix_fmt", "yuv420p",
+      "-fflags", "+bitexact"},
+     "-lag-in-frames",
+     25},
+    /* Viewers slow down frames of 1/100 s to 1/10 s. Without dithering, areas of one colour stay uniform and small. */
+    {".gif",
+     "gif",
+     false,
+     50,
+     25,
+     {"-lavfi", GIF_SCALE "[x];[x][1:v]paletteuse=dither=none", "-fps_mode", "passthrough"},
+     NULL,
+     0},
+};
+
+static const VideoFormat *find_format(const char *path) {
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (file_name_ends_with(path, formats[i].ending)) return &formats[i];
+    return NULL;
+}
+
+/* Creates a missing folder now, so that an error appears before the drawing. */
+static bool check_destination(const char *path, Error *error) {
+    struct stat status;
+    char folder[PATH_MAX];
+    size_t length = strlen(path), folder_length = file_folder_length(path);
+    if (length >= PATH_MAX) return error_input(error, path, "the name is too long");
+    if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) return error_input(error, path, "is not a regular file");
+    snprintf(folder, sizeof folder, "%.*s", folder_length > 0 ? (int)folder_length : 1, folder_length > 0 ? path : ".");
+    if (access(folder, W_OK) == 0) return true;
+    if (errno == ENOENT) return file_make_directory(folder, error);
+    return error_system(error, path, "cannot write there: %s", strerror(errno));
+}
+
+bool video_check_format(const char *path, int width, int height, Error *error) {
+    const VideoFormat *format = find_format(path);
+    if (format == NULL) return error_input(error, path, "the name of a video must end in .mp4, .webm or .gif");
+    return !format->subsampled || (width % 2 == 0 && height % 2 == 0) ||
+           error_input(error, path, "width and height must be even for this video format (got %dx%d)", width, height);
+}
+
+bool video_check(const char *path, int width, int height, Error *error) {
+    return video_check_format(path, width, height, error) && check_destination(path, error);
+}
+
+bool video_check_programs(Error *error) {
+    static const char *const names[] = {"ffmpeg", "ffprobe"};
+    for (int i = 0; i < 2; i++) {
+        const char *argv[] = {names[i], "-version", NULL};
+        Process process;
+        char text[256];
+        if (!process_start(&process, argv, error) || !process_finish(&process, text, sizeof text, error)) return false;
+    }
+    return true;
+}
+
+/* Arguments of a program, terminated by NULL. */
+typedef struct Arguments {
+    const char *list[ARGUMENTS_MAX];
+    int count;
+} Arguments;
+
+static void add(Arguments *arguments, const char *const *more) {
+    for (; *more != NULL; more++) arguments->list[arguments->count++] = *more;
+    arguments->list[arguments->count] = NULL;
+}
+
+#define ADD(arguments, ...) add((arguments), (const char *const[]){__VA_ARGS__, NULL})
+
+/* State of one encoding. */
+typedef struct Encoding {
+    const VideoOptions *options;
+    const VideoFormat *format;
+    int width, height, stride;
+    /* Drafts (base/file.h), and the names under which ffmpeg opens them. A program that is killed leaves neither. */
+    int draft, palette_draft;
+    char part[DRAFT_NAME_SIZE], palette[DRAFT_NAME_SIZE];
+    char *words; /* [WORDS_SIZE] of ffmpeg, which ends with status 0 also after some failures to write */
+    const Progress *progress;
+} Encoding;
+
+typedef struct RawTarget {
+    Process process;
+    uint8_t *rgb;
+} RawTarget;
+
+static bool write_raw(void *context, const Image *image) {
+    RawTarget *target = context;
+    size_t pixels = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < pixels; i++) memcpy(target->rgb + 3 * i, image->pixels + 4 * i, 3);
+    return process_write(&target->process, target->rgb, 3 * pixels);
+}
+
+/* An encoder keeps the frames that it looks ahead, and more for each thread. Of frames larger than full HD it keeps no more
+   pixels than of full HD, in as many threads on every machine; otherwise 3840x2160 takes 1.7 GB with two cores. */
+static void bound_memory(Arguments *arguments, const Encoding *encoding, char ahead[16]) {
+    enum { FULL_HD = 1920 * 1080, AHEAD_LEAST = 2 };
+    const long pixels = (long)encoding->width * encoding->height;
+    if (encoding->format->ahead == NULL || pixels <= FULL_HD) return;
+    const long frames = encoding->format->ahead_frames * (long)FULL_HD / pixels;
+    snprintf(ahead, 16, "%ld", frames > AHEAD_LEAST ? frames : AHEAD_LEAST);
+    ADD(arguments, encoding->format->ahead, ahead, "-threads", "4");
+}
+
+/* Feeds all pictures to an ffmpeg with these further arguments. */
+static bool run_ffmpeg(const Encoding *encoding, const char *const *format_arguments, const char *output,
+                       Error *error) {
+    char size[32], rate[32], ahead[16];
+    Arguments arguments = {0};
+    snprintf(size, sizeof size, "%dx%d", encoding->width, encoding->height);
+    snprintf(rate, sizeof rate, "%.0f/%d", 1000 * encoding->options->frame_rate, 1000 * encoding->stride);
+    ADD(&arguments, "ffmpeg", "-y", "-v", "error", "-f", "rawvideo", "-pixel_format", "rgb24");
+    ADD(&arguments, "-video_size", size, "-framerate", rate, "-i", "-");
+    add(&arguments, format_arguments);
+    bound_memory(&arguments, encoding, ahead);
+    ADD(&arguments, output);
+    RawTarget target = {.rgb = malloc(3 * (size_t)encoding->width * (size_t)encoding->height)};
+    if (target.rgb == NULL) return error_memory(error, encoding->options->path);
+    bool stopped, ok = process_start(&target.process, arguments.list, error);
+    if (ok && !video_feed(encoding->options, encoding->stride, encoding->width, encoding->height, write_raw, &target,
+                          &stopped, encoding->progress, error)) {
+        process_kill(&target.process);
+        ok = false;
+    }
+    free(target.rgb);
+    if (!ok || !process_finish(&target.process, encoding->words, WORDS_SIZE, error)) return false;
+    return !stopped || error_system(error, "ffmpeg", "stopped reading before the last frame\n%s", encoding->words);
+}
+
+/* A GIF has 256 colours: the first pass finds the palette, the second applies it. */
+static bool run_for_gif(const Encoding *encoding, Error *error) {
+    static const char filter[] = GIF_SCALE ",palettegen=stats_mode=full";
+    static const char *const find[] = {"-vf", filter, "-frames:v", "1", "-c:v", "png", "-f", "image2pipe", NULL};
+    Arguments use = {0};
+    ADD(&use, "-f", "png_pipe", "-i", encoding->palette);
+    add(&use, encoding->format->encoder);
+    ADD(&use, "-f", encoding->format->muxer);
+    return run_ffmpeg(encoding, find, encoding->palette, error) &&
+           run_ffmpeg(encoding, use.list, encoding->part, error);
+}
+
+static bool run_for_film(const Encoding *encoding, Error *error) {
+    Arguments use = {0};
+    add(&use, encoding->format->encoder);
+    ADD(&use, "-f", encoding->format->muxer);
+    return run_ffmpeg(encoding, use.list, encoding->part, error);
+}
+
+/* Counts the frames by decoding the video. */
+static bool count_frames(const char *path, int *count, Error *error) {
+    Arguments arguments = {0};
+    ADD(&arguments, "ffprobe", "-v", "error", "-select_streams", "v:0", "-count_frames", "-show_entries");
+    ADD(&arguments, "stream=nb_read_frames", "-of", "csv=p=0", path);
+    Process ffprobe;
+    char text[256];
+    if (!process_start(&ffprobe, arguments.list, error) || !process_finish(&ffprobe, text, sizeof text, error))
+        return false;
+    *count = atoi(text);
+    return true;
+}
+
+static bool encode(const Encoding *encoding, Error *error) {
+    const VideoOptions *options = encoding->options;
+    int wanted = (options->last - options->first) / encoding->stride + 1, count;
+    bool gif = strcmp(encoding->format->ending, ".gif") == 0;
+    if (!(gif ? run_for_gif(encoding, error) : run_for_film(encoding, error)) ||
+        !count_frames(encoding->part, &count, error))
+        return false;
+    if (count != wanted) {
+        error_system(error, options->path, "the video has %d frames (expected %d)", count, wanted);
+        if (encoding->words[0] != '\0') error_add(error, "\n%s", encoding->words);
+        return false;
+    }
+    return file_draft_publish(encoding->draft, options->path, error);
+}
+
+/* Opened by ffmpeg through this process, so that no name is left when that is killed. The prefix "file:" prevents ffmpeg
+   from reading the name as that of a protocol. */
+static bool open_draft(int *draft, char name[DRAFT_NAME_SIZE], const char *path, Error *error) {
+    *draft = file_draft(path, error);
+    snprintf(name, DRAFT_NAME_SIZE, "file:/proc/%ld/fd/%d", (long)getpid(), *draft);
+    return *draft >= 0;
+}
+
+bool video_encode(const VideoOptions *options, const Progress *progress, Error *error) {
+    Encoding encoding = {.options = options, .stride = 1, .progress = progress};
+    if (!video_frame_size(options, &encoding.width, &encoding.height, error) ||
+        !video_check(options->path, encoding.width, encoding.height, error))
+        return false;
+    encoding.format = find_format(options->path);
+    const double most = options->rate_is_chosen ? encoding.format->max_rate : encoding.format->usual_rate;
+    /* 1e-3: tolerance for rounding of the frame rate. */
+    if (most > 0) encoding.stride = (int)fmax(1, ceil(options->frame_rate / most - 1e-3));
+    char words[WORDS_SIZE] = "";
+    encoding.words = words;
+    encoding.draft = encoding.palette_draft = -1;
+    const bool ok = open_draft(&encoding.draft, encoding.part, options->path, error) &&
+                    open_draft(&encoding.palette_draft, encoding.palette, options->path, error) &&
+                    encode(&encoding, error);
+    if (encoding.draft >= 0) close(encoding.draft);
+    if (encoding.palette_draft >= 0) close(encoding.palette_draft);
+    return ok;
+}

@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Compiles and links GLSL. */
+#include "base/base.h"
+#include "base/machine.h"
+#include "pixels/gl.h"
+#include "pixels/internal.h"
+#include "pixels/png.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LOG_SIZE = 1500 };
+
+static GLuint compile(const GlFunctions *gl, GLenum type, const char *name, const char *source, Error *error) {
+    GLuint shader = gl->CreateShader(type);
+    GLint ok = 0;
+    gl->ShaderSource(shader, 1, &source, NULL);
+    gl->CompileShader(shader);
+    gl->GetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (ok) return shader;
+    char log[LOG_SIZE] = "";
+    gl->GetShaderInfoLog(shader, LOG_SIZE, NULL, log);
+    error_system(error, name, "the %s shader does not compile: %s", type == GL_VERTEX_SHADER ? "vertex" : "fragment",
+                 log);
+    gl->DeleteShader(shader);
+    return 0;
+}
+
+static bool link_program(const GlFunctions *gl, GLuint program, const char *name, Error *error) {
+    GLint ok = 0;
+    gl->LinkProgram(program);
+    gl->GetProgramiv(program, GL_LINK_STATUS, &ok);
+    if (ok) return true;
+    char log[LOG_SIZE] = "";
+    gl->GetProgramInfoLog(program, LOG_SIZE, NULL, log);
+    return error_system(error, name, "the shaders do not link: %s", log);
+}
+
+/* Returns a linked program, or 0 with ERROR_SYSTEM and the compiler's log. `name` is used in the message. */
+static GLuint program_create(const GlFunctions *gl, const char *name, const char *vertex, const char *fragment,
+                             Error *error) {
+    GLuint shaders[2] = {compile(gl, GL_VERTEX_SHADER, name, vertex, error), 0};
+    if (shaders[0] != 0) shaders[1] = compile(gl, GL_FRAGMENT_SHADER, name, fragment, error);
+    GLuint program = 0;
+    if (shaders[1] != 0) {
+        program = gl->CreateProgram();
+        gl->AttachShader(program, shaders[0]);
+        gl->AttachShader(program, shaders[1]);
+        if (!link_program(gl, program, name, error)) {
+            gl->DeleteProgram(program);
+            program = 0;
+        }
+    }
+    for (int i = 0; i < 2; i++)
+        if (shaders[i] != 0) gl->DeleteShader(shaders[i]);
+    return program;
+}
+
+/* The n-th shape of one drawing is compared with the n-th of the other, and glyphs likewise. This respects the order
+   of painting: a row that no differing instance touches is painted by the same instances in the same order. */
+
+typedef struct Rows {
+    bool *changed;
+    int height;
+} Rows;
+
+/* The static layers, and the bitmaps to which glyphs refer. */
+static bool bases_equal(const Drawing *a, const Drawing *b) {
+    return a->rect_count == b->rect_count && a->static_shapes == b->static_shapes &&
+           (a->rect_count == 0 || memcmp(a->rects, b->rects, a->rect_count * sizeof *a->rects) == 0) &&
+           a->bitmap_size == b->bitmap_size &&
+           (a->bitmap_size == 0 || memcmp(a->bitmaps, b->bitmaps, a->bitmap_size) == 0) &&
+           (a->static_shapes == 0 || memcmp(a->shapes, b->shapes, a->static_shapes * sizeof *a->shapes) == 0);
+}
+
+static void mark(const Rows *rows, int top, int bottom) {
+    for (int y = top < 0 ? 0 : top; y < bottom && y < rows->height; y++) rows->changed[y] = true;
+}
+
+static void mark_shape(const Rows *rows, const Drawing *drawing, size_t i) {
+    if (i < drawing->shape_count) mark(rows, drawing->shapes[i].bounds[1], drawing->shapes[i].bounds[3]);
+}
+
+static void mark_glyph(const Rows *rows, const Drawing *drawing, size_t i) {
+    if (i >= drawing->glyph_count) return;
+    const int32_t *box = drawing->glyphs[i].box;
+    mark(rows, box[1], box[1] + box[3]);
+}
+
+static size_t larger(size_t a, size_t b) { return a > b ? a : b; }
+
+static void mark_shapes(const Rows *rows, const Drawing *before, const Drawing *after) {
+    for (size_t i = after->static_shapes; i < larger(before->shape_count, after->shape_count); i++) {
+        if (i < before->shape_count && i < after->shape_count &&
+            memcmp(&before->shapes[i], &after->shapes[i], sizeof *after->shapes) == 0)
+            continue;
+        mark_shape(rows, before, i);
+        mark_shape(rows, after, i);
+    }
+}
+
+static void mark_glyphs(const Rows *rows, const Drawing *before, const Drawing *after) {
+    for (size_t i = 0; i < larger(before->glyph_count, after->glyph_count); i++) {
+        if (i < before->glyph_count && i < after->glyph_count &&
+            memcmp(&before->glyphs[i], &after->glyphs[i], sizeof *after->glyphs) == 0)
+            continue;
+        mark_glyph(rows, before, i);
+        mark_glyph(rows, after, i);
+    }
+}
+
+bool damage_find(const Drawing *before, const Drawing *after, int height, bool *changed) {
+    const Rows rows = {changed, height};
+    bool equal = bases_equal(before, after);
+    memset(changed, !equal, (size_t)height);
+    if (!equal) return false;
+    mark_shapes(&rows, before, after);
+    mark_glyphs(&rows, before, after);
+    return true;
+}
+
+/* The static layer (background, rectangles, static shapes) is painted once into its own framebuffer. A frame blits
+   the changed rows of that layer and adds two instanced draw calls, for shapes and for glyphs, clipped to these
+   rows. Row 0 of a framebuffer is the top row of the picture, so no image is flipped. */
+
+/* A program and the instance buffer that feeds it. */
+typedef struct Batch {
+    GLuint program, vertices, buffer;
+} Batch;
+
+typedef struct Target {
+    GLuint framebuffer, color;
+} Target;
+
+struct Canvas {
+    const GlFunctions *gl;
+    int width, height;
+    Target static_layer, picture;
+    GLuint font_buffer, font_texture; /* the atlas, then bitmaps of the drawing */
+    size_t bitmap_capacity;           /* of the drawing's bitmaps there */
+    Batch rects, shapes, glyphs;
+    Drawing moving; /* moving instances, clipped to the changed rows */
+};
+
+static bool check_gl(const GlFunctions *gl, const char *when, Error *error) {
+    const GLenum problem = gl->GetError();
+    return problem == GL_NO_ERROR ||
+           error_system(error, "render", "OpenGL error 0x%04x%s %s%s", problem,
+                        problem == GL_OUT_OF_MEMORY ? " (out of memory)" : "", when, memory_limit().text);
+}
+
+static bool create_target(Canvas *canvas, Target *target, Error *error) {
+    const GlFunctions *gl = canvas->gl;
+    gl->GenRenderbuffers(1, &target->color);
+    gl->BindRenderbuffer(GL_RENDERBUFFER, target->color);
+    gl->RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, canvas->width, canvas->height);
+    gl->GenFramebuffers(1, &target->framebuffer);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target->color);
+    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return true;
+    return error_system(error, "render", "OpenGL cannot create a framebuffer of %d x %d pixels%s", canvas->width,
+                        canvas->height, memory_limit().text);
+}
+
+static void create_font(Canvas *canvas) {
+    const GlFunctions *gl = canvas->gl;
+    gl->GenBuffers(1, &canvas->font_buffer);
+    gl->BindBuffer(GL_TEXTURE_BUFFER, canvas->font_buffer);
+    gl->BufferData(GL_TEXTURE_BUFFER, font_bitmaps_size, font_bitmaps, GL_STATIC_DRAW);
+    gl->GenTextures(1, &canvas->font_texture);
+    gl->BindTexture(GL_TEXTURE_BUFFER, canvas->font_texture);
+    gl->TexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, canvas->font_buffer);
+}
+
+/* Attribute i of an instance has components[i] integers; a 0 ends the list. */
+static bool create_batch(Canvas *canvas, Batch *batch, const char *name, const char *vertex, const char *fragment,
+                         const int *components, GLsizei stride, Error *error) {
+    const GlFunctions *gl = canvas->gl;
+    if ((batch->program = program_create(gl, name, vertex, fragment, error)) == 0) return false;
+    gl->UseProgram(batch->program);
+    gl->Uniform2i(gl->GetUniformLocation(batch->program, "size"), canvas->width, canvas->height);
+    gl->GenVertexArrays(1, &batch->vertices);
+    gl->BindVertexArray(batch->vertices);
+    gl->GenBuffers(1, &batch->buffer);
+    gl->BindBuffer(GL_ARRAY_BUFFER, batch->buffer);
+    size_t offset = 0;
+    for (GLuint i = 0; components[i] != 0; offset += sizeof(GLint) * (size_t)components[i++]) {
+        gl->EnableVertexAttribArray(i);
+        /* OpenGL takes an offset as a pointer. NOLINTNEXTLINE(performance-no-int-to-ptr) */
+        gl->VertexAttribIPointer(i, components[i], GL_INT, stride, (const void *)offset);
+        gl->VertexAttribDivisor(i, 1);
+    }
+    return true;
+}
+
+static bool setup_gl(Canvas *canvas, Error *error) {
+    static const int rect[] = {4, 1, 0}, shape[] = {4, 4, 4, 4, 0}, glyph[] = {4, 2, 0};
+    const GlFunctions *gl = canvas->gl;
+    if (!create_target(canvas, &canvas->static_layer, error) || !create_target(canvas, &canvas->picture, error) ||
+        !create_batch(canvas, &canvas->rects, "shaders/rect", shader_rect_vert, shader_rect_frag, rect,
+                      sizeof(RectInstance), error) ||
+        !create_batch(canvas, &canvas->shapes, "shaders/shape", shader_shape_vert, shader_shape_frag, shape,
+                      sizeof(ShapeInstance), error) ||
+        !create_batch(canvas, &canvas->glyphs, "shaders/text", shader_text_vert, shader_text_frag, glyph,
+                      sizeof(GlyphInstance), error))
+        return false;
+    create_font(canvas);
+    gl->Viewport(0, 0, canvas->width, canvas->height);
+    gl->Disable(GL_DITHER);
+    gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE); /* alpha stays 1 */
+    gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
+    return check_gl(gl, "in set-up", error);
+}
+
+Canvas *canvas_create(const GlFunctions *gl, int width, int height, Error *error) {
+    Canvas *canvas = calloc(1, sizeof *canvas);
+    if (canvas == NULL) {
+        error_memory(error, "render");
+        return NULL;
+    }
+    canvas->gl = gl;
+    canvas->width = width;
+    canvas->height = height;
+    if (setup_gl(canvas, error)) return canvas;
+    canvas_destroy(canvas);
+    return NULL;
+}
+
+static void destroy_batch(const GlFunctions *gl, Batch *batch) {
+    gl->DeleteProgram(batch->program);
+    gl->DeleteVertexArrays(1, &batch->vertices);
+    gl->DeleteBuffers(1, &batch->buffer);
+}
+
+static void destroy_target(const GlFunctions *gl, Target *target) {
+    gl->DeleteFramebuffers(1, &target->framebuffer);
+    gl->DeleteRenderbuffers(1, &target->color);
+}
+
+void canvas_destroy(Canvas *canvas) {
+    if (canvas == NULL) return;
+    const GlFunctions *gl = canvas->gl;
+    destroy_batch(gl, &canvas->rects);
+    destroy_batch(gl, &canvas->shapes);
+    destroy_batch(gl, &canvas->glyphs);
+    gl->DeleteTextures(1, &canvas->font_texture);
+    gl->DeleteBuffers(1, &canvas->font_buffer);
+    destroy_target(gl, &canvas->static_layer);
+    destroy_target(gl, &canvas->picture);
+    drawing_free(&canvas->moving);
+    free(canvas);
+}
+
+static void draw(const GlFunctions *gl, const Batch *batch, const void *instances, size_t count, size_t size) {
+    if (count == 0) return;
+    gl->UseProgram(batch->program);
+    gl->BindVertexArray(batch->vertices);
+    gl->BindBuffer(GL_ARRAY_BUFFER, batch->buffer);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(count * size), instances, GL_STREAM_DRAW);
+    gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)count);
+}
+
+/* The atlas stays in the buffer unless it has to grow. */
+static void load_bitmaps(Canvas *canvas, const Drawing *drawing) {
+    const GlFunctions *gl = canvas->gl;
+    if (drawing->bitmap_size == 0) return;
+    gl->BindBuffer(GL_TEXTURE_BUFFER, canvas->font_buffer);
+    if (drawing->bitmap_size > canvas->bitmap_capacity) {
+        canvas->bitmap_capacity = drawing->bitmap_capacity;
+        gl->BufferData(GL_TEXTURE_BUFFER, (GLsizeiptr)(font_bitmaps_size + canvas->bitmap_capacity), NULL,
+                       GL_STATIC_DRAW);
+        gl->BufferSubData(GL_TEXTURE_BUFFER, 0, font_bitmaps_size, font_bitmaps);
+        gl->TexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, canvas->font_buffer);
+    }
+    gl->BufferSubData(GL_TEXTURE_BUFFER, font_bitmaps_size, (GLsizeiptr)drawing->bitmap_size, drawing->bitmaps);
+}
+
+static void paint_static(const Canvas *canvas, const Drawing *drawing, uint32_t background) {
+    const GlFunctions *gl = canvas->gl;
+    gl->BindFramebuffer(GL_FRAMEBUFFER, canvas->static_layer.framebuffer);
+    gl->ClearColor((float)(background >> 16 & 255) / 255, (float)(background >> 8 & 255) / 255,
+                   (float)(background & 255) / 255, 1);
+    gl->Clear(GL_COLOR_BUFFER_BIT);
+    gl->Disable(GL_BLEND);
+    draw(gl, &canvas->rects, drawing->rects, drawing->rect_count, sizeof *drawing->rects);
+    gl->Enable(GL_BLEND);
+    draw(gl, &canvas->shapes, drawing->shapes, drawing->static_shapes, sizeof *drawing->shapes);
+}
+
+/* Consecutive rows to paint. */
+typedef struct Band {
+    int top, bottom;
+} Band;
+
+/* The first band at or below row y; empty if there is none. */
+static Band next_band(const Canvas *canvas, const bool *changed, int y) {
+    if (changed == NULL) return (Band){y, canvas->height};
+    while (y < canvas->height && !changed[y]) y++;
+    Band band = {y, y};
+    while (band.bottom < canvas->height && changed[band.bottom]) band.bottom++;
+    return band;
+}
+
+/* One blit per band, but one draw call per batch for all bands: calls cost more than instances. */
+static void paint_changed_rows(Canvas *canvas, const Drawing *drawing, const bool *changed) {
+    const GlFunctions *gl = canvas->gl;
+    Drawing *moving = &canvas->moving;
+    drawing_clear(moving);
+    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->static_layer.framebuffer);
+    gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, canvas->picture.framebuffer);
+    for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom)) {
+        gl->BlitFramebuffer(0, b.top, canvas->width, b.bottom, 0, b.top, canvas->width, b.bottom, GL_COLOR_BUFFER_BIT,
+                            GL_NEAREST);
+        drawing_add_rows(moving, drawing, b.top, b.bottom);
+    }
+    draw(gl, &canvas->shapes, moving->shapes, moving->shape_count, sizeof *moving->shapes);
+    draw(gl, &canvas->glyphs, moving->glyphs, moving->glyph_count, sizeof *moving->glyphs);
+}
+
+static void read_back(const Canvas *canvas, const bool *changed, Image *image) {
+    const GlFunctions *gl = canvas->gl;
+    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, canvas->picture.framebuffer);
+    for (Band b = next_band(canvas, changed, 0); b.top < b.bottom; b = next_band(canvas, changed, b.bottom))
+        gl->ReadPixels(0, b.top, canvas->width, b.bottom - b.top, GL_RGBA, GL_UNSIGNED_BYTE,
+                       image->pixels + (size_t)b.top * (size_t)canvas->width * 4);
+}
+
+bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
+                  Error *error) {
+    if (drawing->failed) return error_memory(error, "render");
+    load_bitmaps(canvas, drawing);
+    if (changed == NULL) paint_static(canvas, drawing, background);
+    paint_changed_rows(canvas, drawing, changed);
+    if (canvas->moving.failed) return error_memory(error, "render");
+    read_back(canvas, changed, image);
+    return check_gl(canvas->gl, "in a frame", error);
+}

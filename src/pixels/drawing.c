@@ -1,0 +1,297 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Converts shapes to the integers of the shader. Everything that could be rounded in more than one way is rounded
+   here, in double, to a grid far coarser than double's own error. */
+#include "base/base.h"
+#include "pixels/gl.h"
+#include "pixels/png.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double FIXED = 65536.0;        /* shader units per pixel */
+static const double SNAP = 256.0;           /* positions and sizes are multiples of 1/256 pixel */
+static const double MAX_HALF_SIZE = 8192.0; /* pixels; larger boxes are reduced, or the shader's integers overflow */
+static const double MAX_COORDINATE = 1e9;   /* pixels; no visible body is farther away */
+
+void drawing_clear(Drawing *drawing) {
+    drawing->rect_count = drawing->shape_count = drawing->glyph_count = drawing->static_shapes = 0;
+    drawing->bitmap_size = 0;
+    drawing->failed = false;
+}
+
+void drawing_free(Drawing *drawing) {
+    free(drawing->rects);
+    free(drawing->shapes);
+    free(drawing->glyphs);
+    free(drawing->bitmaps);
+    *drawing = (Drawing){0};
+}
+
+static double snap(double pixels) { return rint(pixels * SNAP) / SNAP; }
+
+static int32_t fixed(double pixels) { return (int32_t)rint(pixels * FIXED); }
+
+/* Clamps the interval [-*half, *half] to MAX_HALF_SIZE / 2 beyond [low, high]. Returns its new centre. */
+static double clamp_interval(double low, double high, double *half) {
+    double first = fmax(-*half, low - MAX_HALF_SIZE / 2), last = fmin(*half, high + MAX_HALF_SIZE / 2);
+    *half = (last - first) / 2;
+    return (first + last) / 2;
+}
+
+/* Removes what is far outside the clip from a very large box, and its band with it. */
+static void limit_size(Shape *shape, const Rect *clip) {
+    if (shape->half_width <= MAX_HALF_SIZE && shape->half_height <= MAX_HALF_SIZE) return;
+    double c = shape->cosine, s = shape->sine;
+    double x = (clip->left + clip->right) / 2.0, y = (clip->top + clip->bottom) / 2.0;
+    double w = (clip->right - clip->left) / 2.0, h = (clip->bottom - clip->top) / 2.0;
+    double local_x = (x - shape->x) * c - (y - shape->y) * s;
+    double local_y = -(x - shape->x) * s - (y - shape->y) * c;
+    double reach_x = fabs(c) * w + fabs(s) * h, reach_y = fabs(s) * w + fabs(c) * h;
+    double center_x = clamp_interval(local_x - reach_x, local_x + reach_x, &shape->half_width);
+    double center_y = clamp_interval(local_y - reach_y, local_y + reach_y, &shape->half_height);
+    shape->x += center_x * c - center_y * s;
+    shape->y -= center_x * s + center_y * c;
+    shape->band = 0;
+}
+
+static bool is_drawable(const Shape *shape) {
+    return fabs(shape->x) < MAX_COORDINATE && fabs(shape->y) < MAX_COORDINATE && shape->half_width > 0 &&
+           shape->half_height > 0 && shape->half_width < MAX_COORDINATE && shape->half_height < MAX_COORDINATE &&
+           isfinite(shape->cosine) && isfinite(shape->sine);
+}
+
+/* A hollow shape has one colour throughout, or its inner edge would blend with another colour. */
+static void set_paint(ShapeInstance *instance, const Shape *shape) {
+    bool hollow = shape->hollow;
+    instance->paint[0] = hollow ? shape->line | SHAPE_HOLLOW : shape->fill;
+    instance->paint[1] = hollow || shape->outline > 0 ? shape->line : shape->fill;
+    instance->paint[2] = hollow ? shape->line : shape->band > 0 ? shape->band_color : shape->fill;
+    instance->paint[3] = (uint32_t)fixed(shape->band);
+}
+
+/* The whole pixels inside `clip` that the snapped shape can touch. Returns false if there are none. */
+static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4]) {
+    double reach_x = fabs(shape->cosine) * shape->half_width + fabs(shape->sine) * shape->half_height + 1;
+    double reach_y = fabs(shape->sine) * shape->half_width + fabs(shape->cosine) * shape->half_height + 1;
+    bounds[0] = (int32_t)fmax(floor(shape->x - reach_x), clip->left);
+    bounds[1] = (int32_t)fmax(floor(shape->y - reach_y), clip->top);
+    bounds[2] = (int32_t)fmin(ceil(shape->x + reach_x), clip->right);
+    bounds[3] = (int32_t)fmin(ceil(shape->y + reach_y), clip->bottom);
+    return bounds[0] < bounds[2] && bounds[1] < bounds[3];
+}
+
+static ShapeInstance *next_shape(Drawing *drawing) {
+    size_t wanted = drawing->shape_count + 1;
+    if (!array_reserve((void **)&drawing->shapes, &drawing->shape_capacity, wanted, sizeof *drawing->shapes)) {
+        drawing->failed = true;
+        return NULL;
+    }
+    return &drawing->shapes[drawing->shape_count];
+}
+
+void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip) {
+    if (!is_drawable(original)) return; /* keeps NaN away from limit_size() */
+    Shape shape = *original;
+    limit_size(&shape, clip);
+    if (!is_drawable(&shape)) return;
+    shape.x = snap(shape.x), shape.y = snap(shape.y);
+    shape.half_width = snap(shape.half_width), shape.half_height = snap(shape.half_height);
+    ShapeInstance *instance = next_shape(drawing);
+    if (instance == NULL || !find_bounds(&shape, clip, instance->bounds)) return;
+    /* The local axes are (c, -s) and (-s, -c), y pointing down. They are rounded first, so that the position below
+       agrees with the shader's steps of one pixel. */
+    int32_t c = fixed(shape.cosine), s = fixed(-shape.sine);
+    double x = instance->bounds[0] + 0.5 - shape.x, y = instance->bounds[1] + 0.5 - shape.y;
+    instance->axis[0] = c, instance->axis[1] = s;
+    instance->axis[2] = (int32_t)rint(c * x + s * y), instance->axis[3] = (int32_t)rint(s * x - c * y);
+    instance->extents[0] = fixed(shape.half_width), instance->extents[1] = fixed(shape.half_height);
+    instance->extents[2] = fixed(fmin(shape.radius, fmin(shape.half_width, shape.half_height)));
+    instance->extents[3] = fixed(fmin(shape.outline, MAX_HALF_SIZE));
+    set_paint(instance, &shape);
+    drawing->shape_count++;
+}
+
+void drawing_add_rect(Drawing *drawing, Rect rect, uint32_t color) {
+    size_t wanted = drawing->rect_count + 1;
+    if (array_reserve((void **)&drawing->rects, &drawing->rect_capacity, wanted, sizeof *drawing->rects))
+        drawing->rects[drawing->rect_count++] = (RectInstance){rect, color};
+    else
+        drawing->failed = true;
+}
+
+void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph) {
+    size_t wanted = drawing->glyph_count + 1;
+    if (array_reserve((void **)&drawing->glyphs, &drawing->glyph_capacity, wanted, sizeof *glyph))
+        drawing->glyphs[drawing->glyph_count++] = *glyph;
+    else
+        drawing->failed = true;
+}
+
+uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap) {
+    const size_t start = drawing->bitmap_size, wanted = start + size;
+    if (!array_reserve((void **)&drawing->bitmaps, &drawing->bitmap_capacity, wanted, 1)) {
+        drawing->failed = true;
+        return NULL;
+    }
+    drawing->bitmap_size = wanted;
+    *bitmap = (uint32_t)(font_bitmaps_size + start);
+    return memset(drawing->bitmaps + start, 0, size);
+}
+
+/* If the first row is below the shape's top, its local position moves by whole steps of the shader. */
+static void add_shape_rows(Drawing *drawing, const ShapeInstance *from, int top, int bottom) {
+    ShapeInstance *part = from->bounds[1] < bottom && from->bounds[3] > top ? next_shape(drawing) : NULL;
+    if (part == NULL) return;
+    *part = *from;
+    if (bottom < part->bounds[3]) part->bounds[3] = bottom;
+    if (top > part->bounds[1]) {
+        int64_t rows = top - part->bounds[1];
+        part->bounds[1] = top;
+        part->axis[2] = (int32_t)(part->axis[2] + rows * part->axis[1]);
+        part->axis[3] = (int32_t)(part->axis[3] - rows * part->axis[0]);
+    }
+    drawing->shape_count++;
+}
+
+static void add_glyph_rows(Drawing *drawing, const GlyphInstance *from, int top, int bottom) {
+    GlyphInstance part = *from;
+    int skipped = top > part.box[1] ? top - part.box[1] : 0;
+    part.box[1] += skipped;
+    part.box[3] -= skipped;
+    part.bitmap += (uint32_t)(skipped * part.box[2]);
+    if (part.box[1] + part.box[3] > bottom) part.box[3] = bottom - part.box[1];
+    if (part.box[3] > 0) drawing_add_glyph(drawing, &part);
+}
+
+void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom) {
+    for (size_t i = from->static_shapes; i < from->shape_count; i++)
+        add_shape_rows(drawing, &from->shapes[i], top, bottom);
+    for (size_t i = 0; i < from->glyph_count; i++) add_glyph_rows(drawing, &from->glyphs[i], top, bottom);
+}
+
+static const double HEAD = 4.2;      /* length of an arrow's head / thickness */
+static const double MIN_HEAD = 3;    /* the same for short arrows */
+static const double MIN_LENGTH = 2;  /* of an arrow / thickness */
+static const double HALO = 1.0;      /* pixels on each side; at least a third of the thickness */
+static const double NO_HALO = 1.0;   /* pixels; lines up to this thickness have no halo, which would be all to see */
+static const double HALO_RISE = 2.5; /* of the halo, pixels per pixel of thickness from there */
+static const double HEAD_SPACING = 0.85; /* between two heads / their length */
+static const double HEAD_SINE = 0.5;     /* of half the angle between the head's sides, 30 degrees */
+static const double HEAD_COSINE = 0.8660254037844386;
+static const double TILE = 16;        /* pixels, side of a tile of a slanted line */
+static const double MAX_TILED = 8000; /* pixels; longer shapes are reduced per tile, and their tiles would not
+                                             match */
+static const int MAX_DASHES = 10000;  /* of one segment; a line of 8,192 pixels has fewer */
+
+/* The whole pixels that the line can touch between these columns (flat) or rows. */
+static Rect tile_of(Point from, Point to, double thickness, bool flat, double first, double last) {
+    double start = flat ? from.x : from.y, length = flat ? to.x - from.x : to.y - from.y;
+    double a = fmin(fmax((first - start) / length, 0), 1), b = fmin(fmax((last - start) / length, 0), 1);
+    double other = flat ? from.y : from.x, rise = flat ? to.y - from.y : to.x - from.x;
+    double low = fmin(other + a * rise, other + b * rise), high = fmax(other + a * rise, other + b * rise);
+    int before = (int)floor(low - 0.75 * thickness - 1), behind = (int)ceil(high + 0.75 * thickness + 1);
+    return flat ? (Rect){(int)first, before, (int)last, behind} : (Rect){before, (int)first, behind, (int)last};
+}
+
+static Rect intersection(Rect a, const Rect *b) {
+    return (Rect){a.left > b->left ? a.left : b->left, a.top > b->top ? a.top : b->top,
+                  a.right < b->right ? a.right : b->right, a.bottom < b->bottom ? a.bottom : b->bottom};
+}
+
+/* A long slanted line touches few pixels of its bounding box, so it is drawn in disjoint tiles. */
+static void add_in_tiles(Drawing *drawing, const Shape *line, Point from, Point to, double thickness,
+                         const Rect *clip) {
+    bool flat = fabs(to.x - from.x) > fabs(to.y - from.y);
+    double low = flat ? fmin(from.x, to.x) : fmin(from.y, to.y), high = flat ? fmax(from.x, to.x) : fmax(from.y, to.y);
+    double first = fmax(floor(low - thickness - 2), flat ? clip->left : clip->top);
+    double last = fmin(ceil(high + thickness + 2), flat ? clip->right : clip->bottom);
+    for (double at = first; at < last; at += TILE) {
+        Rect part = intersection(tile_of(from, to, thickness, flat, at, fmin(at + TILE, last)), clip);
+        if (part.left < part.right && part.top < part.bottom) drawing_add_shape(drawing, line, &part);
+    }
+}
+
+void stroke_line(Drawing *drawing, Point from, Point to, double thickness, uint32_t color, const Rect *clip) {
+    double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
+    if (!isfinite(length)) return;
+    Shape line = {.x = (from.x + to.x) / 2,
+                  .y = (from.y + to.y) / 2,
+                  .half_width = (length + thickness) / 2,
+                  .half_height = thickness / 2,
+                  .cosine = length > 0 ? dx / length : 1,
+                  .sine = length > 0 ? -dy / length : 0,
+                  .radius = thickness / 2,
+                  .fill = color};
+    if (fmin(fabs(dx), fabs(dy)) > TILE && length < MAX_TILED)
+        add_in_tiles(drawing, &line, from, to, thickness, clip);
+    else
+        drawing_add_shape(drawing, &line, clip);
+}
+
+void stroke_dot(Drawing *drawing, Point center, double radius, uint32_t fill, uint32_t rim, const Rect *clip) {
+    Shape dot = {.x = center.x,
+                 .y = center.y,
+                 .half_width = radius,
+                 .half_height = radius,
+                 .cosine = 1,
+                 .radius = radius,
+                 .outline = fmax(1, radius / 3),
+                 .fill = fill,
+                 .line = rim};
+    drawing_add_shape(drawing, &dot, clip);
+}
+
+/* One side of the head at `tip`. (c, s) is the arrow's direction; `turn` is 1 or -1. */
+static void draw_side(Drawing *drawing, Point tip, double c, double s, double turn, double size, double thickness,
+                      uint32_t color, const Rect *clip) {
+    double x = -c * HEAD_COSINE - turn * s * HEAD_SINE, y = -s * HEAD_COSINE + turn * c * HEAD_SINE;
+    stroke_line(drawing, tip, (Point){tip.x + size * x, tip.y + size * y}, thickness, color, clip);
+}
+
+static void draw_arrow(Drawing *drawing, Point from, Point to, double head, bool truncated, double thickness,
+                       uint32_t color, const Rect *clip) {
+    double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy);
+    double c = dx / length, s = dy / length;
+    stroke_line(drawing, from, to, thickness, color, clip);
+    for (int i = 0; i < (truncated ? 2 : 1); i++) {
+        Point tip = {to.x - i * HEAD_SPACING * head * c, to.y - i * HEAD_SPACING * head * s};
+        draw_side(drawing, tip, c, s, 1, head, thickness, color, clip);
+        draw_side(drawing, tip, c, s, -1, head, thickness, color, clip);
+    }
+}
+
+static double halo_width(double thickness) {
+    return fmax(fmin(HALO, HALO_RISE * (thickness - NO_HALO)), thickness > 3 * HALO ? thickness / 3 : 0);
+}
+
+void stroke_arrow(Drawing *drawing, Point from, Point to, bool truncated, const ArrowStyle *style, const Rect *clip) {
+    double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy), t = style->thickness;
+    if (!(length >= MIN_LENGTH * t) || !isfinite(length)) return; /* nothing but head */
+    double head = fmin(HEAD * t, fmax(MIN_HEAD * t, 0.6 * length));
+    if (halo_width(t) > 0) draw_arrow(drawing, from, to, head, truncated, t + 2 * halo_width(t), style->halo, clip);
+    draw_arrow(drawing, from, to, head, truncated, t, style->color, clip);
+}
+
+void stroke_dashed(Drawing *drawing, Point from, Point to, DashedLine *line, const Rect *clip) {
+    const double t = line->thickness,
+                 parts[] = {line->dash.on * t, line->dash.off * t, line->dash.on2 * t, line->dash.off2 * t};
+    double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy), done = 0;
+    double period = parts[0] + parts[1] + parts[2] + parts[3];
+    if (!isfinite(length)) return;
+    if (!(period > 0)) {
+        stroke_line(drawing, from, to, t, line->color, clip);
+        return;
+    }
+    for (int i = 0; i < MAX_DASHES && done < length; i++) {
+        double at = fmod(line->travelled, period);
+        int part = 0;
+        while (part < 3 && at >= parts[part]) at -= parts[part++];
+        double step = fmin(fmax(parts[part] - at, 0.01), length - done), end = done + step;
+        if (part % 2 == 0)
+            stroke_line(drawing, (Point){from.x + dx * done / length, from.y + dy * done / length},
+                        (Point){from.x + dx * end / length, from.y + dy * end / length}, t, line->color, clip);
+        done = end;
+        line->travelled += step;
+    }
+}

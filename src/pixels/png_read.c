@@ -1,0 +1,517 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "pixels/internal.h"
+#include "pixels/png.h"
+
+#include <libdeflate.h>
+#include <limits.h>
+#include <png.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+png_voidp png_memory_take(png_structp png, png_alloc_size_t size) {
+    void *block = malloc(size);
+    if (block == NULL) *(bool *)png_get_mem_ptr(png) = true;
+    return block;
+}
+
+void png_memory_release(png_structp png, png_voidp block) {
+    (void)png;
+    free(block);
+}
+
+/* Rows of PNG files as RGBA. */
+
+enum { OPAQUE = 255 };
+
+/* Compilers make one load of it, and one store of the next. */
+static uint32_t load(const uint8_t *p) {
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+static void store(uint32_t pixel, uint8_t *rgba) {
+    pixel |= (uint32_t)OPAQUE << 24;
+    rgba[0] = (uint8_t)pixel, rgba[1] = (uint8_t)(pixel >> 8);
+    rgba[2] = (uint8_t)(pixel >> 16), rgba[3] = (uint8_t)(pixel >> 24);
+}
+
+#ifdef TWINBOX_AVX
+typedef uint8_t Bytes __attribute__((vector_size(16)));
+
+/* Sixteen bytes hold five pixels, of which four are taken. Returns how many pixels are done. */
+__attribute__((target("ssse3"))) static size_t expand_rgb_ssse3(const uint8_t *restrict row, size_t width,
+                                                                uint8_t *restrict rgba) {
+    static const Bytes opaque = {0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE};
+    size_t x = 0;
+    for (; x + 6 <= width; x += 4) {
+        Bytes bytes;
+        memcpy(&bytes, row + 3 * x, sizeof bytes);
+        bytes =
+            __builtin_shufflevector(bytes, (Bytes){0}, 0, 1, 2, 16, 3, 4, 5, 16, 6, 7, 8, 16, 9, 10, 11, 16) | opaque;
+        memcpy(rgba + 4 * x, &bytes, sizeof bytes);
+    }
+    return x;
+}
+#endif
+
+/* Four pixels are three words. */
+static void expand_rgb(const uint8_t *restrict row, size_t width, uint8_t *restrict rgba) {
+    size_t x = 0;
+#ifdef TWINBOX_AVX
+    if (__builtin_cpu_supports("ssse3")) x = expand_rgb_ssse3(row, width, rgba);
+    row += 3 * x, rgba += 4 * x;
+#endif
+    for (; x + 4 <= width; x += 4, row += 12, rgba += 16) {
+        uint32_t a = load(row), b = load(row + 4), c = load(row + 8);
+        store(a, rgba);
+        store(a >> 24 | b << 8, rgba + 4);
+        store(b >> 16 | c << 16, rgba + 8);
+        store(c >> 8, rgba + 12);
+    }
+    for (; x < width; x++, row += 3, rgba += 4)
+        store((uint32_t)row[0] | (uint32_t)row[1] << 8 | (uint32_t)row[2] << 16, rgba);
+}
+
+static void clear_rgb(const PngLayout *layout, uint8_t *rgba) {
+    for (size_t x = 0; x < layout->width; x++)
+        if (memcmp(rgba + 4 * x, layout->clear, 3) == 0) rgba[4 * x + 3] = 0;
+}
+
+static void expand_grey_alpha(const uint8_t *restrict row, size_t width, uint8_t *restrict rgba) {
+    for (size_t x = 0; x < width; x++) {
+        rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = row[2 * x];
+        rgba[4 * x + 3] = row[2 * x + 1];
+    }
+}
+
+/* Sample x of one channel; the first is in the highest bits of a byte. */
+static unsigned sample(const uint8_t *row, size_t x, unsigned depth) {
+    size_t bit = x * depth;
+    return (unsigned)row[bit / 8] >> (8 - depth - bit % 8) & ((1u << depth) - 1);
+}
+
+static void expand_grey(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
+    unsigned depth = (unsigned)layout->depth, scale = 255 / ((1u << depth) - 1);
+    for (size_t x = 0; x < layout->width; x++) {
+        unsigned value = sample(row, x, depth);
+        rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = (uint8_t)(value * scale);
+        rgba[4 * x + 3] = layout->has_clear && value == layout->clear[0] ? 0 : OPAQUE;
+    }
+}
+
+static bool expand_palette(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
+    unsigned depth = (unsigned)layout->depth, most = 0;
+    for (size_t x = 0; x < layout->width; x++) {
+        unsigned index = sample(row, x, depth);
+        memcpy(rgba + 4 * x, layout->palette[index], 4);
+        if (index > most) most = index;
+    }
+    return most < (unsigned)layout->colors;
+}
+
+bool png_expand(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
+    if (layout->color == PNG_PALETTE) return expand_palette(layout, row, rgba);
+    if (layout->color == PNG_GREY) expand_grey(layout, row, rgba);
+    if (layout->color == PNG_GREY_ALPHA) expand_grey_alpha(row, layout->width, rgba);
+    if (layout->color == PNG_RGB) expand_rgb(row, layout->width, rgba);
+    if (layout->color == PNG_RGB && layout->has_clear) clear_rgb(layout, rgba);
+    if (layout->color == PNG_RGB_ALPHA) memcpy(rgba, row, 4 * (size_t)layout->width);
+    return true;
+}
+
+bool png_same_layout(const PngLayout *a, const PngLayout *b) {
+    return a->width == b->width && a->height == b->height && a->color == b->color && a->depth == b->depth &&
+           a->colors == b->colors && memcmp(a->palette, b->palette, sizeof a->palette) == 0 &&
+           a->has_clear == b->has_clear && memcmp(a->clear, b->clear, sizeof a->clear) == 0;
+}
+
+bool png_check_start(const uint8_t *data, size_t size, const char *path, Error *error) {
+    static const uint8_t signature[PNG_SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+    if (size == 0) return error_input(error, path, "not a PNG file, or damaged: it is empty");
+    if (!lfs_pointer_refuse(data, size, path, error)) return false;
+    return (size >= PNG_SIGNATURE && memcmp(data, signature, PNG_SIGNATURE) == 0) ||
+           error_input(error, path, "not a PNG file, or damaged: it does not begin as one");
+}
+
+typedef struct Header {
+    uint32_t width, height;
+    int depth, color, interlace;
+} Header;
+
+enum { GREY = 0, RGB = 2, PALETTE = 3, GREY_ALPHA = 4, RGB_ALPHA = 6 };
+
+/* Table 11.1 of the specification. */
+static bool depth_fits(int color, int depth) {
+    static const int depths[] = {[GREY] = 1 | 2 | 4 | 8 | 16,
+                                 [RGB] = 8 | 16,
+                                 [PALETTE] = 1 | 2 | 4 | 8,
+                                 [GREY_ALPHA] = 8 | 16,
+                                 [RGB_ALPHA] = 8 | 16};
+    bool power = depth > 0 && (depth & (depth - 1)) == 0;
+    return color <= RGB_ALPHA && power && (depths[color] & depth) != 0;
+}
+
+static bool read_header(const PngChunk *chunk, Header *header) {
+    const uint8_t *data = chunk->data;
+    if (!png_chunk_is(chunk, "IHDR") || chunk->length != 13) return false;
+    *header = (Header){png_number(data), png_number(data + 4), data[8], data[9], data[12]};
+    return header->width > 0 && header->width <= INT_MAX && header->height > 0 && header->height <= INT_MAX &&
+           depth_fits(header->color, header->depth) && data[10] == 0 && data[11] == 0 && header->interlace <= 1;
+}
+
+bool png_size(const uint8_t *data, size_t size, int *width, int *height) {
+    Header header;
+    PngChunk chunk;
+    size_t at = PNG_SIGNATURE;
+    if (size < PNG_SIGNATURE || !png_chunk_next(data, size, &at, &chunk) || !read_header(&chunk, &header)) return false;
+    *width = (int)header.width;
+    *height = (int)header.height;
+    return true;
+}
+
+bool png_check_pixels(int width, int height, int64_t max_pixels, const char *path, Error *error) {
+    return (int64_t)width * height <= max_pixels ||
+           error_input(error, path, "the picture has %d x %d pixels; at most %lld pixels can be read", width, height,
+                       (long long)max_pixels);
+}
+
+/* Bytes of the filtered rows of one pass with every dx-th pixel from x on, and every dy-th row from y on. */
+static double pass_size(const Header *header, int x, int y, int dx, int dy) {
+    static const int channels[] = {[GREY] = 1, [RGB] = 3, [PALETTE] = 1, [GREY_ALPHA] = 2, [RGB_ALPHA] = 4};
+    uint64_t width = ((uint64_t)header->width + (uint64_t)(dx - 1 - x)) / (uint64_t)dx;
+    uint64_t height = ((uint64_t)header->height + (uint64_t)(dy - 1 - y)) / (uint64_t)dy;
+    uint64_t row = (width * (uint64_t)(channels[header->color] * header->depth) + 7) / 8;
+    return width == 0 ? 0 : (double)height * (double)(row + 1);
+}
+
+static double filtered_size(const Header *header) {
+    static const int passes[7][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
+                                     {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}}; /* Adam7: section 8.2 */
+    if (header->interlace == 0) return pass_size(header, 0, 0, 1, 1);
+    double size = 0;
+    for (int i = 0; i < 7; i++) size += pass_size(header, passes[i][0], passes[i][1], passes[i][2], passes[i][3]);
+    return size;
+}
+
+/* What has been seen of a file. */
+typedef struct State {
+    const char *path;
+    Header header;
+    bool palette, pixels, pixels_ended, ended;
+    uint8_t zlib[2]; /* first bytes of the compressed pixels */
+    uint64_t compressed;
+    Error *error;
+} State;
+
+static bool refuse(const State *state, const char *what) {
+    return error_input(state->error, state->path, "not a PNG file, or damaged: %s", what);
+}
+
+static bool check_pixels(State *state, const PngChunk *chunk) {
+    if (state->pixels_ended) return refuse(state, "the IDAT chunks are not consecutive");
+    if (state->header.color == PALETTE && !state->palette) return refuse(state, "the palette is missing");
+    for (size_t i = 0; i < chunk->length && state->compressed + i < 2; i++)
+        state->zlib[state->compressed + i] = chunk->data[i];
+    state->compressed += chunk->length;
+    state->pixels = true;
+    return true;
+}
+
+static bool check_chunk(State *state, const PngChunk *chunk, size_t at) {
+    bool critical = (chunk->type[0] & 0x20) == 0;
+    if (state->pixels && !png_chunk_is(chunk, "IDAT")) state->pixels_ended = true;
+    if (png_chunk_is(chunk, "IDAT")) return check_pixels(state, chunk);
+    if (png_chunk_is(chunk, "acTL") && !state->pixels)
+        return error_input(state->error, state->path,
+                           "an animated PNG (chunk acTL at byte %zu); split it into one file per frame", at);
+    if (png_chunk_is(chunk, "PLTE")) {
+        state->palette = chunk->length > 0 && chunk->length <= 768 && chunk->length % 3 == 0;
+        return state->palette || refuse(state, "the palette is invalid");
+    }
+    state->ended = png_chunk_is(chunk, "IEND");
+    return state->ended || !critical || refuse(state, "an unknown critical chunk");
+}
+
+static bool check_checksum(const State *state, const PngChunk *chunk, size_t at) {
+    for (int i = 0; i < 4; i++) {
+        uint8_t letter = chunk->type[i] & 0xDF;
+        if (letter < 'A' || letter > 'Z')
+            return error_input(state->error, state->path, "not a PNG file, or damaged: no valid chunk at byte %zu", at);
+    }
+    uint32_t stored = png_number(chunk->data + chunk->length);
+    return libdeflate_crc32(0, chunk->type, chunk->length + 4) == stored ||
+           error_input(state->error, state->path,
+                       "not a PNG file, or damaged: wrong checksum of the chunk %.4s at byte %zu",
+                       (const char *)chunk->type, at);
+}
+
+/* RFC 1950; deflate shrinks to no less than two bits for 258 bytes (RFC 1951, 3.2.5). */
+static bool check_compressed(const State *state) {
+    const uint8_t *zlib = state->zlib;
+    const double most = 1032, frame = 6; /* the zlib header and the checksum */
+    if (!state->pixels) return refuse(state, "it has no pixels (chunk IDAT)");
+    if (state->compressed < 2 || (zlib[0] & 0x0F) != 8 || zlib[0] >> 4 > 7 || (zlib[0] << 8 | zlib[1]) % 31 != 0 ||
+        (zlib[1] & 0x20) != 0)
+        return refuse(state, "the pixels are not a zlib stream");
+    return (double)state->compressed >= frame + filtered_size(&state->header) / most ||
+           refuse(state, "too few bytes for its pixels");
+}
+
+bool png_check(const uint8_t *data, size_t size, const char *path, int *width, int *height, Error *error) {
+    State state = {.path = path, .error = error};
+    PngChunk chunk;
+    if (!png_check_start(data, size, path, error)) return false;
+    size_t at = PNG_SIGNATURE, first = at, next = at;
+    while (!state.ended && png_chunk_next(data, size, &next, &chunk)) {
+        if (!check_checksum(&state, &chunk, at)) return false;
+        bool ok = at > first ? check_chunk(&state, &chunk, at)
+                             : read_header(&chunk, &state.header) || refuse(&state, "the header is invalid");
+        if (!ok) return false;
+        at = next;
+    }
+    *width = (int)state.header.width;
+    *height = (int)state.header.height;
+    return (state.ended || refuse(&state, "unexpected end of file")) && check_compressed(&state);
+}
+
+/* Reads PNG files from untrusted sources: damaged, truncated, or crafted to exhaust memory. */
+
+/* More than IMAGE_MAX_PIXELS need with 16 bits per channel, uncompressed. */
+static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
+enum { MAX_TEXT_SIZE = 1 << 16, MAX_TEXTS = 64 };
+
+/* Everything that decoding modifies is in this struct, as longjmp would clobber locals. */
+typedef struct Decoder {
+    png_structp png;
+    png_infop info;
+    const char *path;
+    const uint8_t *data;
+    size_t size, position;
+    int64_t max_pixels;
+    Image *image;
+    uint8_t *row;      /* 16-bit samples */
+    bool memory_short; /* png_memory.h */
+    Error *error;
+} Decoder;
+
+static void read_bytes(png_structp png, png_bytep data, size_t size) {
+    Decoder *decoder = png_get_io_ptr(png);
+    if (size > decoder->size - decoder->position) png_error(png, "unexpected end of file");
+    memcpy(data, decoder->data + decoder->position, size);
+    decoder->position += size;
+}
+
+static PNG_FUNCTION(void, fail, (png_structp png, png_const_charp message), PNG_NORETURN) {
+    Decoder *decoder = png_get_error_ptr(png);
+    if (decoder->memory_short)
+        error_memory(decoder->error, decoder->path);
+    else
+        error_input(decoder->error, decoder->path, "not a PNG file, or damaged: %s", message);
+    png_longjmp(png, 1);
+}
+
+static void ignore_warning(png_structp png, png_const_charp message) { (void)png, (void)message; }
+
+static bool open_decoder(Decoder *decoder, const uint8_t *data, size_t size, const char *path, Error *error) {
+    *decoder = (Decoder){.path = path, .error = error, .data = data, .size = size};
+    decoder->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, decoder, fail, ignore_warning,
+                                            &decoder->memory_short, png_memory_take, png_memory_release);
+    if (decoder->png != NULL) decoder->info = png_create_info_struct(decoder->png);
+    return decoder->info != NULL || error_memory(error, path);
+}
+
+static void close_decoder(Decoder *decoder) {
+    png_destroy_read_struct(&decoder->png, &decoder->info, NULL);
+    free(decoder->row);
+}
+
+uint8_t *image_load_png(const char *path, size_t *size, Error *error) {
+    uint8_t *data = (uint8_t *)file_read(path, MAX_FILE_SIZE, size, error);
+    if (data != NULL && png_check_start(data, *size, path, error)) return data;
+    free(data);
+    return NULL;
+}
+
+/* Every irregularity is an error: a partly guessed frame must not count as a frame. */
+static void set_strict_limits(Decoder *decoder) {
+    png_set_read_fn(decoder->png, decoder, read_bytes);
+    png_set_crc_action(decoder->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_set_benign_errors(decoder->png, 0);
+    png_set_user_limits(decoder->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_chunk_malloc_max(decoder->png, MAX_TEXT_SIZE);
+    png_set_chunk_cache_max(decoder->png, MAX_TEXTS);
+}
+
+static void check_size(Decoder *decoder) {
+    const int width = (int)png_get_image_width(decoder->png, decoder->info),
+              height = (int)png_get_image_height(decoder->png, decoder->info);
+    if (!png_check_pixels(width, height, decoder->max_pixels, decoder->path, decoder->error))
+        png_longjmp(decoder->png, 1);
+}
+
+/* Before memory is allocated for pixels that the file cannot hold: deflate shrinks to no less than 1 / 1032. */
+static void check_amount(Decoder *decoder) {
+    const double rows = (double)png_get_rowbytes(decoder->png, decoder->info) *
+                        (double)png_get_image_height(decoder->png, decoder->info);
+    if (rows > 1032.0 * (double)decoder->size) png_error(decoder->png, "too few bytes for its pixels");
+}
+
+/* libpng would read only the first picture of an animation and miss differences in the others. Chunk lengths are
+   valid here, as libpng has checked everything up to the pixels. */
+static void refuse_animation(Decoder *decoder) {
+    for (size_t at = 8; at + 12 <= decoder->position;) {
+        const uint8_t *chunk = decoder->data + at;
+        size_t length = (size_t)chunk[0] << 24 | (size_t)chunk[1] << 16 | (size_t)chunk[2] << 8 | chunk[3];
+        if (memcmp(chunk + 4, "acTL", 4) == 0) {
+            error_input(decoder->error, decoder->path,
+                        "an animated PNG (chunk acTL at byte %zu); split it into one file per frame", at);
+            png_longjmp(decoder->png, 1);
+        }
+        at += length + 12;
+    }
+}
+
+static void request_rgba(Decoder *decoder) {
+    png_set_expand(decoder->png);
+    png_set_gray_to_rgb(decoder->png);
+    png_set_add_alpha(decoder->png, 0xffff, PNG_FILLER_AFTER);
+}
+
+static bool allocate_pixels16(Decoder *decoder) {
+    size_t width = (size_t)decoder->image->width;
+    decoder->image->pixels16 = calloc(width * (size_t)decoder->image->height * 4, sizeof(uint16_t));
+    decoder->row = malloc(width * 8);
+    return (decoder->image->pixels16 != NULL && decoder->row != NULL) || error_memory(decoder->error, decoder->path);
+}
+
+/* A pass of an interlaced file sets only some pixels; libpng needs the others from earlier passes. */
+static void read_row16(Decoder *decoder, size_t first) {
+    size_t samples = (size_t)decoder->image->width * 4;
+    uint16_t *pixels16 = decoder->image->pixels16 + first;
+    uint8_t *pixels = decoder->image->pixels + first, *row = decoder->row;
+    for (size_t i = 0; i < samples; i++)
+        row[2 * i] = (uint8_t)(pixels16[i] >> 8), row[2 * i + 1] = (uint8_t)pixels16[i];
+    png_read_row(decoder->png, row, NULL);
+    for (size_t i = 0; i < samples; i++) {
+        pixels16[i] = (uint16_t)(row[2 * i] << 8 | row[2 * i + 1]);
+        pixels[i] = (uint8_t)((pixels16[i] * 255u + 32895) >> 16); /* rounded to nearest */
+    }
+}
+
+static void read_rows(Decoder *decoder) {
+    const Image *image = decoder->image;
+    size_t samples = (size_t)image->width * 4;
+    for (int y = 0; y < image->height; y++) {
+        size_t first = (size_t)y * samples;
+        if (image->pixels16 != NULL)
+            read_row16(decoder, first);
+        else
+            png_read_row(decoder->png, image->pixels + first, NULL);
+    }
+}
+
+static bool decode(Decoder *decoder) {
+    if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
+    png_structp png = decoder->png;
+    set_strict_limits(decoder);
+    /* Only the chunks needed for pixels; others are not even decompressed. */
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_read_info(png, decoder->info);
+    check_size(decoder);
+    refuse_animation(decoder);
+    check_amount(decoder);
+    request_rgba(decoder);
+    int passes = png_set_interlace_handling(png);
+    png_read_update_info(png, decoder->info);
+    decoder->image = image_create((int)png_get_image_width(png, decoder->info),
+                                  (int)png_get_image_height(png, decoder->info), decoder->error);
+    if (decoder->image == NULL) return false;
+    if (png_get_bit_depth(png, decoder->info) == 16 && !allocate_pixels16(decoder)) return false;
+    for (int pass = 0; pass < passes; pass++) read_rows(decoder);
+    png_read_end(png, NULL);
+    return true;
+}
+
+Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+    Decoder decoder;
+    bool ok = open_decoder(&decoder, data, size, path, error);
+    decoder.max_pixels = max_pixels;
+    ok = ok && decode(&decoder);
+    close_decoder(&decoder);
+    if (ok) return decoder.image;
+    image_destroy(decoder.image);
+    return NULL;
+}
+
+Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+    Image *image;
+    if (png_fast_decode(data, size, max_pixels, &image)) return image;
+    return png_libpng_decode(data, size, path, max_pixels, error);
+}
+
+bool image_decode_png_pair(const uint8_t *const data[2], const size_t sizes[2], const char *const paths[2],
+                           int64_t max_pixels, Image *images[2], Error *error) {
+    if (png_fast_decode_pair(data, sizes, max_pixels, images)) return true;
+    for (int i = 0; i < 2; i++) {
+        images[i] = image_decode_png(data[i], sizes[i], paths[i], max_pixels, error);
+        if (images[i] == NULL) break;
+    }
+    if (images[1] != NULL) return true;
+    image_destroy(images[0]);
+    images[0] = NULL; /* so that image_destroy_pair() may follow */
+    return false;
+}
+
+Image *image_read_png(const char *path, Error *error) {
+    size_t size;
+    uint8_t *data = image_load_png(path, &size, error);
+    Image *image = data != NULL ? image_decode_png(data, size, path, IMAGE_MAX_PIXELS, error) : NULL;
+    free(data);
+    return image;
+}
+
+static bool decode_texts(Decoder *decoder) {
+    if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
+    set_strict_limits(decoder);
+    png_read_info(decoder->png, decoder->info);
+    return !decoder->memory_short || error_memory(decoder->error, decoder->path);
+}
+
+static bool find_text(const Decoder *decoder, const char *key, char *value, size_t size) {
+    png_textp texts = NULL;
+    int count = png_get_text(decoder->png, decoder->info, &texts, NULL);
+    for (int i = 0; i < count; i++) {
+        if (strcmp(texts[i].key, key) != 0) continue;
+        size_t length = strlen(texts[i].text);
+        if (length >= size) return error_input(decoder->error, decoder->path, "the text \"%s\" is too long", key);
+        memcpy(value, texts[i].text, length + 1);
+        return true;
+    }
+    return error_input(decoder->error, decoder->path, "there is no text \"%s\" in the picture", key);
+}
+
+static bool read_text(const uint8_t *data, size_t size, const char *path, const char *key, char *value,
+                      size_t value_size, Error *error) {
+    Decoder decoder;
+    bool ok = open_decoder(&decoder, data, size, path, error) && decode_texts(&decoder) &&
+              find_text(&decoder, key, value, value_size);
+    close_decoder(&decoder);
+    return ok;
+}
+
+bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error) {
+    size_t file_size;
+    uint8_t *data = image_load_png(path, &file_size, error);
+    bool ok = data != NULL && read_text(data, file_size, path, key, value, size, error);
+    free(data);
+    return ok;
+}
+
+bool image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size, Error *error) {
+    Error failure = {0};
+    if (!read_text(data, size, "image", key, value, value_size, &failure)) value[0] = '\0';
+    if (failure.kind == ERROR_SYSTEM) *error = failure;
+    return failure.kind != ERROR_SYSTEM;
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "pixels/type.h"
+
+#include "base/base.h"
+
+#include <limits.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+enum { FIRST_MARK = 0x300, LAST_MARK = 0x36F };
+
+typedef struct Composition {
+    unsigned short letter, mark, composed;
+} Composition;
+
+static const Composition compositions[] = {
+#include "pixels/compositions.inc"
+};
+
+static unsigned compose(unsigned letter, unsigned mark) {
+    size_t low = 0, high = sizeof compositions / sizeof compositions[0];
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        const Composition *at = &compositions[middle];
+        if (at->letter == letter && at->mark == mark) return at->composed;
+        if (at->letter < letter || (at->letter == letter && at->mark < mark))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return 0;
+}
+
+const Glyph *type_find(const Typeface *face, unsigned code) {
+    int low = 0, high = type_glyph_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (face->glyphs[middle].code < code)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < type_glyph_count && face->glyphs[low].code == code ? &face->glyphs[low] : NULL;
+}
+
+unsigned type_next_code(const char **text) {
+    unsigned code = utf8_next(text);
+    for (const char *next = *text; *next != '\0'; *text = next) {
+        const unsigned mark = utf8_next(&next),
+                       composed = mark >= FIRST_MARK && mark <= LAST_MARK ? compose(code, mark) : 0;
+        if (composed == 0) break;
+        code = composed;
+    }
+    return code;
+}
+
+const Glyph *type_next(const char **text) {
+    const Glyph *glyph = type_find(&type_regular, type_next_code(text));
+    return glyph != NULL ? glyph : type_find(&type_regular, '?');
+}
+
+int type_advance(const char *text) {
+    int advance = 0;
+    while (*text != '\0') advance += type_next(&text)->advance;
+    return advance;
+}
+
+double type_width(const char *text, double points) { return type_advance(text) * points * MM_PER_POINT / type_units; }
+
+static bool is_control(unsigned code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
+
+/* Marks are not shown: alone they would be drawn over the quotation mark. */
+static bool is_mark(unsigned code) { return code >= 0x300 && code <= 0x36F; }
+
+static bool refuse(unsigned code, const char *from, const char *end, const char *where, Error *error) {
+    if (is_control(code))
+        return error_input(error, where, "the text has the control character U+%04X, which cannot be drawn", code);
+    if (is_mark(code))
+        return error_input(error, where,
+                           "the text has the combining mark U+%04X after a letter that it does not compose with; write "
+                           "the composed character",
+                           code);
+    return error_input(error, where,
+                       "the font has no character '%.*s' (U+%04X); it has Latin, Greek, Cyrillic and common symbols",
+                       (int)(end - from), from, code);
+}
+
+bool type_check(const char *text, const char *where, Error *error) {
+    if (text == NULL) return true;
+    for (const char *next = text; *next != '\0';) {
+        const char *from = next;
+        uint32_t first;
+        if (utf8_decode(from, strnlen(from, 4), &first) == 0)
+            return error_input(error, where, "byte %d of the text is 0x%02X, which is not UTF-8",
+                               (int)(from - text) + 1, (unsigned)(unsigned char)*from);
+        const unsigned code = type_next_code(&next);
+        if (type_find(&type_regular, code) == NULL) return refuse(code, from, next, where, error);
+    }
+    return true;
+}
+
+bool font_file_suffices(const char *text) {
+    while (*text != '\0')
+        if (type_next(&text)->index >= type_small_count) return false;
+    return true;
+}
+
+FontFile font_file(bool small) {
+    return small ? (FontFile){font_inter_regular_subset_otf, font_inter_regular_subset_otf_size, type_small_count}
+                 : (FontFile){font_inter_regular_otf, font_inter_regular_otf_size, UINT_MAX};
+}

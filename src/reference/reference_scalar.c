@@ -1,4 +1,0 @@
-/* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The solve for any CPU. */
-#define KERNELS reference_scalar
-#include "reference/reference_run.h"

@@ -1,0 +1,480 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/json.h"
+#include "regression/compare.h"
+#include "regression/internal.h"
+#include "regression/report.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <fnmatch.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { OPEN_FOLDER = O_RDONLY | O_DIRECTORY | O_CLOEXEC };
+
+/* Whether the path is to blame, not the system. */
+static bool is_input(int cause) {
+    return cause == ELOOP || cause == ENOTDIR || cause == EACCES || cause == ENOENT || cause == ENAMETOOLONG;
+}
+
+/* Steps from an open folder into one in it. Closes the first. */
+static int step_into(int folder, const char *name, bool create) {
+    int next = openat(folder, name, OPEN_FOLDER | O_NOFOLLOW);
+    if (next < 0 && errno == ENOENT && create && (mkdirat(folder, name, 0777) == 0 || errno == EEXIST))
+        next = openat(folder, name, OPEN_FOLDER | O_NOFOLLOW);
+    int cause = errno;
+    close(folder);
+    errno = cause;
+    return next;
+}
+
+/* Steps into each folder of *path that ends with a slash; *path moves behind the last. Closes the first. */
+static int walk(int folder, const char **path, bool create) {
+    for (const char *slash; folder >= 0 && (slash = strchr(*path, '/')) != NULL;) {
+        char part[NAME_MAX + 1];
+        const size_t length = (size_t)(slash - *path);
+        if (length >= sizeof part) {
+            close(folder);
+            errno = ENAMETOOLONG;
+            return -1;
+        }
+        memcpy(part, *path, length);
+        part[length] = '\0';
+        if (length > 0 && strcmp(part, ".") != 0) folder = step_into(folder, part, create);
+        *path = slash + 1;
+    }
+    return folder;
+}
+
+/* Opens a folder that the user named, or one that is only read: links in `path` are followed. Then root_close(). */
+static bool root_open(Root *root, const char *path, Error *error) {
+    *root = (Root){open(path, OPEN_FOLDER), path};
+    if (root->folder >= 0) return true;
+    const int cause = errno;
+    return is_input(cause) ? error_input(error, path, "the folder cannot be opened: %s", strerror(cause))
+                           : error_system(error, path, "the folder cannot be opened: %s", strerror(cause));
+}
+
+const char *path_below_current(const char *path) {
+    char current[PATH_MAX];
+    if (path[0] == '/') {
+        const size_t length = getcwd(current, sizeof current) != NULL ? strlen(current) : 0;
+        if (length < 2 || strncmp(path, current, length) != 0 || (path[length] != '/' && path[length] != '\0'))
+            return NULL;
+        path += length + strspn(path + length, "/");
+    }
+    for (const char *part = path; (part = strstr(part, "..")) != NULL; part += 2)
+        if ((part == path || part[-1] == '/') && (part[2] == '/' || part[2] == '\0')) return NULL;
+    return path;
+}
+
+/* Opens a folder that a file named: ERROR_INPUT unless it lies below the current directory, without links on the way.
+   report: that file, for messages. */
+static bool root_open_below(Root *root, const char *path, const char *report, Error *error) {
+    char whole[PATH_MAX];
+    const char *relative = path_below_current(path), *rest = whole;
+    *root = (Root){-1, path};
+    if (relative == NULL)
+        return error_input(error, report,
+                           "the expected folder '%.1000s' is not below the current directory; if it is "
+                           "the one to change, state it: --expected DIR",
+                           path);
+    if (!file_path(whole, sizeof whole, error, "%s/", relative)) return false;
+    root->folder = walk(open(".", OPEN_FOLDER), &rest, false);
+    if (root->folder >= 0) return true;
+    const int cause = errno;
+    return is_input(cause) ? error_input(error, report,
+                                         "the expected folder '%.1000s' cannot be opened without following links: "
+                                         "%s; if it is the one to change, state it: --expected DIR",
+                                         path, strerror(cause))
+                           : error_system(error, path, "the folder cannot be opened: %s", strerror(cause));
+}
+
+static void root_close(const Root *root) { close(root->folder); }
+
+/* Opens the directory of `name` in the root; `name` is relative, without "." and "..". create: makes the folders that are
+   missing. ERROR_INPUT if one is a link or no folder. After success, place_close(). */
+static bool place_open(ApprovePlace *place, const Root *root, const char *name, bool create, Error *error) {
+    if (!file_path(place->path, sizeof place->path, error, "%s/%s", root->path, name)) return false;
+    place->name = name;
+    place->folder = walk(fcntl(root->folder, F_DUPFD_CLOEXEC, 0), &place->name, create);
+    if (place->folder >= 0 || errno == ENOENT) return true;
+    const int cause = errno;
+    return is_input(cause)
+               ? error_input(error, place->path, "its folder cannot be opened, or is a link: %s", strerror(cause))
+               : error_system(error, place->path, "its folder cannot be opened: %s", strerror(cause));
+}
+
+static void place_close(const ApprovePlace *place) {
+    if (place->folder >= 0) close(place->folder);
+}
+
+enum { MAX_SIZE = 1 << 25 };
+
+/* The required members. Others (verdict, tolerance, masks) are skipped. */
+enum { FORMAT, APPROVE_READ_EXPECTED, APPROVE_READ_ACTUAL, FRAMES, TRAJECTORIES, MEMBERS };
+static const char *const members[MEMBERS] = {"format", "expected", "actual", "frames", "trajectories"};
+
+/* "x.png" or "sub/x.png": no part is empty or hidden, which includes "." and "..". */
+static bool is_name_below(const char *name) {
+    const char *ending = strrchr(name, '.');
+    char before = '/';
+    for (const char *c = name; *c != '\0'; before = *c++)
+        if (before == '/' && (*c == '/' || *c == '.')) return false;
+    return name_is_text(name) && ending != NULL && (strcasecmp(ending, ".png") == 0 || strcmp(ending, ".npz") == 0);
+}
+
+/* A string of 1 to `max` bytes, valid as long as the value; otherwise NULL with error set. */
+static const char *read_text(const JsonReader *json, const json_t *value, const char *key, size_t max, Error *error) {
+    const char *text = json_string_value(value);
+    size_t length = json_string_length(value);
+    if (length > 0 && length <= max) return text;
+    json_read_error(json, error, "'%s' must be a string of 1 to %zu bytes", key, max);
+    return NULL;
+}
+
+static bool read_flag(const JsonReader *json, const json_t *item, const char *key, bool *flag, Error *error) {
+    const json_t *value = json_object_get(item, key);
+    *flag = json_is_true(value);
+    return json_is_true(value) || json_is_false(value) ||
+           json_read_error(json, error, "'%s' must be true or false", key);
+}
+
+/* null, or name, size and hash. */
+static bool read_file(const JsonReader *json, const json_t *item, const char *key, ApprovalFile *file, Error *error) {
+    const json_t *value = json_object_get(item, key);
+    *file = (ApprovalFile){.name = ""};
+    if (value == NULL || json_is_null(value)) return true;
+    if (!json_is_object(value)) return json_read_error(json, error, "'%s' must be null or a file", key);
+    file->name = read_text(json, json_object_get(value, "name"), "name", PATH_MAX - 1, error);
+    if (file->name == NULL) return false;
+    if (!is_name_below(file->name))
+        return json_read_error(json, error, "a name must end with .png or .npz and lie below the folder");
+    const char *digits = json_string_value(json_object_get(value, "xxh3"));
+    if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
+        return json_read_error(json, error, "a hash must have 16 digits from 0 to f");
+    file->hash = strtoull(digits, NULL, 16);
+    return true;
+}
+
+static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem *item, Error *error) {
+    if (!json_is_object(value)) return json_read_error(json, error, "a frame or trajectory must be an object");
+    if (!read_flag(json, value, "failed", &item->failed, error) ||
+        !read_flag(json, value, "shown", &item->shown, error) ||
+        !read_file(json, value, "expected", &item->expected, error) ||
+        !read_file(json, value, "actual", &item->actual, error))
+        return false;
+    return item->expected.name[0] != '\0' || item->actual.name[0] != '\0' ||
+           json_read_error(json, error, "an expected or an actual file is required");
+}
+
+static void free_name(const ApprovalFile *file) {
+    if (file->name[0] != '\0') free((void *)file->name);
+}
+
+static void free_names(const ApprovalItem *item) {
+    free_name(&item->expected);
+    free_name(&item->actual);
+}
+
+/* Gives the file a copy of its name, which outlives the value that it was read from. */
+static bool keep_name(ApprovalFile *file) {
+    const char *name = file->name[0] != '\0' ? strdup(file->name) : "";
+    file->name = name != NULL ? name : "";
+    return name != NULL;
+}
+
+static bool add_item(ApprovalList *list, ApprovalItem item) {
+    const bool kept = keep_name(&item.expected);
+    bool ok = keep_name(&item.actual) && kept &&
+              array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item);
+    if (ok)
+        list->items[list->count++] = item;
+    else
+        free_names(&item);
+    return ok;
+}
+
+/* The hashes of the files that were named so far: a table with open addressing, at most half full. 0 is an empty place. */
+typedef struct Named {
+    uint64_t *hashes; /* [size], a power of two */
+    size_t size, count;
+} Named;
+
+static uint64_t *find_place(const Named *named, uint64_t hash) {
+    size_t at = hash & (named->size - 1);
+    while (named->hashes[at] != 0 && named->hashes[at] != hash) at = (at + 1) & (named->size - 1);
+    return &named->hashes[at];
+}
+
+static bool grow(Named *named) {
+    enum { FIRST_SIZE = 64 };
+    if (2 * named->count < named->size) return true;
+    Named larger = {.size = named->size > 0 ? 2 * named->size : FIRST_SIZE, .count = named->count};
+    if ((larger.hashes = calloc(larger.size, sizeof *larger.hashes)) == NULL) return false;
+    for (size_t i = 0; i < named->size; i++)
+        if (named->hashes[i] != 0) *find_place(&larger, named->hashes[i]) = named->hashes[i];
+    free(named->hashes);
+    *named = larger;
+    return true;
+}
+
+static const char *approval_target(const ApprovalItem *item);
+
+/* compare names a file once; many copies of an item would write one file as many times. */
+static bool add_name(const JsonReader *json, Named *named, const ApprovalItem *item, Error *error) {
+    const char *target = approval_target(item);
+    uint64_t hash = hash_xxh3(target, strlen(target)), *place;
+    if (hash == 0) hash = 1;
+    if (!grow(named)) return error_memory(error, json->path);
+    if (*(place = find_place(named, hash)) == hash) return json_read_error(json, error, "'%s' is there twice", target);
+    *place = hash;
+    named->count++;
+    return true;
+}
+
+static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Named *named, Error *error) {
+    if (!json_read_char(json, '[')) return json_read_error(json, error, "'%s' must be an array", key);
+    for (bool more = !json_read_char(json, ']'); more;) {
+        ApprovalItem item = {0};
+        const json_t *value = json_read_value(json, error);
+        if (value == NULL || !read_item(json, value, &item, error)) return false;
+        if (item.failed && !add_name(json, named, &item, error)) return false;
+        if (item.failed && !add_item(list, item)) return error_memory(error, json->path);
+        if (!json_read_more(json, ']', &more, error)) return false;
+    }
+    return true;
+}
+
+static bool read_member(JsonReader *json, int member, ApprovalList *list, Named *named, Error *error) {
+    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, named, error);
+    const json_t *value = json_read_value(json, error);
+    if (value == NULL || member == MEMBERS) return value != NULL;
+    const char *text = read_text(json, value, members[member], PATH_MAX - 1, error);
+    if (text == NULL) return false;
+    if (member == FORMAT)
+        return strcmp(text, "twinbox compare 1") == 0 ||
+               json_read_error(json, error, "not a report of twinbox compare");
+    strcpy(member == APPROVE_READ_EXPECTED ? list->expected : list->actual, text);
+    return true;
+}
+
+/* The next member's key and colon. *member is MEMBERS for a key that is not in the list. */
+static bool read_key(JsonReader *json, bool seen[MEMBERS], int *member, Error *error) {
+    const json_t *key = json_read_value(json, error);
+    if (key == NULL) return false;
+    if (!json_is_string(key)) return json_read_error(json, error, "a key must be a string");
+    *member = 0;
+    while (*member < MEMBERS && strcmp(json_string_value(key), members[*member]) != 0) ++*member;
+    if (*member < MEMBERS && seen[*member]) return json_read_error(json, error, "duplicate key");
+    if (*member < MEMBERS) seen[*member] = true;
+    return json_read_char(json, ':') || json_read_error(json, error, "':' expected");
+}
+
+static bool read_list(JsonReader *json, ApprovalList *list, Named *named, Error *error) {
+    bool seen[MEMBERS] = {false};
+    if (!json_read_char(json, '{')) return json_read_error(json, error, "not a report of twinbox compare");
+    for (bool more = true; more;) {
+        int member = MEMBERS;
+        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, named, error) ||
+            !json_read_more(json, '}', &more, error))
+            return false;
+    }
+    if (!json_read_end(json, error)) return false;
+    for (int i = 0; i < MEMBERS; i++)
+        if (!seen[i])
+            return error_input(error, json->path, "'%s' is missing: not a report of twinbox compare", members[i]);
+    return true;
+}
+
+/* The name of the expected file; if that is new, of the actual one. */
+static const char *approval_target(const ApprovalItem *item) {
+    return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
+}
+
+bool approval_read(ApprovalList *list, const char *path, Error *error) {
+    JsonReader json;
+    if (!json_read_open(&json, path, MAX_SIZE, error)) return false;
+    *list = (ApprovalList){.count = 0};
+    Named named = {0};
+    bool ok = read_list(&json, list, &named, error);
+    free(named.hashes);
+    json_read_close(&json);
+    if (!ok) approval_free(list);
+    return ok;
+}
+
+void approval_free(ApprovalList *list) {
+    for (size_t i = 0; i < list->count; i++) free_names(&list->items[i]);
+    free(list->items);
+}
+
+/* The limit of a trajectory file. */
+static const size_t MAX_FILE_SIZE = (size_t)2 << 30;
+
+typedef enum Action { ACTION_NONE, ACTION_REPLACE, ACTION_ADD, ACTION_REMOVE } Action;
+
+typedef struct Found {
+    bool there, link, other; /* other: neither a regular file nor a link */
+    uint64_t hash;
+} Found;
+
+static bool inspect(const ApprovePlace *place, Found *found, Error *error) {
+    struct stat status;
+    *found = (Found){.there = false};
+    if (place->folder < 0) return true;
+    if (fstatat(place->folder, place->name, &status, AT_SYMLINK_NOFOLLOW) != 0)
+        return errno == ENOENT || error_system(error, place->path, "cannot be read: %s", strerror(errno));
+    found->there = true;
+    found->link = S_ISLNK(status.st_mode);
+    found->other = !found->link && !S_ISREG(status.st_mode);
+    if (found->link || found->other) return true;
+    size_t size;
+    char *data = file_read_at(place->folder, place->name, place->path, MAX_FILE_SIZE, &size, error);
+    if (data == NULL) return false;
+    found->hash = hash_xxh3(data, size);
+    free(data);
+    return true;
+}
+
+/* The folders stay open, so that all checks and changes are of the same two. */
+typedef struct Folders {
+    Root expected, actual;
+} Folders;
+
+static bool inspect_below(const Root *root, const char *name, Found *found, Error *error) {
+    ApprovePlace place;
+    if (!place_open(&place, root, name, false, error)) return false;
+    bool ok = inspect(&place, found, error);
+    if (ok && (found->link || found->other))
+        ok = error_input(error, place.path, "must be a regular file%s", found->link ? " (is a link)" : "");
+    place_close(&place);
+    return ok;
+}
+
+static bool as_reported(const Found *found, const ApprovalFile *file) {
+    bool wanted = file->name[0] != '\0';
+    return found->there == wanted && (!wanted || found->hash == file->hash);
+}
+
+static bool refuse_changed(const Root *root, const char *name, Error *error) {
+    char path[PATH_MAX];
+    return file_path(path, sizeof path, error, "%s/%s", root->path, name) &&
+           error_input(error, path, "has changed since the report was written; compare again");
+}
+
+static bool decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
+    Found expected, actual = {.there = false};
+    if (!inspect_below(&folders->expected, approval_target(item), &expected, error)) return false;
+    *action = ACTION_NONE;
+    bool removed = item->actual.name[0] == '\0';
+    if (removed ? !expected.there : expected.there && expected.hash == item->actual.hash) return true;
+    if (!as_reported(&expected, &item->expected))
+        return refuse_changed(&folders->expected, approval_target(item), error);
+    *action = removed ? ACTION_REMOVE : item->expected.name[0] == '\0' ? ACTION_ADD : ACTION_REPLACE;
+    const char *name = removed ? item->expected.name : item->actual.name;
+    return inspect_below(&folders->actual, name, &actual, error) &&
+           (as_reported(&actual, &item->actual) || refuse_changed(&folders->actual, name, error));
+}
+
+/* Reads the actual file again and checks the hash of exactly the bytes that are written. */
+static bool copy(const ApprovePlace *source, uint64_t hash, const ApprovePlace *target, Error *error) {
+    size_t size;
+    if (source->folder < 0) return error_input(error, source->path, "has changed during the approval");
+    char *data = file_read_at(source->folder, source->name, source->path, MAX_FILE_SIZE, &size, error);
+    bool ok = data != NULL &&
+              (hash_xxh3(data, size) == hash || error_input(error, source->path, "has changed during the approval")) &&
+              file_write_at(target->folder, target->name, target->path, data, size, error);
+    free(data);
+    return ok;
+}
+
+static bool copy_from(const Folders *folders, const ApprovalFile *actual, const ApprovePlace *target, Error *error) {
+    ApprovePlace source;
+    if (!place_open(&source, &folders->actual, actual->name, false, error)) return false;
+    bool ok = copy(&source, actual->hash, target, error);
+    place_close(&source);
+    return ok;
+}
+
+static bool apply(const Folders *folders, const ApprovalItem *item, Action action,
+                  void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
+    static const char *const words[] = {"", "replaced", "added", "removed"};
+    int *counts[] = {&approval->already, &approval->replaced, &approval->added, &approval->removed};
+    ApprovePlace target;
+    (*counts[action])++;
+    if (action == ACTION_NONE) return true;
+    if (!place_open(&target, &folders->expected, approval_target(item), action == ACTION_ADD, error)) return false;
+    bool ok = target.folder >= 0 || error_input(error, target.path, "has changed during the approval");
+    if (ok && action == ACTION_REMOVE)
+        ok = unlinkat(target.folder, target.name, 0) == 0 ||
+             error_system(error, target.path, "cannot be removed: %s", strerror(errno));
+    else if (ok)
+        ok = copy_from(folders, &item->actual, &target, error);
+    if (ok) on_change(words[action], target.path);
+    place_close(&target);
+    return ok;
+}
+
+static bool is_selected(const ApprovalItem *item, const char *only, Approval *approval) {
+    bool matches = only == NULL || fnmatch(only, approval_target(item), 0) == 0 ||
+                   fnmatch(only, item->actual.name, 0) == 0; /* home.png, where home.1.png is replaced */
+    approval->not_selected += !matches;
+    approval->not_shown += matches && !item->shown;
+    return matches && item->shown;
+}
+
+static bool approve_list(const ApprovalList *list, const Folders *folders, const char *only,
+                         void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
+    Action *actions = calloc(list->count + 1, sizeof *actions);
+    if (actions == NULL) return error_memory(error, "approve");
+    bool ok = true, *selected = calloc(list->count + 1, sizeof *selected);
+    if (selected == NULL) ok = error_memory(error, "approve");
+    for (size_t i = 0; ok && i < list->count; i++) {
+        selected[i] = is_selected(&list->items[i], only, approval);
+        ok = !selected[i] || decide(folders, &list->items[i], &actions[i], error);
+    }
+    for (size_t i = 0; ok && i < list->count; i++)
+        if (selected[i]) ok = apply(folders, &list->items[i], actions[i], on_change, approval, error);
+    free(selected);
+    free(actions);
+    return ok;
+}
+
+static bool open_expected(const ApprovalRequest *request, const ApprovalList *list, const char *report, Root *root,
+                          Error *error) {
+    return request->expected != NULL ? root_open(root, request->expected, error)
+                                     : root_open_below(root, list->expected, report, error);
+}
+
+/* A foreign report chooses the folders: it may have any read, but only one below the current directory changed. */
+static bool approve_in_folders(const ApprovalRequest *request, const ApprovalList *list, const char *report,
+                               Approval *approval, Error *error) {
+    Folders folders;
+    if (!open_expected(request, list, report, &folders.expected, error)) return false;
+    bool ok = root_open(&folders.actual, list->actual, error);
+    if (ok) {
+        ok = approve_list(list, &folders, request->only, request->on_change, approval, error);
+        root_close(&folders.actual);
+    }
+    root_close(&folders.expected);
+    return ok;
+}
+
+bool approve(const ApprovalRequest *request, Approval *approval, Error *error) {
+    char path[PATH_MAX];
+    ApprovalList list;
+    *approval = (Approval){0};
+    if (!file_path(path, sizeof path, error, "%s/results.json", request->report) || !approval_read(&list, path, error))
+        return false;
+    bool ok = approve_in_folders(request, &list, path, approval, error);
+    approval_free(&list);
+    return ok;
+}

@@ -1,0 +1,344 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The fixed parts of report.html (src/regression/page), embedded in the binary by base/tools/embed.cmake. */
+#pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "pictures/player.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/flip.h"
+#include "regression/naming.h"
+#include "regression/regression.h"
+#include "runs/trajectory.h"
+
+#include <limits.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+extern const char report_page_css[], report_page_html[], report_help_html[];
+extern const char report_stage_js[], report_list_js[], report_page_js[]; /* one scope, in this order */
+
+/* The results of a comparison as CI systems show them: a list of test cases, the frames, then the trajectories. */
+
+typedef struct RegressionCase {
+    const char *kind; /* "frames" or "trajectories" */
+    const char *name, *verdict;
+    bool failed;
+    RegressionText words;
+    char paths[SIDES][PATH_MAX]; /* of the files; "" where there is none, or if it is too long */
+    double seconds;
+    const RegressionFrame *frame; /* NULL for a trajectory */
+} RegressionCase;
+
+int regression_case_count(const Regression *regression);
+RegressionCase regression_case(const Regression *regression, int i);
+
+/* The parts of a comparison's report. Only regression_report.c and the writers of parts include this. */
+
+enum { REPORT_KINDS = 4 }; /* expected, actual, difference, FLIP */
+extern const char report_kind_letters[REPORT_KINDS + 1];
+
+typedef struct ReportPicture {
+    uint8_t *data; /* a PNG file, or NULL */
+    size_t size;
+} ReportPicture;
+
+typedef struct ReportPictures {
+    int count;                             /* frames of the comparison */
+    ReportPicture (*frames)[REPORT_KINDS]; /* [count], by frame */
+    int left_out;                          /* frames whose pictures did not fit */
+} ReportPictures;
+
+/* Fills the pictures, and `shown` and `flip` of the frames. On failure nothing needs to be freed. */
+bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes,
+                            const Progress *progress, Error *error);
+void report_pictures_free(ReportPictures *pictures);
+
+/* The pages of runs that differ. */
+enum { REPORT_RUN_SIZE = 256 };
+typedef struct ReportRuns {
+    char (*links)[REPORT_RUN_SIZE +
+                  PLAYER_LINK_SIZE]; /* [runs of the comparison] "run-NAME.html#t=0.55&body=7", or empty */
+    int left_out;                    /* runs whose page did not fit */
+} ReportRuns;
+
+/* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference.
+   ERROR_INPUT if a run has changed since the comparison. On failure nothing needs to be freed. */
+bool report_runs_write(ReportRuns *runs, const Regression *regression, const char *folder, size_t max_bytes,
+                       const Progress *progress, Error *error);
+void report_runs_free(ReportRuns *runs);
+
+typedef struct Report {
+    const Regression *regression;
+    const ReportPictures *pictures;
+    const ReportRuns *runs;
+    const char *folder; /* of the report, as given */
+} Report;
+
+/* Writers for file_write_text(); `report` is a Report. */
+void report_write_page(FILE *file, const void *report);
+void report_write_junit(FILE *file, const void *report);
+void report_write_tap(FILE *file, const void *report);
+void report_write_json(FILE *file, const void *report);
+
+/* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder, even
+   if one is made meanwhile. Only approve.c and the page, which states the command, include this. */
+
+typedef struct Root {
+    int folder;       /* an open directory */
+    const char *path; /* of the caller, for messages */
+} Root;
+
+typedef struct ApprovePlace {
+    int folder;          /* an open directory; -1 if there is no such folder */
+    const char *name;    /* in it; points into the relative name */
+    char path[PATH_MAX]; /* for messages */
+} ApprovePlace;
+
+/* What follows the current directory in the path, or the path itself if it is relative; NULL if it leads elsewhere. Links
+   are not looked at. */
+const char *path_below_current(const char *path);
+
+/* Reads the failures from results.json. Only approve.c includes this. */
+
+typedef struct ApprovalFile {
+    const char *name; /* relative to the folder; empty: there was no file */
+    uint64_t hash;
+} ApprovalFile;
+
+typedef struct ApprovalItem {
+    bool failed, shown;
+    ApprovalFile expected, actual;
+} ApprovalItem;
+
+typedef struct ApprovalList {
+    char expected[PATH_MAX], actual[PATH_MAX]; /* folders */
+    ApprovalItem *items;                       /* failures only */
+    size_t count, capacity;
+} ApprovalList;
+
+/* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names that leave the folder,
+   hidden names, names that do not end with .png or .npz, and a file that is named twice. On failure nothing needs to be
+   freed. Memory: at most four times the size of the file and 2 MiB. */
+bool approval_read(ApprovalList *list, const char *path, Error *error);
+void approval_free(ApprovalList *list);
+
+/* Masks that leave nothing to compare. */
+
+/* How many pixels of a picture of this size the mask hides at most, or all if it may not fit to it. An upper bound that
+   costs no pass over pixels. */
+double mask_most_hidden(const Mask *mask, int width, int height);
+
+/* Finds pixels that differ only because an edge was rasterised otherwise: with other samples, or moved by a part of a
+   pixel.
+
+   Start: V. Vysniauskas, "Anti-aliased Pixel and Intensity Slope Detector", Elektronika ir Elektrotechnika 7(95), 2009,
+   pp. 107-110, in the form of pixelmatch and odiff: a pixel is anti-aliased if it lies between its darkest and its
+   brightest neighbour, and one of these has three equal neighbours in both pictures. This fails in two ways. The middle
+   of a thin line or ring is darker than all its neighbours, so it counts as different as soon as the line moves. And
+   nothing bounds the colour in the other picture: a wrong pixel at an edge passes.
+
+   Here the change itself is bounded. In windows of 3 x 3 pixels, for each channel (premultiplied by alpha), with the
+   contrast c of both windows together:
+
+   1. The pixel changes by at most 0.6 c: its coverage by the shape changes by at most 0.6. Half a pixel is what separates
+      a sampled from an exact edge; an edge that moves by a whole pixel is a difference. In one channel c is at least 16
+      of 255: gradients of areas are no edges.
+   2. Either each value lies within the range of the other window: an edge between two colours that both pictures show.
+      Or the sums of both windows differ by at most 3 * 0.15 c: a thin line has moved, and has kept its strength.
+   3. Within two pixels there is a flat colour (three neighbours are equal to it) that both pictures share: one side of
+      the edge. In textures, such as photos, nothing is an edge.
+
+   Values within 2 + c / 16 of each other count as equal.
+
+   Fails: a line of less than two pixels that fades by less than 15% looks like a line that became narrower, and passes; so
+   does a faint mark along an edge of higher contrast. Rings less than two pixels apart have no flat side and count. */
+
+/* Sets masked[height, width] (regression/compare.h) to IGNORED_EDGE where pixels differ in this way and are not ignored yet.
+   Both pictures must have the same size. Compares 8 bits per channel. */
+void antialias_mark(const Image *expected, const Image *actual, uint8_t *masked);
+
+/* Pictures of the differences between two pictures. */
+
+/* The expected picture, pale and grey, with differing pixels coloured: yellow for 1, over red, to violet for 255. What
+   `masked` ignores (regression/compare.h) is hatched if it is masked, and blue if it is a pixel of an edge that differs. Both
+   pictures must have the same size. The difference picture has [height, width] and at least this size; what lies beyond
+   both pictures is striped. A PNG file, malloc'ed; NULL with error set if out of memory. */
+uint8_t *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, int width, int height,
+                            size_t *size, Error *error);
+
+/* A picture of values 0 to 1, black over violet and orange to pale yellow, whose rows come through the sink. NULL with
+   error set if out of memory. */
+IndexedPng *heat_picture(int width, int height, Error *error);
+FlipSink heat_picture_sink(IndexedPng *picture);
+
+/* A box as twinbox draws it (shaders/shape.frag): fill, an outline inside the edge, a band along the local top. Edges are
+   smoothed over one pixel by the distance of the pixel's centre. Pixels, y down. */
+
+enum { BOX_OUTSIDE, BOX_LINE, BOX_FILL, BOX_BAND, BOX_PARTS };
+
+typedef struct BoxModel {
+    double x, y;         /* centre */
+    double cosine, sine; /* of the angle, counter-clockwise on the screen */
+    double half_width, half_height;
+    double line;   /* width of the outline; 0: none */
+    double band;   /* from the top edge to the band's lower end; 0: none */
+    double radius; /* of the corners */
+    bool target;   /* a bomb: its middle shows a target, which this model lacks */
+} BoxModel;
+
+/* Signed distance of a point from the edge, negative inside. */
+double box_distance(const BoxModel *box, double x, double y);
+
+/* The bounds of the box and a margin, as left, top, right, bottom. */
+void box_bounds(const BoxModel *box, double margin, double bounds[4]);
+
+/* What happened to one drawn box between two pictures, from the pixels alone. Its pose in the first picture is known; line
+   width and colours are fitted to it. Then three explanations are fitted to the difference of the pictures: the box moved
+   or turned, its colours changed, its line width changed. The one that leaves the least squared difference wins. */
+
+enum { FIT_PIXELS_MAX = 8000, MOVEMENT_STARTS_MAX = 8 };
+
+/* A pixel near the box; colours are 0..255. */
+typedef struct FitPixel {
+    double x, y;                     /* centre */
+    double before[3], difference[3]; /* colour in the first picture; second minus first */
+    double behind[3];                /* what a box that moves away uncovers, as far as known */
+} FitPixel;
+
+typedef struct FitPixels {
+    int count;
+    FitPixel list[FIT_PIXELS_MAX];
+} FitPixels;
+
+typedef struct BodyFit {
+    ChangeKind kind;         /* CHANGE_OTHER: no explanation leaves less than half of the squared difference */
+    double right, up, turn;  /* of CHANGE_MOVED, as in Change */
+    double total, explained; /* squared differences */
+} BodyFit;
+
+/* Names what differs between two of twinbox's own pictures: bodies, captions, axes. */
+
+enum { NAMING_PIXELS_MAX = 20000000 }; /* larger pictures get no names of bodies */
+
+/* What both pictures show. */
+typedef struct NamingScene {
+    const FrameView *view;                      /* of both pictures */
+    const Trajectory *runs[VIEW_PANELS_MAX][2]; /* per panel: expected, actual; NULL: unknown; may be the same */
+    const Trajectory
+        *outlines[VIEW_PANELS_MAX][VIEW_PANELS_MAX]; /* per panel: expected runs drawn as outlines, or NULL */
+    int frame;                                       /* of the runs */
+} NamingScene;
+
+/* Fills the changes, and the names of the regions, which must be set. masked as in image_compare_masked(). Both pictures
+   have the view's size. False with error set if out of memory. */
+bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,
+                 FrameChanges *changes, Error *error);
+
+/* The part of naming that knows bodies. Only naming.c includes this. */
+
+/* Owners of differing pixels: CHANGE i is OWNER_FIRST + i. */
+enum { OWNER_NONE, OWNER_UNKNOWN, OWNER_FIRST };
+
+typedef struct Naming {
+    const NamingScene *scene;
+    const Image *pictures[2];
+    uint8_t *owners; /* [height, width] */
+    int32_t *tops;   /* [height, width] what is drawn on top in the expected picture: a body in the order of
+                        drawing, or (their number) an outline; -1: nothing */
+    FrameChanges *changes;
+} Naming;
+
+/* One panel for naming: its bodies as drawn, and what its pixels tell of one of them. Only naming_*.c include this. */
+
+/* A body as drawn in a panel. */
+typedef struct Drawn {
+    int index;
+    bool exists[2];
+    BoxModel box[2]; /* expected, actual */
+    double moved;    /* pixels, of the corner that the states move farthest; infinite if it exists on one side only */
+    int64_t pixels;  /* unknown ones on it */
+    bool tried;
+} Drawn;
+
+typedef struct Panel {
+    Naming *naming;
+    int number; /* from 0 */
+    const ViewPanel *view;
+    const Trajectory *runs[2];
+    int count;
+    Drawn *bodies; /* [count], in the order of drawing */
+    FitPixels *pixels;
+} Panel;
+
+/* The order of drawing. */
+typedef enum BodyLayer { LAYER_STATIC, LAYER_DYNAMIC, LAYER_BOMB, LAYERS } BodyLayer;
+BodyLayer panel_layer(const Trajectory *run, int body);
+
+/* Fills the bodies, and `tops` in the panel. *usable: false if bodies so large and many are no picture of a scene. The
+   runs must be known. panel_close() frees the panel, also after an error. */
+bool panel_open(Panel *panel, Naming *naming, int number, bool *usable, Error *error);
+void panel_close(Panel *panel);
+
+size_t panel_pixel(const Panel *panel, int x, int y);
+
+/* The part of a box's bounds that is in the panel; empty if right <= left. */
+ViewRect panel_bounds(const Panel *panel, const BoxModel *box, double margin);
+
+/* The bounds of the panel's unknown pixels; empty if there are none. */
+ViewRect panel_unknown(const Panel *panel);
+
+/* Explains the unknown pixels, which are within `changed`, by a change of one body. */
+BodyFit panel_fit(Panel *panel, int body, ViewRect changed);
+
+/* Groups failed frames by cause. Only regression.c includes this. */
+
+/* Fills `causes`. A frame may have several. False with error set if out of memory. */
+bool regression_find_causes(Regression *regression, Error *error);
+
+/* What the options and rules of a comparison mean for a frame: its limits, and the pixels that it ignores. */
+
+/* Reads the rules that the options name, or RULES_NAME in the expected folder if it is there. For folders, each rule must
+   match a frame: ERROR_INPUT otherwise. */
+bool regression_read_rules(Regression *regression, Error *error);
+
+/* Whether the masks of a frame of this size could hide all its pixels, or not fit: false is certain, true is not. */
+bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height);
+
+/* Cuts both pictures of a frame to their overlap, and marks in *masked[height, width] what is ignored (regression/compare.h):
+   masks, and edges if the tolerance says so. *masked is malloc'ed, or NULL if nothing can be ignored. */
+bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
+                       uint8_t **masked, Error *error);
+
+/* Compares the pictures of regression_ignore(): sets the frame's difference, which is not equal for other sizes. */
+void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
+                        const Image *actual, const uint8_t *masked);
+
+/* Sets the frame's verdict on pixels from its difference. Where a limit of FLIP decides, measures FLIP, and for this
+   copies what is ignored into the actual picture. */
+bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
+                       const uint8_t *masked, Error *error);
+
+/* Measures FLIP of the first frame that failed by its pixels, from its files, if that has not been done: it is the frame
+   that compare names. Only if it has a limit of FLIP: FLIP takes longer than everything else. */
+bool regression_measure_first(Regression *regression, Error *error);
+
+/* Regions and names of what changed in a frame. Only regression_frame.c includes this. */
+
+/* Sets `changes` and `other_view` of a frame whose pixels differ. data: the two PNG files, whose texts are read.
+   Thread-safe. False with error set if out of memory. */
+bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             const Image *const images[SIDES], const uint8_t *masked, Error *error);
+
+/* Compares the states behind the pictures. Only regression.c and regression_frame.c include this. */
+
+/* Finds and compares the .npz files of the same name in both folders. Ignores those that are a trajectory in neither
+   folder; ERROR_INPUT if only one of the two is a trajectory. */
+bool regression_find_runs(Regression *regression, Error *error);
+
+/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. False with error set when memory is
+   short. */
+bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             Error *error);

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/flip.h"
+#include "regression/internal.h"
+#include "regression/regression.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool given(const Tolerance *tolerance, unsigned limits) { return (tolerance->given & limits) != 0; }
+
+void tolerance_override(Tolerance *tolerance, const Tolerance *over) {
+    tolerance->given |= over->given;
+    if (given(over, LIMIT_FUZZY)) tolerance->fuzzy = over->fuzzy, tolerance->share = over->share;
+    if (given(over, LIMIT_TOLERANCE)) tolerance->tolerance = over->tolerance;
+    if (given(over, LIMIT_BEYOND)) tolerance->beyond = over->beyond;
+    if (given(over, LIMIT_FLIP_MEAN)) tolerance->flip_mean = over->flip_mean;
+    if (given(over, LIMIT_FLIP_P99)) tolerance->flip_p99 = over->flip_p99;
+    if (given(over, LIMIT_ANTIALIAS)) tolerance->antialias = over->antialias;
+}
+
+bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *difference, const FlipSummary *flip) {
+    double counted = (double)difference->counted;
+    if (difference->pixels == 0) return true;
+    if (!given(tolerance, LIMIT_FUZZY | LIMIT_TOLERANCE | LIMIT_BEYOND | LIMITS_FLIP)) return false;
+    if (given(tolerance, LIMIT_FUZZY) &&
+        (difference->largest > tolerance->fuzzy || (double)difference->pixels > tolerance->share * counted))
+        return false;
+    if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND) && (double)difference->beyond > tolerance->beyond * counted)
+        return false;
+    return (!given(tolerance, LIMIT_FLIP_MEAN) || flip->mean <= tolerance->flip_mean) &&
+           (!given(tolerance, LIMIT_FLIP_P99) || flip->p99 <= tolerance->flip_p99);
+}
+
+static void add(ToleranceText *words, const char *format, ...) PRINTF_LIKE(2, 3);
+static void add(ToleranceText *words, const char *format, ...) {
+    size_t used = strlen(words->text);
+    if (used > 0) used += (size_t)snprintf(words->text + used, sizeof words->text - used, ", ");
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(words->text + used, sizeof words->text - used, format, arguments);
+    va_end(arguments);
+}
+
+ToleranceText tolerance_words(const Tolerance *tolerance) {
+    ToleranceText words = {""};
+    if (given(tolerance, LIMIT_FUZZY))
+        add(&words, "differences of at most %d in at most %g%% of the pixels", tolerance->fuzzy,
+            100 * tolerance->share);
+    if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND))
+        add(&words, "differences above %d in at most %g%% of the pixels", tolerance->tolerance,
+            100 * tolerance->beyond);
+    if (given(tolerance, LIMIT_FLIP_MEAN)) add(&words, "mean FLIP of at most %g", tolerance->flip_mean);
+    if (given(tolerance, LIMIT_FLIP_P99)) add(&words, "99th percentile of FLIP of at most %g", tolerance->flip_p99);
+    if (tolerance->antialias) add(&words, "edges may move within a pixel");
+    if (words.text[0] == '\0') add(&words, "none");
+    return words;
+}
+
+bool tolerance_parse_flip(Tolerance *tolerance, const char *text) {
+    static const char mean[] = "mean=", p99[] = "p99=";
+    bool percentile = strncmp(text, p99, sizeof p99 - 1) == 0;
+    if (percentile)
+        text += sizeof p99 - 1;
+    else if (strncmp(text, mean, sizeof mean - 1) == 0)
+        text += sizeof mean - 1;
+    double limit;
+    if (!parse_double(text, &limit) || limit < 0 || limit > 1) return false;
+    *(percentile ? &tolerance->flip_p99 : &tolerance->flip_mean) = limit;
+    tolerance->given |= percentile ? LIMIT_FLIP_P99 : LIMIT_FLIP_MEAN;
+    return true;
+}
+
+static bool check_rules(const Regression *regression, Error *error) {
+    const char **names = malloc(((size_t)regression->count + 1) * sizeof *names);
+    if (names == NULL) return error_memory(error, "rules");
+    for (int i = 0; i < regression->count; i++) names[i] = frame_name(&regression->frames[i]);
+    bool ok = rules_check_names(regression->rules, names, regression->count, error);
+    free(names);
+    return ok;
+}
+
+bool regression_read_rules(Regression *regression, Error *error) {
+    const ImageSequence *expected = regression->sequences[EXPECTED];
+    char found[PATH_MAX];
+    const char *path = regression->options.rules;
+    if (path == NULL) {
+        if (!file_path(found, sizeof found, error, "%s/%s", expected->folder, RULES_NAME)) return false;
+        bool there;
+        if (!file_find(found, &there, error)) return false;
+        if (!there) return true;
+        path = found;
+    }
+    regression->rules = rules_read(path, error);
+    return regression->rules != NULL && (expected->single || check_rules(regression, error));
+}
+
+/* Rules first, then what the options give. */
+static Tolerance regression_tolerance(const Regression *regression, const RegressionFrame *frame) {
+    Tolerance tolerance = {0};
+    if (regression->rules != NULL) rules_override(regression->rules, frame_name(frame), &tolerance);
+    tolerance_override(&tolerance, &regression->options.tolerance);
+    return tolerance;
+}
+
+static bool has_masks(const Regression *regression, const RegressionFrame *frame) {
+    const Mask *mask = regression->options.mask;
+    return (mask != NULL && mask->count > 0) ||
+           (regression->rules != NULL && rules_have_masks(regression->rules, frame_name(frame)));
+}
+
+bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height) {
+    const Mask *mask = regression->options.mask;
+    double hidden = mask == NULL ? 0 : mask_most_hidden(mask, width, height);
+    if (regression->rules != NULL) hidden += rules_most_hidden(regression->rules, frame_name(frame), width, height);
+    return hidden >= (double)width * height;
+}
+
+static bool draw_masks(const Regression *regression, const RegressionFrame *frame, const Image *expected,
+                       uint8_t *masked, Error *error) {
+    const Mask *mask = regression->options.mask;
+    const char *path = frame->at[EXPECTED]->path;
+    return (mask == NULL || mask_draw(mask, expected, path, masked, error)) &&
+           (regression->rules == NULL ||
+            rules_draw_masks(regression->rules, frame_name(frame), expected, path, masked, error));
+}
+
+static void cut_mask(uint8_t *masked, int width, const Image *to) {
+    for (int y = 0; y < to->height && to->width < width; y++)
+        memmove(masked + (size_t)y * (size_t)to->width, masked + (size_t)y * (size_t)width, (size_t)to->width);
+}
+
+bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
+                       uint8_t **masked, Error *error) {
+    bool masks = has_masks(regression, frame), edges = regression_tolerance(regression, frame).antialias;
+    int width = expected->width;
+    *masked = NULL;
+    if ((masks || edges) && (*masked = calloc((size_t)width * (size_t)expected->height, 1)) == NULL)
+        return error_memory(error, frame_name(frame));
+    if (masks && !draw_masks(regression, frame, expected, *masked, error)) {
+        free(*masked);
+        *masked = NULL;
+        return false;
+    }
+    image_cut_to_overlap(expected, actual);
+    if (masks) cut_mask(*masked, width, expected);
+    if (edges) antialias_mark(expected, actual, *masked);
+    return true;
+}
+
+static bool same_size(const RegressionFrame *frame) {
+    const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
+    return a->width == b->width && a->height == b->height;
+}
+
+void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
+                        const Image *actual, const uint8_t *masked) {
+    ImageDifference *difference = &frame->difference;
+    int tolerance = regression_tolerance(regression, frame).tolerance;
+    image_compare_masked(expected, actual, masked, tolerance, difference);
+    difference->same_size = same_size(frame);
+    difference->equal = difference->equal && difference->same_size;
+}
+
+/* Ignored pixels count as equal. */
+static bool measure(RegressionFrame *frame, const Image *expected, Image *actual, const uint8_t *masked, Error *error) {
+    FlipSummary flip;
+    image_copy_masked(expected, actual, masked);
+    if (!flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, NULL, &flip, error)) return false;
+    frame->flip = flip.mean, frame->flip_p99 = flip.p99;
+    return true;
+}
+
+bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
+                       const uint8_t *masked, Error *error) {
+    const ImageDifference *difference = &frame->difference;
+    Tolerance tolerance = regression_tolerance(regression, frame);
+    if (!difference->same_size)
+        frame->pixels = PIXELS_RESIZED;
+    else if (difference->pixels == 0)
+        frame->pixels = difference->moved > 0 ? PIXELS_WITHIN : PIXELS_EQUAL;
+    else if ((tolerance.given & LIMITS_FLIP) != 0 && !measure(frame, expected, actual, masked, error))
+        return false;
+    else
+        frame->pixels = tolerance_holds(&tolerance, difference, &(FlipSummary){frame->flip, frame->flip_p99})
+                            ? PIXELS_WITHIN
+                            : PIXELS_DIFFER;
+    return true;
+}
+
+static Image *read_picture(const Regression *regression, const char *path, Error *error) {
+    size_t size;
+    uint8_t *data = image_load_png(path, &size, error);
+    Image *image = data == NULL ? NULL : image_decode_png(data, size, path, regression->options.max_pixels, error);
+    free(data);
+    return image;
+}
+
+static bool measure_files(const Regression *regression, RegressionFrame *frame, Error *error) {
+    uint8_t *masked = NULL;
+    Image *expected = read_picture(regression, frame->at[EXPECTED]->path, error);
+    Image *actual = expected == NULL ? NULL : read_picture(regression, frame->at[ACTUAL]->path, error);
+    bool ok = actual != NULL && regression_ignore(regression, frame, expected, actual, &masked, error) &&
+              measure(frame, expected, actual, masked, error);
+    image_destroy(expected);
+    image_destroy(actual);
+    free(masked);
+    return ok;
+}
+
+bool regression_measure_first(Regression *regression, Error *error) {
+    for (int i = 0; i < regression->count; i++) {
+        RegressionFrame *frame = &regression->frames[i];
+        if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
+        bool wanted = !frame->sizes_alone && (regression_tolerance(regression, frame).given & LIMITS_FLIP) != 0;
+        return !wanted || !isnan(frame->flip) || measure_files(regression, frame, error);
+    }
+    return true;
+}

@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/json.h"
+#include "pictures/page.h"
+#include "regression/compare.h"
+#include "regression/internal.h"
+#include "regression/naming.h"
+#include "regression/regression.h"
+#include "regression/report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* In a property, ':' and ',' end the value; in both, a line break ends the command. */
+static void put_escaped(FILE *out, const char *text, const char *special) {
+    for (; *text != '\0'; text++) {
+        if ((unsigned char)*text < ' ' || *text == '%' || strchr(special, *text) != NULL)
+            fprintf(out, "%%%02X", (unsigned)(unsigned char)*text);
+        else
+            fputc(*text, out);
+    }
+}
+
+static void put_property(FILE *out, const char *text) { put_escaped(out, text, ":,"); }
+static void put_message(FILE *out, const char *text) { put_escaped(out, text, ""); }
+
+void github_annotate_message(FILE *out, const char *title, const char *message) {
+    fputs("::error title=", out);
+    put_property(out, title);
+    fputs("::", out);
+    put_message(out, message);
+    fputc('\n', out);
+}
+
+/* Whether two neighbours of the list belong to one annotation: frames of one sequence that failed alike. */
+static bool is_same_failure(const Regression *regression, int i, int next) {
+    if (next >= regression->count) return false;
+    const RegressionFrame *a = &regression->frames[i], *b = &regression->frames[next];
+    const SequenceFrame *x = a->base, *y = b->base;
+    return frame_failed(a) && frame_failed(b) && x->number >= 0 && y->number >= 0 &&
+           sequence_compare_stems(x, y) == 0 && strcmp(frame_verdict(a), frame_verdict(b)) == 0;
+}
+
+typedef struct Failures {
+    int begin, end; /* cases; end is exclusive */
+} Failures;
+
+static void annotate(FILE *out, const Regression *regression, Failures failures) {
+    const RegressionCase made = regression_case(regression, failures.begin);
+    fputs("::error file=", out);
+    put_property(out, made.paths[made.paths[EXPECTED][0] != '\0' ? EXPECTED : ACTUAL]);
+    fputs(",title=", out);
+    put_property(out, made.verdict);
+    fputs("::", out);
+    put_message(out, made.name);
+    if (failures.end - failures.begin > 1) {
+        fputs(" to ", out);
+        put_message(out, frame_name(&regression->frames[failures.end - 1]));
+        fprintf(out, ", %d frames; the first", failures.end - failures.begin);
+    }
+    fputs(": ", out);
+    put_message(out, made.words.text);
+    fputc('\n', out);
+}
+
+void github_annotate(FILE *out, const Regression *regression) {
+    Failures found[GITHUB_ANNOTATIONS_MAX];
+    const int count = regression_case_count(regression);
+    int groups = 0, left_out = 0;
+    for (int k = 0; k < count; k++) {
+        int begin = (k + regression->count) % count, end = begin + 1; /* trajectories first: they are the cause */
+        if (!regression_case(regression, begin).failed) continue;
+        while (is_same_failure(regression, end - 1, end)) end++;
+        if (groups < GITHUB_ANNOTATIONS_MAX)
+            found[groups] = (Failures){begin, end};
+        else
+            left_out += end - begin;
+        groups++;
+        k += end - begin - 1;
+    }
+    if (groups > GITHUB_ANNOTATIONS_MAX) {
+        groups = GITHUB_ANNOTATIONS_MAX - 1;
+        left_out += found[groups].end - found[groups].begin;
+    }
+    for (int i = 0; i < groups; i++) annotate(out, regression, found[i]);
+    if (left_out == 0) return;
+    char message[128];
+    snprintf(message, sizeof message, "%d more failures; the step summary and the report list them", left_out);
+    github_annotate_message(out, "twinbox compare", message);
+}
+
+/* junit.xml for CI systems: a test case per frame and trajectory, with the time of its comparison. The times make it the
+   one file of a report that differs from run to run. html_put() also escapes for XML. */
+
+static void write_attribute(FILE *file, const char *key, const char *value) {
+    fprintf(file, " %s=\"", key);
+    html_put(file, value);
+    fputc('"', file);
+}
+
+/* The form in which GitLab and Jenkins link files; "]]" would end it. */
+static void write_attachment(FILE *file, const char *path) {
+    if (path[0] == '\0' || strstr(path, "]]") != NULL) return;
+    fputs("[[ATTACHMENT|", file);
+    html_put(file, path);
+    fputs("]]\n", file);
+}
+
+static void regression_junit_write_regions(FILE *file, const RegressionFrame *frame) {
+    const FrameChanges *changes = frame != NULL ? frame->changes : NULL;
+    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
+        html_put(file, region_words(changes, i).text);
+        fputc('\n', file);
+    }
+}
+
+static void write_failure(FILE *file, const RegressionCase *made) {
+    static const char *const titles[SIDES] = {"expected: ", "actual: "};
+    char message[sizeof made->words.text + 64];
+    snprintf(message, sizeof message, "%s: %s", made->verdict, made->words.text);
+    fputs("    <failure", file);
+    write_attribute(file, "type", made->verdict);
+    write_attribute(file, "message", message);
+    fputc('>', file);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        if (made->paths[side][0] == '\0') continue;
+        fputs(titles[side], file);
+        html_put(file, made->paths[side]);
+        fputc('\n', file);
+    }
+    regression_junit_write_regions(file, made->frame);
+    fputs("</failure>\n    <system-out>", file);
+    write_attachment(file, made->paths[ACTUAL]); /* the first one is what GitLab shows */
+    write_attachment(file, made->paths[EXPECTED]);
+    fputs("</system-out>\n", file);
+}
+
+static void write_case(FILE *file, const RegressionCase *made) {
+    fprintf(file, "  <testcase classname=\"%s\"", made->kind);
+    write_attribute(file, "name", made->name);
+    write_attribute(file, "file", made->paths[made->paths[EXPECTED][0] != '\0' ? EXPECTED : ACTUAL]);
+    fprintf(file, " time=\"%.6f\"", made->seconds);
+    if (!made->failed) {
+        fputs("/>\n", file);
+        return;
+    }
+    fputs(">\n", file);
+    write_failure(file, made);
+    fputs("  </testcase>\n", file);
+}
+
+void report_write_junit(FILE *file, const void *context) {
+    const Regression *regression = ((const Report *)context)->regression;
+    const int count = regression_case_count(regression);
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", file);
+    fprintf(file,
+            "<testsuite name=\"twinbox compare\" tests=\"%d\" failures=\"%d\" errors=\"0\" skipped=\"0\" "
+            "time=\"%.6f\">\n",
+            count, regression->failed + regression->run_failed, regression->seconds);
+    for (int i = 0; i < count; i++) {
+        const RegressionCase made = regression_case(regression, i);
+        write_case(file, &made);
+    }
+    const RegressionText notes = regression_notes(regression);
+    if (notes.text[0] != '\0') {
+        fputs("  <system-out>", file);
+        html_put(file, notes.text);
+        fputs("</system-out>\n", file);
+    }
+    fputs("</testsuite>\n", file);
+}
+
+/* results.tap, in version 14 of the Test Anything Protocol (testanything.org): a test per frame and trajectory. What
+   follows a failure is YAML; JSON is YAML, and keeps any name in its quotes. */
+
+/* '#' would begin a directive: "# TODO" turns a failure into a success. */
+static void put_description(FILE *file, const char *text) {
+    for (; *text != '\0'; text++) {
+        if (*text == '#' || *text == '\\') fputc('\\', file);
+        fputc((unsigned char)*text < ' ' ? ' ' : *text, file);
+    }
+}
+
+static void write_details(FILE *file, const RegressionCase *made) {
+    JsonWriter json = {.out = file};
+    fputs("  ---\n  ", file);
+    json_begin_object(&json, NULL, JSON_ONE_LINE);
+    json_put_text(&json, "verdict", made->verdict);
+    json_put_text(&json, "words", made->words.text);
+    json_put_text(&json, "expected", made->paths[EXPECTED][0] != '\0' ? made->paths[EXPECTED] : NULL);
+    json_put_text(&json, "actual", made->paths[ACTUAL][0] != '\0' ? made->paths[ACTUAL] : NULL);
+    json_end(&json);
+    fputs("  ...\n", file);
+}
+
+/* A comment for each line. */
+static void write_notes(FILE *file, const char *notes) {
+    if (notes[0] != '\0') fputs("# ", file);
+    for (; *notes != '\0'; notes++) {
+        fputc(*notes, file);
+        if (*notes == '\n') fputs("# ", file);
+        if (notes[1] == '\0') fputc('\n', file);
+    }
+}
+
+void report_write_tap(FILE *file, const void *context) {
+    const Regression *regression = ((const Report *)context)->regression;
+    const int count = regression_case_count(regression);
+    fprintf(file, "TAP version 14\n1..%d\n", count);
+    write_notes(file, regression_notes(regression).text);
+    for (int i = 0; i < count; i++) {
+        const RegressionCase made = regression_case(regression, i);
+        fprintf(file, "%s %d - ", made.failed ? "not ok" : "ok", i + 1);
+        put_description(file, made.name);
+        if (made.failed) {
+            fputs(": ", file);
+            put_description(file, made.verdict);
+        }
+        fputc('\n', file);
+        if (made.failed) write_details(file, &made);
+    }
+}
+
+/* results.json; also embedded in report.html for its script. */
+
+static void write_file(JsonWriter *json, const char *key, const char *name, const RegressionFile *data) {
+    if (name == NULL) {
+        json_put_text(json, key, NULL);
+        return;
+    }
+    json_begin_object(json, key, JSON_ONE_LINE);
+    json_put_text(json, "name", name);
+    json_put_int(json, "size", (int64_t)data->size);
+    json_put_hash(json, "xxh3", data->hash);
+    json_end(json);
+}
+
+static void write_sides(JsonWriter *json, int left, int top, int right, int bottom) {
+    const int sides[] = {left, top, right, bottom};
+    json_begin_array(json, "box", JSON_ONE_LINE);
+    for (int i = 0; i < 4; i++) json_put_int(json, NULL, sides[i]);
+    json_end(json);
+}
+
+static void write_box(JsonWriter *json, const ImageDifference *difference) {
+    if (difference->pixels == 0) {
+        json_put_text(json, "box", NULL);
+        return;
+    }
+    write_sides(json, difference->left, difference->top, difference->right, difference->bottom);
+}
+
+/* Four digits: the last bits of pow() depend on the machine. */
+static double rounded(double flip) {
+    char text[32];
+    snprintf(text, sizeof text, "%.4g", flip);
+    return isfinite(flip) ? strtod(text, NULL) : NAN;
+}
+
+/* At most IMAGE_REGIONS_MAX; a frame must stay one line below the limit of json_read.h. */
+static void regression_json_write_regions(JsonWriter *json, const RegressionFrame *frame) {
+    const FrameChanges *changes = frame->changes;
+    json_put_int(json, "region_count", changes == NULL ? 0 : changes->regions.count);
+    json_begin_array(json, "regions", JSON_ONE_LINE);
+    for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
+        const ImageRegion *region = &changes->regions.list[i];
+        ChangeText name = region_name(changes, i);
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        write_sides(json, region->left, region->top, region->right, region->bottom);
+        json_put_int(json, "pixels", region->pixels);
+        json_put_text(json, "name", name.text[0] != '\0' ? name.text : NULL);
+        json_end(json);
+    }
+    json_end(json);
+}
+
+static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
+    const char *names[SIDES];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        names[side] = frame->at[side] != NULL ? frame->at[side]->name : NULL;
+    json_begin_object(json, NULL, JSON_ONE_LINE);
+    json_put_text(json, "name", frame_name(frame));
+    json_put_text(json, "verdict", frame_verdict(frame));
+    json_put_bool(json, "failed", frame_failed(frame));
+    json_put_bool(json, "shown", frame->shown);
+    json_put_text(json, "words", frame_words(frame).text);
+    json_put_int(json, "differing", frame->difference.pixels);
+    json_put_int(json, "beyond", frame->difference.beyond);
+    json_put_int(json, "edges", frame->difference.moved);
+    json_put_int(json, "counted", frame->difference.counted);
+    json_put_int(json, "largest", frame->difference.largest);
+    write_box(json, &frame->difference);
+    regression_json_write_regions(json, frame);
+    json_put_number(json, "flip", rounded(frame->flip));
+    json_put_number(json, "flip_p99", rounded(frame->flip_p99));
+    json_put_text(json, "metadata", frame->metadata.text[0] != '\0' ? frame->metadata.text : NULL);
+    write_file(json, "expected", names[EXPECTED], &frame->files[EXPECTED]);
+    write_file(json, "actual", names[ACTUAL], &frame->files[ACTUAL]);
+    json_end(json);
+}
+
+static void write_run(JsonWriter *json, const RegressionRun *run) {
+    json_begin_object(json, NULL, JSON_ONE_LINE);
+    json_put_text(json, "name", run->name);
+    json_put_text(json, "verdict", run->difference.equal ? "equal" : "physics changed");
+    json_put_bool(json, "failed", !run->difference.equal);
+    json_put_bool(json, "shown", true);
+    json_put_text(json, "words", run_words(run).text);
+    write_file(json, "expected", run->name, &run->files[EXPECTED]);
+    write_file(json, "actual", run->name, &run->files[ACTUAL]);
+    json_end(json);
+}
+
+static void write_limits(JsonWriter *json, const Regression *regression) {
+    json_put_text(json, "tolerance", tolerance_words(&regression->options.tolerance).text);
+    json_put_text(json, "rules", regression->rules == NULL ? NULL : rules_path(regression->rules));
+}
+
+static void write_counts(JsonWriter *json, const Regression *regression) {
+    static const char *const keys[] = {
+        [PIXELS_EQUAL] = "equal",     [PIXELS_WITHIN] = "within_tolerance", [PIXELS_DIFFER] = "different",
+        [PIXELS_RESIZED] = "resized", [PIXELS_MISSING] = "missing",         [PIXELS_EXTRA] = "extra"};
+    json_begin_object(json, "counts", JSON_ONE_LINE);
+    json_put_int(json, "frames", regression->count);
+    for (int i = 0; i <= PIXELS_EXTRA; i++) json_put_int(json, keys[i], regression->by_verdict[i]);
+    json_put_int(json, "trajectories", regression->run_count);
+    json_put_int(json, "trajectories_different", regression->run_failed);
+    json_end(json);
+}
+
+void regression_write_json(JsonWriter *json, const Regression *regression) {
+    json_put_text(json, "expected", regression->sequences[EXPECTED]->folder);
+    json_put_text(json, "actual", regression->sequences[ACTUAL]->folder);
+    json_put_bool(json, "passed", regression_passed(regression));
+    json_put_text(json, "verdict", regression_verdict(regression).text);
+    json_put_text(json, "notes", regression_notes(regression).text);
+    write_counts(json, regression);
+    write_limits(json, regression);
+    json_put_int(json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
+    json_begin_array(json, "causes", JSON_LINES);
+    for (int i = 0; i < regression->cause_count; i++)
+        json_put_text(json, NULL, cause_words(&regression->causes[i]).text);
+    json_end(json);
+    json_begin_array(json, "frames", JSON_LINES);
+    for (int i = 0; i < regression->count; i++) write_frame(json, &regression->frames[i]);
+    json_end(json);
+    json_begin_array(json, "trajectories", JSON_LINES);
+    for (int i = 0; i < regression->run_count; i++) write_run(json, &regression->runs[i]);
+    json_end(json);
+}
+
+void report_write_json(FILE *file, const void *context) {
+    const Report *report = context;
+    JsonWriter json = {.out = file};
+    json_begin_object(&json, NULL, JSON_LINES);
+    json_put_text(&json, "format", "twinbox compare 1");
+    regression_write_json(&json, report->regression);
+    json_end(&json);
+}

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "regression/compare.h"
+
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+bool name_is_text(const char *name) {
+    size_t length, left = strlen(name);
+    for (; left > 0; name += length, left -= length) {
+        uint32_t character;
+        length = utf8_decode(name, left, &character);
+        if (length == 0 || character < 0x20 || (character >= 0x7F && character < 0xA0)) return false;
+    }
+    return true;
+}
+
+static bool is_png(const char *name) {
+    const char *ending = strrchr(name, '.');
+    return ending != NULL && strcasecmp(ending, ".png") == 0;
+}
+
+/* Finds folder, stem and number of a frame's name. */
+/* 19 or more digits do not count as a number. */
+static void sequence_read_name(SequenceFrame *frame) {
+    enum { DIGITS = 18 };
+    frame->folder = (int)file_folder_length(frame->name);
+    const char *base = frame->name + frame->folder, *ending = strrchr(base, '.');
+    const char *end = ending != NULL ? ending : base + strlen(base), *digits = end;
+    while (digits > base && digits[-1] >= '0' && digits[-1] <= '9') digits--;
+    bool numbered = digits < end && end - digits <= DIGITS;
+    frame->number = numbered ? strtoll(digits, NULL, 10) : -1;
+    frame->stem = (int)((numbered ? digits : end) - frame->name);
+}
+
+/* `before` is the path before the name, including the slash. */
+static bool add_frame(ImageSequence *sequence, size_t *capacity, const char *before, const char *name, Error *error) {
+    size_t size = strlen(before) + strlen(name) + 1;
+    if (!name_is_text(name))
+        return error_input(error, before, "a file name in it is not UTF-8 or has control characters");
+    char *path = malloc(size);
+    if (path == NULL ||
+        !array_reserve((void **)&sequence->frames, capacity, (size_t)sequence->count + 1, sizeof *sequence->frames)) {
+        free(path);
+        return error_memory(error, before);
+    }
+    snprintf(path, size, "%s%s", before, name);
+    SequenceFrame *frame = &sequence->frames[sequence->count++];
+    *frame = (SequenceFrame){.path = path, .name = path + strlen(before)};
+    sequence_read_name(frame);
+    return true;
+}
+
+/* A folder's frames come before those of the folders below it. */
+static int compare_parts(const char *x, int x_length, const char *y, int y_length) {
+    int order = memcmp(x, y, (size_t)(x_length < y_length ? x_length : y_length));
+    return order != 0 ? order : (x_length > y_length) - (x_length < y_length);
+}
+
+/* Order by folder; by folder and stem; by number; by all of these, then name. */
+static int sequence_compare_folders(const SequenceFrame *x, const SequenceFrame *y) {
+    return compare_parts(x->name, x->folder, y->name, y->folder);
+}
+
+int sequence_compare_stems(const SequenceFrame *x, const SequenceFrame *y) {
+    int order = sequence_compare_folders(x, y);
+    return order != 0 ? order : compare_parts(x->name, x->stem, y->name, y->stem);
+}
+
+static int sequence_compare_numbers(const SequenceFrame *x, const SequenceFrame *y) {
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+static int sequence_compare_frames(const void *x, const void *y) {
+    const SequenceFrame *a = x, *b = y;
+    int order = sequence_compare_stems(a, b);
+    if (order == 0) order = sequence_compare_numbers(a, b);
+    return order != 0 ? order : strcmp(a->name, b->name);
+}
+
+static bool list_pictures(ImageSequence *sequence, bool recursive, Error *error) {
+    FolderList files;
+    size_t capacity = 0, length = strlen(sequence->folder) + 2;
+    if (!folder_list(&files, sequence->folder, is_png, recursive, error)) return false;
+    char *before = malloc(length);
+    bool ok = before != NULL || error_memory(error, sequence->folder);
+    if (ok) snprintf(before, length, "%s%s", sequence->folder, strcmp(sequence->folder, "/") == 0 ? "" : "/");
+    for (size_t i = 0; ok && i < files.count; i++) ok = add_frame(sequence, &capacity, before, files.names[i], error);
+    sequence->skipped = (int)files.skipped;
+    free(before);
+    folder_list_free(&files);
+    if (ok && sequence->count > 0)
+        qsort(sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, sequence_compare_frames);
+    return ok;
+}
+
+static bool take_file(ImageSequence *sequence, const char *path, Error *error) {
+    size_t capacity = 0;
+    char *before = strndup(path, file_folder_length(path));
+    bool ok = before != NULL ? add_frame(sequence, &capacity, before, path + strlen(before), error)
+                             : error_memory(error, path);
+    free(before);
+    return ok;
+}
+
+/* "a/b/" -> "a/b"; for a file its folder. */
+static char *folder_of(const char *path, bool single) {
+    size_t length = single ? file_folder_length(path) : strlen(path);
+    while (length > 1 && path[length - 1] == '/') length--;
+    return length == 0 ? strdup(".") : strndup(path, length);
+}
+
+ImageSequence *image_sequence_open(const char *path, bool recursive, Error *error) {
+    struct stat status;
+    if (stat(path, &status) != 0) {
+        folder_error(path, error);
+        return NULL;
+    }
+    ImageSequence *sequence = calloc(1, sizeof *sequence);
+    if (sequence == NULL) {
+        error_memory(error, path);
+        return NULL;
+    }
+    sequence->device = status.st_dev;
+    sequence->inode = status.st_ino;
+    sequence->single = !S_ISDIR(status.st_mode);
+    sequence->folder = folder_of(path, sequence->single);
+    if (sequence->folder == NULL) error_memory(error, path);
+    if (sequence->folder != NULL &&
+        (sequence->single ? take_file(sequence, path, error) : list_pictures(sequence, recursive, error)))
+        return sequence;
+    image_sequence_close(sequence);
+    return NULL;
+}
+
+void image_sequence_close(ImageSequence *sequence) {
+    if (sequence == NULL) return;
+    for (int i = 0; i < sequence->count; i++) free(sequence->frames[i].path);
+    free(sequence->frames);
+    free(sequence->folder);
+    free(sequence);
+}
+
+/* Frames in the order of sequence_compare_frames(). */
+typedef struct Range {
+    const SequenceFrame **frames;
+    int count;
+} Range;
+
+static SequenceFrame *find(const ImageSequence *sequence, const SequenceFrame *key,
+                           int (*compare)(const void *, const void *)) {
+    if (sequence->count == 0) return NULL;
+    return bsearch(key, sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, compare);
+}
+
+static int compare_stems(const void *x, const void *y) { return sequence_compare_stems(x, y); }
+
+/* home.png for home.1.png, if that is another accepted picture for it. If `b` has any home.N.png, these are frames. */
+static SequenceFrame *accepted_for(const ImageSequence *a, const ImageSequence *b, const SequenceFrame *frame) {
+    char name[PATH_MAX];
+    int dot = frame->stem - 1;
+    if (frame->number < 1 || dot <= frame->folder || frame->name[dot] != '.' || frame->name[frame->stem] == '0')
+        return NULL;
+    if (snprintf(name, sizeof name, "%.*s%s", dot, frame->name, strrchr(frame->name, '.')) >= (int)sizeof name)
+        return NULL;
+    SequenceFrame key = {.name = name};
+    sequence_read_name(&key);
+    if (find(b, &key, sequence_compare_frames) == NULL || find(b, frame, compare_stems) != NULL) return NULL;
+    return find(a, &key, sequence_compare_frames);
+}
+
+/* The frames of `a` that can make pairs; the others are linked to theirs. */
+static Range take_frames(const ImageSequence *a, const ImageSequence *b, const SequenceFrame **frames) {
+    int at = a->count;
+    for (int i = a->count - 1; i >= 0; i--) {
+        SequenceFrame *frame = &a->frames[i], *other = b != NULL ? accepted_for(a, b, frame) : NULL;
+        if (other == NULL) {
+            frames[--at] = frame;
+        } else { /* from the last one, so that the list is in order */
+            frame->next = other->next;
+            other->next = frame;
+        }
+    }
+    return (Range){frames + at, a->count - at};
+}
+
+typedef struct Pairing {
+    SequencePair *pairs;
+    int count;
+} Pairing;
+
+static void put(Pairing *pairing, const SequenceFrame *a, const SequenceFrame *b) {
+    pairing->pairs[pairing->count++] = (SequencePair){a, b};
+}
+
+static const SequenceFrame *find_name(Range range, const char *name) {
+    for (int i = 0; i < range.count; i++)
+        if (strcmp(range.frames[i]->name, name) == 0) return range.frames[i];
+    return NULL;
+}
+
+/* Counts the frames whose names the other range lacks, and stores the first two. */
+static int count_left(Range range, Range other, const SequenceFrame *left[2]) {
+    int count = 0;
+    for (int i = 0; i < range.count; i++)
+        if (find_name(other, range.frames[i]->name) == NULL) {
+            if (count < 2) left[count] = range.frames[i];
+            count++;
+        }
+    return count;
+}
+
+/* All frames have the same number; at most some hundred names have (01, 001, ...). */
+static bool pair_group(Pairing *pairing, Range a, Range b, Error *error) {
+    const SequenceFrame *left_a[2], *left_b[2];
+    int count_a = count_left(a, b, left_a), count_b = count_left(b, a, left_b);
+    bool one = count_a == 1 && count_b == 1;
+    if (count_a > 0 && count_b > 0 && !one) {
+        const SequenceFrame *const *both = count_a > 1 ? left_a : left_b,
+                                   *partner = count_a > 1 ? left_b[0] : left_a[0];
+        return error_input(error, both[1]->path, "has the same number as %s: which of them belongs to %s?",
+                           both[0]->name, partner->path);
+    }
+    for (int i = 0; i < a.count; i++) {
+        const SequenceFrame *same = find_name(b, a.frames[i]->name);
+        put(pairing, a.frames[i], same != NULL ? same : one ? left_b[0] : NULL);
+    }
+    for (int i = 0; i < b.count && !one; i++)
+        if (find_name(a, b.frames[i]->name) == NULL) put(pairing, NULL, b.frames[i]);
+    return true;
+}
+
+/* Takes the first frames for which `compare` finds no difference; none unless `any`. */
+static Range take_leading(Range *range, bool any, int (*compare)(const SequenceFrame *, const SequenceFrame *)) {
+    Range leading = {range->frames, any};
+    while (any && leading.count < range->count && compare(range->frames[0], range->frames[leading.count]) == 0)
+        leading.count++;
+    range->frames += leading.count;
+    range->count -= leading.count;
+    return leading;
+}
+
+static int by_stem_and_number(const SequenceFrame *x, const SequenceFrame *y) {
+    int order = sequence_compare_stems(x, y);
+    return order != 0 ? order : sequence_compare_numbers(x, y);
+}
+
+static bool has_one_numbered_stem(Range range) {
+    return range.count > 0 && range.frames[0]->number >= 0 &&
+           sequence_compare_stems(range.frames[0], range.frames[range.count - 1]) == 0;
+}
+
+typedef bool PairRanges(Pairing *pairing, Range a, Range b, Error *error);
+
+/* Calls pair_ranges for each part of both ranges that has one place in the order of `compare`. */
+static bool merge(Pairing *pairing, Range a, Range b, int (*compare)(const SequenceFrame *, const SequenceFrame *),
+                  PairRanges *pair_ranges, Error *error) {
+    while (a.count > 0 || b.count > 0) {
+        int order = a.count == 0 ? 1 : b.count == 0 ? -1 : compare(a.frames[0], b.frames[0]);
+        Range first = take_leading(&a, order <= 0, compare), second = take_leading(&b, order >= 0, compare);
+        if (!pair_ranges(pairing, first, second, error)) return false;
+    }
+    return true;
+}
+
+static bool pair_folder(Pairing *pairing, Range a, Range b, Error *error) {
+    bool numbers_alone = has_one_numbered_stem(a) && has_one_numbered_stem(b);
+    return merge(pairing, a, b, numbers_alone ? sequence_compare_numbers : by_stem_and_number, pair_group, error);
+}
+
+static bool pair_sequences(Pairing *pairing, const ImageSequence *a, const ImageSequence *b,
+                           const SequenceFrame **frames, Error *error) {
+    if (a->single) {
+        put(pairing, &a->frames[0], &b->frames[0]);
+        return true;
+    }
+    Range first = take_frames(a, b, frames), second = take_frames(b, NULL, frames + a->count);
+    return merge(pairing, first, second, sequence_compare_folders, pair_folder, error);
+}
+
+SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b, int *count, Error *error) {
+    *count = 0;
+    if (a->single != b->single) {
+        error_input(error, (a->single ? b : a)->folder, "is a folder, but %s is a file",
+                    (a->single ? a : b)->frames[0].path);
+        return NULL;
+    }
+    size_t most = (size_t)a->count + (size_t)b->count + 1;
+    Pairing pairing = {.pairs = malloc(most * sizeof *pairing.pairs)};
+    const SequenceFrame **frames = malloc(most * sizeof *frames);
+    bool ok = pairing.pairs != NULL && frames != NULL ? pair_sequences(&pairing, a, b, frames, error)
+                                                      : error_memory(error, a->folder);
+    free(frames);
+    *count = pairing.count;
+    if (ok) return pairing.pairs;
+    free(pairing.pairs);
+    *count = 0;
+    return NULL;
+}

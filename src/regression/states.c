@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "base/machine.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/internal.h"
+#include "regression/naming.h"
+#include "regression/regression.h"
+#include "runs/trajectory.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* The limit of a trajectory file. */
+static const size_t MAX_RUN_SIZE = (size_t)2 << 30;
+
+static bool run_path(const Regression *regression, RegressionSide side, const char *name, char path[PATH_MAX],
+                     Error *error) {
+    return file_path(path, PATH_MAX, error, "%s/%s", regression->sequences[side]->folder, name);
+}
+
+static bool is_run(const char *name) {
+    size_t length = strlen(name);
+    return length >= 5 && strcmp(name + length - 4, ".npz") == 0 && name_is_text(name);
+}
+
+/* Adds a file of the expected folder if the actual folder has it, too. */
+static bool add_run(Regression *regression, const char *name, Error *error) {
+    char path[PATH_MAX];
+    struct stat status;
+    if (!name_is_text(name)) return true; /* of its folder */
+    if (!run_path(regression, ACTUAL, name, path, error)) return false;
+    if (stat(path, &status) != 0) {
+        if (errno != ENOENT && errno != ENOTDIR)
+            return error_system(error, path, "cannot be read: %s", strerror(errno));
+        regression->runs_left_out++;
+        return true;
+    }
+    char *copy = strdup(name);
+    if (copy == NULL) return error_memory(error, name);
+    regression->runs[regression->run_count++] = (RegressionRun){.name = copy};
+    return true;
+}
+
+static bool list_runs(Regression *regression, Error *error) {
+    const char *folder = regression->sequences[EXPECTED]->folder;
+    FolderList files;
+    if (!folder_list(&files, folder, is_run, !regression->options.flat, error)) return false;
+    regression->runs = calloc(files.count + 1, sizeof *regression->runs);
+    bool ok = regression->runs != NULL || error_memory(error, folder);
+    for (size_t i = 0; ok && i < files.count; i++) ok = add_run(regression, files.names[i], error);
+    folder_list_free(&files);
+    return ok;
+}
+
+/* Marks the frames that differ; frames beyond the end of the shorter run do. */
+static bool mark_frames(RegressionRun *run, const Trajectory *a, const Trajectory *b, Error *error) {
+    int common = a->frames < b->frames ? a->frames : b->frames;
+    char what[sizeof run->difference.what];
+    bool other_worlds = trajectory_different_worlds(a, b, what, sizeof what);
+    run->frames = a->frames > b->frames ? a->frames : b->frames;
+    run->differs = malloc((size_t)run->frames * sizeof *run->differs);
+    if (run->differs == NULL) return error_memory(error, run->name);
+    for (int frame = 0; frame < run->frames; frame++) {
+        run->differs[frame] = other_worlds || frame >= common;
+        for (int body = 0; body < a->bodies && !run->differs[frame]; body++)
+            run->differs[frame] = !trajectory_same_state(a, b, frame, body);
+    }
+    return true;
+}
+
+static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], bool *foreign, Error *error) {
+    Error failures[SIDES] = {{0}, {0}};
+    Trajectory *sides[SIDES];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        sides[side] = trajectory_read(paths[side], &failures[side]);
+    bool ok = sides[EXPECTED] != NULL && sides[ACTUAL] != NULL, system = false;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if (failures[side].kind == ERROR_SYSTEM) *error = failures[side], system = true;
+    *foreign = !system && sides[EXPECTED] == NULL && sides[ACTUAL] == NULL;
+    if (ok) {
+        trajectory_compare(sides[EXPECTED], sides[ACTUAL], &run->difference);
+        memcpy(run->scene, sides[EXPECTED]->scene, sizeof run->scene);
+        ok = run->difference.equal || mark_frames(run, sides[EXPECTED], sides[ACTUAL], error);
+    } else if (!*foreign && !system)
+        *error = failures[sides[EXPECTED] == NULL ? EXPECTED : ACTUAL];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) trajectory_destroy(sides[side]);
+    return ok || *foreign;
+}
+
+/* Equal bytes are equal runs, if they are a run. */
+static bool read_run(RegressionRun *run, const char *path, bool *foreign, Error *error) {
+    Error failure = {0};
+    Trajectory *trajectory = trajectory_read(path, &failure);
+    *foreign = trajectory == NULL;
+    trajectory_destroy(trajectory);
+    run->difference.equal = true;
+    if (failure.kind == ERROR_SYSTEM) *error = failure;
+    return failure.kind != ERROR_SYSTEM;
+}
+
+static bool judge_run(const Regression *regression, RegressionRun *run, bool *foreign, Error *error) {
+    char paths[SIDES][PATH_MAX];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        if (!run_path(regression, side, run->name, paths[side], error)) return false;
+        RegressionFile *file = &run->files[side];
+        char *data = file_read(paths[side], MAX_RUN_SIZE, &file->size, error);
+        if (data == NULL) return false;
+        file->hash = hash_xxh3(data, file->size);
+        bool pointer = !lfs_pointer_refuse(data, file->size, paths[side], error);
+        free(data);
+        if (pointer) return false;
+    }
+    const RegressionFile *a = &run->files[EXPECTED], *b = &run->files[ACTUAL];
+    bool same = a->hash == b->hash && a->size == b->size;
+    return same ? read_run(run, paths[EXPECTED], foreign, error) : compare_run(run, paths, foreign, error);
+}
+
+bool regression_find_runs(Regression *regression, Error *error) {
+    if (regression->sequences[EXPECTED]->single) return true;
+    if (!list_runs(regression, error)) return false;
+    int kept = 0;
+    bool ok = true;
+    for (int i = 0; i < regression->run_count; i++) {
+        bool foreign = false;
+        RegressionRun run = regression->runs[i];
+        double begun = clock_seconds();
+        ok = ok && judge_run(regression, &run, &foreign, error);
+        run.seconds = clock_seconds() - begun;
+        if (foreign) {
+            regression->runs_foreign++;
+            free(run.name);
+        } else
+            regression->runs[kept++] = run;
+    }
+    regression->run_count = kept;
+    return ok;
+}
+
+/* The texts of a picture. */
+typedef struct Texts {
+    char scene[TRAJECTORY_NAME_SIZE], frame[32], state[512];
+} Texts;
+
+static bool read_texts(Texts *texts, const uint8_t *data, size_t size, Error *error) {
+    return image_find_text(data, size, "Scene", texts->scene, sizeof texts->scene, error) &&
+           image_find_text(data, size, "Frame", texts->frame, sizeof texts->frame, error) &&
+           image_find_text(data, size, "State", texts->state, sizeof texts->state, error);
+}
+
+/* The first differing panel: "a1 | b2" and "a1 | c3" give 2. */
+static int first_panel(const char *a, const char *b) {
+    int panel = 1;
+    for (; *a != '\0' && *a == *b; a++, b++) panel += *a == '|';
+    return panel;
+}
+
+static bool in_its_folder(const RegressionRun *run, const SequenceFrame *picture) {
+    return file_folder_length(run->name) == (size_t)picture->folder &&
+           memcmp(run->name, picture->name, (size_t)picture->folder) == 0;
+}
+
+/* Whether a run of the picture's folder and scene (of any scene if the picture names none) differs in this frame.
+   *somewhere: in any frame. */
+static bool runs_differ(const Regression *regression, const SequenceFrame *picture, const Texts *texts, int64_t frame,
+                        bool *somewhere) {
+    bool here = false;
+    for (int i = 0; i < regression->run_count; i++) {
+        const RegressionRun *run = &regression->runs[i];
+        if (run->differs == NULL || !in_its_folder(run, picture) ||
+            (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0))
+            continue;
+        int64_t at = frame < run->frames ? frame : run->frames - 1;
+        here = here || run->differs[at < 0 ? 0 : at];
+        *somewhere = true;
+    }
+    return here;
+}
+
+static bool has_runs(const Regression *regression, const SequenceFrame *picture) {
+    for (int i = 0; i < regression->run_count; i++)
+        if (in_its_folder(&regression->runs[i], picture)) return true;
+    return false;
+}
+
+bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             Error *error) {
+    Texts texts[SIDES];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if (!read_texts(&texts[side], data[side], frame->files[side].size, error)) return false;
+    const char *a = texts[EXPECTED].state, *b = texts[ACTUAL].state;
+    bool have_texts = a[0] != '\0' && b[0] != '\0', texts_differ = have_texts && strcmp(a, b) != 0;
+    if (texts_differ) frame->panel = first_panel(a, b);
+    const char *number = texts[EXPECTED].frame;
+    int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : frame->base->number;
+    bool differs = runs_differ(regression, frame->base, &texts[EXPECTED], at, &frame->run_differs);
+    bool known = have_texts || has_runs(regression, frame->base);
+    frame->states = texts_differ || differs ? STATES_DIFFER : known ? STATES_EQUAL : STATES_UNKNOWN;
+    return true;
+}
+
+enum { RANGES = 4 };
+
+typedef struct Causes {
+    Regression *regression;
+    bool numbered; /* all frames belong to one sequence of numbered pictures */
+} Causes;
+
+static bool is_numbered(const Regression *regression) {
+    const SequenceFrame *first = NULL;
+    for (int i = 0; i < regression->count; i++) {
+        const SequenceFrame *at = regression->frames[i].at[EXPECTED];
+        if (at == NULL) continue;
+        if (first == NULL) first = at;
+        if (at->number < 0 || at->stem != first->stem || memcmp(at->name, first->name, (size_t)at->stem) != 0)
+            return false;
+    }
+    return first != NULL;
+}
+
+static void put_name(const Causes *causes, RegressionCause *cause, int frame) {
+    const RegressionFrame *at = &causes->regression->frames[frame];
+    if (causes->numbered)
+        text_add(cause->frames, sizeof cause->frames, "%" PRId64, at->at[EXPECTED]->number);
+    else
+        text_add(cause->frames, sizeof cause->frames, "%.40s", frame_name(at));
+}
+
+/* Adds a frame; frames are added in order. Neighbours form a range. */
+static void add_frame(const Causes *causes, RegressionCause *cause, int frame) {
+    bool next = cause->count > 0 && frame == cause->last + 1;
+    cause->last = frame;
+    if (cause->count++ == 0 && causes->numbered) text_add(cause->frames, sizeof cause->frames, "frame ");
+    if (next && cause->ranges <= RANGES) {
+        cause->frames[cause->written] = '\0';
+        text_add(cause->frames, sizeof cause->frames, " to ");
+        put_name(causes, cause, frame);
+        return;
+    }
+    if (!next && ++cause->ranges == RANGES + 1) text_add(cause->frames, sizeof cause->frames, " ...");
+    if (next || cause->ranges > RANGES) return;
+    if (cause->ranges > 1) text_add(cause->frames, sizeof cause->frames, ", ");
+    put_name(causes, cause, frame);
+    cause->written = (int)strlen(cause->frames);
+}
+
+/* "frame 3", but "frames 3 to 5"; the number if there are too many ranges. */
+static void finish(const Causes *causes, RegressionCause *cause) {
+    char whole[sizeof cause->frames];
+    if (cause->ranges > RANGES) text_add(cause->frames, sizeof cause->frames, " (%d frames)", cause->count);
+    if (!causes->numbered || cause->count == 1) return;
+    snprintf(whole, sizeof whole, "frames%.*s", (int)sizeof whole - 7, cause->frames + strlen("frame"));
+    memcpy(cause->frames, whole, sizeof whole);
+}
+
+static void add_cause(const Causes *causes, int frame, const char *what, double most, bool of_view) {
+    Regression *regression = causes->regression;
+    int at = 0;
+    while (at < regression->cause_count && strcmp(regression->causes[at].what, what) != 0) at++;
+    if (at == CAUSES_MAX) {
+        regression->causes_left_out++;
+        return;
+    }
+    RegressionCause *cause = &regression->causes[at];
+    if (at == regression->cause_count) {
+        *cause = (RegressionCause){.of_view = of_view, .last = -2};
+        snprintf(cause->what, sizeof cause->what, "%s", what);
+        regression->cause_count++;
+    }
+    cause->most = fmax(cause->most, most);
+    if (cause->count == 0 || cause->last != frame) add_frame(causes, cause, frame);
+}
+
+static void add_view(const Causes *causes, int frame) {
+    const RegressionFrame *at = &causes->regression->frames[frame];
+    const ShownFolder *folders[SIDES];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        folders[side] = shown_find(&causes->regression->shown, at->at[side]->path);
+    if (folders[EXPECTED] == NULL || folders[ACTUAL] == NULL) return;
+    ViewText words = view_difference(&folders[EXPECTED]->view, &folders[ACTUAL]->view);
+    char what[sizeof causes->regression->causes->what];
+    snprintf(what, sizeof what, "%s; render with --view-from %s%s", words.text, folders[EXPECTED]->path,
+             folders[EXPECTED]->view.panels[0].run);
+    add_cause(causes, frame, what, 0, true);
+}
+
+static void add_physics(const Causes *causes, int frame) {
+    const Regression *regression = causes->regression;
+    const RegressionFrame *at = &regression->frames[frame];
+    char what[96] = "states differ";
+    const TrajectoryDifference *first =
+        regression->first_run >= 0 ? &regression->runs[regression->first_run].difference : NULL;
+    if (first != NULL && first->body >= 0)
+        snprintf(what, sizeof what, "states differ, body %d first", first->body);
+    else if (first == NULL && at->panel > 0)
+        snprintf(what, sizeof what, "states differ in panel %d", at->panel);
+    add_cause(causes, frame, what, 0, false);
+}
+
+/* The named changes, or that there is a difference. */
+static void add_changes(const Causes *causes, int frame) {
+    const FrameChanges *changes = causes->regression->frames[frame].changes;
+    bool named = changes != NULL && changes->count > 0;
+    for (int i = 0; named && i < changes->count; i++) {
+        const Change *change = &changes->list[i];
+        double most = change->kind == CHANGE_MOVED ? fmax(fabs(change->right), fabs(change->up)) : 0;
+        add_cause(causes, frame, change_cause(change).text, most, false);
+    }
+    if (!named) add_cause(causes, frame, "pixels differ", 0, false);
+}
+
+static void add_causes(const Causes *causes, int frame) {
+    const RegressionFrame *at = &causes->regression->frames[frame];
+    bool pictures = at->pixels == PIXELS_DIFFER || at->pixels == PIXELS_RESIZED;
+    if (at->pixels >= PIXELS_MISSING) return;
+    if (at->pixels == PIXELS_RESIZED) add_cause(causes, frame, "sizes differ", 0, false);
+    if (pictures && at->other_view) add_view(causes, frame);
+    if (at->states == STATES_DIFFER)
+        add_physics(causes, frame);
+    else if (at->pixels == PIXELS_DIFFER && !at->other_view)
+        add_changes(causes, frame);
+}
+
+static int view_first(const void *a, const void *b) {
+    const RegressionCause *x = a, *y = b;
+    if (x->of_view != y->of_view) return x->of_view ? -1 : 1;
+    return x->ranges - y->ranges; /* `ranges` holds the order of discovery here */
+}
+
+bool regression_find_causes(Regression *regression, Error *error) {
+    const Causes causes = {regression, is_numbered(regression)};
+    regression->causes = calloc(CAUSES_MAX, sizeof *regression->causes);
+    if (regression->causes == NULL) return error_memory(error, "causes");
+    for (int i = 0; i < regression->count; i++) add_causes(&causes, i);
+    for (int i = 0; i < regression->cause_count; i++) {
+        finish(&causes, &regression->causes[i]);
+        regression->causes[i].ranges = i;
+    }
+    qsort(regression->causes, (size_t)regression->cause_count, sizeof *regression->causes, view_first);
+    return true;
+}

@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pieces that a merge does not find, and the shards that are to do them. */
+#pragma once
+#include "base/base.h"
+#include "base/npz.h"
+#include "engine/engine.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { MISSING_NAMED = 5 };
+
+/* Begin with the first two members; pieces_missing_free(). */
+typedef struct PiecesMissing {
+    const Pieces *pieces;
+    const PiecePlan *plan;
+    int64_t count;
+    char names[MISSING_NAMED][PIECE_NAME_SIZE]; /* the first of them */
+    unsigned char *shards; /* [shards of the study] whether it has missing pieces; NULL: no memory */
+} PiecesMissing;
+
+void pieces_missing_add(PiecesMissing *missing, const PieceInfo *info);
+void pieces_missing_free(PiecesMissing *missing);
+
+/* ERROR_INCOMPLETE if there are any. */
+bool pieces_missing_refuse(const PiecesMissing *missing, Error *error);
+
+/* "3,17-20": these shards, or the ids that a job array gave them; to be freed. NULL when memory is short. */
+char *pieces_shard_list(const unsigned char *shards, int count, const JobArray *array);
+
+/* What a run's CSV states above its header, and the file of sizes. Part of csv_run. */
+
+typedef struct CsvBody {
+    int64_t number; /* in the file */
+    Vec2 size;
+    bool fixed;
+} CsvBody;
+
+typedef struct CsvHead {
+    char scene[TRAJECTORY_NAME_SIZE], method[TRAJECTORY_NAME_SIZE]; /* empty: not stated */
+    uint64_t scene_hash;
+    int64_t iterations; /* 0: unknown */
+    float dt;           /* 0: not stated */
+    int64_t bomb;       /* number in the file; -1: none */
+    Vec2 camera[2];
+    bool states_static; /* whether bodies are static */
+    size_t count, capacity;
+    CsvBody *bodies; /* by rising number */
+} CsvHead;
+
+/* Reads lines "# key: value" from *text on, which is moved behind them; *line becomes the number of the next line. `sizes`:
+   a CSV file of body,width,height,static, or NULL. The caller frees bodies, also on failure. */
+bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const char *sizes, Error *error);
+
+/* Index of the body with this number; -1: it has no size. */
+int csv_head_body(const CsvHead *head, int64_t number);
+
+/* Which arrays a run has, and what others may have called them. Only trajectory_read.c includes this. */
+
+/* False with error set if the file is one of another kind, lacks a needed array, has a part of those that only come
+   together, or has an unknown array that looks like one that it lacks: then the error suggests that name. Other unknown arrays are
+   ignored. */
+bool run_arrays_check(NpzFile *file, Error *error);
+
+/* The rows of a run's CSV, one at a time: a file of a million rows takes no memory but its text. Part of csv_run. */
+
+enum CsvRowsColumn { COL_FRAME, COL_BODY, COL_X, COL_Y, COL_ANGLE, COL_VX, COL_VY, COL_OMEGA, COL_TIME, COL_COUNT };
+
+typedef struct CsvRows {
+    const char *path;
+    const char *at;       /* the line to be read */
+    int line;             /* its number */
+    int width;            /* fields of each line */
+    int field[COL_COUNT]; /* of each column, -1: absent */
+    const char *first;    /* the first row, */
+    int first_line;       /* and its number */
+    char ignored[128];    /* columns that mean nothing, separated by ", " */
+} CsvRows;
+
+typedef struct CsvRow {
+    int line;
+    int64_t frame, body;
+    float state[6]; /* x, y, angle, vx, vy, omega; the last three 0 if absent */
+    double time;    /* s, 0 if absent */
+} CsvRow;
+
+/* Reads the header at `text`, which is line `line` of the file and stays the caller's. */
+bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, Error *error);
+
+/* False at the end, and with error set. */
+bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error);
+void csv_rows_rewind(CsvRows *rows);
+
+/* Line of the row of a body in a frame; 0: none. */
+int csv_rows_find(CsvRows *rows, int64_t frame, int64_t body);
+
+/* "path:line: error: text". Returns false. */
+bool csv_rows_error(const CsvRows *rows, int line, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
+
+/* A run while it is read from CSV. Part of csv_run. */
+
+typedef struct CsvImport {
+    const char *path;
+    size_t size; /* of the text */
+    const CsvRunOptions *options;
+    CsvRunNotes *notes;
+    CsvHead head;
+    CsvRows rows;
+    int64_t count;                /* rows */
+    int64_t first, last;          /* frames of the file */
+    double first_time, last_time; /* of these frames, s */
+    int *row_counts;              /* of each body */
+    Trajectory *run;
+} CsvImport;
+
+/* Index of the state of a body in a frame of the run. */
+static inline size_t csv_import_place(const Trajectory *run, int64_t frame, int body) {
+    return (size_t)frame * (size_t)run->bodies + (size_t)body;
+}
+
+/* The checks of a watch for one step. They run before the watch stores the step's positions as the last ones. */
+
+/* Stores the verdict if it is worse than the worst so far. */
+void verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, const char *unit);
+
+/* False if a body's state is NaN or infinite. */
+bool check_finite(VerdictWatch *watch, const VerdictStep *step);
+void check_energy(VerdictWatch *watch, const VerdictStep *step);
+void check_tunnels(VerdictWatch *watch, const VerdictStep *step);
+void check_depth(VerdictWatch *watch, const VerdictStep *step);
+void check_falls(VerdictWatch *watch, const VerdictStep *step);
+void check_creep(VerdictWatch *watch, const VerdictStep *step);
+void check_calm(VerdictWatch *watch, const VerdictStep *step);
+
+/* Seconds rounded to whole steps; at least one. */
+int verdict_steps(double seconds, float dt);

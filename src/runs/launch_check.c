@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "runs/runs.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A launch by its place in the caller's list. */
+typedef struct Due {
+    int frame, launch;
+} Due;
+
+typedef struct Check {
+    const Scene *scene;
+    const Launch *launches;
+    int count;
+    Due *due; /* [count] by frame */
+    int done; /* of due */
+    Box *boxes;
+} Check;
+
+static int by_frame(const void *a, const void *b) {
+    const Due *left = a, *right = b;
+    return left->frame != right->frame ? left->frame - right->frame : left->launch - right->launch;
+}
+
+static Box box_of(const Body *body) { return box_make(body->position, body->size, body->angle); }
+
+static Box bomb_box(const Scene *scene, const Launch *launch) {
+    const BodyDef *bomb = &scene->bomb.body;
+    return box_make(vec2(launch->x, bomb->position.y), bomb->size, launch->rotation);
+}
+
+static int by_start(const void *a, const void *b) {
+    const OverlapSpan *left = a, *right = b;
+    return left->from < right->from ? -1 : left->from > right->from;
+}
+
+/* The spans of x that no launch of the check covers, as text: "-7 to -5.1, 5.1 to 7". */
+static void describe_free(const OverlapSpan *blocked, int count, double low, double high, char *text, size_t size) {
+    size_t used = 0;
+    double free_from = low;
+    text[0] = '\0';
+    for (int i = 0; i <= count; i++) {
+        const double until = i < count ? fmin(blocked[i].from, high) : high;
+        /* Rounded inwards, to a hundredth of a metre. */
+        const double from = ceil(100 * free_from - 1e-6) / 100, to = floor(100 * until + 1e-6) / 100;
+        if (to > from && used < size)
+            used += (size_t)snprintf(text + used, size - used, "%s%g to %g", used > 0 ? ", " : "", from, to);
+        if (i < count) free_from = fmax(free_from, blocked[i].to);
+    }
+}
+
+/* The ends of the launches' x, or of the scene's family where there is one launch. */
+static OverlapSpan reach_of(const Check *check, bool *turned) {
+    const SceneBomb *bomb = &check->scene->bomb;
+    OverlapSpan reach = {(double)bomb->x.from, (double)bomb->x.to};
+    *turned = false;
+    for (int i = 0; i < check->count; i++) {
+        reach.from = fmin(reach.from, (double)check->launches[i].x);
+        reach.to = fmax(reach.to, (double)check->launches[i].x);
+        *turned |= check->launches[i].rotation != check->launches[0].rotation;
+    }
+    return reach;
+}
+
+/* Adds where the bomb is free to the message. */
+static void name_free(const Check *check, const Box *bomb, int bodies, Error *error) {
+    enum { ROOM = 400 };
+    char text[ROOM];
+    bool turned;
+    const OverlapSpan reach = reach_of(check, &turned);
+    OverlapSpan *blocked = malloc((size_t)bodies * sizeof *blocked);
+    int count = 0;
+    for (int i = 0; blocked != NULL && i < bodies; i++) {
+        blocked[count] = overlap_span(&check->boxes[i], bomb, SCENE_OVERLAP, turned);
+        count += blocked[count].from < blocked[count].to;
+    }
+    if (blocked != NULL) {
+        qsort(blocked, (size_t)count, sizeof *blocked, by_start);
+        describe_free(blocked, count, reach.from, reach.to, text, sizeof text);
+        error_add(error, "; free x%s: %s", turned ? ", at any rotation" : "", text[0] != '\0' ? text : "none");
+    }
+    free(blocked);
+}
+
+static bool refuse(const Check *check, int launch, int body, const Box *bomb, int bodies, Error *error) {
+    const Launch *at = &check->launches[launch];
+    char which[32] = "the launch";
+    if (check->count > 1) snprintf(which, sizeof which, "launch %d", launch + 1);
+    error_input(
+        error, check->scene->name,
+        "%s at x = %g m, rotation %g rad: the bomb would start %.3g m inside body %d in frame %d, more than the "
+        "slop of %g m; launch it elsewhere, or write 'overlaps: allowed' in the scene",
+        which, (double)at->x, (double)at->rotation, overlap_depth(&check->boxes[body], bomb), body, at->frame,
+        (double)CONTACT_SLOP);
+    name_free(check, bomb, bodies, error);
+    return false;
+}
+
+/* Checks the launches of this frame. */
+static bool check_frame(Check *check, int frame, const World *world, Error *error) {
+    const Body *bodies = world_bodies(world);
+    const int count = world_body_count(world);
+    for (int i = 0; i < count; i++) check->boxes[i] = box_of(&bodies[i]);
+    for (; check->done < check->count && check->due[check->done].frame == frame; check->done++) {
+        const int launch = check->due[check->done].launch;
+        const Box bomb = bomb_box(check->scene, &check->launches[launch]);
+        for (int i = 0; i < count; i++)
+            if (overlap_exceeds(&check->boxes[i], &bomb, SCENE_OVERLAP))
+                return refuse(check, launch, i, &bomb, count, error);
+    }
+    return true;
+}
+
+static bool observe(void *context, int frame, const World *world, Error *error) {
+    Check *check = context;
+    return check->done == check->count || check->due[check->done].frame != frame ||
+           check_frame(check, frame, world, error);
+}
+
+static bool run(Check *check, Error *error) {
+    Scene quiet = *check->scene;
+    quiet.bomb.present = false;
+    quiet.frames = check->due[check->count - 1].frame;
+    World *world = scene_world(&quiet, error);
+    Method engine;
+    bool ok = world != NULL && observe(check, 0, world, error) && method_parse(&engine, "engine", error) &&
+              (quiet.frames == 0 || simulate_observed(&quiet, &engine, &(StepObserver){observe, check}, error));
+    world_destroy(world);
+    return ok;
+}
+
+bool launches_check(const Scene *scene, const Launch *launches, int count, Error *error) {
+    if (scene->overlaps_allowed || !scene->bomb.present || count == 0) return true;
+    Check check = {.scene = scene,
+                   .launches = launches,
+                   .count = count,
+                   .due = malloc((size_t)count * sizeof *check.due),
+                   .boxes = malloc((size_t)scene->body_count * sizeof *check.boxes)};
+    bool ok = check.due != NULL && check.boxes != NULL;
+    for (int i = 0; ok && i < count; i++) check.due[i] = (Due){launches[i].frame, i};
+    if (ok) qsort(check.due, (size_t)count, sizeof *check.due, by_frame);
+    ok = ok ? run(&check, error) : error_memory(error, scene->name);
+    free(check.due);
+    free(check.boxes);
+    return ok;
+}
+
+bool launch_is_free(const Scene *scene, const World *world) {
+    if (scene->overlaps_allowed) return true;
+    const Launch launch = launch_of(scene);
+    const Box bomb = bomb_box(scene, &launch);
+    const Body *bodies = world_bodies(world);
+    for (int i = 0; i < world_body_count(world); i++) {
+        const Box box = box_of(&bodies[i]);
+        if (overlap_exceeds(&box, &bomb, SCENE_OVERLAP)) return false;
+    }
+    return true;
+}
+
+bool scene_check_launches(const Scene *scene, Error *error) {
+    enum { TRAINING = LAUNCH_GRID, SCORING = LAUNCH_GRID - 1 };
+    Launch launches[TRAINING + SCORING + 1];
+    int count = 0;
+    if (!scene->bomb.present) return true;
+    if (launch_has_family(scene)) {
+        if (!launches_for_training(scene, TRAINING, launches, error) ||
+            !launches_for_scoring(scene, SCORING, launches + TRAINING, error))
+            return false;
+        count = TRAINING + SCORING;
+    }
+    launches[count++] = launch_of(scene);
+    return launches_check(scene, launches, count, error);
+}
+
+static bool ignore(void *context, int frame, const World *world, Error *error) {
+    (void)context, (void)frame, (void)world, (void)error;
+    return true;
+}
+
+static bool run_one_step(const Scene *scene, const Method *method, bool with_bomb, Error *error) {
+    Scene short_run = *scene;
+    short_run.frames = 1;
+    short_run.bomb.frame = 0;
+    short_run.bomb.present = scene->bomb.present && with_bomb;
+    short_run.overlaps_allowed = true; /* it may not be the bomb's frame */
+    return simulate_observed(&short_run, method, &(StepObserver){ignore, NULL}, error);
+}
+
+bool scene_check_networks(const Scene *scene, Error *error) {
+    for (int i = 0; i < scene->network_count; i++) {
+        Method method;
+        const SceneNetwork *network = &scene->networks[i];
+        if (!method_parse(&method, network->method, error)) return false;
+        if (!method.kind->description->needs_network)
+            return error_input(error, network->path, "the method %s has no network", network->method);
+        if (!run_one_step(scene, &method, false, error) ||
+            (scene->bomb.present && !run_one_step(scene, &method, true, error)))
+            return false;
+    }
+    return true;
+}
+
+static bool check_end(const char *path, const SceneSetting *setting, Error *error) {
+    Scene *scene = scene_read_with(path, setting, 1, error);
+    const bool ok = scene != NULL && scene_check_launches(scene, error);
+    scene_destroy(scene);
+    if (!ok) error_add(error, "\n(with %s = %.9g, an end of its range)", setting->name, setting->value);
+    return ok;
+}
+
+bool scene_check_ends(const char *path, const Scene *scene, Error *error) {
+    for (int i = 0; i < scene->parameter_count; i++) {
+        const SceneParameter *parameter = &scene->parameters[i];
+        SceneSetting setting = {.value = parameter->from};
+        strcpy(setting.name, parameter->name);
+        if (!check_end(path, &setting, error)) return false;
+        setting.value = parameter->to;
+        if (!check_end(path, &setting, error)) return false;
+    }
+    return true;
+}

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Of a part, poses and contacts each. Smaller parts make the two threads wait for each other more often: with a quarter
+   of it, writing took half as long again. */
+enum { PART_BYTES = 1 << 20 };
+
+struct Recorder {
+    Trajectory *parts[2]; /* one is recorded while the other is written; only the first where none is written */
+    int current;          /* part that is recorded */
+    int capacity;         /* frames of a part */
+    int used;             /* frames in it */
+    int stream_count;
+    TrajectoryStream *streams[RECORDER_OUTPUTS_MAX];
+    Background *background; /* NULL: nothing is written */
+};
+
+static void describe_body(Trajectory *trajectory, int body, const BodyDef *def) {
+    trajectory->size[body] = def->size;
+    trajectory->fixed[body] = def->fixed;
+}
+
+static bool has_bomb(const Scene *scene) { return scene->bomb.present && scene->bomb.frame <= scene->frames; }
+
+/* A trajectory without frames yet, with room for some of them. */
+static Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int frames, Error *error) {
+    const bool bomb = has_bomb(scene);
+    Trajectory *trajectory = trajectory_create(frames, scene->body_count + bomb, error);
+    if (trajectory == NULL) return NULL;
+    snprintf(trajectory->scene, sizeof trajectory->scene, "%s", scene->name);
+    snprintf(trajectory->method, sizeof trajectory->method, "%s", method->text);
+    trajectory->scene_hash = scene_hash(scene);
+    trajectory->iterations = scene->iterations;
+    trajectory->dt = scene->dt;
+    trajectory->camera_center = scene->camera_center;
+    trajectory->camera_size = scene->camera_size;
+    for (int i = 0; i < scene->body_count; i++) describe_body(trajectory, i, &scene->bodies[i]);
+    trajectory->bomb = bomb ? scene->body_count : -1;
+    if (bomb) describe_body(trajectory, trajectory->bomb, &scene->bomb.body);
+    return trajectory;
+}
+
+static bool check_length(const Scene *scene, Error *error) {
+    const int bodies = scene->body_count + has_bomb(scene);
+    if (((int64_t)scene->frames + 1) * bodies <= SIMULATE_MAX_STATES) return true;
+    return error_input(error, scene->name, "%d frames of %d bodies are too many to record; at most %d states of a body",
+                       scene->frames, bodies, SIMULATE_MAX_STATES);
+}
+
+Recorder *recorder_create(const Scene *scene, const Method *method, Error *error) {
+    if (!check_length(scene, error)) return NULL;
+    Recorder *recorder = calloc(1, sizeof *recorder);
+    if (recorder == NULL) {
+        error_memory(error, scene->name);
+        return NULL;
+    }
+    recorder->capacity = scene->frames + 1;
+    recorder->parts[0] = trajectory_of_scene(scene, method, recorder->capacity, error);
+    if (recorder->parts[0] != NULL) return recorder;
+    recorder_destroy(recorder);
+    return NULL;
+}
+
+static bool write_part(void *context, void *item, Error *error) {
+    Recorder *recorder = context;
+    for (int i = 0; i < recorder->stream_count; i++)
+        if (!trajectory_stream_add(recorder->streams[i], item, error)) return false;
+    return true;
+}
+
+static bool open_outputs(Recorder *recorder, const RecorderOutput *outputs, int count, int frames, Error *error) {
+    assert(count <= RECORDER_OUTPUTS_MAX);
+    for (; recorder->stream_count < count; recorder->stream_count++) {
+        const RecorderOutput *output = &outputs[recorder->stream_count];
+        TrajectoryStream *stream =
+            trajectory_stream_create(recorder->parts[0], frames, output->format, output->path, error);
+        if (stream == NULL) return false;
+        recorder->streams[recorder->stream_count] = stream;
+    }
+    return count == 0 || (recorder->background = background_start(write_part, recorder, error)) != NULL;
+}
+
+static int part_frames(const Scene *scene) {
+    const int bodies = scene->body_count + has_bomb(scene);
+    const int frames = PART_BYTES / (int)(6 * sizeof(float)) / (bodies > 0 ? bodies : 1);
+    return frames < 1 ? 1 : frames > scene->frames + 1 ? scene->frames + 1 : frames;
+}
+
+Recorder *recorder_create_to(const Scene *scene, const Method *method, const RecorderOutput *outputs, int count,
+                             bool no_contacts, Error *error) {
+    if (!check_length(scene, error)) return NULL;
+    Recorder *recorder = calloc(1, sizeof *recorder);
+    bool done = recorder != NULL || error_memory(error, scene->name);
+    if (done) recorder->capacity = part_frames(scene);
+    for (int i = 0; done && i < 2; i++) {
+        recorder->parts[i] = trajectory_of_scene(scene, method, recorder->capacity, error);
+        done = recorder->parts[i] != NULL;
+        if (!done) break;
+        recorder->parts[i]->no_contacts = no_contacts;
+        trajectory_restart_contacts(recorder->parts[i]);
+    }
+    if (done && open_outputs(recorder, outputs, count, scene->frames + 1, error)) return recorder;
+    recorder_destroy(recorder);
+    return NULL;
+}
+
+void recorder_destroy(Recorder *recorder) {
+    if (recorder == NULL) return;
+    background_stop(recorder->background);
+    for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_destroy(recorder->streams[i]);
+    for (int i = 0; i < 2; i++) trajectory_destroy(recorder->parts[i]);
+    free(recorder);
+}
+
+static void record_bodies(Trajectory *trajectory, int frame, const World *world) {
+    const Body *bodies = world_bodies(world);
+    const size_t row = (size_t)frame * (size_t)trajectory->bodies;
+    const int count = world_body_count(world);
+    for (int i = 0; i < count; i++) {
+        trajectory->position[row + (size_t)i] = bodies[i].position;
+        trajectory->angle[row + (size_t)i] = bodies[i].angle;
+        trajectory->velocity[row + (size_t)i] = bodies[i].velocity;
+        trajectory->angular_velocity[row + (size_t)i] = bodies[i].angular_velocity;
+    }
+    for (size_t i = row + (size_t)count; i < row + (size_t)trajectory->bodies; i++) {
+        trajectory->position[i] = trajectory->velocity[i] = vec2(NAN, NAN);
+        trajectory->angle[i] = trajectory->angular_velocity[i] = NAN;
+    }
+}
+
+static bool record_contacts(Trajectory *trajectory, int frame, const World *world, Error *error) {
+    const ContactProblem *problem = world_problem(world);
+    const ContactSolution *solution = world_solution(world);
+    TrajectoryContact *records = trajectory_add_contacts(trajectory, frame, problem->contact_count, error);
+    if (records == NULL) return false;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        records[i] = (TrajectoryContact){.a = contact->a,
+                                         .b = contact->b,
+                                         .feature = contact->feature,
+                                         .point = contact->position,
+                                         .normal = contact->normal,
+                                         .normal_impulse = solution->impulses[i].normal,
+                                         .tangent_impulse = solution->impulses[i].tangent};
+    }
+    return true;
+}
+
+/* Gives the part to the second thread, which has then ended the part before: that one is recorded next. */
+static bool flush(Recorder *recorder, Error *error) {
+    Trajectory *part = recorder->parts[recorder->current];
+    part->frames = recorder->used;
+    trajectory_end_contacts(part);
+    if (recorder->background != NULL && !background_give(recorder->background, part, error)) return false;
+    recorder->current = !recorder->current;
+    recorder->used = 0;
+    recorder->parts[recorder->current]->frames = recorder->capacity;
+    trajectory_restart_contacts(recorder->parts[recorder->current]);
+    return true;
+}
+
+static bool is_full(const Recorder *recorder) {
+    const Trajectory *part = recorder->parts[recorder->current];
+    return recorder->used == recorder->capacity ||
+           part->contact_start[part->last_step + 1] >= PART_BYTES / (int)sizeof *part->contacts;
+}
+
+bool recorder_record(Recorder *recorder, int frame, const World *world, Error *error) {
+    const bool whole = recorder->parts[1] == NULL;
+    if (!whole && is_full(recorder) && !flush(recorder, error)) return false;
+    Trajectory *part = recorder->parts[recorder->current];
+    const int row = recorder->used++;
+    record_bodies(part, row, world);
+    return frame == 0 || part->no_contacts || record_contacts(part, row, world, error);
+}
+
+void recorder_judge(Recorder *recorder, const char *words, int frame, int body) {
+    trajectory_judge(recorder->parts[0], words, frame, body);
+    for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_judge(recorder->streams[i], words, frame, body);
+}
+
+bool recorder_finish(Recorder *recorder, Error *error) {
+    if (recorder->background == NULL) return true;
+    Trajectory *part = recorder->parts[recorder->current];
+    part->frames = recorder->used;
+    trajectory_end_contacts(part);
+    if (!background_give(recorder->background, part, error) || !background_wait(recorder->background, error))
+        return false;
+    for (int i = 0; i < recorder->stream_count; i++)
+        if (!trajectory_stream_finish(recorder->streams[i], error)) return false;
+    return true;
+}
+
+Trajectory *recorder_take(Recorder *recorder) {
+    Trajectory *trajectory = recorder->parts[0];
+    assert(recorder->parts[1] == NULL && recorder->used == trajectory->frames);
+    trajectory_end_contacts(trajectory);
+    recorder->parts[0] = NULL;
+    return trajectory;
+}
+
+int recorder_bodies(const Recorder *recorder) { return recorder->parts[0]->bodies; }
+
+uint64_t recorder_state_hash(const Recorder *recorder) {
+    assert(recorder->used > 0);
+    return trajectory_frame_hash(recorder->parts[recorder->current], recorder->used - 1);
+}

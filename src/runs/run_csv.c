@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/npz.h"
+#include "engine/engine.h"
+#include "runs/internal.h"
+#include "runs/trajectory.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A body that is declared static, or has one row at the start of a run that declares none, stays where it is. */
+static bool stays(const CsvImport *import, int body) {
+    const Trajectory *run = import->run;
+    if (import->head.states_static) return import->head.bodies[body].fixed;
+    return run->frames > 1 && import->row_counts[body] == 1 && trajectory_has(run, 0, body);
+}
+
+static void carry_on(Trajectory *run, int body) {
+    for (int frame = 1; frame < run->frames; frame++) {
+        const size_t i = csv_import_place(run, frame, body), before = csv_import_place(run, frame - 1, body);
+        if (trajectory_has(run, frame, body)) continue;
+        run->position[i] = run->position[before];
+        run->angle[i] = run->angle[before];
+        run->velocity[i] = run->velocity[before];
+        run->angular_velocity[i] = run->angular_velocity[before];
+    }
+}
+
+/* A body may come and go once. */
+static bool check_body(CsvImport *import, int body, Error *error) {
+    const Trajectory *run = import->run;
+    const int64_t number = import->head.bodies[body].number;
+    int last = -1;
+    for (int frame = 0; frame < run->frames; frame++) {
+        if (!trajectory_has(run, frame, body)) continue;
+        const int gap = last + 1, before = last;
+        last = frame;
+        if (before < 0 || gap == frame) continue;
+        const int line = csv_rows_find(&import->rows, import->first + frame, number);
+        return csv_rows_error(&import->rows, line, error,
+                              "body %" PRId64 " is in frame %" PRId64 " and in frame %" PRId64
+                              ", but not in frame %" PRId64,
+                              number, import->first + before, import->first + frame, import->first + gap);
+    }
+    return true;
+}
+
+static void csv_import_note(CsvRunNotes *notes, const char *format, ...);
+
+static void note_static(const CsvImport *import) {
+    const Trajectory *run = import->run;
+    char list[96] = "";
+    int count = 0;
+    for (int body = 0; body < run->bodies; body++) {
+        size_t used = strlen(list);
+        if (!run->fixed[body]) continue;
+        if (count++ < 8)
+            snprintf(list + used, sizeof list - used, "%s%" PRId64, used > 0 ? ", " : "",
+                     import->head.bodies[body].number);
+    }
+    if (import->head.states_static) return;
+    if (count == 0)
+        csv_import_note(import->notes, "no body is static: each of them moves");
+    else
+        csv_import_note(import->notes, "%d static: %s%s never move%s", count, list, count > 8 ? ", ..." : "",
+                        count == 1 ? "s" : "");
+}
+
+/* Completes the bodies once all rows are read: sizes, which are static, poses of static bodies in frames without their row.
+   False with error set if a body is missing between two of its frames. */
+static bool csv_import_finish_bodies(CsvImport *import, Error *error) {
+    Trajectory *run = import->run;
+    for (int body = 0; body < run->bodies; body++) {
+        run->size[body] = import->head.bodies[body].size;
+        run->fixed[body] = import->head.bodies[body].fixed;
+        if (stays(import, body))
+            carry_on(run, body);
+        else if (!check_body(import, body, error))
+            return false;
+    }
+    if (!import->head.states_static) trajectory_guess_fixed(run);
+    note_static(import);
+    return true;
+}
+
+/* Reads a run from CSV in two passes: the first finds how many frames there are, the second fills them. */
+
+static const size_t MAX_SIZE = (size_t)1 << 30;
+static const double TIME_TOLERANCE = 0.01;  /* of a step */
+static const double WHOLE_TOLERANCE = 1e-4; /* relative: 1/dt this near a whole number is that number */
+
+static void csv_import_note(CsvRunNotes *notes, const char *format, ...) {
+    va_list arguments;
+    if (notes->count == CSV_RUN_NOTES_MAX) return;
+    va_start(arguments, format);
+    vsnprintf(notes->lines[notes->count++], CSV_RUN_NOTE_SIZE, format, arguments);
+    va_end(arguments);
+}
+
+/* The first pass. */
+static bool survey(CsvImport *import, Error *error) {
+    const CsvHead *head = &import->head;
+    CsvRow row;
+    import->first = INT64_MAX;
+    import->last = -1;
+    while (csv_rows_next(&import->rows, &row, error)) {
+        const int body = csv_head_body(head, row.body);
+        if (body < 0) return csv_rows_error(&import->rows, row.line, error, "body %" PRId64 " has no size", row.body);
+        import->row_counts[body]++;
+        import->count++;
+        if (row.frame < import->first) import->first = row.frame, import->first_time = row.time;
+        if (row.frame > import->last) import->last = row.frame, import->last_time = row.time;
+    }
+    if (error->kind != ERROR_NONE) return false;
+    if (import->count == 0) return error_input(error, import->path, "has no rows");
+    for (size_t i = 0; i < head->count; i++)
+        if (import->row_counts[i] == 0)
+            return error_input(error, import->path, "body %" PRId64 " has a size but no row", head->bodies[i].number);
+    return true;
+}
+
+/* A frame number far away would make a huge run of few rows. */
+static bool check_last(CsvImport *import, Error *error) {
+    CsvRow row;
+    if (import->last - import->first < import->count) return true;
+    csv_rows_rewind(&import->rows);
+    while (csv_rows_next(&import->rows, &row, error) && row.frame != import->last) continue;
+    return csv_rows_error(&import->rows, row.line, error,
+                          "frame %" PRId64 " cannot follow from frame %" PRId64 ": %" PRId64
+                          " rows are too few for the frames between",
+                          import->last, import->first, import->count);
+}
+
+/* Frames that have one body each, of many: what such a run takes must be in proportion to its text, as in .npz files. */
+static bool check_size(const CsvImport *import, Error *error) {
+    const uint64_t frames = (uint64_t)(import->last - import->first) + 1, bodies = import->head.count;
+    const uint64_t pose = 2 * sizeof(Vec2) + 2 * sizeof(float), budget = npz_budget(import->size);
+    return frames * bodies <= budget / pose ||
+           error_input(error, import->path,
+                       "%" PRIu64 " frames of %" PRIu64 " bodies take %" PRIu64 " bytes; expected at most %" PRIu64
+                       " (%d MiB and %d times the size of the file); leave out the bodies that are seldom there",
+                       frames, bodies, frames * bodies * pose, budget, (int)(NPZ_ALWAYS >> 20), (int)NPZ_RATIO);
+}
+
+static bool has_times(const CsvImport *import) { return import->rows.field[COL_TIME] >= 0; }
+
+static bool choose_step(CsvImport *import, float *dt, Error *error) {
+    const float stated = import->head.dt, given = import->options->dt;
+    const int64_t steps = import->last - import->first;
+    if (given > 0 || stated > 0) {
+        *dt = given > 0 ? given : stated;
+        if (given > 0 && stated > 0 && given != stated)
+            csv_import_note(import->notes, "dt is %g s, as given; the file states %g s", (double)given, (double)stated);
+        return true;
+    }
+    if (!has_times(import) || steps == 0)
+        return error_input(
+            error, import->path,
+            "the time step is missing: give --dt S, a line '# dt: S' above the header, or a column time%s",
+            has_times(import) ? " with more than one frame" : "");
+    double step = (import->last_time - import->first_time) / (double)steps;
+    if (!(step > 0)) return error_input(error, import->path, "the times do not rise");
+    const double rate = rint(1 / step);
+    if (fabs(rate * step - 1) < WHOLE_TOLERANCE) {
+        step = 1 / rate;
+        csv_import_note(import->notes, "dt is 1/%.0f s, from the column time", rate);
+    } else
+        csv_import_note(import->notes, "dt is %.9g s, from the column time", step);
+    *dt = (float)step;
+    return true;
+}
+
+/* Times are checked only where they set the step. */
+static bool check_time(const CsvImport *import, const CsvRow *row, Error *error) {
+    if (!has_times(import) || import->options->dt > 0 || import->head.dt > 0) return true;
+    const double dt = (double)import->run->dt, due = import->first_time + dt * (double)(row->frame - import->first);
+    return fabs(row->time - due) <= TIME_TOLERANCE * dt ||
+           csv_rows_error(&import->rows, row->line, error,
+                          "time %g s does not fit to equal steps: frame %" PRId64 " is due at %g s", row->time,
+                          row->frame, due);
+}
+
+static void set_state(CsvImport *import, const CsvRow *row, int body) {
+    Trajectory *run = import->run;
+    const size_t i = csv_import_place(run, row->frame - import->first, body);
+    const float *state = row->state;
+    const bool degrees = import->options->degrees;
+    const double unit = acos(-1) / 180;
+    run->position[i] = vec2(state[0], state[1]);
+    run->angle[i] = degrees ? (float)((double)state[2] * unit) : state[2];
+    if (run->no_velocities) return;
+    run->velocity[i] = vec2(state[3], state[4]);
+    run->angular_velocity[i] = degrees ? (float)((double)state[5] * unit) : state[5];
+}
+
+/* The second pass. */
+static bool fill(CsvImport *import, Error *error) {
+    Trajectory *run = import->run;
+    CsvRow row;
+    csv_rows_rewind(&import->rows);
+    while (csv_rows_next(&import->rows, &row, error)) {
+        const int body = csv_head_body(&import->head, row.body);
+        if (trajectory_has(run, (int)(row.frame - import->first), body)) {
+            const int line = row.line, before = csv_rows_find(&import->rows, row.frame, row.body);
+            return csv_rows_error(&import->rows, line, error,
+                                  "body %" PRId64 " is twice in frame %" PRId64 ": also in line %d", row.body,
+                                  row.frame, before);
+        }
+        if (!check_time(import, &row, error)) return false;
+        set_state(import, &row, body);
+    }
+    return error->kind == ERROR_NONE;
+}
+
+static bool has_rows(const Trajectory *run, int frame) {
+    for (int body = 0; body < run->bodies; body++)
+        if (trajectory_has(run, frame, body)) return true;
+    return false;
+}
+
+static bool check_frames(CsvImport *import, Error *error) {
+    const Trajectory *run = import->run;
+    for (int frame = 0; frame < run->frames; frame++) {
+        CsvRow row;
+        int next = frame;
+        if (has_rows(run, frame)) continue;
+        while (!has_rows(run, next)) next++;
+        csv_rows_rewind(&import->rows);
+        while (csv_rows_next(&import->rows, &row, error) && row.frame != import->first + next) continue;
+        return csv_rows_error(&import->rows, row.line, error,
+                              "frame %" PRId64 " comes here, but frame %" PRId64 " has no rows", row.frame,
+                              import->first + frame);
+    }
+    return true;
+}
+
+static bool finish_head(CsvImport *import, Error *error) {
+    Trajectory *run = import->run;
+    const CsvHead *head = &import->head;
+    const char *name = import->options->name;
+    snprintf(run->scene, sizeof run->scene, "%s", head->scene[0] != '\0' ? head->scene : name);
+    snprintf(run->method, sizeof run->method, "%s", head->method[0] != '\0' ? head->method : name);
+    run->scene_hash = head->scene_hash;
+    run->iterations = (int)head->iterations;
+    run->bomb = head->bomb < 0 ? -1 : csv_head_body(head, head->bomb);
+    run->camera_center = head->camera[0];
+    run->camera_size = head->camera[1];
+    return head->bomb < 0 || run->bomb >= 0 ||
+           error_input(error, import->path, "the bomb is body %" PRId64 ", which has no size", head->bomb);
+}
+
+static void note_numbers(const CsvImport *import) {
+    const CsvHead *head = &import->head;
+    const int64_t least = head->bodies[0].number, most = head->bodies[head->count - 1].number;
+    CsvRunNotes *notes = import->notes;
+    if (import->first != 0) csv_import_note(notes, "frame %" PRId64 " of the file becomes frame 0", import->first);
+    if (least != 0 || most >= (int64_t)head->count)
+        csv_import_note(notes, "bodies %" PRId64 " to %" PRId64 " of the file become bodies 0 to %zu", least, most,
+                        head->count - 1);
+    if (head->scene[0] == '\0') csv_import_note(notes, "the scene is called '%s'", import->run->scene);
+    if (head->method[0] == '\0') csv_import_note(notes, "the method is called '%s'", import->run->method);
+    if (import->run->no_velocities)
+        csv_import_note(notes, "velocities are unknown: there are no columns vx, vy and omega");
+    if (import->rows.ignored[0] != '\0')
+        csv_import_note(notes, "unknown columns are left out: %s", import->rows.ignored);
+    csv_import_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
+}
+
+static bool make_run(CsvImport *import, Error *error) {
+    float dt = 0;
+    if (!survey(import, error) || !check_last(import, error) || !check_size(import, error) ||
+        !choose_step(import, &dt, error))
+        return false;
+    import->run = trajectory_create((int)(import->last - import->first + 1), (int)import->head.count, error);
+    if (import->run == NULL) return false;
+    import->run->dt = dt;
+    import->run->no_contacts = true;
+    import->run->no_velocities = import->rows.field[COL_VX] < 0;
+    if (!fill(import, error) || !check_frames(import, error) || !csv_import_finish_bodies(import, error) ||
+        !finish_head(import, error))
+        return false;
+    note_numbers(import);
+    return trajectory_check(import->run, import->path, error);
+}
+
+static bool read_text(CsvImport *import, const char *text, Error *error) {
+    int line;
+    if (!csv_head_read(&import->head, import->path, &text, &line, import->options->sizes, error) ||
+        !csv_rows_begin(&import->rows, import->path, text, line, error))
+        return false;
+    import->row_counts = calloc(import->head.count, sizeof *import->row_counts);
+    return import->row_counts != NULL ? make_run(import, error) : error_memory(error, import->path);
+}
+
+Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error) {
+    CsvImport import = {.path = path, .options = options, .notes = notes};
+    notes->count = 0;
+    const bool input = strcmp(path, "-") == 0;
+    if (input) import.path = path = "standard input";
+    char *text =
+        input ? file_read_input(MAX_SIZE, &import.size, error) : file_read(path, MAX_SIZE, &import.size, error);
+    bool done = text != NULL && (import.size > 0 || error_input(error, path, "the file is empty")) &&
+                (strlen(text) == import.size || error_input(error, path, "has a NUL byte: not a CSV file")) &&
+                read_text(&import, text, error);
+    free(text);
+    free(import.row_counts);
+    free(import.head.bodies);
+    if (done) return import.run;
+    trajectory_destroy(import.run);
+    return NULL;
+}
+
+/* Nine digits keep every bit of a float32. */
+static void print_head(FILE *out, const Trajectory *run) {
+    fprintf(out, "# scene: %s\n# method: %s\n", run->scene, run->method);
+    if (run->iterations > 0) fprintf(out, "# iterations: %d\n", run->iterations);
+    if (run->scene_hash != 0) fprintf(out, "# scene_hash: %016" PRIx64 "\n", run->scene_hash);
+    fprintf(out, "# dt: %.9g\n", (double)run->dt);
+    if (run->bomb >= 0) fprintf(out, "# bomb: %d\n", run->bomb);
+    if (run->camera_size.x > 0 && run->camera_size.y > 0)
+        fprintf(out, "# camera: %.9g,%.9g,%.9g,%.9g\n", (double)run->camera_center.x, (double)run->camera_center.y,
+                (double)run->camera_size.x, (double)run->camera_size.y);
+    for (int body = 0; body < run->bodies; body++)
+        fprintf(out, "# size: %d,%.9g,%.9g,%s\n", body, (double)run->size[body].x, (double)run->size[body].y,
+                run->fixed[body] ? "static" : "dynamic");
+}
+
+/* Whether a body that is not static is there. */
+static bool has_dynamic(const Trajectory *run, int frame) {
+    for (int body = 0; body < run->bodies; body++)
+        if (!run->fixed[body] && trajectory_has(run, frame, body)) return true;
+    return false;
+}
+
+/* A static body is written once, as readers keep it where it is, and where it is alone: each frame has a row. */
+static bool is_shown(const Trajectory *run, int frame, int body, bool alone) {
+    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body, before = i - (size_t)run->bodies;
+    if (!trajectory_has(run, frame, body)) return false;
+    return !run->fixed[body] || alone || frame == 0 || !trajectory_has(run, frame - 1, body) ||
+           memcmp(&run->position[i], &run->position[before], sizeof(Vec2)) != 0 ||
+           memcmp(&run->angle[i], &run->angle[before], sizeof(float)) != 0 ||
+           memcmp(&run->velocity[i], &run->velocity[before], sizeof(Vec2)) != 0 ||
+           memcmp(&run->angular_velocity[i], &run->angular_velocity[before], sizeof(float)) != 0;
+}
+
+static void print_row(FILE *out, const Trajectory *run, int frame, int body) {
+    const size_t i = (size_t)frame * (size_t)run->bodies + (size_t)body;
+    const Vec2 position = run->position[i], velocity = run->velocity[i];
+    fprintf(out, "%d,%d,%.9g,%.9g,%.9g", frame, body, (double)position.x, (double)position.y, (double)run->angle[i]);
+    if (!run->no_velocities)
+        fprintf(out, ",%.9g,%.9g,%.9g", (double)velocity.x, (double)velocity.y, (double)run->angular_velocity[i]);
+    fputc('\n', out);
+}
+
+static void print_run(FILE *out, const void *context) {
+    const Trajectory *run = context;
+    print_head(out, run);
+    fprintf(out, "frame,body,x,y,angle%s\n", run->no_velocities ? "" : ",vx,vy,omega");
+    for (int frame = 0; frame < run->frames; frame++) {
+        const bool alone = !has_dynamic(run, frame);
+        for (int body = 0; body < run->bodies; body++)
+            if (is_shown(run, frame, body, alone)) print_row(out, run, frame, body);
+    }
+}
+
+bool csv_run_write(const Trajectory *run, const char *path, Error *error) {
+    return file_write_text(path, print_run, run, error);
+}

@@ -1,0 +1,394 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/csv.h"
+#include "engine/engine.h"
+#include "runs/internal.h"
+#include "runs/trajectory.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CSV_HEAD_LINE_SIZE = 256, NUMBERS_MAX = 4, BODIES_MAX = 1000000 };
+/* m */
+#define SIZE_LEAST 1e-6
+#define SIZE_MOST 1e6
+
+typedef struct SizeRow {
+    int body, fixed;
+    float width, height;
+} SizeRow;
+
+static const CsvColumn size_columns[] = {
+    {"body", CSV_INTEGER, .offset = offsetof(SizeRow, body), .maximum = INT32_MAX - 1, .key = true},
+    {"width", CSV_FLOAT, .offset = offsetof(SizeRow, width), .minimum = SIZE_LEAST, .maximum = SIZE_MOST},
+    {"height", CSV_FLOAT, .offset = offsetof(SizeRow, height), .minimum = SIZE_LEAST, .maximum = SIZE_MOST},
+    {"static", CSV_INTEGER, .offset = offsetof(SizeRow, fixed), .maximum = 1},
+};
+static const CsvLayout size_layout =
+    CSV_LAYOUT("sizes", size_columns, SizeRow, .min_rows = 1, .max_rows = BODIES_MAX, .header = CSV_SUBSET);
+
+static bool is_size(float side) { return (double)side >= SIZE_LEAST && (double)side <= SIZE_MOST; }
+
+static bool add_body(CsvHead *head, const char *path, CsvBody body, Error *error) {
+    void *bodies = head->bodies;
+    if (!array_reserve(&bodies, &head->capacity, head->count + 1, sizeof *head->bodies))
+        return error_memory(error, path);
+    head->bodies = bodies;
+    head->bodies[head->count++] = body;
+    return true;
+}
+
+static bool read_sizes(CsvHead *head, const char *path, Error *error) {
+    CsvTable table;
+    if (!csv_table_read(&table, path, &size_layout, error)) return false;
+    bool ok = true;
+    for (int i = 0; ok && i < 3; i++)
+        if (table.fields[i] < 0)
+            ok = csv_error(&table.csv, 0, 0, error, "the column '%s' is missing; expected body,width,height",
+                           size_columns[i].name);
+    head->states_static = ok && table.fields[3] >= 0;
+    for (int i = 0; ok && i < table.count; i++) {
+        const SizeRow *row = (const SizeRow *)table.rows + i;
+        ok = add_body(head, path, (CsvBody){row->body, vec2(row->width, row->height), row->fixed != 0}, error);
+    }
+    csv_table_free(&table);
+    return ok;
+}
+
+/* "1,2.5": `least` to `most` numbers; returns how many, 0 if the text is something else. */
+static int take_numbers(char *text, int least, int most, float numbers[NUMBERS_MAX]) {
+    int count = 0;
+    for (char *next = text; next != NULL && count < most; count++) {
+        char *field = next + strspn(next, " "), *comma = strchr(field, ',');
+        next = comma != NULL ? comma + 1 : NULL;
+        if (comma != NULL) *comma = '\0';
+        if (!parse_float(field, &numbers[count])) return 0;
+        if (next == NULL) return count + 1 >= least ? count + 1 : 0;
+    }
+    return 0;
+}
+
+/* Cuts the last field off if it is "static" or "dynamic". */
+static void take_kind(CsvHead *head, char *text, CsvBody *body) {
+    char *last = strrchr(text, ',');
+    const char *word = last != NULL ? last + 1 + strspn(last + 1, " ") : "";
+    body->fixed = strcmp(word, "static") == 0;
+    if (!body->fixed && strcmp(word, "dynamic") != 0) return;
+    head->states_static = true;
+    *last = '\0';
+}
+
+/* "0,100,20" or "0,100,20,static" */
+static bool take_size(CsvHead *head, const char *path, char *text, Error *error, bool *right) {
+    CsvBody body = {0};
+    float size[NUMBERS_MAX] = {0};
+    take_kind(head, text, &body);
+    char *comma = strchr(text, ',');
+    *right = comma != NULL;
+    if (comma == NULL) return true;
+    *comma = '\0';
+    *right = parse_int(text, 0, INT32_MAX - 1, &body.number) && take_numbers(comma + 1, 2, 2, size) == 2 &&
+             is_size(size[0]) && is_size(size[1]);
+    body.size = vec2(size[0], size[1]);
+    return !*right || add_body(head, path, body, error);
+}
+
+static bool take_name(char name[TRAJECTORY_NAME_SIZE], const char *text) {
+    for (const char *c = text; *c != '\0'; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f) return false;
+    return snprintf(name, TRAJECTORY_NAME_SIZE, "%s", text) < TRAJECTORY_NAME_SIZE;
+}
+
+static bool take_hash(const char *text, uint64_t *hash) {
+    char *end;
+    *hash = strtoull(text, &end, 16);
+    return strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16 && *end == '\0';
+}
+
+static bool take_camera(CsvHead *head, char *text) {
+    float numbers[NUMBERS_MAX];
+    if (take_numbers(text, 4, 4, numbers) != 4) return false;
+    head->camera[0] = vec2(numbers[0], numbers[1]);
+    head->camera[1] = vec2(numbers[2], numbers[3]);
+    return true;
+}
+
+/* What a key states; in the order of the keys. */
+enum { KEY_SCENE, KEY_METHOD, KEY_SCENE_HASH, KEY_ITERATIONS, KEY_DT, KEY_BOMB, KEY_CAMERA, KEY_SIZE, KEYS };
+static const struct {
+    const char *name, *form;
+} keys[KEYS] = {
+    {"scene", "a name of at most 127 bytes"},
+    {"method", "a name of at most 127 bytes"},
+    {"scene_hash", "16 hexadecimal digits"},
+    {"iterations", "a whole number from 1"},
+    {"dt", "a time in seconds such as 0.01 or 1/60"},
+    {"bomb", "the number of a body"},
+    {"camera", "X,Y,WIDTH,HEIGHT"},
+    {"size", "BODY,WIDTH,HEIGHT from 1e-06 to 1e+06 m, perhaps with static or dynamic"},
+};
+
+static bool take_value(CsvHead *head, const char *path, int key, char *text, Error *error, bool *right) {
+    switch (key) {
+    case KEY_SCENE: *right = take_name(head->scene, text); break;
+    case KEY_METHOD: *right = take_name(head->method, text); break;
+    case KEY_SCENE_HASH: *right = take_hash(text, &head->scene_hash); break;
+    case KEY_ITERATIONS: *right = parse_int(text, 1, INT32_MAX, &head->iterations); break;
+    case KEY_DT: *right = parse_float(text, &head->dt) && head->dt > 0; break;
+    case KEY_BOMB: *right = parse_int(text, 0, INT32_MAX - 1, &head->bomb); break;
+    case KEY_CAMERA: *right = take_camera(head, text); break;
+    default: return take_size(head, path, text, error, right);
+    }
+    return true;
+}
+
+static bool fail(const char *path, int line, Error *error, const char *format, const char *first, const char *second)
+    __attribute__((format(printf, 4, 0)));
+
+static bool fail(const char *path, int line, Error *error, const char *format, const char *first, const char *second) {
+    char where[1280], what[256];
+    snprintf(where, sizeof where, "%.1200s:%d", path, line);
+    snprintf(what, sizeof what, format, first, second);
+    return error_input(error, where, "%s", what);
+}
+
+/* "key: value"; comments of another form mean nothing. */
+static bool take_comment(CsvHead *head, const char *path, int line, char *text, Error *error) {
+    const char *known[KEYS];
+    char *colon = strchr(text, ':');
+    if (colon == NULL || strcspn(text, " \t") < (size_t)(colon - text)) return true;
+    *colon = '\0';
+    char *value = colon + 1 + strspn(colon + 1, " \t");
+    for (int key = 0; key < KEYS; key++) {
+        bool right = true;
+        known[key] = keys[key].name;
+        if (strcmp(text, keys[key].name) != 0) continue;
+        if (!take_value(head, path, key, value, error, &right)) return false;
+        return right || fail(path, line, error, "%s: expected %s", keys[key].name, keys[key].form);
+    }
+    const char *near = nearest_word(text, known, KEYS);
+    return near == NULL || fail(path, line, error, "'# %s:': did you mean '# %s:'?", csv_show(text).text, near);
+}
+
+static int compare_bodies(const void *left, const void *right) {
+    const CsvBody *a = left, *b = right;
+    return (a->number > b->number) - (a->number < b->number);
+}
+
+static bool sort_bodies(CsvHead *head, const char *path, Error *error) {
+    if (head->count > 0) qsort(head->bodies, head->count, sizeof *head->bodies, compare_bodies);
+    for (size_t i = 1; i < head->count; i++)
+        if (head->bodies[i].number == head->bodies[i - 1].number)
+            return error_input(error, path, "body %" PRId64 " has two sizes", head->bodies[i].number);
+    return head->count > 0 ||
+           error_input(error, path,
+                       "the sizes of the bodies are missing: give --sizes FILE.csv with body,width,height, or "
+                       "lines '# size: BODY,WIDTH,HEIGHT' above the header");
+}
+
+bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const char *sizes, Error *error) {
+    *head = (CsvHead){.bomb = -1};
+    if (strncmp(*text, "\xef\xbb\xbf", 3) == 0) *text += 3;
+    for (*line = 1; **text == '#'; ++*line) {
+        char comment[CSV_HEAD_LINE_SIZE];
+        const char *begin = *text + 1 + strspn(*text + 1, " \t");
+        size_t length = strcspn(begin, "\n"), used = length;
+        *text = begin + length + (begin[length] == '\n');
+        while (used > 0 && strchr(" \t\r", begin[used - 1]) != NULL) used--;
+        if (used >= CSV_HEAD_LINE_SIZE) return fail(path, *line, error, "a comment longer than 255 bytes%s%s", "", "");
+        memcpy(comment, begin, used);
+        comment[used] = '\0';
+        if (!take_comment(head, path, *line, comment, error)) return false;
+    }
+    if (sizes != NULL && head->count > 0)
+        return error_input(error, sizes, "the comments of %s have sizes, too; give only one of the two", path);
+    return (sizes == NULL || read_sizes(head, sizes, error)) && sort_bodies(head, path, error);
+}
+
+int csv_head_body(const CsvHead *head, int64_t number) {
+    const CsvBody key = {.number = number};
+    const CsvBody *found = bsearch(&key, head->bodies, head->count, sizeof *head->bodies, compare_bodies);
+    return found != NULL ? (int)(found - head->bodies) : -1;
+}
+
+enum { CSV_ROWS_LINE_SIZE = 1024, FIELDS_MAX = 64, INDEX_MAX = INT32_MAX - 1 };
+
+static const char *const names[COL_COUNT] = {"frame", "body", "x", "y", "angle", "vx", "vy", "omega", "time"};
+
+/* A line, cut into fields in place. */
+typedef struct Fields {
+    int count;
+    char *text[FIELDS_MAX];
+    int column[FIELDS_MAX]; /* in the line, from 1 */
+    char line[CSV_ROWS_LINE_SIZE];
+} Fields;
+
+static bool fail_at(const CsvRows *rows, int line, int column, Error *error, const char *what) {
+    char where[1280];
+    int used = snprintf(where, sizeof where, "%.1200s:%d", rows->path, line);
+    if (column > 0) snprintf(where + used, sizeof where - (size_t)used, ":%d", column);
+    return error_input(error, where, "%s", what);
+}
+
+bool csv_rows_error(const CsvRows *rows, int line, Error *error, const char *format, ...) {
+    char what[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    return fail_at(rows, line, 0, error, what);
+}
+
+static char *trim(char *text) {
+    text += strspn(text, " \t");
+    size_t length = strlen(text);
+    while (length > 0 && strchr(" \t", text[length - 1]) != NULL) text[--length] = '\0';
+    return text;
+}
+
+/* Takes the next line. */
+static bool split(CsvRows *rows, Fields *fields, Error *error) {
+    size_t length = strcspn(rows->at, "\n"), used = length;
+    fields->count = 0;
+    if (used > 0 && rows->at[used - 1] == '\r') used--;
+    if (used == 0) return csv_rows_error(rows, rows->line, error, "the line is empty");
+    if (used >= CSV_ROWS_LINE_SIZE)
+        return csv_rows_error(rows, rows->line, error, "longer than %d bytes", CSV_ROWS_LINE_SIZE - 1);
+    memcpy(fields->line, rows->at, used);
+    fields->line[used] = '\0';
+    rows->at += length + (rows->at[length] == '\n');
+    for (char *next = fields->line; next != NULL;) {
+        char *field = next, *comma = strchr(field, ',');
+        if (fields->count == FIELDS_MAX)
+            return csv_rows_error(rows, rows->line, error, "more than %d fields", FIELDS_MAX);
+        next = comma != NULL ? comma + 1 : NULL;
+        if (comma != NULL) *comma = '\0';
+        fields->column[fields->count] = (int)(field - fields->line) + 1;
+        fields->text[fields->count++] = trim(field);
+    }
+    return true;
+}
+
+static bool is_absent(const CsvRows *rows, int column) { return rows->field[column] < 0; }
+
+/* The column that an unknown name probably means, among those that the file lacks; NULL: none. */
+static const char *meant(const CsvRows *rows, const char *name) {
+    static const struct {
+        const char *other;
+        int column;
+    } others[] = {{"step", COL_FRAME}, {"id", COL_BODY},       {"theta", COL_ANGLE},  {"rotation", COL_ANGLE},
+                  {"t", COL_TIME},     {"spin", COL_OMEGA},    {"w", COL_OMEGA},      {"pos_x", COL_X},
+                  {"pos_y", COL_Y},    {"velocity_x", COL_VX}, {"velocity_y", COL_VY}};
+    const char *missing[COL_COUNT];
+    int count = 0;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (is_absent(rows, others[i].column) && strcmp(others[i].other, name) == 0) return names[others[i].column];
+    for (int i = 0; i < COL_COUNT; i++)
+        if (is_absent(rows, i)) missing[count++] = names[i];
+    return strlen(name) > 3 ? nearest_word(name, missing, count) : NULL;
+}
+
+static bool place(CsvRows *rows, const Fields *fields, Error *error) {
+    for (int i = 0; i < COL_COUNT; i++) rows->field[i] = -1;
+    for (int i = 0; i < fields->count; i++) {
+        char what[128];
+        int column = 0;
+        while (column < COL_COUNT && strcmp(names[column], fields->text[i]) != 0) column++;
+        if (column == COL_COUNT) continue;
+        if (!is_absent(rows, column)) {
+            snprintf(what, sizeof what, "the column '%s' appears twice", names[column]);
+            return fail_at(rows, rows->line, fields->column[i], error, what);
+        }
+        rows->field[column] = i;
+    }
+    return true;
+}
+
+/* Names that mean nothing are kept for a note, unless one looks like a name that is missing. */
+static bool check_others(CsvRows *rows, const Fields *fields, Error *error) {
+    for (int i = 0; i < fields->count; i++) {
+        bool known = false;
+        for (int column = 0; column < COL_COUNT; column++) known = known || rows->field[column] == i;
+        if (known) continue;
+        const char *right = meant(rows, fields->text[i]);
+        const CsvShown shown = csv_show(fields->text[i]);
+        char what[160];
+        if (right != NULL) {
+            snprintf(what, sizeof what, "unknown column '%s': did you mean '%s'? Rename or remove it", shown.text,
+                     right);
+            return fail_at(rows, rows->line, fields->column[i], error, what);
+        }
+        size_t used = strlen(rows->ignored);
+        snprintf(rows->ignored + used, sizeof rows->ignored - used, "%s%s", used > 0 ? ", " : "", shown.text);
+    }
+    return true;
+}
+
+bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, Error *error) {
+    Fields fields;
+    *rows = (CsvRows){.path = path, .at = text, .line = line};
+    if (*text == '\0') return csv_rows_error(rows, line, error, "there is no header 'frame,body,x,y,angle'");
+    if (!split(rows, &fields, error) || !place(rows, &fields, error) || !check_others(rows, &fields, error))
+        return false;
+    for (int i = COL_FRAME; i <= COL_ANGLE; i++)
+        if (is_absent(rows, i))
+            return csv_rows_error(rows, line, error, "the column '%s' is missing; expected frame,body,x,y,angle",
+                                  names[i]);
+    for (int i = COL_VX; i <= COL_OMEGA; i++)
+        if (is_absent(rows, i) != is_absent(rows, COL_VX))
+            return csv_rows_error(rows, line, error, "give all of vx, vy and omega, or none of them");
+    rows->width = fields.count;
+    rows->first = rows->at;
+    rows->first_line = rows->line = line + 1;
+    return true;
+}
+
+void csv_rows_rewind(CsvRows *rows) {
+    rows->at = rows->first;
+    rows->line = rows->first_line;
+}
+
+static bool fail_field(const CsvRows *rows, const Fields *fields, int column, Error *error, const char *what) {
+    const int field = rows->field[column];
+    char text[200];
+    snprintf(text, sizeof text, "%s: '%s' %s", names[column], csv_show(fields->text[field]).text, what);
+    return fail_at(rows, rows->line, fields->column[field], error, text);
+}
+
+static bool take_index(const CsvRows *rows, const Fields *fields, int column, int64_t *index, Error *error) {
+    return parse_int(fields->text[rows->field[column]], 0, INDEX_MAX, index) ||
+           fail_field(rows, fields, column, error, "is not a whole number from 0 to 2147483646");
+}
+
+static bool take_state(const CsvRows *rows, const Fields *fields, CsvRow *row, Error *error) {
+    for (int column = COL_X; column <= COL_OMEGA; column++)
+        if (!is_absent(rows, column) && !parse_float(fields->text[rows->field[column]], &row->state[column - COL_X]))
+            return fail_field(rows, fields, column, error, "is not a finite number");
+    return is_absent(rows, COL_TIME) || parse_double(fields->text[rows->field[COL_TIME]], &row->time) ||
+           fail_field(rows, fields, COL_TIME, error, "is not a finite number");
+}
+
+bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
+    Fields fields;
+    *row = (CsvRow){.line = rows->line};
+    if (*rows->at == '\0' || !split(rows, &fields, error)) return false;
+    if (fields.count != rows->width)
+        return csv_rows_error(rows, rows->line, error, "%d fields, but the header has %d", fields.count, rows->width);
+    if (!take_index(rows, &fields, COL_FRAME, &row->frame, error) ||
+        !take_index(rows, &fields, COL_BODY, &row->body, error) || !take_state(rows, &fields, row, error))
+        return false;
+    rows->line++;
+    return true;
+}
+
+int csv_rows_find(CsvRows *rows, int64_t frame, int64_t body) {
+    CsvRow row;
+    Error ignored = {0};
+    csv_rows_rewind(rows);
+    while (csv_rows_next(rows, &row, &ignored))
+        if (row.frame == frame && row.body == body) return row.line;
+    return 0;
+}

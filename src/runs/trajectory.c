@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The trajectory in memory. */
+#include "runs/trajectory.h"
+
+#include "base/base.h"
+#include "base/file.h"
+#include "base/hash.h"
+#include "engine/engine.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double measure(double frames, double bodies, double contacts) {
+    double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + 1, small = 4096;
+    return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) + small;
+}
+
+/* calloc, but not NULL for 0 items. */
+static void *zeros(size_t count, size_t size) { return calloc(count > 0 ? count : 1, size); }
+
+static bool allocate(Trajectory *t) {
+    size_t bodies = (size_t)t->bodies, poses = (size_t)t->frames * bodies;
+    t->size = zeros(bodies, sizeof *t->size);
+    t->fixed = zeros(bodies, sizeof *t->fixed);
+    t->position = zeros(poses, sizeof *t->position);
+    t->angle = zeros(poses, sizeof *t->angle);
+    t->velocity = zeros(poses, sizeof *t->velocity);
+    t->angular_velocity = zeros(poses, sizeof *t->angular_velocity);
+    t->contact_start = zeros((size_t)t->frames + 1, sizeof *t->contact_start);
+    return t->size != NULL && t->fixed != NULL && t->position != NULL && t->angle != NULL && t->velocity != NULL &&
+           t->angular_velocity != NULL && t->contact_start != NULL;
+}
+
+Trajectory *trajectory_create(int frames, int bodies, Error *error) {
+    assert(frames >= 1 && bodies >= 0);
+    if (measure(frames, bodies, 0) > TRAJECTORY_MAX_BYTES) {
+        error_input(error, "trajectory", "%d frames of %d bodies take more than 2 GiB", frames, bodies);
+        return NULL;
+    }
+    Trajectory *t = calloc(1, sizeof *t);
+    if (t != NULL)
+        *t = (Trajectory){.frames = frames, .bodies = bodies, .bomb = -1, .verdict_frame = -1, .verdict_body = -1};
+    if (t == NULL || !allocate(t)) {
+        trajectory_destroy(t);
+        error_memory(error, "trajectory");
+        return NULL;
+    }
+    for (size_t i = 0; i < (size_t)frames * (size_t)bodies; i++) {
+        t->position[i] = t->velocity[i] = vec2(NAN, NAN);
+        t->angle[i] = t->angular_velocity[i] = NAN;
+    }
+    return t;
+}
+
+void trajectory_destroy(Trajectory *t) {
+    if (t == NULL) return;
+    free(t->size);
+    free(t->fixed);
+    free(t->position);
+    free(t->angle);
+    free(t->velocity);
+    free(t->angular_velocity);
+    free(t->contact_start);
+    free(t->contacts);
+    free(t);
+}
+
+void trajectory_judge(Trajectory *t, const char *words, int frame, int body) {
+    snprintf(t->verdict, sizeof t->verdict, "%.*s", (int)utf8_cut(words, sizeof t->verdict - 1), words);
+    t->verdict_frame = frame;
+    t->verdict_body = body;
+}
+
+bool trajectory_has(const Trajectory *t, int frame, int body) {
+    Vec2 position = t->position[(size_t)frame * (size_t)t->bodies + (size_t)body];
+    return isfinite(position.x) && isfinite(position.y);
+}
+
+/* Sets contact_start of steps without contacts, from the last step with contacts up to `step`. */
+static void end_steps(Trajectory *t, int step, int64_t count) {
+    for (int k = t->last_step + 1; k <= step; k++) t->contact_start[k + 1] = count;
+    if (step > t->last_step) t->last_step = step;
+}
+
+double trajectory_bytes(const Trajectory *t) {
+    return measure(t->frames, t->bodies, (double)t->contact_start[t->frames]);
+}
+
+TrajectoryContact *trajectory_add_contacts(Trajectory *t, int frame, int added, Error *error) {
+    assert(frame >= t->last_step && frame < t->frames && added >= 0);
+    int64_t count = t->contact_start[t->last_step + 1];
+    if (measure(t->frames, t->bodies, (double)count + added) > TRAJECTORY_MAX_BYTES) {
+        error_input(error, "trajectory", "its contacts take more than 2 GiB");
+        return NULL;
+    }
+    void *contacts = t->contacts;
+    /* At least one, so that NULL is a failure. */
+    if (!array_reserve(&contacts, &t->contact_capacity, (size_t)(count + added) + 1, sizeof *t->contacts)) {
+        error_memory(error, "trajectory");
+        return NULL;
+    }
+    t->contacts = contacts;
+    end_steps(t, frame, count);
+    t->contact_start[frame + 1] = count + added;
+    return t->contacts + count;
+}
+
+bool trajectory_add_contact(Trajectory *t, int frame, const TrajectoryContact *contact, Error *error) {
+    assert(frame >= 1);
+    TrajectoryContact *added = trajectory_add_contacts(t, frame, 1, error);
+    if (added != NULL) *added = *contact;
+    return added != NULL;
+}
+
+void trajectory_restart_contacts(Trajectory *t) {
+    t->last_step = -1;
+    t->contact_start[0] = 0;
+}
+
+void trajectory_end_contacts(Trajectory *t) { end_steps(t, t->frames - 1, t->contact_start[t->last_step + 1]); }
+
+uint64_t trajectory_frame_hash(const Trajectory *t, int frame) {
+    uint64_t hash = FNV1A64_START;
+    for (int body = 0; body < t->bodies; body++) {
+        if (t->fixed[body] || !trajectory_has(t, frame, body)) continue;
+        size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
+        float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
+                         t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
+        hash = hash_fnv1a64(hash, state, sizeof state);
+    }
+    return hash;
+}
+
+static void copy_frame(Trajectory *to, int to_frame, const Trajectory *from, int from_frame) {
+    size_t bodies = (size_t)from->bodies, to_at = (size_t)to_frame * bodies, at = (size_t)from_frame * bodies;
+    memcpy(to->position + to_at, from->position + at, bodies * sizeof *to->position);
+    memcpy(to->angle + to_at, from->angle + at, bodies * sizeof *to->angle);
+    memcpy(to->velocity + to_at, from->velocity + at, bodies * sizeof *to->velocity);
+    memcpy(to->angular_velocity + to_at, from->angular_velocity + at, bodies * sizeof *to->angular_velocity);
+}
+
+/* The verdict's frame may have been left out; what it saw is there in the next one. */
+static int kept_frame(const Trajectory *to, int frame, int step) {
+    const int kept = frame / step + (frame % step != 0);
+    return frame >= 0 && kept < to->frames ? kept : -1;
+}
+
+static void copy_head(Trajectory *to, const Trajectory *from, int step) {
+    memcpy(to->scene, from->scene, sizeof to->scene);
+    memcpy(to->method, from->method, sizeof to->method);
+    to->scene_hash = from->scene_hash;
+    to->iterations = from->iterations;
+    to->dt = from->dt * (float)step;
+    to->bomb = from->bomb;
+    trajectory_judge(to, from->verdict, kept_frame(to, from->verdict_frame, step), from->verdict_body);
+    to->no_velocities = from->no_velocities;
+    to->no_contacts = from->no_contacts;
+    to->camera_center = from->camera_center;
+    to->camera_size = from->camera_size;
+    memcpy(to->size, from->size, (size_t)from->bodies * sizeof *to->size);
+    memcpy(to->fixed, from->fixed, (size_t)from->bodies * sizeof *to->fixed);
+}
+
+Trajectory *trajectory_every(const Trajectory *from, int step, Error *error) {
+    assert(step >= 1);
+    Trajectory *to = trajectory_create((from->frames - 1) / step + 1, from->bodies, error);
+    if (to == NULL) return NULL;
+    copy_head(to, from, step);
+    bool ok = true;
+    for (int frame = 0; frame < to->frames; frame++) {
+        copy_frame(to, frame, from, frame * step);
+        for (int64_t i = from->contact_start[frame * step]; ok && i < from->contact_start[frame * step + 1]; i++)
+            ok = trajectory_add_contact(to, frame, &from->contacts[i], error);
+    }
+    trajectory_end_contacts(to);
+    if (ok) return to;
+    trajectory_destroy(to);
+    return NULL;
+}
+
+static bool is_of_bomb_and_box(const Trajectory *trajectory, const TrajectoryContact *contact) {
+    if (contact->a != trajectory->bomb && contact->b != trajectory->bomb) return false;
+    return !trajectory->fixed[contact->a] && !trajectory->fixed[contact->b];
+}
+
+int trajectory_impact(const Trajectory *trajectory) {
+    if (trajectory->bomb < 0) return -1;
+    for (int step = 1; step < trajectory->frames; step++)
+        for (int64_t i = trajectory->contact_start[step]; i < trajectory->contact_start[step + 1]; i++)
+            if (is_of_bomb_and_box(trajectory, &trajectory->contacts[i])) return step;
+    return -1;
+}
+
+enum { STEM_SIZE = 2 * TRAJECTORY_NAME_SIZE + 2 };
+
+static void make_stem(const Trajectory *run, char stem[STEM_SIZE]) {
+    snprintf(stem, STEM_SIZE, "%s-%s", run->scene, run->method);
+    file_name_clean(stem);
+}
+
+void trajectory_file_name(const Trajectory *const *runs, int index, char name[TRAJECTORY_FILE_NAME_SIZE]) {
+    char stem[STEM_SIZE], other[STEM_SIZE], number[16] = "";
+    int same = 1;
+    make_stem(runs[index], stem);
+    for (int i = 0; i < index; i++) {
+        make_stem(runs[i], other);
+        same += strcmp(stem, other) == 0;
+    }
+    if (same > 1) snprintf(number, sizeof number, "-%d", same);
+    snprintf(name, TRAJECTORY_FILE_NAME_SIZE, "%s%s.npz", stem, number);
+}
+
+void trajectory_name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]) {
+    const char *file = path_is_standard(path) ? "stdin" : path + file_folder_length(path), *ending = strrchr(file, '.');
+    size_t length = ending != NULL && ending > file ? (size_t)(ending - file) : strlen(file), used = 0;
+    for (size_t at = 0, width; at < length && used + 4 < TRAJECTORY_NAME_SIZE; at += width > 0 ? width : 1) {
+        uint32_t character;
+        width = utf8_decode(file + at, length - at, &character);
+        if (width == 0 || character < 0x20 || character == 0x7f)
+            name[used++] = '_';
+        else
+            for (size_t i = 0; i < width; i++) name[used++] = file[at + i];
+    }
+    name[used] = '\0';
+}
+
+static uint64_t add(uint64_t hash, const void *data, size_t size) {
+    uint64_t parts[] = {hash, hash_xxh3(data, size)};
+    return hash_xxh3(parts, sizeof parts);
+}
+
+uint64_t trajectory_hash(const Trajectory *run) {
+    size_t bodies = (size_t)run->bodies, poses = bodies * (size_t)run->frames;
+    uint64_t hash = add(0, run->size, bodies * sizeof *run->size);
+    hash = add(hash, run->fixed, bodies * sizeof *run->fixed);
+    hash = add(hash, &run->camera_center, sizeof run->camera_center);
+    hash = add(hash, &run->camera_size, sizeof run->camera_size);
+    hash = add(hash, run->position, poses * sizeof *run->position);
+    hash = add(hash, run->angle, poses * sizeof *run->angle);
+    hash = add(hash, run->velocity, poses * sizeof *run->velocity);
+    hash = add(hash, run->angular_velocity, poses * sizeof *run->angular_velocity);
+    hash = add(hash, run->contact_start, ((size_t)run->frames + 1) * sizeof *run->contact_start);
+    return add(hash, run->contacts, (size_t)run->contact_start[run->frames] * sizeof *run->contacts);
+}
+
+static size_t pose(const Trajectory *t, int frame, int body) {
+    return (size_t)frame * (size_t)t->bodies + (size_t)body;
+}
+
+bool trajectory_both_move(const Trajectory *a, const Trajectory *b) { return !a->no_velocities && !b->no_velocities; }
+
+static bool same_velocity(const Trajectory *a, size_t i, const Trajectory *b, size_t k) {
+    return memcmp(&a->velocity[i], &b->velocity[k], sizeof(Vec2)) == 0 &&
+           memcmp(&a->angular_velocity[i], &b->angular_velocity[k], sizeof(float)) == 0;
+}
+
+bool trajectory_same_state(const Trajectory *a, const Trajectory *b, int frame, int body) {
+    bool in_a = trajectory_has(a, frame, body), in_b = trajectory_has(b, frame, body);
+    if (!in_a || !in_b) return in_a == in_b;
+    size_t i = pose(a, frame, body), k = pose(b, frame, body);
+    return memcmp(&a->position[i], &b->position[k], sizeof(Vec2)) == 0 &&
+           memcmp(&a->angle[i], &b->angle[k], sizeof(float)) == 0 &&
+           (!trajectory_both_move(a, b) || same_velocity(a, i, b, k));
+}
+
+StateDifference trajectory_state_difference(const Trajectory *a, const Trajectory *b, int frame, int body) {
+    StateDifference d = {.in_a = trajectory_has(a, frame, body), .in_b = trajectory_has(b, frame, body)};
+    if (!d.in_a || !d.in_b) return d;
+    size_t i = pose(a, frame, body), k = pose(b, frame, body);
+    d.distance = vec2_distance(a->position[i], b->position[k]);
+    d.angle = fabs((double)a->angle[i] - b->angle[k]);
+    if (!trajectory_both_move(a, b)) return d;
+    d.speed = vec2_distance(a->velocity[i], b->velocity[k]);
+    d.spin = fabs((double)a->angular_velocity[i] - b->angular_velocity[k]);
+    return d;
+}
+
+bool trajectory_different_worlds(const Trajectory *a, const Trajectory *b, char *what, size_t size) {
+    if (a->bodies != b->bodies) return snprintf(what, size, "bodies: %d and %d", a->bodies, b->bodies) > 0;
+    for (int body = 0; body < a->bodies; body++) {
+        Vec2 p = a->size[body], q = b->size[body];
+        if (memcmp(&p, &q, sizeof p) != 0)
+            return snprintf(what, size, "size of body %d: %.9g x %.9g and %.9g x %.9g m", body, (double)p.x,
+                            (double)p.y, (double)q.x, (double)q.y) > 0;
+        if (a->fixed[body] != b->fixed[body])
+            return snprintf(what, size, "body %d: %s and %s", body, a->fixed[body] ? "static" : "dynamic",
+                            b->fixed[body] ? "static" : "dynamic") > 0;
+    }
+    if (memcmp(&a->dt, &b->dt, sizeof a->dt) != 0)
+        return snprintf(what, size, "dt: %.9g and %.9g s", (double)a->dt, (double)b->dt) > 0;
+    return false;
+}

@@ -1,0 +1,380 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What must hold for a run from an untrusted file. */
+#include "base/base.h"
+#include "base/npz.h"
+#include "engine/engine.h"
+#include "runs/internal.h"
+#include "runs/trajectory.h"
+
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool finite(Vec2 v) { return isfinite(v.x) && isfinite(v.y); }
+
+static bool check_verdict(const Trajectory *t, const char *path, Error *error) {
+    for (const char *c = t->verdict; *c != '\0'; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            return error_input(error, path, "the verdict holds control characters");
+    if (t->verdict_frame < -1 || t->verdict_frame >= t->frames)
+        return error_input(error, path, "the verdict is on frame %d of %d", t->verdict_frame, t->frames);
+    return (t->verdict_body >= -1 && t->verdict_body < t->bodies) ||
+           error_input(error, path, "the verdict is on body %d of %d", t->verdict_body, t->bodies);
+}
+
+static bool check_head(const Trajectory *t, const char *path, Error *error) {
+    if (!isfinite(t->dt) || !(t->dt > 0))
+        return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)t->dt);
+    if (t->iterations < 0)
+        return error_input(error, path, "the number of iterations must not be negative (got %d)", t->iterations);
+    if (t->bomb < -1 || t->bomb >= t->bodies)
+        return error_input(error, path, "the bomb is body %d of %d", t->bomb, t->bodies);
+    if (!finite(t->camera_center) || !finite(t->camera_size) || t->camera_size.x < 0 || t->camera_size.y < 0)
+        return error_input(error, path, "the camera's window must be finite and not negative");
+    for (int body = 0; body < t->bodies; body++) {
+        Vec2 size = t->size[body];
+        if (!finite(size) || !(size.x > 0) || !(size.y > 0))
+            return error_input(error, path, "body %d: its size must be finite and greater than 0 (got %g x %g)", body,
+                               (double)size.x, (double)size.y);
+        if (t->fixed[body] > 1)
+            return error_input(error, path, "body %d: 'fixed' must be 0 or 1 (got %d)", body, t->fixed[body]);
+    }
+    return true;
+}
+
+static bool was_there(const Trajectory *t, int frame, int body) {
+    while (frame > 0)
+        if (trajectory_has(t, --frame, body)) return true;
+    return false;
+}
+
+/* A body exists in one interval of frames; a static body, which is drawn once, until the end. */
+static bool check_presence(const Trajectory *t, int frame, int body, const char *path, Error *error) {
+    bool before = frame > 0 && trajectory_has(t, frame - 1, body), now = trajectory_has(t, frame, body);
+    if (before && !now && t->fixed[body])
+        return error_input(error, path, "frame %d, body %d: a static body must not be removed", frame, body);
+    if (!before && now && was_there(t, frame, body))
+        return error_input(error, path, "frame %d, body %d: a removed body must not reappear", frame, body);
+    return true;
+}
+
+/* Finite numbers if the body exists, else NaN. */
+static bool check_pose(const Trajectory *t, int frame, int body, const char *path, Error *error) {
+    size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body;
+    const float state[] = {t->position[i].x, t->position[i].y, t->angle[i],
+                           t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
+    const int count = t->no_velocities ? 3 : 6;
+    int known = 0, missing = 0;
+    for (int k = 0; k < count; k++) {
+        known += isfinite(state[k]) != 0;
+        missing += isnan(state[k]) != 0;
+    }
+    if (known != count && missing != count)
+        return error_input(error, path, "frame %d, body %d: %s are not all finite", frame, body,
+                           t->no_velocities ? "position and angle" : "pose and velocity");
+    return check_presence(t, frame, body, path, error);
+}
+
+/* A step's contacts are of bodies that existed before it. */
+static bool check_contact(const Trajectory *t, int step, int64_t index, const char *path, Error *error) {
+    const TrajectoryContact *contact = &t->contacts[index];
+    if (contact->a < 0 || contact->a >= contact->b || contact->b >= t->bodies ||
+        !trajectory_has(t, step - 1, contact->a) || !trajectory_has(t, step - 1, contact->b))
+        return error_input(error, path, "step %d, contact %lld: bodies %d and %d are not an existing pair", step,
+                           (long long)index, (int)contact->a, (int)contact->b);
+    if (!finite(contact->point) || !finite(contact->normal) || !isfinite(contact->normal_impulse) ||
+        !isfinite(contact->tangent_impulse))
+        return error_input(error, path, "step %d, contact %lld: a number is NaN or infinite", step, (long long)index);
+    return true;
+}
+
+bool trajectory_check(const Trajectory *t, const char *path, Error *error) {
+    if (!check_head(t, path, error) || !check_verdict(t, path, error)) return false;
+    for (int frame = 0; frame < t->frames; frame++) {
+        for (int body = 0; body < t->bodies; body++)
+            if (!check_pose(t, frame, body, path, error)) return false;
+        for (int64_t i = t->contact_start[frame]; i < t->contact_start[frame + 1]; i++)
+            if (!check_contact(t, frame, i, path, error)) return false;
+    }
+    return true;
+}
+
+static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body, double tolerance) {
+    if (trajectory_same_state(a, b, frame, body)) return false;
+    if (tolerance == 0) return true;
+    StateDifference by = trajectory_state_difference(a, b, frame, body);
+    return !by.in_a || !by.in_b || by.distance > tolerance;
+}
+
+/* The first frame from `frame` on in which a body differs. */
+static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int frame, int frames, double tolerance) {
+    PartedBody parted = {.frame = -1, .body = -1};
+    for (; parted.frame < 0 && frame < frames; frame++)
+        for (int body = 0; body < a->bodies; body++) {
+            if (!apart(a, b, frame, body, tolerance) || parted.bodies++ > 0) continue;
+            parted.frame = frame;
+            parted.body = body;
+            parted.by = trajectory_state_difference(a, b, frame, body);
+        }
+    return parted;
+}
+
+/* The first step up to `last` with a contact that differs. */
+static bool find_step(const Trajectory *a, const Trajectory *b, int last, TrajectoryParting *parting, Error *error) {
+    parting->step = -1;
+    for (int step = 1; parting->step < 0 && step <= last; step++) {
+        if (!contact_difference(a, b, step, -1, &parting->contacts, error)) return false;
+        if (contacts_differ(&parting->contacts)) parting->step = step;
+    }
+    return true;
+}
+
+/* True if every body that differs has just been added. The previous frames are equal, so one run suffices. */
+static bool only_launched(const Trajectory *a, const Trajectory *b, int frame) {
+    for (int body = 0; body < a->bodies; body++)
+        if (trajectory_has(a, frame - 1, body) && !trajectory_same_state(a, b, frame, body)) return false;
+    return true;
+}
+
+static PartCause find_cause(const Trajectory *a, const Trajectory *b, const TrajectoryParting *parting) {
+    int frame = parting->first.frame;
+    const ContactDifference *contacts = &parting->contacts;
+    if (frame < 0) return PART_NONE;
+    if (frame == 0) return PART_START;
+    if (only_launched(a, b, frame)) return PART_LAUNCH;
+    if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
+    if (parting->step >= 0 && parting->step < frame) return PART_HIDDEN;
+    if (parting->step < 0) return PART_ELSEWHERE;
+    return contacts->only_a + contacts->only_b + contacts->moved > 0 ? PART_CONTACTS : PART_SOLVER;
+}
+
+bool trajectory_part(const Trajectory *a, const Trajectory *b, double tolerance, TrajectoryParting *parting,
+                     Error *error) {
+    int frames = a->frames < b->frames ? a->frames : b->frames;
+    *parting = (TrajectoryParting){.frames = frames, .poses_only = !trajectory_both_move(a, b)};
+    parting->first = find_parted(a, b, 0, frames, 0);
+    parting->beyond = parting->first;
+    if (tolerance > 0 && parting->first.frame >= 0)
+        parting->beyond = find_parted(a, b, parting->first.frame, frames, tolerance);
+    int last = parting->first.frame >= 0 ? parting->first.frame : frames - 1;
+    bool contacts = !a->no_contacts && !b->no_contacts;
+    parting->step = -1;
+    if (contacts && !find_step(a, b, last, parting, error)) return false;
+    parting->cause = find_cause(a, b, parting);
+    const PartedBody *beyond = &parting->beyond;
+    return beyond->frame < 1 || !contacts ||
+           contact_difference(a, b, beyond->frame, beyond->body, &parting->beyond_contacts, error);
+}
+
+/* Reads trajectories from untrusted files. */
+
+static bool read_version(NpzFile *file, const char *path, Error *error) {
+    int32_t version = TRAJECTORY_VERSION;
+    if (!run_arrays_check(file, error)) return false;
+    if (npz_has(file, "version") && !npz_read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error))
+        return false;
+    return version == TRAJECTORY_VERSION ||
+           error_input(error, path, "trajectory of version %d; expected version %d", (int)version, TRAJECTORY_VERSION);
+}
+
+/* Frames, bodies and contacts, by which the shapes of all arrays must agree. */
+static bool read_counts(Trajectory *t, NpzFile *file, const char *path, int64_t *contacts, Error *error) {
+    int64_t shape[3], pairs[2] = {0, 2};
+    if (!npz_shape(file, "position", NPZ_FLOAT32, 3, shape, error)) return false;
+    const int64_t frames = shape[0], bodies = shape[1];
+    if (frames < 1 || frames >= INT_MAX || bodies >= INT_MAX)
+        return error_input(error, path, "%lld frames of %lld bodies; expected at least 1 and less than %d",
+                           (long long)frames, (long long)bodies, INT_MAX);
+    t->frames = (int)frames;
+    t->bodies = (int)bodies;
+    t->no_velocities = !npz_has(file, "velocity");
+    t->no_contacts = !npz_has(file, "contact_start");
+    if (!t->no_contacts && !npz_shape(file, "contact_bodies", NPZ_INT32, 2, pairs, error)) return false;
+    *contacts = pairs[0];
+    return true;
+}
+
+static bool check_shapes(const Trajectory *t, const NpzFile *file, int64_t contacts, Error *error) {
+    const int64_t frames = t->frames, bodies = t->bodies;
+    const NpzArray all[] = {
+        {"scene_hash", NPZ_UINT64, 0, {0}, NULL},
+        {"iterations", NPZ_INT32, 0, {0}, NULL},
+        {"verdict_frame", NPZ_INT32, 0, {0}, NULL},
+        {"verdict_body", NPZ_INT32, 0, {0}, NULL},
+        {"dt", NPZ_FLOAT32, 0, {0}, NULL},
+        {"bomb", NPZ_INT32, 0, {0}, NULL},
+        {"camera", NPZ_FLOAT32, 2, {2, 2}, NULL},
+        {"size", NPZ_FLOAT32, 2, {bodies, 2}, NULL},
+        {"position", NPZ_FLOAT32, 3, {frames, bodies, 2}, NULL},
+        {"angle", NPZ_FLOAT32, 2, {frames, bodies}, NULL},
+        {"fixed", NPZ_UINT8, 1, {bodies}, NULL},
+        {"velocity", NPZ_FLOAT32, 3, {frames, bodies, 2}, NULL},
+        {"angular_velocity", NPZ_FLOAT32, 2, {frames, bodies}, NULL},
+        {"contact_start", NPZ_INT64, 1, {frames + 1}, NULL},
+        {"contact_bodies", NPZ_INT32, 2, {contacts, 2}, NULL},
+        {"contact_feature", NPZ_UINT32, 1, {contacts}, NULL},
+        {"contact_point", NPZ_FLOAT32, 2, {contacts, 2}, NULL},
+        {"contact_normal", NPZ_FLOAT32, 2, {contacts, 2}, NULL},
+        {"contact_impulse", NPZ_FLOAT32, 2, {contacts, 2}, NULL},
+    };
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (npz_has(file, all[i].name) && !npz_expect(file, &all[i], 1, error)) return false;
+    return true;
+}
+
+static bool read_names(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    trajectory_name_from_path(path, t->scene);
+    trajectory_name_from_path(path, t->method);
+    return (!npz_has(file, "scene") || npz_read_name(file, "scene", t->scene, sizeof t->scene, error)) &&
+           (!npz_has(file, "method") || npz_read_name(file, "method", t->method, sizeof t->method, error));
+}
+
+static bool read_verdict(Trajectory *t, NpzFile *file, Error *error) {
+    int32_t frame = -1, body = -1;
+    if (npz_has(file, "verdict") && (!npz_read_text(file, "verdict", t->verdict, sizeof t->verdict, error) ||
+                                     !npz_read_scalar(file, "verdict_frame", NPZ_INT32, &frame, sizeof frame, error) ||
+                                     !npz_read_scalar(file, "verdict_body", NPZ_INT32, &body, sizeof body, error)))
+        return false;
+    t->verdict_frame = frame;
+    t->verdict_body = body;
+    return true;
+}
+
+static bool read_head(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    int32_t bomb = -1, iterations = 0;
+    const int64_t two_by_two[] = {2, 2};
+    if (!read_names(t, file, path, error) || !read_verdict(t, file, error) ||
+        (npz_has(file, "scene_hash") &&
+         !npz_read_scalar(file, "scene_hash", NPZ_UINT64, &t->scene_hash, sizeof t->scene_hash, error)) ||
+        (npz_has(file, "iterations") &&
+         !npz_read_scalar(file, "iterations", NPZ_INT32, &iterations, sizeof iterations, error)) ||
+        !npz_read_scalar(file, "dt", NPZ_FLOAT32, &t->dt, sizeof t->dt, error) ||
+        (npz_has(file, "bomb") && !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error)))
+        return false;
+    t->bomb = bomb;
+    t->iterations = iterations;
+    if (!npz_has(file, "camera")) return true;
+    Vec2 *camera = npz_read(file, "camera", NPZ_FLOAT32, 2, two_by_two, error);
+    if (camera == NULL) return false;
+    t->camera_center = camera[0];
+    t->camera_size = camera[1];
+    free(camera);
+    return true;
+}
+
+static bool never_moves(const Trajectory *t, int body) {
+    for (int frame = 0; frame < t->frames; frame++) {
+        size_t i = (size_t)frame * (size_t)t->bodies + (size_t)body, first = (size_t)body;
+        if (!trajectory_has(t, frame, body) || memcmp(&t->position[i], &t->position[first], sizeof(Vec2)) != 0 ||
+            memcmp(&t->angle[i], &t->angle[first], sizeof(float)) != 0)
+            return false;
+    }
+    return t->frames > 1;
+}
+
+void trajectory_guess_fixed(Trajectory *t) {
+    for (int body = 0; body < t->bodies; body++) t->fixed[body] = never_moves(t, body);
+}
+
+static bool read_fixed(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    const int64_t per_body[] = {t->bodies};
+    if (npz_has(file, "fixed")) return (t->fixed = npz_read(file, "fixed", NPZ_UINT8, 1, per_body, error)) != NULL;
+    t->fixed = calloc((size_t)t->bodies + 1, sizeof *t->fixed);
+    if (t->fixed == NULL) return error_memory(error, path);
+    trajectory_guess_fixed(t);
+    return true;
+}
+
+/* Both, or NaN. */
+static bool read_velocities(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    const int64_t vectors[] = {t->frames, t->bodies, 2};
+    if (!t->no_velocities)
+        return (t->velocity = npz_read(file, "velocity", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
+               (t->angular_velocity = npz_read(file, "angular_velocity", NPZ_FLOAT32, 2, vectors, error)) != NULL;
+    size_t poses = (size_t)t->frames * (size_t)t->bodies;
+    t->velocity = malloc((poses + 1) * sizeof *t->velocity);
+    t->angular_velocity = malloc((poses + 1) * sizeof *t->angular_velocity);
+    if (t->velocity == NULL || t->angular_velocity == NULL) return error_memory(error, path);
+    for (size_t i = 0; i < poses; i++) {
+        t->velocity[i] = vec2(NAN, NAN);
+        t->angular_velocity[i] = NAN;
+    }
+    return true;
+}
+
+static bool read_poses(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    const int64_t vectors[] = {t->frames, t->bodies, 2}, per_body[] = {t->bodies, 2};
+    return (t->size = npz_read(file, "size", NPZ_FLOAT32, 2, per_body, error)) != NULL &&
+           (t->position = npz_read(file, "position", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
+           (t->angle = npz_read(file, "angle", NPZ_FLOAT32, 2, vectors, error)) != NULL &&
+           read_fixed(t, file, path, error) && read_velocities(t, file, path, error);
+}
+
+/* Files have one array per quantity. Each is freed before the next is read. */
+static bool read_contact_array(Trajectory *t, NpzFile *file, const char *name, NpzType type, int rank, size_t member,
+                               size_t size, Error *error) {
+    const int64_t count = (int64_t)t->contact_capacity, shape[] = {count, 2};
+    char *data = npz_read(file, name, type, rank, shape, error);
+    for (int64_t i = 0; data != NULL && i < count; i++)
+        memcpy((char *)&t->contacts[i] + member, data + (size_t)i * size, size);
+    free(data);
+    return data != NULL;
+}
+
+static bool read_contact_arrays(Trajectory *t, NpzFile *file, Error *error) {
+    typedef TrajectoryContact C;
+    _Static_assert(offsetof(C, b) == offsetof(C, a) + sizeof(int32_t), "a and b are copied as a pair");
+    _Static_assert(offsetof(C, tangent_impulse) == offsetof(C, normal_impulse) + sizeof(float), "and the impulses");
+    const size_t pair = 2 * sizeof(float);
+    return read_contact_array(t, file, "contact_bodies", NPZ_INT32, 2, offsetof(C, a), pair, error) &&
+           read_contact_array(t, file, "contact_feature", NPZ_UINT32, 1, offsetof(C, feature), pair / 2, error) &&
+           read_contact_array(t, file, "contact_point", NPZ_FLOAT32, 2, offsetof(C, point), pair, error) &&
+           read_contact_array(t, file, "contact_normal", NPZ_FLOAT32, 2, offsetof(C, normal), pair, error) &&
+           read_contact_array(t, file, "contact_impulse", NPZ_FLOAT32, 2, offsetof(C, normal_impulse), pair, error);
+}
+
+static bool read_contacts(Trajectory *t, NpzFile *file, const char *path, int64_t count, Error *error) {
+    const int64_t steps = (int64_t)t->frames + 1;
+    if (t->no_contacts) {
+        t->contact_start = calloc((size_t)steps, sizeof *t->contact_start);
+        return t->contact_start != NULL || error_memory(error, path);
+    }
+    t->contact_start = npz_read(file, "contact_start", NPZ_INT64, 1, &steps, error);
+    if (t->contact_start == NULL) return false;
+    bool rising = t->contact_start[0] == 0 && t->contact_start[1] == 0;
+    for (int step = 1; rising && step < t->frames; step++)
+        rising = t->contact_start[step] <= t->contact_start[step + 1];
+    if (!rising || t->contact_start[t->frames] != count)
+        return error_input(error, path, "contact_start must rise from 0, 0 to the number of contacts");
+    t->contacts = calloc(count > 0 ? (size_t)count : 1, sizeof *t->contacts);
+    if (t->contacts == NULL) return error_memory(error, path);
+    t->contact_capacity = (size_t)count;
+    return read_contact_arrays(t, file, error);
+}
+
+static bool read_run(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    int64_t contacts = 0;
+    return read_version(file, path, error) && read_counts(t, file, path, &contacts, error) &&
+           check_shapes(t, file, contacts, error) && read_head(t, file, path, error) &&
+           read_poses(t, file, path, error) && read_contacts(t, file, path, contacts, error) &&
+           trajectory_check(t, path, error);
+}
+
+Trajectory *trajectory_read(const char *path, Error *error) {
+    NpzFile *file = npz_open(path, error);
+    if (file == NULL) return NULL;
+    npz_convert(file);
+    Trajectory *t = calloc(1, sizeof *t);
+    bool done = t != NULL || error_memory(error, path);
+    done = done && read_run(t, file, path, error);
+    npz_close(file);
+    if (done)
+        trace_line("run %s: %s by %s, %d frames of %d bodies, step %g s, scene hash %016" PRIx64, path, t->scene,
+                   t->method, t->frames, t->bodies, (double)t->dt, t->scene_hash);
+    if (done) return t;
+    trajectory_destroy(t);
+    return NULL;
+}

@@ -1,0 +1,316 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The axis of a study in the borders figure. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "figures/sketch.h"
+#include "pixels/png.h"
+#include "runs/verdict.h"
+#include "studies/stability.h"
+#include "studies/stability_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct BorderAxis {
+    PlotAxis axis; /* over the study's values, widened if too narrow, with a margin at both ends */
+    bool falling;  /* smaller values are harder: most methods hold above their border and fail below */
+    char label[STABILITY_TEXT_SIZE];
+} BorderAxis;
+
+/* Margin at both ends for the marks of methods that hold over the whole range or never. */
+#define BORDER_AXIS_ROOM 4.4 /* mm */
+
+/* The marks in a panel of the borders figure: bars where a method holds, tiles where it fails, arrows and crosses. */
+
+/* The rows of a study's panel, one per method, from the top. */
+typedef struct BorderRows {
+    const BorderTable *table;
+    Sketch *sketch;
+    const BorderRow *study; /* any row of the study */
+    const PlotPanel *panel; /* placed */
+    bool falling;           /* as of BorderAxis */
+    const int *methods;     /* [method_count]: a table row of each method */
+    int method_count;
+} BorderRows;
+
+/* Draws the legend's sample of a sign (0: holds, 1: holds throughout, 2: never holds), `width` mm wide from `left`. */
+enum { BORDER_SIGNS = 3 };
+
+/* Axes with a larger ratio of their ends are logarithmic. */
+static const double long_axis = 8;
+
+/* An axis with a smaller ratio of its ends would exaggerate differences of a few percent; it is widened by the factor
+   `apart` at both ends. */
+static const double least_ratio = 1.5, apart = 1.5;
+
+/* Beyond this range numbers are powers of ten. */
+static const double plain_least = 1e-3, plain_most = 1e5;
+
+/* An axis for [least, most], with the margins. */
+static PlotAxis with_margins(double least, double most, double width) {
+    const double share = BORDER_AXIS_ROOM / (width - 2 * BORDER_AXIS_ROOM);
+    PlotAxis axis = plot_linear_axis(least - share * (most - least), most + share * (most - least), NULL);
+    if (least > 0 && most / least > long_axis) {
+        axis.scale = PLOT_LOG;
+        axis.low = least / pow(most / least, share);
+        axis.high = most * pow(most / least, share);
+        axis.powers = least < plain_least || most >= plain_most;
+    }
+    axis.outside = true;
+    return axis;
+}
+
+/* The axis of the study of row `first`, `width` mm long; its label is not set in `axis`. */
+static BorderAxis border_axis(const BorderTable *table, int first, double width) {
+    BorderAxis axis = {0};
+    double least = INFINITY, most = -INFINITY;
+    int falling = 0;
+    for (int i = first; i < table->count; i++) {
+        const BorderRow *row = &table->rows[i];
+        if (strcmp(row->study, table->rows[first].study) != 0) continue;
+        least = fmin(least, fmin(row->holds_at, row->fails_at));
+        most = fmax(most, fmax(row->holds_at, row->fails_at));
+        falling += (row->fails_at < row->holds_at) - (row->fails_at > row->holds_at);
+    }
+    if (!(least <= most)) least = most = 0;
+    if (least > 0 && most / least < least_ratio) {
+        least /= apart;
+        most *= apart;
+    }
+    axis.axis = with_margins(least, most, width);
+    axis.falling = falling > 0;
+    stability_axis_text(axis.label, table->rows[first].parameter, table->rows[first].unit);
+    return axis;
+}
+
+/* mm; half_tile, half_sign: from the centre of a tile, arrow head or cross to its edge */
+static const double bar_height = 1.2, half_tile = 1.15, half_sign = 0.75;
+
+static const Pen bar_pen = {0xA3CBE5, 1, NO_COLOUR, 0, NULL}, sign_pen = {NO_COLOUR, 1, 0x000000, 1.6, NULL};
+
+static bool holds_throughout(const BorderRow *row) {
+    return isnan(row->fails_at) && !isnan(row->holds_at) && verdict_holds((Verdict)row->verdict);
+}
+
+static bool never_holds(const BorderRow *row) { return isnan(row->holds_at) && !isnan(row->fails_at); }
+
+static double place_of(const BorderRows *rows, double value) { return plot_axis_place(&rows->panel->x, value); }
+
+/* The other end of the bar that starts at a border: the next border of the same method in that direction, or the
+   panel's edge. */
+static double far_end(const BorderRows *rows, const BorderRow *row, bool low) {
+    double end = low ? rows->panel->x.from : rows->panel->x.to, from = place_of(rows, row->holds_at);
+    for (int i = 0; i < rows->table->count; i++) {
+        const BorderRow *other = &rows->table->rows[i];
+        if (other == row || !border_same_study(other, row) || !border_same_method(other, row)) continue;
+        double place = place_of(rows, other->holds_at);
+        if (low ? place <= from && place > end : place >= from && place < end) end = place;
+    }
+    return end;
+}
+
+static void put_bar(Sketch *sketch, double from, double to, double y) {
+    sketch_rectangle(sketch, (Point){fmin(from, to), y - bar_height / 2}, (Point){fmax(from, to), y + bar_height / 2},
+                     &bar_pen);
+}
+
+static void draw_bar(const BorderRows *rows, const BorderRow *row, double y) {
+    if (isnan(row->holds_at)) return;
+    if (holds_throughout(row)) {
+        put_bar(rows->sketch, rows->panel->x.from, rows->panel->x.to, y);
+        return;
+    }
+    const bool low = isnan(row->fails_at) ? !rows->falling : row->holds_at < row->fails_at;
+    put_bar(rows->sketch, far_end(rows, row, low), place_of(rows, row->holds_at), y);
+}
+
+/* An arrow head. */
+static void put_head(Sketch *sketch, Point tip, bool to_the_left) {
+    const double back = tip.x + (to_the_left ? 2 : -2) * half_sign;
+    sketch_path(sketch, (const Point[]){{back, tip.y + half_sign}, tip, {back, tip.y - half_sign}}, 3, &sign_pen);
+}
+
+static void put_cross(Sketch *sketch, Point at) {
+    for (int up = -1; up <= 1; up += 2)
+        sketch_line(sketch, (Point){at.x - half_sign, at.y - up * half_sign},
+                    (Point){at.x + half_sign, at.y + up * half_sign}, &sign_pen);
+}
+
+/* In the margin next to the study's easiest value, or to its hardest one. */
+static double margin_of(const BorderRows *rows, bool easy) {
+    const PlotAxis *axis = &rows->panel->x;
+    return easy == rows->falling ? axis->to - BORDER_AXIS_ROOM / 2 : axis->from + BORDER_AXIS_ROOM / 2;
+}
+
+/* Without fails_at: in the margin, as all values beyond holds_at are undecided. */
+static double tile_place(const BorderRows *rows, const BorderRow *row) {
+    return isnan(row->fails_at) ? margin_of(rows, isnan(row->holds_at)) : place_of(rows, row->fails_at);
+}
+
+static void draw_sign(const BorderRows *rows, const BorderRow *row, double y) {
+    const double tip = rows->falling ? rows->panel->x.from + half_sign : rows->panel->x.to - half_sign;
+    if (holds_throughout(row)) put_head(rows->sketch, (Point){tip, y}, rows->falling);
+    if (never_holds(row)) put_cross(rows->sketch, (Point){margin_of(rows, true), y});
+}
+
+static double height_of(const BorderRows *rows, const BorderRow *row) {
+    int i = 0;
+    while (!border_same_method(&rows->table->rows[rows->methods[i]], row)) i++;
+    return plot_axis_place(&rows->panel->y, i);
+}
+
+static void draw_each(const BorderRows *rows, void (*put)(const BorderRows *, const BorderRow *, double)) {
+    for (int i = 0; i < rows->table->count; i++) {
+        const BorderRow *row = &rows->table->rows[i];
+        if (border_same_study(row, rows->study)) put(rows, row, height_of(rows, row));
+    }
+}
+
+static void draw_tile(const BorderRows *rows, const BorderRow *row, double y) {
+    const Tile tile = {.at = {tile_place(rows, row), y}, .look = row->verdict};
+    if (holds_throughout(row)) return;
+    verdict_draw_tiles(rows->sketch, &tile, 1, (TileSize){.width = 2 * half_tile, .height = 2 * half_tile});
+}
+
+static void border_marks_draw(const BorderRows *rows) {
+    draw_each(rows, draw_bar);
+    draw_each(rows, draw_tile);
+    draw_each(rows, draw_sign);
+}
+
+static void border_sample_draw(Sketch *sketch, int sign, Point left, double width) {
+    if (sign < 2) put_bar(sketch, left.x, left.x + width, left.y);
+    if (sign == 1) put_head(sketch, (Point){left.x + width, left.y}, false);
+    if (sign == 2) put_cross(sketch, (Point){left.x + width / 2, left.y});
+}
+
+/* mm */
+static const double left = 33, right = 2, gap = 3.5, title_room = 5.5, axis_room = 8.8, legend_left = 20,
+                    most_page = 235, most_row = 3.4, least_row = 2.5, sample = 5.5, name_gap = 1.3;
+
+enum { LEGEND_COLUMNS = 5 };
+
+typedef struct Borders {
+    const BorderTable *table;
+    Sketch *sketch;
+    int study_count, method_count;
+    int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* first row of each */
+    int columns, rows, legend_rows;
+    double row_height; /* mm */
+    PlotGrid grid;
+    bool used[VERDICT_LOOKS];
+} Borders;
+
+/* Adds row i if it is the first of its study or method. False if there are too many. */
+static bool add_first(const BorderTable *table, int i, bool (*same)(const BorderRow *, const BorderRow *), int *firsts,
+                      int *count, int most) {
+    for (int k = 0; k < *count; k++)
+        if (same(&table->rows[firsts[k]], &table->rows[i])) return true;
+    if (*count == most) return false;
+    firsts[(*count)++] = i;
+    return true;
+}
+
+static bool gather(Borders *borders, Error *error) {
+    const BorderTable *table = borders->table;
+    for (int i = 0; i < table->count; i++) {
+        if (!add_first(table, i, border_same_study, borders->studies, &borders->study_count, BORDERS_MAX_STUDIES))
+            return csv_table_error(&table->csv, i, 0, error, "more than %d studies: too many for a figure",
+                                   BORDERS_MAX_STUDIES);
+        if (!add_first(table, i, border_same_method, borders->methods, &borders->method_count, BORDERS_MAX_METHODS))
+            return csv_table_error(&table->csv, i, 0, error, "more than %d methods: too many for a figure",
+                                   BORDERS_MAX_METHODS);
+        if (!verdict_holds((Verdict)table->rows[i].verdict)) borders->used[table->rows[i].verdict] = true;
+    }
+    return true;
+}
+
+/* Uses the height of a printed page if that gives rows of a readable height. */
+static void lay_out(Borders *borders) {
+    int items = BORDER_SIGNS;
+    for (int look = 0; look < VERDICT_LOOKS; look++) items += borders->used[look];
+    borders->legend_rows = (items + LEGEND_COLUMNS - 1) / LEGEND_COLUMNS;
+    borders->columns = borders->study_count <= 2 ? borders->study_count : borders->study_count <= 6 ? 3 : 4;
+    borders->rows = (borders->study_count + borders->columns - 1) / borders->columns;
+    const double legend = LEGEND_ROW * borders->legend_rows + 2, around = title_room + axis_room;
+    const double room = (most_page - legend) / borders->rows - around;
+    borders->row_height = fmin(fmax(room / borders->method_count, least_row), most_row);
+    borders->grid =
+        (PlotGrid){.width = FIGURE_PAGE_WIDTH,
+                   .height = legend + borders->rows * (around + borders->row_height * borders->method_count),
+                   .left = left,
+                   .right = right,
+                   .bottom = legend + axis_room,
+                   .top = title_room,
+                   .columns = borders->columns,
+                   .rows = borders->rows,
+                   .gap = gap,
+                   .row_gap = around};
+}
+
+/* A guide for each method, and in the first column its name. */
+static void draw_rows(const Borders *borders, const PlotPanel *panel, bool named) {
+    const Pen guide = pen_line(0xE2E2E2, 0.6, NULL);
+    const double points = 7;
+    for (int method = 0; method < borders->method_count; method++) {
+        const BorderRow *row = &borders->table->rows[borders->methods[method]];
+        const double y = plot_axis_place(&panel->y, method);
+        char text[STABILITY_TEXT_SIZE];
+        sketch_line(borders->sketch, (Point){panel->x.from, y}, (Point){panel->x.to, y}, &guide);
+        if (!named) continue;
+        stability_method_text(text, points, left - 3, row->method, row->setting);
+        plot_text(borders->sketch, (Point){left - 1.5, y}, TEXT_RIGHT, points, text);
+    }
+}
+
+static void draw_panel(const Borders *borders, int study) {
+    static const PlotTicks none;
+    const BorderRow *first = &borders->table->rows[borders->studies[study]];
+    PlotPanel panel = {.box = plot_grid_box(&borders->grid, study)};
+    BorderAxis axis = border_axis(borders->table, borders->studies[study], panel.box.width);
+    char title[STABILITY_TEXT_SIZE];
+    stability_axis_text(title, first->study, "");
+    text_fit(title, sizeof title, 8, panel.box.width);
+    panel.title = title;
+    panel.x = axis.axis;
+    panel.x.label = axis.label;
+    panel.y = plot_linear_axis(borders->method_count - 0.5, -0.5, NULL);
+    panel.y.ticks = &none;
+    plot_panel_place(&panel);
+    draw_rows(borders, &panel, study % borders->columns == 0);
+    border_marks_draw(&(BorderRows){borders->table, borders->sketch, first, &panel, axis.falling, borders->methods,
+                                    borders->method_count});
+    plot_panel_draw(borders->sketch, &panel);
+}
+
+static void draw_samples(const Borders *borders, const LegendPlace *place, int first) {
+    static const char *const names[BORDER_SIGNS] = {"holds", "holds throughout", "never holds"};
+    for (int i = 0; i < BORDER_SIGNS; i++) {
+        const Point at = {place->left + place->width * ((first + i) % place->columns),
+                          place->top - LEGEND_ROW * ((first + i) / place->columns)};
+        border_sample_draw(borders->sketch, i, at, sample);
+        plot_text(borders->sketch, (Point){at.x + sample + name_gap, at.y}, TEXT_LEFT, LEGEND_POINTS, names[i]);
+    }
+}
+
+static void draw_legend(const Borders *borders) {
+    LegendPlace place = {legend_left, LEGEND_ROW * (borders->legend_rows - 0.5) + 0.5,
+                         (FIGURE_PAGE_WIDTH - legend_left) / LEGEND_COLUMNS, LEGEND_COLUMNS};
+    draw_samples(borders, &place, verdict_draw_legend(borders->sketch, borders->used, &place));
+}
+
+bool stability_borders_write(const BorderTable *table, PlotPage *page, Error *error) {
+    static const char caption[] =
+        "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a method "
+        "fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at the far "
+        "end. "
+        "Arrow: holds over the whole range; cross: never holds; no mark: not in the study.\n";
+    Borders borders = {.table = table, .sketch = &page->sketch};
+    if (!gather(&borders, error)) return false;
+    lay_out(&borders);
+    sketch_begin(&page->sketch, borders.grid.width, borders.grid.height);
+    for (int study = 0; study < borders.study_count; study++) draw_panel(&borders, study);
+    draw_legend(&borders);
+    snprintf(page->caption, sizeof page->caption, "%s", caption);
+    return true;
+}

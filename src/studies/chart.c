@@ -1,0 +1,396 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "studies/chart.h"
+
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
+#include "studies/chart_internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool scores_without_push_out(const SceneStudy *study) {
+    for (int i = 0; i < study->contender_count; i++)
+        if (study->contenders[i]->method.kind->description->no_push_out) return true;
+    return false;
+}
+
+/* A step takes time in proportion to its bodies, its converged solution even more. So larger scenes have fewer launches
+   and fewer scored steps after the impact. */
+static StudySize size_for(const StudySize *full, const Scene *scene) {
+    enum { SMALL = 110, LEAST_LAUNCHES = 4, LEAST_TIMED = 2 }; /* SMALL: bodies */
+    StudySize size = *full;
+    if (scene->body_count <= SMALL) return size;
+    const int launches = size.launches * SMALL / scene->body_count,
+              timed = size.timed_launches * SMALL / scene->body_count;
+    size.closed.after *= 2;
+    size.closed.rest *= 4;
+    size.launches = launches > LEAST_LAUNCHES ? launches : LEAST_LAUNCHES;
+    size.timed_launches = timed > LEAST_TIMED ? timed : LEAST_TIMED;
+    return size;
+}
+
+static bool choose_contenders(SceneStudy *study, const ContenderList *contenders, Error *error) {
+    study->contenders = malloc((size_t)(contenders->count + 1) * sizeof *study->contenders);
+    if (study->contenders == NULL) return error_memory(error, "study");
+    study->contender_count = contenders_for(contenders, study->scene, study->contenders);
+    study->no_push_out = scores_without_push_out(study);
+    return stepper_pool_begin(&study->steppers, study->contender_count, error);
+}
+
+bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
+                       const LaunchChoice *launches, const StudySize *size, Error *error) {
+    *study = (SceneStudy){.scene = scene_read(path, error)};
+    if (study->scene == NULL) return false;
+    study->size = size_for(size, study->scene);
+    bool ok = study->scene->bomb.present || error_input(error, path, "the scene has no bomb");
+    ok = ok && choose_contenders(study, contenders, error);
+    if (ok)
+        study->launches = launch_choice_make(launches, study->scene, study->size.launches, &study->launch_count, error);
+    if (study->launches != NULL) return true;
+    scene_study_end(study);
+    return false;
+}
+
+void scene_study_end(SceneStudy *study) {
+    stepper_pool_end(&study->steppers);
+    free(study->launches);
+    free(study->contenders);
+    scene_destroy(study->scene);
+    *study = (SceneStudy){0};
+}
+
+Scene scene_study_launch(const SceneStudy *study, int launch) {
+    return launch_scene(study->scene, &study->launches[launch]);
+}
+
+/* Seconds of one core per step of a body: of the converged run, of a method with the solutions that it is scored against, and
+   of a method whose times are measured. */
+static const double converged_seconds = 1.5e-6, scored_seconds = 8e-7, timed_seconds = 3e-7;
+
+static ChartScene *scene_of(const ChartPlan *plan, int64_t piece) {
+    int i = 0;
+    while (i + 1 < plan->count && plan->scenes[i + 1].first <= piece) i++;
+    return &plan->scenes[i];
+}
+
+static bool is_times(const ChartScene *scene, int64_t piece) {
+    return piece == scene->first + scene->study.launch_count;
+}
+
+static void describe(void *context, int64_t piece, PieceInfo *info) {
+    const ChartScene *scene = scene_of(context, piece);
+    const char *name = scene->study.scene->name;
+    if (is_times(scene, piece)) {
+        snprintf(info->name, sizeof info->name, "times of %.100s", name);
+        info->weight = scene->times_weight;
+        info->alone = info->timed = true;
+        return;
+    }
+    snprintf(info->name, sizeof info->name, "launch %d of %.100s", (int)(piece - scene->first) + 1, name);
+    info->weight = scene->launch_weight;
+}
+
+/* Destroys the steppers of scenes that no piece works on. */
+static void empty_pools(const ChartPlan *plan) {
+    for (int i = 0; i < plan->count; i++)
+        if (plan->scenes[i].working == 0) stepper_pool_empty(&plan->scenes[i].study.steppers);
+}
+
+/* Pieces come scene by scene: the steppers of a scene go when work on another begins. */
+static void begin_work(const ChartPlan *plan, ChartScene *scene) {
+#pragma omp critical(chart_plan)
+    {
+        scene->working++;
+        empty_pools(plan);
+    }
+}
+
+static void end_work(ChartScene *scene) {
+#pragma omp critical(chart_plan)
+    scene->working--;
+}
+
+/* Times are measured with steppers of their own. */
+static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+    ChartScene *scene = scene_of(context, piece);
+    if (is_times(scene, piece)) {
+        empty_pools(context);
+        return scene_times_write(&scene->study, results, progress, error);
+    }
+    begin_work(context, scene);
+    const bool ok = launch_piece_write(&scene->study, (int)(piece - scene->first), results, progress, error);
+    end_work(scene);
+    return ok;
+}
+
+static void weigh(ChartScene *scene) {
+    const SceneStudy *study = &scene->study;
+    const double steps = (double)study->scene->frames * (study->scene->body_count + 1);
+    const int timed =
+        study->size.timed_launches < study->launch_count ? study->size.timed_launches : study->launch_count;
+    scene->launch_weight = steps * (converged_seconds + scored_seconds * study->contender_count);
+    scene->times_weight =
+        steps * timed * (converged_seconds + timed_seconds * study->contender_count * (study->size.repetitions + 1));
+}
+
+static bool has_own_name(const ChartPlan *plan, const char *path, Error *error) {
+    const char *name = plan->scenes[plan->count - 1].study.scene->name;
+    for (int i = 0; i + 1 < plan->count; i++)
+        if (strcmp(plan->scenes[i].study.scene->name, name) == 0)
+            return error_input(error, path, "another scene has the same name (%s)", name);
+    return true;
+}
+
+/* Reads the scenes. ERROR_INPUT also if two have the same name. The contenders must outlive the plan. */
+static bool chart_plan_make(ChartPlan *plan, const char *const *paths, int count, const ContenderList *contenders,
+                            const LaunchChoice *launches, const StudySize *size, Error *error) {
+    *plan = (ChartPlan){.scenes = calloc((size_t)count + 1, sizeof *plan->scenes),
+                        .plan = {.describe = describe, .work = work, .context = plan}};
+    if (plan->scenes == NULL) return error_memory(error, "study");
+    for (int i = 0; i < count; i++) {
+        ChartScene *scene = &plan->scenes[i];
+        if (!scene_study_begin(&scene->study, paths[i], contenders, launches, size, error)) return false;
+        plan->count++;
+        if (!has_own_name(plan, paths[i], error)) return false;
+        weigh(scene);
+        scene->first = plan->plan.count;
+        plan->plan.count += scene->study.launch_count + 1;
+    }
+    return true;
+}
+
+static void chart_plan_free(ChartPlan *plan) {
+    for (int i = 0; i < plan->count; i++) scene_study_end(&plan->scenes[i].study);
+    free(plan->scenes);
+    *plan = (ChartPlan){0};
+}
+
+/* Methods are put together in groups that take about this much, so that a launch is read a few times only. */
+enum { GROUP_BYTES = 64 << 20 };
+
+typedef struct Assembly {
+    const Pieces *pieces;
+    const ChartScene *scene;
+    SceneSolves *solves;
+    MethodScores *scores; /* [contenders] */
+} Assembly;
+
+/* The results of a launch; *text is to be freed. */
+static bool open_launch(const Assembly *assembly, int launch, char path[PIECES_PATH_SIZE], StoredScores *stored,
+                        char **text, Error *error) {
+    const int64_t piece = assembly->scene->first + launch;
+    size_t size;
+    if (!pieces_path(assembly->pieces, piece, path, error)) return false;
+    *text = pieces_read(assembly->pieces, piece, &size, NULL, error);
+    return *text != NULL &&
+           stored_scores_open(stored, path, *text, size, assembly->scene->study.contender_count, error);
+}
+
+/* Adds a launch to the scores of some methods. */
+static bool add_launch(const Assembly *assembly, int launch, int first, int end, Error *error) {
+    char path[PIECES_PATH_SIZE], *text = NULL;
+    StoredScores stored;
+    bool ok = open_launch(assembly, launch, path, &stored, &text, error);
+    if (ok && stored.residual > assembly->solves->frozen_residual) assembly->solves->frozen_residual = stored.residual;
+    for (int i = first; ok && i < end; i++) ok = method_scores_add(&assembly->scores[i], &stored, i, error);
+    free(text);
+    return ok;
+}
+
+static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
+    const SceneStudy *study = &assembly->scene->study;
+    MethodScores *scores = &assembly->scores[contender];
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            ChartRow *row = &rows[protocol * PHASES + phase];
+            *row = scene_row(study->scene->name, study->launch_count, study->contenders[contender], protocol, phase);
+            scene_row_errors(row, &scores->steps[protocol][phase]);
+            if (protocol != PROTOCOL_CLOSED) continue;
+            row->error_worst = scores->worst[phase];
+            scene_row_measures(row, scores->measures, study->launch_count);
+        }
+    assembly->solves->solves += scores->solves;
+    assembly->solves->unconverged += scores->unconverged;
+    method_scores_free(scores);
+}
+
+/* The number of methods whose scores on all launches fit into GROUP_BYTES, by the size of a launch. */
+static bool group_size(const Assembly *assembly, int *count, Error *error) {
+    const SceneStudy *study = &assembly->scene->study;
+    char path[PIECES_PATH_SIZE], *text = NULL;
+    StoredScores stored;
+    const bool ok = open_launch(assembly, 0, path, &stored, &text, error);
+    if (ok) {
+        const double all = (double)stored.size * study->launch_count;
+        *count = all <= GROUP_BYTES ? study->contender_count : (int)(study->contender_count * GROUP_BYTES / all);
+        if (*count < 1) *count = 1;
+    }
+    free(text);
+    return ok;
+}
+
+static bool add_scores(const Assembly *assembly, ChartRow *rows, Error *error) {
+    const SceneStudy *study = &assembly->scene->study;
+    int group, end;
+    if (!group_size(assembly, &group, error)) return false;
+    for (int first = 0; first < study->contender_count; first = end) {
+        end = study->contender_count - first < group ? study->contender_count : first + group;
+        for (int launch = 0; launch < study->launch_count; launch++)
+            if (!add_launch(assembly, launch, first, end, error)) return false;
+        for (int i = first; i < end; i++) fill_rows(assembly, i, rows + (size_t)i * ROWS_EACH);
+    }
+    return true;
+}
+
+static void add_costs(ChartRow *rows, const MethodTimes *times, const char *cpu) {
+    for (int p = 0; p < PROTOCOLS; p++)
+        for (int phase = 0; phase < PHASES; phase++)
+            scene_row_cost(&rows[p * PHASES + phase], &times->costs[p][phase], cpu);
+}
+
+static bool add_times(const Assembly *assembly, ChartRow *rows, char cpu[CPU_NAME_SIZE], Error *error) {
+    const SceneStudy *study = &assembly->scene->study;
+    const int64_t piece = assembly->scene->first + study->launch_count;
+    char path[PIECES_PATH_SIZE];
+    size_t size;
+    if (!pieces_path(assembly->pieces, piece, path, error)) return false;
+    char *text = pieces_read(assembly->pieces, piece, &size, cpu, error);
+    MethodTimes *times = text != NULL ? scene_times_read(study, path, text, size, error) : NULL;
+    const bool ok = times != NULL;
+    for (int i = 0; ok && pieces_keep_times(assembly->pieces, cpu) && i < study->contender_count; i++)
+        add_costs(rows + (size_t)i * ROWS_EACH, &times[i], cpu);
+    free(times);
+    free(text);
+    return ok;
+}
+
+/* Fills rows[contenders of the scene * ROWS_EACH]. Their texts are the scene's, but for cpu[CPU_NAME_SIZE]. Memory: of some
+   methods on all launches, and of one piece. ERROR_INPUT for a piece whose results are damaged. */
+static bool chart_assemble(const Pieces *pieces, const ChartScene *scene, ChartRow *rows, char cpu[CPU_NAME_SIZE],
+                           SceneSolves *solves, Error *error) {
+    *solves = (SceneSolves){0};
+    const size_t count = (size_t)scene->study.contender_count;
+    const Assembly assembly = {pieces, scene, solves, calloc(count + 1, sizeof *assembly.scores)};
+    if (assembly.scores == NULL) return error_memory(error, "study");
+    const bool ok = add_scores(&assembly, rows, error) && add_times(&assembly, rows, cpu, error);
+    for (size_t i = 0; i < count; i++) method_scores_free(&assembly.scores[i]);
+    free(assembly.scores);
+    return ok;
+}
+
+/* On two cores, the full study of three scenes takes some minutes, the quick one less than one. */
+static const StudySize full_size = {.launches = 40,
+                                    .closed = {.after = 6, .rest = 30},
+                                    .frozen = {.after = 6, .rest = 60},
+                                    .timed_launches = 20,
+                                    .repetitions = 3};
+static const StudySize quick_size = {.launches = 5,
+                                     .closed = {.after = 20, .rest = 120},
+                                     .frozen = {.after = 20, .rest = 120},
+                                     .timed_launches = 1,
+                                     .repetitions = 3};
+
+const StudySize *speed_accuracy_size(bool quick) { return quick ? &quick_size : &full_size; }
+
+typedef struct Run {
+    const SpeedAccuracyOptions *options;
+    ContenderList contenders;
+    ChartPlan plan;
+    SpeedAccuracyScene *scenes; /* [scenes of the plan] */
+    ChartRow *rows;             /* of all scenes */
+    int row_count;
+    char (*cpus)[CPU_NAME_SIZE]; /* [scenes of the plan] */
+} Run;
+
+/* A missing network is an error only of the method that needs it. */
+static bool add_scene_to_key(StudyKey *key, const char *path, Error *error) {
+    Scene *scene = scene_read(path, error);
+    if (scene == NULL) return false;
+    for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
+    scene_destroy(scene);
+    return study_key_add_file(key, path, error);
+}
+
+/* Hashes everything that determines the result: the program, the options and the files. */
+static bool find_key(const SpeedAccuracyOptions *options, StudyKey *key, Error *error) {
+    if (!study_key_begin(key, error)) return false;
+    study_key_add(key, &options->quick, sizeof options->quick);
+    if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
+    const LaunchChoice *launches = &options->launches;
+    study_key_add(key, &launches->count, sizeof launches->count);
+    study_key_add(key, &launches->bomb_x.count, sizeof launches->bomb_x.count);
+    study_key_add(key, &launches->bomb_x.first, sizeof launches->bomb_x.first);
+    study_key_add(key, &launches->bomb_x.step, sizeof launches->bomb_x.step);
+    if (launches->table != NULL && !study_key_add_file(key, launches->table, error)) return false;
+    for (int i = 0; i < options->scene_count; i++)
+        if (!add_scene_to_key(key, options->scenes[i], error)) return false;
+    return true;
+}
+
+static SpeedAccuracyScene summarise(const Run *run, const SceneStudy *study) {
+    SpeedAccuracyScene summary = {.contenders = study->contender_count,
+                                  .launches = study->launch_count,
+                                  .without_network = contenders_without_network(&run->contenders, study->scene)};
+    snprintf(summary.name, sizeof summary.name, "%s", study->scene->name);
+    return summary;
+}
+
+static bool assemble(Run *run, const Pieces *pieces, Error *error) {
+    size_t count = 0;
+    for (int i = 0; i < run->plan.count; i++) count += (size_t)run->plan.scenes[i].study.contender_count * ROWS_EACH;
+    run->rows = malloc((count + 1) * sizeof *run->rows);
+    run->cpus = calloc((size_t)run->plan.count + 1, sizeof *run->cpus);
+    if (run->rows == NULL || run->cpus == NULL) return error_memory(error, "study");
+    for (int i = 0; i < run->plan.count; i++) {
+        const ChartScene *scene = &run->plan.scenes[i];
+        SpeedAccuracyScene *summary = &run->scenes[i];
+        *summary = summarise(run, &scene->study);
+        if (!chart_assemble(pieces, scene, run->rows + run->row_count, run->cpus[i], &summary->solves, error))
+            return false;
+        summary->timed = pieces_keep_times(pieces, run->cpus[i]);
+        run->row_count += summary->contenders * ROWS_EACH;
+    }
+    return true;
+}
+
+/* What follows from the pieces, once all are there. */
+static bool finish(Run *run, const Pieces *pieces, Error *error) {
+    const SpeedAccuracyOptions *options = run->options;
+    char path[CSV_PATH_SIZE];
+    return csv_table_path(path, options->folder, &chart_layout, error) && assemble(run, pieces, error) &&
+           folder_reserve(options->folder, error) &&
+           csv_table_write(path, &chart_layout, run->rows, run->row_count, error) &&
+           options->draw(options, run->scenes, pieces->key, error) && pieces_end(pieces, error);
+}
+
+/* Shards share a folder; a whole study has it to itself. */
+static bool do_pieces(Run *run, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
+    const SpeedAccuracyOptions *options = run->options;
+    if (!pieces_open(pieces, options->folder, false, key, options->run, error)) return false;
+    if (pieces->mode == PIECES_WHOLE && !folder_reserve(options->folder, error)) return false;
+    return pieces_do(pieces, &run->plan.plan, progress, error) &&
+           (pieces->mode == PIECES_SHARD || finish(run, pieces, error));
+}
+
+bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, const Progress *progress,
+                        SpeedAccuracyScene *scenes, Error *error) {
+    Run run = {.options = options, .scenes = scenes};
+    StudyKey key = {0};
+    if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
+        return false;
+    const bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders,
+                                    &options->launches, speed_accuracy_size(options->quick), error) &&
+                    find_key(options, &key, error) && do_pieces(&run, pieces, &key, progress, error);
+    pieces->plan = NULL;
+    chart_plan_free(&run.plan);
+    study_key_free(&key);
+    contenders_free(&run.contenders);
+    free(run.rows);
+    free(run.cpus);
+    return ok;
+}

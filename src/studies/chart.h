@@ -1,0 +1,556 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stability.html: the maps of a study as tables, whose cells link to pages of runs. */
+#pragma once
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+extern const char stability_css[]; /* src/stability/page */
+
+/* Writes folder/stability.html from maps.csv and map_pages.csv (studies/stability.h) there. */
+bool stability_html_write(const char *folder, Error *error);
+
+/* The converged solution that a step is scored against. For most methods it is that of the step's contact problem. A
+   method that moves overlapping bodies apart without giving them a velocity (no_push_out in its description) solves
+   another problem: the same one without the bias that pushes bodies apart. */
+
+/* Zero-initialise; free with converged_step_free. */
+typedef struct ConvergedStep {
+    Reference reference; /* of the last solve: velocities, residual */
+    ContactPoint *contacts;
+    size_t contact_capacity;
+} ConvergedStep;
+
+void converged_step_free(ConvergedStep *converged);
+
+/* Solves to REFERENCE_TOLERANCE. push_out: with the bias of overlapping contacts. False when memory is short. */
+bool converged_step_solve(ConvergedStep *converged, const ContactProblem *problem, bool push_out, Error *error);
+
+/* Log of a run, for comparison with another run of the same launch. */
+
+/* Zero-initialise; arrays grow and are reused. Bodies exclude the bomb. */
+typedef struct RunLog {
+    int bodies, frames;          /* frames: index of the last logged frame */
+    int touch;                   /* first step in which the bomb touches; 0: none */
+    int launch_frame, end_frame; /* the bomb's frame, and 5 s later: displaced boxes are counted between them */
+    Vec2 *position;              /* [frames + 1, bodies] m */
+    double *energy;              /* [frames + 1] J: mechanical energy of all dynamic bodies */
+    double *penetration;         /* [frames + 1] m: deepest contact of the step; 0 without contacts */
+    Phase *phase;                /* [frames + 1] of each step */
+    Vec2 *bomb;                  /* [frames + 1] m: the bomb's position; 0 before it is there */
+    double momentum_error;       /* N s: momentum created by steps (ContactSolution), sum */
+    int fallen_back;             /* steps with discarded outputs, beyond training or solved by sweeps */
+    size_t position_capacity, energy_capacity, penetration_capacity, phase_capacity, bomb_capacity;
+} RunLog;
+
+void run_log_free(RunLog *log);
+
+/* Begins the log of a run of the scene. False if out of memory. */
+bool run_log_begin(RunLog *log, const Scene *scene, const World *world);
+
+void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase);
+
+/* The first frame in which a body, the bomb included, is more than `limit` m from its place in another run of the same
+   launch; if the log ended early (NaN or infinite), at the latest the frame after its last; `frames` if never. */
+int run_log_apart(const RunLog *log, const RunLog *other, double limit, int frames);
+
+/* A run compared with the converged run of the same launch; NaN if a phase does not occur. */
+typedef struct RunMeasures {
+    double penetration[PHASES]; /* m: largest of the phase */
+    double energy[PHASES];      /* J: excess over the converged run at the same frame, mean over the phase */
+    double drift; /* m: mean distance of the boxes from the converged run, just before the bomb touches in either run */
+    double moved; /* boxes that moved more than 0.5 m in the 5 s after the launch */
+} RunMeasures;
+
+RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene);
+
+/* A closed-loop run of a method; each step is scored against its own converged solution. */
+
+/* Where the error of a scored step is largest. */
+typedef struct StepPlace {
+    int frame, body; /* body -1: none */
+} StepPlace;
+
+/* Errors of the scored steps. Zero-initialise; free with step_scores_free(). */
+typedef struct StepScores {
+    int count;
+    double *error;    /* [count] m/s, RMS over the dynamic bodies */
+    double *share;    /* [count] share of bodies that are right (solution_error.h) */
+    StepPlace *place; /* [count] */
+    size_t error_capacity, share_capacity, place_capacity;
+} StepScores;
+
+/* Adds the step to `frame`, given its final velocities. False if out of memory. */
+bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const BodyVelocity *velocities,
+                     const ReferenceVelocity *reference);
+void step_scores_free(StepScores *scores);
+
+/* All impact frames are scored; of the frames after and at rest, every n-th: reference solves dominate the run time. */
+typedef struct Sampling {
+    int after, rest;
+} Sampling;
+
+bool sampling_takes(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame);
+
+/* One thread's run in progress; zero-initialise, free with rollout_free. */
+typedef struct Rollout {
+    World *world;
+    ConvergedStep converged;
+    RunLog log;
+    int solves, unconverged; /* reference solves; those with a residual above SOLVE_CONVERGED */
+} Rollout;
+
+/* m/s, far below the differences between methods. Only states that a bad method made explode, and steps without a
+   solution (methods/reference.h), do not reach it. */
+#define SOLVE_CONVERGED 1e-3
+
+void rollout_free(Rollout *rollout);
+
+/* Runs a launched scene and adds the sampled steps to scores[PHASES] (NULL: none). If the state becomes NaN or
+   infinite, the run ends early and its log is shorter. False with error set if out of memory. */
+bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
+                 StepScores scores[PHASES], Error *error);
+
+/* The frozen protocol: every method solves the same steps, sampled from engine runs. */
+
+typedef struct Snapshot {
+    const Scene *scene; /* launched; owned by the caller */
+    World *world;       /* before the step */
+    int frame;          /* of the step */
+    Phase phase;
+    ReferenceVelocity *reference;   /* [bodies] converged velocities after the step */
+    ReferenceVelocity *no_push_out; /* [bodies] the same for methods of that description; or NULL */
+} Snapshot;
+
+/* Zero-initialise. */
+typedef struct SnapshotList {
+    int count;
+    Snapshot *items; /* [count] */
+    size_t capacity;
+    bool no_push_out; /* set by the caller: methods of that description will be scored, too */
+    double residual;  /* m/s: the largest residual of the reference solves */
+} SnapshotList;
+
+/* Adds sampled steps of the engine's run of a launched scene; the scene must outlive the list. */
+bool snapshots_add(SnapshotList *list, const Scene *launched, const Sampling *sampling, Error *error);
+void snapshots_free(SnapshotList *list);
+
+/* Scores a method on every step. world: scratch space for a copy. A method of the description no_push_out needs a list
+   with that flag. */
+bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, StepScores scores[PHASES], Error *error);
+
+/* chart.csv: speed and accuracy of every method; one row for each scene, method, setting, protocol and phase. */
+
+enum { CHART_MAX_ROWS = 20000, CHART_NAME_SIZE = 128, CHART_SETTING_SIZE = 256 };
+
+/* Frozen: all methods solve the same contact problems. Closed: each method runs on its own trajectory. */
+typedef enum ChartProtocol { PROTOCOL_FROZEN, PROTOCOL_CLOSED } ChartProtocol;
+
+enum { PROTOCOLS = PROTOCOL_CLOSED + 1 };
+
+/* NaN if a protocol does not have the value. Errors are RMS velocity errors against the reference; mean, median and p95
+   are over all scored steps of all launches. error_worst (closed loop only) is the largest mean error of a launch in
+   the phase, over its scored steps (up to where its state became NaN or infinite); launches without scored steps are
+   ignored. */
+typedef struct ChartRow {
+    const char *scene, *method; /* less than CHART_NAME_SIZE bytes */
+    const char *setting;        /* "k=20,warm=off"; less than CHART_SETTING_SIZE */
+    ChartProtocol protocol;
+    Phase phase;
+    int launches;
+    double us_solver, us_solver_q1, us_solver_q3; /* time in the solver per step: median, quartiles; microseconds */
+    double us_step;                               /* of the whole step, median; microseconds */
+    double instructions;                          /* in the solver per step */
+    double error_mean, error_median, error_p95;   /* m/s */
+    double error_worst;                           /* mean of the worst launch, m/s */
+    double share_right;                           /* of bodies, 0 to 1 */
+    double penetration_max, drift;                /* m */
+    double energy;                                /* above the converged run's, J */
+    double moved;                                 /* boxes that moved more than 0.5 m */
+    const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
+} ChartRow;
+
+extern const CsvLayout chart_layout;
+
+typedef struct ChartTable {
+    CsvTable csv;
+    int count;
+    const ChartRow *rows; /* [count] */
+} ChartTable;
+
+/* Reads a chart. Refused, as "path:line:column: error: reason": what csv_table_read() refuses (the header is exact; the
+   last column, cpu, may be missing), and a median time outside its quartiles. On failure nothing is to be freed. */
+bool chart_csv_read(ChartTable *table, const char *path, Error *error);
+void chart_csv_free(ChartTable *table);
+
+/* The methods that a study compares, each with some settings. */
+
+typedef struct Contender {
+    char name[CHART_NAME_SIZE];       /* "engine" */
+    char setting[CHART_SETTING_SIZE]; /* "k=10,warm=off"; may be empty */
+    Method method;                    /* both, parsed */
+} Contender;
+
+typedef struct ContenderList {
+    int count;
+    Contender *items; /* [count] */
+} ContenderList;
+
+/* Which runs of a method's description (methods/methods.h) a study makes by default. */
+typedef enum ContenderStudy { STUDY_CHART, STUDY_CHART_QUICK, STUDY_STABILITY } ContenderStudy;
+
+/* Fills the list from "NAME,NAME:KEY=VALUE,...". A name alone stands for all runs of the method in a chart, and for one
+   run without settings in the stability study. text NULL: all runs of every registered method. ERROR_INPUT for an
+   unknown name or setting, or a run given twice. */
+bool contenders_parse(ContenderList *list, const char *text, ContenderStudy study, Error *error);
+
+void contenders_free(ContenderList *list);
+
+/* The registered methods that the study leaves out by default. */
+NameList contenders_left_out(ContenderStudy study);
+
+/* The contenders that can run in the scene: all but those that lack their network (method_lacks_network). fit[count of
+   the list] points to items of the list. Returns how many there are. */
+int contenders_for(const ContenderList *list, const Scene *scene, const Contender **fit);
+
+/* The others. */
+NameList contenders_without_network(const ContenderList *list, const Scene *scene);
+
+/* The launches that a study scores. */
+
+/* At most one of them; none: a number of the scene's family that the study chooses. */
+typedef struct LaunchChoice {
+    const char *table; /* path (scenes/scenes.h); NULL: none */
+    FloatRange bomb_x; /* m; count 0: none */
+    int count;         /* of the scene's family; 0: not given */
+} LaunchChoice;
+
+/* The launches of a scene with a bomb; *count is `standard` if the choice leaves it open. To be freed by the caller.
+   NULL with error set for a table or a family that does not fit the scene, and for launches that launches_check()
+   refuses. */
+Launch *launch_choice_make(const LaunchChoice *choice, const Scene *scene, int standard, int *count, Error *error);
+
+/* One stepper for each of several methods of a scene, which threads use in turns: some take seconds and much memory to be
+   made. A stepper keeps nothing of a launch for the next, so the order of launches does not matter. */
+
+typedef struct PooledStepper PooledStepper;
+
+typedef struct StepperPool {
+    PooledStepper *items; /* [count] */
+    int count;
+} StepperPool;
+
+bool stepper_pool_begin(StepperPool *pool, int count, Error *error);
+void stepper_pool_end(StepperPool *pool);
+
+/* Destroys the steppers, which no thread may use; they are made again when they are needed. */
+void stepper_pool_empty(StepperPool *pool);
+
+/* Chooses a method that is not marked in chosen[count], from `from` on, and marks it: one that no other thread uses, or else
+   one that it waits for. Returns its index; stepper_pool_give() must follow. */
+int stepper_pool_take(StepperPool *pool, bool *chosen, int from);
+void stepper_pool_give(StepperPool *pool, int index);
+
+/* The stepper of the method that was taken. NULL with error set if it cannot be made. */
+Stepper *stepper_pool_stepper(StepperPool *pool, int index, const Method *method, const Scene *scene, Error *error);
+
+/* One scene of the speed-accuracy study: its launches and the methods that are scored on them. */
+
+typedef struct StudySize {
+    int launches;            /* unless a table of launches is given */
+    Sampling closed, frozen; /* steps to score */
+    int timed_launches, repetitions;
+} StudySize;
+
+typedef struct SceneStudy {
+    Scene *scene;
+    int launch_count, contender_count;
+    Launch *launches;             /* [launch_count] */
+    const Contender **contenders; /* [contender_count] available for this scene */
+    StepperPool steppers;         /* of the contenders */
+    bool no_push_out;             /* one of them is scored against converged velocities without push-out */
+    StudySize size;
+} SceneStudy;
+
+/* Reads the scene and its launches. `size` is for scenes of up to 110 bodies; larger ones have fewer launches. */
+bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
+                       const LaunchChoice *launches, const StudySize *size, Error *error);
+void scene_study_end(SceneStudy *study);
+
+/* The scene with a launch of the study, as launch_scene(). */
+Scene scene_study_launch(const SceneStudy *study, int launch);
+
+/* The launch that was worst for a method in a chart: what a page shows of a point. */
+
+typedef struct WorstLaunch {
+    int launch;        /* of the study's; -1: no step of the phase was scored */
+    double mean;       /* m/s: its mean error in the phase, chart.csv's error_worst */
+    double error;      /* m/s: of the scored step of the phase with the largest error, */
+    int frame, body;   /* which leads to this frame; its body with the largest error, or -1 */
+    int touch, frames; /* the first step in which the bomb touches; frames of the run: fewer if its state became NaN */
+} WorstLaunch;
+
+/* Runs all launches of the study in closed loop once more, in parallel, and fills the impact and after phases of
+   worst[PHASES]. */
+bool worst_launch_find(const SceneStudy *study, const Method *method, WorstLaunch worst[PHASES],
+                       const Progress *progress, Error *error);
+
+/* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene after
+   scene. */
+
+/* A scene and its pieces: a launch each, the last one is of the times. */
+typedef struct ChartScene {
+    SceneStudy study;
+    int64_t first;
+    double launch_weight, times_weight; /* of pieces */
+    int working;                        /* launches that are being scored */
+} ChartScene;
+
+/* chart_plan_free(), also after a failure. */
+typedef struct ChartPlan {
+    ChartScene *scenes; /* [count] */
+    int count;
+    PiecePlan plan;
+} ChartPlan;
+
+/* chart.csv from the pieces of the study. */
+
+enum { ROWS_EACH = PROTOCOLS * PHASES };
+
+/* What the pieces of a scene say about its reference solves. */
+typedef struct SceneSolves {
+    double frozen_residual;      /* m/s: largest residual of those of frozen steps */
+    int64_t solves, unconverged; /* those in closed loop; those with a residual above SOLVE_CONVERGED (rollout.h) */
+} SceneSolves;
+
+/* The speed-accuracy study: every method in every scene, on held-out launches.
+
+   Two protocols. Frozen: all methods solve the same steps, sampled from engine runs. Closed: each method runs on its
+   own trajectory. In both, the final velocities of a step are compared with the converged solution
+   (methods/reference.h) of its contact problem. */
+
+enum { STUDY_MAX_SCENES = 32 };
+
+typedef struct SpeedAccuracyScene SpeedAccuracyScene;
+
+typedef struct SpeedAccuracyOptions {
+    const char *const *scenes; /* paths of scene files */
+    int scene_count;
+    const char *methods; /* contenders_parse(); NULL: all */
+    LaunchChoice launches;
+    bool quick;           /* fewer launches, settings, steps and repetitions */
+    const char *folder;   /* created if missing */
+    bool pages;           /* for draw() */
+    const PiecesRun *run; /* whole, a shard, or a merge */
+    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result (study_key.h). */
+    bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, uint64_t key,
+                 Error *error);
+} SpeedAccuracyOptions;
+
+struct SpeedAccuracyScene {
+    char name[CHART_NAME_SIZE];
+    int contenders, launches;
+    NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
+    SceneSolves solves;
+    bool timed; /* not if a merge leaves out its times */
+};
+
+/* Of the studies. */
+const StudySize *speed_accuracy_size(bool quick);
+
+/* Does the pieces of the study, then writes folder/chart.csv, fills scenes[scene_count] and draws; a shard does its pieces
+   only. An interrupted study continues if options, files and program are the same. ERROR_INPUT for an invalid option,
+   scene or launch, ERROR_INTERRUPTED if progress stops the study. *pieces tells what was done; it has no plan any more. */
+bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, const Progress *progress,
+                        SpeedAccuracyScene *scenes, Error *error);
+
+/* Tables from the pieces of a study (runs/pieces.h). The results of a piece are lines "TABLE:row", or "TABLE/SECTION:row";
+   the rows of a table are put together in the order of the pieces. Lines that begin with "#" are the study's own notes, which
+   no table has. */
+
+/* Pieces that follow each other and whose rows are sorted by their section: a map has a piece for each cell, and its table
+   has a section for each method. */
+typedef struct PieceGroup {
+    int64_t first, count;
+    int sections; /* 0: the rows have none */
+} PieceGroup;
+
+/* Writes a row as such a line; the table's name is the layout's. section: -1: none. Errors as csv_row_print(). */
+bool piece_tables_print(FILE *results, const CsvLayout *layout, int section, const void *row, Error *error);
+
+/* Writes folder/TABLE.csv of each layout: the header and the table's rows. groups[group_count] cover all pieces; NULL: one
+   without sections. Reads each piece once; memory: that of a piece. */
+bool piece_tables_write(const Pieces *pieces, const char *folder, const CsvLayout *const *layouts, int layout_count,
+                        const PieceGroup *groups, int group_count, Error *error);
+
+/* Closed-loop comparison: a method and the engine run the same launches, each on its own trajectory. */
+
+enum { CLOSED_LOOP_FRAMES = 600 };
+
+#define CLOSED_LOOP_APART 0.1 /* m */
+
+/* A run of one launch beside others of the same launch. */
+typedef struct LaunchLoop {
+    double frames_engine; /* first frame in which a body is more than CLOSED_LOOP_APART from its place in the engine's
+                                run; the scene's frames: never */
+    double frames_converged; /* the same of the converged run; NAN without one */
+    double moved;            /* boxes that moved more than 0.5 m in the 5 s after the launch */
+    double penetration;      /* m: the deepest contact */
+    double energy_put_in;    /* J: mechanical energy when the bomb was added */
+    double energy_most;      /* J: the largest from then on */
+    double momentum_error;   /* N s: momentum created by all steps (ContactSolution), sum */
+    int steps, fallen_back;  /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
+} LaunchLoop;
+
+/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch; converged may
+   be NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch (studies/chart.h). */
+bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
+                        const RunLog *converged, LaunchLoop *result, Error *error);
+
+/* Logs a run of a launched scene to compare others with. ERROR_INPUT if its state becomes NaN or infinite. */
+bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error);
+
+typedef struct ClosedLoop {
+    double frames_until_apart; /* LaunchLoop.frames_engine, median over launches */
+    double penetration_max;    /* m: of all launches */
+    double momentum_error;     /* N s: momentum created per step (ContactSolution), mean */
+    double energy_ratio;       /* largest mechanical energy / energy when the bomb was added; largest of all launches */
+} ClosedLoop;
+
+/* Runs launches[count] of a scene for CLOSED_LOOP_FRAMES. */
+bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error);
+
+/* Microseconds per step of a method and of the engine, measured in turns on engine states: mean over states, median
+   over repetitions. */
+bool closed_loop_time(const Method *method, const SnapshotList *states, int repetitions, double *us_step,
+                      double *us_step_engine, Error *error);
+
+/* Measures the cost of contenders, in turns on one core, with repetitions. */
+
+/* Microseconds per step in one phase: means over the steps of the median and the quartiles that each step has over the
+   repetitions. NaN if the phase does not occur. */
+typedef struct StepCost {
+    double solver, solver_q1, solver_q3; /* of the solver alone: median, quartiles */
+    double step;                         /* of the whole step: median */
+    int steps;                           /* of the phase, in each repetition */
+    double instructions;                 /* of the solver; NaN if they cannot be counted */
+} StepCost;
+
+typedef struct TimingOptions {
+    const Scene *launches;         /* [launch_count] launched scenes, run in closed loop */
+    int launch_count, repetitions; /* each repetition runs all launches */
+    int last_frame;                /* of each run */
+    bool no_instructions;          /* do not count them: that takes a run more */
+} TimingOptions;
+
+/* Fills closed[count][PHASES] (closed loop) and frozen[count][PHASES] (frozen steps). */
+bool timing_measure(const Contender *const *contenders, int count, const TimingOptions *options,
+                    const SnapshotList *snapshots, StepCost (*closed)[PHASES], StepCost (*frozen)[PHASES],
+                    const Progress *progress, Error *error);
+
+/* Mean over the steps of all phases: of the whole step, or only of the solver, for methods whose step is nothing else
+   (no_contacts in methods/methods.h). NaN without steps. */
+double step_cost_mean(const StepCost costs[PHASES], bool only_solver);
+
+/* Measures time and, where the system permits it, instructions of the calling thread. */
+
+/* Pins the calling thread to its current core, to avoid the cost of migration; unpins it. No effect if the system does
+   not support it. */
+void meter_pin(void);
+void meter_unpin(void);
+
+/* Nanoseconds of a monotonic clock. */
+int64_t meter_time(void);
+
+/* Nanoseconds between two consecutive calls of meter_time(), to be subtracted from every measurement. */
+int64_t meter_time_overhead(void);
+/* `passed` without the overhead; at least 0, as the overhead itself varies by some nanoseconds. */
+int64_t meter_without(int64_t passed, int64_t overhead);
+
+/* Instructions of this thread since the counter was opened; 0 if it is not available. */
+bool meter_open_instructions(void);
+int64_t meter_instructions(void);
+void meter_close_instructions(void);
+
+/* What charts and tables of chart.csv read from its rows. */
+
+enum { CHART_FAMILY_SIZE = CHART_NAME_SIZE + 2 * CHART_SETTING_SIZE };
+
+enum { CHART_TIMES_SIZE = CPU_NAME_SIZE + 80 };
+
+/* Splits "k=20,warm=off" into numbers "k=20" and words "warm=off", appended to texts of 2 * CHART_SETTING_SIZE. */
+void chart_split_setting(const char *setting, char *numbers, char *words);
+
+/* The family of a row: its method with the words of its setting ("engine:warm=off"). Settings of one family differ in
+   numbers only. */
+void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]);
+
+/* True if the boxes drifted by half a metre before the bomb came: the method was scored on another scene. */
+bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row);
+
+/* "Times measured on PROCESSOR.", and whether those of others are left out (twinbox merge --times first); "" if no row names
+   one. */
+void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count);
+
+/* Whether the times of a scene are left out: rows of other scenes have times, and name their processor. */
+bool chart_scene_untimed(const ChartRow *rows, int count, const char *scene);
+
+/* Statistics of a list of numbers; NaN if it is empty. */
+
+double statistics_mean(const double *values, int count);
+
+/* Sorts the values; interpolates linearly. fraction: 0.5 for the median, 0.25 and 0.75 for the quartiles. */
+double statistics_quantile(double *values, int count, double fraction);
+
+/* chart_pages.csv: the launch that was worst for each point of a chart, and the page that plays it. */
+
+/* m, rad, rad/s, kg, s, m/s; frames from 0. */
+typedef struct LaunchPage {
+    const char *scene, *method, *setting; /* of the point, as in chart.csv */
+    Phase phase;
+    int launch; /* of the study's, from 1 */
+    float x, rotation, spin, mass;
+    int launch_frame;
+    double error_worst; /* mean over the phase, as in chart.csv */
+    double error;       /* of the worst step, which leads to: */
+    double time;
+    int frame, body;  /* body -1: none */
+    const char *page; /* "pages/NAME.html#t=0.55&body=7&run=1"; empty: left out */
+    int bytes;        /* of the page */
+} LaunchPage;
+
+extern const CsvLayout launch_page_layout;
+
+/* chart.html: the charts of a study; their points, and a table of them, link to pages of runs. */
+
+extern const char chart_css[]; /* src/chart/page */
+
+/* Writes folder/chart.html from chart.csv, chart_pages.csv (studies/chart.h) and the charts' .svg files there. Without a
+   script: a picture with links above its points, which a table repeats for the keyboard. */
+bool chart_html_write(const char *folder, Error *error);
+
+/* The table and the figure of errors at equal time (studies/chart_internal.h). */
+
+/* Reads a chart.csv and writes folder/equal_time.csv and equal_time_methods.csv, and the latter as a figure,
+   folder/equal_time.png, .svg and .pdf: a row for each scene, a column for each method, in each cell its error as a ratio to
+   that of its best rival in the same time. *drawn: false if no method has a rival. */
+bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Error *error);
+
+/* Charts of speed against accuracy, drawn from chart.csv. */
+
+/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path (studies/chart.h). x: solver time per
+   step; y: mean velocity error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed loop.
+   One mark per setting, one line per method, and the Pareto front (studies/chart_internal.h) as a staircase behind. 174 x 100
+   mm, a paper's page width; colours and symbols are distinguishable in grey and with colour blindness. The folder
+   must exist. ERROR_INPUT for an invalid table, a scene without marks, or a scene name that is not a file name.
+   Each file appears complete or not at all. */
+bool chart_plot(const char *csv_path, const char *scene, const char *folder, Error *error);

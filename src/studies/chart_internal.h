@@ -1,0 +1,301 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The scores of the methods on the launches of a scene. Those of one launch are stored as bytes of this machine: the number of
+   methods, the launch's residual, where each method's part ends, then the parts; so one method's is found at once. */
+#pragma once
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+/* A method on one launch. Zero-initialise. */
+typedef struct LaunchScores {
+    StepScores steps[PROTOCOLS][PHASES];
+    RunMeasures measures;
+    int unconverged; /* of the reference solves in closed loop, one for each step, as in Rollout */
+} LaunchScores;
+
+void launch_scores_free(LaunchScores *scores);
+
+/* Writes those of all methods, scores[count]. residual: m/s, the largest of the reference solves of frozen steps. */
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, double residual);
+
+/* What is stored of a launch. */
+typedef struct StoredScores {
+    const char *path; /* for messages */
+    const char *bytes;
+    size_t size;
+    int count; /* methods */
+    double residual;
+} StoredScores;
+
+/* Looks at stored results with so many methods. ERROR_INPUT if they are damaged. The bytes must outlive *stored. */
+bool stored_scores_open(StoredScores *stored, const char *path, const char *bytes, size_t size, int count,
+                        Error *error);
+
+typedef struct PhaseScores {
+    int count;
+    double *error, *share; /* [count], as in StepScores */
+    size_t error_capacity, share_capacity;
+} PhaseScores;
+
+/* A method on several launches. Zero-initialise. */
+typedef struct MethodScores {
+    PhaseScores steps[PROTOCOLS][PHASES];
+    double worst[PHASES];  /* m/s: largest mean error of a launch in closed loop; NaN without a scored step */
+    RunMeasures *measures; /* [launches] */
+    int launches;
+    int64_t solves, unconverged; /* reference solves in closed loop, as in Rollout */
+    size_t measure_capacity;
+} MethodScores;
+
+/* Adds a launch. ERROR_INPUT if its part is damaged. */
+bool method_scores_add(MethodScores *scores, const StoredScores *stored, int method, Error *error);
+void method_scores_free(MethodScores *scores);
+
+/* Rows of chart.csv from the results of a scene's launches. */
+
+/* A row with names but without results. The names must outlive the row. */
+ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase);
+
+/* Sets mean, quantiles and share over all steps of the row's phase; sorts the scores. */
+void scene_row_errors(ChartRow *row, const PhaseScores *scores);
+
+/* Largest penetration and means of the other measures over measures[count], one per launch. */
+void scene_row_measures(ChartRow *row, const RunMeasures *measures, int count);
+
+/* cpu: that it was measured on; must outlive the row. */
+void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu);
+
+/* The error of a method over its time, from runs with several settings. */
+
+typedef struct CurvePoint {
+    double us, error; /* microseconds; m/s; both greater than 0 */
+} CurvePoint;
+
+/* Where a time lies on a curve: before its first point, between its points, or beyond the last. */
+typedef enum CurveReach { CURVE_BEFORE, CURVE_WITHIN, CURVE_BEYOND } CurveReach;
+
+/* Sorts the points and keeps those that no other beats in both: rising times, falling errors. Returns their number. */
+int error_curve_front(CurvePoint *points, int count);
+
+/* The error of such a front at a time: a straight line in log error over log time between neighbours. NaN before
+   the first point, as no setting is that quick. Beyond the last point it is the last point's error. count >= 1. */
+double error_curve_at(const CurvePoint *front, int count, double us, CurveReach *reach);
+
+/* The families of a chart, each with its curve of error over time in one scene.
+
+   A family is a method with the words of its setting ("engine:warm=off"); its settings differ in numbers. The rivals of a
+   method are the families of other methods that learn nothing; a learned method's silenced twin is no rival of it. The
+   best rival at a time is the one with the least error in that time. Closed loop only. Baselines, the reference and rows
+   without time or error are left out; a setting that lost the scene is on no curve. Errors below PARETO_RESOLUTION count
+   as that. */
+
+typedef enum CurveStatistic { CURVE_MEAN, CURVE_MEDIAN, CURVE_P95 } CurveStatistic;
+
+enum { CURVE_STATISTICS = CURVE_P95 + 1 };
+
+typedef struct CurveFamily {
+    char name[CHART_FAMILY_SIZE], method[CHART_NAME_SIZE];
+    const MethodDescription *description; /* NULL: an unknown method */
+} CurveFamily;
+
+typedef struct RivalCurves {
+    int family_count;
+    CurveFamily *families; /* [family_count], in the order of their first rows; grows from scene to scene */
+    int count;             /* rows of the scene that count, */
+    const ChartRow **rows; /* [count] */
+    int *family;           /* [count] index into families */
+    bool *lost;            /* [count] */
+    CurvePoint *points;    /* scratch, [count] */
+} RivalCurves;
+
+typedef struct BestRival {
+    int family;       /* -1: no rival has a setting as quick */
+    double error;     /* m/s; NAN without a rival */
+    CurveReach reach; /* CURVE_BEFORE without a rival */
+} BestRival;
+
+/* Every method's error next to the error that its best rival (rival_curves.h) has in the same time: equal_time.csv for
+   each setting at the time that it takes, equal_time_methods.csv for each method at one time for all in a scene. */
+
+typedef struct EqualTimeRow {
+    const char *scene, *method, *setting;
+    Phase phase; /* PHASE_IMPACT or PHASE_AFTER */
+    CurveStatistic statistic;
+    int launches;
+    double us_solver, error; /* microseconds, m/s; over all scored steps of all launches */
+    const char *rival;       /* family of the best rival; "": none */
+    CurveReach reach;        /* where the time lies on the rival's curve; before: there is no rival */
+    double rival_error;      /* m/s, at that time */
+    double ratio;            /* error / rival_error; NaN without a rival, or if the method lost the scene */
+    double time_momentum_20; /* us_solver / that of momentum:k=20; NaN if it was not run */
+    double error_scene_net;  /* error / that of scene-net in this scene; likewise */
+    double time_scene_net;   /* us_solver / that of scene-net in this scene; likewise */
+} EqualTimeRow;
+
+/* Mean errors at the impact, in the time of momentum with 50 sweeps, or with 20 in a chart without that. */
+typedef struct EqualMethodRow {
+    const char *scene, *method; /* method: its family */
+    double us_solver;           /* the time, microseconds */
+    CurveReach reach;  /* where the time lies on the method's curve; before: it takes longer, or lost the scene */
+    double error;      /* m/s, at that time; NaN before */
+    const char *rival; /* "": none */
+    double rival_error, ratio;
+    int family; /* index into families */
+} EqualMethodRow;
+
+extern const CsvLayout equal_time_layout, equal_methods_layout;
+
+typedef struct EqualTime {
+    int count, method_count;
+    EqualTimeRow *rows;      /* [count]; texts point into the chart's rows and into curves */
+    EqualMethodRow *methods; /* [method_count], scene by scene; none for scenes without such a run of momentum */
+    const char *time;        /* the setting of momentum whose time all methods have: "k=50", else "k=20" */
+    RivalCurves curves;
+} EqualTime;
+
+/* The tables of a chart's rows, which must outlive them; the rows of a scene must follow each other. False with error set
+   if out of memory. */
+bool equal_time_make(EqualTime *table, const ChartRow *rows, int count, Error *error);
+void equal_time_free(EqualTime *table);
+
+/* The Pareto front of speed and accuracy: the rows that no other row dominates. */
+
+/* m/s: smaller errors count as equal. */
+#define PARETO_RESOLUTION 1e-4
+
+/* True if a is certainly faster than b and not less accurate: its upper quartile of time is below b's lower quartile,
+   and its mean error is at most b's, or below PARETO_RESOLUTION. Rows whose quartile intervals overlap are not ordered.
+   Rows of different scenes, protocols or phases are not compared. Rows without quartiles of time or without an error,
+   and rows of baselines and of the reference (methods/methods.h), neither dominate nor are dominated. Rows of
+   unknown methods compete. */
+bool pareto_dominates(const ChartRow *a, const ChartRow *b);
+
+/* on_front[count]: rows that compete and that no other row dominates. */
+void pareto_mark(const ChartRow *rows, int count, bool *on_front);
+
+/* A piece of the speed-accuracy study: a launch of a scene with all methods, which share its converged run and its frozen
+   steps. */
+
+/* Scores all contenders of the study on the launch, in parallel, and writes the scores (studies/chart_internal.h). Called from
+   several threads at once, it uses one thread each. */
+bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Progress *progress, Error *error);
+
+/* A piece of the speed-accuracy study: the times of all methods in a scene, measured in turns by one process. */
+
+/* Of a method. */
+typedef struct MethodTimes {
+    StepCost costs[PROTOCOLS][PHASES];
+} MethodTimes;
+
+/* Measures the contenders of the study on some of its launches, and writes their times. */
+bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *progress, Error *error);
+
+/* The stored times of the contenders, to be freed. ERROR_INPUT if they are damaged. path: for messages. */
+MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const char *bytes, size_t size, Error *error);
+
+/* The data of a chart of one scene: marks joined to lines, in two panels. */
+
+enum {
+    CHART_MAX_LINES = 32,
+    CHART_TEXT_SIZE = 40,
+    CHART_PANELS = 2,
+    CHART_KEY_SIZE = CHART_NAME_SIZE + sizeof ":near," + 2 * CHART_SETTING_SIZE
+};
+
+/* A method with its non-numeric settings ("engine:warm=off"). Runs with a stopping rule ("engine:near") are a line of
+   their own beside those with a fixed number of sweeps. */
+typedef struct ChartLine {
+    char key[CHART_KEY_SIZE];          /* as in the table; identifies the line */
+    char name[CHART_TEXT_SIZE];        /* plain, truncated */
+    int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
+    int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
+    bool no_push_out;                  /* as in the method's description */
+    bool competes;                     /* or unknown; baselines and the reference do not */
+    int beyond;                        /* number of marks left out because they are far from all that compete, and */
+    double beyond_us[2], beyond_error[2]; /* their ranges, from least to most */
+    PlotStyle style;
+} ChartLine;
+
+typedef struct ChartMark {
+    int line;
+    double us, us_q1, us_q3; /* solver time per step: median and quartiles, microseconds */
+    double error;            /* mean velocity error, m/s; at least PARETO_RESOLUTION */
+    bool floored;            /* it was less */
+    bool on_front;
+    bool shipped;                 /* the setting that the method's description calls shipped */
+    char label[CHART_TEXT_SIZE];  /* numeric settings ("k=20"); or empty */
+    const char *method, *setting; /* as in the table, which outlives them */
+} ChartMark;
+
+typedef struct ChartPanel {
+    int count;
+    ChartMark *marks; /* [count], sorted by line, then by time */
+} ChartPanel;
+
+typedef struct Chart {
+    int line_count, launches;
+    int floored; /* number of marks drawn at PARETO_RESOLUTION */
+    ChartLine lines[CHART_MAX_LINES];
+    ChartPanel panels[CHART_PANELS];                   /* impact frames and the frames after; closed loop */
+    double us_least, us_most, error_least, error_most; /* ranges of all marks */
+    char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; plain */
+} Chart;
+
+/* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to
+   letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
+   Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
+   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (studies/chart_internal.h) are drawn
+   there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
+   them are left out, and counted in their line. False with error set if nothing remains, or for more than
+   CHART_MAX_LINES lines. */
+bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
+void chart_free(Chart *chart);
+
+/* Replaces characters that names do not have (csv_plain_length), or that the font lacks, by '?'. */
+void chart_make_plain(char *text);
+
+/* Copies a text, made plain and truncated to fit. */
+void chart_plain(char out[CHART_TEXT_SIZE], const char *text);
+
+/* The layout of a chart, in mm from the page's lower left corner: two panels side by side and a legend below. */
+
+#define CHART_WIDTH FIGURE_PAGE_WIDTH
+#define CHART_HEIGHT 100.0
+#define LEFT_MARGIN 16.5
+#define RIGHT_MARGIN 3.5 /* half of "1000" below an axis that ends there */
+#define FOOT_ROW 3.4
+
+#define LABEL_POINTS 6.5
+#define RING_RADIUS 2.2 /* mm: around a setting as shipped */
+
+enum { CHART_NOTES = 4 };
+
+typedef struct ChartNote {
+    char text[SKETCH_TEXT_SIZE]; /* one line */
+} ChartNote;
+
+typedef struct ChartLayout {
+    const Chart *chart;
+    PlotPanel panels[CHART_PANELS];
+    int columns, rows; /* of the legend */
+    double legend_top; /* mm, middle of the first row */
+    int foot_rows;     /* notes below the legend, from the bottom */
+    ChartNote notes[CHART_NOTES];
+} ChartLayout;
+
+/* Computes columns and rows of the legend, and the notes below it. */
+void chart_lay_out_legend(ChartLayout *layout);
+
+void chart_draw_legend(const ChartLayout *layout, Sketch *sketch);
+
+/* Where a mark is drawn: shares of the page's width and height, from its upper left corner. */
+void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top);
+
+extern const char *const chart_panel_titles[CHART_PANELS];

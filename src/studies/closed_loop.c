@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "runs/runs.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double moved_distance = 0.5; /* m: half a box */
+static const double moved_after = 5;      /* s */
+
+void run_log_free(RunLog *log) {
+    free(log->position);
+    free(log->energy);
+    free(log->penetration);
+    free(log->phase);
+    free(log->bomb);
+    *log = (RunLog){0};
+}
+
+bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
+    size_t rows = (size_t)scene->frames + 1;
+    log->bodies = scene->body_count;
+    log->touch = log->fallen_back = 0;
+    log->momentum_error = 0;
+    log->launch_frame = scene->bomb.frame < scene->frames ? scene->bomb.frame : scene->frames;
+    double end = log->launch_frame + moved_after / (double)scene->dt;
+    log->end_frame = end < scene->frames ? (int)lround(end) : scene->frames;
+    if (!array_reserve((void **)&log->position, &log->position_capacity, rows * (size_t)log->bodies, sizeof(Vec2)) ||
+        !array_reserve((void **)&log->energy, &log->energy_capacity, rows, sizeof(double)) ||
+        !array_reserve((void **)&log->penetration, &log->penetration_capacity, rows, sizeof(double)) ||
+        !array_reserve((void **)&log->phase, &log->phase_capacity, rows, sizeof(Phase)) ||
+        !array_reserve((void **)&log->bomb, &log->bomb_capacity, rows, sizeof(Vec2)))
+        return false;
+    run_log_step(log, scene, world, 0, PHASE_REST);
+    return true;
+}
+
+static bool fell_back(const NetworkFallbacks *step) {
+    return step->not_finite + step->beyond_training + step->by_sweeps > 0;
+}
+
+void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame, Phase phase) {
+    log->frames = frame;
+    if (phase == PHASE_IMPACT && log->touch == 0) log->touch = frame;
+    for (int i = 0; i < log->bodies; i++)
+        log->position[(size_t)frame * (size_t)log->bodies + (size_t)i] = world_bodies(world)[i].position;
+    log->energy[frame] = world_energy(world, scene->gravity);
+    log->penetration[frame] = world_penetration(world);
+    log->phase[frame] = phase;
+    log->bomb[frame] = world_body_count(world) > log->bodies ? world_bodies(world)[log->bodies].position : vec2(0, 0);
+    log->momentum_error += (double)world_solution(world)->momentum_error;
+    log->fallen_back += fell_back(&world_solution(world)->fallbacks);
+}
+
+static double distance_apart(const RunLog *log, const RunLog *other, int frame) {
+    const size_t row = (size_t)frame * (size_t)log->bodies;
+    double apart = vec2_distance(log->bomb[frame], other->bomb[frame]);
+    for (int i = 0; i < log->bodies; i++)
+        apart = fmax(apart, vec2_distance(log->position[row + (size_t)i], other->position[row + (size_t)i]));
+    return apart;
+}
+
+int run_log_apart(const RunLog *log, const RunLog *other, double limit, int frames) {
+    for (int frame = 1; frame <= frames; frame++)
+        if (frame > log->frames || (frame <= other->frames && distance_apart(log, other, frame) > limit)) return frame;
+    return frames;
+}
+
+/* Boxes that moved more than 0.5 m in the 5 s after the launch; all if the log ended early. */
+static double run_log_moved(const RunLog *log, const Scene *scene) {
+    int moved = 0;
+    const Vec2 *before = log->position + (size_t)log->launch_frame * (size_t)log->bodies;
+    const Vec2 *after = log->position + (size_t)log->end_frame * (size_t)log->bodies;
+    for (int i = 0; i < log->bodies; i++) {
+        if (scene->bodies[i].fixed) continue;
+        moved += log->frames < log->end_frame || vec2_distance(before[i], after[i]) > moved_distance;
+    }
+    return moved;
+}
+
+static double mean_distance(const RunLog *log, const RunLog *other, const Scene *scene, int frame) {
+    double sum = 0;
+    int count = 0;
+    size_t row = (size_t)frame * (size_t)log->bodies;
+    for (int i = 0; i < log->bodies; i++) {
+        if (scene->bodies[i].fixed) continue;
+        sum += vec2_distance(log->position[row + (size_t)i], other->position[row + (size_t)i]);
+        count++;
+    }
+    return count > 0 ? sum / count : NAN;
+}
+
+RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene) {
+    RunMeasures measures = {.drift = NAN, .moved = run_log_moved(log, scene)};
+    int frames[PHASES] = {0}, last = log->frames < converged->frames ? log->frames : converged->frames;
+    double energy[PHASES] = {0};
+    for (int frame = 1; frame <= last; frame++) {
+        Phase phase = log->phase[frame];
+        energy[phase] += log->energy[frame] - converged->energy[frame];
+        frames[phase]++;
+        if (log->penetration[frame] > measures.penetration[phase])
+            measures.penetration[phase] = log->penetration[frame];
+    }
+    for (int phase = 0; phase < PHASES; phase++) {
+        measures.energy[phase] = frames[phase] > 0 ? energy[phase] / frames[phase] : NAN;
+        if (frames[phase] == 0) measures.penetration[phase] = NAN;
+    }
+    int rest = converged->touch > 0 ? converged->touch - 1 : last;
+    if (log->touch > 0 && log->touch - 1 < rest) rest = log->touch - 1;
+    if (rest > 0 && rest <= last) measures.drift = mean_distance(log, converged, scene, rest);
+    return measures;
+}
+
+void step_scores_free(StepScores *scores) {
+    free(scores->error);
+    free(scores->share);
+    free(scores->place);
+    *scores = (StepScores){0};
+}
+
+bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const BodyVelocity *velocities,
+                     const ReferenceVelocity *reference) {
+    size_t wanted = (size_t)scores->count + 1;
+    if (!array_reserve((void **)&scores->error, &scores->error_capacity, wanted, sizeof *scores->error) ||
+        !array_reserve((void **)&scores->share, &scores->share_capacity, wanted, sizeof *scores->share) ||
+        !array_reserve((void **)&scores->place, &scores->place_capacity, wanted, sizeof *scores->place))
+        return false;
+    SolutionError found = solution_error(problem, velocities, reference);
+    scores->error[scores->count] = found.rms;
+    scores->place[scores->count] = (StepPlace){frame, found.worst};
+    scores->share[scores->count++] = found.counted > 0 ? (double)found.right / found.counted : 1;
+    return true;
+}
+
+bool sampling_takes(const Sampling *sampling, Phase phase, const PhaseTracker *tracker, int frame) {
+    if (phase == PHASE_IMPACT) return true;
+    if (phase == PHASE_AFTER) return (frame - tracker->touch - tracker->impact_frames) % sampling->after == 0;
+    return frame % sampling->rest == 0;
+}
+
+void rollout_free(Rollout *rollout) {
+    world_destroy(rollout->world);
+    converged_step_free(&rollout->converged);
+    run_log_free(&rollout->log);
+    *rollout = (Rollout){0};
+}
+
+static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
+    const ContactProblem *problem = world_problem(rollout->world);
+    const Reference *reference = &rollout->converged.reference;
+    if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
+    rollout->solves++;
+    rollout->unconverged += reference->residual > SOLVE_CONVERGED;
+    if (step_scores_add(scores, frame, problem, world_solution(rollout->world)->velocities, reference->velocities))
+        return true;
+    return error_memory(error, "study");
+}
+
+static bool begin(Rollout *rollout, const Scene *launched, Error *error) {
+    world_destroy(rollout->world);
+    rollout->world = scene_world(launched, error);
+    if (rollout->world == NULL) return false;
+    return run_log_begin(&rollout->log, launched, rollout->world) || error_memory(error, "study");
+}
+
+bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, const Sampling *sampling,
+                 StepScores scores[PHASES], Error *error) {
+    if (!begin(rollout, launched, error)) return false;
+    const bool push_out = !stepper_describe(stepper)->no_push_out;
+    PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
+    for (int frame = 1; frame <= launched->frames; frame++) {
+        const Step step = {.scene = launched, .frame = frame};
+        Error failure = {0};
+        if (!simulate_step(stepper, rollout->world, &step, &failure)) {
+            /* An input error during the run means that the state became NaN or infinite. That is a valid result. */
+            if (failure.kind == ERROR_INPUT) return true;
+            *error = failure;
+            return false;
+        }
+        Phase phase = phase_next(&tracker, world_problem(rollout->world), frame);
+        run_log_step(&rollout->log, launched, rollout->world, frame, phase);
+        if (scores != NULL && sampling_takes(sampling, phase, &tracker, frame) &&
+            !score(rollout, frame, push_out, &scores[phase], error))
+            return false;
+    }
+    return true;
+}
+
+bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error) {
+    Method parsed;
+    if (!method_parse(&parsed, method, error)) return false;
+    Rollout rollout = {.log = *log};
+    Stepper *stepper = stepper_create(&parsed, launched, error);
+    bool ok = stepper != NULL && rollout_run(&rollout, stepper, launched, NULL, NULL, error);
+    stepper_destroy(stepper);
+    *log = rollout.log;
+    rollout.log = (RunLog){0};
+    rollout_free(&rollout);
+    if (ok && log->frames < launched->frames)
+        ok = error_input(error, launched->name, "the run of %s ends at frame %d with a state that is NaN or infinite",
+                         method, log->frames);
+    return ok;
+}
+
+static void measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
+    const int launch = scene->bomb.frame < log->frames ? scene->bomb.frame : log->frames;
+    result->energy_put_in = result->energy_most = log->energy[launch];
+    for (int frame = 1; frame <= log->frames; frame++) {
+        result->penetration = fmax(result->penetration, log->penetration[frame]);
+        if (frame > launch) result->energy_most = fmax(result->energy_most, log->energy[frame]);
+    }
+}
+
+bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
+                        const RunLog *converged, LaunchLoop *result, Error *error) {
+    Stepper *stepper = stepper_create(method, launched, error);
+    const bool ok = stepper != NULL && rollout_run(rollout, stepper, launched, NULL, NULL, error);
+    stepper_destroy(stepper);
+    if (!ok) return false;
+    const RunLog *log = &rollout->log;
+    const int frames = launched->frames;
+    *result = (LaunchLoop){.frames_engine = run_log_apart(log, engine, CLOSED_LOOP_APART, frames),
+                           .frames_converged = converged != NULL
+                                                   ? (double)run_log_apart(log, converged, CLOSED_LOOP_APART, frames)
+                                                   : (double)NAN,
+                           .moved = run_log_moved(log, launched),
+                           .momentum_error = log->momentum_error,
+                           .steps = log->frames,
+                           .fallen_back = log->fallen_back};
+    measure(log, launched, result);
+    return true;
+}
+
+static bool run_launch(Rollout *rollout, RunLog *engine, const Method *method, const Scene *launched,
+                       LaunchLoop *result, Error *error) {
+    Scene scene = *launched;
+    scene.frames = CLOSED_LOOP_FRAMES;
+    return closed_loop_log(engine, "engine", &scene, error) &&
+           closed_loop_launch(rollout, method, &scene, engine, NULL, result, error);
+}
+
+bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error) {
+    double *frames = malloc((size_t)count * sizeof *frames), momentum = 0, steps = 0;
+    if (frames == NULL) return error_memory(error, "closed loop");
+    Rollout rollout = {0};
+    RunLog engine = {0};
+    *result = (ClosedLoop){0};
+    bool ok = true;
+    for (int i = 0; ok && i < count; i++) {
+        LaunchLoop launch;
+        ok = run_launch(&rollout, &engine, method, &launches[i], &launch, error);
+        if (!ok) break;
+        frames[i] = launch.frames_engine;
+        result->penetration_max = fmax(result->penetration_max, launch.penetration);
+        result->energy_ratio = fmax(result->energy_ratio, launch.energy_most / launch.energy_put_in);
+        momentum += launch.momentum_error;
+        steps += launch.steps;
+    }
+    if (ok) {
+        result->frames_until_apart = statistics_quantile(frames, count, 0.5);
+        result->momentum_error = steps > 0 ? momentum / steps : 0;
+    }
+    run_log_free(&engine);
+    rollout_free(&rollout);
+    free(frames);
+    return ok;
+}
+
+/* The engine and a method, each with a world of its own. */
+typedef struct Pair {
+    Stepper *steppers[2]; /* engine, method */
+    World *worlds[2];
+} Pair;
+
+static void pair_end(Pair *pair) {
+    for (int i = 0; i < 2; i++) {
+        stepper_destroy(pair->steppers[i]);
+        world_destroy(pair->worlds[i]);
+    }
+    *pair = (Pair){0};
+}
+
+static bool pair_begin(Pair *pair, const Method *method, const Scene *scene, Error *error) {
+    Method engine;
+    *pair = (Pair){0};
+    if (!method_parse(&engine, "engine", error)) return false;
+    const Method *methods[2] = {&engine, method};
+    for (int i = 0; i < 2; i++) {
+        if ((pair->worlds[i] = scene_world(scene, error)) == NULL ||
+            (pair->steppers[i] = stepper_create(methods[i], scene, error)) == NULL) {
+            pair_end(pair);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Mean microseconds per step over all states; negative if a step failed. */
+static double time_states(Stepper *stepper, World *world, const SnapshotList *states, Error *error) {
+    const int64_t overhead = meter_time_overhead();
+    int64_t sum = 0;
+    for (int i = 0; i < states->count; i++) {
+        const Snapshot *state = &states->items[i];
+        const Step step = {.scene = state->scene, .frame = state->frame};
+        if (!world_copy(world, state->world, error)) return -1;
+        const int64_t before = meter_time();
+        if (!stepper_step(stepper, world, &step, error)) return -1;
+        sum += meter_without(meter_time() - before, overhead);
+    }
+    return 1e-3 * (double)sum / states->count;
+}
+
+bool closed_loop_time(const Method *method, const SnapshotList *states, int repetitions, double *us_step,
+                      double *us_step_engine, Error *error) {
+    Pair pair;
+    double *times = malloc(2 * (size_t)repetitions * sizeof *times);
+    if (times == NULL) return error_memory(error, "closed loop");
+    bool ok = pair_begin(&pair, method, states->items[0].scene, error);
+    for (int r = 0; ok && r < repetitions; r++)
+        for (int i = 0; ok && i < 2; i++)
+            ok = (times[i * repetitions + r] = time_states(pair.steppers[i], pair.worlds[i], states, error)) >= 0;
+    if (ok) {
+        *us_step_engine = statistics_quantile(times, repetitions, 0.5);
+        *us_step = statistics_quantile(times + repetitions, repetitions, 0.5);
+    }
+    pair_end(&pair);
+    free(times);
+    return ok;
+}

@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/csv.h"
+#include "methods/methods.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+#include "studies/chart_internal.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* For charts of at most `rows` rows. False with error set if out of memory; free it in any case. */
+static bool rival_curves_begin(RivalCurves *curves, int rows, Error *error) {
+    const size_t most = (size_t)rows + 1;
+    *curves = (RivalCurves){.families = malloc(most * sizeof *curves->families),
+                            .rows = malloc(most * sizeof *curves->rows),
+                            .family = malloc(most * sizeof *curves->family),
+                            .lost = malloc(most * sizeof *curves->lost),
+                            .points = malloc(most * sizeof *curves->points)};
+    return (curves->families != NULL && curves->rows != NULL && curves->family != NULL && curves->lost != NULL &&
+            curves->points != NULL) ||
+           error_memory(error, "equal_time");
+}
+
+static void rival_curves_free(RivalCurves *curves) {
+    free(curves->families);
+    free(curves->rows);
+    free(curves->family);
+    free(curves->lost);
+    free(curves->points);
+    *curves = (RivalCurves){0};
+}
+
+static bool counts(const ChartRow *row) {
+    const MethodDescription *method = method_describe(row->method);
+    return row->protocol == PROTOCOL_CLOSED && row->phase != PHASE_REST && row->us_solver > 0 &&
+           !isnan(row->error_mean) && (method == NULL || method->role == METHOD_COMPETES);
+}
+
+static int find_family(RivalCurves *curves, const ChartRow *row) {
+    char name[CHART_FAMILY_SIZE];
+    int i = 0;
+    chart_row_family(row, name);
+    while (i < curves->family_count && strcmp(curves->families[i].name, name) != 0) i++;
+    if (i == curves->family_count) {
+        CurveFamily *family = &curves->families[curves->family_count++];
+        strcpy(family->name, name);
+        strcpy(family->method, row->method);
+        family->description = method_describe(row->method);
+    }
+    return i;
+}
+
+/* Takes the rows of one scene; they must outlive their use. */
+static void rival_curves_scene(RivalCurves *curves, const ChartRow *rows, int count) {
+    curves->count = 0;
+    for (int i = 0; i < count; i++) {
+        if (!counts(&rows[i])) continue;
+        curves->rows[curves->count] = &rows[i];
+        curves->family[curves->count] = find_family(curves, &rows[i]);
+        curves->lost[curves->count++] = chart_row_lost(rows, count, &rows[i]);
+    }
+}
+
+static double curve_error(const ChartRow *row, CurveStatistic statistic) {
+    const double errors[] = {row->error_mean, row->error_median, row->error_p95};
+    return errors[statistic];
+}
+
+/* The error of a family at a time, as error_curve_at(); NAN and CURVE_BEFORE too for a family without a curve. */
+static double rival_curves_error(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic,
+                                 double us, CurveReach *reach) {
+    int count = 0;
+    for (int i = 0; i < curves->count; i++) {
+        const ChartRow *row = curves->rows[i];
+        if (curves->family[i] != family || curves->lost[i] || row->phase != phase) continue;
+        curves->points[count++] = (CurvePoint){row->us_solver, fmax(curve_error(row, statistic), PARETO_RESOLUTION)};
+    }
+    *reach = CURVE_BEFORE;
+    return count == 0 ? NAN : error_curve_at(curves->points, error_curve_front(curves->points, count), us, reach);
+}
+
+static bool is_rival(const CurveFamily *family, const CurveFamily *other) {
+    if (strcmp(family->method, other->method) == 0) return false;
+    return other->description == NULL || other->description->twin == NULL;
+}
+
+static BestRival rival_curves_best(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic,
+                                   double us) {
+    BestRival best = {-1, NAN, CURVE_BEFORE};
+    for (int i = 0; i < curves->family_count; i++) {
+        CurveReach reach;
+        if (!is_rival(&curves->families[family], &curves->families[i])) continue;
+        const double error = rival_curves_error(curves, i, phase, statistic, us, &reach);
+        if (reach != CURVE_BEFORE && !(best.error <= error)) best = (BestRival){i, error, reach};
+    }
+    return best;
+}
+
+static const char *const phase_words[] = {"impact", "after", NULL};
+static const char *const statistic_words[] = {"mean", "median", "p95", NULL};
+static const char *const reach_words[] = {"before", "within", "beyond", NULL};
+
+#define NUMBER(Row, member) \
+    { #member, CSV_OPTIONAL, .offset = offsetof(Row, member), .maximum = INFINITY }
+#define TEXT(Row, member, size, is_key) \
+    { #member, CSV_TEXT, .offset = offsetof(Row, member), .maximum = (size)-1, .key = (is_key) }
+#define WORD(Row, member, list, is_key) \
+    { #member, CSV_WORD, .offset = offsetof(Row, member), .words = (list), .key = (is_key) }
+
+static const CsvColumn columns[] = {
+    TEXT(EqualTimeRow, scene, CHART_NAME_SIZE, true),
+    TEXT(EqualTimeRow, method, CHART_NAME_SIZE, true),
+    TEXT(EqualTimeRow, setting, CHART_SETTING_SIZE, true),
+    WORD(EqualTimeRow, phase, phase_words, true),
+    WORD(EqualTimeRow, statistic, statistic_words, true),
+    {"launches", CSV_INTEGER, .offset = offsetof(EqualTimeRow, launches), .maximum = INT_MAX},
+    NUMBER(EqualTimeRow, us_solver),
+    NUMBER(EqualTimeRow, error),
+    TEXT(EqualTimeRow, rival, CHART_FAMILY_SIZE, false),
+    WORD(EqualTimeRow, reach, reach_words, false),
+    NUMBER(EqualTimeRow, rival_error),
+    NUMBER(EqualTimeRow, ratio),
+    NUMBER(EqualTimeRow, time_momentum_20),
+    NUMBER(EqualTimeRow, error_scene_net),
+    NUMBER(EqualTimeRow, time_scene_net),
+};
+
+static const CsvColumn method_columns[] = {
+    TEXT(EqualMethodRow, scene, CHART_NAME_SIZE, true),
+    TEXT(EqualMethodRow, method, CHART_FAMILY_SIZE, true),
+    NUMBER(EqualMethodRow, us_solver),
+    WORD(EqualMethodRow, reach, reach_words, false),
+    NUMBER(EqualMethodRow, error),
+    TEXT(EqualMethodRow, rival, CHART_FAMILY_SIZE, false),
+    NUMBER(EqualMethodRow, rival_error),
+    NUMBER(EqualMethodRow, ratio),
+};
+
+const CsvLayout equal_time_layout = CSV_LAYOUT("equal_time", columns, EqualTimeRow, .min_rows = 0,
+                                               .max_rows = CURVE_STATISTICS * CHART_MAX_ROWS, .header = CSV_EXACT);
+const CsvLayout equal_methods_layout = CSV_LAYOUT("equal_time_methods", method_columns, EqualMethodRow, .min_rows = 0,
+                                                  .max_rows = CHART_MAX_ROWS, .header = CSV_EXACT);
+
+static double floored(double error) { return fmax(error, PARETO_RESOLUTION); }
+
+static const char *name_rival(const RivalCurves *curves, const BestRival *rival) {
+    return rival->family < 0 ? "" : curves->families[rival->family].name;
+}
+
+/* The row of a method with a setting in a phase of the scene, or NULL. */
+static const ChartRow *find_run(const RivalCurves *curves, Phase phase, const char *method, const char *setting) {
+    for (int i = 0; i < curves->count; i++) {
+        const ChartRow *row = curves->rows[i];
+        if (row->phase == phase && strcmp(row->method, method) == 0 && strcmp(row->setting, setting) == 0) return row;
+    }
+    return NULL;
+}
+
+static EqualTimeRow compare_setting(const RivalCurves *curves, int i, CurveStatistic statistic) {
+    const ChartRow *row = curves->rows[i];
+    const double error = curve_error(row, statistic);
+    const BestRival rival = rival_curves_best(curves, curves->family[i], row->phase, statistic, row->us_solver);
+    const ChartRow *momentum = find_run(curves, row->phase, "momentum", "k=20");
+    const ChartRow *net = find_run(curves, row->phase, "scene-net", "");
+    return (EqualTimeRow){.scene = row->scene,
+                          .method = row->method,
+                          .setting = row->setting,
+                          .phase = row->phase,
+                          .statistic = statistic,
+                          .launches = row->launches,
+                          .us_solver = row->us_solver,
+                          .error = error,
+                          .rival = name_rival(curves, &rival),
+                          .reach = rival.reach,
+                          .rival_error = rival.error,
+                          .ratio = curves->lost[i] ? NAN : floored(error) / rival.error,
+                          .time_momentum_20 = momentum == NULL ? NAN : row->us_solver / momentum->us_solver,
+                          .error_scene_net = net == NULL ? NAN : floored(error) / floored(curve_error(net, statistic)),
+                          .time_scene_net = net == NULL ? NAN : row->us_solver / net->us_solver};
+}
+
+/* The most sweeps of momentum, of these, that were run somewhere. */
+static const char *choose_time(const ChartRow *rows, int count) {
+    for (int i = 0; i < count; i++)
+        if (strcmp(rows[i].method, "momentum") == 0 && strcmp(rows[i].setting, "k=50") == 0) return "k=50";
+    return "k=20";
+}
+
+static EqualMethodRow compare_method(const RivalCurves *curves, const char *scene, int family, double us) {
+    EqualMethodRow row = {.scene = scene, .method = curves->families[family].name, .us_solver = us, .family = family};
+    const BestRival rival = rival_curves_best(curves, family, PHASE_IMPACT, CURVE_MEAN, us);
+    row.error = rival_curves_error(curves, family, PHASE_IMPACT, CURVE_MEAN, us, &row.reach);
+    row.rival = name_rival(curves, &rival);
+    row.rival_error = rival.error;
+    row.ratio = row.error / rival.error;
+    return row;
+}
+
+static bool ran(const RivalCurves *curves, int family) {
+    for (int i = 0; i < curves->count; i++)
+        if (curves->family[i] == family && curves->rows[i]->phase == PHASE_IMPACT) return true;
+    return false;
+}
+
+static void compare_scene(EqualTime *table, const ChartRow *rows, int count) {
+    RivalCurves *curves = &table->curves;
+    rival_curves_scene(curves, rows, count);
+    for (int i = 0; i < curves->count; i++)
+        for (int statistic = 0; statistic < CURVE_STATISTICS; statistic++)
+            table->rows[table->count++] = compare_setting(curves, i, (CurveStatistic)statistic);
+    const ChartRow *time = find_run(curves, PHASE_IMPACT, "momentum", table->time);
+    for (int family = 0; time != NULL && family < curves->family_count; family++)
+        if (ran(curves, family))
+            table->methods[table->method_count++] = compare_method(curves, rows->scene, family, time->us_solver);
+}
+
+bool equal_time_make(EqualTime *table, const ChartRow *rows, int count, Error *error) {
+    const size_t most = (size_t)count + 1;
+    *table = (EqualTime){.rows = malloc(CURVE_STATISTICS * most * sizeof *table->rows),
+                         .methods = malloc(most * sizeof *table->methods),
+                         .time = choose_time(rows, count)};
+    bool ok = rival_curves_begin(&table->curves, count, error);
+    if (ok && (table->rows == NULL || table->methods == NULL)) ok = error_memory(error, "equal_time");
+    for (int begin = 0, end; ok && begin < count; begin = end) {
+        for (end = begin; end < count && strcmp(rows[end].scene, rows[begin].scene) == 0;) end++;
+        compare_scene(table, rows + begin, end - begin);
+    }
+    if (!ok) equal_time_free(table);
+    return ok;
+}
+
+void equal_time_free(EqualTime *table) {
+    rival_curves_free(&table->curves);
+    free(table->rows);
+    free(table->methods);
+    *table = (EqualTime){0};
+}

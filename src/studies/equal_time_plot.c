@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The grid of scenes and methods that the figure of errors at equal time shows. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "pictures/picture.h"
+#include "pixels/png.h"
+#include "pixels/type.h"
+#include "studies/chart.h"
+#include "studies/chart_internal.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { EQUAL_TIME_COLUMNS = 40, EQUAL_TIME_SCENES = 64 };
+
+typedef struct EqualTimeCell {
+    bool ran;
+    double ratio; /* EqualMethodRow; NaN: none */
+} EqualTimeCell;
+
+typedef struct EqualTimeGrid {
+    int columns, rows;
+    char time[CHART_TEXT_SIZE];                        /* setting of momentum whose time all methods have: "k=50" */
+    char methods[EQUAL_TIME_COLUMNS][CHART_TEXT_SIZE]; /* plain */
+    bool joined[EQUAL_TIME_COLUMNS]; /* the column and the one before it differ only in what was learned */
+    char scenes[EQUAL_TIME_SCENES][CHART_TEXT_SIZE];
+    char times[CHART_TIMES_SIZE]; /* chart_times_note(), plain; set by the caller */
+    EqualTimeCell cells[EQUAL_TIME_SCENES][EQUAL_TIME_COLUMNS];
+} EqualTimeGrid;
+
+/* Columns in order: index of their family. */
+typedef struct Columns {
+    int count, family[EQUAL_TIME_COLUMNS];
+    bool joined[EQUAL_TIME_COLUMNS];
+} Columns;
+
+static const char *twin_of(const RivalCurves *curves, int family) {
+    const MethodDescription *method = curves->families[family].description;
+    return method == NULL ? NULL : method->twin;
+}
+
+/* The family of the silenced twin of a learned one, or -1. */
+static int find_twin(const RivalCurves *curves, int family) {
+    char method[CHART_NAME_SIZE], name[CHART_FAMILY_SIZE];
+    const char *twin = twin_of(curves, family), *colon = twin == NULL ? NULL : strchr(twin, ':');
+    if (colon == NULL) return -1;
+    snprintf(method, sizeof method, "%.*s", (int)(colon - twin), twin);
+    const ChartRow row = {.method = method, .setting = colon + 1};
+    chart_row_family(&row, name);
+    for (int i = 0; i < curves->family_count; i++)
+        if (i != family && strcmp(curves->families[i].name, name) == 0) return i;
+    return -1;
+}
+
+/* A setting of a learned method that is some family's twin. */
+static bool is_silenced(const RivalCurves *curves, int family) {
+    for (int i = 0; twin_of(curves, family) != NULL && i < curves->family_count; i++)
+        if (find_twin(curves, i) == family) return true;
+    return false;
+}
+
+static void add(Columns *columns, int family, bool joined) {
+    if (columns->count == EQUAL_TIME_COLUMNS) return;
+    columns->family[columns->count] = family;
+    columns->joined[columns->count++] = joined;
+}
+
+static void order_columns(Columns *columns, const RivalCurves *curves) {
+    for (int i = 0; i < curves->family_count; i++)
+        if (twin_of(curves, i) == NULL) add(columns, i, false);
+    for (int i = 0; i < curves->family_count; i++) {
+        const int twin = find_twin(curves, i);
+        if (twin_of(curves, i) == NULL || is_silenced(curves, i)) continue;
+        add(columns, i, false);
+        if (twin >= 0) add(columns, twin, true);
+    }
+}
+
+static int find_scene(EqualTimeGrid *grid, const char *scene) {
+    char name[CHART_TEXT_SIZE];
+    int i = 0;
+    chart_plain(name, scene);
+    while (i < grid->rows && strcmp(grid->scenes[i], name) != 0) i++;
+    if (i == grid->rows && i < EQUAL_TIME_SCENES) strcpy(grid->scenes[grid->rows++], name);
+    return i;
+}
+
+/* Learned methods stand beside their silenced twins. ERROR_INPUT with the path if the grid has no room. */
+static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const char *path, Error *error) {
+    const RivalCurves *curves = &table->curves;
+    Columns columns = {0};
+    int column_of[EQUAL_TIME_COLUMNS];
+    *grid = (EqualTimeGrid){0};
+    if (curves->family_count > EQUAL_TIME_COLUMNS)
+        return error_input(error, path, "a figure has at most %d methods (got %d)", EQUAL_TIME_COLUMNS,
+                           curves->family_count);
+    order_columns(&columns, curves);
+    grid->columns = columns.count;
+    chart_plain(grid->time, table->time);
+    for (int i = 0; i < columns.count; i++) {
+        column_of[columns.family[i]] = i;
+        chart_plain(grid->methods[i], curves->families[columns.family[i]].name);
+        grid->joined[i] = columns.joined[i];
+    }
+    for (int i = 0; i < table->method_count; i++) {
+        const EqualMethodRow *row = &table->methods[i];
+        const int scene = find_scene(grid, row->scene);
+        if (scene == EQUAL_TIME_SCENES)
+            return error_input(error, path, "a figure has at most %d scenes", EQUAL_TIME_SCENES);
+        grid->cells[scene][column_of[row->family]] = (EqualTimeCell){true, row->ratio};
+    }
+    return true;
+}
+
+/* mm */
+static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, foot = 16, note_height = 3.5,
+                    bar_height = 2.6, bar_width = 62, note_width = 76;
+static const double degrees = 40, name_points = 8;
+static const double strongest = 1000; /* ratio, and its inverse, with the full colour */
+
+typedef struct EqualTimePlotLayout {
+    const EqualTimeGrid *grid;
+    Sketch *sketch;
+    double width, height;   /* mm: of the page */
+    double left, top, cell; /* mm: left of the first cell, top of the first row, width of a cell */
+    double foot;            /* mm: height of all below the rows */
+} EqualTimePlotLayout;
+
+static double longest(const char (*names)[CHART_TEXT_SIZE], int count) {
+    double most = 0;
+    for (int i = 0; i < count; i++) most = fmax(most, type_width(names[i], name_points));
+    return most;
+}
+
+static int gaps_before(const EqualTimeGrid *grid, int column) {
+    int gaps = 0;
+    for (int i = 1; i <= column; i++) gaps += !grid->joined[i];
+    return gaps;
+}
+
+static double column_x(const EqualTimePlotLayout *layout, int column) {
+    return layout->left + column * layout->cell + gap * gaps_before(layout->grid, column);
+}
+
+static EqualTimePlotLayout lay_out(const EqualTimeGrid *grid) {
+    EqualTimePlotLayout layout = {.grid = grid, .left = longest(grid->scenes, grid->rows) + 4};
+    const double gaps = gap * gaps_before(grid, grid->columns - 1);
+    const double turned = degrees * acos(-1) / 180, last = type_width(grid->methods[grid->columns - 1], name_points);
+    const double right = fmax(last * cos(turned) - cell_least / 2 + 2, 3);
+    const double room = (FIGURE_PAGE_WIDTH - layout.left - right - gaps) / grid->columns;
+    layout.cell = fmin(fmax(room, cell_least), cell_most);
+    layout.width = fmax(layout.left + grid->columns * layout.cell + gaps + right, layout.left + bar_width + note_width);
+    layout.foot = foot + (grid->times[0] != '\0' ? note_height : 0);
+    layout.top = layout.foot + grid->rows * cell_height;
+    layout.height = layout.top + longest(grid->methods, grid->columns) * sin(turned) + 5;
+    return layout;
+}
+
+/* -1: the full colour of less error, 1: that of more. */
+static double strength(double ratio) { return fmax(-1, fmin(1, log(ratio) / log(strongest))); }
+
+static uint32_t colour_of(double ratio) {
+    static const double less[] = {0x21, 0x66, 0xAC}, even[] = {0xF4, 0xF4, 0xF4}, more[] = {0xB3, 0x58, 0x06};
+    const double t = strength(ratio);
+    uint32_t colour = 0;
+    for (int i = 0; i < 3; i++)
+        colour = colour << 8 | (uint32_t)lround(even[i] + fabs(t) * ((t < 0 ? less[i] : more[i]) - even[i]));
+    return colour;
+}
+
+static double linear(uint32_t channel) { return pow(channel / 255.0, 2.2); }
+
+/* White where it has a contrast of at least 3.5 (WCAG 2), else black. */
+static uint32_t ink_on(uint32_t rgb) {
+    const double lightest = 1.05 / 3.5 - 0.05;
+    const double luminance = 0.2126 * linear(rgb >> 16) + 0.7152 * linear(rgb >> 8 & 255) + 0.0722 * linear(rgb & 255);
+    return luminance < lightest ? 0xFFFFFF : 0x000000;
+}
+
+static void draw_box(Sketch *sketch, PlotBox box, uint32_t colour) {
+    sketch_rectangle(sketch, (Point){box.left, box.bottom}, (Point){box.left + box.width, box.bottom + box.height},
+                     &(Pen){colour, 1, NO_COLOUR, 0, NULL});
+}
+
+/* Two digits: "1/52", "1/3.1", "1", "×2.4"; what is beyond a factor of 9999 does not fit into a cell. */
+static void name_ratio(char text[24], double ratio) {
+    const double factor = ratio < 1 ? 1 / ratio : ratio;
+    const char *before = ratio < 1 ? "1/" : "×";
+    if (factor < 1.05)
+        strcpy(text, "1");
+    else if (!(factor < 9995))
+        strcpy(text, ratio < 1 ? "<1/9999" : ">×9999");
+    else if (factor < 9.95)
+        snprintf(text, 24, "%s%.1f", before, factor);
+    else
+        snprintf(text, 24, "%s%.0f", before, factor < 99.5 ? factor : 10 * round(factor / 10));
+}
+
+static void draw_cell(const EqualTimePlotLayout *layout, int row, int column) {
+    const EqualTimeCell *cell = &layout->grid->cells[row][column];
+    const double x = column_x(layout, column), y = layout->top - (row + 1) * cell_height, edge = 0.25;
+    char text[24];
+    if (!cell->ran) return;
+    const bool none = isnan(cell->ratio);
+    const uint32_t colour = none ? 0xD8D8D8 : colour_of(cell->ratio);
+    draw_box(layout->sketch, (PlotBox){x + edge, y + edge, layout->cell - 2 * edge, cell_height - 2 * edge}, colour);
+    if (none)
+        strcpy(text, "–");
+    else
+        name_ratio(text, cell->ratio);
+    sketch_text(layout->sketch, (Point){x + layout->cell / 2, y + cell_height / 2},
+                &(TextStyle){7.5, TEXT_CENTER, ink_on(colour), 0, false}, "%s", text);
+}
+
+static void draw_names(const EqualTimePlotLayout *layout) {
+    const EqualTimeGrid *grid = layout->grid;
+    for (int i = 0; i < grid->columns; i++) {
+        const double middle = column_x(layout, i) + layout->cell / 2;
+        sketch_text(layout->sketch, (Point){middle - 1, layout->top + 1.5},
+                    &(TextStyle){name_points, TEXT_LEFT, INK, degrees, false}, "%s", grid->methods[i]);
+    }
+    for (int i = 0; i < grid->rows; i++)
+        plot_text(layout->sketch, (Point){layout->left - 2, layout->top - (i + 0.5) * cell_height}, TEXT_RIGHT,
+                  name_points, grid->scenes[i]);
+}
+
+/* The scale of colours, as a bar of steps. */
+static void draw_scale(const EqualTimePlotLayout *layout) {
+    static const double marks[] = {1.0 / 1000, 1.0 / 30, 1, 30, 1000};
+    enum { STEPS = 61 };
+    Sketch *sketch = layout->sketch;
+    const double bottom = layout->foot - 7.2, right = layout->left + bar_width + 6;
+    char text[24], note[CHART_TEXT_SIZE + 64];
+    for (int i = 0; i < STEPS; i++)
+        draw_box(sketch, (PlotBox){layout->left + bar_width * i / STEPS, bottom, bar_width / STEPS + 0.05, bar_height},
+                 colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)));
+    for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
+        name_ratio(text, marks[i]);
+        plot_text(sketch, (Point){layout->left + bar_width * (strength(marks[i]) + 1) / 2, bottom - 2}, TEXT_CENTER, 7,
+                  text);
+    }
+    snprintf(note, sizeof note, "in the time of momentum:%s; rivals learn nothing", layout->grid->time);
+    plot_text(sketch, (Point){right, bottom + bar_height / 2}, TEXT_LEFT, 8,
+              "error at the impact / error of the best rival,");
+    plot_text(sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, 8, layout->grid->times);
+    plot_text(sketch, (Point){right, bottom - 2}, TEXT_LEFT, 8, note);
+    plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower than that, or lost the scene");
+}
+
+static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
+    char stem[PATH_MAX];
+    Sketch sketch;
+    EqualTimePlotLayout layout = lay_out(grid);
+    layout.sketch = &sketch;
+    if (!file_path(stem, sizeof stem, error, "%s/%s", folder, equal_time_layout.name)) return false;
+    sketch_begin(&sketch, layout.width, layout.height);
+    strcpy(sketch.title, "Error at the impact in equal time / that of the best rival");
+    for (int row = 0; row < grid->rows; row++)
+        for (int column = 0; column < grid->columns; column++) draw_cell(&layout, row, column);
+    draw_names(&layout);
+    draw_scale(&layout);
+    const bool drawn = sketch_draw(&sketch, stem, SKETCH_PDF, error);
+    sketch_free(&sketch);
+    return drawn;
+}
+
+static bool has_ratio(const EqualTimeGrid *grid) {
+    for (int row = 0; row < grid->rows; row++)
+        for (int column = 0; column < grid->columns; column++)
+            if (!isnan(grid->cells[row][column].ratio) && grid->cells[row][column].ran) return true;
+    return false;
+}
+
+bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Error *error) {
+    ChartTable chart;
+    EqualTime table;
+    char path[CSV_PATH_SIZE], methods[CSV_PATH_SIZE];
+    if (!csv_table_path(path, folder, &equal_time_layout, error) ||
+        !csv_table_path(methods, folder, &equal_methods_layout, error) || !chart_csv_read(&chart, chart_csv, error))
+        return false;
+    EqualTimeGrid *grid = malloc(sizeof *grid);
+    bool ok = grid != NULL || error_memory(error, path);
+    ok = ok && equal_time_make(&table, chart.rows, chart.count, error);
+    if (ok) {
+        ok = csv_table_write(path, &equal_time_layout, table.rows, table.count, error) &&
+             csv_table_write(methods, &equal_methods_layout, table.methods, table.method_count, error) &&
+             equal_time_grid(grid, &table, chart_csv, error);
+        if (ok) {
+            chart_times_note(grid->times, chart.rows, chart.count);
+            chart_make_plain(grid->times);
+        }
+        *drawn = ok && has_ratio(grid);
+        ok = ok && (!*drawn || draw(grid, folder, error));
+        equal_time_free(&table);
+    }
+    free(grid);
+    chart_csv_free(&chart);
+    return ok;
+}

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "studies/chart.h"
+#include "studies/chart_internal.h"
+
+#include <gsl/gsl_sort.h>
+#include <gsl/gsl_statistics.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Own loop: GSL's running mean rounds differently on machines without long double. */
+double statistics_mean(const double *values, int count) {
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += values[i];
+    return count > 0 ? sum / count : NAN;
+}
+
+double statistics_quantile(double *values, int count, double fraction) {
+    if (count == 0) return NAN;
+    gsl_sort(values, 1, (size_t)count);
+    return gsl_stats_quantile_from_sorted_data(values, 1, (size_t)count, fraction);
+}
+
+static bool comparable(const ChartRow *a, const ChartRow *b) {
+    return a->phase == b->phase && a->protocol == b->protocol && strcmp(a->scene, b->scene) == 0;
+}
+
+static bool competes(const ChartRow *row) {
+    const MethodDescription *method = method_describe(row->method);
+    if (method != NULL && method->role != METHOD_COMPETES) return false;
+    return !isnan(row->us_solver) && !isnan(row->us_solver_q1) && !isnan(row->us_solver_q3) && !isnan(row->error_mean);
+}
+
+bool pareto_dominates(const ChartRow *a, const ChartRow *b) {
+    return comparable(a, b) && competes(a) && competes(b) && a->us_solver_q3 < b->us_solver_q1 &&
+           a->error_mean <= fmax(b->error_mean, PARETO_RESOLUTION);
+}
+
+void pareto_mark(const ChartRow *rows, int count, bool *on_front) {
+    for (int i = 0; i < count; i++) {
+        on_front[i] = competes(&rows[i]);
+        for (int k = 0; on_front[i] && k < count; k++) on_front[i] = !pareto_dominates(&rows[k], &rows[i]);
+    }
+}
+
+static int compare(const void *left, const void *right) {
+    const CurvePoint *a = left, *b = right;
+    if (a->us != b->us) return a->us < b->us ? -1 : 1;
+    return (a->error > b->error) - (a->error < b->error);
+}
+
+int error_curve_front(CurvePoint *points, int count) {
+    int kept = 0;
+    qsort(points, (size_t)count, sizeof *points, compare);
+    for (int i = 0; i < count; i++)
+        if (kept == 0 || points[i].error < points[kept - 1].error) points[kept++] = points[i];
+    return kept;
+}
+
+double error_curve_at(const CurvePoint *front, int count, double us, CurveReach *reach) {
+    int after = 0;
+    while (after < count && front[after].us < us) after++;
+    if (after < count && front[after].us == us) {
+        *reach = CURVE_WITHIN;
+        return front[after].error;
+    }
+    *reach = after == 0 ? CURVE_BEFORE : after == count ? CURVE_BEYOND : CURVE_WITHIN;
+    if (*reach == CURVE_BEFORE) return NAN;
+    if (*reach == CURVE_BEYOND) return front[count - 1].error;
+    const CurvePoint *a = &front[after - 1], *b = &front[after];
+    const double share = log(us / a->us) / log(b->us / a->us);
+    return a->error * pow(b->error / a->error, share);
+}
+
+void converged_step_free(ConvergedStep *converged) {
+    reference_free(&converged->reference);
+    free(converged->contacts);
+    *converged = (ConvergedStep){0};
+}
+
+/* A negative bias lets a gap close; it stays. */
+static bool remove_push_out(ConvergedStep *converged, ContactProblem *problem) {
+    const size_t count = (size_t)problem->contact_count;
+    if (!array_reserve((void **)&converged->contacts, &converged->contact_capacity, count, sizeof(ContactPoint)))
+        return false;
+    if (count > 0) memcpy(converged->contacts, problem->contacts, count * sizeof(ContactPoint));
+    for (size_t i = 0; i < count; i++)
+        if (converged->contacts[i].bias > 0) converged->contacts[i].bias = 0;
+    problem->contacts = converged->contacts;
+    return true;
+}
+
+bool converged_step_solve(ConvergedStep *converged, const ContactProblem *problem, bool push_out, Error *error) {
+    ContactProblem solved = *problem;
+    if (!push_out && !remove_push_out(converged, &solved)) return error_memory(error, "study");
+    return reference_solve(&converged->reference, &solved, NULL, error);
+}

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+#include "studies/chart_internal.h"
+
+#include <assert.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct LaunchHead {
+    int64_t count; /* of methods */
+    double residual;
+} LaunchHead;
+
+/* Followed by the errors and the shares of each protocol and phase. */
+typedef struct PartHead {
+    int64_t unconverged;
+    int32_t counts[PROTOCOLS][PHASES];
+    RunMeasures measures;
+} PartHead;
+
+static_assert(sizeof(PartHead) == sizeof(int64_t) + PROTOCOLS * PHASES * sizeof(int32_t) + sizeof(RunMeasures),
+              "no byte is left undefined");
+
+void launch_scores_free(LaunchScores *scores) {
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) step_scores_free(&scores->steps[protocol][phase]);
+}
+
+static PartHead head_of(const LaunchScores *scores) {
+    PartHead head = {.unconverged = scores->unconverged, .measures = scores->measures};
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++)
+            head.counts[protocol][phase] = scores->steps[protocol][phase].count;
+    return head;
+}
+
+static size_t part_size(const PartHead *head) {
+    size_t size = sizeof *head;
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) size += 2 * sizeof(double) * (size_t)head->counts[protocol][phase];
+    return size;
+}
+
+static void write_part(FILE *results, const LaunchScores *scores) {
+    const PartHead head = head_of(scores);
+    fwrite(&head, sizeof head, 1, results);
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            const StepScores *steps = &scores->steps[protocol][phase];
+            stream_put(results, steps->error, sizeof(double), (size_t)steps->count);
+            stream_put(results, steps->share, sizeof(double), (size_t)steps->count);
+        }
+}
+
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, double residual) {
+    const LaunchHead head = {count, residual};
+    int64_t end = (int64_t)sizeof head + count * (int64_t)sizeof end;
+    fwrite(&head, sizeof head, 1, results);
+    for (int i = 0; i < count; i++) {
+        const PartHead part = head_of(&scores[i]);
+        end += (int64_t)part_size(&part);
+        fwrite(&end, sizeof end, 1, results);
+    }
+    for (int i = 0; i < count; i++) write_part(results, &scores[i]);
+}
+
+static bool refuse(const StoredScores *stored, Error *error) {
+    return error_input(error, stored->path, "is no result of a launch; delete it, and its shard does it again");
+}
+
+/* The first byte of a method's part; of the number of methods, the end of all. */
+static int64_t part_begin(const StoredScores *stored, int method) {
+    int64_t begin = (int64_t)sizeof(LaunchHead) + stored->count * (int64_t)sizeof begin;
+    if (method > 0)
+        memcpy(&begin, stored->bytes + sizeof(LaunchHead) + (size_t)(method - 1) * sizeof begin, sizeof begin);
+    return begin;
+}
+
+bool stored_scores_open(StoredScores *stored, const char *path, const char *bytes, size_t size, int count,
+                        Error *error) {
+    LaunchHead head = {0};
+    *stored = (StoredScores){.path = path, .bytes = bytes, .size = size, .count = count};
+    if (size >= sizeof head) memcpy(&head, bytes, sizeof head);
+    const size_t begin = sizeof head + (size_t)count * sizeof(int64_t);
+    if (size < begin || head.count != count || !(head.residual >= 0)) return refuse(stored, error);
+    for (int i = 0; i < count; i++) {
+        const int64_t end = part_begin(stored, i + 1);
+        if (end > (int64_t)size || end < part_begin(stored, i) + (int64_t)sizeof(PartHead))
+            return refuse(stored, error);
+    }
+    if (part_begin(stored, count) != (int64_t)size) return refuse(stored, error);
+    stored->residual = head.residual;
+    return true;
+}
+
+/* Each is a reference solve. */
+static int64_t closed_steps(const PartHead *head) {
+    int64_t sum = 0;
+    for (int phase = 0; phase < PHASES; phase++) sum += head->counts[PROTOCOL_CLOSED][phase];
+    return sum;
+}
+
+/* The counts fit the size of the part. */
+static bool fits(const PartHead *head, size_t size) {
+    size_t rest = (size - sizeof *head) / (2 * sizeof(double));
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            const int32_t count = head->counts[protocol][phase];
+            if (count < 0 || (size_t)count > rest) return false;
+            rest -= (size_t)count;
+        }
+    return part_size(head) == size && head->unconverged >= 0 && head->unconverged <= closed_steps(head);
+}
+
+/* Errors are not negative, shares at most 1. */
+static bool are_scores(const double *values, int count, double most) {
+    for (int i = 0; i < count; i++)
+        if (values[i] < 0 || values[i] > most) return false;
+    return true;
+}
+
+/* Adds `count` errors and shares. False if out of memory. */
+static bool append(PhaseScores *steps, const char *bytes, int count) {
+    const size_t before = (size_t)steps->count, more = (size_t)count;
+    if (!array_reserve((void **)&steps->error, &steps->error_capacity, before + more, sizeof(double)) ||
+        !array_reserve((void **)&steps->share, &steps->share_capacity, before + more, sizeof(double)))
+        return false;
+    if (count == 0) return true;
+    memcpy(steps->error + before, bytes, more * sizeof(double));
+    memcpy(steps->share + before, bytes + more * sizeof(double), more * sizeof(double));
+    steps->count += count;
+    return true;
+}
+
+static bool append_all(MethodScores *scores, const StoredScores *stored, const PartHead *head, const char *bytes,
+                       Error *error) {
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            PhaseScores *steps = &scores->steps[protocol][phase];
+            const int before = steps->count, count = head->counts[protocol][phase];
+            if (!append(steps, bytes, count)) return error_memory(error, "study");
+            if (count == 0) continue;
+            if (!are_scores(steps->error + before, count, INFINITY) || !are_scores(steps->share + before, count, 1))
+                return refuse(stored, error);
+            bytes += 2 * sizeof(double) * (size_t)count;
+            if (protocol == PROTOCOL_CLOSED) /* ignores NaN */
+                scores->worst[phase] = fmax(scores->worst[phase], statistics_mean(steps->error + before, count));
+        }
+    return true;
+}
+
+bool method_scores_add(MethodScores *scores, const StoredScores *stored, int method, Error *error) {
+    const int64_t begin = part_begin(stored, method);
+    const size_t size = (size_t)(part_begin(stored, method + 1) - begin);
+    PartHead head;
+    memcpy(&head, stored->bytes + begin, sizeof head);
+    if (!fits(&head, size)) return refuse(stored, error);
+    if (!array_reserve((void **)&scores->measures, &scores->measure_capacity, (size_t)scores->launches + 1,
+                       sizeof *scores->measures))
+        return error_memory(error, "study");
+    for (int phase = 0; scores->launches == 0 && phase < PHASES; phase++) scores->worst[phase] = NAN;
+    if (!append_all(scores, stored, &head, stored->bytes + begin + sizeof head, error)) return false;
+    scores->measures[scores->launches++] = head.measures;
+    scores->solves += closed_steps(&head);
+    scores->unconverged += head.unconverged;
+    return true;
+}
+
+void method_scores_free(MethodScores *scores) {
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            free(scores->steps[protocol][phase].error);
+            free(scores->steps[protocol][phase].share);
+        }
+    free(scores->measures);
+    *scores = (MethodScores){0};
+}
+
+static const char *const protocol_words[] = {"frozen", "closed", NULL};
+static const char *const phase_words[] = {"impact", "after", "rest", NULL};
+
+#define TEXT(member, size) \
+    { #member, CSV_TEXT, .offset = offsetof(ChartRow, member), .maximum = (size)-1, .key = true }
+#define WORD(member, list) \
+    { #member, CSV_WORD, .offset = offsetof(ChartRow, member), .words = list, .key = true }
+#define FIGURE(member, least, most) \
+    { #member, CSV_OPTIONAL, .offset = offsetof(ChartRow, member), .minimum = least, .maximum = most }
+
+static const CsvColumn columns[] = {
+    TEXT(scene, CHART_NAME_SIZE),
+    TEXT(method, CHART_NAME_SIZE),
+    TEXT(setting, CHART_SETTING_SIZE),
+    WORD(protocol, protocol_words),
+    WORD(phase, phase_words),
+    {"launches", CSV_INTEGER, .offset = offsetof(ChartRow, launches), .maximum = INT_MAX},
+    FIGURE(us_solver, 0, INFINITY),
+    FIGURE(us_solver_q1, 0, INFINITY),
+    FIGURE(us_solver_q3, 0, INFINITY),
+    FIGURE(us_step, 0, INFINITY),
+    FIGURE(instructions, 0, INFINITY),
+    FIGURE(error_mean, 0, INFINITY),
+    FIGURE(error_median, 0, INFINITY),
+    FIGURE(error_p95, 0, INFINITY),
+    FIGURE(error_worst, 0, INFINITY),
+    FIGURE(share_right, 0, 1),
+    FIGURE(penetration_max, 0, INFINITY),
+    FIGURE(drift, -INFINITY, INFINITY),
+    FIGURE(energy, -INFINITY, INFINITY),
+    FIGURE(moved, 0, INFINITY),
+    {"cpu", CSV_TEXT, .offset = offsetof(ChartRow, cpu), .maximum = CPU_NAME_SIZE - 1, .optional = true},
+};
+
+enum { SOLVER_MEDIAN = 6 };
+
+const CsvLayout chart_layout =
+    CSV_LAYOUT("chart", columns, ChartRow, .min_rows = 1, .max_rows = CHART_MAX_ROWS, .header = CSV_EXACT);
+
+/* Comparisons with NAN are false: a missing time is not checked. */
+static bool is_ordered(const ChartRow *row) {
+    return !(row->us_solver_q1 > row->us_solver || row->us_solver > row->us_solver_q3 ||
+             row->us_solver_q1 > row->us_solver_q3);
+}
+
+bool chart_csv_read(ChartTable *table, const char *path, Error *error) {
+    *table = (ChartTable){.count = 0};
+    if (!csv_table_read(&table->csv, path, &chart_layout, error)) return false;
+    table->count = table->csv.count;
+    table->rows = table->csv.rows;
+    for (int i = 0; i < table->count; i++) {
+        if (is_ordered(&table->rows[i])) continue;
+        csv_table_error(&table->csv, i, SOLVER_MEDIAN, error, "us_solver: the median is outside the quartiles");
+        chart_csv_free(table);
+        return false;
+    }
+    return true;
+}
+
+void chart_csv_free(ChartTable *table) {
+    csv_table_free(&table->csv);
+    *table = (ChartTable){.count = 0};
+}

@@ -1,0 +1,412 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The stability study in pieces (runs/pieces.h): some methods of a study along one parameter, or some cells of a map. */
+#include "studies/stability.h"
+
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+#include "base/machine.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+#include "studies/stability_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A study or a map, and its pieces. */
+typedef struct StabilityGroup {
+    StabilityScan scan; /* study NULL: a map */
+    StabilityGrid grid;
+    const char *name;
+    int items;     /* methods or cells */
+    double weight; /* of each piece */
+    bool begun;
+    ScanContext scanned;
+    GridContext mapped;
+} StabilityGroup;
+
+/* stability_plan_free(). groups and pieces have the same number. */
+typedef struct StabilityPlan {
+    StabilityGroup *groups;
+    PieceGroup *pieces;
+    int count;
+    PiecePlan plan;
+} StabilityPlan;
+
+/* A piece takes about this long on one core: less would make more files, more would lose more when it is cut off. */
+static const double piece_seconds = 4;
+
+/* Cells of a scene file take an unknown time. */
+enum { MOST_PIECES = 4096 };
+
+/* Index of the group of a piece. */
+static int find_group(const StabilityPlan *plan, int64_t piece) {
+    int group = 0;
+    while (piece >= plan->pieces[group].first + plan->pieces[group].count) group++;
+    return group;
+}
+
+/* The first item of piece i of a group; of the number of pieces, the end. */
+static int first_item(const StabilityPlan *plan, int group, int64_t i) {
+    return (int)(plan->groups[group].items * i / plan->pieces[group].count);
+}
+
+static void describe(void *context, int64_t piece, PieceInfo *info) {
+    const StabilityPlan *plan = context;
+    const int group = find_group(plan, piece);
+    const int64_t i = piece - plan->pieces[group].first;
+    snprintf(info->name, sizeof info->name, "%s %d-%d", plan->groups[group].name, first_item(plan, group, i) + 1,
+             first_item(plan, group, i + 1));
+    info->weight = plan->groups[group].weight;
+    /* The methods of a study share its converged runs, a third of the work. */
+    if (plan->groups[group].scan.study != NULL) info->near = plan->pieces[group].first;
+}
+
+/* The context of a group is made by the first of its pieces. */
+static bool stability_plan_begin(StabilityGroup *group, Error *error) {
+    bool ok = true;
+#pragma omp critical(stability_group)
+    if (!group->begun) {
+        ok = group->scan.study != NULL ? stability_scan_begin(&group->scanned, &group->scan, error)
+                                       : stability_grid_begin(&group->mapped, &group->grid, error);
+        group->begun = ok;
+        if (!ok) stability_scan_end(&group->scanned);
+        if (!ok) stability_grid_end(&group->mapped);
+    }
+    return ok;
+}
+
+static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
+    const StabilityPlan *plan = context;
+    const int number = find_group(plan, piece);
+    StabilityGroup *group = &plan->groups[number];
+    const int64_t i = piece - plan->pieces[number].first;
+    const int first = first_item(plan, number, i), end = first_item(plan, number, i + 1);
+    if (!stability_plan_begin(group, error)) return false;
+    return group->scan.study != NULL ? stability_scan_write(&group->scanned, first, end, results, progress, error)
+                                     : stability_grid_write(&group->mapped, first, end, results, progress, error);
+}
+
+/* weight: seconds on two cores, of the whole group. */
+static void add_group(StabilityPlan *plan, StabilityGroup group, double weight, bool known, int sections) {
+    const double wanted = known ? ceil(2 * weight / piece_seconds) : MOST_PIECES;
+    const int count = wanted < group.items ? (int)wanted : group.items;
+    group.weight = 2 * weight / count;
+    plan->groups[plan->count] = group;
+    plan->pieces[plan->count++] = (PieceGroup){plan->plan.count, count, sections};
+    plan->plan.count += count;
+}
+
+/* The studies and maps that are to be done, in their order. All pointers must outlive the plan. */
+static bool stability_plan_make(StabilityPlan *plan, const StabilityStudy *const *studies, int study_count,
+                                const StabilityMap *const *maps, int map_count, const char *scenes,
+                                const ContenderList *methods, bool quick, Error *error) {
+    const size_t count = (size_t)study_count + (size_t)map_count;
+    *plan = (StabilityPlan){.plan = {.describe = describe, .work = work, .context = plan}};
+    plan->groups = calloc(count + 1, sizeof *plan->groups);
+    plan->pieces = calloc(count + 1, sizeof *plan->pieces);
+    if (plan->groups == NULL || plan->pieces == NULL) return error_memory(error, "stability");
+    for (int i = 0; i < study_count; i++)
+        add_group(
+            plan,
+            (StabilityGroup){.scan = {studies[i], scenes, methods}, .name = studies[i]->name, .items = methods->count},
+            studies[i]->weight, studies[i]->file == NULL, 0);
+    for (int i = 0; i < map_count; i++) {
+        const int cells = stability_grid_cells(maps[i], quick), all = stability_grid_cells(maps[i], false);
+        add_group(plan,
+                  (StabilityGroup){.grid = {maps[i], scenes, methods, quick}, .name = maps[i]->name, .items = cells},
+                  maps[i]->weight * cells / all, maps[i]->file == NULL, methods->count);
+    }
+    return true;
+}
+
+static void stability_plan_free(StabilityPlan *plan) {
+    for (int i = 0; i < plan->count; i++) {
+        stability_scan_end(&plan->groups[i].scanned);
+        stability_grid_end(&plan->groups[i].mapped);
+    }
+    free(plan->groups);
+    free(plan->pieces);
+    *plan = (StabilityPlan){0};
+}
+
+/* Inserts a value into a sorted list, if it is new. False if the list is full. */
+static bool insert(double values[MAP_MAX_VALUES], int *count, double value) {
+    int at = 0;
+    while (at < *count && values[at] < value) at++;
+    if (at < *count && values[at] == value) return true;
+    if (*count == MAP_MAX_VALUES) return false;
+    memmove(values + at + 1, values + at, (size_t)(*count - at) * sizeof *values);
+    values[at] = value;
+    ++*count;
+    return true;
+}
+
+static int find(const double *values, double value) {
+    int i = 0;
+    while (values[i] != value) i++;
+    return i;
+}
+
+static bool gather_values(MapPanels *map, const MapTable *table, int first, int end, Error *error) {
+    for (int i = first; i < end; i++)
+        if (!insert(map->x, &map->x_count, table->cells[i].x) || !insert(map->y, &map->y_count, table->cells[i].y))
+            return csv_table_error(&table->csv, i, 0, error, "more than %d values of a parameter", MAP_MAX_VALUES);
+    return true;
+}
+
+static bool gather_looks(MapPanels *map, const MapTable *table, int first, int end, Error *error) {
+    memset(map->looks, LOOK_MISSING, sizeof map->looks);
+    for (int i = first; i < end; i++) {
+        const MapCell *cell = &table->cells[i];
+        if (i == first || !map_cell_same_method(cell - 1, cell)) {
+            if (map->panel_count == MAP_MAX_METHODS)
+                return csv_table_error(&table->csv, i, 0, error, "more than %d methods: too many for a figure",
+                                       MAP_MAX_METHODS);
+            map->methods[map->panel_count++] = cell;
+        }
+        unsigned char *look = &map->looks[map->panel_count - 1][find(map->x, cell->x)][find(map->y, cell->y)];
+        if (*look != LOOK_MISSING)
+            return csv_table_error(&table->csv, i, 0, error, "the cell appears twice (%s %g, %s %g)", cell->x_parameter,
+                                   cell->x, cell->y_parameter, cell->y);
+        *look = (unsigned char)cell->verdict;
+    }
+    return true;
+}
+
+bool map_panels_gather(MapPanels *map, const MapTable *table, int *row, Error *error) {
+    int first = *row;
+    *map = (MapPanels){.first = &table->cells[first]};
+    while (*row < table->count && strcmp(table->cells[*row].map, map->first->map) == 0) ++*row;
+    return gather_values(map, table, first, *row, error) && gather_looks(map, table, first, *row, error);
+}
+
+/* clang-format off */
+/* from, to, points */
+#define LINEAR(...) \
+    { __VA_ARGS__, .whole = false }
+#define WHOLE(...) \
+    { __VA_ARGS__, .whole = true }
+#define LOGARITHMIC(...) \
+    { __VA_ARGS__, .logarithmic = true }
+#define WHOLE_LOGARITHMIC(...) \
+    { __VA_ARGS__, .logarithmic = true, .whole = true }
+
+const StabilityStudy stability_studies[] = {
+    {"stack_height", "stack_height", "height", WHOLE(2, 40, 14), .stands = true, .quick = true, .weight = 18},
+    {"stack_cold", "stack_cold", "height", WHOLE(2, 40, 14), .stands = true, .weight = 18},
+    {"iterations", "stack_height", "iterations", WHOLE_LOGARITHMIC(1, 100, 12, .fails_low = true), .stands = true,
+     .iterations = true, .quick = true, .weight = 4},
+    {"iterations_cold", "stack_cold", "iterations", WHOLE_LOGARITHMIC(1, 100, 12, .fails_low = true), .stands = true,
+     .iterations = true, .weight = 5},
+    {"time_step", "time_step", "rate", WHOLE_LOGARITHMIC(20, 480, 10, .fails_low = true), .stands = true, .weight = 17},
+    {"pyramid_rows", "pyramid_rows", "rows", WHOLE(4, 30, 9), .stands = true, .weight = 69},
+    {"pyramid_rate", "pyramid_rows", "rate", WHOLE_LOGARITHMIC(10, 480, 10, .fails_low = true), .stands = true,
+     .weight = 47},
+    {"heavy_on_one", "heavy_on_one", "ratio", LOGARITHMIC(1, 1000, 13), .stands = true, .quick = true, .weight = 2},
+    {"heavy_on_five", "heavy_on_five", "ratio", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 9},
+    {"heavy_on_nine", "heavy_on_nine", "ratio", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 18},
+    {"plate", "plate", "ratio", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 3},
+    {"gate", "gate", "mass", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 12},
+    {"top_removed", "top_removed", "ratio", LOGARITHMIC(1, 200, 12), .stands = true, .weight = 5},
+    {"tilted_stack", "tilted_stack", "shift", LINEAR(0, 0.1, 11), .stands = true, .weight = 7},
+    {"overlap", "overlap", "spacing", LINEAR(0.4, 1, 13, .fails_low = true), .stands = true, .weight = 8},
+    {"card_house", "card_house", "friction", LINEAR(0.1, 1, 10, .fails_low = true), .stands = true, .weight = 8},
+    {"arch", "arch", "friction", LINEAR(0.2, 1, 9, .fails_low = true), .stands = true, .weight = 3},
+    {"double_domino", "double_domino", "push", LINEAR(0, 3, 7), .weight = 5},
+    {"friction_ramp", "friction_ramp", "slope", LINEAR(0, 0.6, 13), .stands = true, .quick = true, .weight = 1},
+    {"far_from_origin", "far_from_origin", "distance", LOGARITHMIC(1, 1e6, 13), .stands = true, .unshifted = true,
+     .quick = true, .weight = 2},
+    {"at_rest", "at_rest", "height", WHOLE(1, 20, 10), .stands = true, .rests = true, .weight = 13},
+    {"bomb_speed", "bomb_speed", "speed", LOGARITHMIC(5, 200, 12), .quick = true, .weight = 0.5},
+    {"bomb_speed_thick", "bomb_speed", "speed", LOGARITHMIC(5, 200, 12), .fixed = {"thickness", 1}, .weight = 0.5},
+    {"bomb_mass", "random_bombs", "mass", LOGARITHMIC(1, 1000, 13), .weight = 2},
+    {"bomb_spin", "random_bombs", "spin", LINEAR(0, 20, 11), .weight = 1},
+    {"beyond_x", "beyond_training", "x", LINEAR(0, 15, 16), .weight = 1},
+    {"beyond_mass", "beyond_training", "mass", LOGARITHMIC(5, 1000, 13), .weight = 1}};
+
+#define ITERATIONS {"iterations", WHOLE_LOGARITHMIC(1, 100, 10), 4}
+
+const StabilityMap stability_maps[] = {
+    {.name = "height_iterations", .scene = "stack_height", .x = {"height", WHOLE(2, 40, 10), 4}, .y = ITERATIONS,
+     .stands = true, .iterations = true, .quick = true, .weight = 44},
+    {.name = "ratio_iterations", .scene = "heavy_on_one", .x = {"ratio", LOGARITHMIC(1, 1000, 10), 4}, .y = ITERATIONS,
+     .stands = true, .iterations = true, .quick = true, .weight = 4},
+    {.name = "rate_height", .scene = "time_step", .x = {"rate", WHOLE_LOGARITHMIC(20, 480, 8), 3},
+     .y = {"height", WHOLE(2, 40, 8), 3}, .stands = true, .weight = 300},
+    {.name = "speed_thickness", .scene = "bomb_speed", .x = {"speed", LOGARITHMIC(5, 200, 12), 5},
+     .y = {"thickness", LOGARITHMIC(0.1, 2, 10), 4}, .quick = true, .weight = 3},
+    {.name = "spin_x", .scene = "random_bombs", .x = {"spin", LINEAR(0, 20, 11), 4}, .y = {"x", LINEAR(-5, 5, 11), 4},
+     .quick = true, .weight = 10},
+    /* The grid avoids the border, where the slope equals the friction. */
+    {.name = "slope_friction", .scene = "friction_ramp", .x = {"slope", LINEAR(0.025, 0.575, 12), 4},
+     .y = {"friction", LINEAR(0.05, 0.6, 12), 4}, .stands = true, .weight = 2}};
+/* clang-format on */
+
+const int stability_study_count = sizeof stability_studies / sizeof stability_studies[0];
+const int stability_map_count = sizeof stability_maps / sizeof stability_maps[0];
+
+const StabilityStudy *stability_study_find(const char *name) {
+    for (int i = 0; i < stability_study_count; i++)
+        if (strcmp(stability_studies[i].name, name) == 0) return &stability_studies[i];
+    return NULL;
+}
+
+/* The studies and maps of the run, from the table or of one scene file. */
+typedef struct Run {
+    const StabilityOptions *options;
+    const StabilityStudy **studies; /* [study_count] */
+    const StabilityMap **maps;      /* [map_count] */
+    int study_count, map_count;
+    ContenderList methods;
+    StabilityPlan plan;
+} Run;
+
+static bool is_named(const StabilityOptions *options, const char *name, bool quick) {
+    if (options->own != NULL) return true;
+    for (int i = 0; i < options->name_count; i++)
+        if (strcmp(options->names[i], name) == 0) return true;
+    return options->name_count == 0 && (quick || !options->quick);
+}
+
+/* What is named, or all that belongs to a run of this size. */
+static bool choose(Run *run, Error *error) {
+    const StabilityOptions *options = run->options;
+    const StabilityOwn *own = options->own;
+    const StabilityStudy *studies = own != NULL ? own->studies : stability_studies;
+    const StabilityMap *maps = own != NULL ? own->maps : stability_maps;
+    const int study_count = own != NULL ? own->study_count : stability_study_count,
+              map_count = own != NULL ? own->map_count : stability_map_count;
+    run->studies = malloc(((size_t)study_count + 1) * sizeof *run->studies);
+    run->maps = malloc(((size_t)map_count + 1) * sizeof *run->maps);
+    if (run->studies == NULL || run->maps == NULL) return error_memory(error, "stability");
+    for (int i = 0; i < study_count; i++)
+        if (is_named(options, studies[i].name, studies[i].quick)) run->studies[run->study_count++] = &studies[i];
+    for (int i = 0; i < map_count; i++)
+        if (is_named(options, maps[i].name, maps[i].quick)) run->maps[run->map_count++] = &maps[i];
+    return true;
+}
+
+static bool is_known(const char *name) {
+    for (int i = 0; i < stability_map_count; i++)
+        if (strcmp(stability_maps[i].name, name) == 0) return true;
+    return stability_study_find(name) != NULL;
+}
+
+static bool refuse_name(const char *name, Error *error) {
+    NameList known = {0};
+    for (int i = 0; i < stability_study_count; i++) name_list_add(&known, stability_studies[i].name);
+    for (int i = 0; i < stability_map_count; i++) name_list_add(&known, stability_maps[i].name);
+    return error_unknown(error, "stability", name, "a study or map", &known);
+}
+
+static bool know_names(const StabilityOptions *options, Error *error) {
+    for (int i = 0; i < options->name_count; i++)
+        if (!is_known(options->names[i])) return refuse_name(options->names[i], error);
+    return true;
+}
+
+/* Hashes the scene and its networks. A missing network is an error only of the method that needs it. */
+static bool add_scene_to_key(const StabilityPlace *place, StudyKey *key, Error *error) {
+    char path[STABILITY_PATH_SIZE];
+    if (!stability_path(path, place, error)) return false;
+    Scene *scene = scene_read(path, error);
+    if (scene == NULL) return false;
+    for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
+    scene_destroy(scene);
+    return study_key_add_file(key, path, error);
+}
+
+/* Hashes a range that is not in the program. */
+static void add_scan_to_key(const char *name, const char *parameter, const BorderScan *scan, StudyKey *key) {
+    const double numbers[] = {scan->from, scan->to, scan->points};
+    study_key_add(key, name, strlen(name) + 1);
+    study_key_add(key, parameter, strlen(parameter) + 1);
+    study_key_add(key, numbers, sizeof numbers);
+}
+
+static bool add_study_to_key(const Run *run, const StabilityStudy *study, StudyKey *key, Error *error) {
+    const StabilityPlace place = {run->options->scenes, study->scene, study->file};
+    add_scan_to_key(study->name, study->parameter, &study->scan, key);
+    return add_scene_to_key(&place, key, error);
+}
+
+static bool add_map_to_key(const Run *run, const StabilityMap *map, StudyKey *key, Error *error) {
+    const StabilityPlace place = {run->options->scenes, map->scene, map->file};
+    add_scan_to_key(map->name, map->x.parameter, &map->x.scan, key);
+    add_scan_to_key(map->name, map->y.parameter, &map->y.scan, key);
+    return add_scene_to_key(&place, key, error);
+}
+
+/* Hashes everything that determines the result: the program, the options, the scenes. */
+static bool find_key(const Run *run, StudyKey *key, Error *error) {
+    const StabilityOptions *options = run->options;
+    if (!study_key_begin(key, error)) return false;
+    study_key_add(key, &options->quick, sizeof options->quick);
+    if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
+    for (int i = 0; i < run->study_count; i++)
+        if (!add_study_to_key(run, run->studies[i], key, error)) return false;
+    for (int i = 0; i < run->map_count; i++)
+        if (!add_map_to_key(run, run->maps[i], key, error)) return false;
+    return true;
+}
+
+static bool write_tables(const Run *run, const Pieces *pieces, Error *error) {
+    static const CsvLayout *const layouts[] = {&border_layout, &map_layout, &refusal_layout, &fallback_layout,
+                                               &rest_layout};
+    return piece_tables_write(pieces, run->options->folder, layouts, sizeof layouts / sizeof *layouts, run->plan.pieces,
+                              run->plan.count, error);
+}
+
+/* What follows from the pieces, once all are there. */
+static bool finish(const Run *run, const Pieces *pieces, Error *error) {
+    const StabilityOptions *options = run->options;
+    return folder_reserve(options->folder, error) && write_tables(run, pieces, error) &&
+           (options->draw == NULL || options->draw(options->draw_context, pieces->key, error)) &&
+           pieces_end(pieces, error);
+}
+
+/* Shards share a folder; a whole study has it to itself. */
+static bool do_pieces(Run *run, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
+    const StabilityOptions *options = run->options;
+    if (!pieces_open(pieces, options->folder, false, key, options->run, error)) return false;
+    if (pieces->mode == PIECES_WHOLE && !folder_reserve(options->folder, error)) return false;
+    return pieces_do(pieces, &run->plan.plan, progress, error) &&
+           (pieces->mode == PIECES_SHARD || finish(run, pieces, error));
+}
+
+static bool begin(Run *run, const StabilityOptions *options, Error *error) {
+    *run = (Run){.options = options};
+    return know_names(options, error) && contenders_parse(&run->methods, options->methods, STUDY_STABILITY, error) &&
+           choose(run, error) &&
+           stability_plan_make(&run->plan, run->studies, run->study_count, run->maps, run->map_count, options->scenes,
+                               &run->methods, options->quick, error);
+}
+
+static void end(Run *run) {
+    stability_plan_free(&run->plan);
+    contenders_free(&run->methods);
+    free(run->studies);
+    free(run->maps);
+}
+
+bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error) {
+    Run run;
+    StudyKey key = {0};
+    const bool ok =
+        begin(&run, options, error) && find_key(&run, &key, error) && do_pieces(&run, pieces, &key, progress, error);
+    pieces->plan = NULL;
+    study_key_free(&key);
+    end(&run);
+    return ok;
+}
+
+bool stability_estimate(const StabilityOptions *options, PiecesEstimate *estimate, const Progress *progress,
+                        Error *error) {
+    Run run;
+    const bool ok = begin(&run, options, error) && pieces_estimate(estimate, &run.plan.plan, progress, error);
+    end(&run);
+    return ok;
+}

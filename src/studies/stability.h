@@ -1,0 +1,413 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* How verdicts are drawn: a tile with a symbol. Worse is darker, readable in grey and for the colour-blind; holding is
+   light and round, failing dark and angular, readable in black and white. */
+#pragma once
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "pixels/png.h"
+#include "runs/pieces.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Continues Verdict: cells without a verdict. */
+enum { LOOK_NOT_APPLICABLE = VERDICTS, LOOK_MISSING, VERDICT_LOOKS };
+
+typedef struct VerdictLook {
+    const char *name;
+    uint32_t fill; /* of the tile; NO_COLOUR: none */
+    uint32_t ink;  /* of the symbol */
+    int symbol;    /* of a PlotStyle; VERDICT_STROKE: a stroke across; VERDICT_BARE: none */
+    bool open;
+    double size; /* of the symbol, relative */
+} VerdictLook;
+
+enum { VERDICT_STROKE = PLOT_SYMBOLS, VERDICT_BARE };
+
+extern const VerdictLook verdict_looks[VERDICT_LOOKS];
+
+/* mm: the size of tiles. */
+typedef struct TileSize {
+    double width, height;
+    double symbol_room; /* what a symbol may take; 0: its tile */
+} TileSize;
+
+typedef struct Tile {
+    Point at; /* centre */
+    int look;
+    bool bare; /* without its symbol */
+} Tile;
+
+/* Draws all fills, then all symbols. */
+void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize size);
+
+/* The grid of a legend's items, row by row; rows are LEGEND_ROW apart. */
+typedef struct LegendPlace {
+    double left, top, width; /* mm: left edge and centre height of the first item; column width */
+    int columns;
+} LegendPlace;
+
+/* Draws tiles and names of the used looks. Returns their number. */
+int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const LegendPlace *place);
+
+/* Finds all borders along a parameter: the values where a method changes from holding to failing.
+
+   A coarse scan finds changes between neighbouring values, bisection narrows each to the resolution. Both sides of a
+   border and their outward neighbours are repeated with other seeds, which shift the start by a tiny amount. A value
+   for which the seeds disagree is undecided; it cannot be a side of a border, so the search moves outward to the next
+   value on which all seeds agree. A border wider than the resolution thus encloses undecided values. A change and its
+   reversal within one step of the scan are found only next to a border. */
+
+enum { BORDER_SEEDS = 3, BORDERS_MAX = 32, BORDER_POINTS_MAX = 128 };
+
+/* Resolution: linear 1/100 of the range, logarithmic a factor of 1.05; at least 1 for whole numbers. */
+typedef struct BorderScan {
+    double from, to; /* from < to; logarithmic: from > 0 */
+    int points;      /* 2 .. BORDER_POINTS_MAX, including both ends */
+    bool logarithmic, whole;
+    bool fails_low; /* expected to fail at low values; reverses the order of the list */
+    bool either;    /* fails_low is set if the lowest value of the coarse scan fails and the highest holds */
+} BorderScan;
+
+typedef struct BorderProbe {
+    /* The verdict at a value; seed 0 .. BORDER_SEEDS - 1. */
+    bool (*evaluate)(void *context, double value, int seed, Verdict *verdict, Error *error);
+    void *context;
+    int seeds; /* to evaluate: 1 .. BORDER_SEEDS */
+} BorderProbe;
+
+typedef struct Border {
+    double holds_at, fails_at; /* neighbouring values, or NaN */
+    Verdict verdict;           /* at fails_at, the worst of the seeds */
+} Border;
+
+/* Never empty. Without a border it has one entry: if all values hold, holds_at is the last value and the verdict the
+   worst found; if all fail, fails_at is the first value. If the values up to the end are undecided, the last entry has
+   the last value that holds, fails_at = NaN and the worst verdict beyond it. If all values are undecided, both are
+   NaN. */
+typedef struct BorderList {
+    int count;
+    Border items[BORDERS_MAX]; /* ordered from the end expected to hold to the end expected to fail */
+} BorderList;
+
+/* The distinct values of the coarse scan, ascending, rounded to 4 digits so that tables show exactly the value that was
+   run. Returns their number. */
+int border_scan_values(const BorderScan *scan, double values[BORDER_POINTS_MAX]);
+
+/* False with error set if an evaluation fails, memory is short or there are more than BORDERS_MAX borders. */
+bool border_search(BorderList *list, const BorderScan *scan, const BorderProbe *probe, Error *error);
+
+/* The table of stability studies: which scene, which parameter, which range. */
+
+/* A scan of one parameter of a scene of scenes/stability. */
+typedef struct StabilityStudy {
+    const char *name;  /* of the study, in tables */
+    const char *scene; /* file name without folder and extension */
+    const char *parameter;
+    BorderScan scan;
+    SceneSetting fixed; /* another parameter that is set; name "": none */
+    bool stands;        /* as in VerdictRun */
+    bool iterations;    /* scans the scene's iterations: only for methods that use them */
+    bool unshifted;     /* without seeds: a tiny shift has no effect, as it is rounded away or nothing comes near */
+    bool rests;         /* also records drift and energy of every run */
+    bool quick;         /* part of a quick run */
+    double weight;      /* s for all methods on two cores, approximately */
+    const char *file;   /* path of another scene instead; `stands` then follows from each scene (verdict_run_of) */
+} StabilityStudy;
+
+typedef struct StabilityAxis {
+    const char *parameter;
+    BorderScan scan; /* only its coarse scan is used */
+    int quick_points;
+} StabilityAxis;
+
+/* A grid over two parameters. */
+typedef struct StabilityMap {
+    const char *name, *scene;
+    StabilityAxis x, y;
+    bool stands, iterations, quick; /* as above */
+    double weight;
+    const char *file; /* as above */
+} StabilityMap;
+
+extern const StabilityStudy stability_studies[];
+extern const StabilityMap stability_maps[];
+extern const int stability_study_count, stability_map_count;
+
+/* The study of this name, or NULL. */
+const StabilityStudy *stability_study_find(const char *name);
+
+/* The study of one scene file: borders along its parameters and, with two of them, their map. */
+
+enum { STABILITY_MAX_VARY = 2, STABILITY_OWN_NAME_SIZE = 40 };
+
+typedef struct StabilityOwn {
+    char names[STABILITY_MAX_VARY + 1][STABILITY_OWN_NAME_SIZE]; /* of the studies, then of the map */
+    char parameters[STABILITY_MAX_VARY][SCENE_PARAMETER_SIZE];   /* varied */
+    bool stepped[STABILITY_MAX_VARY];                            /* the range has a step: these values and no fewer */
+    int study_count, map_count;                                  /* of the arrays below */
+    StabilityStudy studies[STABILITY_MAX_VARY];                  /* SCENE_PARAMETER */
+    StabilityMap maps[1];                                        /* SCENE_PARAMETER_PARAMETER */
+} StabilityOwn;
+
+/* Makes the studies of the scene at `path` for texts "NAME", "NAME=FROM:TO" or "NAME=FROM:TO:STEP"; without FROM and TO a parameter's bounds.
+   A range without STEP whose ends differ by more than a factor of 20 is logarithmic. The result points into itself and to `path`.
+   ERROR_INPUT: no or unknown parameters, more than STABILITY_MAX_VARY, a parameter twice, a range that is not within the
+   parameter's bounds, a unit that tables cannot hold, a value of the scan for which the scene is refused. */
+bool stability_own_make(StabilityOwn *own, const char *path, const char *const *texts, int count, bool quick,
+                        Error *error);
+
+/* One run of a stability study: a scene with parameter values, and a method; and the converged runs that verdicts need,
+   each computed once for all methods. */
+
+enum { STABILITY_PATH_SIZE = 4096 };
+
+/* A parametric scene of the study. */
+typedef struct StabilityPlace {
+    const char *scenes; /* the folder that contains stability/ */
+    const char *scene;  /* file name without folder and extension */
+    const char *file;   /* or this file, if not NULL */
+} StabilityPlace;
+
+/* "scenes/stability/SCENE.yaml", or the file. ERROR_INPUT if it is too long. */
+bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place, Error *error);
+
+/* Reads the scene with these parameter values. The caller frees it. */
+Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error);
+
+/* How the run of a study's scene is judged: beside the converged run; whether the scene is meant to stand is given by the
+   table of studies, or follows from the scene if it is a file. */
+VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
+                                 const EnergyLog *converged);
+
+/* The unit of a parameter of the scene, or "". */
+const char *stability_unit(const Scene *scene, const char *parameter);
+
+/* Shifts the first dynamic body, or if there is none the bomb, along x: by 0 for seed 0, by +-1e-6 m for seeds 1 and
+   2. */
+void stability_shift(Scene *scene, int seed);
+
+/* False, with the reason in error, if the method does not apply to the scene: it cannot be created, or its first step
+   fails. */
+bool stability_applies(const Method *method, const Scene *scene, Error *error);
+
+/* True for a method that makes as many sweeps as the scene sets. */
+bool stability_takes_iterations(const Method *method);
+
+/* A converged run at a value of the scanned parameter. */
+typedef struct ConvergedRun {
+    double value;
+    EnergyLog log;
+} ConvergedRun;
+
+/* Counts runs and reports progress. Zero-initialise. */
+typedef struct RunCounter {
+    const Progress *progress; /* may be NULL */
+    double done, expected;
+    bool stopped;
+} RunCounter;
+
+/* Counts one run. Thread-safe. False with error set if progress stops the study. */
+bool run_counter_add(RunCounter *counter, const char *what, Error *error);
+
+/* A cache of converged runs. They always use a warm start, whatever the scene sets: it does not change the converged
+   solution, but without it a stack of 40 boxes takes minutes. Shifted scenes use the run of the unshifted scene.
+
+   Zero-initialise. Thread-safe; two threads may compute the same run, with the same result. */
+typedef struct ConvergedRuns {
+    int count;
+    size_t capacity;
+    ConvergedRun **runs; /* [count] */
+} ConvergedRuns;
+
+/* The run of the scene at the value by the method "reference". NULL with error set if it fails. */
+const EnergyLog *converged_runs_get(ConvergedRuns *runs, const Scene *scene, double value, Error *error);
+void converged_runs_free(ConvergedRuns *runs);
+
+/* The converged run of a scene, not cached. */
+bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error);
+
+/* The tables of a stability study: their rows and layouts (base/csv.h), used by the study, the figures and the
+   command line. Names are plain (csv_plain_length); a setting is stored as given and may contain the path of a network. */
+
+enum {
+    STABILITY_MAX_CELLS = 200000,
+    STABILITY_MAX_BORDERS = 2000,
+    STABILITY_MAX_RUNS = 100000,
+    STABILITY_MAX_PANELS = 512,
+    STABILITY_SETTING_SIZE = 128
+};
+
+/* maps.csv: a cell of a map. */
+typedef struct MapCell {
+    const char *map, *method, *setting, *x_parameter, *x_unit, *y_parameter, *y_unit;
+    double x, y;
+    int verdict;               /* a Verdict, or LOOK_NOT_APPLICABLE */
+    double frame, body, value; /* as in VerdictReading, or NAN */
+    const char *unit;
+} MapCell;
+
+/* stability.csv: a border of a method: the last value that holds and the first that fails. */
+typedef struct BorderRow {
+    const char *study, *method, *setting, *parameter, *unit;
+    double holds_at; /* NAN: nothing holds */
+    double fails_at; /* NAN: no decided value fails; with a failing verdict, values beyond holds_at are undecided */
+    int verdict;     /* how it fails; if it holds over the whole range, how it holds; or LOOK_NOT_APPLICABLE */
+} BorderRow;
+
+/* refusals.csv: why a method does not apply. */
+typedef struct RefusalRow {
+    const char *study, *method, *setting, *reason;
+} RefusalRow;
+
+/* rest.csv and fallbacks.csv: a run without a shift, at a value of the parameter. */
+typedef struct RunRow {
+    const char *study, *method, *setting, *parameter, *unit;
+    double value;
+    int steps;
+    int verdict;                                              /* rest.csv */
+    double drift, energy;                                     /* rest.csv: VerdictReading's drift and gained, or NAN */
+    int not_finite, outside_cone, beyond_training, by_sweeps; /* fallbacks.csv: as in NetworkFallbacks */
+} RunRow;
+
+extern const CsvLayout map_layout, border_layout, refusal_layout, rest_layout, fallback_layout;
+
+typedef struct MapTable {
+    CsvTable csv;
+    int count;
+    const MapCell *cells; /* [count] */
+} MapTable;
+
+typedef struct BorderTable {
+    CsvTable csv;
+    int count;
+    const BorderRow *rows; /* [count] */
+} BorderTable;
+
+/* Reads folder/maps.csv; without rows there are no cells. Refused, as "path:line:column: error: reason": what
+   csv_table_read() refuses, a map whose name is not a file name, maps (or methods of a map) whose rows are not
+   together, and more than STABILITY_MAX_PANELS methods of maps. */
+bool map_table_read(MapTable *table, const char *folder, Error *error);
+void map_table_free(MapTable *table);
+
+/* Reads folder/stability.csv. Refused likewise: rows that give a study another parameter, and verdicts that contradict
+   their values: a method that fails somewhere cannot hold, and one that does not apply has no values. */
+bool border_table_read(BorderTable *table, const char *folder, Error *error);
+void border_table_free(BorderTable *table);
+
+bool border_same_method(const BorderRow *a, const BorderRow *b);
+bool border_same_study(const BorderRow *a, const BorderRow *b);
+
+/* A cell's method as for method_parse(): "engine:k=10". */
+enum { MAP_METHOD_SIZE = CSV_NAME_SIZE + STABILITY_SETTING_SIZE };
+void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell);
+
+/* The path of a cell's clip, relative to the tables' folder and without extension: "clips/MAP-METHOD-X_Y". */
+enum { MAP_CLIP_SIZE = CSV_NAME_SIZE + MAP_METHOD_SIZE + 40 };
+void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
+
+bool map_cell_same_method(const MapCell *a, const MapCell *b);
+
+/* For figures: "engine:k=10,warm=off" (methods/methods.h), plain and shortened to `most` mm; and
+   "Height (boxes)" for an axis. */
+enum { STABILITY_TEXT_SIZE = CSV_NAME_SIZE + 2 * STABILITY_SETTING_SIZE + 8 };
+void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
+                           const char *setting);
+void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);
+
+/* The stability study: where each method fails. Tables: borders between holding and failing along one parameter
+   (stability.csv), maps over two parameters (maps.csv), methods that do not apply to a scene (refusals.csv), network
+   outputs that were rejected and steps that fell back (fallbacks.csv), drift of undisturbed bodies (rest.csv). */
+
+enum { STABILITY_MAX_NAMES = 64 };
+
+typedef struct StabilityOptions {
+    const char *folder;  /* of the tables; created if missing */
+    const char *scenes;  /* the folder that contains stability/ */
+    const char *methods; /* contenders_parse; NULL: those of the study */
+    bool quick;          /* few studies, small maps */
+    int name_count;      /* of studies and maps to run; 0: all */
+    const char *names[STABILITY_MAX_NAMES];
+    const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
+    const PiecesRun *run;    /* whole, a shard, or a merge */
+    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables (study_key.h). */
+    bool (*draw)(void *context, uint64_t key, Error *error);
+    void *draw_context;
+} StabilityOptions;
+
+/* Runs the studies and maps, writes the tables and draws; a shard does its pieces only. An interrupted run is resumed at
+   the unfinished pieces. The tables do not depend on the number of threads. ERROR_INPUT also for an unknown name,
+   ERROR_INTERRUPTED if progress stops the run. *pieces tells what was done; it has no plan any more. */
+bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error);
+
+/* What the run takes, from some of its pieces; nothing is written. */
+bool stability_estimate(const StabilityOptions *options, PiecesEstimate *estimate, const Progress *progress,
+                        Error *error);
+
+/* The figure of a stability map: one panel per method, one tile per cell. */
+
+enum { MAP_MAX_VALUES = 128, MAP_MAX_METHODS = 24 };
+
+/* A map's cells, arranged by method, x and y. */
+typedef struct MapPanels {
+    const MapCell *first; /* row of the map; the table outlives the map */
+    int x_count, y_count, panel_count;
+    double x[MAP_MAX_VALUES], y[MAP_MAX_VALUES]; /* values of all methods, ascending */
+    const MapCell *methods[MAP_MAX_METHODS];     /* first row of each */
+    unsigned char looks[MAP_MAX_METHODS][MAP_MAX_VALUES]
+                       [MAP_MAX_VALUES]; /* [panel][x][y]; LOOK_MISSING without a row */
+} MapPanels;
+
+/* Gathers the map whose rows start at *row and advances *row past them. ERROR_INPUT, with path:line:column: a repeated
+   cell, more than MAP_MAX_VALUES values or MAP_MAX_METHODS methods. */
+bool map_panels_gather(MapPanels *map, const MapTable *table, int *row, Error *error);
+
+/* Writes the figure and its caption. All cells have the same size; ticks show their values. */
+void map_panels_write(const MapPanels *map, PlotPage *page);
+
+/* The figures of a stability study, drawn from its tables. */
+
+/* Reads folder/stability.csv and folder/maps.csv (studies/stability.h) and draws, as .png, .svg
+   and a caption .txt of one line,
+     map-NAME   one per map: a panel per method, a tile per cell (studies/stability.h); in the .svg, tiles link to
+                the cells' clips, whether these exist or not
+     borders    how far each method holds in each study (studies/stability_internal.h)
+   into the folder. Readable for the colour-blind, in grey and in black and white. The same tables give the same files.
+
+   A table without rows gives no figure. An invalid table is an error "path:line:column: error: text" before anything is
+   drawn. ERROR_INTERRUPTED if progress, which may be NULL, requests a stop;
+   figures already drawn stay. */
+bool stability_figures_write(const char *folder, const Progress *progress, Error *error);
+
+/* map_pages.csv: which cells of the maps have a page that plays what happened there. */
+
+/* Of a method in a map. */
+enum { MAP_PAGES_EACH = 8 };
+
+typedef struct MapPage {
+    const char *map, *method, *setting; /* of the cell, as in maps.csv */
+    double x, y;
+    double time;      /* s: when the verdict was decided */
+    int frame, body;  /* in the run; body -1: none */
+    const char *page; /* "pages/NAME.html#t=0.55&body=7&run=1"; empty: left out */
+    int bytes;
+} MapPage;
+
+extern const CsvLayout map_page_layout;
+
+/* Places in a map; x, y: indices of its values. */
+typedef struct MapPlace {
+    int x, y;
+} MapPlace;
+
+/* The cells of a method that get a page: those that fail beside one that holds, at a border, are the ones that tell why; at
+   most MAP_PAGES_EACH of them, evenly. Without a border, the first that fails. Returns their number. */
+int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_EACH]);
+
+/* The row of a cell; NULL: none. */
+const MapCell *map_panels_cell(const MapPanels *map, const MapTable *table, int panel, MapPlace place);

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The borders figure: how far each method holds in each study. */
+#pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+#include "studies/stability.h"
+
+#include <stdio.h>
+
+enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
+
+/* Writes the figure and its caption: one panel per study, with its own axis, and one row per method. A bar covers the
+   values that hold, up to holds_at. A tile at fails_at shows how the method fails (studies/stability.h); if the
+   values beyond the bar are undecided, it is at the far end. An arrow marks a method that holds over the whole range, a
+   cross one that never holds. ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or
+   BORDERS_MAX_STUDIES studies. */
+bool stability_borders_write(const BorderTable *table, PlotPage *page, Error *error);
+
+/* One stability map: the verdict of every method in every cell of a grid. */
+
+typedef struct StabilityGrid {
+    const StabilityMap *map;
+    const char *scenes; /* the folder that contains stability/ */
+    const ContenderList *methods;
+    bool quick; /* the smaller grid */
+} StabilityGrid;
+
+/* What the pieces of a map have in common. */
+typedef struct GridContext {
+    const StabilityGrid *grid;
+    Scene *typical; /* with default parameters */
+    int x_count, y_count;
+    double x[BORDER_POINTS_MAX], y[BORDER_POINTS_MAX];
+    int method_count;
+    const Contender **methods; /* [method_count] that apply to the scene */
+} GridContext;
+
+/* The number of cells. */
+int stability_grid_cells(const StabilityMap *map, bool quick);
+
+/* stability_grid_end() also after a failure. */
+bool stability_grid_begin(GridContext *context, const StabilityGrid *grid, Error *error);
+void stability_grid_end(GridContext *context);
+
+/* Judges the cells first .. end - 1, row by row from the least y, and writes their rows of the table "maps", with a section
+   for each of grid->methods (studies/chart.h). Omits methods that do not apply to the scene, methods that set their own
+   number of sweeps if the map scans it, and the reference, by which runs are judged. */
+bool stability_grid_write(const GridContext *context, int first, int end, FILE *results, const Progress *progress,
+                          Error *error);
+
+/* One stability study: the borders of every method along a parameter. */
+
+typedef struct StabilityScan {
+    const StabilityStudy *study;
+    const char *scenes; /* the folder that contains stability/ */
+    const ContenderList *methods;
+} StabilityScan;
+
+/* What the pieces of a scan have in common. */
+typedef struct ScanContext {
+    const StabilityScan *scan;
+    Scene *typical; /* with default parameters */
+    ConvergedRuns converged;
+} ScanContext;
+
+/* stability_scan_end() also after a failure. */
+bool stability_scan_begin(ScanContext *context, const StabilityScan *scan, Error *error);
+void stability_scan_end(ScanContext *context);
+
+/* Does the methods first .. end - 1 and writes their rows (studies/chart.h) of the tables "stability", "refusals",
+   "fallbacks" (every unshifted run of a method that may fall back) and "rest" (every unshifted run, if study.rests), ordered
+   by method. Omits methods that set their own number of sweeps if the study scans it. */
+bool stability_scan_write(ScanContext *context, int first, int end, FILE *results, const Progress *progress,
+                          Error *error);
+
+/* The verdict on one run of a study; seed: stability_shift(). False with error set if the method does not apply to the
+   scene or memory is short. */
+bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
+                        ConvergedRuns *converged, VerdictReading *reading, Error *error);

@@ -1,0 +1,393 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The axes of a map: one place for each value, whatever the distance of the values. */
+#include "base/csv.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "pixels/png.h"
+#include "pixels/type.h"
+#include "runs/verdict.h"
+#include "studies/chart_internal.h"
+#include "studies/stability.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* mm */
+static const double number_height = 3, number_points = 7.5, least_between_ticks = 1.2;
+
+/* Three significant digits; integers up to 1e6 in full. */
+static void name_value(char text[32], double value) {
+    bool whole = fabs(value) > 999 && fabs(value) < 1e6;
+    snprintf(text, 32, whole ? "%.0f" : "%.3g", value);
+}
+
+/* mm: width of the longest number of the values. */
+static double map_axis_width(const double *values, int count) {
+    char text[32];
+    double widest = 0;
+    for (int i = 0; i < count; i++) {
+        name_value(text, values[i]);
+        widest = fmax(widest, type_width(text, number_points));
+    }
+    return widest;
+}
+
+/* Digits that are not zero at the end: 1 of 40, 2 of 41 and of 0.25. */
+static int digits_of(double value) {
+    char text[32];
+    snprintf(text, sizeof text, "%.2e", fabs(value));
+    return text[3] != '0' ? 3 : text[2] != '0' ? 2 : 1;
+}
+
+/* Which values have a label: every so many, from one on. */
+typedef struct Labels {
+    int first, every;
+} Labels;
+
+static double roughness(const double *values, int count, Labels labels) {
+    double digits = 0, labelled = 0;
+    for (int i = labels.first; i < count; i += labels.every, labelled++) digits += digits_of(values[i]);
+    return digits / labelled;
+}
+
+/* All if there is room; else steps of 2, 5 or 10 values and so on, beginning where the labelled values are roundest. */
+static Labels choose_labels(const double *values, int count, int least) {
+    static const int steps[] = {1, 2, 5, 10, 20, 50, 100};
+    Labels best = {0, least};
+    for (size_t i = sizeof steps / sizeof *steps; i > 0; i--)
+        if (steps[i - 1] >= least) best.every = steps[i - 1];
+    if (least < 3) best.every = least;
+    if (best.every >= count) return (Labels){0, count};
+    const int every = best.every;
+    for (int first = 1; first < every && first < count; first++)
+        if (roughness(values, count, (Labels){first, every}) < roughness(values, count, best)) best.first = first;
+    return best;
+}
+
+/* An axis with a place for each value, in the order of the values, 0 to count - 1. room: mm that a value has. Numbers are
+   thinned so that they do not touch, to values that are as round as possible. The ticks must outlive the axis. */
+static PlotAxis map_axis(PlotTicks *ticks, bool across, const double *values, int count, double room) {
+    const double needed = across ? map_axis_width(values, count) + 1.7 : number_height;
+    const Labels labels = choose_labels(values, count, (int)ceil(needed / room));
+    PlotAxis axis = plot_linear_axis(-0.5, count - 0.5, NULL);
+    ticks->count = 0;
+    for (int i = 0; i < count; i++) {
+        char text[32] = "";
+        const bool labelled = i >= labels.first && (i - labels.first) % labels.every == 0;
+        if (!labelled && room < least_between_ticks) continue;
+        if (labelled) name_value(text, values[i]);
+        plot_tick_add(ticks, i, false, text);
+    }
+    axis.ticks = ticks;
+    axis.outside = true;
+    return axis;
+}
+
+#define TEXT(member, size) \
+    { #member, CSV_TEXT, .offset = offsetof(MapPage, member), .maximum = (size)-1 }
+#define NAME(member) \
+    { #member, CSV_NAME, .offset = offsetof(MapPage, member) }
+#define NUMBER(member) \
+    { #member, CSV_NUMBER, .offset = offsetof(MapPage, member), .minimum = -INFINITY, .maximum = INFINITY, .digits = 9 }
+#define COUNT(member, least) \
+    { #member, CSV_INTEGER, .offset = offsetof(MapPage, member), .minimum = least, .maximum = INT_MAX }
+
+static const CsvColumn columns[] = {
+    NAME(map),       NAME(method),    TEXT(setting, STABILITY_SETTING_SIZE),
+    NUMBER(x),       NUMBER(y),       NUMBER(time),
+    COUNT(frame, 0), COUNT(body, -1), TEXT(page, CSV_PATH_SIZE),
+    COUNT(bytes, 0),
+};
+
+const CsvLayout map_page_layout =
+    CSV_LAYOUT("map_pages", columns, MapPage, .max_rows = STABILITY_MAX_CELLS, .header = CSV_EXACT);
+
+static bool fails(const MapPanels *map, int panel, int x, int y) {
+    const int look = map->looks[panel][x][y];
+    return look < VERDICTS && !verdict_holds((Verdict)look);
+}
+
+static bool holds(const MapPanels *map, int panel, int x, int y) {
+    if (x < 0 || y < 0 || x >= map->x_count || y >= map->y_count) return false;
+    const int look = map->looks[panel][x][y];
+    return look < VERDICTS && verdict_holds((Verdict)look);
+}
+
+static bool is_at_border(const MapPanels *map, int panel, int x, int y) {
+    return fails(map, panel, x, y) && (holds(map, panel, x - 1, y) || holds(map, panel, x + 1, y) ||
+                                       holds(map, panel, x, y - 1) || holds(map, panel, x, y + 1));
+}
+
+int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_EACH]) {
+    MapPlace found[MAP_MAX_VALUES * MAP_MAX_VALUES], first = {-1, -1};
+    int count = 0;
+    for (int y = 0; y < map->y_count; y++)
+        for (int x = 0; x < map->x_count; x++) {
+            if (first.x < 0 && fails(map, panel, x, y)) first = (MapPlace){x, y};
+            if (is_at_border(map, panel, x, y)) found[count++] = (MapPlace){x, y};
+        }
+    if (count == 0 && first.x >= 0) found[count++] = first;
+    const int chosen = count < MAP_PAGES_EACH ? count : MAP_PAGES_EACH;
+    for (int i = 0; i < chosen; i++) places[i] = found[chosen > 1 ? i * (count - 1) / (chosen - 1) : 0];
+    return chosen;
+}
+
+const MapCell *map_panels_cell(const MapPanels *map, const MapTable *table, int panel, MapPlace place) {
+    const MapCell *cell = map->methods[panel], *end = table->cells + table->count;
+    for (; cell < end && strcmp(cell->map, map->first->map) == 0 && map_cell_same_method(cell, map->methods[panel]);
+         cell++)
+        if (cell->x == map->x[place.x] && cell->y == map->y[place.y]) return cell;
+    return NULL;
+}
+
+/* Blues, then orange to red to black: hues that the colour-blind can distinguish. */
+const VerdictLook verdict_looks[VERDICT_LOOKS] = {
+    [VERDICT_SETTLES] = {"settles", 0xEAF3FA, 0x7FA6BF, METHOD_CIRCLE, false, 0.35},
+    [VERDICT_SWAYS] = {"sways", 0xCBE2F1, 0x2F6C94, METHOD_CIRCLE, true, 0.8},
+    [VERDICT_CREEPS] = {"creeps", 0xA3CBE5, 0x14486B, METHOD_CIRCLE, false, 0.8},
+    [VERDICT_FALLS] = {"falls", 0xEE9A2E, 0x3D2000, METHOD_INVERTED_TRIANGLE, false, 0.9},
+    [VERDICT_SINKS] = {"sinks", 0xCF6414, 0xFFFFFF, METHOD_SQUARE, true, 0.9},
+    [VERDICT_TUNNELS] = {"tunnels", 0xA83232, 0xFFFFFF, METHOD_DIAMOND, true, 0.95},
+    [VERDICT_EXPLODES] = {"explodes", 0x6E1650, 0xFFFFFF, PLOT_STAR, false, 1.1},
+    [VERDICT_NON_FINITE] = {"non-finite", 0x140A1C, 0xFFFFFF, PLOT_CROSS, false, 1.1},
+    [LOOK_NOT_APPLICABLE] = {"not applicable", NO_COLOUR, 0x909090, VERDICT_STROKE, false, 1},
+    [LOOK_MISSING] = {"not run", NO_COLOUR, 0x909090, VERDICT_BARE, false, 1},
+};
+
+/* mm. Seams between small tiles would be most of what is seen; these overlap instead, as half-covered pixels would let the
+   page through. */
+static const double most_symbol = 2.0, seam = 0.07, overlap = 0.02, least_with_seam = 1.2, legend_tile = 2.9,
+                    name_gap = 1.3;
+
+/* Symbol width relative to a tile's smaller side. */
+static const double symbol_share = 0.56;
+
+static double symbol_width(TileSize size) {
+    const double room = size.symbol_room > 0 ? size.symbol_room : fmin(size.width, size.height);
+    return fmin(symbol_share * room, most_symbol);
+}
+
+static void draw_symbol(Sketch *sketch, const Tile *tile, double width) {
+    const VerdictLook *look = &verdict_looks[tile->look];
+    const PlotStyle style = {.symbol = look->symbol, .open = look->open, .colour = look->ink};
+    const double half = width / 2;
+    const Pen pen = pen_line(look->ink, 1.2, NULL);
+    if (look->symbol == VERDICT_STROKE)
+        sketch_line(sketch, (Point){tile->at.x - half, tile->at.y - half},
+                    (Point){tile->at.x + half, tile->at.y + half}, &pen);
+    else if (look->symbol != VERDICT_BARE)
+        plot_mark(sketch, tile->at, &style, look->size * half, 1.2);
+}
+
+void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize size) {
+    const double inside = fmin(size.width, size.height) < least_with_seam ? -overlap : seam;
+    const double x = size.width / 2 - inside, y = size.height / 2 - inside;
+    for (int i = 0; i < count; i++) {
+        const Point at = tiles[i].at;
+        const uint32_t fill = verdict_looks[tiles[i].look].fill;
+        if (fill == NO_COLOUR) continue;
+        sketch_rectangle(sketch, (Point){at.x - x, at.y - y}, (Point){at.x + x, at.y + y},
+                         &(Pen){fill, 1, NO_COLOUR, 0, NULL});
+    }
+    for (int i = 0; i < count; i++)
+        if (!tiles[i].bare) draw_symbol(sketch, &tiles[i], symbol_width(size));
+}
+
+int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const LegendPlace *place) {
+    const Pen frame = pen_line(0x909090, 0.6, NULL); /* around a look without fill */
+    const double half = legend_tile / 2 - seam;
+    Tile tiles[VERDICT_LOOKS];
+    int count = 0;
+    for (int look = 0; look < VERDICT_LOOKS; look++) {
+        if (!used[look]) continue;
+        const double left = place->left + place->width * (count % place->columns);
+        const Point at = {left + legend_tile / 2, place->top - LEGEND_ROW * (count / place->columns)};
+        if (verdict_looks[look].fill == NO_COLOUR)
+            sketch_rectangle(sketch, (Point){at.x - half, at.y - half}, (Point){at.x + half, at.y + half}, &frame);
+        tiles[count++] = (Tile){.at = at, .look = look};
+        plot_text(sketch, (Point){left + legend_tile + name_gap, at.y}, TEXT_LEFT, LEGEND_POINTS,
+                  verdict_looks[look].name);
+    }
+    verdict_draw_tiles(sketch, tiles, count, (TileSize){.width = legend_tile, .height = legend_tile});
+    return count;
+}
+
+/* mm */
+static const double label_room = 8, right = 2, gap = 3.2, title_room = 6, axis_room = 9.5, row_gap = 1.5,
+                    largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, border_share = 0.35,
+                    least_symbol_room = 2, symbol_distance = 3;
+
+enum { LEGEND_COLUMNS = 6, LEGEND_COLUMNS_OF_ONE = 2 };
+
+typedef struct Layout {
+    const MapPanels *map;
+    Sketch *sketch;
+    int legend_columns, legend_rows;
+    PlotGrid grid;
+    double cell_x, cell_y; /* mm: size of a cell */
+    bool used[VERDICT_LOOKS];
+} Layout;
+
+static void find_used(Layout *layout) {
+    const MapPanels *map = layout->map;
+    for (int p = 0; p < map->panel_count; p++)
+        for (int x = 0; x < map->x_count; x++)
+            for (int y = 0; y < map->y_count; y++) layout->used[map->looks[p][x][y]] = true;
+}
+
+static int count_used(const Layout *layout) {
+    int count = 0;
+    for (int look = 0; look < VERDICT_LOOKS; look++) count += layout->used[look];
+    return count;
+}
+
+/* A single panel is one column of a printed page wide; several fill the page. */
+static Layout lay_out(const MapPanels *map, Sketch *sketch) {
+    int panels = map->panel_count;
+    Layout layout = {.map = map, .sketch = sketch};
+    find_used(&layout);
+    PlotGrid grid = {.width = panels == 1 ? FIGURE_COLUMN_WIDTH : FIGURE_PAGE_WIDTH,
+                     .left = label_room + map_axis_width(map->y, map->y_count),
+                     .right = right,
+                     .top = title_room,
+                     .columns = panels == 1   ? 1
+                                : panels <= 4 ? 2
+                                : panels <= 6 ? 3
+                                              : 4,
+                     .gap = gap,
+                     .row_gap = title_room + row_gap};
+    grid.rows = (panels + grid.columns - 1) / grid.columns;
+    layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
+    /* The border is one more legend item. */
+    layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
+    grid.bottom = LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
+    char label[STABILITY_TEXT_SIZE];
+    stability_axis_text(label, map->first->y_parameter, map->first->y_unit);
+    const double least = fmax(least_height, type_width(label, 8) + 1);
+    layout.cell_x = plot_grid_box(&grid, 0).width / map->x_count;
+    const double height = fmin(fmax(map->y_count * fmin(layout.cell_x, largest_cell), least), most_height);
+    layout.cell_y = height / map->y_count;
+    grid.height = grid.bottom + grid.rows * height + (grid.rows - 1) * grid.row_gap + grid.top;
+    layout.grid = grid;
+    return layout;
+}
+
+/* Small tiles have a symbol here and there: each would be a dot. */
+static int symbols_every(double unit) { return unit < least_symbol_room ? (int)ceil(symbol_distance / unit) : 1; }
+
+/* Not at the very edge, which would cut it. */
+static bool has_symbol(int i, int count, int every) {
+    return i % every == every / 2 && (every == 1 || i + every / 3 < count);
+}
+
+static void draw_tiles(const Layout *layout, int panel, const PlotPanel *plot) {
+    const MapPanels *map = layout->map;
+    Tile tiles[MAP_MAX_VALUES * MAP_MAX_VALUES];
+    const int across = symbols_every(layout->cell_x), up = symbols_every(layout->cell_y);
+    int count = 0;
+    for (int x = 0; x < map->x_count; x++)
+        for (int y = 0; y < map->y_count; y++)
+            tiles[count++] = (Tile){plot_place(plot, x, y), map->looks[panel][x][y],
+                                    !has_symbol(x, map->x_count, across) || !has_symbol(y, map->y_count, up)};
+    verdict_draw_tiles(layout->sketch, tiles, count,
+                       (TileSize){layout->cell_x, layout->cell_y, fmin(across * layout->cell_x, up * layout->cell_y)});
+}
+
+/* One holds and the other fails; cells without a verdict do neither. */
+static bool differ(int look, int other) {
+    return look < VERDICTS && other < VERDICTS && verdict_holds((Verdict)look) != verdict_holds((Verdict)other);
+}
+
+/* A bar along an edge, half its width longer at both ends: lines would leave notches at the corners. */
+static void draw_edge(const Layout *layout, Point from, Point to) {
+    const double half = fmin(border_width, border_share * fmin(layout->cell_x, layout->cell_y)) / 2;
+    sketch_rectangle(layout->sketch, (Point){from.x - half, from.y - half}, (Point){to.x + half, to.y + half},
+                     &(Pen){0x000000, 1, NO_COLOUR, 0, NULL});
+}
+
+static void draw_border(const Layout *layout, int panel, const PlotPanel *plot) {
+    const MapPanels *map = layout->map;
+    for (int x = 0; x < map->x_count; x++)
+        for (int y = 0; y < map->y_count; y++) {
+            const int here = map->looks[panel][x][y];
+            const Point corner = plot_place(plot, x + 0.5, y + 0.5); /* the upper right one */
+            if (x + 1 < map->x_count && differ(here, map->looks[panel][x + 1][y]))
+                draw_edge(layout, (Point){corner.x, corner.y - layout->cell_y}, corner);
+            if (y + 1 < map->y_count && differ(here, map->looks[panel][x][y + 1]))
+                draw_edge(layout, (Point){corner.x - layout->cell_x, corner.y}, corner);
+        }
+}
+
+/* Links each cell to its clip; the title is the cell's name as for --clip, with special characters replaced. */
+static void draw_links(const Layout *layout, int panel, const PlotPanel *plot) {
+    const MapPanels *map = layout->map;
+    MapCell cell = *map->methods[panel];
+    char method[MAP_METHOD_SIZE], clip[MAP_CLIP_SIZE], target[MAP_CLIP_SIZE + 4], title[MAP_CLIP_SIZE + 20];
+    map_cell_method(method, &cell);
+    for (int x = 0; x < map->x_count; x++)
+        for (int y = 0; y < map->y_count; y++) {
+            const int look = map->looks[panel][x][y];
+            if (look >= VERDICTS) continue;
+            cell.x = map->x[x];
+            cell.y = map->y[y];
+            map_cell_clip(clip, &cell);
+            snprintf(target, sizeof target, "%s.mp4", clip);
+            snprintf(title, sizeof title, "%s:%s:%.4g,%.4g %s", cell.map, method, cell.x, cell.y, verdict_words[look]);
+            chart_make_plain(title);
+            sketch_link(layout->sketch, plot_place(plot, x - 0.5, y - 0.5), plot_place(plot, x + 0.5, y + 0.5), target,
+                        title);
+        }
+}
+
+static void draw_panel(const Layout *layout, int panel) {
+    const MapPanels *map = layout->map;
+    const MapCell *method = map->methods[panel];
+    PlotTicks ticks[2];
+    char title[STABILITY_TEXT_SIZE], x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
+    PlotPanel plot = {.box = plot_grid_box(&layout->grid, panel), .title = title};
+    stability_method_text(title, 8, plot.box.width, method->method, method->setting);
+    stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
+    stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
+    plot.x = map_axis(&ticks[0], true, map->x, map->x_count, layout->cell_x);
+    plot.y = map_axis(&ticks[1], false, map->y, map->y_count, layout->cell_y);
+    if (panel + layout->grid.columns >= map->panel_count) plot.x.label = x;
+    if (panel % layout->grid.columns == 0) plot.y.label = y;
+    plot_panel_place(&plot);
+    draw_tiles(layout, panel, &plot);
+    draw_border(layout, panel, &plot);
+    draw_links(layout, panel, &plot);
+    plot_panel_draw(layout->sketch, &plot);
+}
+
+static void draw_legend(const Layout *layout) {
+    LegendPlace place = {layout->grid.left, LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
+                         (layout->grid.width - layout->grid.left) / layout->legend_columns, layout->legend_columns};
+    const int next = verdict_draw_legend(layout->sketch, layout->used, &place);
+    const Point at = {place.left + place.width * (next % place.columns),
+                      place.top - LEGEND_ROW * (next / place.columns)};
+    sketch_rectangle(layout->sketch, (Point){at.x, at.y - border_width / 2},
+                     (Point){at.x + 2.9, at.y + border_width / 2}, &(Pen){0x000000, 1, NO_COLOUR, 0, NULL});
+    plot_text(layout->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS, "border of holding");
+}
+
+static void write_caption(const MapPanels *map, char caption[PLOT_CAPTION_SIZE]) {
+    char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
+    stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
+    stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
+    snprintf(
+        caption, PLOT_CAPTION_SIZE,
+        "Where each method fails: map %s. Across: %s; up: %s. Each cell is one run and its worst verdict; darker is "
+        "worse. Settling, swaying and creeping count as holding; the black line separates them from failing. All "
+        "cells have the same size, whatever their values.\n",
+        map->first->map, x, y);
+}
+
+void map_panels_write(const MapPanels *map, PlotPage *page) {
+    const Layout layout = lay_out(map, &page->sketch);
+    sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
+    for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
+    draw_legend(&layout);
+    write_caption(map, page->caption);
+}

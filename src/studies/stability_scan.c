@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/machine.h"
+#include "methods/methods.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+#include "studies/stability.h"
+#include "studies/stability_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Estimated number of runs of a method beyond the coarse scan: a bisection and its seeds. */
+enum { RUNS_OF_A_BORDER = 8 };
+
+typedef enum Part { PART_STUDIED, PART_LEFT_OUT, PART_REFUSED } Part;
+
+/* An unshifted run. */
+typedef struct ScanRun {
+    double value;
+    VerdictReading reading;
+} ScanRun;
+
+/* The results of a method. */
+typedef struct Result {
+    Part part;
+    BorderList borders;
+    Error reason;  /* of the refusal */
+    ScanRun *runs; /* [run_count] */
+    size_t run_capacity;
+    int run_count;
+} Result;
+
+typedef struct Run {
+    ScanContext *context;
+    const StabilityScan *scan; /* of the context */
+    int first;                 /* method of the first result */
+    RunCounter counter;
+    Result *results;
+} Run;
+
+static StabilityPlace place_of(const StabilityScan *scan) {
+    return (StabilityPlace){scan->scenes, scan->study->scene, scan->study->file};
+}
+
+static Scene *scene_at(const StabilityScan *scan, double value, Error *error) {
+    const StabilityPlace place = place_of(scan);
+    SceneSetting settings[2] = {{.value = value}, scan->study->fixed};
+    snprintf(settings[0].name, sizeof settings[0].name, "%s", scan->study->parameter);
+    return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
+}
+
+static bool judge(const StabilityScan *scan, const Scene *scene, const Method *method, const EnergyLog *log,
+                  VerdictReading *reading, Error *error) {
+    const StabilityPlace place = place_of(scan);
+    const VerdictRun run = stability_verdict_run(&place, scene, scan->study->stands, log);
+    return verdict_run(reading, scene, method, &run, error);
+}
+
+bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
+                        ConvergedRuns *converged, VerdictReading *reading, Error *error) {
+    Scene *scene = scene_at(scan, value, error);
+    const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
+    if (scene != NULL) stability_shift(scene, seed);
+    if (scene != NULL && method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
+    bool ok = log != NULL && judge(scan, scene, method, log, reading, error);
+    scene_destroy(scene);
+    return ok;
+}
+
+typedef struct ProbeContext {
+    Run *run;
+    const Method *method;
+    Result *result;
+} ProbeContext;
+
+static bool store_run(Result *result, double value, const VerdictReading *reading, Error *error) {
+    if (!array_reserve((void **)&result->runs, &result->run_capacity, (size_t)result->run_count + 1,
+                       sizeof *result->runs))
+        return error_memory(error, "runs");
+    result->runs[result->run_count++] = (ScanRun){value, *reading};
+    return true;
+}
+
+static bool probe_value(void *context, double value, int seed, Verdict *verdict, Error *error) {
+    const ProbeContext *probed = context;
+    Run *run = probed->run;
+    VerdictReading reading;
+    if (!stability_scan_run(run->scan, probed->method, value, seed, &run->context->converged, &reading, error))
+        return false;
+    *verdict = reading.verdict;
+    if (seed == 0 && !store_run(probed->result, value, &reading, error)) return false;
+    return run_counter_add(&run->counter, run->scan->study->name, error);
+}
+
+/* Tests both ends of the scan: a network may fit the bodies of one value only. */
+static bool applies(const StabilityScan *scan, const Method *method, Error *reason) {
+    const double ends[] = {scan->study->scan.from, scan->study->scan.to};
+    bool ok = true;
+    for (int i = 0; ok && i < 2; i++) {
+        Scene *scene = scene_at(scan, ends[i], reason);
+        ok = scene != NULL && stability_applies(method, scene, reason);
+        scene_destroy(scene);
+    }
+    return ok;
+}
+
+static const Contender *contender_of(const Run *run, int i) { return &run->scan->methods->items[run->first + i]; }
+
+static bool study_method(void *context, int i, Error *error) {
+    Run *run = context;
+    Result *result = &run->results[i];
+    const StabilityStudy *study = run->scan->study;
+    ProbeContext probed = {run, &contender_of(run, i)->method, result};
+    if (study->iterations && !stability_takes_iterations(probed.method)) {
+        result->part = PART_LEFT_OUT;
+        return true;
+    }
+    if (!applies(run->scan, probed.method, &result->reason)) {
+        result->part = PART_REFUSED;
+        return result->reason.kind == ERROR_INPUT || error_system(error, study->name, "%s", result->reason.message);
+    }
+    const BorderProbe probe = {probe_value, &probed, study->unshifted ? 1 : BORDER_SEEDS};
+    return border_search(&result->borders, &study->scan, &probe, error);
+}
+
+static bool write_border(const Run *run, int i, const Border *border, FILE *lines, Error *error) {
+    const Contender *contender = contender_of(run, i);
+    const StabilityStudy *study = run->scan->study;
+    const BorderRow row = {.study = study->name,
+                           .method = contender->name,
+                           .setting = contender->setting,
+                           .parameter = study->parameter,
+                           .unit = stability_unit(run->context->typical, study->parameter),
+                           .holds_at = border != NULL ? border->holds_at : NAN,
+                           .fails_at = border != NULL ? border->fails_at : NAN,
+                           .verdict = border != NULL ? (int)border->verdict : LOOK_NOT_APPLICABLE};
+    return piece_tables_print(lines, &border_layout, -1, &row, error);
+}
+
+static int by_value(const void *left, const void *right) {
+    const ScanRun *a = left, *b = right;
+    return (a->value > b->value) - (a->value < b->value);
+}
+
+static double finite_or_nan(double number) { return isfinite(number) ? number : NAN; }
+
+static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *lines, Error *error) {
+    const Contender *contender = contender_of(run, i);
+    const StabilityStudy *study = run->scan->study;
+    const VerdictReading *reading = &scan_run->reading;
+    const RunRow row = {.study = study->name,
+                        .method = contender->name,
+                        .setting = contender->setting,
+                        .parameter = study->parameter,
+                        .unit = stability_unit(run->context->typical, study->parameter),
+                        .value = scan_run->value,
+                        .steps = reading->steps,
+                        .verdict = (int)reading->verdict,
+                        .drift = finite_or_nan(reading->drift),
+                        .energy = finite_or_nan(reading->gained),
+                        .not_finite = reading->fallbacks.not_finite,
+                        .outside_cone = reading->fallbacks.outside_cone,
+                        .beyond_training = reading->fallbacks.beyond_training,
+                        .by_sweeps = reading->fallbacks.by_sweeps};
+    const MethodDescription *method = contender->method.kind->description;
+    const bool may_fall_back = method->needs_network || method->falls_back;
+    if (may_fall_back && !piece_tables_print(lines, &fallback_layout, -1, &row, error)) return false;
+    return !study->rests || piece_tables_print(lines, &rest_layout, -1, &row, error);
+}
+
+static bool write_runs(const Run *run, int i, FILE *lines, Error *error) {
+    Result *result = &run->results[i];
+    if (result->run_count == 0) return true;
+    qsort(result->runs, (size_t)result->run_count, sizeof *result->runs, by_value);
+    for (int k = 0; k < result->run_count; k++)
+        if (!write_run(run, i, &result->runs[k], lines, error)) return false;
+    return true;
+}
+
+static bool write_refusal(const Run *run, int i, FILE *lines, Error *error) {
+    const Contender *contender = contender_of(run, i);
+    char *reason = run->results[i].reason.message;
+    reason[strcspn(reason, "\n")] = '\0';
+    const RefusalRow row = {run->scan->study->name, contender->name, contender->setting, reason};
+    return write_border(run, i, NULL, lines, error) && piece_tables_print(lines, &refusal_layout, -1, &row, error);
+}
+
+static bool write_result(const Run *run, int i, FILE *lines, Error *error) {
+    const Result *result = &run->results[i];
+    if (result->part == PART_LEFT_OUT) return true;
+    for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
+        if (!write_border(run, i, &result->borders.items[k], lines, error)) return false;
+    return write_runs(run, i, lines, error) && (result->part != PART_REFUSED || write_refusal(run, i, lines, error));
+}
+
+bool stability_scan_begin(ScanContext *context, const StabilityScan *scan, Error *error) {
+    const StabilityPlace place = place_of(scan);
+    *context = (ScanContext){.scan = scan, .typical = stability_scene(&place, NULL, 0, error)};
+    return context->typical != NULL;
+}
+
+void stability_scan_end(ScanContext *context) {
+    converged_runs_free(&context->converged);
+    scene_destroy(context->typical);
+    *context = (ScanContext){0};
+}
+
+bool stability_scan_write(ScanContext *context, int first, int end, FILE *results, const Progress *progress,
+                          Error *error) {
+    const StabilityStudy *study = context->scan->study;
+    const int methods = end - first;
+    Run run = {
+        .context = context,
+        .scan = context->scan,
+        .first = first,
+        .counter = {.progress = progress, .expected = (double)methods * (study->scan.points + RUNS_OF_A_BORDER)}};
+    const ParallelWork work = {study_method, &run};
+    run.results = calloc((size_t)methods, sizeof *run.results);
+    bool ok = (run.results != NULL || error_memory(error, study->name)) &&
+              parallel_for(&work, methods, study->name, NULL, error);
+    for (int i = 0; ok && i < methods; i++) ok = write_result(&run, i, results, error);
+    for (int i = 0; run.results != NULL && i < methods; i++) free(run.results[i].runs);
+    free(run.results);
+    return ok;
+}

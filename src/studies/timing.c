@@ -1,0 +1,318 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "runs/runs.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+
+struct PooledStepper {
+    omp_lock_t taken;
+    Stepper *stepper; /* NULL: not made yet */
+};
+
+bool stepper_pool_begin(StepperPool *pool, int count, Error *error) {
+    *pool = (StepperPool){.items = calloc((size_t)count + 1, sizeof *pool->items)};
+    if (pool->items == NULL) return error_memory(error, "study");
+    for (; pool->count < count; pool->count++) omp_init_lock(&pool->items[pool->count].taken);
+    return true;
+}
+
+void stepper_pool_end(StepperPool *pool) {
+    stepper_pool_empty(pool);
+    for (int i = 0; i < pool->count; i++) omp_destroy_lock(&pool->items[i].taken);
+    free(pool->items);
+    *pool = (StepperPool){0};
+}
+
+void stepper_pool_empty(StepperPool *pool) {
+    for (int i = 0; i < pool->count; i++) {
+        stepper_destroy(pool->items[i].stepper);
+        pool->items[i].stepper = NULL;
+    }
+}
+
+/* *free: it is taken, as no other thread had it. */
+static int choose(StepperPool *pool, const bool *chosen, int from, bool *free) {
+    int found = -1;
+    for (int k = 0; k < pool->count; k++) {
+        const int i = (from + k) % pool->count;
+        if (chosen[i]) continue;
+        *free = omp_test_lock(&pool->items[i].taken) != 0;
+        if (*free) return i;
+        if (found < 0) found = i;
+    }
+    return found;
+}
+
+int stepper_pool_take(StepperPool *pool, bool *chosen, int from) {
+    int index;
+    bool free = false;
+#pragma omp critical(stepper_pool)
+    {
+        index = choose(pool, chosen, from, &free);
+        chosen[index] = true;
+    }
+    if (!free) omp_set_lock(&pool->items[index].taken);
+    return index;
+}
+
+void stepper_pool_give(StepperPool *pool, int index) { omp_unset_lock(&pool->items[index].taken); }
+
+Stepper *stepper_pool_stepper(StepperPool *pool, int index, const Method *method, const Scene *scene, Error *error) {
+    PooledStepper *item = &pool->items[index];
+    if (item->stepper == NULL) item->stepper = stepper_create(method, scene, error);
+    return item->stepper;
+}
+
+/* A counter, and what reading it costs. */
+typedef struct Meter {
+    int64_t (*now)(void);
+    int64_t overhead;
+} Meter;
+
+/* The times of steps, in the order in which they ran: the same in all repetitions. */
+typedef struct StepTime {
+    int64_t solver, step;
+    Phase phase;
+} StepTime;
+
+typedef struct StepLog {
+    int count;
+    StepTime *items; /* [count] */
+    size_t capacity;
+} StepLog;
+
+typedef struct Cost {
+    int64_t solver, step;
+} Cost;
+
+static bool metered_step(Stepper *stepper, World *world, Step step, const Meter *meter, Cost *cost, Error *error) {
+    StepMeter inner = {.now = meter->now};
+    step.meter = &inner;
+    int64_t begun = meter->now();
+    if (!simulate_step(stepper, world, &step, error)) return false;
+    cost->step = meter_without(meter->now() - begun, 3 * meter->overhead); /* with two calls inside the step */
+    cost->solver = meter_without(inner.solving, meter->overhead);
+    return true;
+}
+
+static bool log_step(StepLog *log, const Cost *cost, Phase phase, Error *error) {
+    if (!array_reserve((void **)&log->items, &log->capacity, (size_t)log->count + 1, sizeof *log->items))
+        return error_memory(error, "timing");
+    log->items[log->count++] = (StepTime){cost->solver, cost->step, phase};
+    return true;
+}
+
+/* Ends early if the state becomes NaN or infinite. */
+static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, const Meter *meter, StepLog *log,
+                       Error *error) {
+    World *world = scene_world(launched, error);
+    if (world == NULL) return false;
+    PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
+    Error failure = {0};
+    Cost cost;
+    for (int frame = 1; frame <= last_frame; frame++) {
+        if (!metered_step(stepper, world, (Step){.scene = launched, .frame = frame}, meter, &cost, &failure) ||
+            !log_step(log, &cost, phase_next(&tracker, world_problem(world), frame), &failure))
+            break;
+    }
+    world_destroy(world);
+    if (failure.kind != ERROR_SYSTEM) return true;
+    *error = failure;
+    return false;
+}
+
+static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world, const Meter *meter, StepLog *log,
+                       Error *error) {
+    Cost cost;
+    for (int i = 0; i < list->count; i++) {
+        const Snapshot *snapshot = &list->items[i];
+        if (!world_copy(world, snapshot->world, error) ||
+            !metered_step(stepper, world, (Step){.scene = snapshot->scene, .frame = snapshot->frame}, meter, &cost,
+                          error) ||
+            !log_step(log, &cost, snapshot->phase, error))
+            return false;
+    }
+    return true;
+}
+
+/* One contender. */
+typedef struct Timed {
+    Stepper *stepper;
+    StepLog *logs[PROTOCOLS]; /* [repetitions] each */
+    double instructions[PROTOCOLS][PHASES];
+} Timed;
+
+typedef struct Timing {
+    const TimingOptions *options;
+    const SnapshotList *snapshots;
+    World *world;
+    int count;
+    Timed *items;  /* [count] */
+    double *times; /* scratch, [repetitions] */
+} Timing;
+
+static bool run_both(const Timing *timing, const Timed *timed, const Meter *meter, StepLog *closed, StepLog *frozen,
+                     Error *error) {
+    for (int i = 0; i < timing->options->launch_count; i++)
+        if (!run_closed(timed->stepper, &timing->options->launches[i], timing->options->last_frame, meter, closed,
+                        error))
+            return false;
+    return run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
+}
+
+static bool repeat(Timing *timing, int repetition, const Meter *meter, Error *error) {
+    for (int i = 0; i < timing->count; i++) {
+        const Timed *timed = &timing->items[i];
+        if (!run_both(timing, timed, meter, &timed->logs[PROTOCOL_CLOSED][repetition],
+                      &timed->logs[PROTOCOL_FROZEN][repetition], error))
+            return false;
+    }
+    return true;
+}
+
+/* Mean of the solver's counts in a phase. */
+static double mean_count(const StepLog *log, int phase) {
+    int64_t sum = 0;
+    int steps = 0;
+    for (int i = 0; i < log->count; i++) {
+        if ((int)log->items[i].phase != phase) continue;
+        sum += log->items[i].solver;
+        steps++;
+    }
+    return steps > 0 ? (double)sum / steps : NAN;
+}
+
+/* Without repetitions: counts do not vary. */
+static bool count_instructions(Timing *timing, Error *error) {
+    bool can = !timing->options->no_instructions && meter_open_instructions();
+    const Meter meter = {meter_instructions, 0};
+    bool ok = true;
+    for (int i = 0; ok && i < timing->count; i++) {
+        StepLog logs[PROTOCOLS] = {0};
+        if (can)
+            ok = run_both(timing, &timing->items[i], &meter, &logs[PROTOCOL_CLOSED], &logs[PROTOCOL_FROZEN], error);
+        for (int p = 0; p < PROTOCOLS; p++) {
+            for (int phase = 0; phase < PHASES; phase++)
+                timing->items[i].instructions[p][phase] = can ? mean_count(&logs[p], phase) : NAN;
+            free(logs[p].items);
+        }
+    }
+    if (can) meter_close_instructions();
+    return ok;
+}
+
+/* Adds the quartiles and medians of step i over the repetitions. A repetition that another process interrupted in this
+   step does not count more than once. */
+static void add_step(StepCost *sum, const StepLog *logs, int repetitions, int i, double *times) {
+    for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].step / 1000;
+    sum->step += statistics_quantile(times, repetitions, 0.5);
+    for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].solver / 1000;
+    sum->solver += statistics_quantile(times, repetitions, 0.5);
+    sum->solver_q1 += statistics_quantile(times, repetitions, 0.25);
+    sum->solver_q3 += statistics_quantile(times, repetitions, 0.75);
+}
+
+static int fewest(const StepLog *logs, int repetitions) {
+    int count = logs[0].count;
+    for (int r = 1; r < repetitions; r++) count = logs[r].count < count ? logs[r].count : count;
+    return count;
+}
+
+/* times: scratch, [repetitions]. */
+static StepCost summarise(const Timed *timed, int protocol, int phase, int repetitions, double *times) {
+    const StepLog *logs = timed->logs[protocol];
+    StepCost sum = {0};
+    int steps = 0;
+    for (int i = 0; i < fewest(logs, repetitions); i++) {
+        if ((int)logs[0].items[i].phase != phase) continue;
+        add_step(&sum, logs, repetitions, i, times);
+        steps++;
+    }
+    if (steps == 0)
+        return (StepCost){.solver = NAN, .solver_q1 = NAN, .solver_q3 = NAN, .step = NAN, .instructions = NAN};
+    return (StepCost){.solver = sum.solver / steps,
+                      .solver_q1 = sum.solver_q1 / steps,
+                      .solver_q3 = sum.solver_q3 / steps,
+                      .step = sum.step / steps,
+                      .steps = steps,
+                      .instructions = timed->instructions[protocol][phase]};
+}
+
+static bool timing_begin(Timing *timing, const Contender *const *contenders, Error *error) {
+    const Scene *scene = &timing->options->launches[0];
+    const size_t repetitions = (size_t)timing->options->repetitions;
+    timing->times = malloc(repetitions * sizeof *timing->times);
+    timing->items = calloc((size_t)timing->count, sizeof *timing->items);
+    if (timing->items == NULL || timing->times == NULL) return error_memory(error, "timing");
+    for (int i = 0; i < timing->count; i++) {
+        Timed *timed = &timing->items[i];
+        timed->stepper = stepper_create(&contenders[i]->method, scene, error);
+        if (timed->stepper == NULL) return false;
+        for (int p = 0; p < PROTOCOLS; p++) {
+            timed->logs[p] = calloc(repetitions, sizeof *timed->logs[p]);
+            if (timed->logs[p] == NULL) return error_memory(error, "timing");
+        }
+    }
+    timing->world = scene_world(scene, error);
+    return timing->world != NULL;
+}
+
+static void timing_end(Timing *timing) {
+    for (int i = 0; timing->items != NULL && i < timing->count; i++) {
+        const Timed *timed = &timing->items[i];
+        stepper_destroy(timed->stepper);
+        for (int p = 0; p < PROTOCOLS; p++) {
+            for (int r = 0; timed->logs[p] != NULL && r < timing->options->repetitions; r++)
+                free(timed->logs[p][r].items);
+            free(timed->logs[p]);
+        }
+    }
+    free(timing->items);
+    free(timing->times);
+    world_destroy(timing->world);
+}
+
+static bool measure(Timing *timing, const Progress *progress, Error *error) {
+    const int repetitions = timing->options->repetitions;
+    const Meter clock = {meter_time, meter_time_overhead()};
+    for (int r = 0; r < repetitions; r++) {
+        if (!repeat(timing, r, &clock, error)) return false;
+        if (!progress_report(progress, r + 1, repetitions))
+            return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
+    }
+    return count_instructions(timing, error);
+}
+
+bool timing_measure(const Contender *const *contenders, int count, const TimingOptions *options,
+                    const SnapshotList *snapshots, StepCost (*closed)[PHASES], StepCost (*frozen)[PHASES],
+                    const Progress *progress, Error *error) {
+    Timing timing = {.options = options, .snapshots = snapshots, .count = count};
+    meter_pin();
+    bool ok = timing_begin(&timing, contenders, error) && measure(&timing, progress, error);
+    meter_unpin();
+    for (int i = 0; ok && i < count; i++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            closed[i][phase] = summarise(&timing.items[i], PROTOCOL_CLOSED, phase, options->repetitions, timing.times);
+            frozen[i][phase] = summarise(&timing.items[i], PROTOCOL_FROZEN, phase, options->repetitions, timing.times);
+        }
+    timing_end(&timing);
+    return ok;
+}
+
+double step_cost_mean(const StepCost costs[PHASES], bool only_solver) {
+    double sum = 0;
+    int steps = 0;
+    for (int phase = 0; phase < PHASES; phase++) {
+        if (costs[phase].steps == 0) continue;
+        sum += costs[phase].steps * (only_solver ? costs[phase].solver : costs[phase].step);
+        steps += costs[phase].steps;
+    }
+    return steps > 0 ? sum / steps : NAN;
+}

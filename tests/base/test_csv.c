@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "base/csv.h"
+
+static const char *write_table(const char *text, size_t size) {
+    return write_bytes(temporary_path("table.csv"), text, size);
+}
+
+static Csv read_good(const char *text) {
+    Error error = {0};
+    Csv csv;
+    assert_ok(csv_read(&csv, write_table(text, strlen(text)), 1000, 1, 3, &error), error);
+    return csv;
+}
+
+static void fields_are_found_and_unquoted(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "a,b\n\"x,\"\"y\"\"\",\n\"\",\"c\"\n",
+        "a,b\r\n\"x,\"\"y\"\"\",\r\n\"\",\"c\"",
+        ("\xef\xbb\xbf"
+         "a,b\n\"x,\"\"y\"\"\",\n,\"c\""),
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        Csv csv = read_good(texts[i]);
+        assert_int_equal(csv.width, 2);
+        assert_int_equal(csv.rows, 3);
+        assert_string_equal(csv_text(&csv, 0, 0), "a");
+        assert_string_equal(csv_text(&csv, 0, 1), "b");
+        assert_string_equal(csv_text(&csv, 1, 0), "x,\"y\"");
+        assert_string_equal(csv_text(&csv, 1, 1), "");
+        assert_string_equal(csv_text(&csv, 2, 0), "");
+        assert_string_equal(csv_text(&csv, 2, 1), "c");
+        csv_free(&csv);
+    }
+}
+
+static void errors_name_line_and_column_in_characters(void **state) {
+    (void)state;
+    Error error = {0};
+    Csv csv = read_good("a,b,c\n\"1,\",\xc3\xa4\xc3\xb6,2\n");
+    assert_refused(csv_error(&csv, 1, 2, &error, "not %d", 7), "table.csv:2:9: error: not 7");
+    csv_free(&csv);
+}
+
+static void broken_tables_are_refused_with_their_place(void **state) {
+    (void)state;
+#define CASE(text, message) \
+    { text, sizeof(text) - 1, message }
+    static const struct {
+        const char *text;
+        size_t size;
+        const char *message;
+    } cases[] = {
+        CASE("", "table.csv:1:1: error: the file is empty"),
+        CASE("a,b\n", "table.csv:2:1: error: the table has no rows"),
+        CASE("a,b\n1,2,3\n", "table.csv:2:1: error: 3 fields, but the header has 2"),
+        CASE("a,b\n1,2\n1\n", "table.csv:3:1: error: 1 field, but the header has 2"),
+        CASE("a,b\n\n1,2\n", "table.csv:2:1: error: the line is empty"),
+        CASE("\r\na\r\n", "table.csv:1:1: error: the line is empty"),
+        CASE("a\n1\n2\n3\n4\n", "table.csv:5:1: error: the table has more than 3 rows"),
+        CASE("a,b\n1,2\0\n", "table.csv:2:4: error: control character 0x00"),
+        CASE("a,b\n1,\t2\n", "table.csv:2:3: error: control character 0x09"),
+        CASE("a,b\n1,2\r", "table.csv:2:4: error: control character 0x0d"),
+        CASE("a,b\n1,2\r3\n", "table.csv:2:4: error: control character 0x0d"),
+        CASE("a,b\n1,x\"y\"\n", "table.csv:2:4: error: a quote inside a field"),
+        CASE("a,b\n1,\"x\n\"\n", "table.csv:2:3: error: this quote is not closed"),
+        CASE("a,b\n1,\"x", "table.csv:2:3: error: this quote is not closed"),
+        CASE("a,b\n\"1\"2,x\n", "table.csv:2:4: error: expected a comma after the closing quote"),
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Error error = {0};
+        Csv csv;
+        assert_refused(csv_read(&csv, write_table(cases[i].text, cases[i].size), 1000, 1, 3, &error), cases[i].message);
+    }
+}
+
+static void large_and_missing_files_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Csv csv;
+    assert_refused(csv_read(&csv, write_table("a\n1\n2\n", 6), 5, 1, 3, &error), "larger than 5 bytes");
+    assert_refused(csv_read(&csv, temporary_path("none.csv"), 5, 1, 3, &error), "cannot open");
+}
+
+static void what_is_put_is_read_again(void **state) {
+    (void)state;
+    static const char *const texts[] = {"k=20", "k=20,warm=off", "say \"k\"", "\"", ",", "", " a "};
+    enum { COUNT = sizeof texts / sizeof *texts };
+    char *data = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&data, &size);
+    assert_non_null(file);
+    for (int row = 0; row < 2; row++)
+        for (int i = 0; i < COUNT; i++) {
+            csv_put(file, texts[i], false);
+            fputc(i + 1 < COUNT ? ',' : '\n', file);
+        }
+    fclose(file);
+    Csv csv = read_good(data);
+    assert_int_equal(csv.width, COUNT);
+    for (int i = 0; i < COUNT; i++) assert_string_equal(csv_text(&csv, 1, i), texts[i]);
+    csv_free(&csv);
+    free(data);
+}
+
+static void shown_text_is_short_and_prints(void **state) {
+    (void)state;
+    assert_string_equal(csv_show("").text, "");
+    assert_string_equal(csv_show("1e999").text, "1e999");
+    assert_string_equal(csv_show("\xc3\xa4\x1b[2J").text, "???[2J");
+    assert_string_equal(csv_show("01234567890123456789012345678901234567890123456").text,
+                        "01234567890123456789012345678901234567890123456");
+    assert_string_equal(csv_show("012345678901234567890123456789012345678901234567").text,
+                        "01234567890123456789012345678901234567890123...");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fields_are_found_and_unquoted),
+        cmocka_unit_test(errors_name_line_and_column_in_characters),
+        cmocka_unit_test(broken_tables_are_refused_with_their_place),
+        cmocka_unit_test(large_and_missing_files_are_refused),
+        cmocka_unit_test(what_is_put_is_read_again),
+        cmocka_unit_test(shown_text_is_short_and_prints),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

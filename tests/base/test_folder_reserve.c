@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A folder belongs to one process at a time, which is named; what is left of an ended process is waited for. */
+#include "testing.h"
+
+#include "base/machine.h"
+#include "base/file.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+static char folder[256];
+
+static void choose_folder(const char *name) { snprintf(folder, sizeof folder, "%s", temporary_path(name)); }
+
+/* Exit status of a process that reserves the folder, and its error. */
+static int reserve_in_child(Error *error) {
+    int ends[2], status;
+    assert_int_equal(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        folder_reserve(folder, error);
+        _exit(write(ends[1], error, sizeof *error) == sizeof *error ? 0 : 1);
+    }
+    close(ends[1]);
+    assert_int_equal(read(ends[0], error, sizeof *error), sizeof *error);
+    close(ends[0]);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return status;
+}
+
+/* A process with the folder, which waits for its end, or, if `leave`, leaves it to a child for a moment. */
+static pid_t start_holder(bool leave) {
+    int ends[2];
+    char byte;
+    Error error = {0};
+    assert_int_equal(pipe(ends), 0);
+    const pid_t holder = fork();
+    if (holder == 0) {
+        if (!folder_reserve(folder, &error) || (leave && fork() != 0)) _exit(0);
+        if (write(ends[1], "x", 1) != 1) _exit(1);
+        if (!leave) pause();
+        sleep(1); /* longer than a living process is waited for */
+        _exit(0);
+    }
+    close(ends[1]);
+    assert_int_equal(read(ends[0], &byte, 1), 1);
+    close(ends[0]);
+    return holder;
+}
+
+static void the_other_process_is_named(void **state) {
+    (void)state;
+    char name[64];
+    Error error = {0};
+    choose_folder("held/by/another");
+    const pid_t holder = start_holder(false);
+    assert_int_equal(reserve_in_child(&error), 0);
+    assert_error(error, ERROR_SYSTEM, folder);
+    assert_error(error, ERROR_SYSTEM, "is writing into this folder");
+    snprintf(name, sizeof name, "another process (%ld)", (long)holder);
+    assert_error(error, ERROR_SYSTEM, name);
+    kill(holder, SIGKILL);
+    assert_int_equal(waitpid(holder, NULL, 0), holder);
+    error = (Error){0};
+    assert_int_equal(reserve_in_child(&error), 0);
+    assert_ok(error.kind == ERROR_NONE, error);
+}
+
+static void children_of_an_ended_process_are_waited_for(void **state) {
+    (void)state;
+    Error error = {0};
+    choose_folder("left");
+    const pid_t holder = start_holder(true);
+    assert_int_equal(waitpid(holder, NULL, 0), holder);
+    assert_int_equal(reserve_in_child(&error), 0);
+    assert_ok(error.kind == ERROR_NONE, error);
+}
+
+static void a_process_may_reserve_a_folder_again(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int i = 0; i < 30; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "own-%d", i % 10); /* more than are kept at a time */
+        choose_folder(name);
+        assert_ok(folder_reserve(folder, &error) && folder_reserve(folder, &error), error);
+    }
+    assert_int_equal(reserve_in_child(&error), 0);
+    assert_ok(error.kind == ERROR_NONE, error);
+    write_bytes(temporary_path("file"), "x", 1);
+    choose_folder("file/folder");
+    assert_false(folder_reserve(folder, &error));
+    assert_error(error, ERROR_SYSTEM, "cannot make the directory");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_other_process_is_named),
+                                       cmocka_unit_test(children_of_an_ended_process_are_waited_for),
+                                       cmocka_unit_test(a_process_may_reserve_a_folder_again)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

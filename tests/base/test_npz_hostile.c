@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that are no .npz, or one made for harm: refused with the reason, before they cost time or memory. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "base/npz.h"
+
+#include <zip.h>
+
+static NpzFile *open_file(const char *path) {
+    Error error = {0};
+    NpzFile *file = npz_open(path, &error);
+    assert_ok(file != NULL, error);
+    return file;
+}
+
+static char *file_bytes(const char *path, size_t *size) {
+    Error error = {0};
+    char *data = file_read(path, 1 << 20, size, &error);
+    assert_ok(data != NULL, error);
+    return data;
+}
+
+/* A zip of one member with these bytes. */
+static void write_member(const char *path, const char *name, const char *data, size_t size, zip_int32_t method) {
+    remove(path);
+    zip_t *archive = zip_open(path, ZIP_CREATE, NULL);
+    assert_non_null(archive);
+    zip_int64_t index = zip_file_add(archive, name, zip_source_buffer(archive, data, size, 0), 0);
+    assert_int_equal(index, 0);
+    assert_int_equal(zip_set_file_compression(archive, 0, method, 0), 0);
+    assert_int_equal(zip_close(archive), 0);
+}
+
+static void expect_refused(const char *path, const char *reason) {
+    Error error = {0};
+    assert_refused(npz_open(path, &error), path, reason);
+}
+
+/* An array with this dictionary and data_size bytes of data. */
+static void expect_head_refused(const char *dictionary, size_t data_size, const char *reason) {
+    const char *path = temporary_path("head.npz");
+    char *member = calloc(1, 10 + strlen(dictionary) + data_size);
+    memcpy(member, "\x93NUMPY\1\0", 8);
+    member[8] = (char)(strlen(dictionary) & 0xff);
+    member[9] = (char)(strlen(dictionary) >> 8);
+    memcpy(member + 10, dictionary, strlen(dictionary));
+    write_member(path, "array.npy", member, 10 + strlen(dictionary) + data_size, ZIP_CM_STORE);
+    free(member);
+    if (reason == NULL)
+        npz_close(open_file(path));
+    else
+        expect_refused(path, reason);
+}
+
+#define HEAD(type, order, shape) "{'descr': '" type "', 'fortran_order': " order ", 'shape': " shape ", }\n"
+
+static void heads_are_read_strictly(void **state) {
+    (void)state;
+    expect_head_refused(HEAD("<f4", "False", "(3, 2)"), 24, NULL);
+    expect_head_refused(HEAD("<f4", "False", "(3,)"), 12, NULL);
+    expect_head_refused(HEAD("<f4", "False", "()"), 4, NULL);
+    expect_head_refused(HEAD("<U3", "False", "()"), 12, NULL);
+    expect_head_refused(HEAD("<f4", "True", "(3, 2)"), 24, NULL);
+    expect_head_refused(HEAD(">f4", "False", "(3, 2)"), 24, NULL);
+    expect_head_refused(HEAD(">f2", "False", "(3, 2)"), 12, "of the unsupported type '>f2'");
+    expect_head_refused(HEAD(">u1", "False", "(3, 2)"), 6, "of the unsupported type '>u1'");
+    expect_head_refused(HEAD("=f4", "False", "(3, 2)"), 24, "of the unsupported type '=f4'");
+    expect_head_refused(HEAD("<f2", "False", "(3, 2)"), 12, "of the unsupported type '<f2'");
+    expect_head_refused(HEAD("|O", "False", "(3, 2)"), 24, "of the unsupported type '|O'");
+    expect_head_refused(HEAD("\33[2J", "False", "(3, 2)"), 24, "of the unsupported type ''");
+    expect_head_refused(HEAD("<U2", "False", "(3,)"), 24, "an array of texts");
+    expect_head_refused("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (3,), }\n", 12,
+                        "not a plain array");
+    static const char *const damaged[] = {"(3)",     "(3,2)",   "(,)", "(3, )",           "(3, 2,)",
+                                          "(-3, 2)", "(3, 2",   "3",   "(1, 1, 1, 1, 6)", "(99999999999999999999,)",
+                                          "( 3, 2)", "(3, 2) x"};
+    for (size_t i = 0; i < sizeof damaged / sizeof damaged[0]; i++) {
+        char head[200];
+        snprintf(head, sizeof head, HEAD("<f4", "False", "%s"), damaged[i]);
+        expect_head_refused(head, 24, "damaged head");
+    }
+    expect_head_refused(HEAD("<f4", "Maybe", "(3, 2)"), 24, "damaged head");
+}
+
+static void sizes_must_agree_before_anything_is_inflated(void **state) {
+    (void)state;
+    expect_head_refused(HEAD("<f4", "False", "(3, 2)"), 23, "array 'array' is damaged: ");
+    expect_head_refused(HEAD("<f4", "False", "(3, 2)"), 25, "array 'array' is damaged: ");
+    expect_head_refused(HEAD("<f4", "False", "(4294967296, 4294967296)"), 0, "larger than 2 GiB");
+    expect_head_refused(HEAD("<f4", "False", "(65536, 65536, 65536, 65536)"), 0, "larger than 2 GiB");
+    expect_head_refused(HEAD("<U4611686018427387904", "False", "()"), 0, "larger than 2 GiB");
+    expect_head_refused(HEAD("<f4", "False", "(0, 7)"), 0, NULL);
+}
+
+static void other_files_are_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("other.npz");
+    expect_refused(temporary_path("missing.npz"), "cannot open: ");
+    expect_refused("/dev/zero", "not a regular file");
+    write_bytes(path, "no zip at all", 13);
+    expect_refused(path, "not .npz");
+    write_bytes(path, "PK\5\6\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 22);
+    expect_refused(path, "");
+    write_member(path, "a.txt", "text", 4, ZIP_CM_STORE);
+    expect_refused(path, "a member that is not a named .npy array");
+    write_member(path, "a\33[2J.npy", "text", 4, ZIP_CM_STORE);
+    expect_refused(path, "a member that is not a named .npy array");
+    write_member(path, ".npy", "text", 4, ZIP_CM_STORE);
+    expect_refused(path, "a member that is not a named .npy array");
+    write_member(path, "a.npy", "text", 4, ZIP_CM_STORE);
+    expect_refused(path, "'a' is not a .npy array");
+    write_member(path, "a.npy", "\x93NUMPY\3\0      ", 14, ZIP_CM_STORE);
+    expect_refused(path, "'a' is in version 3.0 of .npy");
+    write_member(path, "a.npy", "\x93NUMPY\1\0\xff\xff     ", 15, ZIP_CM_STORE);
+    expect_refused(path, "cut off or longer");
+}
+
+static void other_compressions_are_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("bzip2.npz");
+    char zeros[10000] = {0};
+    write_member(path, "a.npy", zeros, sizeof zeros, ZIP_CM_BZIP2);
+    expect_refused(path, "array 'a' is neither stored nor deflated");
+}
+
+static void encrypted_arrays_are_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("encrypted.npz");
+    remove(path);
+    zip_t *archive = zip_open(path, ZIP_CREATE, NULL);
+    assert_int_equal(zip_file_add(archive, "a.npy", zip_source_buffer(archive, "text", 4, 0), 0), 0);
+    assert_int_equal(zip_file_set_encryption(archive, 0, ZIP_EM_AES_256, "word"), 0);
+    assert_int_equal(zip_close(archive), 0);
+    expect_refused(path, "array 'a' is encrypted");
+}
+
+/* The first place of the last header of this kind. */
+static char *find_header(char *data, size_t size, const char *signature) {
+    for (char *at = data + size - 4; at >= data; at--)
+        if (memcmp(at, signature, 4) == 0) return at;
+    fail_msg("no header");
+    return NULL;
+}
+
+static void a_name_twice_is_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("twice.npz");
+    float value = 1;
+    NpzArray twins[] = {{"twin1", NPZ_FLOAT32, 0, {0}, &value}, {"twin2", NPZ_FLOAT32, 0, {0}, &value}};
+    Error error = {0};
+    assert_ok(npz_write(path, twins, 2, &error), error);
+    size_t size;
+    char *data = file_bytes(path, &size);
+    find_header(data, size, "PK\1\2")[46 + 4] = '1';
+    find_header(data, size, "PK\3\4")[30 + 4] = '1';
+    write_bytes(path, data, size);
+    free(data);
+    expect_refused(path, "holds array 'twin1' twice");
+}
+
+static void too_many_arrays_are_refused(void **state) {
+    (void)state;
+    static char names[257][16];
+    static NpzArray many[257];
+    uint8_t value = 1;
+    for (int i = 0; i < 257; i++) {
+        snprintf(names[i], sizeof names[i], "a%d", i);
+        many[i] = (NpzArray){names[i], NPZ_UINT8, 0, {0}, &value};
+    }
+    const char *path = temporary_path("many.npz");
+    Error error = {0};
+    assert_ok(npz_write(path, many, 256, &error), error);
+    npz_close(open_file(path));
+    assert_ok(npz_write(path, many, 257, &error), error);
+    expect_refused(path, "holds 257 arrays; expected 1 to 256");
+}
+
+static void set_little_endian(char *at, uint32_t value) {
+    for (int i = 0; i < 4; i++) at[i] = (char)(value >> (8 * i) & 0xff);
+}
+
+/* A member that claims a gigabyte and takes a few hundred bytes: more than deflate can do. */
+static void small_files_cannot_hold_much(void **state) {
+    (void)state;
+    const char *path = temporary_path("claim.npz");
+    NpzArray array = {"empty", NPZ_FLOAT32, 1, {0}, NULL};
+    Error error = {0};
+    assert_ok(npz_write(path, &array, 1, &error), error);
+    size_t size;
+    char *data = file_bytes(path, &size);
+    set_little_endian(find_header(data, size, "PK\1\2") + 24, 1U << 30);
+    write_bytes(path, data, size);
+    free(data);
+    expect_refused(path, "it cannot hold 1073741824 bytes");
+}
+
+/* A .npz of one array of `size` zeros of one byte, deflated by libzip. */
+static void write_zeros(const char *path, const char *type, size_t size) {
+    char *member = calloc(1, 128 + size);
+    int head = snprintf(member + 10, 118, "{'descr': '%s', 'fortran_order': False, 'shape': (%zu,), }", type, size);
+    memcpy(member, "\x93NUMPY\1\0v", 9);
+    memset(member + 10 + head, ' ', 117 - (size_t)head);
+    member[127] = '\n';
+    write_member(path, "zeros.npy", member, 128 + size, ZIP_CM_DEFLATE);
+    free(member);
+}
+
+/* 16 MiB and 256 times the file. Zeros deflate to 1/1000, by npz_write() to 1/218. */
+static void more_than_the_budget_is_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("bomb.npz");
+    write_zeros(path, "|u1", 16 << 20);
+    npz_close(open_file(path));
+    write_zeros(path, "|u1", 64 << 20);
+    expect_refused(path, "its arrays take 67108864 bytes; expected at most 3");
+    expect_refused(path, "(16 MiB and 256 times the size of the file)");
+}
+
+static void what_is_written_is_within_the_budget(void **state) {
+    (void)state;
+    enum { SIZE = 64 << 20 };
+    const char *path = temporary_path("zeros.npz");
+    NpzArray array = {"zeros", NPZ_UINT8, 1, {SIZE}, calloc(SIZE, 1)};
+    Error error = {0};
+    assert_ok(npz_write(path, &array, 1, &error), error);
+    free((void *)array.data);
+    npz_close(open_file(path));
+}
+
+/* An array that is read again and again: 15 MiB, three times of which would exceed 16 MiB and 256 times 15 KB. */
+static void all_that_is_read_is_limited(void **state) {
+    (void)state;
+    enum { SIZE = 15 << 20 };
+    const char *path = temporary_path("again.npz");
+    const int64_t shape = SIZE;
+    Error error = {0};
+    write_zeros(path, "|u1", SIZE);
+    NpzFile *file = open_file(path);
+    int read = 0;
+    for (void *data; (data = npz_read(file, "zeros", NPZ_UINT8, 1, &shape, &error)) != NULL; read++) free(data);
+    npz_close(file);
+    assert_int_equal(read, 1);
+    assert_error(error, ERROR_INPUT, "bytes together");
+}
+
+/* 15 MiB of bytes are 120 MiB as integers of 8 bytes. */
+static void converted_arrays_count_as_what_they_become(void **state) {
+    (void)state;
+    enum { SIZE = 15 << 20 };
+    const char *path = temporary_path("converted.npz");
+    const int64_t shape = SIZE;
+    Error error = {0};
+    write_zeros(path, "|i1", SIZE);
+    NpzFile *file = open_file(path);
+    npz_convert(file);
+    assert_null(npz_read(file, "zeros", NPZ_INT64, 1, &shape, &error));
+    npz_close(file);
+    assert_error(error, ERROR_INPUT, "bytes together");
+}
+
+static void shapes_are_expected_without_data(void **state) {
+    (void)state;
+    const char *path = temporary_path("shapes.npz");
+    const float numbers[6] = {0};
+    const NpzArray written[] = {{"a", NPZ_FLOAT32, 2, {3, 2}, numbers}, {"b", NPZ_FLOAT32, 0, {0}, numbers}};
+    NpzArray expected[] = {{"b", NPZ_FLOAT32, 0, {0}, NULL}, {"a", NPZ_FLOAT32, 2, {3, 2}, NULL}};
+    Error error = {0};
+    assert_ok(npz_write(path, written, 2, &error), error);
+    NpzFile *file = open_file(path);
+    assert_ok(npz_expect(file, expected, 2, &error), error);
+    expected[1].shape[0] = 2;
+    assert_refused(npz_expect(file, expected, 2, &error), "array 'a' has shape (3, 2); expected (2, 2)");
+    assert_ok(npz_expect(file, expected, 1, &error), error);
+    expected[0].name = "c";
+    assert_refused(npz_expect(file, expected, 1, &error), "has no array 'c'");
+    npz_close(file);
+}
+
+/* Directories of millions of entries, or thousands of directories, never reach libzip. */
+static void large_directories_are_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("directory.npz");
+    enum { SIZE = 1 << 20 };
+    char *data = calloc(SIZE, 1);
+    for (size_t at = 0; at + 46 + 22 <= SIZE; at += 46) memcpy(data + at, "PK\1\2", 4);
+    char *end = data + SIZE - 22;
+    memset(end, 0, 22);
+    memcpy(end, "PK\5\6", 4);
+    set_little_endian(end + 12, SIZE - 100);
+    write_bytes(path, data, SIZE);
+    expect_refused(path, "its directory is too large");
+    set_little_endian(end + 12, 46);
+    for (char *other = end - 22; other > end - 2200; other -= 22) memcpy(other, end, 22);
+    write_bytes(path, data, SIZE);
+    expect_refused(path, "its directory is too large");
+    memset(end - 2200, 0, 2200);
+    memcpy(end - 20, "PK\6\7", 4);
+    write_bytes(path, data, SIZE);
+    expect_refused(path, "its directory is too large");
+    free(data);
+}
+
+/* A file of holes of more than 2 GiB. */
+static void large_files_are_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("large.npz");
+    write_bytes(path, "", 0);
+    assert_int_equal(truncate(path, ((off_t)1 << 31) + 1), 0);
+    expect_refused(path, "larger than 2 GiB");
+    remove(path);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(heads_are_read_strictly),
+        cmocka_unit_test(sizes_must_agree_before_anything_is_inflated),
+        cmocka_unit_test(other_files_are_refused),
+        cmocka_unit_test(other_compressions_are_refused),
+        cmocka_unit_test(encrypted_arrays_are_refused),
+        cmocka_unit_test(a_name_twice_is_refused),
+        cmocka_unit_test(too_many_arrays_are_refused),
+        cmocka_unit_test(small_files_cannot_hold_much),
+        cmocka_unit_test(more_than_the_budget_is_refused),
+        cmocka_unit_test(what_is_written_is_within_the_budget),
+        cmocka_unit_test(all_that_is_read_is_limited),
+        cmocka_unit_test(converted_arrays_count_as_what_they_become),
+        cmocka_unit_test(shapes_are_expected_without_data),
+        cmocka_unit_test(large_directories_are_refused),
+        cmocka_unit_test(large_files_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the machine lacks is not blamed on the file. */
+#include "library_allocations.h"
+
+#include "base/npz.h"
+#include "cli/cli.h"
+
+#include <sys/resource.h>
+
+static const char *path;
+static struct rlimit before;
+
+static float numbers[300];
+
+static bool write_all(Error *error) {
+    const NpzArray arrays[] = {{"small", NPZ_FLOAT32, 0, {0}, &numbers[7]}, {"large", NPZ_FLOAT32, 1, {300}, numbers}};
+    return npz_write(path, arrays, 2, error);
+}
+
+static int begin(void **state) {
+    (void)state;
+    static char name[256];
+    Error error = {0};
+    path = strcpy(name, temporary_path("a.npz"));
+    for (int i = 0; i < 300; i++) numbers[i] = (float)(i * i % 97);
+    assert_ok(write_all(&error), error);
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
+    return 0;
+}
+
+/* Lets only so many more files be opened. */
+static void allow_files(unsigned more) {
+    const int next = dup(0);
+    assert_true(next >= 0);
+    close(next);
+    struct rlimit limit = {(rlim_t)next + more, before.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
+}
+
+static int allow_all(void **state) {
+    (void)state;
+    return setrlimit(RLIMIT_NOFILE, &before);
+}
+
+/* libzip needs a descriptor of its own. */
+static void a_lack_of_descriptors_is_no_damage(void **state) {
+    (void)state;
+    for (unsigned more = 0; more < 2; more++) {
+        Error error = {0};
+        allow_files(more);
+        assert_null(npz_open(path, &error));
+        allow_all(NULL);
+        assert_error(error, ERROR_SYSTEM, "Too many open files");
+    }
+}
+
+/* Nor does it make a file one of another kind, which an output does not replace. */
+static void a_lack_of_descriptors_is_no_other_kind(void **state) {
+    (void)state;
+    Error error = {0};
+    allow_files(1);
+    assert_false(output_check_npz(path, NULL, &error));
+    allow_all(NULL);
+    assert_error(error, ERROR_SYSTEM, "Too many open files");
+}
+
+static bool read_all(Error *error) {
+    const int64_t shape[] = {300};
+    bool done = false;
+    NpzFile *file = npz_open(path, error);
+    float *small = file != NULL ? npz_read(file, "small", NPZ_FLOAT32, 0, NULL, error) : NULL;
+    float *large = small != NULL ? npz_read(file, "large", NPZ_FLOAT32, 1, shape, error) : NULL;
+    if (large != NULL) {
+        assert_memory_equal(small, &numbers[7], sizeof *small);
+        assert_memory_equal(large, numbers, sizeof numbers);
+        done = true;
+    }
+    free(small);
+    free(large);
+    npz_close(file);
+    return done;
+}
+
+/* libzip reports it as damage, as no archive, or as no error. */
+static void a_lack_of_memory_is_no_damage(void **state) {
+    (void)state;
+    assert_memory_is_named(read_all);
+}
+
+/* The file is that of the last write that was done. */
+static void writing_names_the_lack_of_memory(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_memory_is_named(write_all);
+    assert_ok(read_all(&error), error);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_lack_of_memory_is_no_damage),
+                                       cmocka_unit_test(writing_names_the_lack_of_memory),
+                                       cmocka_unit_test_teardown(a_lack_of_descriptors_is_no_damage, allow_all),
+                                       cmocka_unit_test_teardown(a_lack_of_descriptors_is_no_other_kind, allow_all)};
+    return cmocka_run_group_tests(tests, begin, NULL);
+}

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "base/machine.h"
+
+#include <omp.h>
+#include <stdatomic.h>
+
+enum { PIECES = 1000 };
+
+static bool add_one(void *context, int i, Error *error) {
+    (void)error;
+    ((int *)context)[i]++;
+    return true;
+}
+
+static bool fail_at_500(void *context, int i, Error *error) {
+    ((int *)context)[i]++;
+    return i != 500 || error_input(error, "piece", "number %d", i);
+}
+
+static void every_piece_is_done_once(void **state) {
+    (void)state;
+    int done[PIECES] = {0};
+    Error error = {0};
+    assert_ok(parallel_for(&(ParallelWork){add_one, done}, PIECES, "test", NULL, &error), error);
+    for (int i = 0; i < PIECES; i++) assert_int_equal(done[i], 1);
+}
+
+static void an_error_stops_the_rest(void **state) {
+    (void)state;
+    int done[PIECES] = {0};
+    Error error = {0};
+    assert_refused(parallel_for(&(ParallelWork){fail_at_500, done}, PIECES, "test", NULL, &error),
+                   "piece: error: number 500");
+    for (int i = 0; i < PIECES; i++) assert_true(done[i] <= 1);
+}
+
+static bool stop_at_ten(void *context, double done, double total) {
+    assert_true(total == PIECES);
+    return done < *(const double *)context;
+}
+
+static void progress_can_stop_it(void **state) {
+    (void)state;
+    int done[PIECES] = {0}, count = 0;
+    double limit = 10;
+    Error error = {0};
+    Progress progress = {stop_at_ten, &limit};
+    assert_false(parallel_for(&(ParallelWork){add_one, done}, PIECES, "launches", &progress, &error));
+    assert_error(error, ERROR_INTERRUPTED, "launches: error: stopped after 1");
+    for (int i = 0; i < PIECES; i++) count += done[i];
+    assert_true(count >= 10 && count < PIECES);
+}
+
+/* Every thread does a piece, because none goes on before all have begun one. */
+static bool meet_the_others(void *context, int i, Error *error) {
+    (void)i, (void)error;
+    atomic_int *begun = context;
+    atomic_fetch_add(begun, 1);
+    while (atomic_load(begun) < omp_get_num_threads()) continue;
+    return true;
+}
+
+static bool count_call(void *context, double done, double total) {
+    (void)total;
+    int *calls = context;
+    assert_true(done == ++*calls);
+    return true;
+}
+
+static void progress_is_reported_by_one_thread_at_a_time(void **state) {
+    (void)state;
+    atomic_int begun = 0;
+    int calls = 0;
+    Error error = {0};
+    const Progress progress = {count_call, &calls};
+    assert_ok(parallel_for(&(ParallelWork){meet_the_others, &begun}, PIECES, "test", &progress, &error), error);
+    assert_int_equal(calls, PIECES);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_piece_is_done_once), cmocka_unit_test(an_error_stops_the_rest),
+        cmocka_unit_test(progress_can_stop_it), cmocka_unit_test(progress_is_reported_by_one_thread_at_a_time)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Numbers from text: what is taken, what is refused, and to which float it rounds. */
+#include "testing.h"
+
+#include "base/base.h"
+
+#include <locale.h>
+#include <math.h>
+
+static float parsed(const char *text) {
+    float value = 0;
+    if (!parse_float(text, &value)) fail_msg("'%s' is refused", text);
+    return value;
+}
+
+static void decimals_round_to_the_nearest_float(void **state) {
+    (void)state;
+    static const char *const texts[] = {"0",   "1",    "-1",    "+2.5",         ".5",    "5.",
+                                        "1e3", "1E-3", "-0.05", "3.4028235e38", "1e-45", "0.1"};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) assert_true(parsed(texts[i]) == strtof(texts[i], NULL));
+    assert_true(signbit(parsed("-0")));
+    assert_true(parsed("1e-60") == 0);
+}
+
+/* Just above the middle between 1 and its successor 1 + 2^-23, by less than a double can tell. */
+static void decimals_round_once(void **state) {
+    (void)state;
+    const char *text = "1.000000059604644775390625000000000001";
+    assert_true((float)strtod(text, NULL) == 1);
+    assert_true(parsed(text) == nextafterf(1, 2));
+}
+
+static void fractions_divide_in_float(void **state) {
+    (void)state;
+    assert_true(parsed("1/60") == 1.0F / 60.0F);
+    assert_true(parsed("-1/0.3") == -1.0F / 0.3F);
+}
+
+static void what_is_no_decimal_is_refused(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "",      " 1",   "1 ",   "\t1", "1x",    "0x10", "inf",        "-inf",      "nan",     "infinity",
+        ".",     "+",    "-",    "e5",  "1e",    "1e+",  "1,5",        "--1",       "1e39",    "-1e39",
+        "1/0",   "1/-0", "1/",   "/2",  "1/2/3", "1/ 2", "1e38/1e-38", "1e39/1e39", "1/1e-60", "1e99999999999999999999",
+        "1_000", "1..2", "0x1p3"};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        float value = 7;
+        if (parse_float(texts[i], &value)) fail_msg("'%s' is taken as %g", texts[i], (double)value);
+        assert_true(value == 7);
+    }
+}
+
+/* As strtod reads it, up to what is no part of it. */
+static void a_leading_number_leaves_the_rest(void **state) {
+    (void)state;
+    double value = 7;
+    const char *rest = NULL;
+    assert_true(parse_leading_double("-0.1e1*$x", &value, &rest));
+    assert_true(value == -1);
+    assert_string_equal(rest, "*$x");
+    assert_true(parse_leading_double("0.1", &value, &rest));
+    assert_true(value == 0.1);
+    assert_string_equal(rest, "");
+    static const char *const texts[] = {"", "*2", "$x", " 1", "1e39*2", "inf", "nan"};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+        if (parse_leading_double(texts[i], &value, &rest)) fail_msg("'%s' is taken", texts[i]);
+    assert_true(value == 0.1);
+}
+
+/* A thread's own locale stands for one of the user's: C.UTF-8 always exists but has the same point, so a
+   German one is used where the machine has it. */
+static void locale_does_not_matter(void **state) {
+    (void)state;
+    locale_t german = newlocale(LC_ALL_MASK, "de_DE.UTF-8", (locale_t)0);
+    locale_t other = german != (locale_t)0 ? german : newlocale(LC_ALL_MASK, "C.UTF-8", (locale_t)0);
+    assert_true(other != (locale_t)0);
+    locale_t previous = uselocale(other);
+    assert_true(parsed("0.5") == 0.5F);
+    float value;
+    assert_false(parse_float("0,5", &value));
+    assert_true(uselocale((locale_t)0) == other);
+    uselocale(previous);
+    freelocale(other);
+}
+
+static void whole_numbers(void **state) {
+    (void)state;
+    int64_t value = 0;
+    assert_true(parse_int("42", 0, 100, &value) && value == 42);
+    assert_true(parse_int("-7", -7, 0, &value) && value == -7);
+    assert_true(parse_int("+100", 0, 100, &value) && value == 100);
+    assert_true(parse_int("-9223372036854775808", INT64_MIN, INT64_MAX, &value) && value == INT64_MIN);
+    assert_true(parse_int("9223372036854775807", INT64_MIN, INT64_MAX, &value) && value == INT64_MAX);
+    static const char *const texts[] = {
+        "", " 1", "1 ", "1.0", "1e2", "0x1", "-", "101", "-1", "9223372036854775808", "99999999999999999999"};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        value = 7;
+        if (parse_int(texts[i], 0, 100, &value)) fail_msg("'%s' is taken", texts[i]);
+        assert_int_equal(value, 7);
+    }
+    assert_false(parse_int("9223372036854775808", INT64_MIN, INT64_MAX, &value));
+}
+
+/* Every value of a range is the float of its decimal, as if it were written out. */
+static void check_range(const char *text, double first, double step, int decimals, int count) {
+    FloatRange range;
+    assert_true(parse_range(text, 100000, &range));
+    assert_int_equal(range.count, count);
+    for (int i = 0; i < count; i++) {
+        char decimal[32];
+        snprintf(decimal, sizeof decimal, "%.*f", decimals, first + i * step);
+        if (range_value(&range, i) != strtof(decimal, NULL)) fail_msg("%s: value %d is not %s", text, i, decimal);
+    }
+}
+
+static void doubles_keep_their_digits(void **state) {
+    (void)state;
+    double value = 7;
+    assert_true(parse_double("-0.1", &value));
+    assert_true(value == -0.1);
+    static const char *const texts[] = {"", "nan", "1/2", "1e39", " 1", "1,5", "0x1"};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) assert_false(parse_double(texts[i], &value));
+    assert_true(value == -0.1);
+}
+
+static void ranges_give_the_decimals(void **state) {
+    (void)state;
+    check_range("-5:5:0.05", -5, 0.05, 2, 201);
+    check_range("-0.3:0.3:0.1", -0.3, 0.1, 1, 7);
+    check_range("0:1:0.001", 0, 0.001, 3, 1001);
+    check_range("-1:1:0.0001", -1, 0.0001, 4, 20001);
+    check_range("0:1:0.3", 0, 0.3, 1, 4);
+    check_range("2:2:1", 2, 1, 0, 1);
+    check_range("0:0.9:1", 0, 1, 0, 1);
+}
+
+static void bad_ranges_are_refused(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        "",        "1",      "1:2",    "1:2:",   ":2:1",          "1:2:3:4",        "2:1:0.5",    "1:2:0",    "1:2:-1",
+        "1:2:nan", " 1:2:1", "1:2:1 ", "0:10:1", "0:1e300:1e299", "-1e308:1e308:1", "0:1:1e-320", "0:1e999:1"};
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        FloatRange range = {0};
+        if (parse_range(texts[i], 10, &range)) fail_msg("'%s' is taken", texts[i]);
+        assert_int_equal(range.count, 0);
+    }
+    FloatRange range;
+    assert_true(parse_range("0:10:1", 11, &range));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(decimals_round_to_the_nearest_float),
+        cmocka_unit_test(decimals_round_once),
+        cmocka_unit_test(fractions_divide_in_float),
+        cmocka_unit_test(a_leading_number_leaves_the_rest),
+        cmocka_unit_test(what_is_no_decimal_is_refused),
+        cmocka_unit_test(locale_does_not_matter),
+        cmocka_unit_test(whole_numbers),
+        cmocka_unit_test(doubles_keep_their_digits),
+        cmocka_unit_test(ranges_give_the_decimals),
+        cmocka_unit_test(bad_ranges_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

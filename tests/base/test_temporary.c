@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A process that is killed while it writes leaves the old file, and nothing that the next one does not remove; also on file
+   systems on which every file has a name. */
+#define _GNU_SOURCE /* O_TMPFILE, RTLD_NEXT */
+#include "testing.h"
+
+#include "base/file.h"
+#include "folder_entries.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+typedef enum Call { NO_CALL, OPEN, WRITE, FSYNC, LINK, RENAME, UNLINK, CALLS } Call;
+
+static Call deadly;         /* kills at its entry */
+static bool all_have_names; /* O_TMPFILE fails */
+static int (*before_rename)(void);
+
+static void enter(Call call) {
+    if (deadly == call) raise(SIGKILL);
+}
+
+#define REAL(name, type, ...)  \
+    type (*real)(__VA_ARGS__); \
+    *(void **)&real = dlsym(RTLD_NEXT, name)
+
+int openat(int at, const char *path, int flags, ...) {
+    REAL("openat", int, int, const char *, int, ...);
+    if ((flags & O_CREAT) != 0 || (flags & O_TMPFILE) == O_TMPFILE) enter(OPEN);
+    if ((flags & O_TMPFILE) == O_TMPFILE && all_have_names) return errno = EOPNOTSUPP, -1;
+    return real(at, path, flags, 0666);
+}
+
+ssize_t write(int file, const void *data, size_t size) {
+    REAL("write", ssize_t, int, const void *, size_t);
+    enter(WRITE);
+    return real(file, data, size);
+}
+
+int fsync(int file) {
+    REAL("fsync", int, int);
+    enter(FSYNC);
+    return real(file);
+}
+
+int linkat(int from, const char *old, int to, const char *new, int flags) {
+    REAL("linkat", int, int, const char *, int, const char *, int);
+    enter(LINK);
+    return real(from, old, to, new, flags);
+}
+
+int renameat(int from, const char *old, int to, const char *new) {
+    REAL("renameat", int, int, const char *, int, const char *);
+    enter(RENAME);
+    if (before_rename != NULL && before_rename() != 0) return -1;
+    return real(from, old, to, new);
+}
+
+int unlinkat(int at, const char *path, int flags) {
+    REAL("unlinkat", int, int, const char *, int);
+    enter(UNLINK);
+    return real(at, path, flags);
+}
+
+static char folder[128];
+
+static const char *below(const char *name) {
+    static char paths[4][300];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+static void expect_file(const char *path, const char *text) {
+    Error error = {0};
+    size_t size;
+    char *found = file_read(path, 100, &size, &error);
+    assert_ok(found != NULL, error);
+    assert_string_equal(found, text);
+    free(found);
+}
+
+static bool replace_file(const char *path, const char *text, Error *error) {
+    return file_write(path, text, strlen(text), error);
+}
+
+static bool create_file(const char *path, const char *text, Error *error) {
+    char other[300];
+    snprintf(other, sizeof other, "%s-created", path);
+    return file_create(other, text, strlen(text), error) && replace_file(path, text, error);
+}
+
+static bool publish_draft(const char *path, const char *text, Error *error) {
+    const int draft = file_draft(path, error);
+    return draft >= 0 && file_draft_write(draft, path, text, strlen(text), error) &&
+           file_draft_publish(draft, path, error);
+}
+
+typedef bool Write(const char *path, const char *text, Error *error);
+
+/* Returns how the process ended. */
+static int write_in_child(Write *write_file, const char *text, Call call) {
+    Error error = {0};
+    int status;
+    const pid_t child = fork();
+    if (child == 0) {
+        deadly = call;
+        _exit(write_file(below("file"), text, &error) ? 0 : 1);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return status;
+}
+
+static void make_folder(void) {
+    static int made;
+    Error error = {0};
+    char name[32];
+    snprintf(name, sizeof name, "folder-%d", made++);
+    snprintf(folder, sizeof folder, "%s", temporary_path(name));
+    assert_ok(file_make_directory(folder, &error), error);
+}
+
+/* At each call in turn. Returns the number of calls at which it was killed. */
+static int kill_at_each_call(Write *write_file) {
+    int kills = 0;
+    for (Call call = OPEN; call < CALLS; call++) {
+        make_folder();
+        assert_int_equal(write_in_child(replace_file, "old", NO_CALL), 0);
+        const int status = write_in_child(write_file, "new", call);
+        kills += WIFSIGNALED(status);
+        if (WIFSIGNALED(status)) expect_file(below("file"), "old");
+        unlink(below("file-created"));
+        assert_int_equal(write_in_child(write_file, "new", NO_CALL), 0);
+        expect_file(below("file"), "new");
+        unlink(below("file-created"));
+        assert_int_equal(count_entries(folder), 1);
+    }
+    return kills;
+}
+
+static void a_kill_leaves_nothing(void **state) {
+    static Write *const writes[] = {replace_file, create_file, publish_draft};
+    (void)state;
+    for (int names = 0; names < 2; names++)
+        for (int i = 0; i < 3; i++) {
+            all_have_names = names == 1;
+            /* Open, write, fsync, rename, and link or unlink: a name is given, or taken away. */
+            assert_true(kill_at_each_call(writes[i]) >= (all_have_names && i == 0 ? 4 : 5));
+        }
+    all_have_names = false;
+}
+
+static pid_t other;
+static int signal_to_other;
+
+/* A process that has not seen the folder yet, and writes into it when it is told to. */
+static void start_other(void) {
+    int ends[2];
+    char byte;
+    Error error = {0};
+    assert_int_equal(pipe(ends), 0);
+    other = fork();
+    if (other == 0) {
+        close(ends[1]);
+        _exit(read(ends[0], &byte, 1) == 0 && file_write(below("other"), "x", 1, &error) ? 0 : 1);
+    }
+    close(ends[0]);
+    signal_to_other = ends[1];
+}
+
+static int let_other_write(void) {
+    int status;
+    before_rename = NULL;
+    close(signal_to_other);
+    assert_int_equal(waitpid(other, &status, 0), other);
+    return status;
+}
+
+static void files_in_use_stay(void **state) {
+    (void)state;
+    for (int names = 0; names < 2; names++) {
+        make_folder();
+        all_have_names = names == 1;
+        assert_int_equal(write_in_child(replace_file, "old", NO_CALL), 0);
+        start_other();
+        before_rename = let_other_write;
+        Error error = {0};
+        assert_ok(file_write(below("file"), "new", 3, &error), error);
+        assert_null(before_rename);
+        expect_file(below("file"), "new");
+        assert_int_equal(count_entries(folder), 2);
+    }
+    all_have_names = false;
+}
+
+static void only_such_names_are_removed(void **state) {
+    (void)state;
+    make_folder();
+    write_bytes(below(".twinbox-0123456789abcdef.tmp"), "x", 1);      /* a reservation */
+    write_bytes(below(".twinbox-00000000-99999999-0-0.tmp"), "x", 1); /* another machine's */
+    write_bytes(below(".twinbox-notes"), "x", 1);
+    write_bytes(below("twinbox-0123456789abcdef.tmp"), "x", 1);
+    assert_int_equal(mkdir(below(".twinbox-folder.tmp"), 0777), 0);
+    assert_int_equal(symlink("file", below(".twinbox-link.tmp")), 0);
+    assert_int_equal(write_in_child(replace_file, "new", NO_CALL), 0);
+    assert_int_equal(count_entries(folder), 6);
+    assert_int_not_equal(access(below(".twinbox-0123456789abcdef.tmp"), F_OK), 0);
+}
+
+static void drafts_for_pipes_are_in_the_folder_for_temporary_files(void **state) {
+    (void)state;
+    make_folder();
+    assert_int_equal(setenv("TMPDIR", folder, 1), 0);
+    Error error = {0};
+    const int draft = file_draft("-", &error);
+    assert_ok(draft >= 0, error);
+    char path[64], place[300] = "";
+    snprintf(path, sizeof path, "/proc/self/fd/%d", draft);
+    assert_true(readlink(path, place, sizeof place - 1) > 0);
+    assert_int_equal(strncmp(place, folder, strlen(folder)), 0);
+    close(draft);
+    assert_int_equal(setenv("TMPDIR", "/nonexistent", 1), 0);
+    assert_int_equal(file_draft("-", &error), -1);
+    assert_error(error, ERROR_SYSTEM, "No such file or directory");
+    unsetenv("TMPDIR");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_kill_leaves_nothing),
+        cmocka_unit_test(files_in_use_stay),
+        cmocka_unit_test(only_such_names_are_removed),
+        cmocka_unit_test(drafts_for_pipes_are_in_the_folder_for_temporary_files),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

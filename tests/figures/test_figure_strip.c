@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "figures/run_figure.h"
+#include "pixels/type.h"
+#include "pictures/mesa.h"
+
+static void every_run_has_a_row_and_every_moment_a_column(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 31)};
+    FigureSpec spec = spec_of(runs, 2);
+    spec.time_count = 3;
+    spec.times[0] = 0, spec.times[1] = 0.1, spec.times[2] = 0.5;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    assert_int_equal(count_marks(&sketch, MARK_IMAGE), 6);
+    assert_int_equal(count_texts(&sketch, "0.00 s"), 1);
+    assert_int_equal(count_texts(&sketch, "0.10 s"), 1);
+    assert_int_equal(count_texts(&sketch, "0.50 s"), 1);
+    assert_int_equal(count_texts(&sketch, "engine"), 1);
+    assert_int_equal(count_texts(&sketch, "pair-net"), 1);
+    /* Rows in the order of runs, columns in the order of moments, all of equal size, without overlap and inside the
+       page. */
+    const SketchMark *first = nth_mark(&sketch, MARK_IMAGE, 0);
+    double height = first->width * first->image->height / first->image->width;
+    for (int i = 0; i < 6; i++) {
+        const SketchMark *mark = nth_mark(&sketch, MARK_IMAGE, i);
+        assert_near(mark->width, first->width, 1e-9);
+        assert_near(mark->at.x, first->at.x + i % 3 * (first->width + 1.2), 1e-9);
+        assert_near(mark->at.y, first->at.y - i / 3 * (height + 1.2), 1e-9);
+        assert_true(mark->at.x > 0 && mark->at.x + mark->width < sketch.width);
+    }
+    assert_near(sketch.width, FIGURE_PAGE_WIDTH, 0);
+    sketch_free(&sketch);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+static void moments_go_from_the_first_frame_to_the_last_of_the_shortest_run(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 121), run_make("engine", 61)};
+    FigureSpec spec = spec_of(runs, 2);
+    spec.moments = 3;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    assert_int_equal(count_texts(&sketch, "0.00 s"), 1);
+    assert_int_equal(count_texts(&sketch, "0.50 s"), 1);
+    assert_int_equal(count_texts(&sketch, "1.00 s"), 1);
+    sketch_free(&sketch);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+/* The window covers the dynamic bodies: the bomb falls from 5.6 m, the boxes stand on the ground, 6 m wide in all. */
+static void the_window_holds_what_moves(void **state) {
+    (void)state;
+    Trajectory *run = run_make("engine", 3);
+    FigureSpec spec = spec_of(&run, 1);
+    spec.moments = 1;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    const SketchMark *mark = nth_mark(&sketch, MARK_IMAGE, 0);
+    double turned = 0.5 * (2 * cos(0.2) + sin(0.2)), bomb = 0.75 * (cos(0.2) + sin(0.2));
+    double wide = 2 + turned + 2.5 + 0.8, low = 0.5 - 0.5 * (cos(0.2) + 2 * sin(0.2)), high = 5.6 + bomb - low + 0.8;
+    assert_near((double)mark->image->height / mark->image->width, high / wide, 0.01);
+    sketch_free(&sketch);
+    trajectory_destroy(run);
+}
+
+/* A page of a given height: its cells fill it, and the window is wider than the bodies. */
+static void a_given_height_is_filled(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 3), run_make("engine", 3)};
+    FigureSpec spec = spec_of(runs, 2);
+    spec.moments = 3, spec.height = 60;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    const double pixel = 25.4 / spec.dpi;
+    assert_near(sketch.height, 60, 2 * pixel);
+    const SketchMark *first = nth_mark(&sketch, MARK_IMAGE, 0), *last = nth_mark(&sketch, MARK_IMAGE, 2);
+    assert_true(last->at.x + last->width > sketch.width - 1);
+    assert_true(first->image->width > first->image->height);
+    sketch_free(&sketch);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+/* Only what is asked for sets the window: the boxes stand near the ground, the bomb falls from 5.6 m. */
+static void the_bodies_in_question_set_the_window(void **state) {
+    (void)state;
+    Trajectory *run = run_make("engine", 3);
+    *run_position(run, 2, SECOND_BOX) = vec2(-50, 3);
+    FigureSpec spec = spec_of(&run, 1);
+    spec.moments = 1; /* the last */
+    spec.body_count = 1, spec.bodies[0] = FIRST_BOX;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    const SketchMark *cell = nth_mark(&sketch, MARK_IMAGE, 0);
+    const double side = (double)run->size[FIRST_BOX].x, up = (double)run->size[FIRST_BOX].y;
+    const double margin = fmin(side, up) / 2;
+    assert_near((double)cell->image->height / cell->image->width, (up + 2 * margin) / (side + 2 * margin), 0.01);
+    assert_int_equal(count_texts(&sketch, "1 out of view"), 0); /* the second box is not in question */
+    sketch_free(&sketch);
+    spec.body_count = 1, spec.bodies[0] = run->bodies;
+    expect_kind_refused("strip", &spec, "--bodies: error: there is no body");
+    trajectory_destroy(run);
+}
+
+static void who_has_left_is_counted(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 3), run_make("pair-net", 3)};
+    *run_position(runs[1], 2, FIRST_BOX) = vec2(-50, 3);
+    *run_position(runs[1], 2, BOMB_BODY) = vec2(1e30f, -1e30f);
+    FigureSpec spec = spec_of(runs, 2);
+    spec.moments = 2;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    assert_int_equal(count_texts(&sketch, "2 out of view"), 1);
+    sketch_free(&sketch);
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+static double row_height(const Sketch *sketch) {
+    const SketchMark *cell = nth_mark(sketch, MARK_IMAGE, 0);
+    return cell->width * cell->image->height / cell->image->width;
+}
+
+/* Whatever the width of the page, the method's name is there as a whole, and so are settings that have room. */
+static void the_name_of_a_method_never_disappears(void **state) {
+    (void)state;
+    Trajectory *run = run_make("momentum:k=20", 61);
+    FigureSpec spec = spec_of(&run, 1);
+    for (int moments = 2; moments <= 12; moments += 5)
+        for (spec.width = 40 + 7 * moments; spec.width < 240; spec.width += 31.5) {
+            spec.moments = moments;
+            Sketch sketch;
+            draw_kind(&sketch, "strip", &spec);
+            const bool one_line = count_texts(&sketch, "momentum:k=20") == 1;
+            assert_true(one_line || (count_texts(&sketch, "momentum:") == 1 && count_texts(&sketch, "k=20") == 1));
+            for (int i = 0; i < (one_line ? 1 : 2); i++) {
+                const SketchMark *name = nth_mark(&sketch, MARK_TEXT, i);
+                assert_true(type_width(sketch.texts + name->text, name->style.points) <= row_height(&sketch) + 1e-9);
+                assert_true(name->at.x > 0.3 * name->style.points * MM_PER_POINT);
+            }
+            sketch_free(&sketch);
+        }
+    trajectory_destroy(run);
+}
+
+static void long_settings_are_cut_to_their_row(void **state) {
+    (void)state;
+    Trajectory *run = run_make("pair-net:network=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz", 61);
+    FigureSpec spec = spec_of(&run, 1);
+    spec.moments = 6;
+    Sketch sketch;
+    draw_kind(&sketch, "strip", &spec);
+    assert_int_equal(count_texts(&sketch, "pair-net:"), 1);
+    const char *settings = sketch.texts + nth_mark(&sketch, MARK_TEXT, 1)->text;
+    assert_memory_equal(settings, "network=a-", 10);
+    assert_non_null(strstr(settings, "\xE2\x80\xA6"));
+    assert_true(type_width(settings, spec.points) <= row_height(&sketch));
+    sketch_free(&sketch);
+    trajectory_destroy(run);
+}
+
+static void what_cannot_be_shown_is_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 11)};
+    FigureSpec spec = spec_of(runs, 2);
+    spec.time_count = 1;
+    spec.times[0] = 0.3;
+    expect_kind_refused("strip", &spec, "b.npz: error: has no moment at 0.3 s; its moments are 0 to 0.16666");
+    spec.times[0] = -1;
+    expect_kind_refused("strip", &spec, "a.npz: error: has no moment at -1 s");
+    spec.time_count = 0, spec.moments = 60;
+    expect_kind_refused("strip", &spec, "60 moments of 2 runs leave");
+    spec.moments = 1;
+    runs[1]->size[2] = vec2(3, 3);
+    expect_kind_refused("strip", &spec, "b.npz: error: cannot be shown beside a.npz:");
+    assert_refused(figure_kind("stripe", &error), "'stripe' is not a kind of figure; did you mean 'strip'?");
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_run_has_a_row_and_every_moment_a_column),
+        cmocka_unit_test(moments_go_from_the_first_frame_to_the_last_of_the_shortest_run),
+        cmocka_unit_test(the_window_holds_what_moves),
+        cmocka_unit_test(a_given_height_is_filled),
+        cmocka_unit_test(the_bodies_in_question_set_the_window),
+        cmocka_unit_test(who_has_left_is_counted),
+        cmocka_unit_test(the_name_of_a_method_never_disappears),
+        cmocka_unit_test(long_settings_are_cut_to_their_row),
+        cmocka_unit_test(what_cannot_be_shown_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

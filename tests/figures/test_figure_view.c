@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The part of the world that figures of runs show. */
+#include "testing.h"
+
+#include "figures/run_figure.h"
+#include "figures/internal.h"
+
+static const int frames[] = {0, 5, 11};
+enum { COUNT = 3 };
+
+static void assert_same(WorldWindow a, WorldWindow b) {
+    assert_near(a.left, b.left, 1e-9);
+    assert_near(a.bottom, b.bottom, 1e-9);
+    assert_near(a.width, b.width, 1e-9);
+    assert_near(a.height, b.height, 1e-9);
+}
+
+/* The box is in the middle in the frames before, and far away in the last one shown. */
+static void a_body_that_has_flown_off_changes_nothing(void **state) {
+    (void)state;
+    Trajectory *run = run_make("engine", 12);
+    const FigureSpec spec = spec_of(&run, 1);
+    for (int frame = 0; frame < 12; frame++) *run_position(run, frame, FIRST_BOX) = vec2(0, 0.5F);
+    const WorldWindow before = run_window(&spec, frames, COUNT);
+    for (float far = 20; far < 1e30F; far *= 30) {
+        *run_position(run, 11, FIRST_BOX) = vec2(-far, far);
+        assert_same(run_window(&spec, frames, COUNT), before);
+    }
+    trajectory_destroy(run);
+}
+
+static void a_view_is_that_of_the_spec_or_of_another_run(void **state) {
+    (void)state;
+    Trajectory *runs[] = {run_make("engine", 12), run_make("engine", 4)};
+    run_position(runs[1], 0, FIRST_BOX)->x = -9;
+    FigureSpec spec = spec_of(runs, 1);
+    const FigureSpec others = spec_of(runs + 1, 1);
+    spec.view_from = runs[1];
+    assert_same(run_window(&spec, frames, 1), run_window(&others, frames, 1));
+    run_window(&spec, frames, COUNT); /* frames beyond the other run's last */
+    runs[1]->camera_center = vec2(1, 2), runs[1]->camera_size = vec2(6, 4);
+    assert_same(run_window(&spec, frames, COUNT), (WorldWindow){-2, 0, 6, 4});
+    spec.view_from = NULL;
+    spec.view = (CameraView){3, 5, 8, 2};
+    assert_same(run_window(&spec, frames, COUNT), (WorldWindow){-1, 4, 8, 2});
+    for (int i = 0; i < 2; i++) trajectory_destroy(runs[i]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_body_that_has_flown_off_changes_nothing),
+                                       cmocka_unit_test(a_view_is_that_of_the_spec_or_of_another_run)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

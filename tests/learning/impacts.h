@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Impacts of the stack as training samples for slot networks. */
+#pragma once
+#include "testing.h"
+
+#include "methods/methods.h"
+#include "learning/scene_training_internal.h"
+#include "learning/scene_training.h"
+
+enum { IMPACT_STEPS = 8 };
+
+static const float impact_gate = 2; /* m/s */
+static const SlotWidths small_widths = {16, 16, 16, 32};
+
+static inline Scene *read_stack(void) {
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static inline bool make_momentum(void *context, ContactSolver *solver, Error *error) {
+    (void)context;
+    Settings settings;
+    if (!settings_parse(&settings, "k=20", solver_momentum.description.settings, "momentum", error)) return false;
+    *solver = (ContactSolver){&solver_momentum, solver_momentum.create(&settings, error)};
+    return solver->state != NULL;
+}
+
+/* Over the midpoints of the paper's grid; every second one rotated. */
+static inline void throw_over_grid(const Scene *scene, int count, Launch *launches) {
+    Error error = {0};
+    assert_ok(launches_for_scoring(scene, count, launches, &error), error);
+    for (int i = 1; i < count; i += 2) launches[i].rotation = 0.4f;
+}
+
+static inline void record_impacts(SlotSamples *samples, int launches, int first) {
+    Error error = {0};
+    Scene *scene = read_stack();
+    Launch table[200];
+    assert_in_range(launches, 1, 200);
+    throw_over_grid(scene, launches, table);
+    const SlotRollout rollout = {.scene = scene,
+                                 .launches = table,
+                                 .launch_count = launches,
+                                 .first_launch = first,
+                                 .steps = IMPACT_STEPS,
+                                 .gate = impact_gate,
+                                 .make_solver = make_momentum};
+    assert_ok(slot_rollout(&rollout, samples, NULL, &error), error);
+    scene_destroy(scene);
+}
+
+static inline SlotSamples labelled_impacts(int launches) {
+    SlotSamples samples = {0};
+    Error error = {0};
+    record_impacts(&samples, launches, 0);
+    assert_ok(slot_samples_label(&samples, 0, NULL, &error), error);
+    return samples;
+}
+
+static inline SlotNetwork *network_for(SlotSamples *samples) {
+    Error error = {0};
+    SlotNetwork *network = slot_network_from_samples(samples, &small_widths, 1, &error);
+    assert_ok(network != NULL, error);
+    return network;
+}

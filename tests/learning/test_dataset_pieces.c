@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Datasets in pieces: the file is that of a dataset in memory, for any targets and views; damaged pieces are refused. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "learning/dataset.h"
+#include "in_shards.h"
+
+static const char *const both[] = {SOURCE_DIR "/scenes/single.yaml", SOURCE_DIR "/scenes/stack.yaml"};
+
+static DatasetOptions options_for(DatasetOptions options) {
+    options.scenes = both;
+    options.scene_count = 2;
+    options.seed = 3;
+    assert_true(parse_range("-5:5:2", 10, &options.bomb_x));
+    return options;
+}
+
+static void assert_equal_files(const char *path, const char *other) {
+    Error error = {0};
+    size_t sizes[2];
+    char *one = file_read(path, 1 << 28, &sizes[0], &error), *two = file_read(other, 1 << 28, &sizes[1], &error);
+    assert_ok(one != NULL && two != NULL, error);
+    assert_int_equal(sizes[0], sizes[1]);
+    assert_memory_equal(one, two, sizes[0]);
+    free(one);
+    free(two);
+}
+
+static void same_file(DatasetOptions options, const char *name) {
+    Error error = {0};
+    DatasetPieces pieces;
+    Pieces done;
+    int64_t rows;
+    const char *merged = temporary_path(name), *whole = temporary_path("whole.npz");
+    Dataset *dataset = dataset_record(&options, NULL, &error);
+    assert_ok(dataset != NULL, error);
+    assert_ok(dataset_write(dataset, whole, &error), error);
+    assert_ok(dataset_pieces_make(&pieces, &options, &error), error);
+    assert_in_range(pieces.plan.count, 2, 2 * 6);
+    in_shards(&done, &pieces.plan, merged, 3);
+    assert_ok(dataset_pieces_write(&pieces, &done, merged, &rows, NULL, &error), error);
+    assert_int_equal(rows, dataset->rows);
+    assert_equal_files(merged, whole);
+    pieces_close(&done);
+    dataset_pieces_free(&pieces);
+    dataset_destroy(dataset);
+}
+
+static void pieces_give_the_file_of_memory(void **state) {
+    (void)state;
+    same_file(options_for((DatasetOptions){.target = TARGET_PAIR, .context = true}), "pair.npz");
+    same_file(options_for((DatasetOptions){.target = TARGET_PAIR, .every = 7}), "every.npz");
+    same_file(options_for((DatasetOptions){.target = TARGET_NET, .view = PAIR_RAW, .labels = DATASET_BY_REFERENCE}),
+              "net.npz");
+    same_file(options_for((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT}), "impulse.npz");
+    same_file(options_for((DatasetOptions){.target = TARGET_POINTS, .view = PAIR_NEIGHBOURS, .random = 2}),
+              "points.npz");
+}
+
+static bool stop(void *context, double done, double total) {
+    (void)context, (void)done, (void)total;
+    return false;
+}
+
+static void a_merge_that_is_stopped_writes_nothing(void **state) {
+    (void)state;
+    Error error = {0};
+    DatasetPieces pieces;
+    Pieces done;
+    int64_t rows;
+    bool there;
+    const DatasetOptions options = options_for((DatasetOptions){.target = TARGET_PAIR});
+    const char *path = temporary_path("stopped.npz");
+    assert_ok(dataset_pieces_make(&pieces, &options, &error), error);
+    in_shards(&done, &pieces.plan, path, 2);
+    assert_false(dataset_pieces_write(&pieces, &done, path, &rows, &(Progress){stop, NULL}, &error));
+    assert_error(error, ERROR_INTERRUPTED, "stopped; finished pieces are kept");
+    assert_true(file_find(path, &there, &error) && !there);
+    pieces_close(&done);
+    dataset_pieces_free(&pieces);
+}
+
+/* Rows of other launches, and half a row. */
+static void damaged_rows_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    DatasetPieces pieces;
+    const DatasetOptions options = options_for((DatasetOptions){.target = TARGET_PAIR});
+    assert_ok(dataset_pieces_make(&pieces, &options, &error), error);
+    int64_t first, end;
+    piece_ranges_find(&pieces.launches, 0, &first, &end);
+    enum { LAUNCH = PAIR_INPUTS + PAIR_CHANGES, ROW = LAUNCH + 1 + 1 + 2 };
+    int32_t row[ROW] = {0};
+    const struct {
+        int64_t launch;
+        size_t size;
+        int64_t rows;
+    } cases[] = {{first, sizeof row, 1},      {end - 1, sizeof row, 1},    {end, sizeof row, -1},
+                 {first - 1, sizeof row, -1}, {first, sizeof row - 1, -1}, {first, 0, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        error = (Error){0};
+        row[LAUNCH] = (int32_t)cases[i].launch;
+        assert_int_equal(dataset_piece_rows(&pieces, 0, (const char *)row, cases[i].size, "piece", &error),
+                         cases[i].rows);
+        if (cases[i].rows < 0) assert_error(error, ERROR_INPUT, "piece: error: does not have the rows of the launches");
+    }
+    dataset_pieces_free(&pieces);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pieces_give_the_file_of_memory),
+        cmocka_unit_test(a_merge_that_is_stopped_writes_nothing),
+        cmocka_unit_test(damaged_rows_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Small complete trainings of gns: the same bits for any number of threads and however often they are interrupted. */
+#include "testing.h"
+
+#include "learning/gns_training.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static Scene *small_scene(void) {
+    Error error = {0};
+    const char *path = temporary_path("small.yaml");
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 40\nbodies:\n"
+          "  - {static: true, size: [100, 20], position: [0, -10]}\n"
+          "  - {mass: 2, size: [1, 1], position: [0, 0.6]}\n"
+          "bomb: {x: {from: -1, to: 1}, y: 8, size: [1, 1], mass: 5, velocity: {times_position: -1.5}}\n",
+          file);
+    fclose(file);
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+/* Trains on the small scene; the caller frees the net. */
+static bool train(const char *state_path, GnsNet *net, const Progress *progress, Error *error) {
+    Scene *scenes[] = {small_scene()};
+    GnsTraining training = {.width = 16,
+                            .rounds = 2,
+                            .steps = 300,
+                            .batch = 2,
+                            .launches = 2,
+                            .radius = 0.6f,
+                            .noise = 0.05f,
+                            .rate = 0.002,
+                            .seed = 3,
+                            .scenes = scenes,
+                            .scene_count = 1,
+                            .command = "small",
+                            .state_path = state_path};
+    return gns_training_run(&training, net, progress, error);
+}
+
+static void assert_same_net(const GnsNet *a, const GnsNet *b) {
+    assert_memory_equal(&a->scales, &b->scales, sizeof a->scales);
+    assert_memory_equal(a->parameters, b->parameters, (size_t)a->layout.parameters * sizeof *a->parameters);
+}
+
+/* Stops at the given report. */
+static bool stop_at(void *context, double done, double total) {
+    (void)done, (void)total;
+    return --*(int *)context > 0;
+}
+
+static void same_bits_for_any_threads_and_interruptions(void **state) {
+    (void)state;
+    Error error = {0};
+    GnsNet whole, parts;
+    const int threads = omp_get_max_threads();
+    const char *path = temporary_path("whole.part");
+    omp_set_num_threads(1);
+    assert_ok(train(path, &whole, NULL, &error), error);
+    omp_set_num_threads(3);
+    path = temporary_path("parts.part");
+    for (int reports = 3, stops = 0;; reports++, stops++) {
+        int left = reports;
+        Error failure = {0};
+        const Progress progress = {stop_at, &left};
+        if (train(path, &parts, &progress, &failure)) {
+            assert_in_range(stops, 1, 3);
+            break;
+        }
+        assert_int_equal(failure.kind, ERROR_INTERRUPTED);
+        assert_int_equal(access(path, F_OK), 0);
+        gns_net_free(&parts);
+    }
+    omp_set_num_threads(threads);
+    assert_same_net(&whole, &parts);
+    gns_net_free(&whole);
+    gns_net_free(&parts);
+}
+
+typedef struct Recorded {
+    GnsExamples examples;
+    GnsExample example;
+} Recorded;
+
+static void record(Recorded *recorded, float noise) {
+    Error error = {0};
+    Method method;
+    *recorded = (Recorded){.examples = {.noise = noise, .seed = 8}};
+    assert_ok(method_parse(&method, "engine", &error), error);
+    assert_ok(gns_examples_add(&recorded->examples, small_scene(), &method, 2, NULL, &error), error);
+}
+
+static void release(Recorded *recorded) {
+    gns_examples_free(&recorded->examples);
+    gns_example_free(&recorded->example);
+}
+
+/* A velocity plus its target acceleration and gravity is the true next velocity less a tenth of what the noise moved the
+   particle by, per step. */
+static void targets_lead_to_the_true_velocity(void **state) {
+    (void)state;
+    static Recorded clean, noisy;
+    record(&clean, 0);
+    record(&noisy, 0.2f);
+    double noise = 0;
+    int count = 0;
+    for (uint64_t number = 0; number < 200; number++) {
+        assert_true(gns_example_make(&clean.example, &clean.examples, number));
+        assert_true(gns_example_make(&noisy.example, &noisy.examples, number));
+        const Scene *scene = clean.example.from->scene;
+        assert_int_equal(clean.example.particles.bodies, noisy.example.particles.bodies);
+        for (int i = 0; i < gns_particle_count(&clean.example.particles); i++) {
+            const Vec2 before = clean.example.particles.velocity[i][GNS_HISTORY - 1];
+            const Vec2 other = noisy.example.particles.velocity[i][GNS_HISTORY - 1];
+            const float *target = clean.example.targets + (ptrdiff_t)i * GNS_OUTPUTS;
+            const float *corrected = noisy.example.targets + (ptrdiff_t)i * GNS_OUTPUTS;
+            const Vec2 moved = vec2_sub(noisy.example.particles.position[i], clean.example.particles.position[i]);
+            const double part = 0.1 / (double)scene->dt;
+            assert_near(before.x + scene->dt * target[0],
+                        (double)(other.x + scene->dt * corrected[0]) + part * (double)moved.x, 1e-4);
+            assert_near(before.y + scene->dt * target[1],
+                        (double)(other.y + scene->dt * corrected[1]) + part * (double)moved.y, 1e-4);
+            noise += (double)((other.x - before.x) * (other.x - before.x));
+            count++;
+        }
+    }
+    assert_near(sqrt(noise / count), 0.2, 0.01);
+    release(&clean);
+    release(&noisy);
+}
+
+/* In free flight the target of a box's centre is 0, from the first step on: before it exists, a body flies with its start
+   velocity. */
+static void free_flight_has_no_target(void **state) {
+    (void)state;
+    static Recorded clean;
+    record(&clean, 0);
+    int flights = 0;
+    for (uint64_t number = 0; number < 100; number++) {
+        assert_true(gns_example_make(&clean.example, &clean.examples, number));
+        for (int i = 0; i < clean.example.particles.bodies; i++) {
+            if (clean.example.particles.position[i * BOX_PARTICLES].y < 3) continue;
+            const float *target =
+                clean.example.targets + (ptrdiff_t)(i * BOX_PARTICLES + BOX_PARTICLES / 2) * GNS_OUTPUTS;
+            assert_near(hypot((double)target[0], (double)target[1]), 0, 0.05); /* positions are float32 */
+            flights++;
+        }
+    }
+    assert_true(flights > 5);
+    release(&clean);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits_for_any_threads_and_interruptions),
+                                       cmocka_unit_test(targets_lead_to_the_true_velocity),
+                                       cmocka_unit_test(free_flight_has_no_target)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

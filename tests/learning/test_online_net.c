@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The network that learns beside the memory. */
+#include "testing.h"
+
+#include "learning/hybrid_training.h"
+
+#include <math.h>
+
+/* The first ONLINE_FIRST steps make the network; trained on one step again and again, it fits it. */
+static void a_step_that_comes_back_is_learned(void **state) {
+    (void)state;
+    Error error = {0};
+    AskedSteps asked = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
+    assert_ok(scene != NULL, error);
+    LaunchSteps *runs = launch_steps_create(scene, &error);
+    assert_ok(runs != NULL, error);
+    OnlineNet *net = online_net_create(1, &error);
+    assert_ok(net != NULL, error);
+    for (int i = 0; i < 5; i++) {
+        Launch launch = launch_of(scene);
+        launch.x = (float)i / 5;
+        assert_ok(launch_steps_run(runs, &launch, NULL, 3, &asked, &error), error);
+    }
+    assert_true(asked.count >= 5);
+    double wrong, seconds, first = NAN, last = NAN;
+    for (int i = 0; i < ONLINE_FIRST; i++) {
+        assert_ok(online_net_learn(net, &asked.items[i % asked.count].problem, &wrong, &seconds, &error), error);
+        assert_true(isnan(wrong));
+    }
+    for (int i = 0; i < 60; i++) {
+        assert_ok(online_net_learn(net, &asked.items[0].problem, &last, &seconds, &error), error);
+        assert_true(isfinite(last) && seconds >= 0);
+        if (i == 0) first = last;
+    }
+    if (!(last <= first)) fail_msg("from %g to %g m/s", first, last);
+    online_net_destroy(net);
+    asked_steps_free(&asked);
+    launch_steps_destroy(runs);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_step_that_comes_back_is_learned)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is recorded, for each target: laws that tie them together. */
+#include "testing.h"
+
+#include "learning/dataset.h"
+
+#include <math.h>
+
+static const char *const single[] = {SOURCE_DIR "/scenes/single.yaml"};
+static const char *const both[] = {SOURCE_DIR "/scenes/single.yaml", SOURCE_DIR "/scenes/stack.yaml"};
+
+static Dataset *record(DatasetOptions options) {
+    Error error = {0};
+    if (options.scenes == NULL) {
+        options.scenes = single;
+        options.scene_count = 1;
+    }
+    if (options.random == 0) assert_true(parse_range("-5:5:2.5", 10, &options.bomb_x));
+    Dataset *dataset = dataset_record(&options, NULL, &error);
+    assert_ok(dataset != NULL, error);
+    return dataset;
+}
+
+/* The visits of a pair in all sweeps of a step, and its warm start, are what its impulses changed in the step. */
+static void visits_add_up_to_the_pairs_change(void **state) {
+    (void)state;
+    Dataset *pair = record((DatasetOptions){.target = TARGET_PAIR});
+    Dataset *visits = record((DatasetOptions){.target = TARGET_IMPULSE});
+    assert_true(visits->rows == 10 * pair->rows);
+    int first_touches = 0;
+    for (int64_t r = 0, v = 0; r < pair->rows; r++) {
+        bool fresh = r == 0 || pair->launch[r] != pair->launch[r - 1] || pair->frame[r] > pair->frame[r - 1] + 1;
+        int pairs_in_step = 0;
+        while (r + pairs_in_step < pair->rows && pair->launch[r + pairs_in_step] == pair->launch[r] &&
+               pair->frame[r + pairs_in_step] == pair->frame[r])
+            pairs_in_step++;
+        /* The first contact of all: one pair, and no warm start. */
+        if (fresh && pairs_in_step == 1) {
+            double sum = 0;
+            for (int sweep = 0; sweep < 10; sweep++) sum += visits->changes[(v + sweep) * PAIR_CHANGES + 4];
+            assert_near(sum, pair->changes[r * PAIR_CHANGES + 4], 1e-4);
+            first_touches++;
+        }
+        for (int i = 1; i < pairs_in_step; i++) r++;
+        v += 10 * pairs_in_step;
+    }
+    assert_true(first_touches >= 5);
+    dataset_destroy(pair);
+    dataset_destroy(visits);
+}
+
+/* Row k of a thinned launch is row 3 k of the whole one. */
+static void thinned_rows_are_rows_of_the_whole(void **state) {
+    (void)state;
+    Dataset *all = record((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT});
+    Dataset *some = record((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT, .every = 3});
+    const size_t in = 20 * sizeof(float), out = PAIR_CHANGES * sizeof(float);
+    int64_t row = 0, first = 0;
+    for (int64_t i = 0; i < all->rows; i++) {
+        if (i > 0 && all->launch[i] != all->launch[i - 1]) first = i;
+        if ((i - first) % 3 != 0) continue;
+        assert_true(row < some->rows);
+        assert_int_equal(some->launch[row], all->launch[i]);
+        assert_int_equal(some->frame[row], all->frame[i]);
+        assert_memory_equal(some->inputs + 20 * row, all->inputs + 20 * i, in);
+        assert_memory_equal(some->changes + PAIR_CHANGES * row, all->changes + PAIR_CHANGES * i, out);
+        row++;
+    }
+    assert_true(row == some->rows && row > 100);
+    dataset_destroy(all);
+    dataset_destroy(some);
+}
+
+/* Where a body is in one pair only, what all impulses changed of it is what that pair's did. */
+static void net_is_pair_where_there_is_one_pair(void **state) {
+    (void)state;
+    Dataset *pair = record((DatasetOptions){.target = TARGET_PAIR});
+    Dataset *net = record((DatasetOptions){.target = TARGET_NET});
+    assert_true(pair->rows == net->rows);
+    int compared = 0, different = 0;
+    for (int64_t r = 0; r < pair->rows; r++) {
+        bool before = r > 0 && pair->frame[r - 1] == pair->frame[r];
+        bool after = r + 1 < pair->rows && pair->frame[r + 1] == pair->frame[r];
+        for (int k = 0; k < PAIR_CHANGES; k++) {
+            double gap = fabs((double)pair->changes[r * PAIR_CHANGES + k] - (double)net->changes[r * PAIR_CHANGES + k]);
+            if (before || after)
+                different += gap > 0.01;
+            else
+                assert_true(gap < 1e-3);
+        }
+        compared += !before && !after;
+    }
+    assert_true(compared > 100 && different > 10);
+    dataset_destroy(pair);
+    dataset_destroy(net);
+}
+
+/* At rest the engine has converged and equals the reference; at impacts it does not. */
+static void the_reference_labels_what_the_engine_met(void **state) {
+    (void)state;
+    Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET});
+    Dataset *reference = record(
+        (DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET, .labels = DATASET_BY_REFERENCE});
+    assert_true(engine->rows == reference->rows);
+    int64_t near = 0, far = 0;
+    for (int64_t r = 0; r < engine->rows; r++) {
+        float gap = fabsf(engine->changes[r * PAIR_CHANGES + 4] - reference->changes[r * PAIR_CHANGES + 4]);
+        near += gap < 1e-3f;
+        far += gap > 0.5f;
+    }
+    assert_true(near > engine->rows / 2);
+    assert_true(far > 10);
+    assert_memory_equal(engine->inputs, reference->inputs, (size_t)engine->rows * PAIR_INPUTS * sizeof(float));
+    dataset_destroy(engine);
+    dataset_destroy(reference);
+}
+
+/* The ground is static, the box has 200 kg, the bomb 50. What an impulse at the middle of the points does to a body is
+   what it did, but for how it was shared among the points. */
+static void contexts_tell_what_made_the_changes(void **state) {
+    (void)state;
+    Dataset *plain = record((DatasetOptions){0}), *dataset = record((DatasetOptions){.context = true});
+    assert_null(plain->context);
+    assert_non_null(dataset->context);
+    assert_memory_equal(plain->changes, dataset->changes, (size_t)plain->rows * PAIR_CHANGES * sizeof(float));
+    static const float inverse_masses[] = {0, 1.0f / 200, 1.0f / 50};
+    int struck = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const float *context = dataset->context + r * PAIR_CONTEXT, *inputs = dataset->inputs + r * PAIR_INPUTS;
+        const float *change = dataset->changes + r * PAIR_CHANGES;
+        assert_null(pair_context_fault(context));
+        assert_near(context[CONTEXT_INV_MASS_A], inverse_masses[dataset->bodies[2 * r]], 1e-7);
+        assert_near(context[CONTEXT_INV_MASS_B], inverse_masses[dataset->bodies[2 * r + 1]], 1e-7);
+        /* Velocities as the relative view has them: vxa vya vxb vyb wa wb. */
+        static const int place[] = {2, 3, 6, 4, 5, 7};
+        for (int k = 0; k < PAIR_CHANGES; k++) assert_true(context[CONTEXT_VELOCITIES + k] == inputs[place[k]]);
+        /* Both arms end in the same point. */
+        for (int i = 0; i < 2; i++)
+            assert_near(context[CONTEXT_ARM_A + i], inputs[i] + context[CONTEXT_ARM_B + i], 0.05);
+        if (context[CONTEXT_INV_MASS_A] == 0) continue;
+        for (int i = 0; i < 2; i++)
+            assert_near(change[i] / context[CONTEXT_INV_MASS_A], -change[3 + i] / context[CONTEXT_INV_MASS_B], 0.01);
+        struck++;
+    }
+    assert_true(struck > 5);
+    dataset_destroy(dataset);
+    dataset_destroy(plain);
+}
+
+static void random_launches_lie_in_their_ranges(void **state) {
+    (void)state;
+    Dataset *a = record((DatasetOptions){.random = 50, .seed = 3}),
+            *b = record((DatasetOptions){.random = 50, .seed = 3});
+    Dataset *c = record((DatasetOptions){.random = 50, .seed = 4});
+    float least = 0, most = 0;
+    for (int i = 0; i < 50; i++) {
+        assert_true(fabsf(a->launch_x[i]) <= 15 && fabsf(a->launch_rotation[i]) <= 1.5f &&
+                    fabsf(a->launch_spin[i]) <= 20);
+        least = fminf(least, a->launch_x[i]);
+        most = fmaxf(most, a->launch_x[i]);
+    }
+    assert_true(least < -10 && most > 10);
+    assert_memory_equal(a->launch_x, b->launch_x, 50 * sizeof(float));
+    assert_memory_equal(a->changes, b->changes, (size_t)a->rows * PAIR_CHANGES * sizeof(float));
+    assert_memory_not_equal(a->launch_x, c->launch_x, 50 * sizeof(float));
+    dataset_destroy(a);
+    dataset_destroy(b);
+    dataset_destroy(c);
+}
+
+/* Whether the pair of this row is one with the ground, and the two boxes of single.yaml do not touch in its step. */
+static bool is_on_the_ground_alone(const Dataset *dataset, int64_t row) {
+    for (int64_t r = row > 2 ? row - 2 : 0; r < dataset->rows && r <= row + 2; r++)
+        if (dataset->launch[r] == dataset->launch[row] && dataset->frame[r] == dataset->frame[row] &&
+            dataset->bodies[2 * r] != 0)
+            return false;
+    return dataset->bodies[2 * row] == 0;
+}
+
+/* At the end of the run: what the warm start brings is what gravity takes, g dt of both points together, so that
+   nothing approaches and next to nothing is left to do. */
+static void a_box_at_rest_shows_its_warm_start(void **state) {
+    (void)state;
+    enum { WIDTH = 20, POINT = 9 }; /* numbers of a point: vn vt bias pn pt and arms */
+    Dataset *dataset = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_POINTS});
+    assert_int_equal(dataset_inputs(dataset), WIDTH);
+    int at_rest = 0;
+    for (int64_t r = 0; r < dataset->rows; r++) {
+        const float *in = dataset->inputs + r * WIDTH, *changes = dataset->changes + r * PAIR_POINT_CHANGES;
+        const bool flat = in[WIDTH - 1] == 1;
+        if (dataset->frame[r] < 200 || !flat || !is_on_the_ground_alone(dataset, r)) continue;
+        assert_near(in[WIDTH - 2], 0, 0); /* the ground has no inverse mass */
+        assert_near(in[3] + in[POINT + 3], 10.0 / 60, 1e-5);
+        assert_near(in[0], in[2], 1e-5);
+        assert_near(in[POINT], in[POINT + 2], 1e-5);
+        for (int k = 0; k < PAIR_POINT_CHANGES; k++) assert_near(changes[k], 0, 1e-5);
+        at_rest++;
+    }
+    assert_true(at_rest > 500);
+    dataset_destroy(dataset);
+}
+
+/* The neighbours' view is the contact's, and twelve numbers more, of which six are 0 where there are no neighbours. */
+static void neighbours_are_seen_beside_the_contact(void **state) {
+    (void)state;
+    Dataset *contact = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_NET});
+    Dataset *wide = record((DatasetOptions){.view = PAIR_NEIGHBOURS, .target = TARGET_NET});
+    assert_true(contact->rows == wide->rows && dataset_inputs(wide) == 32);
+    int pushed = 0, alone = 0;
+    for (int64_t r = 0; r < wide->rows; r++) {
+        const float *next = wide->inputs + r * 32 + 20;
+        assert_memory_equal(next - 20, contact->inputs + r * 20, 20 * sizeof(float));
+        const bool neighbour = (r > 0 && wide->frame[r - 1] == wide->frame[r]) ||
+                               (r + 1 < wide->rows && wide->frame[r + 1] == wide->frame[r]);
+        double most = 0;
+        for (int k = 0; k < 6; k++) most = fmax(most, fabs(next[k]));
+        pushed += neighbour && most > 0.1;
+        alone += !neighbour;
+        assert_true(neighbour || most < 1e-5);
+    }
+    assert_true(pushed > 10 && alone > 100);
+    dataset_destroy(contact);
+    dataset_destroy(wide);
+}
+
+static void refuse(DatasetOptions options, const char *text) {
+    Error error = {0};
+    options.scenes = single;
+    options.scene_count = 1;
+    assert_refused(dataset_record(&options, NULL, &error), text);
+}
+
+static void what_cannot_be_recorded_is_refused(void **state) {
+    (void)state;
+    refuse((DatasetOptions){.random = 4}, "4 launches per scene; expected at least 5");
+    refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .labels = DATASET_BY_REFERENCE},
+           "the reference has none");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .view = PAIR_NEIGHBOURS},
+           "the target impulse has no view neighbours");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_POINTS, .view = PAIR_RAW},
+           "the target points needs the view contact or neighbours");
+    refuse((DatasetOptions){.random = 5, .target = TARGET_NET, .context = true}, "the target net has none");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(visits_add_up_to_the_pairs_change),
+                                       cmocka_unit_test(thinned_rows_are_rows_of_the_whole),
+                                       cmocka_unit_test(net_is_pair_where_there_is_one_pair),
+                                       cmocka_unit_test(the_reference_labels_what_the_engine_met),
+                                       cmocka_unit_test(a_box_at_rest_shows_its_warm_start),
+                                       cmocka_unit_test(neighbours_are_seen_beside_the_contact),
+                                       cmocka_unit_test(contexts_tell_what_made_the_changes),
+                                       cmocka_unit_test(random_launches_lie_in_their_ranges),
+                                       cmocka_unit_test(what_cannot_be_recorded_is_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

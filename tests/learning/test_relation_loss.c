@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The slopes of the loss of sain, and that training and run time give the same answers. */
+#include "testing.h"
+
+#include "base/base.h"
+#include "learning/sain_training.h"
+
+#include <stdlib.h>
+
+enum { SAMPLES = 40, ROWS = 3 * SAMPLES };
+
+/* Any samples: body i has 1 to 5 rows. */
+typedef struct Any {
+    RelationSample items[SAMPLES];
+    RelationRowInputs rows[5 * SAMPLES];
+    int order[SAMPLES];
+    RelationSamples samples;
+    RelationNetwork network;
+    double *weights;
+    int weight_count;
+} Any;
+
+static double any_number(uint64_t *state) { return (double)(split_mix(state) >> 11) * 0x1p-52 - 1; }
+
+static void fill(Any *any) {
+    Error error = {0};
+    uint64_t state = 5;
+    any->samples = (RelationSamples){.items = any->items, .rows = any->rows};
+    for (int i = 0; i < SAMPLES; i++) {
+        RelationSample *sample = &any->items[i];
+        sample->first = (int)any->samples.row_count;
+        sample->rows = 1 + i % 5;
+        sample->scale = (float)(1.5 + any_number(&state));
+        for (int k = 0; k < RELATION_BODY_INPUTS; k++) sample->body[k] = (float)any_number(&state);
+        for (int k = 0; k < RELATION_OUTPUTS; k++) sample->target[k] = (float)any_number(&state);
+        for (int r = 0; r < sample->rows; r++)
+            for (int k = 0; k < RELATION_PAIR_INPUTS; k++)
+                any->rows[any->samples.row_count + (size_t)r].numbers[k] = (float)any_number(&state);
+        any->samples.row_count += (size_t)sample->rows;
+        any->order[i] = SAMPLES - 1 - i;
+    }
+    any->samples.count = SAMPLES;
+    any->samples.problems = 1;
+    assert_ok(relation_network_create(&any->network, &error), error);
+    relation_normalise(&any->network, &any->samples);
+    any->weight_count = relation_weight_count(&any->network);
+    any->weights = calloc((size_t)any->weight_count, sizeof *any->weights);
+    assert_non_null(any->weights);
+    relation_first_weights(&any->network, 3, any->weights);
+    for (int i = 0; i < any->weight_count; i++) any->weights[i] += 0.1 * any_number(&state);
+}
+
+static void clear(Any *any) {
+    relation_network_destroy(&any->network);
+    free(any->weights);
+}
+
+static void slopes_are_finite_differences(void **state) {
+    (void)state;
+    static Any any;
+    Error error = {0};
+    RelationLoss loss = {0};
+    fill(&any);
+    assert_ok(relation_loss_begin(&loss, &any.network, &error), error);
+    const RelationPart part = {&any.samples, any.order, SAMPLES};
+    double *slopes = calloc((size_t)any.weight_count, sizeof *slopes),
+           *unused = calloc((size_t)any.weight_count, sizeof *unused);
+    assert_true(slopes != NULL && unused != NULL);
+    double sum = 0;
+    assert_true(relation_loss_add(&loss, &part, any.weights, &sum, slopes));
+    const double step = 1e-6;
+    for (int i = 0; i < any.weight_count; i += 37) {
+        double more = 0, less = 0;
+        const double kept = any.weights[i];
+        any.weights[i] = kept + step;
+        assert_true(relation_loss_add(&loss, &part, any.weights, &more, unused));
+        any.weights[i] = kept - step;
+        assert_true(relation_loss_add(&loss, &part, any.weights, &less, unused));
+        any.weights[i] = kept;
+        assert_near(slopes[i], (more - less) / (2 * step), 1e-6 + 1e-5 * fabs(slopes[i]));
+    }
+    free(slopes);
+    free(unused);
+    relation_loss_free(&loss);
+    clear(&any);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(slopes_are_finite_differences)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Small complete trainings: determinism, and what a stopped training keeps. */
+#include "impacts.h"
+
+#include "learning/scene_training.h"
+
+#include <math.h>
+#include <omp.h>
+
+enum { ROUNDS = 2, SWEEPS = 4 };
+
+typedef struct Scores {
+    int count;
+    SceneNetScore items[ROUNDS];
+} Scores;
+
+static void note(void *context, const SceneNetScore *score) {
+    Scores *scores = context;
+    assert_in_range(scores->count, 0, ROUNDS - 1);
+    scores->items[scores->count++] = *score;
+}
+
+static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *progress, Error *error) {
+    const SceneTraining training = {.launches = 10,
+                                    .rounds = ROUNDS,
+                                    .epochs = 6,
+                                    .sweeps = SWEEPS,
+                                    .momentum = true,
+                                    .widths = small_widths,
+                                    .seed = 2,
+                                    .on_score = note,
+                                    .context = scores};
+    *scores = (Scores){0};
+    return scene_training_run(scene, &training, progress, error);
+}
+
+static void same_bits_for_any_number_of_threads(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_stack();
+    Scores scores[2];
+    SlotNetwork *networks[2];
+    const int threads = omp_get_max_threads();
+    for (int i = 0; i < 2; i++) {
+        omp_set_num_threads(1 + i);
+        networks[i] = train(scene, &scores[i], NULL, &error);
+        assert_ok(networks[i] != NULL, error);
+        assert_int_equal(scores[i].count, ROUNDS);
+    }
+    omp_set_num_threads(threads);
+    assert_int_equal(networks[0]->parameter_count, networks[1]->parameter_count);
+    assert_memory_equal(networks[0]->parameters, networks[1]->parameters, networks[0]->parameter_count * sizeof(float));
+    for (int i = 0; i < ROUNDS; i++) {
+        const SceneNetScore *one = &scores[0].items[i], *two = &scores[1].items[i];
+        assert_int_equal(one->round, i);
+        assert_int_equal(one->samples, two->samples);
+        assert_true(one->train == two->train && one->held_out == two->held_out && one->momentum == two->momentum);
+        assert_true(isfinite(one->train) && isfinite(one->held_out));
+        assert_true(one->momentum == scores[0].items[0].momentum && one->momentum > 0);
+    }
+    assert_true(scores[0].items[1].samples > scores[0].items[0].samples);
+    for (int i = 0; i < 2; i++) slot_network_destroy(networks[i]);
+    scene_destroy(scene);
+}
+
+/* Stops at a fraction of the total; progress never decreases. */
+typedef struct Stop {
+    double at, last;
+    int calls_after; /* the stop */
+} Stop;
+
+static bool stop_at(void *context, double done, double total) {
+    Stop *stop = context;
+    assert_true(done >= stop->last && done <= total * (1 + 1e-9));
+    stop->calls_after += stop->last >= stop->at * total;
+    stop->last = done;
+    return done < stop->at * total;
+}
+
+/* Stopped in the first fit, in the labels after it, in the second fit. */
+static void a_stopped_training_keeps_the_rounds_so_far(void **state) {
+    (void)state;
+    Scene *scene = read_stack();
+    static const double at[] = {0.27, 0.67, 0.87};
+    for (int i = 0; i < 3; i++) {
+        Error error = {0};
+        Scores scores;
+        Stop stop = {.at = at[i]};
+        SlotNetwork *network = train(scene, &scores, &(Progress){stop_at, &stop}, &error);
+        assert_ok(network != NULL, error);
+        assert_int_equal(error.kind, ERROR_NONE);
+        assert_int_equal(stop.calls_after, 0);
+        assert_int_equal(scores.count, i < 2 ? 1 : 2);
+        for (size_t p = 0; p < network->parameter_count; p++) assert_true(isfinite(network->parameters[p]));
+        slot_network_destroy(network);
+    }
+    scene_destroy(scene);
+}
+
+static void a_training_stopped_before_the_first_network_fails(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_stack();
+    Scores scores;
+    Stop stop = {.at = 0.1};
+    assert_null(train(scene, &scores, &(Progress){stop_at, &stop}, &error));
+    assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
+    scene_destroy(scene);
+}
+
+/* The bounds are the range of the training samples with a margin. */
+static void the_network_is_for_its_scene(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_stack();
+    Scores scores;
+    SlotNetwork *network = train(scene, &scores, NULL, &error);
+    assert_ok(network != NULL, error);
+    assert_string_equal(network->scene, "stack");
+    assert_int_equal(network->sweeps, SWEEPS);
+    assert_near(network->bomb_inv_mass, 1 / 50.0, 1e-9);
+    for (int i = 0; i < slot_network_inputs(network); i++) assert_true(network->low[i] < network->high[i]);
+    slot_network_destroy(network);
+    scene_destroy(scene);
+}
+
+static void a_scene_without_a_bomb_is_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_stack();
+    Scores scores;
+    scene->bomb.present = false;
+    assert_refused(train(scene, &scores, NULL, &error), "stack: error: has no bomb to launch");
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(a_stopped_training_keeps_the_rounds_so_far),
+        cmocka_unit_test(a_training_stopped_before_the_first_network_fails),
+        cmocka_unit_test(the_network_is_for_its_scene),
+        cmocka_unit_test(a_scene_without_a_bomb_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fits to a few impacts of the stack. */
+#include "impacts.h"
+
+#include "learning/scene_training_internal.h"
+
+#include <math.h>
+#include <omp.h>
+
+enum { LAUNCHES = 3, SAMPLES = 24, SWEEPS = 6 };
+
+/* Followed by sweeps without momentum. */
+static SlotNetwork *begin_with(SlotSamples *samples, int launches) {
+    *samples = labelled_impacts(launches);
+    SlotNetwork *network = network_for(samples);
+    network->sweeps = SWEEPS;
+    return network;
+}
+
+static SlotNetwork *begin(SlotSamples *samples) {
+    SlotNetwork *network = begin_with(samples, LAUNCHES);
+    assert_in_range(samples->count, SAMPLES / 2, SAMPLES);
+    return network;
+}
+
+static void end(SlotSamples *samples, SlotNetwork *network) {
+    slot_network_destroy(network);
+    slot_samples_free(samples);
+}
+
+static void fit_to(SlotNetwork *network, const SlotSamples *samples, const SlotFit *fit) {
+    Error error = {0};
+    assert_ok(slot_fit(network, samples, fit, NULL, &error), error);
+}
+
+static double mean_error(const SlotNetwork *network, const SlotSamples *samples) {
+    Error error = {0};
+    double errors[SAMPLES], sum = 0;
+    assert_ok(slot_errors(network, samples, 0, errors, &error), error);
+    for (int i = 0; i < samples->count; i++) sum += errors[i];
+    return sum / samples->count;
+}
+
+static bool is_finite(const SlotNetwork *network) {
+    bool finite = true;
+    for (size_t p = 0; p < network->parameter_count; p++) finite &= isfinite(network->parameters[p]) != 0;
+    return finite;
+}
+
+static void a_few_samples_are_learned(void **state) {
+    (void)state;
+    SlotSamples samples;
+    SlotNetwork *network = begin(&samples);
+    const double before = mean_error(network, &samples);
+    fit_to(network, &samples,
+           &(SlotFit){.impulse_weight = 0.1,
+                      .impulse_epochs = 60,
+                      .epochs = 200,
+                      .rate = 0.02,
+                      .learn_factors = true,
+                      .seed = 1});
+    const double after = mean_error(network, &samples);
+
+    assert_true(after < before / 3);
+    assert_true(network->factors[0] == 0);
+    bool learned = false;
+    for (int s = 0; s < SWEEPS; s++) {
+        assert_true(network->factors[s] >= 0 && network->factors[s] <= 2);
+        learned |= network->factors[s] > 0;
+    }
+    assert_true(learned);
+    end(&samples, network);
+}
+
+/* Only the velocity loss has a gradient with respect to the factors. */
+static void factors_change_only_if_learned(void **state) {
+    (void)state;
+    SlotSamples samples;
+    SlotNetwork *network = begin(&samples);
+    for (int s = 1; s < SWEEPS; s++) network->factors[s] = 0.5f;
+    fit_to(network, &samples,
+           &(SlotFit){.impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 3, .rate = 0.01, .seed = 1});
+    for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] == 0.5f);
+    fit_to(
+        network, &samples,
+        &(SlotFit){
+            .impulse_weight = 0.1, .impulse_epochs = 3, .epochs = 3, .rate = 0.01, .learn_factors = true, .seed = 1});
+    for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] == 0.5f);
+    fit_to(
+        network, &samples,
+        &(SlotFit){
+            .impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 3, .rate = 0.01, .learn_factors = true, .seed = 1});
+    for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] != 0.5f);
+    end(&samples, network);
+}
+
+/* Adam's first step has the size of the rate for every parameter with a gradient. */
+static void the_first_step_has_the_size_of_the_rate(void **state) {
+    (void)state;
+    SlotSamples samples;
+    SlotNetwork *network = begin(&samples);
+    float *before = malloc(network->parameter_count * sizeof *before);
+    assert_non_null(before);
+    memcpy(before, network->parameters, network->parameter_count * sizeof *before);
+    fit_to(network, &samples,
+           &(SlotFit){.impulse_weight = 1, .impulse_epochs = 0, .epochs = 1, .rate = 0.01, .seed = 1});
+    int moved = 0;
+    for (size_t p = 0; p < network->parameter_count; p++) {
+        const double step = fabs((double)(network->parameters[p] - before[p]));
+        assert_true(step < 0.01 + 1e-6);
+        moved += step > 0.0099;
+    }
+    assert_true(2 * (size_t)moved > network->parameter_count);
+    free(before);
+    end(&samples, network);
+}
+
+/* Enough samples to fill all parts of a batch and to need more than one batch. */
+static void same_bits_for_any_number_of_threads(void **state) {
+    (void)state;
+    SlotSamples samples[2];
+    SlotNetwork *networks[2];
+    const int threads = omp_get_max_threads();
+    for (int i = 0; i < 2; i++) {
+        omp_set_num_threads(1 + i);
+        networks[i] = begin_with(&samples[i], 24);
+        assert_true(samples[i].count > 130);
+        fit_to(networks[i], &samples[i],
+               &(SlotFit){.impulse_weight = 0.1,
+                          .impulse_epochs = 2,
+                          .epochs = 5,
+                          .rate = 0.01,
+                          .learn_factors = true,
+                          .seed = 5});
+    }
+    omp_set_num_threads(threads);
+    assert_memory_equal(networks[0]->parameters, networks[1]->parameters, networks[0]->parameter_count * sizeof(float));
+    assert_memory_equal(networks[0]->factors, networks[1]->factors, sizeof networks[0]->factors);
+    for (int i = 0; i < 2; i++) end(&samples[i], networks[i]);
+}
+
+static void a_loss_of_nan_is_an_error_naming_the_epoch(void **state) {
+    (void)state;
+    Error error = {0};
+    SlotSamples samples;
+    SlotNetwork *network = begin(&samples);
+    const SlotFit fit = {.impulse_weight = 0.1, .impulse_epochs = 2, .epochs = 9, .rate = 0.01, .seed = 1};
+    /* The velocity loss starts in the third epoch. */
+    samples.items[7].reference[3].x = NAN;
+    assert_refused(slot_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 3");
+    end(&samples, network);
+    error = (Error){0};
+    network = begin(&samples);
+    samples.items[7].goal[samples.items[7].view.contacts[0]].normal = INFINITY;
+    assert_refused(slot_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 1");
+    end(&samples, network);
+}
+
+static bool stop_after_three(void *context, double done, double total) {
+    (void)total;
+    ++*(int *)context;
+    return done < 3;
+}
+
+static void a_stopped_fit_keeps_its_parameters(void **state) {
+    (void)state;
+    Error error = {0};
+    SlotSamples samples;
+    SlotNetwork *network = begin(&samples);
+    int epochs = 0;
+    const Progress progress = {stop_after_three, &epochs};
+    const double before = mean_error(network, &samples);
+    const SlotFit fit = {
+        .impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 90, .rate = 4e-3, .learn_factors = true, .seed = 1};
+    assert_ok(slot_fit(network, &samples, &fit, &progress, &error), error);
+    assert_int_equal(epochs, 3);
+    assert_true(is_finite(network));
+    assert_true(mean_error(network, &samples) < before);
+    assert_true(network->factors[1] > 0 || network->factors[2] > 0);
+    end(&samples, network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_few_samples_are_learned),
+        cmocka_unit_test(factors_change_only_if_learned),
+        cmocka_unit_test(the_first_step_has_the_size_of_the_rate),
+        cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(a_loss_of_nan_is_an_error_naming_the_epoch),
+        cmocka_unit_test(a_stopped_fit_keeps_its_parameters),
+    };
+    /* With so little work, two threads would mostly wait for each other. */
+    omp_set_num_threads(1);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

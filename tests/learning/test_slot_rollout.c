@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which steps of a scene's launches become samples. */
+#include "impacts.h"
+
+#include "methods/residuals.h"
+
+#include <omp.h>
+
+enum { LAUNCHES = 6 };
+
+static void assert_same_problem(const ContactProblem *a, const ContactProblem *b) {
+    assert_int_equal(a->body_count, b->body_count);
+    assert_int_equal(a->contact_count, b->contact_count);
+    assert_int_equal(a->marked, b->marked);
+    assert_memory_equal(a->bodies, b->bodies, (size_t)a->body_count * sizeof *a->bodies);
+    assert_memory_equal(a->contacts, b->contacts, (size_t)a->contact_count * sizeof *a->contacts);
+}
+
+static void assert_same_samples(const SlotSamples *a, const SlotSamples *b) {
+    assert_int_equal(a->count, b->count);
+    for (int i = 0; i < a->count; i++) {
+        assert_int_equal(a->items[i].launch, b->items[i].launch);
+        assert_int_equal(a->items[i].since, b->items[i].since);
+        assert_same_problem(&a->items[i].problem, &b->items[i].problem);
+    }
+}
+
+static void same_bits_for_any_number_of_threads(void **state) {
+    (void)state;
+    SlotSamples samples[2] = {{0}};
+    const int threads = omp_get_max_threads();
+    for (int i = 0; i < 2; i++) {
+        omp_set_num_threads(1 + i);
+        record_impacts(&samples[i], LAUNCHES, 0);
+    }
+    omp_set_num_threads(threads);
+    assert_same_samples(&samples[0], &samples[1]);
+    for (int i = 0; i < 2; i++) slot_samples_free(&samples[i]);
+}
+
+static void samples_are_ordered_by_launch_and_step(void **state) {
+    (void)state;
+    SlotSamples samples = {0};
+    record_impacts(&samples, LAUNCHES, 100);
+    assert_true(samples.count > 2 * LAUNCHES);
+    for (int i = 0; i < samples.count; i++) {
+        const SlotSample *sample = &samples.items[i];
+        assert_in_range(sample->launch, 100, 100 + LAUNCHES - 1);
+        assert_in_range(sample->since, 0, IMPACT_STEPS - 1);
+        if (i == 0) continue;
+        assert_true(sample[-1].launch < sample->launch ||
+                    (sample[-1].launch == sample->launch && sample[-1].since < sample->since));
+    }
+    slot_samples_free(&samples);
+}
+
+static void samples_are_appended(void **state) {
+    (void)state;
+    SlotSamples once = {0}, twice = {0};
+    record_impacts(&once, 2, 0);
+    record_impacts(&twice, 2, 0);
+    const int count = twice.count;
+    record_impacts(&twice, 2, 0);
+    assert_int_equal(once.count, count);
+    assert_int_equal(twice.count, 2 * count);
+    for (int i = 0; i < count; i++) assert_same_problem(&twice.items[i].problem, &twice.items[count + i].problem);
+    slot_samples_free(&once);
+    slot_samples_free(&twice);
+}
+
+static bool bomb_touches(const ContactProblem *problem) {
+    bool touches = false;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const int other = contact->a == problem->marked ? contact->b : contact->a;
+        touches |=
+            (contact->a == problem->marked || contact->b == problem->marked) && problem->bodies[other].inv_mass > 0;
+    }
+    return touches;
+}
+
+/* A separate run: the samples must be exactly the steps from the first touch whose residual reaches the gate. */
+static int check_launch(const Scene *scene, const ContactSolver *solver, const SlotSample *samples) {
+    Error error = {0};
+    Scene quiet = *scene;
+    quiet.bomb.present = false;
+    World *world = scene_world(&quiet, &error);
+    assert_ok(world != NULL, error);
+    int found = 0;
+    for (int frame = 0, since = -1; since < IMPACT_STEPS - 1 && frame <= scene->frames; frame++) {
+        if (frame == scene->bomb.frame) assert_ok(scene_add_bomb(scene, world, &error), error);
+        assert_ok(world_step(world, solver->kind->solve, solver->state, scene->dt, &error), error);
+        const ContactProblem *problem = world_problem(world);
+        if (since >= 0 || (problem->marked >= 0 && bomb_touches(problem))) since++;
+        if (since < 0 || residual_of(problem) < (double)impact_gate) continue;
+        assert_int_equal(samples[found].since, since);
+        assert_same_problem(&samples[found++].problem, problem);
+    }
+    world_destroy(world);
+    return found;
+}
+
+static void samples_are_the_steps_with_a_large_residual(void **state) {
+    (void)state;
+    Error error = {0};
+    SlotSamples samples = {0};
+    ContactSolver solver;
+    Scene *scene = read_stack();
+    Launch launches[LAUNCHES];
+    record_impacts(&samples, LAUNCHES, 0);
+    throw_over_grid(scene, LAUNCHES, launches);
+    assert_ok(make_momentum(NULL, &solver, &error), error);
+    int done = 0;
+    for (int i = 0; i < LAUNCHES; i++) {
+        const Scene launched = launch_scene(scene, &launches[i]);
+        done += check_launch(&launched, &solver, samples.items + done);
+    }
+    assert_int_equal(done, samples.count);
+    assert_true(done < LAUNCHES * IMPACT_STEPS);
+    solver.kind->destroy(solver.state);
+    scene_destroy(scene);
+    slot_samples_free(&samples);
+}
+
+static bool no_solver(void *context, ContactSolver *solver, Error *error) {
+    (void)context, (void)solver;
+    return error_input(error, "solver", "not available");
+}
+
+static void a_solver_that_cannot_be_made_is_an_error(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_stack();
+    Launch launch = launch_of(scene);
+    SlotSamples samples = {0};
+    const SlotRollout rollout = {
+        .scene = scene, .launches = &launch, .launch_count = 1, .steps = 1, .make_solver = no_solver};
+    assert_refused(slot_rollout(&rollout, &samples, NULL, &error), "not available");
+    assert_int_equal(samples.count, 0);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(samples_are_ordered_by_launch_and_step),
+        cmocka_unit_test(samples_are_appended),
+        cmocka_unit_test(samples_are_the_steps_with_a_large_residual),
+        cmocka_unit_test(a_solver_that_cannot_be_made_is_an_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Small complete learnings on the single box, and the method with what they learned. */
+#include "testing.h"
+
+#include "scenes/scenes.h"
+#include "runs/runs.h"
+#include "learning/hybrid_training.h"
+
+#include <math.h>
+
+enum { LAUNCHES = 120 };
+
+static const char *const single = SOURCE_DIR "/scenes/single.yaml";
+
+typedef struct Counts {
+    int launches, asked, answered, late, late_answered, grown, added, full, checked;
+    double worst; /* mean error of a launch's answers */
+} Counts;
+
+static bool count(void *context, const TabulationLaunch *launch, Error *error) {
+    (void)error;
+    Counts *counts = context;
+    assert_int_equal(launch->number, ++counts->launches);
+    counts->asked += launch->asked;
+    counts->answered += launch->answered;
+    if (launch->number > LAUNCHES / 2) {
+        counts->late += launch->asked;
+        counts->late_answered += launch->answered;
+    }
+    counts->grown += launch->grown;
+    counts->added += launch->added;
+    counts->full += launch->full;
+    counts->checked += launch->checked;
+    if (launch->checked > 0) counts->worst = fmax(counts->worst, launch->error / launch->checked);
+    return true;
+}
+
+static TabulationTraining training_of(Counts *counts) {
+    *counts = (Counts){0};
+    return (TabulationTraining){.launches = LAUNCHES,
+                                .turned_from = -1,
+                                .steps = 6,
+                                .components = TABULATION_STANDARD_COMPONENTS,
+                                .tolerance = 0.1f,
+                                .limit = 1 << 20,
+                                .seed = 1,
+                                .command = "train",
+                                .on_launch = count,
+                                .context = counts};
+}
+
+static Scene *read_single(void) {
+    Error error = {0};
+    Scene *scene = scene_read(single, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static Tabulation *learn(const Scene *scene, const TabulationTraining *training, const Progress *progress) {
+    Error error = {0};
+    Tabulation *memory = tabulation_training_run(scene, training, progress, &error);
+    assert_ok(memory != NULL, error);
+    return memory;
+}
+
+static void assert_same_memory(const Tabulation *a, const Tabulation *b) {
+    assert_int_equal(a->entry_count, b->entry_count);
+    assert_int_equal(a->impulse_count, b->impulse_count);
+    const size_t entries = (size_t)a->entry_count, key = (size_t)a->key_size;
+    assert_memory_equal(a->keys, b->keys, entries * key * sizeof(float));
+    assert_memory_equal(a->metrics, b->metrics, entries * (size_t)a->metric_size * sizeof(float));
+    assert_memory_equal(a->weights, b->weights, entries * TABULATION_NEAR * key * sizeof(float));
+    assert_memory_equal(a->impulses, b->impulses, a->impulse_count * sizeof *a->impulses);
+}
+
+static void familiar_impacts_are_answered_within_the_tolerance(void **state) {
+    (void)state;
+    Scene *scene = read_single();
+    Counts counts;
+    const TabulationTraining training = training_of(&counts);
+    Tabulation *memory = learn(scene, &training, NULL);
+    assert_int_equal(counts.launches, LAUNCHES);
+    assert_int_equal(memory->launches, LAUNCHES);
+    assert_int_equal(counts.added, memory->entry_count);
+    assert_int_equal(counts.full, 0);
+    assert_true(counts.grown > 20);
+    assert_true(4 * counts.late_answered > counts.late);
+    assert_true(counts.checked > 0 && counts.worst < 0.1);
+    tabulation_destroy(memory);
+    scene_destroy(scene);
+}
+
+/* Each ends where the memory has no room for one more entry. */
+static void the_limit_holds_and_is_reported(void **state) {
+    (void)state;
+    Scene *scene = read_single();
+    Counts counts;
+    TabulationTraining training = training_of(&counts);
+    training.limit = 40000;
+    Tabulation *memory = learn(scene, &training, NULL);
+    assert_true(counts.full > 0);
+    assert_true(tabulation_bytes(memory) <= training.limit);
+    assert_true(tabulation_bytes(memory) + tabulation_entry_bytes(memory, 4) + 4096 > training.limit);
+    tabulation_destroy(memory);
+    scene_destroy(scene);
+}
+
+static bool stop_at(void *context, double done, double total) {
+    (void)total;
+    return done < *(const double *)context;
+}
+
+static void an_interrupted_learning_is_continued_with_the_same_bits(void **state) {
+    (void)state;
+    Scene *scene = read_single();
+    Counts counts;
+    TabulationTraining training = training_of(&counts);
+    Tabulation *whole = learn(scene, &training, NULL);
+    training.state_path = temporary_path("state.npz");
+    counts.launches = 0;
+    double at = 77;
+    const Progress progress = {stop_at, &at};
+    Tabulation *part = learn(scene, &training, &progress);
+    assert_int_equal(part->launches, 77);
+    counts.launches = 77;
+    Tabulation *rest = learn(scene, &training, NULL);
+    assert_same_memory(whole, rest);
+    counts.launches = 0; /* another command begins again */
+    training.command = "other";
+    training.launches = 10;
+    tabulation_destroy(part);
+    part = learn(scene, &training, NULL);
+    assert_int_equal(counts.launches, 10);
+    tabulation_destroy(whole);
+    tabulation_destroy(part);
+    tabulation_destroy(rest);
+    scene_destroy(scene);
+}
+
+static Trajectory *run(const Scene *scene, const char *name, const char *path) {
+    Error error = {0};
+    Method method;
+    assert_ok(path != NULL ? method_with_network(&method, name, path, &error) : method_parse(&method, name, &error),
+              error);
+    Trajectory *run = simulate(scene, &method, NULL, &error);
+    assert_ok(run != NULL, error);
+    return run;
+}
+
+static void assert_same_run(Trajectory *a, Trajectory *b) {
+    assert_int_equal(trajectory_frame_hash(a, a->frames - 1), trajectory_frame_hash(b, b->frames - 1));
+    trajectory_destroy(a);
+    trajectory_destroy(b);
+}
+
+/* net=off and an empty memory solve every step to convergence; a memory gives the same run each time, and another one. */
+static void the_method_without_its_memory_is_its_twin(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_single();
+    Counts counts;
+    const TabulationTraining training = training_of(&counts);
+    Tabulation *memory = learn(scene, &training, NULL);
+    const char *path = temporary_path("memory.npz");
+    assert_ok(tabulation_write(memory, path, &error), error);
+    scene->frames = 120;
+    Scene bare = *scene;
+    bare.network_count = 0;
+    const char *twin = "interior:near=0.001";
+    assert_same_run(run(scene, "hybrid:net=off", path), run(scene, twin, NULL));
+    assert_same_run(run(&bare, "hybrid", NULL), run(&bare, twin, NULL));
+    assert_same_run(run(scene, "hybrid", path), run(scene, "hybrid", path));
+    int answered = 0;
+    for (float x = -4; x <= 4; x++) {
+        Launch launch = launch_of(scene);
+        launch.x = x;
+        Scene launched = launch_scene(scene, &launch);
+        Trajectory *with = run(&launched, "hybrid", path), *without = run(&launched, twin, NULL);
+        answered += trajectory_frame_hash(with, 120) != trajectory_frame_hash(without, 120);
+        trajectory_destroy(with);
+        trajectory_destroy(without);
+    }
+    assert_true(answered > 0);
+    tabulation_destroy(memory);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(familiar_impacts_are_answered_within_the_tolerance),
+                                       cmocka_unit_test(the_limit_holds_and_is_reported),
+                                       cmocka_unit_test(an_interrupted_learning_is_continued_with_the_same_bits),
+                                       cmocka_unit_test(the_method_without_its_memory_is_its_twin)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sweeps in double against the engine's, and their derivatives against finite differences. */
+#include "testing.h"
+
+#include "runs/runs.h"
+#include "methods/kernels.h"
+#include "methods/random_problem.h"
+#include "learning/scene_training.h"
+
+static const double factors[20] = {9,   0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.8, 0.8, 0.9,
+                                   0.9, 0.9, 0.9, 0,   0.9, 0.9, 0.9, 0.9, 0.9, 0.9};
+enum { SWEEPS = 20, NUMBERS_MAX = 2 * CONTACTS_MAX };
+
+/* Runs a scene with the engine; calls observe after each step. */
+static void observe_scene(const char *name, bool (*observe)(void *, int, const World *, Error *), void *context) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
+    Error error = {0};
+    Method engine;
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    assert_ok(method_parse(&engine, "engine", &error), error);
+    assert_ok(simulate_observed(scene, &engine, &(StepObserver){observe, context}, &error), error);
+    scene_destroy(scene);
+}
+
+static void warm_start(const ContactProblem *problem, double *start) {
+    assert_in_range(problem->contact_count, 0, CONTACTS_MAX);
+    for (int i = 0; i < problem->contact_count; i++) {
+        start[2 * i] = (double)problem->contacts[i].warm_normal;
+        start[2 * i + 1] = (double)problem->contacts[i].warm_tangent;
+    }
+}
+
+static void assert_same_solution(const ContactProblem *problem, const Unrolled *unrolled,
+                                 const ContactSolution *expected, double tolerance) {
+    for (int i = 0; i < problem->body_count; i++) {
+        assert_near(unrolled->velocities[3 * i], expected->velocities[i].linear.x, tolerance);
+        assert_near(unrolled->velocities[3 * i + 1], expected->velocities[i].linear.y, tolerance);
+        assert_near(unrolled->velocities[3 * i + 2], expected->velocities[i].angular, tolerance);
+    }
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const double mass = (double)fmaxf(contact->mass_normal, contact->mass_tangent);
+        assert_near(unrolled->impulses[2 * i], expected->impulses[i].normal, mass * tolerance);
+        assert_near(unrolled->impulses[2 * i + 1], expected->impulses[i].tangent, mass * tolerance);
+    }
+}
+
+static void assert_equals_scalar(Unrolled *unrolled, const ContactProblem *problem, int sweeps, double roundings) {
+    double start[NUMBERS_MAX];
+    float in_float[SWEEPS];
+    UnrolledProblem rows;
+    ContactSolution expected = make_solution(problem), before = make_solution(problem);
+    for (int s = 0; s < sweeps; s++) in_float[s] = (float)factors[s];
+    warm_start(problem, start);
+    assert_true(unrolled_problem_make(&rows, problem));
+    assert_true(unrolled_run(unrolled, &rows, start, factors, sweeps));
+    momentum_solve_scalar(problem, rows.visits, in_float, sweeps, &before, &expected);
+    assert_same_solution(problem, unrolled, &expected, roundings * rounding_of(problem));
+    unrolled_problem_free(&rows);
+    free_solution(&expected);
+    free_solution(&before);
+}
+
+static bool frame_equals_scalar(void *context, int frame, const World *world, Error *error) {
+    (void)frame, (void)error;
+    assert_equals_scalar(context, world_problem(world), 10, 200);
+    assert_equals_scalar(context, world_problem(world), 0, 100);
+    return true;
+}
+
+static void sweeps_match_the_scalar_reference_implementation(void **state) {
+    (void)state;
+    Unrolled unrolled = {0};
+    observe_scene("single", frame_equals_scalar, &unrolled);
+    observe_scene("stack", frame_equals_scalar, &unrolled);
+    observe_scene("pyramid", frame_equals_scalar, &unrolled);
+    unrolled_free(&unrolled);
+}
+
+/* Random problems have warm impulses outside the cone; the scalar reference implementation needs them projected. */
+static void the_start_is_projected_into_the_cone(void **state) {
+    (void)state;
+    uint32_t seed = 1;
+    int outside = 0;
+    Unrolled unrolled = {0};
+    for (int run = 0; run < 20; run++) {
+        RandomProblem random;
+        double start[NUMBERS_MAX];
+        make_random(&random, &seed, 12, 0.15f, 1);
+        warm_start(&random.problem, start);
+        for (int i = 0; i < random.problem.contact_count; i++) {
+            ContactPoint *contact = &random.contacts[i];
+            if (i % 3 == 0) start[2 * i] -= 0.5;
+            contact->warm_normal = fmaxf((float)start[2 * i], 0);
+            const float limit = contact->friction * contact->warm_normal;
+            contact->warm_tangent = fminf(fmaxf(contact->warm_tangent, -limit), limit);
+            outside += (double)contact->warm_tangent != start[2 * i + 1];
+        }
+        UnrolledProblem rows;
+        ContactSolution expected = make_solution(&random.problem);
+        assert_true(unrolled_problem_make(&rows, &random.problem));
+        assert_true(unrolled_run(&unrolled, &rows, start, NULL, 0));
+        sequential_impulses_begin(&random.problem, &engine_options, &expected);
+        assert_same_solution(&random.problem, &unrolled, &expected, 1e-4);
+        unrolled_problem_free(&rows);
+        free_solution(&expected);
+    }
+    assert_true(outside > 100);
+    unrolled_free(&unrolled);
+}
+
+/* A problem, start impulses, and a loss of the final velocities: sum of c v + v^2 / 2. */
+typedef struct Case {
+    UnrolledProblem rows;
+    Unrolled unrolled;
+    double start[NUMBERS_MAX], weights[3 * BODIES_MAX], factors[SWEEPS];
+    int sweeps;
+} Case;
+
+static double run_case(Case *given) {
+    double loss = 0;
+    assert_true(unrolled_run(&given->unrolled, &given->rows, given->start, given->factors, given->sweeps));
+    for (int i = 0; i < 3 * given->rows.body_count; i++) {
+        const double v = given->unrolled.velocities[i];
+        loss += v * (given->weights[i] + v / 2);
+    }
+    return loss;
+}
+
+/* Starts on all sides of the cone, none on its edge. */
+static Case make_case(const ContactProblem *problem, int sweeps, uint32_t *seed) {
+    Case made = {.sweeps = sweeps};
+    assert_in_range(problem->body_count, 1, BODIES_MAX);
+    assert_true(unrolled_problem_make(&made.rows, problem));
+    warm_start(problem, made.start);
+    for (int i = 0; i < problem->contact_count; i++) {
+        made.start[2 * i] += (double)uniform(seed, -0.3f, 1);
+        const double reach = 1.5 * (double)problem->contacts[i].friction * fabs(made.start[2 * i]);
+        made.start[2 * i + 1] = reach * (double)uniform(seed, -1, 1);
+    }
+    for (int i = 0; i < 3 * problem->body_count; i++) made.weights[i] = (double)uniform(seed, -1, 1);
+    memcpy(made.factors, factors, sizeof factors);
+    return made;
+}
+
+static void free_case(Case *given) {
+    unrolled_problem_free(&given->rows);
+    unrolled_free(&given->unrolled);
+}
+
+/* Between kinks the loss is quadratic in each number, so central differences are exact up to rounding. Returns false if
+   there is a kink within the step. */
+static bool difference(Case *given, double *number, double step, double *slope) {
+    const size_t pieces = (size_t)(given->sweeps + 1) * (size_t)given->rows.contact_count;
+    const double kept = *number;
+    uint8_t *taken = malloc(pieces + 1);
+    assert_non_null(taken);
+    *number = kept + step;
+    *slope = run_case(given);
+    memcpy(taken, given->unrolled.pieces, pieces);
+    *number = kept - step;
+    *slope = (*slope - run_case(given)) / (2 * step);
+    *number = kept;
+    bool same = memcmp(taken, given->unrolled.pieces, pieces) == 0;
+    free(taken);
+    return same;
+}
+
+typedef struct Tally {
+    int checked, kinks, moved;
+} Tally;
+
+static void check(Case *given, double *number, double derivative, Tally *tally) {
+    double slope;
+    if (!difference(given, number, 1e-4, &slope)) {
+        tally->kinks++;
+        return;
+    }
+    assert_near(derivative, slope, 1e-7 * (1 + fabs(slope)));
+    tally->checked++;
+    tally->moved += fabs(slope) > 1e-3;
+}
+
+/* Kinks and numbers without effect must be few, or errors would go unnoticed. */
+static void assert_derivatives(const ContactProblem *problem, int sweeps, uint32_t *seed) {
+    Case given = make_case(problem, sweeps, seed);
+    double by_velocity[3 * BODIES_MAX], by_start[NUMBERS_MAX], by_factors[SWEEPS];
+    for (int s = 0; s < sweeps; s++) by_factors[s] = 7;
+    run_case(&given);
+    for (int i = 0; i < 3 * problem->body_count; i++) by_velocity[i] = given.weights[i] + given.unrolled.velocities[i];
+    unrolled_back(&given.unrolled, &given.rows, by_velocity, by_start, by_factors);
+    Tally of_start = {0}, of_factors = {0};
+    for (int i = 0; i < 2 * problem->contact_count; i++) check(&given, &given.start[i], by_start[i], &of_start);
+    for (int s = 0; s < sweeps; s++) check(&given, &given.factors[s], by_factors[s] - 7, &of_factors);
+    assert_true(of_start.kinks * 4 < of_start.checked);
+    assert_true(of_start.moved * 4 > of_start.checked);
+    /* The first factor has no effect: no sweep precedes it. */
+    assert_int_equal(of_factors.moved, sweeps > 0 ? sweeps - 1 : 0);
+    free_case(&given);
+}
+
+/* At the bomb's first touch. */
+static bool derive_impact(void *context, int frame, const World *world, Error *error) {
+    (void)frame, (void)error;
+    bool *met = context;
+    if (*met) return true;
+    const ContactProblem *problem = world_problem(world);
+    uint32_t seed = 3;
+    for (int i = 0; i < problem->contact_count && !*met; i++) *met = problem->contacts[i].b == problem->marked;
+    for (int sweeps = 0; *met && sweeps <= SWEEPS; sweeps += 4) assert_derivatives(problem, sweeps, &seed);
+    return true;
+}
+
+static void derivatives_match_differences_at_an_impact_of_the_stack(void **state) {
+    (void)state;
+    bool met = false;
+    observe_scene("stack", derive_impact, &met);
+    assert_true(met);
+}
+
+static void derivatives_match_differences_on_random_problems(void **state) {
+    (void)state;
+    uint32_t seed = 5;
+    for (int run = 0; run < 8; run++) {
+        RandomProblem random;
+        make_random(&random, &seed, 10, 0.2f, 0.5f);
+        assert_derivatives(&random.problem, 2 * run, &seed);
+    }
+}
+
+/* Impulses change velocities by W J^T, so the derivative is J W by_velocity; computed here from the problem itself. */
+static void without_sweeps_the_derivative_is_that_of_an_impulse(void **state) {
+    (void)state;
+    uint32_t seed = 9;
+    RandomProblem random;
+    make_random(&random, &seed, 10, 0.2f, 1);
+    Case given = make_case(&random.problem, 0, &seed);
+    for (int i = 0; i < random.problem.contact_count; i++) {
+        given.start[2 * i] = 1;
+        given.start[2 * i + 1] = (random.contacts[i].friction = 0.5f) * 0.9;
+    }
+    unrolled_problem_free(&given.rows);
+    assert_true(unrolled_problem_make(&given.rows, &random.problem));
+    run_case(&given);
+    double by_start[NUMBERS_MAX];
+    unrolled_back(&given.unrolled, &given.rows, given.weights, by_start, NULL);
+    for (int i = 0; i < 2 * random.problem.contact_count; i++) {
+        const ContactPoint *contact = &random.contacts[i / 2];
+        const Vec2 along = i % 2 == 0 ? contact->normal : vec2(contact->normal.y, -contact->normal.x);
+        double sum = 0;
+        for (int side = -1; side <= 1; side += 2) {
+            const int body = side < 0 ? contact->a : contact->b;
+            const Vec2 arm = side < 0 ? contact->arm_a : contact->arm_b;
+            const double *by = given.weights + 3 * body, inv_mass = (double)random.bodies[body].inv_mass;
+            const double turn = (double)arm.x * (double)along.y - (double)arm.y * (double)along.x;
+            sum += side * inv_mass * ((double)along.x * by[0] + (double)along.y * by[1]);
+            sum += side * (double)random.bodies[body].inv_inertia * turn * by[2];
+        }
+        assert_near(by_start[i], sum, 1e-12);
+    }
+    free_case(&given);
+}
+
+/* A pulling start is clamped to 0, so neither of its impulses has an effect. */
+static void a_start_that_pulls_has_no_effect(void **state) {
+    (void)state;
+    uint32_t seed = 15;
+    RandomProblem random;
+    double by_start[NUMBERS_MAX];
+    make_random(&random, &seed, 10, 0.2f, 1);
+    Case given = make_case(&random.problem, 0, &seed);
+    for (int i = 0; i < 2 * random.problem.contact_count; i++) given.start[i] = i % 2 == 0 ? -1 : i % 3 - 1;
+    run_case(&given);
+    unrolled_back(&given.unrolled, &given.rows, given.weights, by_start, NULL);
+    for (int i = 0; i < 2 * random.problem.contact_count; i++) assert_near(by_start[i], 0, 0);
+    free_case(&given);
+}
+
+/* Impulses are equal and opposite: without static bodies, no start and no factor changes the sum of m v. */
+static void total_momentum_is_conserved(void **state) {
+    (void)state;
+    uint32_t seed = 11;
+    RandomProblem random;
+    double by_start[NUMBERS_MAX], by_factors[SWEEPS] = {0}, mass[3 * BODIES_MAX] = {0};
+    make_random(&random, &seed, 12, 0.2f, 1);
+    for (int i = 0; i < random.problem.body_count; i++) {
+        if (random.bodies[i].inv_mass <= 0) random.bodies[i].inv_mass = random.bodies[i].inv_inertia = 0.5f;
+        mass[3 * i] = 1 / (double)random.bodies[i].inv_mass;
+    }
+    Case given = make_case(&random.problem, SWEEPS, &seed);
+    run_case(&given);
+    unrolled_back(&given.unrolled, &given.rows, mass, by_start, by_factors);
+    for (int i = 0; i < 2 * random.problem.contact_count; i++) assert_near(by_start[i], 0, 1e-9);
+    for (int s = 0; s < SWEEPS; s++) assert_near(by_factors[s], 0, 1e-9);
+    free_case(&given);
+}
+
+/* Earlier, larger problems and earlier backward passes do not change the result. */
+static void a_reused_work_space_gives_the_same_bits(void **state) {
+    (void)state;
+    uint32_t seed = 13;
+    RandomProblem large, small;
+    double by_start[2][NUMBERS_MAX];
+    make_random(&large, &seed, 30, 0.2f, 1);
+    make_random(&small, &seed, 8, 0.3f, 1);
+    Case other = make_case(&large.problem, SWEEPS, &seed), given = make_case(&small.problem, 7, &seed);
+    run_case(&given);
+    unrolled_back(&given.unrolled, &given.rows, given.weights, by_start[0], NULL);
+    unrolled_free(&given.unrolled);
+    run_case(&other);
+    given.unrolled = other.unrolled;
+    unrolled_back(&given.unrolled, &other.rows, other.weights, by_start[1], NULL);
+    run_case(&given);
+    for (int twice = 0; twice < 2; twice++) {
+        unrolled_back(&given.unrolled, &given.rows, given.weights, by_start[1], NULL);
+        assert_memory_equal(by_start[0], by_start[1], 2 * (size_t)small.problem.contact_count * sizeof(double));
+    }
+    unrolled_problem_free(&other.rows);
+    free_case(&given);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(sweeps_match_the_scalar_reference_implementation),
+                                       cmocka_unit_test(the_start_is_projected_into_the_cone),
+                                       cmocka_unit_test(derivatives_match_differences_at_an_impact_of_the_stack),
+                                       cmocka_unit_test(derivatives_match_differences_on_random_problems),
+                                       cmocka_unit_test(without_sweeps_the_derivative_is_that_of_an_impulse),
+                                       cmocka_unit_test(a_start_that_pulls_has_no_effect),
+                                       cmocka_unit_test(total_momentum_is_conserved),
+                                       cmocka_unit_test(a_reused_work_space_gives_the_same_bits)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

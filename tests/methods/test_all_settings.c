@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The settings of a method, given or not. */
+#include "testing.h"
+
+#include "methods/methods.h"
+
+static void assert_settings(const char *text, int iterations, const char *wanted) {
+    Settings settings;
+    char all[1024] = "";
+    assert_true(method_all_settings(&settings, text, iterations));
+    for (int i = 0; i < settings.count; i++)
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s=%s", i > 0 ? "," : "", settings.items[i].key,
+                 settings.items[i].value);
+    assert_string_equal(all, wanted);
+}
+
+/* Contact solvers take k from the scene; steppers have their own. */
+static void what_is_not_given_is_the_scenes_or_the_methods(void **state) {
+    (void)state;
+    assert_settings("engine", 10, "k=10");
+    assert_settings("engine:k=20", 10, "k=20");
+    assert_settings("engine", 0, "");
+    assert_settings("momentum:near=0.02", 7, "near=0.02,k=7");
+    assert_settings("avbd", 7, "k=10");
+    assert_settings("substepping:substeps=10", 7, "substeps=10,k=1");
+    assert_settings("soft-step", 7, "substeps=4");
+    assert_settings("interior", 7, "");
+    Settings settings;
+    assert_false(method_all_settings(&settings, "nothing", 10));
+    assert_false(method_all_settings(&settings, "engine:sweeps=3", 10));
+}
+
+/* No method with a k is forgotten. */
+static void every_method_with_k_has_one(void **state) {
+    (void)state;
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        Settings settings;
+        assert_true(method_all_settings(&settings, kind->description->name, 12));
+        const char *sweeps = settings_get(&settings, "k");
+        assert_int_equal(sweeps != NULL, settings_known(kind->description->settings, "k"));
+        if (kind->solver != NULL && sweeps != NULL) assert_string_equal(sweeps, "12");
+        if (kind->stepping != NULL && sweeps != NULL) assert_non_null(kind->description->own_settings);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_not_given_is_the_scenes_or_the_methods),
+        cmocka_unit_test(every_method_with_k_has_one),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

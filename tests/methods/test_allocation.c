@@ -1,0 +1,154 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A step allocates nothing once the world has warmed up. */
+#include "allocations.h"
+#include "pair_networks.h"
+#include "methods/relation_networks.h"
+#include "slot_problems.h"
+
+#include "methods/solvers.h"
+
+static World *make_pyramid(void) {
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int row = 0; row < 11; row++)
+        for (int i = row; i < 11; i++) {
+            float x = 1.125f * ((float)i - 0.5f * (float)row);
+            add_body(world,
+                     &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.5f + (float)row}});
+        }
+    return world;
+}
+
+static void steps_allocate_nothing_by(const ContactSolverKind *kind, const char *text) {
+    World *world = make_pyramid();
+    allocations = 0;
+    ContactSolver solver = make_solver(kind, text);
+    run(world, &solver, 60);
+    assert_true(allocations > 10);
+    allocations = 0;
+    run(world, &solver, 60);
+    assert_int_equal(allocations, 0);
+    free_solver(&solver);
+    world_destroy(world);
+}
+
+static void a_settled_pyramid_steps_without_allocating(void **state) {
+    (void)state;
+    steps_allocate_nothing_by(&solver_engine, "");
+    steps_allocate_nothing_by(&solver_engine, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_over_relaxation, "");
+    steps_allocate_nothing_by(&solver_over_relaxation, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_momentum, "");
+    steps_allocate_nothing_by(&solver_momentum, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_block, "");
+    steps_allocate_nothing_by(&solver_block, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_nncg, "");
+    steps_allocate_nothing_by(&solver_nncg, "k=7,near=1e-4");
+    steps_allocate_nothing_by(&solver_relu_net, "");
+    steps_allocate_nothing_by(&solver_interior, "");
+    steps_allocate_nothing_by(&solver_hybrid, "");
+}
+
+/* The network's pyramid would not stand, so each is asked about the engine's, twice. */
+static void pair_networks_solve_without_allocating(void **state) {
+    (void)state;
+    Error error = {0};
+    World *world = make_pyramid();
+    ContactSolver engine = make_engine("");
+    run(world, &engine, 10);
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution solution = *world_solution(world);
+    for (PairTarget target = TARGET_PAIR; target < PAIR_TARGETS; target++) {
+        const PairView view = target == TARGET_IMPULSE ? PAIR_RELATIVE : PAIR_NEIGHBOURS;
+        const ContactSolverKind *kind = target == TARGET_POINTS ? &solver_contact_net : &solver_pair_net;
+        ContactSolver solver =
+            make_network_solver(kind, constant_network(view, target, pair_change_count(target), six), 3);
+        allocations = 0;
+        assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
+        assert_int_equal(allocations > 0, target != TARGET_IMPULSE);
+        allocations = 0;
+        assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
+        assert_int_equal(allocations, 0);
+        free_solver(&solver);
+    }
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+static void a_view_of_no_larger_problem_allocates_nothing(void **state) {
+    (void)state;
+    static RandomProblem large, small;
+    uint32_t seed = 1;
+    SceneView view = {0};
+    SlotNetwork *network = make_slot_problem(&large, &seed, 20, 0.5f, 1);
+    SlotNetwork *smaller = make_slot_problem(&small, &seed, 12, 0.5f, 1);
+    allocations = 0;
+    assert_true(scene_view_take(&view, network, &large.problem));
+    assert_true(allocations > 0);
+    allocations = 0;
+    assert_true(scene_view_take(&view, network, &large.problem));
+    assert_true(scene_view_take(&view, smaller, &small.problem));
+    assert_true(scene_view_take(&view, network, &large.problem));
+    assert_int_equal(allocations, 0);
+    scene_view_free(&view);
+    slot_network_destroy(smaller);
+    slot_network_destroy(network);
+}
+
+static void a_network_of_a_scene_solves_without_allocating(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 4;
+    Error error = {0};
+    ContactSolver solver;
+    BodyVelocity velocities[BODIES_MAX];
+    ContactImpulse impulses[CONTACTS_MAX];
+    ContactSolution solution = {velocities, impulses, 0, {0}};
+    SlotNetwork *network = make_slot_problem(&random, &seed, 20, 0.5f, 0.7f);
+    random.problem.marked = network->bomb;
+    network->bomb_inv_mass = random.bodies[network->bomb].inv_mass;
+    network->sweeps = 6;
+    let_know_all(network);
+    assert_ok(scene_net_make(&solver, network, 0.05f, &error), error);
+    allocations = 0;
+    assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
+    assert_true(allocations > 5);
+    allocations = 0;
+    assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
+    assert_int_equal(allocations, 0);
+    free_solver(&solver);
+    slot_network_destroy(network);
+}
+
+static void corrected_steps_allocate_nothing(void **state) {
+    (void)state;
+    Error error = {0};
+    uint32_t seed = 1;
+    RelationNetwork network;
+    make_relation_network(&network, &seed, 0.1f);
+    World *world = make_pyramid();
+    ContactSolver engine = make_engine(""), solver;
+    run(world, &engine, 10);
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution solution = *world_solution(world);
+    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+        assert_ok(sain_make(&solver, &network, form, &error), error);
+        assert_ok(solver.kind->solve(solver.state, problem, &solution, &error), error);
+        allocations = 0;
+        assert_ok(solver.kind->solve(solver.state, problem, &solution, &error), error);
+        assert_int_equal(allocations, 0);
+        free_solver(&solver);
+    }
+    free_solver(&engine);
+    world_destroy(world);
+    relation_network_destroy(&network);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating),
+                                       cmocka_unit_test(pair_networks_solve_without_allocating),
+                                       cmocka_unit_test(a_view_of_no_larger_problem_allocates_nothing),
+                                       cmocka_unit_test(a_network_of_a_scene_solves_without_allocating),
+                                       cmocka_unit_test(corrected_steps_allocate_nothing)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

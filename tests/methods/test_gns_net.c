@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files of gns. */
+#include "testing.h"
+
+#include "base/npz.h"
+#include "nets/kinds.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void what_is_written_is_read_again(void **state) {
+    (void)state;
+    Error error = {0};
+    GnsNet net, read;
+    const char *path = temporary_path("net.npz");
+    assert_ok(gns_net_create(&net, 32, 3, &error), error);
+    for (int i = 0; i < net.layout.parameters; i++) net.parameters[i] = (float)(i - 100) / 7;
+    net.scales = (GnsScales){0.5f, 2, 3, 4, 5};
+    strcpy(net.command, "twinbox train");
+    assert_ok(gns_net_write(&net, path, &error), error);
+    assert_ok(gns_net_read(&read, path, &error), error);
+    assert_string_equal(read.command, "twinbox train");
+    assert_int_equal(read.layout.width, 32);
+    assert_int_equal(read.layout.rounds, 3);
+    assert_memory_equal(&read.scales, &net.scales, sizeof net.scales);
+    assert_memory_equal(read.parameters, net.parameters, (size_t)net.layout.parameters * sizeof *net.parameters);
+    gns_net_free(&net);
+    gns_net_free(&read);
+}
+
+typedef struct File {
+    const char *kind;
+    int32_t version, width, rounds;
+    int extra;
+    float scale, number;
+} File;
+
+static const char *write_file(File of) {
+    Error error = {0};
+    const char *path = temporary_path("hostile.npz");
+    const int32_t shape[2] = {of.width, of.rounds};
+    const float scales[5] = {of.scale, 1, 1, 1, 1};
+    const GnsLayout layout = gns_layout(16, 1);
+    float *parameters = calloc((size_t)layout.parameters + 1, sizeof *parameters);
+    assert_non_null(parameters);
+    parameters[7] = of.number;
+    const NpzArray arrays[] = {{.name = "version", .type = NPZ_INT32, .data = &of.version},
+                               {.name = "kind", .type = NPZ_TEXT, .data = of.kind},
+                               {.name = "command", .type = NPZ_TEXT, .data = "none"},
+                               {"shape", NPZ_INT32, 1, {2}, shape},
+                               {"scales", NPZ_FLOAT32, 1, {5}, scales},
+                               {"parameters", NPZ_FLOAT32, 1, {layout.parameters + of.extra}, parameters}};
+    assert_ok(npz_write(path, arrays, sizeof arrays / sizeof *arrays, &error), error);
+    free(parameters);
+    return path;
+}
+
+static void refuse(const char *path, const char *text) {
+    Error error = {0};
+    GnsNet net;
+    assert_refused(gns_net_read(&net, path, &error), text);
+    gns_net_free(&net);
+}
+
+static void hostile_files_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    GnsNet net;
+    assert_ok(gns_net_read(&net, write_file((File){"gns", 1, 16, 1, 0, 1, 0}), &error), error);
+    gns_net_free(&net);
+    refuse(write_file((File){"gns", 2, 16, 1, 0, 1, 0}), "version 2");
+    refuse(write_file((File){"network", 1, 16, 1, 0, 1, 0}), "not a file of kind 'gns'");
+    refuse(write_file((File){"gns", 1, 20, 1, 0, 1, 0}), "the width is 20");
+    refuse(write_file((File){"gns", 1, 1 << 20, 1, 0, 1, 0}), "the width is 1048576");
+    refuse(write_file((File){"gns", 1, -16, 1, 0, 1, 0}), "the width is -16");
+    refuse(write_file((File){"gns", 1, 16, 11, 0, 1, 0}), "11 rounds");
+    refuse(write_file((File){"gns", 1, 16, 0, 0, 1, 0}), "0 rounds");
+    refuse(write_file((File){"gns", 1, 16, 2, 0, 1, 0}), "parameters");
+    refuse(write_file((File){"gns", 1, 16, 1, 1, 1, 0}), "parameters");
+    refuse(write_file((File){"gns", 1, 16, 1, 0, 0, 0}), "greater than 0");
+    refuse(write_file((File){"gns", 1, 16, 1, 0, 1, NAN}), "number 7");
+    refuse(write_file((File){"gns", 1, 16, 1, 0, 1, INFINITY}), "number 7");
+    refuse("/dev/null", "/dev/null");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read_again),
+                                       cmocka_unit_test(hostile_files_are_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,472 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The method interior: its solution against the reference, and what it must keep whatever the problem is. */
+#include "consistent.h"
+#include "kernels.h"
+#include "random_problem.h"
+#include "reference_worlds.h"
+
+#include "base/hash.h"
+#include "methods/interior_point_internal.h"
+#include "methods/reference.h"
+#include "methods/sweeps.h"
+
+static Reference reference;
+
+/* The contact problem that the world's next step meets. The engine makes the step. */
+static const ContactProblem *next_problem(World *world) {
+    ContactSolver engine = make_engine("k=1");
+    run(world, &engine, 1);
+    free_solver(&engine);
+    return world_problem(world);
+}
+
+static double error_of(const char *settings, const ContactProblem *problem, const ReferenceVelocity *expected) {
+    ContactSolution found = make_solution(problem);
+    solve_with(&solver_interior, settings, problem, &found);
+    const double error = solution_error(problem, found.velocities, expected).rms;
+    free_solution(&found);
+    return error;
+}
+
+/* A stack that a box of 10 times the mass has just hit. */
+static World *make_struck_stack(int steps) {
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int i = 0; i < 10; i++)
+        add_body(world,
+                 &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.49f + 0.98f * (float)i}});
+    add_body(world, &(BodyDef){.size = {1, 1},
+                               .mass = 10,
+                               .friction = 0.2f,
+                               .position = {0.2f, 10.3f},
+                               .angle = 0.1f,
+                               .velocity = {-3, -8}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, steps);
+    free_solver(&engine);
+    return world;
+}
+
+static World *make_struck_pyramid(int steps) {
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int row = 0; row < 6; row++)
+        for (int i = row; i < 6; i++) {
+            const float x = 1.125f * ((float)i - 0.5f * (float)row);
+            add_body(
+                world,
+                &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.49f + 0.98f * (float)row}});
+        }
+    add_body(world,
+             &(BodyDef){.size = {1, 1}, .mass = 50, .friction = 0.2f, .position = {2.6f, 6.6f}, .velocity = {1, -15}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, steps);
+    free_solver(&engine);
+    return world;
+}
+
+/* Root mean square over the contacts of what one visit would change, m/s. */
+static double residual_of(const ContactProblem *problem, const ContactSolution *found) {
+    double sum = 0;
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const Vec2 tangent = vec2_cross_scalar(contact->normal, 1.0f);
+        const Vec2 v =
+            contact_relative_velocity(&found->velocities[contact->a], &found->velocities[contact->b], contact);
+        const double l = (double)found->impulses[i].normal, t = (double)found->impulses[i].tangent;
+        const double gap = (double)(vec2_dot(v, contact->normal) - contact->bias);
+        const double mass = (double)contact->mass_tangent, bound = (double)contact->friction * l;
+        const double normal = fmin(l / (double)contact->mass_normal, gap);
+        const double tangential = (t - fmin(fmax(t - mass * (double)vec2_dot(v, tangent), -bound), bound)) / mass;
+        sum += normal * normal + tangential * tangential;
+    }
+    return sqrt(sum / problem->contact_count);
+}
+
+/* The error of the velocities follows `near`. */
+static void impacts_have_the_reference_solution(void **state) {
+    (void)state;
+    World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_heap(4), make_heap(9)};
+    for (int i = 0; i < 4; i++) {
+        Error error = {0};
+        const ContactProblem *problem = next_problem(worlds[i]);
+        assert_ok(reference_solve(&reference, problem, NULL, &error), error);
+        assert_true(reference.residual <= tight);
+        assert_true(error_of("near=0.02", problem, reference.velocities) < 0.02);
+        assert_true(error_of("near=1e-3", problem, reference.velocities) < 1e-3);
+        assert_true(error_of("near=1e-6", problem, reference.velocities) < 1e-5);
+        world_destroy(worlds[i]);
+    }
+}
+
+/* Friction allows several solutions here, 0.07 m/s apart, so this is about the residual alone. Shallow contacts close by
+   up to 1 mm/s. */
+static void impacts_of_a_pyramid_are_solved_to_the_tolerance(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double most;
+    } settings[] = {{"near=0.5", 0.5}, {"near=0.02", 0.02}, {"near=0.005", 0.005}};
+    int fallbacks = 0;
+    for (int i = 0; i < 15; i++) {
+        World *world = make_struck_pyramid(1 + i / 3);
+        const ContactProblem *problem = next_problem(world);
+        ContactSolution found = make_solution(problem);
+        solve_with(&solver_interior, settings[i % 3].text, problem, &found);
+        fallbacks += found.fallbacks.by_sweeps;
+        if (found.fallbacks.by_sweeps == 0) assert_true(residual_of(problem, &found) <= settings[i % 3].most + 1.1e-3);
+        free_solution(&found);
+        world_destroy(world);
+    }
+    assert_true(fallbacks <= 1);
+}
+
+/* Random normals, arms and masses: effective masses that fit, as the residual is in their units. Where the friction is
+   low, the solution is unique. */
+static void fit_masses(RandomProblem *random) {
+    for (int i = 0; i < random->problem.contact_count; i++) {
+        ContactPoint *contact = &random->contacts[i];
+        const ProblemBody *a = &random->bodies[contact->a], *b = &random->bodies[contact->b];
+        const float an = vec2_cross(contact->arm_a, contact->normal), bn = vec2_cross(contact->arm_b, contact->normal);
+        const float at = vec2_dot(contact->arm_a, contact->normal), bt = vec2_dot(contact->arm_b, contact->normal);
+        const float mass = a->inv_mass + b->inv_mass;
+        const float normal = mass + a->inv_inertia * an * an + b->inv_inertia * bn * bn;
+        const float tangent = mass + a->inv_inertia * at * at + b->inv_inertia * bt * bt;
+        contact->mass_normal = normal > 0 ? 1 / normal : 1;
+        contact->mass_tangent = tangent > 0 ? 1 / tangent : 1;
+        contact->friction *= 0.2f;
+        contact->bias *= 0.1f;
+    }
+}
+
+/* Some random problems have no solution, or the reference does not find it; most have. */
+static void random_problems_have_the_reference_solution(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 3;
+    int compared = 0, agree = 0;
+    for (int run = 0; run < 60; run++) {
+        Error error = {0};
+        make_random(&random, &seed, 3 + run % 12, 0.25f, 1);
+        fit_masses(&random);
+        assert_ok(reference_solve(&reference, &random.problem, NULL, &error), error);
+        if (!(reference.residual <= tight)) continue;
+        compared++;
+        agree += error_of("near=1e-7", &random.problem, reference.velocities) < 1e-4;
+    }
+    if (compared < 40 || agree < compared * 9 / 10) fail_msg("%d of %d agree", agree, compared);
+}
+
+/* For any problem: impulses inside the cone, velocities that are those of the impulses. */
+static void cone_and_velocities_fit(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 11;
+    for (int run = 0; run < 60; run++) {
+        make_random(&random, &seed, 2 + run, 0.15f, 0);
+        fit_masses(&random);
+        ContactSolution found = make_solution(&random.problem);
+        solve_with(&solver_interior, run % 2 == 0 ? "" : "near=1e-4", &random.problem, &found);
+        for (int i = 0; i < random.problem.contact_count; i++) {
+            const ContactImpulse p = found.impulses[i];
+            assert_true(p.normal >= 0);
+            assert_true(fabsf(p.tangent) <= random.contacts[i].friction * p.normal);
+        }
+        assert_velocities_fit(&random.problem, &found);
+        free_solution(&found);
+    }
+}
+
+/* The rounding of the velocities to float is all that is lost: 2^-24 of each. */
+static void momentum_is_exact(void **state) {
+    (void)state;
+    World *world = make_struck_stack(3);
+    const ContactProblem *problem = next_problem(world);
+    ContactProblem free = *problem;
+    ProblemBody bodies[16];
+    memcpy(bodies, problem->bodies, (size_t)problem->body_count * sizeof *bodies);
+    bodies[0].inv_mass = bodies[0].inv_inertia = 1e-4f; /* a heavy floating ground */
+    free.bodies = bodies;
+    ContactSolution found = make_solution(&free);
+    solve_with(&solver_interior, "", &free, &found);
+    double before[2] = {0}, after[2] = {0}, rounding = 0;
+    for (int i = 0; i < free.body_count; i++) {
+        const double mass = 1 / (double)bodies[i].inv_mass;
+        const Vec2 v = found.velocities[i].linear;
+        before[0] += mass * (double)bodies[i].velocity.x;
+        before[1] += mass * (double)bodies[i].velocity.y;
+        after[0] += mass * (double)v.x;
+        after[1] += mass * (double)v.y;
+        rounding += mass * fmax(fabs((double)v.x), fabs((double)v.y)) * ldexp(1, -24);
+    }
+    for (int k = 0; k < 2; k++) assert_near(after[k], before[k], rounding);
+    free_solution(&found);
+    world_destroy(world);
+}
+
+static uint64_t bits_of_a_run(int steps) {
+    World *world = make_struck_pyramid(0);
+    ContactSolver solver = make_solver(&solver_interior, "");
+    run(world, &solver, steps);
+    const uint64_t hash = hash_xxh3(world_bodies(world), (size_t)world_body_count(world) * sizeof *world_bodies(world));
+    free_solver(&solver);
+    world_destroy(world);
+    return hash;
+}
+
+/* Made by this test; any processor and compiler must give it. */
+static void a_run_has_these_bits(void **state) {
+    (void)state;
+    const uint64_t expected = UINT64_C(0x37fd41bc468a2c58), found = bits_of_a_run(60);
+    if (found != expected) fail_msg("%016llx", (unsigned long long)found);
+}
+
+static void kernels_agree(const ContactProblem *problem) {
+    Sweeps sweeps = {0};
+    Interior interior[2];
+    memset(interior, 0, sizeof interior);
+    const InteriorKernels *const kernels[2] = {&interior_scalar, interior_best()};
+    ContactSolution found[2] = {make_solution(problem), make_solution(problem)};
+    assert_true(sweeps_begin_coloured(&sweeps, SWEEP_ONE_BY_ONE, problem) && sweeps_run(&sweeps, 2));
+    for (int k = 0; k < 2; k++) {
+        assert_true(interior_load(&interior[k], kernels[k], &sweeps, problem));
+        interior_iterate(&interior[k], kernels[k], &interior_quick, 1e-6, 1e6, 1e-3, 20);
+        interior_end(&interior[k], &sweeps, problem, &found[k]);
+    }
+    assert_same_bits(problem, &found[1], &found[0], "interior");
+    for (int k = 0; k < 2; k++) {
+        interior_free(&interior[k]);
+        free_solution(&found[k]);
+    }
+    sweeps_free(&sweeps);
+}
+
+/* The sum of log(estimate / residual) over eight iterations. */
+static double log_of_estimates(const ContactProblem *problem) {
+    const InteriorKernels *kernels = interior_best();
+    Sweeps sweeps = {0};
+    Interior interior = {0};
+    assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem) && sweeps_run(&sweeps, 2));
+    assert_true(interior_load(&interior, kernels, &sweeps, problem));
+    interior_iterate(&interior, kernels, &interior_quick, 0.01, 1e6, 0, 1);
+    double target = 1e-2, sum = 0;
+    for (int i = 0; i < 8; i++, target *= 0.1) {
+        const double estimate = kernels->iterate(&interior, target), residual = kernels->answer(&interior);
+        assert_true(residual <= 2 * estimate + 1e-9);
+        sum += log((estimate + 1e-9) / (residual + 1e-9));
+    }
+    interior_free(&interior);
+    sweeps_free(&sweeps);
+    return sum;
+}
+
+/* The estimate decides when the velocities of the answer are computed. Too small it would cost time for answers that are
+   refused, too large it would cost iterations. */
+static void the_estimate_is_near_the_residual(void **state) {
+    (void)state;
+    World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_struck_pyramid(1), make_struck_pyramid(4),
+                       make_heap(4)};
+    double sum = 0;
+    for (int i = 0; i < 5; i++) {
+        sum += log_of_estimates(next_problem(worlds[i]));
+        world_destroy(worlds[i]);
+    }
+    assert_true(fabs(sum / (5 * 8)) < log(1.5));
+}
+
+static void kernels_have_the_bits_of_the_scalar_one(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 21;
+    for (int run = 0; run < 50; run++) {
+        make_random(&random, &seed, 2 + run, 0.15f, 1);
+        fit_masses(&random);
+        kernels_agree(&random.problem);
+    }
+    World *world = make_struck_pyramid(2);
+    kernels_agree(next_problem(world));
+    world_destroy(world);
+}
+
+/* The same problem gives the same bits whatever the solver has solved before. */
+static void earlier_problems_leave_no_trace(void **state) {
+    (void)state;
+    Error error = {0};
+    World *pyramid = make_struck_pyramid(2), *stack = make_struck_stack(3);
+    const ContactProblem *first = next_problem(pyramid), *second = next_problem(stack);
+    ContactSolution fresh = make_solution(second), used = make_solution(second), other = make_solution(first);
+    solve_with(&solver_interior, "", second, &fresh);
+    ContactSolver solver = make_solver(&solver_interior, "");
+    for (int i = 0; i < 2; i++) {
+        assert_ok(solver.kind->solve(solver.state, first, &other, &error), error);
+        assert_ok(solver.kind->solve(solver.state, second, &used, &error), error);
+        assert_same_bits(second, &used, &fresh, "used");
+    }
+    free_solver(&solver);
+    free_solution(&fresh);
+    free_solution(&used);
+    free_solution(&other);
+    world_destroy(pyramid);
+    world_destroy(stack);
+}
+
+static void without_contacts_bodies_keep_their_velocities(void **state) {
+    (void)state;
+    const ProblemBody body = {.inv_mass = 1, .inv_inertia = 6, .velocity = {1, 2}, .angular_velocity = 3};
+    const ContactProblem problem = {.body_count = 1, .marked = -1, .dt = world_dt, .bodies = &body};
+    ContactSolution found = make_solution(&problem);
+    solve_with(&solver_interior, "", &problem, &found);
+    const BodyVelocity expected = {{1, 2}, 3};
+    assert_memory_equal(&found.velocities[0], &expected, sizeof expected);
+    assert_int_equal(found.fallbacks.by_sweeps, 0);
+    free_solution(&found);
+}
+
+/* No impulse could change anything between static bodies: they are left out of the matrix and of the residual. */
+static void two_static_bodies_are_no_obstacle(void **state) {
+    (void)state;
+    const ProblemBody bodies[] = {
+        {.velocity = {0, 0}}, {.velocity = {0, -1}}, {.inv_mass = 1, .inv_inertia = 6, .velocity = {0, -1}}};
+    ContactPoint contacts[] = {
+        {.a = 0, .b = 1, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1},
+        {.a = 0, .b = 2, .normal = {0, 1}, .mass_normal = 1, .mass_tangent = 1, .friction = 0.5f}};
+    const ContactProblem problem = {
+        .body_count = 3, .contact_count = 2, .marked = -1, .dt = world_dt, .bodies = bodies, .contacts = contacts};
+    ContactSolution found = make_solution(&problem);
+    solve_with(&solver_interior, "near=1e-6", &problem, &found);
+    assert_near(found.velocities[1].linear.y, -1, 0);
+    assert_near(found.velocities[2].linear.y, 0, 1e-5);
+    assert_near(found.impulses[1].normal, 1, 1e-5);
+    assert_int_equal(found.fallbacks.by_sweeps, 0);
+    free_solution(&found);
+}
+
+/* A million to one. */
+static void a_huge_mass_ratio_is_solved(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.495f}});
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1e6f, .friction = 0.2f, .position = {0, 1.49f}});
+    ContactSolver solver = make_solver(&solver_interior, "");
+    run(world, &solver, 300);
+    assert_near(world_bodies(world)[1].position.y, 0.49f, 0.01f);
+    assert_near(world_bodies(world)[2].position.y, 1.48f, 0.02f);
+    free_solver(&solver);
+    world_destroy(world);
+}
+
+/* Sweeps solve a problem with a NaN, and say so: with their bits, whatever these are. */
+static void a_nan_ends_in_the_fallback(void **state) {
+    (void)state;
+    World *world = make_struck_stack(3);
+    ContactProblem problem = *next_problem(world);
+    ContactPoint contacts[64];
+    assert_in_range(problem.contact_count, 3, 64);
+    memcpy(contacts, problem.contacts, (size_t)problem.contact_count * sizeof *contacts);
+    contacts[2].bias = NAN;
+    problem.contacts = contacts;
+    ContactSolution found = make_solution(&problem);
+    solve_with(&solver_interior, "", &problem, &found);
+    assert_int_equal(found.fallbacks.by_sweeps, 1);
+    free_solution(&found);
+    world_destroy(world);
+}
+
+/* A box between two fixed ones, with opposite impulses that cancel: they do not change any velocity, but their rounding
+   in float would. */
+static double residual_of_jam(float jam) {
+    World *world = make_world();
+    for (int i = -1; i <= 1; i += 2)
+        add_body(world, &(BodyDef){.size = {1, 1}, .fixed = true, .friction = 0.2f, .position = {(float)i, 0}});
+    add_body(world, &(BodyDef){.size = {1.01f, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0}});
+    const ContactProblem *problem = next_problem(world);
+    ContactPoint contacts[4];
+    assert_int_equal(problem->contact_count, 4);
+    memcpy(contacts, problem->contacts, sizeof contacts);
+    for (int i = 0; i < 4; i++) contacts[i].warm_normal = jam;
+    ContactProblem jammed = *problem;
+    jammed.contacts = contacts;
+    Sweeps sweeps = {0};
+    Interior interior = {0};
+    assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), &jammed));
+    assert_true(interior_load(&interior, interior_best(), &sweeps, &jammed));
+    interior_iterate(&interior, interior_best(), &interior_gentle, 1e-6, 1e6, 1, 20);
+    const double residual = interior.residual;
+    interior_free(&interior);
+    sweeps_free(&sweeps);
+    world_destroy(world);
+    return residual;
+}
+
+static void impulses_too_large_for_float_are_no_solution(void **state) {
+    (void)state;
+    assert_true(residual_of_jam(1e3f) <= 1);
+    assert_true(isinf(residual_of_jam(1e10f)));
+}
+
+/* `rows` rows of a pyramid, or as many boxes in stacks of ten. */
+static World *make_boxes(int rows, bool stacks) {
+    World *world = make_world();
+    add_ground(world, 0.5f);
+    BodyDef def = {.size = {1, 1}, .mass = 10, .friction = 0.5f};
+    for (int row = 0, box = 0; row < rows; row++)
+        for (int i = row; i < rows; i++, box++) {
+            const float x = 1.125f * ((float)(i - rows / 2) - 0.5f * (float)row);
+            def.position = stacks ? vec2(2 * (float)(box / 10 - rows), 0.49f + 0.98f * (float)(box % 10))
+                                  : vec2(x, 0.49f + 0.98f * (float)row);
+            add_body(world, &def);
+        }
+    return world;
+}
+
+/* 820 boxes: in a pyramid they have 1,560 - 819 loops, in stacks none. The bits are those of sweeps with momentum. */
+static void large_pyramids_are_left_to_sweeps_and_stacks_are_not(void **state) {
+    (void)state;
+    for (int stacks = 0; stacks < 2; stacks++) {
+        World *world = make_boxes(40, stacks);
+        const ContactProblem *problem = next_problem(world);
+        ContactSolution found = make_solution(problem), swept = make_solution(problem);
+        solve_with(&solver_interior, "near=0.001", problem, &found);
+        solve_with(&solver_momentum, "k=20,near=0.001,more=96", problem, &swept);
+        assert_int_equal(found.fallbacks.by_sweeps, !stacks);
+        const size_t size = (size_t)problem->body_count * sizeof *found.velocities;
+        assert_int_equal(memcmp(found.velocities, swept.velocities, size) == 0, !stacks);
+        free_solution(&found);
+        free_solution(&swept);
+        world_destroy(world);
+    }
+}
+
+static void settings_out_of_range_are_refused(void **state) {
+    (void)state;
+    static const char *const texts[] = {"near=0", "near=-1", "near=nan", "near=x"};
+    for (int i = 0; i < 4; i++) {
+        Error error = {0};
+        Settings settings;
+        assert_ok(settings_parse(&settings, texts[i], solver_interior.description.settings, "interior", &error), error);
+        assert_refused(solver_interior.create(&settings, &error), "near");
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(impacts_have_the_reference_solution),
+                                       cmocka_unit_test(impacts_of_a_pyramid_are_solved_to_the_tolerance),
+                                       cmocka_unit_test(random_problems_have_the_reference_solution),
+                                       cmocka_unit_test(cone_and_velocities_fit),
+                                       cmocka_unit_test(momentum_is_exact),
+                                       cmocka_unit_test(a_run_has_these_bits),
+                                       cmocka_unit_test(the_estimate_is_near_the_residual),
+                                       cmocka_unit_test(kernels_have_the_bits_of_the_scalar_one),
+                                       cmocka_unit_test(earlier_problems_leave_no_trace),
+                                       cmocka_unit_test(without_contacts_bodies_keep_their_velocities),
+                                       cmocka_unit_test(two_static_bodies_are_no_obstacle),
+                                       cmocka_unit_test(a_huge_mass_ratio_is_solved),
+                                       cmocka_unit_test(a_nan_ends_in_the_fallback),
+                                       cmocka_unit_test(impulses_too_large_for_float_are_no_solution),
+                                       cmocka_unit_test(large_pyramids_are_left_to_sweeps_and_stacks_are_not),
+                                       cmocka_unit_test(settings_out_of_range_are_refused)};
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    reference_free(&reference);
+    return failed;
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What playback plays is what was recorded. */
+#include "testing.h"
+
+#include "scenes/scenes.h"
+#include "runs/runs.h"
+
+static Trajectory *run(const char *method_text, float x, int frame) {
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
+    assert_ok(scene != NULL, error);
+    scene->bomb.frame = 20;
+    Launch launch = launch_of(scene);
+    launch.x = x;
+    launch.frame = frame;
+    Scene launched = launch_scene(scene, &launch);
+    Method method;
+    assert_ok(method_parse(&method, method_text, &error), error);
+    Trajectory *trajectory = simulate(&launched, &method, NULL, &error);
+    assert_ok(trajectory != NULL, error);
+    scene_destroy(scene);
+    return trajectory;
+}
+
+/* Of two launches recorded, x = -2.5 and 2.5 m, the nearer one. */
+static void the_nearest_launch_is_played(void **state) {
+    (void)state;
+    Launch recorded[2];
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
+    assert_ok(scene != NULL, error);
+    assert_ok(launches_for_training(scene, 2, recorded, &error), error);
+    scene_destroy(scene);
+    for (int i = 0; i < 2; i++) {
+        Trajectory *played = run("playback:launches=2", recorded[i].x * 0.3f, 20);
+        Trajectory *original = run("momentum:k=100", recorded[i].x, 20);
+        size_t states = (size_t)played->frames * (size_t)played->bodies;
+        for (size_t s = 21 * (size_t)played->bodies; s < states; s++) {
+            assert_near(played->velocity[s].x, original->velocity[s].x, 0);
+            assert_near(played->angular_velocity[s], original->angular_velocity[s], 0);
+        }
+        trajectory_destroy(played);
+        trajectory_destroy(original);
+    }
+}
+
+static void a_scene_without_a_bomb_has_nothing_to_play(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
+    assert_ok(scene != NULL, error);
+    scene->bomb.present = false;
+    Method method;
+    assert_ok(method_parse(&method, "playback", &error), error);
+    assert_refused(simulate(scene, &method, NULL, &error),
+                   "playback: error: scene single has no bomb: nothing to play");
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_nearest_launch_is_played),
+                                       cmocka_unit_test(a_scene_without_a_bomb_has_nothing_to_play)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The reference, held to sweeps: many plain ones find the same, and one more changes nothing. */
+#include "reference_worlds.h"
+
+#include "methods/sweeps.h"
+
+#include <math.h>
+
+enum { MANY = 200000 };
+
+/* Plain sweeps in double, written down apart from the reference. */
+typedef struct Plain {
+    ReferenceVelocity velocities[8];
+    ReferenceImpulse impulses[64];
+} Plain;
+
+/* Velocity of b's point as seen from a's, along x, y. */
+static double slip(const Plain *plain, const ContactPoint *contact, double x, double y) {
+    const ReferenceVelocity *a = &plain->velocities[contact->a], *b = &plain->velocities[contact->b];
+    double along_x = b->x - b->spin * (double)contact->arm_b.y - a->x + a->spin * (double)contact->arm_a.y;
+    double along_y = b->y + b->spin * (double)contact->arm_b.x - a->y - a->spin * (double)contact->arm_a.x;
+    return along_x * x + along_y * y;
+}
+
+static void push(Plain *plain, const ProblemBody *bodies, int body, Vec2 arm, double x, double y) {
+    ReferenceVelocity *velocity = &plain->velocities[body];
+    velocity->x += (double)bodies[body].inv_mass * x;
+    velocity->y += (double)bodies[body].inv_mass * y;
+    velocity->spin += (double)bodies[body].inv_inertia * ((double)arm.x * y - (double)arm.y * x);
+}
+
+static void push_both(Plain *plain, const ContactProblem *problem, const ContactPoint *contact, double x, double y) {
+    push(plain, problem->bodies, contact->a, contact->arm_a, -x, -y);
+    push(plain, problem->bodies, contact->b, contact->arm_b, x, y);
+}
+
+static void plain_begin(Plain *plain, const ContactProblem *problem) {
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        plain->velocities[i] =
+            (ReferenceVelocity){(double)body->velocity.x, (double)body->velocity.y, (double)body->angular_velocity};
+    }
+    for (int i = 0; i < problem->contact_count; i++) plain->impulses[i] = (ReferenceImpulse){0, 0};
+}
+
+static void plain_sweep(Plain *plain, const ContactProblem *problem) {
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        ReferenceImpulse *impulse = &plain->impulses[i];
+        double x = (double)contact->normal.x, y = (double)contact->normal.y, before = impulse->normal;
+        impulse->normal =
+            fmax(before + (double)contact->mass_normal * ((double)contact->bias - slip(plain, contact, x, y)), 0);
+        push_both(plain, problem, contact, (impulse->normal - before) * x, (impulse->normal - before) * y);
+        double limit = (double)contact->friction * impulse->normal;
+        before = impulse->tangent;
+        impulse->tangent =
+            fmax(fmin(before - (double)contact->mass_tangent * slip(plain, contact, y, -x), limit), -limit);
+        push_both(plain, problem, contact, (impulse->tangent - before) * y, (impulse->tangent - before) * -x);
+    }
+}
+
+static void many_plain_sweeps_find_the_same(void **state) {
+    (void)state;
+    for (int steps = 2; steps < 26; steps += 4) {
+        World *world = make_heap(steps);
+        Reference reference = {0};
+        const ContactProblem *problem = solve_next(world, &reference);
+        assert_true(problem->contact_count >= 7);
+        Plain plain;
+        plain_begin(&plain, problem);
+        for (int sweep = 0; sweep < MANY; sweep++) plain_sweep(&plain, problem);
+        for (int i = 0; i < problem->body_count; i++) {
+            assert_near(plain.velocities[i].x, reference.velocities[i].x, 1e-8);
+            assert_near(plain.velocities[i].y, reference.velocities[i].y, 1e-8);
+            assert_near(plain.velocities[i].spin, reference.velocities[i].spin, 1e-8);
+        }
+        reference_free(&reference);
+        world_destroy(world);
+    }
+}
+
+/* What every solver that converges does with the reference's impulses as its warm start: nothing but move the last
+   bits of a float. */
+static void assert_fixed_point(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
+                               const Reference *reference) {
+    Error error = {0};
+    ContactSolver solver = make_solver(kind, text);
+    BodyVelocity velocities[8];
+    ContactImpulse impulses[64];
+    ContactSolution solution = {velocities, impulses, 0, {0}};
+    assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
+    for (int i = 0; i < problem->body_count; i++) {
+        assert_near(velocities[i].linear.x, reference->velocities[i].x, 2e-5);
+        assert_near(velocities[i].linear.y, reference->velocities[i].y, 2e-5);
+        assert_near(velocities[i].angular, reference->velocities[i].spin, 2e-5);
+    }
+    free_solver(&solver);
+}
+
+static void the_reference_is_a_fixed_point_of_every_convergent_solver(void **state) {
+    (void)state;
+    for (int steps = 2; steps < 26; steps += 4) {
+        World *world = make_heap(steps);
+        Reference reference = {0};
+        ContactProblem problem = *solve_next(world, &reference);
+        ContactPoint contacts[64];
+        memcpy(contacts, problem.contacts, (size_t)problem.contact_count * sizeof *contacts);
+        for (int i = 0; i < problem.contact_count; i++) {
+            contacts[i].warm_normal = (float)reference.impulses[i].normal;
+            contacts[i].warm_tangent = (float)reference.impulses[i].tangent;
+        }
+        problem.contacts = contacts;
+        assert_fixed_point(&solver_engine, "k=1", &problem, &reference);
+        assert_fixed_point(&solver_engine, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_over_relaxation, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_momentum, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_nncg, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_block, "k=10", &problem, &reference);
+        assert_fixed_point(&solver_reference, "", &problem, &reference);
+        reference_free(&reference);
+        world_destroy(world);
+    }
+}
+
+/* The impulses of the engine after that many sweeps without warm start. */
+static void sweep_impulses(const ContactProblem *problem, int sweeps, ContactImpulse *impulses) {
+    BodyVelocity velocities[8];
+    ContactSolution solution = {velocities, impulses, 0, {0}};
+    sequential_impulses_solve(problem, &(SequentialOptions){.accumulate = true, .relaxation = 1}, sweeps, &solution);
+}
+
+/* The residual falls with the sweeps of the engine. Begun from a solution, the first linear solve finds it again. */
+static void the_residual_tells_how_far_impulses_are_off(void **state) {
+    (void)state;
+    World *world = make_heap(10);
+    Reference reference = {0}, again = {0};
+    const ContactProblem *problem = solve_next(world, &reference);
+    Error error = {0};
+    double last = INFINITY, residual;
+    ContactImpulse impulses[64];
+    for (int sweeps = 3; sweeps < 200; sweeps *= 4) {
+        sweep_impulses(problem, sweeps, impulses);
+        assert_ok(reference_residual(&again, problem, impulses, &residual, &error), error);
+        assert_true(residual < 0.5 * last);
+        if (sweeps == 3) assert_true(residual > 0.01);
+        last = residual;
+    }
+    for (int i = 0; i < problem->contact_count; i++)
+        impulses[i] = (ContactImpulse){(float)reference.impulses[i].normal, (float)reference.impulses[i].tangent};
+    assert_ok(reference_solve(&again, problem, impulses, &error), error);
+    assert_in_range(again.factorizations, 1, 2);
+    assert_int_equal(again.attempts, 0);
+    assert_true(again.residual <= tight);
+    reference_free(&reference);
+    reference_free(&again);
+    world_destroy(world);
+}
+
+static void push_all(Plain *plain, const ContactProblem *problem, const ContactImpulse *impulses) {
+    plain_begin(plain, problem);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const double x = (double)contact->normal.x, y = (double)contact->normal.y;
+        plain->impulses[i] = (ReferenceImpulse){(double)impulses[i].normal, (double)impulses[i].tangent};
+        push_both(plain, problem, contact, plain->impulses[i].normal * x + plain->impulses[i].tangent * y,
+                  plain->impulses[i].normal * y - plain->impulses[i].tangent * x);
+    }
+}
+
+/* The residual is the largest |change of impulse| / effective mass of one more plain sweep. */
+static void the_residual_is_what_a_plain_sweep_changes(void **state) {
+    (void)state;
+    World *world = make_heap(10);
+    Reference reference = {0};
+    const ContactProblem *problem = solve_next(world, &reference);
+    Error error = {0};
+    ContactImpulse impulses[64];
+    sweep_impulses(problem, 5, impulses);
+    double residual, largest = 0;
+    assert_ok(reference_residual(&reference, problem, impulses, &residual, &error), error);
+    Plain plain, swept;
+    push_all(&plain, problem, impulses);
+    swept = plain;
+    plain_sweep(&swept, problem);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        const double normal = swept.impulses[i].normal - plain.impulses[i].normal;
+        const double tangent = swept.impulses[i].tangent - plain.impulses[i].tangent;
+        largest = fmax(largest, fabs(normal) / (double)contact->mass_normal);
+        largest = fmax(largest, fabs(tangent) / (double)contact->mass_tangent);
+    }
+    assert_near(residual, largest, 1e-9 * largest);
+    reference_free(&reference);
+    world_destroy(world);
+}
+
+/* Every impulse of the reference pushes, stays in the cone and leaves no contact closing faster than its bias. */
+static void the_reference_keeps_the_law_of_contact(void **state) {
+    (void)state;
+    World *world = make_heap(10);
+    Reference reference = {0};
+    const ContactProblem *problem = solve_next(world, &reference);
+    Plain plain;
+    memcpy(plain.velocities, reference.velocities, (size_t)problem->body_count * sizeof *reference.velocities);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        double normal = reference.impulses[i].normal, tangent = reference.impulses[i].tangent;
+        double limit = (double)contact->friction * normal, x = (double)contact->normal.x, y = (double)contact->normal.y;
+        double opening = slip(&plain, contact, x, y) - (double)contact->bias, sliding = slip(&plain, contact, y, -x);
+        assert_true(normal >= 0 && fabs(tangent) <= limit + 1e-12);
+        assert_true(opening > -1e-9 && (normal == 0 || opening < 1e-9));
+        if (sliding > 1e-9) assert_near(tangent, -limit, 1e-12);
+        if (sliding < -1e-9) assert_near(tangent, limit, 1e-12);
+    }
+    reference_free(&reference);
+    world_destroy(world);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_reference_keeps_the_law_of_contact),
+                                       cmocka_unit_test(many_plain_sweeps_find_the_same),
+                                       cmocka_unit_test(the_reference_is_a_fixed_point_of_every_convergent_solver),
+                                       cmocka_unit_test(the_residual_tells_how_far_impulses_are_off),
+                                       cmocka_unit_test(the_residual_is_what_a_plain_sweep_changes)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

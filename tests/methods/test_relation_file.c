@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files of sain. */
+#include "relation_networks.h"
+
+#include "nets/nets.h"
+
+#include <math.h>
+
+static void a_file_keeps_every_bit(void **state) {
+    (void)state;
+    Error error = {0};
+    uint32_t seed = 8;
+    RelationNetworks written, read;
+    make_relation_networks(&written, &seed, 2);
+    const char *path = temporary_path("sain.npz");
+    assert_ok(relation_networks_write(&written, path, &error), error);
+    assert_ok(relation_networks_read(&read, path, &error), error);
+    assert_string_equal(read.command, "test");
+    for (int f = 0; f < RELATION_FORMS; f++) {
+        const RelationNetwork *a = &written.forms[f], *b = &read.forms[f];
+        const size_t relation = (size_t)network_parameter_count(a->relation) * sizeof(float),
+                     object = (size_t)network_parameter_count(a->object) * sizeof(float);
+        assert_memory_equal(a->relation->weights[0], b->relation->weights[0], relation);
+        assert_memory_equal(a->object->weights[0], b->object->weights[0], object);
+        assert_memory_equal(a->pair_low, b->pair_low, sizeof a->pair_low);
+        assert_memory_equal(a->body_high, b->body_high, sizeof a->body_high);
+        assert_memory_equal(a->limit, b->limit, sizeof a->limit);
+    }
+    relation_networks_destroy(&written);
+    relation_networks_destroy(&read);
+}
+
+static void refuse(const char *path, const char *reason) {
+    Error error = {0};
+    RelationNetworks networks;
+    assert_refused(relation_networks_read(&networks, path, &error), reason);
+    assert_non_null(strstr(error.message, path));
+}
+
+static void other_files_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    const int widths[] = {10, 10, 2};
+    Network *pair = network_create(2, widths, &error);
+    const char *path = temporary_path("pair.npz");
+    assert_ok(network_write(pair, path, &error), error);
+    refuse(path, "kind");
+    network_destroy(pair);
+}
+
+static void numbers_out_of_range_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    uint32_t seed = 8;
+    RelationNetworks networks;
+    const char *path = temporary_path("bad.npz");
+    make_relation_networks(&networks, &seed, 1);
+    float *const bad[] = {networks.forms[0].relation->weights[0] + 5, networks.forms[2].object->input.scale + 1,
+                          networks.forms[1].limit, networks.forms[1].pair_high};
+    static const float values[] = {NAN, 0, -1, INFINITY};
+    static const char *const names[] = {"on_pair_weights", "shuffled_body_scale", "off_limit", "off_pair_high"};
+    for (int i = 0; i < 4; i++) {
+        const float kept = *bad[i];
+        *bad[i] = values[i];
+        assert_ok(relation_networks_write(&networks, path, &error), error);
+        refuse(path, names[i]);
+        *bad[i] = kept;
+    }
+    relation_networks_destroy(&networks);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_file_keeps_every_bit),
+                                       cmocka_unit_test(other_files_are_refused),
+                                       cmocka_unit_test(numbers_out_of_range_are_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

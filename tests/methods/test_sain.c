@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The method sain: without its network it is the engine, and answers that cannot be used are discarded. */
+#include "kernels.h"
+#include "random_problem.h"
+#include "methods/relation_networks.h"
+
+#include "methods/solvers.h"
+
+enum { RUNS = 12 };
+
+static void fill_heap(RandomProblem *random, uint32_t *seed, int run) {
+    make_random(random, seed, 3 + run, 0.3f, 1);
+    for (int i = 0; i < random->problem.body_count; i++) random->bodies[i].size = vec2(1, 1);
+}
+
+static void solve_by(const RelationNetwork *network, RelationForm form, const ContactProblem *problem,
+                     ContactSolution *solution) {
+    Error error = {0};
+    ContactSolver solver;
+    assert_ok(sain_make(&solver, network, form, &error), error);
+    assert_ok(solver.kind->solve(solver.state, problem, solution, &error), error);
+    free_solver(&solver);
+}
+
+static bool is_finite(const ContactProblem *problem, const ContactSolution *solution) {
+    for (int i = 0; i < problem->body_count; i++)
+        if (!isfinite(solution->velocities[i].linear.x) || !isfinite(solution->velocities[i].linear.y) ||
+            !isfinite(solution->velocities[i].angular))
+            return false;
+    return true;
+}
+
+static void without_its_network_it_is_the_engine(void **state) {
+    (void)state;
+    static RandomProblem random;
+    static const char *const forms[] = {"on", "off", "shuffled"};
+    Error error = {0};
+    uint32_t seed = 5;
+    RelationNetworks networks;
+    const char *path = temporary_path("sain.npz");
+    make_relation_networks(&networks, &seed, 1);
+    assert_ok(relation_networks_write(&networks, path, &error), error);
+    for (int run = 0; run < RUNS; run++) {
+        char settings[256];
+        fill_heap(&random, &seed, run);
+        ContactSolution found = make_solution(&random.problem), engine = make_solution(&random.problem);
+        solve_with(&solver_engine, "k=10", &random.problem, &engine);
+        snprintf(settings, sizeof settings, "network=%s,net=off,engine=%s", path, forms[run % 3]);
+        solve_with(&solver_sain, settings, &random.problem, &found);
+        assert_same_bits(&random.problem, &found, &engine, "net=off");
+        free_solution(&found);
+        free_solution(&engine);
+    }
+    relation_networks_destroy(&networks);
+}
+
+/* Impulses stay those of the engine, velocities do not; without an engine there are no impulses. */
+static void a_network_corrects_velocities_only(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 6;
+    RelationNetwork network;
+    make_relation_network(&network, &seed, 0.5f);
+    fill_heap(&random, &seed, 8);
+    ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
+    solve_with(&solver_engine, "k=10", &random.problem, &engine);
+    const size_t impulses = (size_t)random.problem.contact_count * sizeof *engine.impulses;
+    for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+        solve_by(&network, form, &random.problem, &found);
+        assert_true(memcmp(found.velocities, engine.velocities,
+                           (size_t)random.problem.body_count * sizeof *found.velocities) != 0);
+        assert_true(found.momentum_error > 0);
+        if (form == RELATION_ALONE)
+            for (int i = 0; i < random.problem.contact_count; i++)
+                assert_true(found.impulses[i].normal == 0 && found.impulses[i].tangent == 0);
+        else
+            assert_memory_equal(found.impulses, engine.impulses, impulses);
+        assert_int_equal(found.fallbacks.not_finite, 0);
+        assert_int_equal(found.fallbacks.beyond_training, 0);
+    }
+    free_solution(&engine);
+    free_solution(&found);
+    relation_network_destroy(&network);
+}
+
+/* Closed form: the sum of mass times correction. */
+static void created_momentum_is_that_of_the_corrections(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 11;
+    RelationNetwork network;
+    make_relation_network(&network, &seed, 0.5f);
+    fill_heap(&random, &seed, 9);
+    ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
+    solve_with(&solver_engine, "k=10", &random.problem, &engine);
+    solve_by(&network, RELATION_ENGINE, &random.problem, &found);
+    double sum = 0;
+    for (int i = 0; i < random.problem.body_count; i++) {
+        if (random.bodies[i].inv_mass == 0.0f) continue;
+        const Vec2 change = vec2_sub(found.velocities[i].linear, engine.velocities[i].linear);
+        sum += hypot((double)change.x, (double)change.y) / (double)random.bodies[i].inv_mass;
+    }
+    assert_near(found.momentum_error, sum, 1e-4 * sum);
+    free_solution(&engine);
+    free_solution(&found);
+    relation_network_destroy(&network);
+}
+
+static void states_beyond_training_are_left_to_the_engine(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 7;
+    RelationNetwork network;
+    make_relation_network(&network, &seed, 0.5f);
+    for (int i = 0; i < RELATION_PAIR_INPUTS; i++) network.pair_low[i] = 1e6f;
+    for (int run = 0; run < RUNS; run++) {
+        fill_heap(&random, &seed, run);
+        if (random.problem.contact_count == 0) continue;
+        ContactSolution engine = make_solution(&random.problem), found = make_solution(&random.problem);
+        solve_with(&solver_engine, "k=10", &random.problem, &engine);
+        solve_by(&network, RELATION_ENGINE, &random.problem, &found);
+        assert_same_bits(&random.problem, &found, &engine, "beyond training");
+        assert_int_equal(found.fallbacks.beyond_training, 1);
+        solve_by(&network, RELATION_ALONE, &random.problem, &found);
+        assert_int_equal(found.fallbacks.beyond_training, 1);
+        assert_true(is_finite(&random.problem, &found));
+        free_solution(&engine);
+        free_solution(&found);
+    }
+    relation_network_destroy(&network);
+}
+
+/* Weights of any size: what is not finite or beyond the limit never reaches a body. */
+static void useless_answers_are_discarded(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 9;
+    RelationNetwork network;
+    make_relation_network(&network, &seed, 1e38f);
+    int discarded = 0;
+    for (int run = 0; run < RUNS; run++) {
+        fill_heap(&random, &seed, run);
+        ContactSolution found = make_solution(&random.problem);
+        for (RelationForm form = 0; form < RELATION_FORMS; form++) {
+            solve_by(&network, form, &random.problem, &found);
+            assert_true(is_finite(&random.problem, &found));
+            discarded += found.fallbacks.not_finite;
+        }
+        free_solution(&found);
+    }
+    assert_true(discarded > 20);
+    relation_network_destroy(&network);
+}
+
+static void settings_are_checked(void **state) {
+    (void)state;
+    assert_settings_refused(&solver_sain, "", "names no network");
+    assert_settings_refused(&solver_sain, "network=x.npz,engine=shufled", "did you mean 'shuffled'");
+    assert_settings_refused(&solver_sain, "network=/nowhere/x.npz", "/nowhere/x.npz");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(without_its_network_it_is_the_engine),
+                                       cmocka_unit_test(a_network_corrects_velocities_only),
+                                       cmocka_unit_test(created_momentum_is_that_of_the_corrections),
+                                       cmocka_unit_test(states_beyond_training_are_left_to_the_engine),
+                                       cmocka_unit_test(useless_answers_are_discarded),
+                                       cmocka_unit_test(settings_are_checked)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

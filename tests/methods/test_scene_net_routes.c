@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The sweeps of scene-net: after its network, and in calm steps. */
+#include "residuals.h"
+#include "known.h"
+
+#include "methods/solvers.h"
+
+#include <math.h>
+
+enum { MORE = 48, CALM_MORE = 24 };
+
+static void put_warm_impulses_into_the_cone(RandomProblem *random) {
+    for (int k = 0; k < random->problem.contact_count; k++) {
+        ContactPoint *contact = &random->contacts[k];
+        contact->warm_normal = fabsf(contact->warm_normal);
+        const float limit = contact->friction * contact->warm_normal;
+        contact->warm_tangent = fminf(fmaxf(contact->warm_tangent, -limit), limit);
+    }
+}
+
+/* Everything that moves or pushes, so much less. */
+static void calm(RandomProblem *random, float factor) {
+    for (int i = 0; i < random->problem.body_count; i++) {
+        random->bodies[i].velocity = vec2_scale(factor, random->bodies[i].velocity);
+        random->bodies[i].angular_velocity *= factor;
+    }
+    for (int k = 0; k < random->problem.contact_count; k++) {
+        random->contacts[k].bias *= factor;
+        random->contacts[k].warm_normal *= factor;
+        random->contacts[k].warm_tangent *= factor;
+    }
+}
+
+/* One run of up to `most` sweeps, looked at every 8, while the residual is `near` or more. Returns how many times 8. */
+static int go_on(Sweeps *sweeps, const ContactProblem *problem, float near, int most) {
+    float factors[MORE];
+    for (int s = 0; s < MORE; s++) factors[s] = momentum_factor_tuned(s, MORE);
+    int times = 0;
+    for (; 8 * times < most && residual_reaches(sweeps, problem->contact_count, near); times++)
+        assert_true(times == 0 ? sweeps_run_momentum(sweeps, factors, 8)
+                               : sweeps_continue_momentum(sweeps, factors + 8 * times, 8));
+    return times;
+}
+
+static int sweep_from_the_warm_start(Known *known) {
+    const ContactProblem *problem = &known->random.problem;
+    const SlotNetwork *network = known->network;
+    Sweeps sweeps = {0};
+    assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
+    assert_true(residual_reaches(&sweeps, problem->contact_count, network->gate));
+    assert_true(network->factors[1] > 0 ? sweeps_run_momentum(&sweeps, network->factors, AFTER)
+                                        : sweeps_run(&sweeps, AFTER));
+    const int times = go_on(&sweeps, problem, near_aim, MORE);
+    assert_true(sweeps_end(&sweeps, &known->expected));
+    sweeps_free(&sweeps);
+    return times;
+}
+
+/* But for the sign of a 0, to which nothing was added. */
+static void assert_same_velocities(const Known *known) {
+    for (int i = 0; i < known->random.problem.body_count; i++) {
+        const BodyVelocity *found = &known->found.velocities[i], *expected = &known->expected.velocities[i];
+        assert_true(found->linear.x == expected->linear.x && found->linear.y == expected->linear.y);
+        assert_true(found->angular == expected->angular);
+    }
+}
+
+/* 10 sweeps, and 8, 16 or 24 more while the residual is 0.0075 m/s or more. */
+static int sweep_calmly(Known *known) {
+    const ContactProblem *problem = &known->random.problem;
+    Sweeps sweeps = {0};
+    float factors[REST / 2];
+    for (int s = 0; s < REST / 2; s++) factors[s] = momentum_factor_tuned(s, REST / 2);
+    assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
+    assert_true(sweeps_run_momentum(&sweeps, factors, REST / 2));
+    const int times = go_on(&sweeps, problem, near_aim * 0.15f, CALM_MORE);
+    assert_true(sweeps_end(&sweeps, &known->expected));
+    sweeps_free(&sweeps);
+    return times;
+}
+
+static void a_calm_step_takes_half_the_sweeps(void **state) {
+    (void)state;
+    static Known known;
+    uint32_t seed = 8;
+    int more = 0, twice = 0;
+    for (int run = 0; run < RUNS; run++) {
+        make_known(&known, &seed, run, 0.7f);
+        calm(&known.random, run % 2 == 0 ? 0.001f : 0.1f);
+        known.network->gate = 1e6f;
+        const int times = sweep_calmly(&known);
+        more += times > 0;
+        twice += times > 1;
+        solve_by_network(&known);
+        assert_same_bits(&known.random.problem, &known.found, &known.expected, "a calm step");
+        assert_int_equal(known.found.fallbacks.beyond_training, 0);
+        free_known(&known);
+    }
+    assert_in_range(more, RUNS / 8, RUNS - RUNS / 8);
+    assert_in_range(twice, 1, RUNS - 1);
+}
+
+static void a_network_that_says_nothing_changes_nothing(void **state) {
+    (void)state;
+    static Known known;
+    uint32_t seed = 9;
+    int more = 0, twice = 0;
+    for (int run = 0; run < RUNS; run++) {
+        make_known(&known, &seed, run, 0.7f);
+        SlotNetwork *network = known.network;
+        for (int i = 0; i < network->slot_count; i++) network->cap[i] = 1e6f;
+        memset(network->rows, 0,
+               (network->parameter_count - (size_t)(network->rows - network->parameters)) * sizeof(float));
+        for (int s = 1; s < AFTER && run % 2 == 1; s++) network->factors[s] = 0.5f;
+        slot_network_pack(network);
+        calm(&known.random, run % 4 == 0 ? 0.01f : run % 4 == 1 ? 0.1f : 1);
+        put_warm_impulses_into_the_cone(&known.random);
+        network->gate = 0.7f * (float)residual_of(&known.random.problem);
+        const int times = sweep_from_the_warm_start(&known);
+        more += times > 0;
+        twice += times > 1;
+        solve_by_network(&known);
+        assert_same_velocities(&known);
+        free_known(&known);
+    }
+    assert_in_range(more, RUNS / 8, RUNS - RUNS / 8);
+    assert_in_range(twice, 1, RUNS - 1);
+}
+
+/* The network's file has factors and outputs that must not matter. */
+static void without_its_prediction_it_is_momentum_with_the_same_stopping_rule(void **state) {
+    (void)state;
+    Error error = {0};
+    char text[400];
+    static Known known;
+    uint32_t seed = 10;
+    int other = 0;
+    for (int run = 0; run < RUNS; run++) {
+        make_known(&known, &seed, run, 0.7f);
+        for (int s = 1; s < AFTER && run % 2 == 1; s++) known.network->factors[s] = 0.5f;
+        known.network->gate = 0.7f * (float)residual_of(&known.random.problem);
+        const char *path = temporary_path("known.npz");
+        assert_ok(slot_network_write(known.network, path, &error), error);
+        for (int more = 8; more <= MORE; more += 40) {
+            snprintf(text, sizeof text, "network=%s,near=0.05,more=%d,net=off", path, more);
+            solve_with(&solver_scene_net, text, &known.random.problem, &known.found);
+            snprintf(text, sizeof text, "k=%d,near=0.05,more=%d", AFTER, more);
+            solve_with(&solver_momentum, text, &known.random.problem, &known.expected);
+            assert_same_bits(&known.random.problem, &known.found, &known.expected, "without prediction");
+            assert_int_equal(known.found.fallbacks.outside_cone, 0);
+        }
+        snprintf(text, sizeof text, "network=%s,near=0.05", path);
+        solve_with(&solver_scene_net, text, &known.random.problem, &known.found);
+        other += !same_bits(&known);
+        free_known(&known);
+    }
+    assert_in_range(other, RUNS - 5, RUNS);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_calm_step_takes_half_the_sweeps),
+        cmocka_unit_test(a_network_that_says_nothing_changes_nothing),
+        cmocka_unit_test(without_its_prediction_it_is_momentum_with_the_same_stopping_rule)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The measure of accuracy, on cases whose value is known. */
+#include "worlds.h"
+
+#include "methods/sweeps.h"
+#include "methods/reference.h"
+
+#include <math.h>
+
+enum { BODIES = 3 };
+
+/* Ground, and two boxes which the impulses of the step have stopped: they came with 10 m/s and 1 m/s. */
+static const ProblemBody bodies[BODIES] = {{.size = {9, 9}},
+                                           {.inv_mass = 1, .inv_inertia = 6, .velocity = {10, 0}},
+                                           {.inv_mass = 0.5f, .inv_inertia = 3, .velocity = {0, 1}}};
+static const ContactProblem problem = {.body_count = BODIES, .marked = -1, .dt = 0.1f, .bodies = bodies};
+static const ReferenceVelocity reference[BODIES] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+
+static SolutionError error_of(BodyVelocity first, BodyVelocity second) {
+    const BodyVelocity velocities[BODIES] = {{{100, 100}, 100}, first, second};
+    return solution_error(&problem, velocities, reference);
+}
+
+static void the_reference_itself_has_no_error(void **state) {
+    (void)state;
+    SolutionError error = error_of((BodyVelocity){0}, (BodyVelocity){0});
+    assert_true(error.rms == 0);
+    assert_int_equal(error.right, 2);
+    assert_int_equal(error.counted, 2);
+}
+
+/* sqrt((3^2 + 4^2 + 6^2/6 + 1^2 + 2^2) / 2) = sqrt(18) */
+static void the_rms_is_over_the_bodies_that_move(void **state) {
+    (void)state;
+    SolutionError error = error_of((BodyVelocity){{3, -4}, 6}, (BodyVelocity){{1, 2}, 0});
+    assert_near(error.rms, sqrt(18), 1e-15);
+    assert_int_equal(error.right, 0);
+    assert_int_equal(error.counted, 2);
+}
+
+/* By |dv|^2 + dspin^2 / 6: 36 / 6 is less than 7, and more than 5. Static bodies do not count; what is no number does. */
+static void the_worst_body_has_the_largest_error(void **state) {
+    (void)state;
+    const BodyVelocity spins = {{0, 0}, 6};
+    assert_int_equal(error_of(spins, (BodyVelocity){{sqrtf(7), 0}, 0}).worst, 2);
+    assert_int_equal(error_of(spins, (BodyVelocity){{0, sqrtf(5)}, 0}).worst, 1);
+    assert_int_equal(error_of((BodyVelocity){{1e9f, 0}, 0}, (BodyVelocity){{NAN, 0}, 0}).worst, 2);
+    const ContactProblem ground = {.body_count = 1, .bodies = bodies};
+    assert_int_equal(solution_error(&ground, &(BodyVelocity){{1, 1}, 1}, reference).worst, -1);
+}
+
+/* 5% of the 10 m/s that the first lost is 0.5 m/s; the 5% of the second are less than the 0.05 m/s that every body may
+   have. Half the spin counts. */
+static void a_body_is_right_within_its_allowance(void **state) {
+    (void)state;
+    assert_int_equal(error_of((BodyVelocity){{0.499f, 0}, 0}, (BodyVelocity){{0, 0.0499f}, 0}).right, 2);
+    assert_int_equal(error_of((BodyVelocity){{0.501f, 0}, 0}, (BodyVelocity){{0, 0.0499f}, 0}).right, 1);
+    assert_int_equal(error_of((BodyVelocity){{0.499f, 0}, 0}, (BodyVelocity){{0, 0.0501f}, 0}).right, 1);
+    assert_int_equal(error_of((BodyVelocity){{0, 0}, 0.998f}, (BodyVelocity){{0, 0}, 0.0998f}).right, 2);
+    assert_int_equal(error_of((BodyVelocity){{0, 0}, 1.002f}, (BodyVelocity){{0, 0}, 0.1002f}).right, 0);
+    assert_int_equal(error_of((BodyVelocity){{0.3f, 0}, 0.79f}, (BodyVelocity){{0, 0}, 0}).right, 2);
+    assert_int_equal(error_of((BodyVelocity){{0.3f, 0}, 0.81f}, (BodyVelocity){{0, 0}, 0}).right, 1);
+}
+
+static void what_is_no_number_is_wrong(void **state) {
+    (void)state;
+    SolutionError error = error_of((BodyVelocity){{NAN, 0}, 0}, (BodyVelocity){0});
+    assert_true(isinf(error.rms));
+    assert_int_equal(error.right, 1);
+}
+
+static void nothing_that_moves_is_no_error(void **state) {
+    (void)state;
+    const ContactProblem ground = {.body_count = 1, .marked = -1, .dt = 0.1f, .bodies = bodies};
+    SolutionError error = solution_error(&ground, &(BodyVelocity){{1, 1}, 1}, reference);
+    assert_true(error.rms == 0);
+    assert_int_equal(error.counted, 0);
+}
+
+/* The engine's error in a stack that has just landed falls with its sweeps, and grows with what is added to it. */
+static void more_sweeps_rank_better_and_a_perturbed_solution_worse(void **state) {
+    (void)state;
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int i = 0; i < 5; i++)
+        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.49f + (float)i}});
+    ContactSolver engine = make_engine("k=3");
+    run(world, &engine, 1);
+    const ContactProblem *landed = world_problem(world);
+    Reference solved = {0};
+    Error failure = {0};
+    assert_ok(reference_solve(&solved, landed, NULL, &failure), failure);
+    BodyVelocity velocities[6];
+    ContactImpulse impulses[32];
+    ContactSolution solution = {velocities, impulses, 0, {0}};
+    double last = INFINITY;
+    for (int sweeps = 1; sweeps <= 256; sweeps *= 4) {
+        sequential_impulses_solve(landed, &(SequentialOptions){.accumulate = true, .warm = true, .relaxation = 1},
+                                  sweeps, &solution);
+        double now = solution_error(landed, velocities, solved.velocities).rms;
+        assert_true(now < last);
+        last = now;
+    }
+    for (int i = 0; i < 5; i++) {
+        velocities[3].linear.x += 0.1f;
+        double now = solution_error(landed, velocities, solved.velocities).rms;
+        assert_true(now > last);
+        last = now;
+    }
+    assert_near(last, 0.5 / sqrt(5), 2e-3);
+    reference_free(&solved);
+    free_solver(&engine);
+    world_destroy(world);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_reference_itself_has_no_error),
+        cmocka_unit_test(the_rms_is_over_the_bodies_that_move),
+        cmocka_unit_test(the_worst_body_has_the_largest_error),
+        cmocka_unit_test(a_body_is_right_within_its_allowance),
+        cmocka_unit_test(what_is_no_number_is_wrong),
+        cmocka_unit_test(nothing_that_moves_is_no_error),
+        cmocka_unit_test(more_sweeps_rank_better_and_a_perturbed_solution_worse),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The settings `near` and `more` of every iterative method. */
+#include "kernels.h"
+#include "random_problem.h"
+
+#include "methods/solvers.h"
+
+static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_over_relaxation, &solver_block, &solver_nncg,
+                                                 &solver_momentum};
+enum { KINDS = sizeof kinds / sizeof *kinds, IN_PLACE = 4 /* those whose blocks continue as if in one run */ };
+
+/* Boxes side by side and on top of each other, which a heavy one strikes. */
+static World *make_struck(float speed) {
+    World *world = make_world();
+    add_ground(world, 0.4f);
+    for (int i = 0; i < 12; i++)
+        add_body(world, &(BodyDef){.size = {1, 1},
+                                   .mass = 1,
+                                   .friction = 0.4f,
+                                   .position = {1.05f * (float)(i % 3), 0.5f + (float)(i / 3)}});
+    add_body(
+        world,
+        &(BodyDef){.size = {1, 1}, .mass = 8, .friction = 0.4f, .position = {1.3f, 4.49f}, .velocity = {1, -speed}});
+    ContactSolver engine = make_engine("");
+    run(world, &engine, 1);
+    free_solver(&engine);
+    assert_true(world_problem(world)->contact_count >= 20);
+    return world;
+}
+
+static void a_small_residual_is_as_good_as_converged(void **state) {
+    (void)state;
+    World *world = make_struck(6);
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution converged = make_solution(problem), found = make_solution(problem);
+    sequential_impulses_solve(problem, &engine_options, 100000, &converged);
+    for (int kind = 0; kind < KINDS; kind++) {
+        solve_with(kinds[kind], "near=1e-5,more=20000", problem, &found);
+        for (int i = 0; i < problem->body_count; i++) {
+            assert_near(found.velocities[i].linear.x, converged.velocities[i].linear.x, 5e-3);
+            assert_near(found.velocities[i].linear.y, converged.velocities[i].linear.y, 5e-3);
+            assert_near(found.velocities[i].angular, converged.velocities[i].angular, 5e-3);
+        }
+    }
+    free_solution(&converged);
+    free_solution(&found);
+    world_destroy(world);
+}
+
+/* The bits are those of a run of as many sweeps: the first k + 8 n with a residual below `near`, or the limit. Returns
+   n. */
+static int assert_stops_there(const ContactSolverKind *kind, const ContactProblem *problem, int k, float near,
+                              int most) {
+    char text[64];
+    ContactSolution found = make_solution(problem), fixed = make_solution(problem);
+    int blocks = 0;
+    for (bool more = true; more; blocks += more) {
+        snprintf(text, sizeof text, "k=%d", k + STOPPING_BLOCK * blocks);
+        solve_with(kind, text, problem, &fixed);
+        more = blocks < most && residual_reaches_scalar(problem, &fixed, near);
+    }
+    snprintf(text, sizeof text, "k=%d,near=%.9g,more=%d", k, (double)near, STOPPING_BLOCK * most - 3);
+    solve_with(kind, text, problem, &found);
+    assert_same_bits(problem, &found, &fixed, kind->description.name);
+    free_solution(&found);
+    free_solution(&fixed);
+    return blocks;
+}
+
+/* Odd and even k, on few and many contacts: the schedules of k sweeps and of a block differ. */
+static void sweeps_stop_at_the_first_block_below_near(void **state) {
+    (void)state;
+    static const float near[] = {0.3f, 0.002f}; /* m/s */
+    int between = 0, limit = 0;
+    for (int kind = 0; kind < IN_PLACE; kind++) {
+        int at_once = 0, runs = 0;
+        for (int k = 1; k <= 21; k += 4)
+            for (int speed = 0; speed <= 20; speed += 5) {
+                World *world = make_struck((float)speed);
+                const int blocks = assert_stops_there(kinds[kind], world_problem(world), k, near[speed % 2], 3);
+                at_once += blocks == 0;
+                runs++;
+                between += blocks > 0 && blocks < 3;
+                limit += blocks == 3;
+                world_destroy(world);
+            }
+        assert_in_range(at_once, 1, runs - 1);
+    }
+    assert_true(between > 10 && limit > 10);
+}
+
+static void random_problems_stop_there_too(void **state) {
+    (void)state;
+    static RandomProblem random;
+    uint32_t seed = 12;
+    for (int run = 0; run < 30; run++) {
+        make_random(&random, &seed, 2 + 2 * run, 0.2f, 1);
+        for (int kind = 0; kind < IN_PLACE; kind++)
+            assert_stops_there(kinds[kind], &random.problem, 1 + run % 11, 0.5f, 4);
+    }
+}
+
+/* A solver keeps its schedules from step to step. */
+static void one_solver_has_the_same_bits_step_after_step(void **state) {
+    (void)state;
+    Error error = {0};
+    static RandomProblem random;
+    for (int kind = 0; kind < KINDS; kind++) {
+        uint32_t seed = 13;
+        ContactSolver kept = make_solver(kinds[kind], "k=7,near=0.3");
+        for (int run = 0; run < 20; run++) {
+            make_random(&random, &seed, 20 + 7 * (run / 2 % 4), 0.2f, 1);
+            ContactSolution found = make_solution(&random.problem), once = make_solution(&random.problem);
+            assert_ok(kept.kind->solve(kept.state, &random.problem, &found, &error), error);
+            solve_with(kinds[kind], "k=7,near=0.3", &random.problem, &once);
+            assert_same_bits(&random.problem, &found, &once, kinds[kind]->description.name);
+            free_solution(&found);
+            free_solution(&once);
+        }
+        free_solver(&kept);
+    }
+}
+
+/* The first k sweeps, then one run of 8 n with momentum. */
+static void sweep_with_momentum(const ContactProblem *problem, int n, ContactSolution *solution) {
+    Sweeps sweeps = {0};
+    float first[7], more[48];
+    for (int s = 0; s < 7; s++) first[s] = momentum_factor_tuned(s, 7);
+    for (int s = 0; s < 48; s++) more[s] = momentum_factor_tuned(s, 48);
+    assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
+    assert_true(sweeps_run_momentum(&sweeps, first, 7));
+    assert_true(sweeps_run_momentum(&sweeps, more, STOPPING_BLOCK * n));
+    assert_true(sweeps_end(&sweeps, solution));
+    sweeps_free(&sweeps);
+}
+
+static void momentum_continues_in_one_run(void **state) {
+    (void)state;
+    World *world = make_struck(10);
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution found = make_solution(problem), expected = make_solution(problem);
+    int least = 6, most = 0, between = 0;
+    for (float near = 4; near > 0.001f; near *= 0.7f) {
+        int n = 0;
+        sweep_with_momentum(problem, n, &expected);
+        while (n < 6 && residual_reaches_scalar(problem, &expected, near)) sweep_with_momentum(problem, ++n, &expected);
+        char text[64];
+        snprintf(text, sizeof text, "k=7,near=%.9g", (double)near);
+        solve_with(&solver_momentum, text, problem, &found);
+        assert_same_bits(problem, &found, &expected, text);
+        least = n < least ? n : least;
+        most = n > most ? n : most;
+        between += n > 1 && n < 6;
+    }
+    assert_true(least == 0 && most == 6 && between > 0);
+    free_solution(&found);
+    free_solution(&expected);
+    world_destroy(world);
+}
+
+/* Impulses that are clamped one by one take another way through the engine. */
+static void an_engine_that_does_not_accumulate_stops_too(void **state) {
+    (void)state;
+    World *world = make_struck(10);
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution found = make_solution(problem), expected = make_solution(problem);
+    solve_with(&solver_engine, "accumulate=off,k=5,near=1e6", problem, &found);
+    solve_with(&solver_engine, "accumulate=off,k=5", problem, &expected);
+    assert_same_bits(problem, &found, &expected, "no more");
+    solve_with(&solver_engine, "accumulate=off,k=5,near=0,more=16", problem, &found);
+    solve_with(&solver_engine, "accumulate=off,k=21", problem, &expected);
+    assert_same_bits(problem, &found, &expected, "all");
+    free_solution(&found);
+    free_solution(&expected);
+    world_destroy(world);
+}
+
+static void settings_out_of_range_are_refused(void **state) {
+    (void)state;
+    for (int kind = 0; kind < KINDS; kind++) {
+        assert_settings_refused(kinds[kind], "near=-0.1", "near");
+        assert_settings_refused(kinds[kind], "near=nan", "near");
+        assert_settings_refused(kinds[kind], "near=small", "near");
+        assert_settings_refused(kinds[kind], "near=0.1,more=0", "more");
+        assert_settings_refused(kinds[kind], "near=0.1,more=8.5", "more");
+        assert_settings_refused(kinds[kind], "more=8", "more: error: needs near");
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_small_residual_is_as_good_as_converged),
+                                       cmocka_unit_test(sweeps_stop_at_the_first_block_below_near),
+                                       cmocka_unit_test(random_problems_stop_there_too),
+                                       cmocka_unit_test(one_solver_has_the_same_bits_step_after_step),
+                                       cmocka_unit_test(momentum_continues_in_one_run),
+                                       cmocka_unit_test(an_engine_that_does_not_accumulate_stops_too),
+                                       cmocka_unit_test(settings_out_of_range_are_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is written is read; what does not fit is refused with file and reason. */
+#include "testing.h"
+
+#include "base/npz.h"
+#include "subspace_nets.h"
+
+#include <math.h>
+
+static void what_is_written_is_read(void **state) {
+    (void)state;
+    const char *path = temporary_path("net.npz");
+    Error error = {0};
+    SubspaceNet *net = subspace_net_by_hand(3);
+    net->physics = 0x123456789abcdef;
+    strcpy(net->command, "twinbox train");
+    for (int i = 0; i < 9; i++) net->before[i] = (float)i;
+    net->predictors[1].last.rows[5] = 0.25f;
+    assert_ok(subspace_net_write(net, path, &error), error);
+    SubspaceNet *read = subspace_net_read(path, &error);
+    assert_ok(read != NULL, error);
+    assert_memory_equal(&read->shape, &net->shape, sizeof net->shape);
+    assert_true(read->physics == net->physics);
+    assert_string_equal(read->scene, "single");
+    assert_string_equal(read->command, "twinbox train");
+    assert_near(read->before[8], 8, 0);
+    assert_near(read->predictors[1].last.rows[5], 0.25, 0);
+    assert_near(read->basis[subspace_lanes(TEST_NUMBERS) + 1], 1, 0);
+    subspace_net_destroy(read);
+    subspace_net_destroy(net);
+}
+
+static void refuse(const SubspaceNet *net, const char *reason) {
+    const char *path = temporary_path("bad.npz");
+    Error error = {0};
+    assert_ok(subspace_net_write(net, path, &error), error);
+    assert_refused(subspace_net_read(path, &error), reason, "bad.npz");
+}
+
+static void bad_numbers_are_refused(void **state) {
+    (void)state;
+    SubspaceNet *net = subspace_net_by_hand(2);
+    net->low[3] = 5000;
+    refuse(net, "low: number 3 is 5000, above its high, 1000");
+    net->low[3] = 0;
+    net->before[2] = NAN;
+    refuse(net, "before: number 2 is nan; it must be finite");
+    net->before[2] = 0;
+    net->predictors[0].first.rows[1] = INFINITY;
+    refuse(net, "first_rows_0: number 1 is inf; it must be finite");
+    subspace_net_destroy(net);
+}
+
+/* The arrays are those of the true shape; only the sizes lie. */
+static void sizes_that_do_not_fit_are_refused(void **state) {
+    (void)state;
+    SubspaceNet *net = subspace_net_by_hand(2);
+    const SubspaceShape shape = net->shape;
+    net->shape.hidden = 24;
+    refuse(net, "24 hidden units");
+    net->shape = shape;
+    net->shape.predictors[1] = 4;
+    refuse(net, "do not fit together");
+    net->shape = shape;
+    net->shape.bodies = 100000;
+    Error error = {0};
+    assert_refused(subspace_shape_check(&net->shape, "file", &error), "file: error: 100000 bodies");
+    subspace_net_destroy(net);
+}
+
+static void another_kind_is_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_refused(subspace_net_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error), "pair-net.npz", "subspace");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_written_is_read), cmocka_unit_test(bad_numbers_are_refused),
+        cmocka_unit_test(sizes_that_do_not_fit_are_refused), cmocka_unit_test(another_kind_is_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Laws of the method with a network made by hand: boxes go on as they move. */
+#include "testing.h"
+
+#include "methods/subspace_nets.h"
+#include "scenes/scenes.h"
+#include "runs/runs.h"
+#include "methods/steppers.h"
+
+#include <math.h>
+
+static const float dt = 1 / 60.0f;
+
+static Scene *read_scene(void) {
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+/* Writes a net for the scene; returns the method with it. */
+static Method method_of(SubspaceNet *net, const Scene *scene, const char *name) {
+    const char *path = temporary_path("by_hand.npz");
+    Error error = {0};
+    Method method;
+    net->physics = subspace_physics(scene);
+    assert_ok(subspace_net_write(net, path, &error), error);
+    assert_ok(method_with_network(&method, name, path, &error), error);
+    return method;
+}
+
+typedef struct Watch {
+    Body bodies[2]; /* of the last frame */
+    float momentum; /* of the last frame */
+} Watch;
+
+static bool observe(void *context, int frame, const World *world, Error *error) {
+    (void)frame, (void)error;
+    Watch *watch = context;
+    for (int i = 0; i < 2 && i + 1 < world_body_count(world); i++) watch->bodies[i] = world_bodies(world)[i + 1];
+    watch->momentum = world_solution(world)->momentum_error;
+    return true;
+}
+
+static Watch run(const Scene *scene, const Method *method, NetworkFallbacks *fallbacks) {
+    Watch watch = {0};
+    Error error = {0};
+    const StepObserver observer = {observe, &watch};
+    assert_ok(simulate_watched(scene, method,
+                               &(RunWatch){.observers = &observer, .observer_count = 1, .fallbacks = fallbacks},
+                               &error),
+              error);
+    return watch;
+}
+
+/* The box stays, the bomb flies on a straight line: gravity is missing, and counted as momentum created. */
+static void boxes_go_on_as_they_move(void **state) {
+    (void)state;
+    Scene *scene = read_scene();
+    scene->frames = 10;
+    scene->bomb.body.angular_velocity = 3;
+    SubspaceNet *net = subspace_net_by_hand(0);
+    /* A network by hand is for any launch: the physics do not depend on it. */
+    const Method method = method_of(net, scene, "subspace");
+    NetworkFallbacks fallbacks = {0};
+    const Watch watch = run(scene, &method, &fallbacks);
+    const BodyDef bomb = scene_bomb_body(scene);
+    assert_near(watch.bodies[0].position.y, 4, 1e-4);
+    assert_near(watch.bodies[1].position.x, bomb.position.x + 10 * dt * bomb.velocity.x, 1e-4);
+    assert_near(watch.bodies[1].position.y, bomb.position.y + 10 * dt * bomb.velocity.y, 1e-4);
+    assert_near(watch.bodies[1].velocity.y, bomb.velocity.y, 1e-2);
+    assert_near(watch.momentum, 250 * 10 * dt, 1);
+    assert_int_equal(fallbacks.not_finite + fallbacks.beyond_training, 0);
+    subspace_net_destroy(net);
+    scene_destroy(scene);
+}
+
+/* Sine and cosine go on in a straight line, so the angle does what they tell. */
+static void angles_follow_sine_and_cosine(void **state) {
+    (void)state;
+    Scene *scene = read_scene();
+    scene->frames = 4;
+    scene->bomb.body.angle = 9; /* more than a turn */
+    scene->bomb.body.angular_velocity = 1.5f;
+    SubspaceNet *net = subspace_net_by_hand(0);
+    const Method method = method_of(net, scene, "subspace");
+    const Watch watch = run(scene, &method, NULL);
+    const double before = 9 - (double)dt * 1.5, sine = sin(9) + 4 * (sin(9) - sin(before)),
+                 cosine = cos(9) + 4 * (cos(9) - cos(before));
+    assert_near(watch.bodies[1].angle, atan2(sine, cosine) + 2 * 3.14159265358979, 1e-4);
+    subspace_net_destroy(net);
+    scene_destroy(scene);
+}
+
+static World *launched_world(const Scene *scene) {
+    Error error = {0};
+    World *world = scene_world(scene, &error);
+    assert_ok(world != NULL, error);
+    return world;
+}
+
+static void step_world(Stepper *stepper, World *world, const Scene *scene, int frame) {
+    Error error = {0};
+    assert_ok(stepper_step(stepper, world, &(Step){.scene = scene, .frame = frame}, &error), error);
+}
+
+/* The steps of one world do not change those of another: the second starts from its own poses. */
+static void another_world_starts_from_its_poses(void **state) {
+    (void)state;
+    Scene *scene = read_scene();
+    Launch launch = launch_of(scene);
+    launch.x = -2;
+    const Scene other = launch_scene(scene, &launch);
+    SubspaceNet *net = subspace_net_by_hand(0);
+    const Method method = method_of(net, scene, "subspace");
+    Error error = {0};
+    Stepper *both = stepper_create(&method, scene, &error), *alone = stepper_create(&method, scene, &error);
+    assert_true(both != NULL && alone != NULL);
+    World *first = launched_world(scene), *second = launched_world(&other), *expected = launched_world(&other);
+    for (int frame = 1; frame <= 3; frame++) step_world(both, first, scene, frame);
+    for (int frame = 4; frame <= 6; frame++) step_world(both, second, &other, frame);
+    for (int frame = 1; frame <= 3; frame++) step_world(alone, expected, &other, frame);
+    assert_memory_equal(world_bodies(second), world_bodies(expected), 3 * sizeof(Body));
+    stepper_destroy(both);
+    stepper_destroy(alone);
+    world_destroy(first);
+    world_destroy(second);
+    world_destroy(expected);
+    subspace_net_destroy(net);
+    scene_destroy(scene);
+}
+
+static void before_the_bomb_the_recorded_run_is_repeated(void **state) {
+    (void)state;
+    Scene *scene = read_scene();
+    scene->bomb.frame = 5;
+    scene->frames = 5;
+    SubspaceNet *net = subspace_net_by_hand(3);
+    for (int i = 0; i < 9; i++) net->before[i] = 0.5f * (float)i;
+    const Method method = method_of(net, scene, "subspace");
+    scene->frames = 2;
+    Watch watch = run(scene, &method, NULL);
+    assert_near(watch.bodies[0].position.x, 1.5, 0);
+    assert_near(watch.bodies[0].velocity.x, 1.5 * 60, 1e-3);
+    assert_near(watch.bodies[0].angle, 2.5, 0);
+    scene->frames = 4;
+    watch = run(scene, &method, NULL);
+    assert_near(watch.bodies[0].position.y, 3.5, 0);
+    assert_near(watch.bodies[0].velocity.y, 0, 0);
+    subspace_net_destroy(net);
+    scene_destroy(scene);
+}
+
+/* As `twinbox check` runs a scene. */
+static void without_its_bomb_a_launch_stands_still(void **state) {
+    (void)state;
+    Scene *scene = read_scene();
+    scene->frames = 3;
+    SubspaceNet *net = subspace_net_by_hand(0);
+    const Method method = method_of(net, scene, "subspace");
+    scene->bomb.present = false;
+    const Watch watch = run(scene, &method, NULL);
+    assert_near(watch.bodies[0].position.y, 4, 0);
+    subspace_net_destroy(net);
+    scene_destroy(scene);
+}
+
+static void what_training_did_not_see_is_counted(void **state) {
+    (void)state;
+    Scene *scene = read_scene();
+    scene->frames = 10;
+    SubspaceNet *net = subspace_net_by_hand(0);
+    Method method = method_of(net, scene, "subspace");
+    Launch launch = launch_of(scene);
+    launch.mass = 80;
+    const Scene heavy = launch_scene(scene, &launch);
+    NetworkFallbacks fallbacks = {0};
+    run(&heavy, &method, &fallbacks);
+    assert_int_equal(fallbacks.beyond_training, 10);
+    net->low[5] = 14; /* the bomb's height */
+    method = method_of(net, scene, "subspace");
+    fallbacks = (NetworkFallbacks){0};
+    const Watch watch = run(scene, &method, &fallbacks);
+    assert_near(watch.bodies[1].position.y, 14, 0);
+    assert_in_range(fallbacks.beyond_training, 1, 9);
+    subspace_net_destroy(net);
+    scene_destroy(scene);
+}
+
+/* A basis so large that poses overflow: bodies stay where they are. */
+static void poses_that_are_not_finite_are_discarded(void **state) {
+    (void)state;
+    Scene *scene = read_scene();
+    scene->frames = 3;
+    SubspaceNet *net = subspace_net_by_hand(0);
+    for (int k = 4; k < TEST_NUMBERS; k++) {
+        net->basis[k * subspace_lanes(TEST_NUMBERS) + k] = 3e38f;
+        net->low[k] = net->high[k] = 1000;
+    }
+    const Method method = method_of(net, scene, "subspace");
+    NetworkFallbacks fallbacks = {0};
+    const Watch watch = run(scene, &method, &fallbacks);
+    assert_near(watch.bodies[1].position.y, 15, 0);
+    assert_true(fallbacks.not_finite >= 3);
+    subspace_net_destroy(net);
+    scene_destroy(scene);
+}
+
+static void refuse(const Method *method, const Scene *scene, const char *reason) {
+    Error error = {0};
+    assert_refused(stepper_create(method, scene, &error), reason);
+}
+
+static void what_does_not_fit_is_refused(void **state) {
+    (void)state;
+    Scene *scene = read_scene();
+    Error error = {0};
+    SubspaceNet *net = subspace_net_by_hand(0);
+    Method method = method_of(net, scene, "subspace");
+    Scene *stack = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
+    assert_ok(stack != NULL, error);
+    refuse(&method, stack, "the network is for scene single with 2 bodies that move; scene stack has 11");
+    scene->bodies[1].mass = 20;
+    refuse(&method, scene, "by_hand.npz: error: the network is for scene single; bodies, bomb, gravity or time");
+    scene->bodies[1].mass = 200;
+    const SceneBomb bomb = scene->bomb;
+    scene->bomb = (SceneBomb){0};
+    refuse(&method, scene, "bodies, bomb, gravity or time");
+    scene->bomb = bomb;
+    method = method_of(net, scene, "subspace:components=9");
+    refuse(&method, scene, "components must be 8, 32 or 128 (got 9)");
+    assert_ok(method_parse(&method, "subspace", &error), error);
+    scene->network_count = 0;
+    refuse(&method, scene, "the scene names no network for it");
+    subspace_net_destroy(net);
+    scene_destroy(stack);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_go_on_as_they_move),
+                                       cmocka_unit_test(angles_follow_sine_and_cosine),
+                                       cmocka_unit_test(another_world_starts_from_its_poses),
+                                       cmocka_unit_test(before_the_bomb_the_recorded_run_is_repeated),
+                                       cmocka_unit_test(without_its_bomb_a_launch_stands_still),
+                                       cmocka_unit_test(what_training_did_not_see_is_counted),
+                                       cmocka_unit_test(poses_that_are_not_finite_are_discarded),
+                                       cmocka_unit_test(what_does_not_fit_is_refused)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

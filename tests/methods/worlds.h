@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Small worlds, made by hand, and the engine to run them. */
+#pragma once
+#include "testing.h"
+
+#include "engine/engine.h"
+#include "methods/methods.h"
+
+static const float world_dt = 1.0f / 60.0f;
+
+/* A solver with these settings ("k=10"). */
+static inline ContactSolver make_solver(const ContactSolverKind *kind, const char *text) {
+    Error error = {0};
+    Settings settings;
+    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
+    ContactSolver solver = {kind, kind->create(&settings, &error)};
+    assert_ok(solver.state != NULL, error);
+    return solver;
+}
+
+/* create() refuses these settings, with a message that contains the text. */
+static inline void assert_settings_refused(const ContactSolverKind *kind, const char *text, const char *message) {
+    Error error = {0};
+    Settings settings;
+    assert_ok(settings_parse(&settings, text, kind->description.settings, kind->description.name, &error), error);
+    assert_refused(kind->create(&settings, &error), message);
+}
+
+static inline ContactSolver make_engine(const char *text) { return make_solver(&solver_engine, text); }
+
+static inline void free_solver(ContactSolver *solver) { solver->kind->destroy(solver->state); }
+
+/* Solves a problem by a solver made for this once. */
+static inline void solve_with(const ContactSolverKind *kind, const char *text, const ContactProblem *problem,
+                              ContactSolution *solution) {
+    Error error = {0};
+    ContactSolver solver = make_solver(kind, text);
+    assert_ok(kind->solve(solver.state, problem, solution, &error), error);
+    free_solver(&solver);
+}
+
+static inline World *make_world(void) {
+    Error error = {0};
+    const WorldDef def = {.gravity = {0, -10}, .warm_starting = true, .position_correction = true};
+    World *world = world_create(&def, &error);
+    assert_ok(world != NULL, error);
+    return world;
+}
+
+static inline void add_body(World *world, const BodyDef *def) {
+    Error error = {0};
+    assert_ok(world_add_body(world, def, &error), error);
+}
+
+/* The ground of the paper's scenes: its top at y = 0. */
+static inline void add_ground(World *world, float friction) {
+    const BodyDef ground = {.size = {100, 20}, .fixed = true, .friction = friction, .position = {0, -10}};
+    add_body(world, &ground);
+}
+
+static inline void run(World *world, const ContactSolver *solver, int steps) {
+    Error error = {0};
+    for (int i = 0; i < steps; i++)
+        assert_ok(world_step(world, solver->kind->solve, solver->state, world_dt, &error), error);
+}

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "base/hash.h"
+#include "nets/nets.h"
+
+#include <float.h>
+#include <math.h>
+
+static float from_bits(uint32_t bits) {
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* The distance of two floats near `exact` that follow each other. */
+static double last_place(long double exact) {
+    int exponent;
+    frexpl(exact, &exponent);
+    return ldexp(1, exponent - 24);
+}
+
+static void assert_close(float found, long double exact, float x) {
+    double distance = (double)fabsl((long double)found - exact) / last_place(exact);
+    if (!(distance <= 3)) fail_msg("%.9g at %.9g is %.3f units in the last place off", found, x, distance);
+}
+
+/* Every 997th float from the smallest to past the end of both functions, of both signs. */
+static void float_stays_within_three_last_places(void **state) {
+    (void)state;
+    for (uint32_t bits = 1; from_bits(bits) < 100; bits += 997)
+        for (int sign = 0; sign < 2; sign++) {
+            float x = sign ? -from_bits(bits) : from_bits(bits);
+            long double exact = 1 / (1 + expl(-(long double)x));
+            if (exact >= (long double)FLT_MIN) assert_close(sigmoid_float(x), exact, x);
+            if (fabsf(x) >= FLT_MIN) assert_close(tanh_float(x), tanhl(x), x);
+        }
+}
+
+static void double_is_relatively_exact(void **state) {
+    (void)state;
+    for (int i = -60000; i <= 60000; i++) {
+        double x = i * 0.0115 + 1e-5, y = i * 5e-4 + 1e-9;
+        long double s = 1 / (1 + expl(-(long double)x)), t = tanhl(y);
+        assert_true(fabsl((long double)sigmoid(x) - s) <= 4e-16L * s);
+        assert_true(fabsl((long double)tangent(y) - t) <= 4e-16L * fabsl(t));
+    }
+}
+
+static void exponential_stays_within_its_last_places(void **state) {
+    (void)state;
+    double before = 0;
+    for (int i = -700000; i <= 700000; i++) {
+        const double y = i * 1e-3, found = exponential(y);
+        const long double exact = expl((long double)y);
+        int exponent;
+        frexpl(exact, &exponent);
+        assert_true(fabsl((long double)found - exact) <= ldexpl(1.25L, exponent - 53));
+        assert_true(found > before);
+        assert_near(log(found), y, 4e-16 + 3e-16 * fabs(y));
+        before = found;
+    }
+    assert_true(exponential(0) == 1 && exponential(-0.0) == 1 && isnan(exponential(NAN)));
+}
+
+/* Double after double, where the power of two changes: odd multiples of ln 2 / 2. */
+static void exponential_never_falls(void **state) {
+    (void)state;
+    for (int k = -1999; k < 2000; k += 2) {
+        double y = k * 0.34657359027997264;
+        for (int i = 0; i < 500; i++) y = nextafter(y, -INFINITY);
+        double before = exponential(y);
+        for (int i = 0; i < 1000; i++) {
+            y = nextafter(y, INFINITY);
+            const double found = exponential(y);
+            assert_true(found >= before);
+            before = found;
+        }
+    }
+}
+
+/* Float after float, where the power of two changes and where the functions end: multiples of ln 2 / 2. The sigmoid
+   never falls; tanh, a quotient of two rounded numbers, may by its error. */
+static void sigmoid_never_falls(void **state) {
+    (void)state;
+    const float steps[] = {0.34657359f, 1.0397208f, 4.5054566f, 17.0f, 60.3f, 87.0f, 88.376f, 88.8f};
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+        uint32_t middle;
+        memcpy(&middle, &steps[i], sizeof middle);
+        for (uint32_t bits = middle - 50000; bits < middle + 50000; bits++) {
+            float x = from_bits(bits), next = from_bits(bits + 1);
+            assert_true(sigmoid_float(x) <= sigmoid_float(next));
+            assert_true(sigmoid_float(-x) >= sigmoid_float(-next));
+            assert_true(tanh_float(next) >= tanh_float(x) - 2 * FLT_EPSILON * tanh_float(x));
+        }
+    }
+}
+
+static void limits_are_exact(void **state) {
+    (void)state;
+    const float huge[] = {89, 1000, 1e7f, 1e20f, FLT_MAX, INFINITY};
+    for (size_t i = 0; i < sizeof huge / sizeof huge[0]; i++) {
+        float x = huge[i];
+        assert_true(sigmoid_float(x) == 1 && sigmoid_float(-x) == 0);
+        assert_true(tanh_float(x) == 1 && tanh_float(-x) == -1);
+        assert_true(sigmoid(10 * (double)x) == 1 && sigmoid(-10 * (double)x) < 1e-300);
+        assert_true(tangent((double)x) == 1 && tangent(-(double)x) == -1);
+    }
+    assert_true(sigmoid_float(0) == 0.5f && sigmoid_float(-0.0f) == 0.5f && sigmoid(0) == 0.5);
+    assert_true(tanh_float(0) == 0 && tangent(0) == 0 && signbit(tanh_float(-0.0f)));
+    assert_true(sigmoid_float(1e-30f) == 0.5f && tanh_float(1e-30f) == 1e-30f);
+    assert_true(isnan(sigmoid_float(NAN)) && isnan(tanh_float(NAN)) && isnan(sigmoid(NAN)) && isnan(tangent(NAN)));
+}
+
+static void tanh_is_odd(void **state) {
+    (void)state;
+    for (int i = 0; i < 10000; i++) {
+        float x = (float)i * 1.7e-3f;
+        assert_true(tanh_float(-x) == -tanh_float(x) && tangent(-(double)x) == -tangent((double)x));
+    }
+}
+
+/* What this file gave when it was written, on x86-64 by gcc 12 and clang 14 at -O0 to -O3: a compiler or processor
+   that contracts, reorders or widens an operation gives other bits. */
+static void bits_are_the_same_everywhere(void **state) {
+    (void)state;
+    const struct {
+        float x, sigmoid, tanh;
+    } floats[] = {
+        {0.100000001f, 0x1.0cca12p-1f, 0x1.983d7ap-4f}, {-0.300000012f, 0x1.b3c558p-2f, -0x1.2a4ddcp-2f},
+        {0.699999988f, 0x1.561cb4p-1f, 0x1.356fb2p-1f}, {-1.89999998f, 0x1.0a765p-3f, -0x1.e997f4p-1f},
+        {3.29999995f, 0x1.edc99ep-1f, 0x1.fe9bep-1f},   {-7.69999981f, 0x1.da9bep-12f, -0x1.fffff2p-1f},
+        {15.1000004f, 0x1.fffff8p-1f, 0x1p+0f},         {-41, 0x1.cd480cp-60f, -0x1p+0f},
+        {-80.5f, 0x1.d1a206p-117f, -0x1p+0f},           {-87.9000015f, 0x1.237328p-127f, -0x1p+0f},
+    };
+    for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++) {
+        assert_true(sigmoid_float(floats[i].x) == floats[i].sigmoid);
+        assert_true(tanh_float(floats[i].x) == floats[i].tanh);
+    }
+    const struct {
+        double x, sigmoid, tanh;
+    } doubles[] = {
+        {0.10000000000000001, 0x1.0cca12729afb8p-1, 0x1.983d7795f413bp-4},
+        {-0.29999999999999999, 0x1.b3c5574372aebp-2, -0x1.2a4dda7d914f9p-2},
+        {0.69999999999999996, 0x1.561cb52a19476p-1, 0x1.356fb17af2e91p-1},
+        {-1.8999999999999999, 0x1.0a764fd2927e7p-3, -0x1.e997f4c3bcd48p-1},
+        {3.2999999999999998, 0x1.edc99cf2c9d4dp-1, 0x1.fe9bdf44f7c03p-1},
+        {-7.7000000000000002, 0x1.da9bda5715addp-12, -0x1.fffff23d39f08p-1},
+        {15.1, 0x1.fffff6b6606b2p-1, 0x1.ffffffffffa9cp-1},
+        {-41, 0x1.cd480a1b7482p-60, -0x1p+0},
+        {-300.5, 0x1.629f5b5352a54p-434, -0x1p+0},
+    };
+    for (size_t i = 0; i < sizeof doubles / sizeof doubles[0]; i++) {
+        assert_true(sigmoid(doubles[i].x) == doubles[i].sigmoid);
+        assert_true(tangent(doubles[i].x) == doubles[i].tanh);
+    }
+}
+
+/* The last bits of the small terms show in one value of many. */
+static void many_bits_are_the_same_everywhere(void **state) {
+    (void)state;
+    uint64_t hash = FNV1A64_START;
+    for (uint32_t bits = 0x30000000; from_bits(bits) < 90; bits += 1009) {
+        float x = from_bits(bits);
+        const float floats[] = {sigmoid_float(x), sigmoid_float(-x), tanh_float(x)};
+        const double doubles[] = {sigmoid((double)x), sigmoid(-(double)x), tangent((double)x)};
+        hash = hash_fnv1a64(hash, floats, sizeof floats);
+        hash = hash_fnv1a64(hash, doubles, sizeof doubles);
+    }
+    if (hash != UINT64_C(0x2fcf31d30316d167)) fail_msg("hash of all values: %016llx", (unsigned long long)hash);
+}
+
+static void relu_keeps_nan_and_the_sign_of_zero(void **state) {
+    (void)state;
+    assert_true(relu_float(2.5f) == 2.5f && relu_float(-2.5f) == 0 && relu(2.5) == 2.5 && relu(-2.5) == 0);
+    assert_true(relu_float(INFINITY) == INFINITY && relu_float(-INFINITY) == 0);
+    assert_true(isnan(relu_float(NAN)) && isnan(relu((double)NAN)));
+    assert_true(signbit(relu_float(-0.0f)) && signbit(relu(-0.0)));
+    assert_true(!signbit(relu_float(-FLT_MIN)) && !signbit(relu(-1e-300)));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(float_stays_within_three_last_places),
+        cmocka_unit_test(double_is_relatively_exact),
+        cmocka_unit_test(exponential_stays_within_its_last_places),
+        cmocka_unit_test(exponential_never_falls),
+        cmocka_unit_test(sigmoid_never_falls),
+        cmocka_unit_test(limits_are_exact),
+        cmocka_unit_test(tanh_is_odd),
+        cmocka_unit_test(relu_keeps_nan_and_the_sign_of_zero),
+        cmocka_unit_test(bits_are_the_same_everywhere),
+        cmocka_unit_test(many_bits_are_the_same_everywhere),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "engine/uniform.h"
+#include "nets/kernels.h"
+
+#include <float.h>
+#include <math.h>
+
+enum { COUNT = 40, WIDTH = 48 };
+
+static float unpacked(const PackedRows *packed, int row, int column) {
+    return packed->units[row] * (float)packed->numbers[row * packed->width + column];
+}
+
+/* Rows of many sizes. */
+static void fill_rows(float *rows, uint32_t *seed) {
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < WIDTH; k++) rows[i * WIDTH + k] = ldexpf(uniform(seed, -1, 1), 4 * (i - COUNT / 2));
+}
+
+/* Of the row's largest number, which stays itself. */
+static void a_number_moves_by_half_a_step_at_most(void **state) {
+    (void)state;
+    static float rows[COUNT * WIDTH];
+    uint32_t seed = 1;
+    PackedRows packed;
+    assert_true(packed_rows_make(&packed, COUNT, WIDTH));
+    fill_rows(rows, &seed);
+    packed_rows_fill(&packed, rows);
+    for (int i = 0; i < COUNT; i++) {
+        float most = 0, farthest = 0;
+        for (int k = 0; k < WIDTH; k++) {
+            most = fmaxf(most, fabsf(rows[i * WIDTH + k]));
+            farthest = fmaxf(farthest, fabsf(unpacked(&packed, i, k) - rows[i * WIDTH + k]));
+        }
+        assert_true(packed.units[i] == most / 127);
+        assert_true(farthest <= packed.units[i] * 0.5001f);
+        assert_true(farthest > packed.units[i] * 0.25f); /* else nothing would have been rounded */
+    }
+    packed_rows_free(&packed);
+}
+
+static void what_is_packed_already_stays(void **state) {
+    (void)state;
+    static float rows[COUNT * WIDTH];
+    uint32_t seed = 2;
+    PackedRows first, second;
+    assert_true(packed_rows_make(&first, COUNT, WIDTH) && packed_rows_make(&second, COUNT, WIDTH));
+    fill_rows(rows, &seed);
+    packed_rows_fill(&first, rows);
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < WIDTH; k++) rows[i * WIDTH + k] = unpacked(&first, i, k);
+    packed_rows_fill(&second, rows);
+    assert_memory_equal(first.numbers, second.numbers, COUNT * WIDTH);
+    packed_rows_free(&first);
+    packed_rows_free(&second);
+}
+
+/* Nothing at all, next to nothing, and the largest there is. */
+static void the_ends_of_the_range_are_met(void **state) {
+    (void)state;
+    const float rows[4 * 2] = {0, -0.0f, FLT_TRUE_MIN, -FLT_MIN, FLT_MAX, -FLT_MAX, 1, 127};
+    PackedRows packed;
+    assert_true(packed_rows_make(&packed, 4, 2));
+    packed_rows_fill(&packed, rows);
+    const int8_t expected[4 * 2] = {0, 0, 0, 0, 127, -127, 1, 127};
+    assert_memory_equal(packed.numbers, expected, sizeof expected);
+    assert_true(packed.units[0] == 0 && packed.units[1] == 0 && packed.units[2] == FLT_MAX / 127);
+    assert_true(packed.units[3] == 1);
+    packed_rows_free(&packed);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_number_moves_by_half_a_step_at_most),
+        cmocka_unit_test(what_is_packed_already_stays),
+        cmocka_unit_test(the_ends_of_the_range_are_met),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Three diverging runs with contacts, for tests of what pictures show. Include testing.h first. */
+#pragma once
+#include "pictures/render.h"
+#include "runs.h"
+
+enum { FRAMES = 40, RUNS = 3, WIDTH = 420, HEIGHT = 300, ALL_SHOWN = 127 };
+
+static Trajectory *runs[RUNS];
+static const Trajectory *panels[RUNS];
+
+/* The second run diverges from the first in frame 5, the third collapses; the bomb touches a box in frame 20. */
+static inline int make(void **state) {
+    (void)state;
+    static const char *const methods[RUNS] = {"engine", "momentum:k=20", "pair-net"};
+    for (int i = 0; i < RUNS; i++) {
+        Error error = {0};
+        panels[i] = runs[i] = run_make(methods[i], FRAMES);
+        for (int frame = 0; frame < FRAMES; frame++) {
+            if (i == 1 && frame >= 5) run_position(runs[i], frame, FIRST_BOX)->x += 0.002F * (float)(frame - 4);
+            if (i == 2) *run_position(runs[i], frame, SECOND_BOX) = vec2(2 + 0.2F * (float)frame, 0.5F);
+            runs[i]->velocity[frame * RUN_BODIES + BOMB_BODY] = vec2(0, -12);
+            TrajectoryContact contact = {.a = FIRST_BOX, .b = frame < 20 ? SECOND_BOX : BOMB_BODY};
+            contact.point = vec2(0, 1), contact.normal = vec2(0, 1);
+            contact.normal_impulse = (float)frame, contact.tangent_impulse = 0.5F;
+            if (frame > 0) assert_ok(trajectory_add_contact(runs[i], frame, &contact, &error), error);
+        }
+        trajectory_end_contacts(runs[i]);
+    }
+    return 0;
+}
+
+static inline int destroy(void **state) {
+    (void)state;
+    for (int i = 0; i < RUNS; i++) trajectory_destroy(runs[i]);
+    return 0;
+}

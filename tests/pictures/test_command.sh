@@ -1,0 +1,112 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# twinbox page: the same bytes, sizes, what is refused and leaves nothing behind, and whether the scripts are JavaScript.
+. "$(dirname "$0")/../cli/checks.sh"
+
+names() { find . -mindepth 1 -printf '%P\n' | LC_ALL=C sort | tr '\n' ' '; }
+make() { /usr/bin/python3 -B "$sources/tests/pictures/hostile_runs.py" "$@" || fail "no runs $*"; }
+
+# The same bytes from another folder; nothing of the machine.
+run 0 simulate "$scenes/stack.yaml" --frames 60 -o engine.npz
+run 0 simulate "$scenes/stack.yaml" --frames 60 -m momentum -o momentum.npz
+run 0 page engine.npz momentum.npz -o first.html
+says "2 runs of 61 frames, "
+mkdir elsewhere
+TZ=Asia/Tokyo LC_ALL=C run 0 page "$PWD/engine.npz" "$PWD/momentum.npz" -o elsewhere/second.html
+cmp -s first.html elsewhere/second.html || fail "the same runs give other bytes"
+for word in "$PWD" "$sources" "$(date +%Y)-"; do
+    [ "$(grep -cF -- "$word" first.html)" -eq 0 ] || fail "the page holds '$word'"
+done
+[ "$(grep -cE '(src|href)="?(https?:|//|file:)|@import|url\(' first.html)" -eq 0 ] || fail "the page fetches something"
+
+# Bad input: status 2, a message, and no file; an older page stays.
+make plain names many_letters other_letters backwards control nan_velocity infinite other_dt
+echo older >kept.html
+head -c 300 engine.npz >cut.npz
+mkdir folder.npz
+kept=$(names)
+while IFS='|' read -r message arguments; do
+    run 2 page $arguments -o kept.html
+    complains "${message% }"
+    equal "output of $arguments" "$(<out)" ""
+done <<'TABLE'
+none.npz: error: cannot open |none.npz
+cut.npz: error: |cut.npz
+cut.npz: error: |engine.npz cut.npz
+kept.html:|kept.html
+folder.npz: error: |folder.npz
+many_letters.npz: error: text 'scene' is longer than |many_letters.npz
+other_letters.npz: error: the font has no character |other_letters.npz
+backwards.npz: error: |backwards.npz
+control.npz: error: the name of the scene holds control characters |control.npz
+nan_velocity.npz: error: frame 1, body 1: pose and velocity are not all finite |nan_velocity.npz
+infinite.npz: error: frame 1, body 1: pose and velocity are not all finite |plain.npz infinite.npz
+run 2 (other_dt) has time steps of 0.0333333 s |plain.npz other_dt.npz
+only 6 panels can be given |plain.npz plain.npz plain.npz plain.npz plain.npz plain.npz plain.npz
+--every: error: '0' is not a whole number |plain.npz --every 0
+--frames: error: 60 is beyond the last frame, 4 |plain.npz --frames 0:60
+TABLE
+equal "files after refused commands" "$(names)" "$kept"
+equal "the older page" "$(<kept.html)" older
+
+# A full disk and a limit of file sizes: status 3; nothing stays, and an older page does.
+run 3 page engine.npz -o /dev/full
+complains "No space left"
+ulimit -S -f 8 # blocks of 1 KiB
+run 3 page engine.npz -o kept.html
+complains "kept.html: error: cannot write: File too large"
+run 3 page engine.npz -o new.html
+ulimit -S -f unlimited
+equal "files of pages beyond the limit" "$(names)" "$kept"
+equal "the older page" "$(<kept.html)" older
+
+# 100,000 frames that do not pack are refused with a step that suffices.
+if ! sanitized; then
+    make too_long
+    run 2 page too_long.npz -o long.html
+    complains "--every"
+    [ ! -e long.html ] || fail "a refused page was written"
+    run 0 page too_long.npz $(grep -o -- '--every [0-9]*' err) -o long.html
+    [ "$(stat -c %s long.html)" -le $((64 << 20)) ] || fail "a page of $(stat -c %s long.html) bytes"
+    rm -f too_long.npz long.html
+fi
+
+# Sizes: two runs of ten seconds of the settled pyramid, and what is not data.
+if ! sanitized; then
+    for method in engine pair-net; do
+        run 0 simulate "$scenes/pyramid_settled.yaml" --frames 600 -m $method -o "pyramid-$method.npz"
+    done
+    run 0 page pyramid-engine.npz pyramid-pair-net.npz -o pyramid.html
+    bytes=$(stat -c %s pyramid.html)
+    [ "$bytes" -le 1000000 ] || fail "two runs of the settled pyramid take $bytes bytes"
+fi
+run 0 page names.npz -o names.html
+/usr/bin/python3 - <<'PYTHON' || fail "the code"
+import base64, re, zlib
+page = open("names.html", encoding="utf-8").read()
+begin, = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
+packed, = re.findall(r'<script type="text/plain" id="viewer">(.*?)</script>', page)
+open("begin.js", "w", encoding="utf-8").write(begin)
+open("viewer.js", "wb").write(zlib.decompress(base64.b64decode(packed), -15))
+# Names are in data only, and end no element there.
+assert page.count("</script>") == page.count("<script"), "another element"
+assert page.count("<img") == 0 and "<!--" not in page, "markup of a name"
+style = re.search(r"<style>.*</style>", page, re.DOTALL)[0]
+body = page[page.index("<body>"):page.index('<script type="text/plain"')]
+size = len((style + body + packed + begin).encode())
+assert size <= 60000, f"{size} bytes of script, style and markup"
+PYTHON
+checks=$((checks + 1))
+
+# The scripts as the page has them, and each as it is written.
+if ! sanitized; then
+    command -v node >/dev/null || fail "node is not installed; tests/setup --tests does that"
+    for script in begin.js viewer.js "$sources"/src/pictures/player/*.js "$sources"/tests/player/*.js; do
+        checks=$((checks + 1))
+        node --check "$script" >out 2>&1 || fail "$script: $(head -c 400 out)"
+    done
+    # It sees a name that is declared twice.
+    sed 's/^const data = /const data = 0; const data = /' viewer.js >twice.js
+    ! node --check twice.js 2>/dev/null || fail "node --check accepts anything"
+fi
+finish

@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Effects of each look: required runs, and positions of poses, cameras, colours and curves. */
+#include "testing.h"
+
+#include "look_runs.h"
+#include "mesa.h"
+#include "pictures/internal.h"
+#include "pictures/render_internal.h"
+
+static Picture picture_with_look(int count, const RenderLook *look) {
+    Picture picture;
+    Error error = {0};
+    RenderOptions options = {.width = WIDTH, .height = HEIGHT, .look = *look};
+    assert_ok(picture_plan(&picture, panels, count, WIDTH, HEIGHT, &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
+    return picture;
+}
+
+static void a_look_that_the_runs_do_not_have_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        RenderLook look;
+        int count;
+        const char *text;
+    } wrong[] = {
+        {{.compare = LOOK_OVERLAY}, 1, "'overlay' compares runs, but there is only one"},
+        {{.compare = LOOK_DIFFERENCE}, 1, "'difference' compares runs"},
+        {{.show = LOOK_GHOSTS}, 1, "'ghosts' compares"},
+        {{.show = LOOK_DISTANCE}, 1, "'distance' compares"},
+        {{.show = LOOK_TIMELINE | LOOK_TRAILS}, 1, "'timeline' compares"},
+        {{.camera = LOOK_DIVERGENCE}, 1, "'divergence' compares"},
+        {{.compare = LOOK_OVERLAY}, 3, "'overlay' compares run 3 with the first, but their worlds differ (size of"},
+    };
+    runs[2]->size[FIRST_BOX].x = 2;
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        Error error = {0};
+        RenderOptions options = {.width = WIDTH, .height = HEIGHT, .look = wrong[i].look};
+        assert_refused(renderer_create(panels, wrong[i].count, &options, &error), wrong[i].text);
+    }
+    Error error = {0};
+    runs[0]->bomb = -1;
+    assert_refused(look_check(&(RenderLook){.camera = LOOK_BOMB}, panels, 2, &error), "cannot follow the bomb");
+    error = (Error){0};
+    assert_ok(look_check(&(RenderLook){.show = LOOK_TRAILS | LOOK_VELOCITIES}, panels, 3, &error), error);
+}
+
+static void poses_between_frames_lie_between(void **state) {
+    (void)state;
+    Moment between = {MOMENT_BETWEEN, 4, 1, 4, 4};
+    Pose a = pose_stored(runs[0], 4, SECOND_BOX), b = pose_stored(runs[0], 5, SECOND_BOX);
+    Pose pose = pose_at(runs[0], between, SECOND_BOX);
+    assert_near(pose.angle, 0.75 * a.angle + 0.25 * b.angle, 1e-12);
+    between.frame = 1;
+    assert_true(isnan(pose_at(runs[0], between, BOMB_BODY).x)); /* it appears in frame 2 */
+    between.frame = FRAMES - 1;
+    assert_near(pose_at(runs[0], between, SECOND_BOX).angle, pose_stored(runs[0], FRAMES - 1, SECOND_BOX).angle, 0);
+    *run_position(runs[0], 11, BOMB_BODY) = vec2(NAN, NAN);
+    between.frame = 10; /* it disappears */
+    assert_near(pose_at(runs[0], between, BOMB_BODY).y, pose_stored(runs[0], 10, BOMB_BODY).y, 0);
+}
+
+static void distances_between_frames_lie_between(void **state) {
+    (void)state;
+    Picture picture = picture_with_look(2, &(RenderLook){0});
+    double before = picture_distance(&picture, moment_stored(9)), after = picture_distance(&picture, moment_stored(10));
+    assert_near(picture_distance(&picture, (Moment){MOMENT_BETWEEN, 9, 1, 2, 2}), (before + after) / 2, 1e-6);
+    assert_true(isnan(picture_run_distance(&picture, 0, moment_stored(9))));
+    picture_free(&picture);
+}
+
+static void events_are_found_where_they_are(void **state) {
+    (void)state;
+    Events events = events_find(panels, 2);
+    assert_int_equal(events.impact, 20);
+    assert_int_equal(events.divergence, 5); /* 2 mm */
+    assert_int_equal(events.run, 1);
+    assert_int_equal(events.body, FIRST_BOX);
+    events = events_find(panels, 3);
+    assert_int_equal(events.divergence, 1);
+    assert_int_equal(events.run, 2);
+    runs[2]->size[FIRST_BOX].x = 2; /* another world */
+    assert_int_equal(events_find(panels, 3).run, 1);
+    runs[0]->bomb = runs[1]->bomb = -1;
+    assert_int_equal(events_find(panels, 2).impact, -1);
+}
+
+static void each_compare_has_its_panels(void **state) {
+    (void)state;
+    static const int shown[] = {3, 1, 2}, first[] = {0, 0, 1};
+    for (int compare = LOOK_SPLIT; compare <= LOOK_DIFFERENCE; compare++) {
+        Picture picture = picture_with_look(3, &(RenderLook){.compare = (LookCompare)compare});
+        assert_int_equal(picture.panel_count, shown[compare]);
+        assert_int_equal(picture_run(&picture, 0), first[compare]);
+        picture_free(&picture);
+    }
+}
+
+/* With a fixed camera only the timeline takes room. */
+static void curves_are_the_largest_distances(void **state) {
+    (void)state;
+    Picture picture = picture_with_look(3, &(RenderLook){.show = LOOK_TIMELINE});
+    assert_int_equal(picture.curve_points, FRAMES);
+    for (int frame = 0; frame < FRAMES; frame++) {
+        assert_near(picture.curves[FRAMES + frame], trajectory_distance(runs[0], runs[1], frame), 1e-6);
+        assert_true(isnan((double)picture.curves[frame]));
+    }
+    assert_true(picture.layout.timeline.top > picture.layout.panels[0].bottom);
+    picture_free(&picture);
+}
+
+/* No jumps: from frame to frame, centre and size of the view change by a small fraction. */
+static void cameras_ease(void **state) {
+    (void)state;
+    for (int run = 0; run < RUNS; run++) trajectory_destroy(runs[run]);
+    for (int run = 0; run < RUNS; run++) panels[run] = runs[run] = run_make("engine", 400);
+    for (int frame = 200; frame < 400; frame++) run_position(runs[1], frame, SECOND_BOX)->x += 1;
+    for (int run = 0; run < RUNS; run++) run_position(runs[run], 0, FIRST_BOX)->x = -30; /* a wide view to zoom from */
+    for (int run = 0; run < RUNS; run++)
+        for (int frame = 2; frame < 400; frame++) /* from left to right, with a jump */
+            *run_position(runs[run], frame, BOMB_BODY) = vec2(frame < 150 ? -10 : 10 + 0.01F * (float)frame, 3);
+    for (int camera = LOOK_BOMB; camera <= LOOK_DIVERGENCE; camera++) {
+        Picture picture = picture_with_look(2, &(RenderLook){.camera = (LookCamera)camera});
+        const Rect panel = picture.layout.panels[0];
+        double width = panel.right - panel.left, whole = width / picture.camera.scale, closest = 0;
+        for (int frame = 0; frame < 400; frame++) {
+            const Camera *at = &picture.path[frame], *before = &picture.path[frame > 0 ? frame - 1 : 0];
+            double middle = (width / 2 - at->left) / at->scale, last = (width / 2 - before->left) / before->scale;
+            if (fabs(middle - last) > 0.12 * whole || fabs(at->scale / before->scale - 1) > 0.12)
+                fail_msg("camera %d jumps in frame %d", camera, frame);
+            closest = fmax(closest, at->scale);
+        }
+        assert_true(closest > 1.9 * picture.camera.scale);
+        Camera halfway = camera_at(picture.path, 400, (Moment){MOMENT_BETWEEN, 100, 1, 2, 2}, (int)width, 100);
+        assert_true(halfway.scale >= fmin(picture.path[100].scale, picture.path[101].scale) - 1e-9);
+        if (camera == LOOK_DIVERGENCE) {
+            picture.camera = picture.path[205];
+            Point at = panel_point(&picture, 0, 2, 0.5);
+            assert_near(at.x, (panel.left + panel.right) / 2.0, 2);
+        }
+        picture_free(&picture);
+    }
+}
+
+static double lightness(uint32_t color) {
+    static const double weights[] = {0.0722, 0.7152, 0.2126};
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        double c = (color >> 8 * i & 255) / 255.0;
+        sum += weights[i] * (c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
+    }
+    return 116 * cbrt(sum) - 16; /* CIE L*, above 8 */
+}
+
+/* Equal steps of distance are equal steps of lightness, so that grey prints show distances as well. */
+static void colors_of_distance_are_even_in_lightness(void **state) {
+    (void)state;
+    for (int theme = LOOK_LIGHT; theme <= LOOK_DARK; theme++) {
+        const Theme *colors = theme_get((LookTheme)theme);
+        double first = lightness(theme_ramp(colors, 0)), last = lightness(theme_ramp(colors, 1));
+        assert_true(fabs(last - first) > 65);
+        for (int i = 0; i <= 10; i++)
+            assert_near(lightness(theme_ramp(colors, i / 10.0)), first + (last - first) * i / 10, 2);
+        assert_int_equal(theme_ramp(colors, -1), theme_ramp(colors, 0));
+        assert_int_equal(theme_ramp(colors, 2), theme_ramp(colors, 1));
+        double panel = lightness(colors->panel); /* large distances stand out from the page */
+        assert_true(fabs(last - panel) > fabs(first - panel));
+    }
+}
+
+static void distances_have_their_place_on_the_scale(void **state) {
+    (void)state;
+    Scales scales;
+    Error error = {0};
+    Picture picture = picture_with_look(2, &(RenderLook){.show = LOOK_IMPULSES});
+    assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 0.5, &error), error);
+    assert_int_equal(scales.last_decade, 0);
+    assert_false(scales.exceeded);
+    assert_near(scales_share(&scales, 0), 0, 0);
+    assert_near(scales_share(&scales, NAN), 0, 0);
+    assert_near(scales_share(&scales, 0.001), 0, 1e-12);
+    assert_near(scales_share(&scales, 0.1), 2.0 / 3, 1e-12);
+    assert_near(scales_share(&scales, 5), 1, 0);
+    assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 5000, &error), error);
+    assert_true(scales.exceeded && scales.last_decade == 1);
+    picture_free(&picture);
+}
+
+static uint64_t hash_of(const RenderLook *look, int count, Moment moment) {
+    Error error = {0};
+    RenderOptions options = {.width = 800, .height = 450, .look = *look};
+    Renderer *renderer = renderer_create(panels, count, &options, &error);
+    Image *image = image_create(800, 450, &error);
+    const bool *changed;
+    assert_ok(renderer != NULL && image != NULL, error);
+    assert_ok(renderer_draw_next(renderer, moment, image, &changed, &error), error);
+    uint64_t hash = image_hash(image);
+    renderer_destroy(renderer);
+    image_destroy(image);
+    return hash;
+}
+
+/* Each option changes the picture, and so do costs and the text of the end card. */
+static void every_option_changes_the_picture(void **state) {
+    (void)state;
+    const Moment moment = moment_stored(25), end = {MOMENT_END, FRAMES - 1, 0, 1, 1};
+    uint64_t plain = hash_of(&(RenderLook){0}, 2, moment);
+    for (int bit = 0; bit < 7; bit++) assert_true(hash_of(&(RenderLook){.show = 1u << bit}, 2, moment) != plain);
+    assert_true(hash_of(&(RenderLook){.theme = LOOK_DARK}, 2, moment) != plain);
+    assert_true(hash_of(&(RenderLook){.costs = {NULL, "8 s"}}, 2, moment) != plain);
+    assert_true(hash_of(&(RenderLook){0}, 2, (Moment){MOMENT_STORED, 25, 0, 4, 4}) != plain); /* slow motion */
+    assert_true(hash_of(&(RenderLook){.end = "Over"}, 2, end) != hash_of(&(RenderLook){0}, 2, end));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_look_that_the_runs_do_not_have_is_refused, make, destroy),
+        cmocka_unit_test_setup_teardown(poses_between_frames_lie_between, make, destroy),
+        cmocka_unit_test_setup_teardown(distances_between_frames_lie_between, make, destroy),
+        cmocka_unit_test_setup_teardown(events_are_found_where_they_are, make, destroy),
+        cmocka_unit_test_setup_teardown(each_compare_has_its_panels, make, destroy),
+        cmocka_unit_test_setup_teardown(curves_are_the_largest_distances, make, destroy),
+        cmocka_unit_test_setup_teardown(cameras_ease, make, destroy),
+        cmocka_unit_test_setup_teardown(colors_of_distance_are_even_in_lightness, make, destroy),
+        cmocka_unit_test_setup_teardown(distances_have_their_place_on_the_scale, make, destroy),
+        cmocka_unit_test_setup_teardown(every_option_changes_the_picture, make, destroy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

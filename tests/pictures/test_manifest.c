@@ -1,0 +1,463 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The manifest describes what was drawn, and an interrupted sequence is resumed to the same bytes as an
+   uninterrupted one. */
+#include "testing.h"
+
+#include "base/hash.h"
+#include "folders.h"
+#include "mesa.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
+#include "runs.h"
+
+#include <jansson.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+enum { FRAMES = 12, PICTURES = FRAMES + 2 * 11 + 3, WIDTH = 160, HEIGHT = 90 };
+
+static Trajectory *runs[2];
+static const Trajectory *panels[2];
+static char whole[256]; /* folder of an uninterrupted sequence */
+
+/* The impact is in step 5, and everything is in slow motion; three pictures hold the last frame. */
+static RenderOptions options_for(const char *directory) {
+    return (RenderOptions){
+        .width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = directory, .slow = 3, .hold = 0.05};
+}
+
+static int make(void **state) {
+    (void)state;
+    Error error = {0};
+    TrajectoryContact contact = {.a = FIRST_BOX, .b = BOMB_BODY, .normal = {0, 1}};
+    panels[0] = runs[0] = run_make("engine", FRAMES);
+    panels[1] = runs[1] = run_make("pair-net:network=nets/small.npz", FRAMES - 3);
+    assert_ok(trajectory_add_contact(runs[0], 5, &contact, &error), error);
+    trajectory_end_contacts(runs[0]);
+    snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
+    RenderOptions options = options_for(whole);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    return 0;
+}
+
+static int destroy(void **state) {
+    (void)state;
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+    return 0;
+}
+
+static const char *manifest_of(const char *directory) {
+    static char path[512];
+    snprintf(path, sizeof path, "%s/manifest.json", directory);
+    return path;
+}
+
+/* Resumes in a folder, which must then equal the uninterrupted one; returns the number of pictures kept. */
+static int resume(const char *directory, char why[256]) {
+    Error error = {0};
+    RenderResult result;
+    RenderOptions options = options_for(directory);
+    options.resume = true;
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+    assert_true(result.first == 0 && result.last == PICTURES - 1 && result.all);
+    free(result.hashes);
+    if (why != NULL) memcpy(why, result.why, sizeof result.why);
+    assert_same_folder(whole, directory);
+    return result.kept;
+}
+
+/* A copy of the whole sequence. */
+static const char *copied(const char *name) {
+    Error error = {0};
+    const char *directory = temporary_path(name);
+    assert_ok(file_make_directory(directory, &error), error);
+    for (int i = -1; i < PICTURES; i++) {
+        size_t size;
+        char to[512];
+        char *data = read_whole(i < 0 ? manifest_of(whole) : frame_path(whole, i), &size);
+        snprintf(to, sizeof to, "%s", i < 0 ? manifest_of(directory) : frame_path(directory, i));
+        assert_ok(file_write_soon(to, data, size, &error), error);
+        free(data);
+    }
+    return directory;
+}
+
+static uint64_t hash_of(const json_t *value) {
+    assert_int_equal(json_string_length(value), 16);
+    return strtoull(json_string_value(value), NULL, 16);
+}
+
+static void check_states(const json_t *states, int frame) {
+    assert_int_equal(json_array_size(states), 2);
+    for (size_t panel = 0; panel < 2; panel++) {
+        int last = panels[panel]->frames - 1;
+        uint64_t hash = trajectory_frame_hash(panels[panel], frame < last ? frame : last);
+        assert_true(hash_of(json_array_get(states, panel)) == hash);
+    }
+}
+
+static void check_picture(const json_t *item, int index) {
+    Error error = {0};
+    size_t size;
+    const char *path = frame_path(whole, index), *part = json_string_value(json_object_get(item, "part"));
+    int frame = (int)json_integer_value(json_object_get(item, "frame"));
+    char *data = read_whole(path, &size), text[64] = "";
+    Image *image = image_read_png(path, &error);
+    assert_true(hash_of(json_object_get(item, "pixels")) == image_hash(image));
+    assert_true(hash_of(json_object_get(item, "file_hash")) == hash_xxh3(data, size));
+    assert_non_null(strstr(path, json_string_value(json_object_get(item, "file"))));
+    assert_true(json_is_integer(json_object_get(item, "frame")));
+    assert_in_range(frame, 0, FRAMES - 1);
+    check_states(json_object_get(item, "states"), frame);
+    /* The picture's own texts state the same. */
+    assert_ok(image_read_text(path, "Frame", text, sizeof text, &error), error);
+    assert_int_equal(atoi(text), frame);
+    text[0] = '\0';
+    image_read_text(path, "Part", text, sizeof text, &(Error){0});
+    assert_string_equal(text, part != NULL ? part : "");
+    image_destroy(image);
+    free(data);
+}
+
+static void a_manifest_tells_of_every_picture(void **state) {
+    (void)state;
+    json_error_t failure;
+    json_t *manifest = json_load_file(manifest_of(whole), JSON_REJECT_DUPLICATES, &failure);
+    if (manifest == NULL) fail_msg("manifest.json:%d:%d: %s", failure.line, failure.column, failure.text);
+    const json_t *pictures = json_object_get(manifest, "pictures");
+    assert_int_equal(json_array_size(pictures), PICTURES);
+    for (int i = 0; i < PICTURES; i++) check_picture(json_array_get(pictures, (size_t)i), i);
+    json_decref(manifest);
+}
+
+/* The colour of a pixel, 0xRRGGBB. */
+static uint32_t colour_at(const Image *image, double x, double y) {
+    assert_true(x >= 0 && x < image->width && y >= 0 && y < image->height);
+    const uint8_t *pixel = image->pixels + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
+    return (uint32_t)pixel[0] << 16 | (uint32_t)pixel[1] << 8 | pixel[2];
+}
+
+static double number_of(const json_t *object, const char *key) {
+    const json_t *value = json_object_get(object, key);
+    assert_true(json_is_number(value));
+    return json_number_value(value);
+}
+
+/* The pixel of a point in a panel, by the manifest alone, has this colour. */
+static void assert_colour(const json_t *panel, const json_t *camera, const Image *image, Vec2 at, uint32_t colour) {
+    const json_t *rect = json_object_get(panel, "rectangle");
+    const double x = json_number_value(json_array_get(rect, 0)) + number_of(camera, "left") +
+                     number_of(camera, "scale") * (double)at.x;
+    const double y = json_number_value(json_array_get(rect, 1)) + number_of(camera, "top") -
+                     number_of(camera, "scale") * (double)at.y;
+    assert_int_equal(colour_at(image, x, y), colour);
+}
+
+/* A box has the colour of its run's method; the bomb has a light dot in its centre. */
+static void check_bodies(const json_t *view_panels, const json_t *picture, const Image *image) {
+    static const MethodColour colours[2] = {METHOD_BLUE, METHOD_ORANGE}; /* of engine and pair-net */
+    const Theme *theme = theme_get(LOOK_LIGHT);
+    const json_t *moving = json_object_get(picture, "camera");
+    const int frame = (int)number_of(picture, "frame");
+    for (int run = 0; run < 2; run++) {
+        const json_t *panel = json_array_get(view_panels, (size_t)run);
+        const int shown = frame < runs[run]->frames ? frame : runs[run]->frames - 1;
+        if (moving == NULL)
+            assert_colour(panel, panel, image, *run_position(runs[run], shown, SECOND_BOX),
+                          theme->bodies[colours[run]].fill);
+        else if (shown >= 2)
+            assert_colour(panel, moving, image, *run_position(runs[run], shown, BOMB_BODY), theme->bomb.band);
+    }
+}
+
+static void check_view(const char *directory, bool moving) {
+    json_t *manifest = json_load_file(manifest_of(directory), JSON_REJECT_DUPLICATES, NULL);
+    const json_t *all = json_object_get(json_object_get(manifest, "view"), "panels");
+    const json_t *pictures = json_object_get(manifest, "pictures");
+    assert_int_equal(json_array_size(all), 2);
+    for (size_t i = 0; i < json_array_size(pictures); i++) {
+        const json_t *picture = json_array_get(pictures, i);
+        assert_int_equal(json_object_get(picture, "camera") != NULL, moving);
+        if (strcmp(json_string_value(json_object_get(picture, "shows")), "frame") != 0) continue;
+        Error error = {0};
+        Image *image = image_read_png(frame_path(directory, (int)i), &error);
+        assert_ok(image != NULL, error);
+        check_bodies(all, picture, image);
+        image_destroy(image);
+    }
+    json_decref(manifest);
+}
+
+static void the_view_leads_to_the_bodies(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderOptions options = options_for(temporary_path("moving"));
+    options.look.camera = LOOK_BOMB;
+    options.width = 4 * WIDTH, options.height = 4 * HEIGHT;
+    check_view(whole, false);
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    check_view(options.directory, true);
+    options.resume = true; /* the lines with a camera are recalled, too */
+    RenderResult result;
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+    assert_int_equal(result.kept, PICTURES);
+    free(result.hashes);
+}
+
+static void the_view_names_the_files_of_the_runs(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderOptions options = options_for(temporary_path("named"));
+    options.look.show = LOOK_GHOSTS;
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    json_t *manifest = json_load_file(manifest_of(options.directory), JSON_REJECT_DUPLICATES, NULL);
+    const json_t *panel = json_array_get(json_object_get(json_object_get(manifest, "view"), "panels"), 1);
+    const json_t *names = json_object_get(panel, "runs");
+    assert_int_equal(json_array_size(names), 2);
+    assert_string_equal(json_string_value(json_array_get(names, 0)), "two_boxes-pair-net_network=nets_small.npz.npz");
+    assert_string_equal(json_string_value(json_array_get(names, 1)), "two_boxes-engine.npz");
+    json_decref(manifest);
+}
+
+static void a_manifest_names_no_place(void **state) {
+    (void)state;
+    size_t size;
+    char *text = read_whole(manifest_of(whole), &size);
+    assert_null(strstr(text, temporary_folder));
+    free(text);
+}
+
+static void nothing_is_drawn_twice(void **state) {
+    (void)state;
+    char why[256];
+    assert_int_equal(resume(copied("again"), why), PICTURES);
+    assert_string_equal(why, "");
+    assert_int_equal(resume(temporary_path("fresh"), why), 0);
+    assert_non_null(strstr(why, "fresh/manifest.json: error: cannot open"));
+}
+
+static void overwrite(const char *path, const char *data, size_t size) {
+    Error error = {0};
+    assert_ok(file_write_soon(path, data, size, &error), error);
+}
+
+static void what_is_missing_or_damaged_is_drawn_again(void **state) {
+    (void)state;
+    size_t size, other_size;
+    const char *directory = copied("damaged");
+    char *data = read_whole(frame_path(directory, 4), &size),
+         *other = read_whole(frame_path(directory, 5), &other_size);
+    assert_int_equal(unlink(frame_path(directory, 0)), 0);
+    overwrite(frame_path(directory, 1), data, size / 2);    /* truncated */
+    overwrite(frame_path(directory, 2), data, 0);           /* empty */
+    overwrite(frame_path(directory, 4), other, other_size); /* exchanged */
+    overwrite(frame_path(directory, 5), data, size);
+    data[size / 2] ^= 1;
+    overwrite(frame_path(directory, 7), data, size); /* one bit changed */
+    other = realloc(other, other_size + 1);
+    overwrite(frame_path(directory, PICTURES - 1), other, other_size + 1); /* one byte appended */
+    assert_int_equal(unlink(frame_path(directory, 9)), 0);
+    free(data);
+    free(other);
+    assert_int_equal(resume(directory, NULL), PICTURES - 8);
+}
+
+typedef struct Stop {
+    double at;
+    bool kill;
+} Stop;
+
+static bool stop(void *context, double done, double total) {
+    const Stop *how = context;
+    (void)total;
+    if (done >= how->at && how->kill) kill(getpid(), SIGKILL);
+    return done < how->at;
+}
+
+static void a_stopped_sequence_goes_on(void **state) {
+    (void)state;
+    for (int at = 1; at < PICTURES; at += 30) {
+        Error error = {0};
+        RenderOptions options = options_for(temporary_path("stopped"));
+        assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, false}}, &error));
+        assert_error(error, ERROR_INTERRUPTED, "stopped");
+        assert_int_equal(access(manifest_of(options.directory), F_OK), -1);
+        assert_true(resume(options.directory, NULL) >= at);
+    }
+}
+
+static void a_killed_sequence_goes_on(void **state) {
+    (void)state;
+    RenderOptions options = options_for(temporary_path("killed"));
+    for (int at = 1; at < PICTURES; at += 30) {
+        int status;
+        pid_t child = fork();
+        if (child == 0) {
+            setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+            render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, true}}, &(Error){0});
+            _exit(0);
+        }
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(WIFSIGNALED(status));
+        assert_true(resume(options.directory, NULL) >= at);
+    }
+}
+
+/* A power failure cuts a write: the last line may be partial, and so may pictures. */
+static void every_cut_of_the_journal_is_survived(void **state) {
+    (void)state;
+    Error error = {0};
+    char journal[600];
+    RenderOptions options = options_for(temporary_path("cut"));
+    assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){6, false}}, &error));
+    snprintf(journal, sizeof journal, "%s.part", manifest_of(options.directory));
+    size_t size;
+    char *text = read_whole(journal, &size);
+    /* In the head, in the first line, in and after the last. */
+    const size_t cuts[] = {0,        50,  (size_t)(strstr(text, "{\"file\"") - text) + 30, size - 90, size - 20,
+                           size - 1, size};
+    for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
+        assert_int_equal(unlink(manifest_of(options.directory)), i == 0 ? -1 : 0);
+        overwrite(journal, text, cuts[i]);
+        resume(options.directory, NULL);
+    }
+    free(text);
+}
+
+/* Pictures of another sequence are not kept. */
+static void another_sequence_is_redrawn(void **state) {
+    (void)state;
+    static const struct {
+        RenderOptions options;
+        const char *why;
+    } others[] = {
+        {{.width = 320, .height = HEIGHT, .slow = 3, .hold = 0.05}, "manifest.json:4 differs: other runs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3}, "differs: other runs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .small = true}, "manifest.json:6 differs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 differs"},
+        {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
+    char why[256];
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        Error error = {0};
+        char name[16];
+        snprintf(name, sizeof name, "other%zu", i);
+        RenderOptions options = others[i].options;
+        options.directory = temporary_path(name);
+        options.last = -1;
+        options.jobs = 1;
+        RenderResult result;
+        assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+        free(result.hashes);
+        for (int k = PICTURES; k <= result.last; k++) unlink(frame_path(options.directory, k));
+        assert_int_equal(resume(options.directory, why), 0);
+        if (strstr(why, others[i].why) == NULL) fail_msg("\"%s\" lacks \"%s\"", why, others[i].why);
+    }
+}
+
+/* One different bit of a run makes it another run, even if no picture shows it. */
+static void another_run_is_redrawn(void **state) {
+    (void)state;
+    const char *directory = copied("run");
+    char why[256];
+    runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 1e-9F;
+    RenderOptions options = options_for(directory);
+    options.resume = true;
+    RenderResult result;
+    Error error = {0};
+    assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
+    assert_int_equal(result.kept, 0);
+    free(result.hashes);
+    runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 0;
+    assert_int_equal(resume(directory, why), 0);
+    assert_non_null(strstr(why, "differs: other runs"));
+}
+
+static char *replaced(const char *text, const char *from, const char *to) {
+    const char *at = strstr(text, from);
+    char *result = malloc(strlen(text) + strlen(to) + 1);
+    assert_non_null(at);
+    sprintf(result, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
+    return result;
+}
+
+/* Whatever a manifest contains, the pictures become correct. */
+static void a_manifest_is_not_trusted(void **state) {
+    (void)state;
+    static const char *const changes[][2] = {
+        {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_000004.png\""},
+        {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_999999999999999999999.png\""},
+        {"\"file\": \"frame_000003.png\"", "\"file\": \"../frame_000003.png\""},
+        {"\"frame\": 1,", "\"frame\": 2,"},
+        {"\"pixels\": \"", "\"pixels\": \"0"},
+        {"\"file_hash\": \"", "\"file_hash\": \"ABCDEF"},
+        {"\"shows\": \"between\"", "\"shows\": \"frame\""},
+        {"\n", "\n\n"},
+    };
+    size_t size;
+    char *text = read_whole(manifest_of(whole), &size);
+    const char *directory = copied("changed");
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        char *changed = replaced(text, changes[i][0], changes[i][1]);
+        bool ours = strncmp(changed, text, 12) == 0;
+        overwrite(manifest_of(directory), changed, strlen(changed));
+        free(changed);
+        if (ours) assert_true(resume(directory, NULL) < PICTURES);
+    }
+    char *large = calloc(1, 1 << 20);
+    memcpy(large, text, size);
+    overwrite(manifest_of(directory), large, 1 << 20);
+    assert_int_equal(resume(directory, NULL), 0);
+    free(large);
+    free(text);
+}
+
+/* Files of other programs are not touched. */
+static void files_that_are_not_manifests_stay(void **state) {
+    (void)state;
+    static const char foreign[] = "{\"name\": \"my own\"}";
+    Error error = {0};
+    RenderOptions options = options_for(copied("foreign"));
+    for (int again = 0; again < 2; again++) {
+        options.resume = again == 1;
+        overwrite(manifest_of(options.directory), foreign, sizeof foreign - 1);
+        assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error),
+                       "foreign/manifest.json: error: is not a manifest of twinbox");
+        size_t size;
+        char *text = read_whole(manifest_of(options.directory), &size);
+        assert_string_equal(text, foreign);
+        free(text);
+    }
+    assert_int_equal(unlink(manifest_of(options.directory)), 0);
+    assert_int_equal(mkdir(manifest_of(options.directory), 0700), 0);
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+    assert_int_equal(rmdir(manifest_of(options.directory)), 0);
+    assert_int_equal(mkfifo(manifest_of(options.directory), 0600), 0);
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+    assert_int_equal(unlink(manifest_of(options.directory)), 0);
+    overwrite(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
+    assert_int_equal(symlink("../elsewhere.json", manifest_of(options.directory)), 0);
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+    assert_int_equal(count_files(options.directory, ".png"), PICTURES);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_manifest_tells_of_every_picture),
+        cmocka_unit_test(the_view_leads_to_the_bodies),
+        cmocka_unit_test(the_view_names_the_files_of_the_runs),
+        cmocka_unit_test(a_manifest_names_no_place),
+        cmocka_unit_test(nothing_is_drawn_twice),
+        cmocka_unit_test(what_is_missing_or_damaged_is_drawn_again),
+        cmocka_unit_test(a_stopped_sequence_goes_on),
+        cmocka_unit_test(a_killed_sequence_goes_on),
+        cmocka_unit_test(every_cut_of_the_journal_is_survived),
+        cmocka_unit_test(another_sequence_is_redrawn),
+        cmocka_unit_test(another_run_is_redrawn),
+        cmocka_unit_test(a_manifest_is_not_trusted),
+        cmocka_unit_test(files_that_are_not_manifests_stay),
+    };
+    return cmocka_run_group_tests(tests, make, destroy);
+}

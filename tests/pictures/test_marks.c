@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contact points and arrows are in proportion to the panel, but never cover the boxes. */
+#include "testing.h"
+
+#include "pictures/internal.h"
+#include "pictures/look_runs.h"
+
+/* All boxes are 1 m high; the view is `metres` wide. */
+static Picture picture_of(double metres) {
+    Picture picture;
+    Error error = {0};
+    const RenderOptions options = {.width = 1280,
+                                   .height = 720,
+                                   .look = {.show = LOOK_CONTACTS | LOOK_IMPULSES, .view = {0, 1, metres, metres / 2}}};
+    assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
+    return picture;
+}
+
+static void marks_shrink_with_the_boxes(void **state) {
+    (void)state;
+    for (double metres = 4; metres < 1000; metres *= 1.5) {
+        Picture picture = picture_of(metres);
+        const double box = picture.camera.scale, side = panel_side(&picture);
+        assert_near(picture.scales.box, box, 1e-9);
+        assert_true(marks_dot_radius(&picture) <= fmax(0.15 * box, 0.6));
+        assert_true(marks_line_thickness(&picture) <= fmax(0.1 * box, 0.6));
+        assert_true(picture.scales.max_arrow <= 4 * box && picture.scales.max_arrow <= 0.28 * side);
+        picture_free(&picture);
+    }
+}
+
+static void beside_large_boxes_marks_have_the_panels_proportions(void **state) {
+    (void)state;
+    Picture near = picture_of(4), nearer = picture_of(2);
+    assert_near(marks_dot_radius(&near), marks_dot_radius(&nearer), 0);
+    assert_near(marks_line_thickness(&near), marks_line_thickness(&nearer), 0);
+    assert_near(near.scales.max_arrow, nearer.scales.max_arrow, 0);
+    picture_free(&near);
+    picture_free(&nearer);
+}
+
+/* Thin arrows have no halo: of 5,000 boxes nothing else would be seen. */
+static void a_thin_arrow_is_drawn_once(void **state) {
+    (void)state;
+    const Rect clip = {0, 0, 100, 100};
+    for (double thickness = 0.6; thickness < 4; thickness += 0.2) {
+        Drawing drawing = {0};
+        const ArrowStyle style = {thickness, 1, 2};
+        stroke_arrow(&drawing, (Point){20, 20}, (Point){60, 20}, false, &style, &clip);
+        assert_int_equal(drawing.shape_count,
+                         thickness < 1.01 ? 3 : 6); /* a shaft and two sides of the head, each time */
+        drawing_free(&drawing);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(marks_shrink_with_the_boxes, make, destroy),
+        cmocka_unit_test_setup_teardown(beside_large_boxes_marks_have_the_panels_proportions, make, destroy),
+        cmocka_unit_test(a_thin_arrow_is_drawn_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whole frames: equal in both contexts for all contents of the trajectories, and stable from frame to frame. */
+#include "testing.h"
+
+#include "pixels/built_contexts.h"
+#include "regression/compare.h"
+#include "mesa.h"
+#include "pictures/internal.h"
+#include "pictures/render.h"
+#include "runs.h"
+
+static const Trajectory *panels[RENDER_PANELS_MAX];
+static Trajectory *runs[RENDER_PANELS_MAX];
+
+static int make(void **state) {
+    (void)state;
+    static const char *const methods[] = {"engine", "pair-net:network=a/b.npz", "momentum", "x:y=1", "pair-net",
+                                          "engine"};
+    for (int i = 0; i < RENDER_PANELS_MAX; i++) panels[i] = runs[i] = run_make(methods[i], 12);
+    return 0;
+}
+
+static int destroy(void **state) {
+    (void)state;
+    for (int i = 0; i < RENDER_PANELS_MAX; i++) trajectory_destroy(runs[i]);
+    return 0;
+}
+
+static Image *draw_in(ContextChoice context, int count, int width, int height, int frame) {
+    Error error = {0};
+    RenderOptions options = {.width = width, .height = height, .context = context};
+    Renderer *renderer = renderer_create(panels, count, &options, &error);
+    assert_ok(renderer != NULL, error);
+    Image *image = image_create(width, height, &error);
+    assert_ok(renderer_draw(renderer, frame, image, &error), error);
+    renderer_destroy(renderer);
+    return image;
+}
+
+static uint64_t hash_of(int count, int width, int height, int frame) {
+    Image *image = draw_in(CONTEXT_AUTO, count, width, height, frame);
+    uint64_t hash = image_hash(image);
+    image_destroy(image);
+    return hash;
+}
+
+static void both_contexts_draw_the_same(void **state) {
+    (void)state;
+    static const int sizes[][2] = {{640, 360}, {1280, 720}, {360, 640}, {64, 64}, {65, 333}, {2000, 301}};
+    for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
+        const int *size = sizes[count - 1];
+        Image *a = draw_in(built_context(CONTEXT_OSMESA), count, size[0], size[1], 5);
+        Image *b = draw_in(built_context(CONTEXT_EGL), count, size[0], size[1], 5);
+        ImageDifference difference;
+        image_compare(a, b, &difference);
+        if (!difference.equal) fail_msg("%d panels: %d pixels differ", count, (int)difference.pixels);
+        image_destroy(a);
+        image_destroy(b);
+    }
+}
+
+/* A panel without header and captions. */
+static void copy_panel(Image *to, const Image *from, const Rect *rect) {
+    for (int y = rect->top; y < rect->bottom; y++) {
+        size_t start = ((size_t)y * (size_t)from->width + (size_t)rect->left) * 4;
+        memcpy(to->pixels + start, from->pixels + start, (size_t)(rect->right - rect->left) * 4);
+    }
+}
+
+static void an_ended_panel_holds_its_last_frame(void **state) {
+    (void)state;
+    runs[1]->frames = 6;
+    Picture picture;
+    Error error = {0};
+    assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
+    assert_int_equal(picture.frames, 12);
+    Image *last = draw_in(CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(CONTEXT_AUTO, 2, 640, 360, 9);
+    Image *a = image_create(640, 360, &error), *b = image_create(640, 360, &error);
+    const Rect *rects = picture.layout.panels;
+    copy_panel(a, last, &rects[1]);
+    copy_panel(b, later, &rects[1]);
+    assert_true(image_hash(a) == image_hash(b));
+    copy_panel(a, last, &rects[0]);
+    copy_panel(b, later, &rects[0]);
+    assert_true(image_hash(a) != image_hash(b));
+    Rect caption = {rects[1].left, rects[1].top - 20, rects[1].right, rects[1].top - 2};
+    copy_panel(a, later, &rects[0]); /* equal except for "ended" */
+    assert_true(image_hash(a) == image_hash(b));
+    copy_panel(a, last, &caption);
+    copy_panel(b, later, &caption);
+    assert_true(image_hash(a) != image_hash(b));
+    assert_true(isnan(picture_distance(&picture, moment_stored(9))) &&
+                picture_distance(&picture, moment_stored(5)) == 0);
+    image_destroy(last);
+    image_destroy(later);
+    image_destroy(a);
+    image_destroy(b);
+}
+
+static void the_largest_distance_of_any_panel_counts(void **state) {
+    (void)state;
+    Picture picture;
+    Error error = {0};
+    run_position(runs[1], 4, SECOND_BOX)->y += 2;
+    run_position(runs[2], 4, FIRST_BOX)->x += 0.5F;
+    assert_ok(picture_plan(&picture, panels, 3, 640, 360, &error), error);
+    assert_true(fabs(picture_distance(&picture, moment_stored(4)) - 2) < 1e-6);
+    assert_true(picture_distance(&picture, moment_stored(3)) == 0);
+    assert_true(fabs(picture.largest_distance - 2) < 1e-6);
+    assert_ok(picture_plan(&picture, panels, 1, 640, 360, &error), error);
+    assert_true(isnan(picture_distance(&picture, moment_stored(4))));
+}
+
+/* The header shows the distance, and nothing else changes. */
+static void the_distance_is_written_down(void **state) {
+    (void)state;
+    uint64_t before = hash_of(2, 640, 360, 4);
+    *run_position(runs[1], 4, FIRST_BOX) = vec2(-500, 500); /* out of view */
+    *run_position(runs[0], 4, FIRST_BOX) = vec2(-500, 500);
+    uint64_t same = hash_of(2, 640, 360, 4);
+    assert_true(before != same);
+    run_position(runs[1], 4, FIRST_BOX)->x = -550;
+    assert_true(hash_of(2, 640, 360, 4) != same);
+    run_position(runs[1], 4, FIRST_BOX)->x = 3e38F;
+    uint64_t far = hash_of(2, 640, 360, 4);
+    run_position(runs[1], 4, FIRST_BOX)->x = 3e37F;
+    assert_true(hash_of(2, 640, 360, 4) == far); /* both are "> 1000 m" */
+}
+
+static void hostile_poses_do_no_harm(void **state) {
+    (void)state;
+    static const float bad[] = {NAN, INFINITY, -INFINITY, 3e38F, -1e20F, 1e9F, 1e-40F};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        *run_position(runs[1], 5, FIRST_BOX) = vec2(bad[i], 1);
+        *run_position(runs[1], 5, SECOND_BOX) = vec2(1, bad[i]);
+        *run_angle(runs[1], 5, BOMB_BODY) = bad[i];
+        runs[0]->size[FIRST_BOX] = vec2(fabsf(bad[i]), 1);
+        *run_angle(runs[0], 5, SECOND_BOX) = bad[i];
+        runs[0]->camera_size = vec2(0, 0);
+        hash_of(2, 640, 360, 5);
+        runs[0]->camera_size = vec2(fabsf(bad[i]), 1);
+        runs[0]->camera_center = vec2(bad[i], -bad[i]);
+        hash_of(2, 64, 64, 5);
+        hash_of(2, 640, 360, 5);
+    }
+}
+
+static void bodies_out_of_view_are_counted(void **state) {
+    (void)state;
+    Picture picture;
+    Error error = {0};
+    *run_position(runs[1], 5, FIRST_BOX) = vec2(-1000, 3);
+    *run_position(runs[1], 5, BOMB_BODY) = vec2(0, 3e38F);
+    *run_position(runs[1], 5, SECOND_BOX) = vec2(NAN, NAN); /* does not exist */
+    assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
+    assert_int_equal(panel_count_out_of_view(&picture, 1, moment_stored(5)), 2);
+    assert_int_equal(panel_count_out_of_view(&picture, 0, moment_stored(5)), 0);
+}
+
+static void an_absent_body_is_not_drawn(void **state) {
+    (void)state;
+    run_position(runs[0], 0, BOMB_BODY)->x = 1;
+    assert_true(isnan((double)run_position(runs[0], 0, BOMB_BODY)->y));
+    uint64_t half = hash_of(1, 640, 360, 0);
+    run_position(runs[0], 0, BOMB_BODY)->x = NAN;
+    assert_true(hash_of(1, 640, 360, 0) == half);
+    *run_position(runs[0], 0, BOMB_BODY) = vec2(1, 5);
+    *run_angle(runs[0], 0, BOMB_BODY) = 0;
+    assert_true(hash_of(1, 640, 360, 0) != half);
+}
+
+static uint64_t hash_with_words(const char *title, const char *note) {
+    Error error = {0};
+    RenderOptions options = {.width = 1280, .height = 720, .title = title, .notes = {NULL, note}};
+    Renderer *renderer = renderer_create(panels, 2, &options, &error);
+    assert_ok(renderer != NULL, error);
+    Image *image = image_create(1280, 720, &error);
+    assert_ok(renderer_draw(renderer, 4, image, &error), error);
+    uint64_t hash = image_hash(image);
+    image_destroy(image);
+    renderer_destroy(renderer);
+    return hash;
+}
+
+/* The scene's own name as title changes nothing; every other text does. */
+static void a_title_and_notes_are_drawn(void **state) {
+    (void)state;
+    uint64_t plain = hash_of(2, 1280, 720, 4);
+    assert_true(hash_with_words(NULL, NULL) == plain);
+    assert_true(hash_with_words("two_boxes", NULL) == plain);
+    assert_true(hash_with_words("height 15", NULL) != plain);
+    uint64_t falls = hash_with_words(NULL, "falls");
+    assert_true(falls != plain && falls != hash_with_words(NULL, "sinks"));
+}
+
+/* From 9 to 10 and from 99 to 100, the text beside the numbers does not move. */
+static void captions_do_not_jump(void **state) {
+    (void)state;
+    trajectory_destroy(runs[0]);
+    panels[0] = runs[0] = run_make("engine", 1010);
+    Picture picture;
+    Drawing drawing = {0};
+    Error error = {0};
+    assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
+    int left = 0;
+    for (int frame = 0; frame < 1010; frame += 7) {
+        drawing_clear(&drawing);
+        picture_draw(&picture, moment_stored(frame), &drawing);
+        if (frame == 0) left = drawing.glyphs[0].box[0];
+        assert_int_equal(drawing.glyphs[0].box[0], left); /* the "t" of "t = 0.000 s" */
+    }
+    drawing_free(&drawing);
+}
+
+static uint64_t hash_with_method(const char *method) {
+    strcpy(runs[1]->method, method);
+    return hash_of(2, 640, 360, 4);
+}
+
+/* The same network in another folder gives the same picture; another setting another one. */
+static void folders_of_networks_are_left_out(void **state) {
+    (void)state;
+    uint64_t hash = hash_with_method("pair-net:network=b.npz,dt=1/60");
+    assert_true(hash_with_method("pair-net:network=/home/a/b.npz,dt=1/60") == hash);
+    assert_true(hash_with_method("pair-net:network=b.npz,dt=2/60") != hash);
+    assert_true(hash_with_method("pair-net:network=a.npz,dt=1/60") != hash);
+}
+
+static void hostile_names_do_no_harm(void **state) {
+    (void)state;
+    for (int byte = 1; byte < 256; byte++) {
+        memset(runs[0]->scene, byte, TRAJECTORY_NAME_SIZE - 1);
+        memset(runs[0]->method, byte, TRAJECTORY_NAME_SIZE - 1);
+        Picture picture;
+        Drawing drawing = {0};
+        Error error = {0};
+        assert_ok(picture_plan(&picture, panels, 2, 400, 300, &error), error);
+        picture_draw(&picture, moment_stored(3), &drawing);
+        for (size_t i = 0; i < drawing.glyph_count; i++) {
+            const int32_t *box = drawing.glyphs[i].box;
+            assert_true(box[0] >= 0 && box[0] + box[2] <= 400 && box[1] >= 0 && box[1] + box[3] <= 300);
+        }
+        drawing_free(&drawing);
+    }
+}
+
+static void what_cannot_be_shown_is_refused(void **state) {
+    (void)state;
+    static const int sizes[][2] = {{63, 64}, {64, 63}, {8193, 64}, {64, 8193}, {-5, 100}, {0, 0}};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        Error error = {0};
+        RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1]};
+        assert_refused(renderer_create(panels, 1, &options, &error), "must be 64 to 8192 pixels (got");
+    }
+    RenderOptions options = {.width = 64, .height = 64};
+    for (int count = 0; count <= 7; count += 7) {
+        Error error = {0};
+        assert_refused(renderer_create(panels, count, &options, &error), "the number of panels must be 1 to 6 (got");
+    }
+    Error error = {0};
+    runs[1]->dt = 1.0F / 50;
+    assert_refused(renderer_create(panels, 2, &options, &error),
+                   "panel 2 (pair-net:network=a/b.npz) has time steps of 0.02 s");
+    Renderer *renderer = renderer_create(panels, 1, &options, &error);
+    Image *image = image_create(64, 64, &error);
+    for (int frame = -1; frame <= 12; frame += 13) {
+        assert_refused(renderer_draw(renderer, frame, image, &error), "the frames are 0 to 11");
+    }
+    image_destroy(image);
+    renderer_destroy(renderer);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(both_contexts_draw_the_same, make, destroy),
+        cmocka_unit_test_setup_teardown(an_ended_panel_holds_its_last_frame, make, destroy),
+        cmocka_unit_test_setup_teardown(the_largest_distance_of_any_panel_counts, make, destroy),
+        cmocka_unit_test_setup_teardown(the_distance_is_written_down, make, destroy),
+        cmocka_unit_test_setup_teardown(hostile_poses_do_no_harm, make, destroy),
+        cmocka_unit_test_setup_teardown(bodies_out_of_view_are_counted, make, destroy),
+        cmocka_unit_test_setup_teardown(an_absent_body_is_not_drawn, make, destroy),
+        cmocka_unit_test_setup_teardown(a_title_and_notes_are_drawn, make, destroy),
+        cmocka_unit_test_setup_teardown(captions_do_not_jump, make, destroy),
+        cmocka_unit_test_setup_teardown(folders_of_networks_are_left_out, make, destroy),
+        cmocka_unit_test_setup_teardown(hostile_names_do_no_harm, make, destroy),
+        cmocka_unit_test_setup_teardown(what_cannot_be_shown_is_refused, make, destroy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

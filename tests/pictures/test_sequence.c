@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sequences: the same files with any number of processes, and an error message for every failure. */
+#include "testing.h"
+
+#include "pixels/built_contexts.h"
+#include "folders.h"
+#include "mesa.h"
+#include "pictures/render.h"
+#include "runs.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+enum { FRAMES = 11 };
+
+static Trajectory *runs[2];
+static const Trajectory *panels[2];
+
+static int make(void **state) {
+    (void)state;
+    panels[0] = runs[0] = run_make("engine", FRAMES);
+    panels[1] = runs[1] = run_make("pair-net:network=nets/small.npz", FRAMES - 3);
+    run_position(runs[1], 4, FIRST_BOX)->x -= 0.25F;
+    return 0;
+}
+
+static int destroy(void **state) {
+    (void)state;
+    trajectory_destroy(runs[0]);
+    trajectory_destroy(runs[1]);
+    return 0;
+}
+
+static RenderOptions options_for(const char *directory, int jobs) {
+    return (RenderOptions){.width = 160, .height = 90, .last = -1, .jobs = jobs, .directory = directory};
+}
+
+static void any_number_of_jobs_writes_the_same_files(void **state) {
+    (void)state;
+    static const int jobs[] = {2, 3, 20}; /* fewer and more than frames */
+    Error error = {0};
+    for (int i = 0; i < 2; i++) {
+        trajectory_destroy(runs[i]);
+        panels[i] = runs[i] = run_make(i == 0 ? "engine" : "momentum", 4 - i);
+    }
+    RenderOptions one = options_for(temporary_path("one/deep"), 1);
+    assert_ok(render_sequence(panels, 2, &one, NULL, NULL, &error), error);
+    assert_int_equal(count_files(one.directory, ".png"), 4);
+    for (int i = 0; i < 3; i++) {
+        RenderOptions many = options_for(temporary_path("many"), jobs[i]);
+        many.context = built_context(jobs[i] == 3 ? CONTEXT_EGL : CONTEXT_OSMESA);
+        assert_ok(render_sequence(panels, 2, &many, NULL, NULL, &error), error);
+        assert_same_folder(one.directory, many.directory);
+    }
+}
+
+static void a_sequence_holds_the_frames_of_the_renderer(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderOptions options = options_for(temporary_path("range"), 2);
+    options.first = 3, options.last = 7;
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    assert_int_equal(count_files(options.directory, ".png"), 5);
+    Renderer *renderer = renderer_create(panels, 2, &options, &error);
+    Image *image = image_create(options.width, options.height, &error);
+    for (int frame = 3; frame <= 7; frame++) {
+        assert_ok(renderer_draw(renderer, frame, image, &error), error);
+        Image *written = image_read_png(frame_path(options.directory, frame), &error);
+        assert_ok(written != NULL, error);
+        assert_true(image_hash(written) == image_hash(image));
+        image_destroy(written);
+    }
+    image_destroy(image);
+    renderer_destroy(renderer);
+}
+
+static void assert_text(const char *path, const char *key, const char *wanted) {
+    char value[256];
+    Error error = {0};
+    assert_ok(image_read_text(path, key, value, sizeof value, &error), error);
+    assert_string_equal(value, wanted);
+}
+
+static void frames_tell_their_origin(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderOptions options = options_for(temporary_path("texts"), 1);
+    options.first = options.last = FRAMES - 1;
+    assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
+    const char *path = frame_path(options.directory, FRAMES - 1);
+    char hashes[64];
+    snprintf(hashes, sizeof hashes, "%016llx | %016llx",
+             (unsigned long long)trajectory_frame_hash(panels[0], FRAMES - 1),
+             (unsigned long long)trajectory_frame_hash(panels[1], FRAMES - 4)); /* its last frame: it has ended */
+    assert_text(path, "Scene", "two_boxes");
+    assert_text(path, "Method", "engine | pair-net:network=nets/small.npz");
+    assert_text(path, "Frame", "10");
+    assert_text(path, "State", hashes);
+    assert_text(path, "Software", "twinbox");
+}
+
+typedef struct Listener {
+    double last, total;
+    double stop_at;
+    int calls;
+} Listener;
+
+static bool listen_to(void *context, double done, double total) {
+    Listener *listener = context;
+    assert_true(done >= listener->last && done <= total);
+    listener->last = done;
+    listener->total = total;
+    listener->calls++;
+    return done < listener->stop_at;
+}
+
+static void progress_counts_the_frames(void **state) {
+    (void)state;
+    Error error = {0};
+    Listener listener = {.stop_at = 1000};
+    RenderOptions options = options_for(temporary_path("progress"), 3);
+    assert_ok(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error), error);
+    assert_true(listener.last == FRAMES && listener.total == FRAMES && listener.calls >= 3);
+}
+
+/* No process remains, and no file is incomplete. */
+static void a_sequence_can_be_stopped(void **state) {
+    (void)state;
+    Error error = {0};
+    trajectory_destroy(runs[0]);
+    panels[0] = runs[0] = run_make("engine", 2000);
+    Listener listener = {.stop_at = 5};
+    RenderOptions options = options_for(temporary_path("stopped"), 3);
+    assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error));
+    assert_error(error, ERROR_INTERRUPTED, "stopped");
+    assert_true(count_files(options.directory, ".png") < 1000);
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
+    for (int frame = 0; access(frame_path(options.directory, frame), F_OK) == 0; frame++) {
+        Image *image = image_read_png(frame_path(options.directory, frame), &(Error){0});
+        assert_non_null(image);
+        image_destroy(image);
+    }
+}
+
+/* A file size limit simulates a full disk: with its signal ignored, write() fails. */
+static void limit_files(rlim_t bytes, void (*handler)(int)) {
+    struct rlimit limit;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    limit.rlim_cur = bytes;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    assert_int_equal(setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0}), 0);
+    signal(SIGXFSZ, handler);
+}
+
+static void a_full_disk_is_told(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderOptions options = options_for(temporary_path("full"), 2);
+    /* Too small for the manifest, for a picture (3 kB), for the journal's growth. */
+    static const struct {
+        rlim_t bytes;
+        const char *text;
+    } cases[] = {{100, "full/manifest.json.part"}, {2000, "full/frame_00000"}};
+    for (int i = 0; i < 2; i++) {
+        error = (Error){0};
+        limit_files(cases[i].bytes, SIG_IGN);
+        bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
+        limit_files(RLIM_INFINITY, SIG_DFL);
+        assert_false(ok);
+        assert_error(error, ERROR_SYSTEM, cases[i].text);
+        assert_int_equal(count_files(options.directory, ".png"), 0);
+        assert_int_equal(count_files(options.directory, ".tmp"), 0);
+    }
+}
+
+/* With its signal, the same limit kills the process. */
+static void a_killed_process_is_reported(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderOptions options = options_for(temporary_path("killed"), 2);
+    limit_files(2000, SIG_DFL);
+    bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
+    limit_files(RLIM_INFINITY, SIG_DFL);
+    assert_false(ok);
+    assert_error(error, ERROR_SYSTEM, "a drawing process was killed by signal");
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
+}
+
+static void folders_that_cannot_be_written_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *file = temporary_path("file"), *inside = temporary_path("file/frames");
+    assert_ok(file_write(file, "", 0, &error), error);
+    RenderOptions options = options_for(inside, 1);
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+    assert_error(error, ERROR_SYSTEM, "file");
+    error = (Error){0};
+    options.directory = "/proc/frames";
+    assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
+    assert_error(error, ERROR_SYSTEM, "/proc");
+}
+
+static void wrong_options_are_refused(void **state) {
+    (void)state;
+    const char *directory = temporary_path("never");
+    const struct {
+        RenderOptions options;
+        const char *text;
+    } wrong[] = {
+        {{.width = 160, .height = 90, .last = -1, .jobs = 0}, "the number of jobs must be 1 to 256 (got 0)"},
+        {{.width = 160, .height = 90, .last = -1, .jobs = 257}, "(got 257)"},
+        {{.width = 16, .height = 90, .last = -1, .jobs = 1}, "16 x 90"},
+        {{.width = 160, .height = 90, .first = 11, .last = -1, .jobs = 1}, "within 0 to 10 (got 11 to 10)"},
+        {{.width = 160, .height = 90, .first = 3, .last = 11, .jobs = 1}, "(got 3 to 11)"},
+        {{.width = 160, .height = 90, .first = 3, .last = 2, .jobs = 1}, "(got 3 to 2)"},
+        {{.width = 160, .height = 90, .first = -1, .last = 2, .jobs = 1}, "(got -1 to 2)"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        Error error = {0};
+        RenderOptions options = wrong[i].options;
+        options.directory = directory;
+        assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error), wrong[i].text);
+        assert_int_not_equal(access(directory, F_OK), 0);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(any_number_of_jobs_writes_the_same_files, make, destroy),
+        cmocka_unit_test_setup_teardown(a_sequence_holds_the_frames_of_the_renderer, make, destroy),
+        cmocka_unit_test_setup_teardown(frames_tell_their_origin, make, destroy),
+        cmocka_unit_test_setup_teardown(progress_counts_the_frames, make, destroy),
+        cmocka_unit_test_setup_teardown(a_sequence_can_be_stopped, make, destroy),
+        cmocka_unit_test_setup_teardown(a_full_disk_is_told, make, destroy),
+        cmocka_unit_test_setup_teardown(a_killed_process_is_reported, make, destroy),
+        cmocka_unit_test_setup_teardown(folders_that_cannot_be_written_are_refused, make, destroy),
+        cmocka_unit_test_setup_teardown(wrong_options_are_refused, make, destroy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

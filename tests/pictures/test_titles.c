@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Titles break into lines that fit, in the header and on cards; captions stand for the names of methods. */
+#include "testing.h"
+
+#include "pictures/internal.h"
+#include "pictures/picture.h"
+#include "pictures/runs.h"
+
+static const char LONG_TITLE[] =
+    "How a neural network learns to topple a stack of ten boxes, and what it takes for a law in "
+    "the loss to keep them apart";
+
+static Trajectory *runs[2];
+
+static int make(void **state) {
+    (void)state;
+    runs[0] = run_make("engine", 12);
+    runs[1] = run_make("pair-net", 12);
+    return 0;
+}
+
+static int destroy(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++) trajectory_destroy(runs[i]);
+    return 0;
+}
+
+static void lines_fit_and_hold_every_word(void **state) {
+    (void)state;
+    const Font font = font_pick(FONT_SEMIBOLD, 20);
+    for (int room = 150; room < 1500; room += 37)
+        for (int first = 100; first <= room; first += 50) {
+            const TextLines lines = text_lines(&font, LONG_TITLE, first, room);
+            char joined[2 * sizeof LONG_TITLE] = "";
+            for (int i = 0; i < lines.count && i < TEXT_LINES_MAX; i++) {
+                const bool rest = i == TEXT_LINES_MAX - 1 && lines.count > TEXT_LINES_MAX;
+                if (!rest) assert_true(font_width(&font, lines.lines[i]) <= (i == 0 ? first : room));
+                if (joined[0] != '\0') strcat(joined, " ");
+                strcat(joined, lines.lines[i]);
+            }
+            assert_string_equal(joined, LONG_TITLE);
+        }
+}
+
+static void a_word_longer_than_a_line_is_broken(void **state) {
+    (void)state;
+    const Font font = font_pick(FONT_SEMIBOLD, 20);
+    const TextLines lines = text_lines(&font, "D\xC3\xA4mpfungsgleichungssysteme", 120, 120);
+    assert_int_equal(lines.count, 3);
+    for (int i = 0; i < lines.count; i++) assert_true(font_width(&font, lines.lines[i]) <= 120);
+    const TextLines below = text_lines(&font, "engine", 20, 500); /* no room beside the numbers */
+    assert_int_equal(below.count, 2);
+    assert_string_equal(below.lines[0], "");
+    assert_string_equal(below.lines[1], "engine");
+}
+
+static Picture plan(const char *title, const char *caption, int width, int height) {
+    Error error = {0};
+    Picture picture;
+    RenderOptions options = {.width = width, .height = height, .title = title, .captions = {NULL, caption}};
+    assert_ok(picture_plan(&picture, (const Trajectory *const *)runs, 2, width, height, &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
+    return picture;
+}
+
+/* Each line moves the panels down. */
+static void the_header_is_as_high_as_its_title(void **state) {
+    (void)state;
+    const Picture one = plan(NULL, NULL, 960, 540), more = plan(LONG_TITLE, NULL, 960, 540);
+    assert_int_equal(one.layout.header_lines, 1);
+    assert_true(more.layout.header_lines > 1);
+    assert_int_equal(more.layout.panels[0].top - one.layout.panels[0].top,
+                     (more.layout.header_lines - 1) * more.layout.header_pitch);
+    assert_int_equal(more.layout.panels[0].bottom, one.layout.panels[0].bottom);
+}
+
+static void too_long_a_title_is_an_error(void **state) {
+    (void)state;
+    Error error = {0};
+    char text[2 * sizeof LONG_TITLE];
+    snprintf(text, sizeof text, "%.126s %.126s", LONG_TITLE, LONG_TITLE);
+    const RenderOptions title = {.width = 640, .height = 360, .title = text},
+                        end = {.width = 640, .height = 360, .look.end = text};
+    assert_refused(picture_check((const Trajectory *const *)runs, 2, &title, &error),
+                   "--title: error: the text needs 6 lines");
+    assert_refused(picture_check((const Trajectory *const *)runs, 2, &end, &error),
+                   "--end: error: the text needs 6 lines");
+}
+
+static bool draws(const Drawing *drawing, const Font *font, const char *text) {
+    Drawing sample = {0};
+    font_add(&sample, font, text, 0, 0, 0);
+    bool found = false;
+    for (size_t at = 0; !found && at + sample.glyph_count <= drawing->glyph_count; at++) {
+        found = true;
+        for (size_t i = 0; found && i < sample.glyph_count; i++)
+            found = drawing->glyphs[at + i].bitmap == sample.glyphs[i].bitmap;
+    }
+    drawing_free(&sample);
+    return found;
+}
+
+/* In the panel and on both cards; the other run keeps its name. */
+static void a_caption_stands_for_the_method(void **state) {
+    (void)state;
+    const Picture picture = plan(NULL, "our own", 960, 540);
+    const MomentKind kinds[] = {MOMENT_STORED, MOMENT_TITLE, MOMENT_END};
+    for (int i = 0; i < 3; i++) {
+        Drawing drawing = {0};
+        const Font font = kinds[i] == MOMENT_STORED ? picture.layout.title : font_pick(FONT_SEMIBOLD, 0.036 * 540);
+        picture_draw(&picture, (Moment){.kind = kinds[i], .frame = 5, .slow = 1}, &drawing);
+        assert_true(draws(&drawing, &font, "our own"));
+        assert_false(draws(&drawing, &font, "pair-net"));
+        assert_true(draws(&drawing, &font, "engine"));
+        drawing_free(&drawing);
+    }
+    const Picture kept = plan(NULL, "", 960, 540);
+    Drawing drawing = {0};
+    picture_draw(&kept, moment_stored(5), &drawing);
+    assert_true(draws(&drawing, &kept.layout.title, "pair-net"));
+    drawing_free(&drawing);
+}
+
+static void captions_are_checked(void **state) {
+    (void)state;
+    Error error = {0};
+    char text[CAPTION_TEXT_SIZE + 1];
+    memset(text, 'a', sizeof text);
+    text[CAPTION_TEXT_SIZE - 1] = '\0';
+    assert_ok(caption_check(text, "--caption", &error), error);
+    text[CAPTION_TEXT_SIZE - 1] = 'a', text[CAPTION_TEXT_SIZE] = '\0';
+    assert_refused(caption_check(text, "--caption", &error),
+                   "--caption: error: the text has 256 bytes, but at most 255 are allowed");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lines_fit_and_hold_every_word),
+        cmocka_unit_test(a_word_longer_than_a_line_is_broken),
+        cmocka_unit_test_setup_teardown(the_header_is_as_high_as_its_title, make, destroy),
+        cmocka_unit_test_setup_teardown(too_long_a_title_is_an_error, make, destroy),
+        cmocka_unit_test_setup_teardown(a_caption_stands_for_the_method, make, destroy),
+        cmocka_unit_test(captions_are_checked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

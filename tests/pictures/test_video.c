@@ -1,0 +1,361 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Videos have all frames or do not exist. */
+#include "testing.h"
+
+#include "base/machine.h"
+#include "folders.h"
+#include "mesa.h"
+#include "pictures/render.h"
+#include "runs.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+enum { FRAMES = 9, WIDTH = 96, HEIGHT = 64 };
+
+static char folder[256]; /* of the frames */
+static PictureHashes *hashes;
+
+static int make(void **state) {
+    (void)state;
+    Error error = {0};
+    RenderResult result;
+    snprintf(folder, sizeof folder, "%s", temporary_path("frames"));
+    Trajectory *run = run_make("engine", FRAMES);
+    RenderOptions options = {.width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = folder};
+    assert_ok(render_sequence((const Trajectory *[]){run}, 1, &options, &result, NULL, &error), error);
+    hashes = result.hashes;
+    trajectory_destroy(run);
+    return 0;
+}
+
+static int destroy(void **state) {
+    (void)state;
+    free(hashes);
+    return 0;
+}
+
+static VideoOptions options_for(const char *path) {
+    return (VideoOptions){folder, 0, FRAMES - 1, 60, hashes, path, false};
+}
+
+/* Frames, rate and size according to a decoder. */
+static void probe(const char *path, int *frames, double *rate, int *width, int *height) {
+    char text[256], name[300];
+    int over, under;
+    Error error = {0};
+    Process process;
+    snprintf(name, sizeof name, "file:%s", path);
+    const char *argv[] = {"ffprobe",
+                          "-v",
+                          "error",
+                          "-count_frames",
+                          "-show_entries",
+                          "stream=width,height,avg_frame_rate,nb_read_frames",
+                          "-of",
+                          "csv=p=0",
+                          name,
+                          NULL};
+    assert_ok(process_start(&process, argv, &error), error);
+    assert_ok(process_finish(&process, text, sizeof text, &error), error);
+    if (sscanf(text, "%d,%d,%d/%d,%d", width, height, &over, &under, frames) != 5) fail_msg("%s", text);
+    *rate = (double)over / under;
+}
+
+static void assert_nothing_left(const char *directory) {
+    assert_int_equal(count_files(directory, ".tmp"), 0);
+    assert_int_equal(count_files(directory, ".part"), 0);
+}
+
+static void each_form_has_all_its_frames_and_the_same_bytes_again(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        double rate, tolerance;
+        int frames;
+    } cases[] = {
+        {"a.mp4", 60, 0, FRAMES}, {"a.webm", 60, 0, FRAMES}, {"a.gif", 20, 0, (FRAMES + 2) / 3}}; /* 0.05 s a frame */
+    for (int i = 0; i < 3; i++) {
+        Error error = {0};
+        int frames, width, height;
+        double rate;
+        VideoOptions options = options_for(temporary_path(cases[i].name));
+        assert_ok(video_encode(&options, NULL, &error), error);
+        probe(options.path, &frames, &rate, &width, &height);
+        assert_int_equal(frames, cases[i].frames);
+        assert_true(width == WIDTH && height == HEIGHT);
+        assert_near(rate, cases[i].rate, cases[i].tolerance);
+        VideoOptions again = options_for(temporary_path(i == 0 ? "again.mp4" : i == 1 ? "again.webm" : "again.gif"));
+        assert_ok(video_encode(&again, NULL, &error), error);
+        assert_same_file(options.path, again.path);
+    }
+    assert_nothing_left(temporary_folder);
+}
+
+/* A GIF of a chosen rate has up to 50 frames per second, of the run's rate up to 25. */
+static void gifs_keep_a_chosen_rate(void **state) {
+    (void)state;
+    static const struct {
+        double rate;
+        bool chosen;
+        double shown;
+    } cases[] = {{50, true, 50}, {50, false, 25}, {25, false, 25}, {100, true, 50}, {20, false, 20}, {75, false, 25}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Error error = {0};
+        int frames, width, height;
+        double rate;
+        VideoOptions options = options_for(temporary_path("rate.gif"));
+        options.frame_rate = cases[i].rate, options.rate_is_chosen = cases[i].chosen;
+        assert_ok(video_encode(&options, NULL, &error), error);
+        probe(options.path, &frames, &rate, &width, &height);
+        const int stride = (int)(cases[i].rate / cases[i].shown);
+        assert_int_equal(frames, (FRAMES + stride - 1) / stride);
+        assert_near(rate, cases[i].shown, 1e-9);
+    }
+}
+
+/* Large pictures are scaled to 800 pixels, in their shape; small ones keep their size. */
+static void gifs_are_small(void **state) {
+    (void)state;
+    static const int sizes[][4] = {
+        {1600, 90, 800, 45}, {90, 1600, 45, 800}, {801, 100, 800, 100}, {800, 60, 800, 60}, {96, 64, 96, 64}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        Error error = {0};
+        int frames, width, height;
+        double rate;
+        const char *directory = temporary_path("large");
+        Image *image = image_create(sizes[i][0], sizes[i][1], &error);
+        assert_ok(file_make_directory(directory, &error), error);
+        for (size_t k = 0; k < 4 * (size_t)image->width * (size_t)image->height; k++)
+            image->pixels[k] = (uint8_t)(k % 251);
+        assert_ok(image_write_png(image, frame_path(directory, 0), NULL, 0, &error), error);
+        VideoOptions options = {.directory = directory, .frame_rate = 60, .path = temporary_path("small.gif")};
+        assert_ok(video_encode(&options, NULL, &error), error);
+        probe(options.path, &frames, &rate, &width, &height);
+        assert_true(frames == 1 && width == sizes[i][2] && height == sizes[i][3]);
+        image_destroy(image);
+    }
+}
+
+/* No name is taken for a pattern, an option or a URL. */
+static void any_file_name_works(void **state) {
+    (void)state;
+    static const char *const names[] = {"-y.mp4", "a%03d.gif", "http:x.mp4", "b c'\"$.mp4"};
+    Error error = {0};
+    char before[512];
+    const char *directory = temporary_path("names");
+    assert_ok(file_make_directory(directory, &error), error);
+    assert_non_null(getcwd(before, sizeof before));
+    assert_int_equal(chdir(directory), 0);
+    for (int i = 0; i < 4; i++) {
+        VideoOptions options = options_for(names[i]);
+        assert_ok(video_encode(&options, NULL, &error), error);
+        assert_int_equal(access(names[i], F_OK), 0);
+    }
+    assert_int_equal(chdir(before), 0);
+    assert_int_equal(count_files(directory, ""), 4);
+}
+
+static void overwrite(const char *path, const char *data, size_t size) {
+    Error error = {0};
+    assert_ok(file_write_soon(path, data, size, &error), error);
+}
+
+static void a_damaged_frame_makes_no_video(void **state) {
+    (void)state;
+    size_t size, other_size;
+    const char *path = temporary_path("kept.mp4"), *frame = frame_path(folder, 4);
+    char *data = read_whole(frame, &size), *other = read_whole(frame_path(folder, 8), &other_size);
+    Error error = {0};
+    Image *small = image_create(8, 8, &error);
+    for (int i = 0; i < 4; i++) {
+        static const char *const texts[] = {"cannot open", "unexpected end of file", "differ from those drawn",
+                                            "frame 4 is 8x8, but the first is 96x64"};
+        VideoOptions options = options_for(path);
+        overwrite(path, "old", 3);
+        error = (Error){0};
+        if (i == 0) assert_int_equal(unlink(frame), 0);
+        if (i == 1) overwrite(frame, data, size - 20);
+        if (i == 2) overwrite(frame, other, other_size);
+        if (i == 3) assert_ok(image_write_png(small, frame, NULL, 0, &error), error);
+        assert_refused(video_encode(&options, NULL, &error), texts[i]);
+        size_t old_size;
+        char *old = read_whole(path, &old_size);
+        assert_string_equal(old, "old");
+        free(old);
+        assert_nothing_left(temporary_folder);
+    }
+    overwrite(frame, data, size);
+    image_destroy(small);
+    free(other);
+    free(data);
+}
+
+/* Puts a program of this name first in PATH. */
+static void pretend(const char *name, const char *script) {
+    char path[512];
+    const char *directory = temporary_path("bin");
+    Error error = {0};
+    assert_ok(file_make_directory(directory, &error), error);
+    snprintf(path, sizeof path, "%s/%s", directory, name);
+    overwrite(path, script, strlen(script));
+    assert_int_equal(chmod(path, 0700), 0);
+    snprintf(path, sizeof path, "%s:/usr/bin:/bin", directory);
+    assert_int_equal(setenv("PATH", path, 1), 0);
+}
+
+static void a_video_that_lacks_a_frame_is_removed(void **state) {
+    (void)state;
+    static const struct {
+        const char *ffmpeg, *text;
+    } cases[] = {
+        {"#!/bin/sh\nfor last; do :; done\n"
+         "exec /usr/bin/ffmpeg -v error -y -f lavfi -i testsrc=s=96x64:r=60 -frames:v 8 -f mp4 \"$last\" </dev/null\n",
+         ""},
+        {"#!/bin/sh\ncat >/dev/null\necho broken >&2\nexit 5\n", "failed (status 5)\nbroken"},
+        {"#!/bin/sh\nkill -9 $$\n", "failed (signal 9)"},
+        {"#!/bin/sh\ncat >/dev/null\n", "ffprobe: error: failed"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Error error = {0};
+        VideoOptions options = options_for(temporary_path("lacking.mp4"));
+        pretend("ffmpeg", cases[i].ffmpeg);
+        assert_false(video_encode(&options, NULL, &error));
+        assert_error(error, ERROR_SYSTEM, cases[i].text);
+        assert_int_equal(access(options.path, F_OK), -1);
+        assert_nothing_left(temporary_folder);
+    }
+    Error error = {0};
+    VideoOptions options = options_for(temporary_path("lacking.mp4"));
+    pretend("ffmpeg", "#!/bin/sh\ncat >/dev/null\necho File too large >&2\n");
+    pretend("ffprobe", "#!/bin/sh\necho 8\n");
+    assert_false(video_encode(&options, NULL, &error));
+    assert_error(error, ERROR_SYSTEM, "lacking.mp4: error: the video has 8 frames (expected 9)\nFile too large");
+    setenv("PATH", "/usr/bin:/bin", 1);
+}
+
+static void missing_programs_are_told(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(video_check_programs(&error), error);
+    setenv("PATH", temporary_folder, 1);
+    assert_false(video_check_programs(&error));
+    assert_error(error, ERROR_SYSTEM, "ffmpeg: error: cannot be run");
+    setenv("PATH", "/usr/bin:/bin", 1);
+}
+
+static bool never(void *context, double done, double total) {
+    (void)context, (void)done, (void)total;
+    return false;
+}
+
+static void a_video_can_be_stopped(void **state) {
+    (void)state;
+    Error error = {0};
+    VideoOptions options = options_for(temporary_path("stopped.gif"));
+    assert_false(video_encode(&options, &(Progress){never, NULL}, &error));
+    assert_error(error, ERROR_INTERRUPTED, "stopped");
+    assert_int_equal(access(options.path, F_OK), -1);
+    assert_nothing_left(temporary_folder);
+}
+
+static bool kill_oneself(void *context, double done, double total) {
+    (void)context, (void)total;
+    if (done >= FRAMES / 2) raise(SIGKILL);
+    return true;
+}
+
+/* The encoder has no name of a file. */
+static void a_killed_program_leaves_nothing(void **state) {
+    (void)state;
+    static const char *const names[] = {"killed/a.mp4", "killed/a.gif"};
+    Error error = {0};
+    int status;
+    assert_ok(file_make_directory(temporary_path("killed"), &error), error);
+    for (int i = 0; i < 2; i++) {
+        VideoOptions options = options_for(temporary_path(names[i]));
+        const pid_t child = fork();
+        if (child == 0) {
+            video_encode(&options, &(Progress){kill_oneself, NULL}, &error);
+            _exit(0);
+        }
+        assert_int_equal(waitpid(child, &status, 0), child);
+        assert_true(WIFSIGNALED(status));
+        assert_int_equal(count_files(temporary_path("killed"), ""), 0);
+    }
+}
+
+static void wrong_names_are_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(file_make_directory(temporary_path("folder.mp4"), &error), error);
+    assert_ok(file_write(temporary_path("a.y4m"), "", 0, &error), error);
+    static const struct {
+        const char *name;
+        int width;
+        ErrorKind kind;
+        const char *text;
+    } cases[] = {{"a.avi", 64, ERROR_INPUT, "must end in .mp4, .webm or .gif"},
+                 {".mp4", 64, ERROR_NONE, ""},
+                 {"mp4", 64, ERROR_INPUT, "must end in"},
+                 {"a.mp4", 63, ERROR_INPUT, "width and height must be even for this video format (got 63x64)"},
+                 {"a.webm", 63, ERROR_INPUT, "width and height must be even"},
+                 {"a.gif", 63, ERROR_NONE, ""},
+                 {"folder.mp4", 64, ERROR_INPUT, "is not a regular file"},
+                 {"films/a.mp4", 64, ERROR_NONE, ""},
+                 {"a.y4m/a.mp4", 64, ERROR_SYSTEM, "cannot write there"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        error = (Error){0};
+        bool ok = video_check(temporary_path(cases[i].name), cases[i].width, 64, &error);
+        assert_int_equal(ok, cases[i].kind == ERROR_NONE);
+        if (!ok) assert_error(error, cases[i].kind, cases[i].text);
+    }
+}
+
+static void y4m_holds_every_frame(void **state) {
+    (void)state;
+    Error error = {0};
+    int frames, width, height;
+    double rate;
+    const char *path = temporary_path("a.y4m");
+    VideoOptions options = options_for(path);
+    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    assert_ok(video_write_y4m(&options, file, NULL, &error), error);
+    assert_int_equal(close(file), 0);
+    probe(path, &frames, &rate, &width, &height);
+    assert_true(frames == FRAMES && width == WIDTH && height == HEIGHT && rate == 60);
+}
+
+static void a_reader_that_has_gone_is_told(void **state) {
+    (void)state;
+    Error error = {0};
+    int ends[2];
+    VideoOptions options = options_for("the pipe");
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(close(ends[0]), 0);
+    signal(SIGPIPE, SIG_IGN);
+    assert_false(video_write_y4m(&options, ends[1], NULL, &error));
+    signal(SIGPIPE, SIG_DFL);
+    assert_error(error, ERROR_SYSTEM, "the pipe: error: cannot write: Broken pipe");
+    assert_int_equal(close(ends[1]), 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gifs_keep_a_chosen_rate),
+        cmocka_unit_test(gifs_are_small),
+        cmocka_unit_test(each_form_has_all_its_frames_and_the_same_bytes_again),
+        cmocka_unit_test(any_file_name_works),
+        cmocka_unit_test(a_damaged_frame_makes_no_video),
+        cmocka_unit_test(a_video_that_lacks_a_frame_is_removed),
+        cmocka_unit_test(missing_programs_are_told),
+        cmocka_unit_test(a_video_can_be_stopped),
+        cmocka_unit_test(a_killed_program_leaves_nothing),
+        cmocka_unit_test(wrong_names_are_refused),
+        cmocka_unit_test(y4m_holds_every_frame),
+        cmocka_unit_test(a_reader_that_has_gone_is_told),
+    };
+    return cmocka_run_group_tests(tests, make, destroy);
+}

@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files of the encoder, read back by libpng and pngcheck: every kind of picture, and sequences of which only changed
+   rows are compressed again. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "regression/compare.h"
+#include "pixels/png.h"
+
+static uint32_t seed = 1;
+
+static unsigned random_below(unsigned limit) {
+    seed = seed * 1664525 + 1013904223;
+    return (unsigned)((uint64_t)(seed >> 8) * limit >> 24);
+}
+
+static Image *blank_image(int width, int height) {
+    Error error = {0};
+    Image *image = image_create(width, height, &error);
+    assert_ok(image != NULL, error);
+    memset(image->pixels, 255, (size_t)width * (size_t)height * 4);
+    return image;
+}
+
+static void set_pixel(Image *image, int x, int y, uint32_t rgb) {
+    uint8_t *pixel = image->pixels + ((size_t)y * (size_t)image->width + (size_t)x) * 4;
+    for (int c = 0; c < 3; c++) pixel[c] = (uint8_t)(rgb >> (8 * c));
+}
+
+static uint32_t random_color(void) { return random_below(1u << 24); }
+
+/* Noise; one colour; horizontal and vertical stripes; rectangles; noise in some rows. */
+enum { NOISE, FLAT, ACROSS, DOWN, BOXES, ROUGH, KINDS };
+
+static void fill(Image *image, int kind) {
+    uint32_t colors[2] = {random_color(), random_color()};
+    unsigned step = 1 + random_below(200);
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++) {
+            unsigned i = (unsigned)(kind == ACROSS ? y : x) / step;
+            bool noisy = kind == NOISE || (kind == ROUGH && y % 5 == 0);
+            set_pixel(image, x, y, noisy ? random_color() : colors[kind == FLAT ? 0 : i % 2]);
+        }
+}
+
+/* A rectangle of one colour; its rows are marked. */
+static void add_box(Image *image, bool *changed) {
+    int left = (int)random_below((unsigned)image->width), top = (int)random_below((unsigned)image->height);
+    int width = (int)random_below(100), height = (int)random_below(20);
+    uint32_t color = random_color();
+    for (int y = top; y < image->height && y < top + height; y++) {
+        changed[y] = true;
+        for (int x = left; x < image->width && x < left + width; x++) set_pixel(image, x, y, color);
+    }
+}
+
+static void assert_holds(const uint8_t *data, size_t size, const Image *image) {
+    Error error = {0};
+    const char *path = temporary_path("holds.png");
+    assert_ok(file_write(path, data, size, &error), error);
+    Image *back = image_read_png(path, &error);
+    assert_ok(back != NULL, error);
+    ImageDifference difference;
+    image_compare(image, back, &difference);
+    assert_true(difference.equal);
+    image_destroy(back);
+}
+
+/* pngcheck is stricter than decoders. */
+static void assert_checked(void) {
+    char command[512];
+    snprintf(command, sizeof command, "pngcheck -q '%s' >/dev/null", temporary_path("holds.png"));
+    assert_int_equal(system(command), 0);
+}
+
+static void every_picture_comes_back(void **state) {
+    (void)state;
+    static const int sizes[][2] = {{1, 1},  {1, 200}, {200, 1},  {2, 3},    {86, 4},  {87, 4},
+                                   {88, 4}, {173, 5}, {300, 40}, {2000, 9}, {8192, 3}};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
+        for (int kind = 0; kind < KINDS; kind++)
+            for (PngEffort effort = PNG_FAST; effort <= PNG_SMALL; effort++) {
+                Error error = {0};
+                const uint8_t *data;
+                size_t size;
+                Image *image = blank_image(sizes[i][0], sizes[i][1]);
+                PngEncoder *encoder = png_encoder_create(image->width, image->height, effort, &error);
+                assert_ok(encoder != NULL, error);
+                fill(image, kind);
+                assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &size, &error), error);
+                assert_holds(data, size, image);
+                assert_checked();
+                png_encoder_destroy(encoder);
+                image_destroy(image);
+            }
+}
+
+static void random_pictures_come_back(void **state) {
+    (void)state;
+    for (int i = 0; i < 400; i++) {
+        Error error = {0};
+        const uint8_t *data;
+        size_t size;
+        bool ignored[64];
+        Image *image = blank_image(1 + (int)random_below(300), 1 + (int)random_below(40));
+        PngEncoder *encoder = png_encoder_create(image->width, image->height, PNG_FAST, &error);
+        fill(image, (int)random_below(KINDS));
+        for (unsigned box = random_below(9); box > 0; box--) add_box(image, ignored);
+        assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &size, &error), error);
+        assert_holds(data, size, image);
+        png_encoder_destroy(encoder);
+        image_destroy(image);
+    }
+}
+
+/* The bytes equal those of a new encoder, whatever was encoded before. */
+static void kept_rows_change_no_byte(void **state) {
+    (void)state;
+    enum { WIDTH = 230, HEIGHT = 61 };
+    Error error = {0};
+    Image *image = blank_image(WIDTH, HEIGHT);
+    PngEncoder *encoder = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
+    for (int frame = 0; frame < 200; frame++) {
+        bool changed[HEIGHT] = {false};
+        const uint8_t *data, *fresh_data;
+        size_t size, fresh_size;
+        if (frame > 0)
+            for (unsigned box = random_below(3); box > 0; box--) add_box(image, changed);
+        assert_ok(png_encode(encoder, image, frame > 0 ? changed : NULL, NULL, 0, &data, &size, &error), error);
+        PngEncoder *fresh = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
+        assert_ok(png_encode(fresh, image, NULL, NULL, 0, &fresh_data, &fresh_size, &error), error);
+        assert_true(size == fresh_size && memcmp(data, fresh_data, size) == 0);
+        png_encoder_destroy(fresh);
+    }
+    png_encoder_destroy(encoder);
+    image_destroy(image);
+}
+
+/* Rows not flagged as changed are not read. */
+static void only_changed_rows_are_read(void **state) {
+    (void)state;
+    Error error = {0};
+    bool none[40] = {false};
+    const uint8_t *data;
+    size_t size;
+    Image *image = blank_image(50, 40), *first = blank_image(50, 40);
+    PngEncoder *encoder = png_encoder_create(50, 40, PNG_FAST, &error);
+    assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &size, &error), error);
+    fill(image, NOISE);
+    assert_ok(png_encode(encoder, image, none, NULL, 0, &data, &size, &error), error);
+    assert_holds(data, size, first);
+    png_encoder_destroy(encoder);
+    image_destroy(image);
+    image_destroy(first);
+}
+
+static void small_is_smaller(void **state) {
+    (void)state;
+    Error error = {0};
+    const uint8_t *data;
+    size_t sizes[2];
+    bool ignored[400];
+    Image *image = blank_image(640, 360);
+    for (int box = 0; box < 60; box++) add_box(image, ignored);
+    for (PngEffort effort = PNG_FAST; effort <= PNG_SMALL; effort++) {
+        PngEncoder *encoder = png_encoder_create(640, 360, effort, &error);
+        assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &sizes[effort], &error), error);
+        png_encoder_destroy(encoder);
+    }
+    assert_true(sizes[PNG_SMALL] < sizes[PNG_FAST]);
+    assert_true(sizes[PNG_FAST] < 640 * 360 * 3 / 20);
+    image_destroy(image);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_picture_comes_back), cmocka_unit_test(random_pictures_come_back),
+        cmocka_unit_test(kept_rows_change_no_byte), cmocka_unit_test(only_changed_rows_are_read),
+        cmocka_unit_test(small_is_smaller),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

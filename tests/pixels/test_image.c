@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Comparison and hash of synthetic pictures. */
+#include "testing.h"
+
+#include "regression/compare.h"
+
+static Image *a, *b;
+
+static int make(void **state) {
+    (void)state;
+    Error error = {0};
+    a = image_create(4, 3, &error);
+    b = image_create(4, 3, &error);
+    return a == NULL || b == NULL;
+}
+
+static int destroy(void **state) {
+    (void)state;
+    image_destroy(a);
+    image_destroy(b);
+    return 0;
+}
+
+static uint8_t *channel(Image *image, int x, int y, int c) { return &image->pixels[(y * image->width + x) * 4 + c]; }
+
+static void equal_pictures_have_no_difference(void **state) {
+    (void)state;
+    ImageDifference d;
+    *channel(a, 1, 1, 2) = *channel(b, 1, 1, 2) = 9;
+    image_compare(a, b, &d);
+    assert_true(d.equal && d.same_size);
+    assert_true(d.pixels == 0 && d.largest == 0 && d.first_x == -1 && d.first_y == -1);
+    assert_true(image_hash(a) == image_hash(b));
+}
+
+static void differences_are_counted_by_pixel(void **state) {
+    (void)state;
+    ImageDifference d;
+    *channel(a, 3, 1, 0) = 5;
+    *channel(a, 3, 1, 1) = 20;
+    *channel(b, 0, 2, 3) = 200;
+    image_compare(a, b, &d);
+    assert_false(d.equal);
+    assert_true(d.same_size);
+    assert_int_equal(d.pixels, 2);
+    assert_int_equal(d.largest, 200);
+    assert_int_equal(d.first_x, 3);
+    assert_int_equal(d.first_y, 1);
+}
+
+static void one_bit_changes_the_hash(void **state) {
+    (void)state;
+    *channel(a, 3, 2, 3) = 1;
+    assert_true(image_hash(a) != image_hash(b));
+}
+
+static void the_shape_counts(void **state) {
+    (void)state;
+    ImageDifference d;
+    Error error = {0};
+    Image *turned = image_create(3, 4, &error);
+    image_compare(a, turned, &d);
+    assert_false(d.equal);
+    assert_false(d.same_size);
+    assert_true(image_hash(a) != image_hash(turned));
+    image_destroy(turned);
+}
+
+/* Only rows flagged as changed are read. */
+static void the_hash_of_a_sequence_is_that_of_its_pictures(void **state) {
+    (void)state;
+    uint64_t rows[3];
+    assert_true(image_hash_next(a, NULL, rows) == image_hash(a));
+    *channel(a, 1, 0, 0) = 7;
+    *channel(a, 2, 2, 1) = 8;
+    assert_true(image_hash_next(a, (const bool[]){true, false, true}, rows) == image_hash(a));
+    uint64_t before = image_hash(a);
+    *channel(a, 0, 1, 2) = 9;
+    assert_true(image_hash_next(a, (const bool[]){true, false, true}, rows) == before);
+    assert_true(image_hash_next(a, NULL, rows) == image_hash(a));
+}
+
+static void rows_that_change_places_change_the_hash(void **state) {
+    (void)state;
+    *channel(a, 1, 0, 0) = 7;
+    *channel(b, 1, 1, 0) = 7;
+    assert_true(image_hash(a) != image_hash(b));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(equal_pictures_have_no_difference, make, destroy),
+        cmocka_unit_test_setup_teardown(differences_are_counted_by_pixel, make, destroy),
+        cmocka_unit_test_setup_teardown(one_bit_changes_the_hash, make, destroy),
+        cmocka_unit_test_setup_teardown(the_shape_counts, make, destroy),
+        cmocka_unit_test_setup_teardown(the_hash_of_a_sequence_is_that_of_its_pictures, make, destroy),
+        cmocka_unit_test_setup_teardown(rows_that_change_places_change_the_hash, make, destroy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* PNG files of every kind are read as the pixels they hold; damaged ones are refused. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "regression/compare.h"
+#include "pngs.h"
+
+static Image *patterned(int width, int height) {
+    Error error = {0};
+    Image *image = image_create(width, height, &error);
+    assert_ok(image != NULL, error);
+    uint32_t state = 1;
+    for (size_t i = 0; i < (size_t)width * (size_t)height * 4; i++) {
+        state = state * 1664525 + 1013904223;
+        image->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(state >> 24);
+    }
+    return image;
+}
+
+static void written_pictures_come_back(void **state) {
+    (void)state;
+    static const int sizes[][2] = {{1, 1}, {7, 5}, {300, 1}, {1, 300}, {640, 480}};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        Error error = {0};
+        const char *path = temporary_path("round.png");
+        Image *image = patterned(sizes[i][0], sizes[i][1]);
+        assert_ok(image_write_png(image, path, NULL, 0, &error), error);
+        Image *back = image_read_png(path, &error);
+        assert_ok(back != NULL, error);
+        ImageDifference difference;
+        image_compare(image, back, &difference);
+        assert_true(difference.equal);
+        image_destroy(image);
+        image_destroy(back);
+    }
+}
+
+static void alpha_is_dropped(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = temporary_path("opaque.png");
+    Image *image = patterned(2, 1);
+    image->pixels[3] = 7;
+    assert_ok(image_write_png(image, path, NULL, 0, &error), error);
+    Image *back = image_read_png(path, &error);
+    assert_ok(back != NULL, error);
+    assert_int_equal(back->pixels[3], 255);
+    assert_memory_equal(back->pixels, image->pixels, 3);
+    image_destroy(image);
+    image_destroy(back);
+}
+
+static void texts_come_back(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = temporary_path("text.png");
+    const ImageText texts[] = {{"Scene", "pyramid"}, {"Method", "engine | pr\xC3\xA9"}, {"Empty", ""}};
+    char value[64];
+    Image *image = patterned(3, 3);
+    assert_ok(image_write_png(image, path, texts, 3, &error), error);
+    for (int i = 0; i < 3; i++) {
+        assert_ok(image_read_text(path, texts[i].key, value, sizeof value, &error), error);
+        assert_string_equal(value, texts[i].value);
+    }
+    assert_refused(image_read_text(path, "Author", value, sizeof value, &error),
+                   "text.png: error: there is no text \"Author\"");
+    assert_refused(image_read_text(path, "Scene", value, strlen("pyramid"), &error), "too long");
+    image_destroy(image);
+}
+
+static const PngKind kinds[] = {{"grey 1", PNG_COLOR_TYPE_GRAY, 1, false},
+                                {"grey 2", PNG_COLOR_TYPE_GRAY, 2, false},
+                                {"grey 4", PNG_COLOR_TYPE_GRAY, 4, false},
+                                {"grey 8", PNG_COLOR_TYPE_GRAY, 8, false},
+                                {"grey 16", PNG_COLOR_TYPE_GRAY, 16, false},
+                                {"grey 4 tRNS", PNG_COLOR_TYPE_GRAY, 4, true},
+                                {"palette 1", PNG_COLOR_TYPE_PALETTE, 1, false},
+                                {"palette 4", PNG_COLOR_TYPE_PALETTE, 4, false},
+                                {"palette 8", PNG_COLOR_TYPE_PALETTE, 8, false},
+                                {"palette 8 tRNS", PNG_COLOR_TYPE_PALETTE, 8, true},
+                                {"rgb 8", PNG_COLOR_TYPE_RGB, 8, false},
+                                {"rgb 16", PNG_COLOR_TYPE_RGB, 16, false},
+                                {"grey alpha 8", PNG_COLOR_TYPE_GRAY_ALPHA, 8, false},
+                                {"grey alpha 16", PNG_COLOR_TYPE_GRAY_ALPHA, 16, false},
+                                {"rgb alpha 8", PNG_COLOR_TYPE_RGB_ALPHA, 8, false},
+                                {"rgb alpha 16", PNG_COLOR_TYPE_RGB_ALPHA, 16, false}};
+enum { KINDS = sizeof kinds / sizeof kinds[0] };
+
+static uint8_t to_byte(unsigned value, unsigned largest) { return (uint8_t)((value * 255 + largest / 2) / largest); }
+
+/* The meaning of a sample according to the PNG specification. */
+static void expected_pixel(const PngKind *kind, int x, int y, uint8_t pixel[4]) {
+    unsigned first = sample(x, y, 0, kind->depth), largest = (1u << kind->depth) - 1;
+    bool alpha = kind->color & PNG_COLOR_MASK_ALPHA;
+    pixel[3] = kind->transparency && first == 1 ? 0 : 255;
+    if (alpha) pixel[3] = to_byte(sample(x, y, channels(kind->color) - 1, kind->depth), largest);
+    if (kind->color == PNG_COLOR_TYPE_PALETTE) {
+        png_color color = palette_color(first);
+        pixel[0] = color.red, pixel[1] = color.green, pixel[2] = color.blue;
+        return;
+    }
+    for (int c = 0; c < 3; c++) {
+        int channel = kind->color & PNG_COLOR_MASK_COLOR ? c : 0;
+        pixel[c] = to_byte(sample(x, y, channel, kind->depth), largest);
+    }
+}
+
+static void every_kind_is_read(void **state) {
+    (void)state;
+    for (int i = 0; i < 2 * KINDS; i++) {
+        const PngKind *kind = &kinds[i / 2];
+        const char *path = temporary_path("kind.png");
+        write_kind(path, kind, i % 2 ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE);
+        Error error = {0};
+        Image *image = image_read_png(path, &error);
+        assert_ok(image != NULL, error);
+        assert_true(image->width == PNG_SIDE && image->height == PNG_SIDE);
+        for (int y = 0; y < PNG_SIDE; y++)
+            for (int x = 0; x < PNG_SIDE; x++) {
+                uint8_t wanted[4];
+                expected_pixel(kind, x, y, wanted);
+                if (memcmp(wanted, image->pixels + (y * PNG_SIDE + x) * 4, 4) != 0)
+                    fail_msg("%s, interlace %d: pixel %d, %d", kind->name, i % 2, x, y);
+            }
+        image_destroy(image);
+    }
+}
+
+/* A small file with a text before the pixels. */
+static char *small_file(size_t *size) {
+    Error error = {0};
+    const char *path = temporary_path("small.png");
+    Image *image = patterned(5, 4);
+    assert_ok(image_write_png(image, path, &(ImageText){"Scene", "single"}, 1, &error), error);
+    image_destroy(image);
+    char *data = file_read(path, 1 << 20, size, &error);
+    assert_ok(data != NULL, error);
+    return data;
+}
+
+static void refuse(const char *path, const char *text) {
+    Error error = {0};
+    Image *image = image_read_png(path, &error);
+    assert_null(image);
+    assert_error(error, ERROR_INPUT, path);
+    assert_error(error, ERROR_INPUT, text);
+}
+
+static void truncated_files_are_refused(void **state) {
+    (void)state;
+    size_t size;
+    char *data = small_file(&size);
+    const char *path = temporary_path("truncated.png");
+    for (size_t length = 0; length < size; length++) {
+        write_bytes(path, data, length);
+        refuse(path, "not a PNG file, or damaged");
+    }
+    free(data);
+}
+
+/* Checksums cover every byte of a PNG after its signature. */
+static void every_flipped_bit_is_noticed(void **state) {
+    (void)state;
+    size_t size;
+    char *data = small_file(&size);
+    const char *path = temporary_path("flipped.png");
+    for (size_t bit = 0; bit < size * 8; bit++) {
+        data[bit / 8] = (char)(data[bit / 8] ^ 1 << bit % 8);
+        write_bytes(path, data, size);
+        refuse(path, "damaged");
+        data[bit / 8] = (char)(data[bit / 8] ^ 1 << bit % 8);
+    }
+    free(data);
+}
+
+static void large_claims_are_refused_before_they_cost(void **state) {
+    (void)state;
+    const char *path = temporary_path("claim.png");
+    write_claim(path, 19000, 19000);
+    refuse(path, "19000 x 19000 pixels; at most 100000000");
+    write_claim(path, 2147483647, 2147483647);
+    refuse(path, "claim.png");
+    write_claim(path, 100000001, 1);
+    refuse(path, "100000001 x 1 pixels");
+    write_claim(path, 100000000, 1);
+    refuse(path, "damaged"); /* for missing pixels, not for its size */
+}
+
+static void the_limit_of_pixels_is_the_callers(void **state) {
+    (void)state;
+    Error error = {0};
+    size_t size;
+    uint8_t *data = (uint8_t *)small_file(&size);
+    Image *image = image_decode_png(data, size, "small.png", 20, &error);
+    assert_ok(image != NULL, error);
+    image_destroy(image);
+    assert_refused(image_decode_png(data, size, "small.png", 19, &error),
+                   "small.png: error: the picture has 5 x 4 pixels; at most 19");
+    free(data);
+}
+
+/* acTL before the pixels: libpng would read only the first picture. */
+static void animations_are_refused(void **state) {
+    (void)state;
+    const char *path = temporary_path("animated.png");
+    FILE *file = fopen(path, "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    assert_non_null(file);
+    png_init_io(png, file);
+    png_set_IHDR(png, info, 1, 1, 8, PNG_COLOR_TYPE_RGB, 0, 0, 0);
+    png_write_info(png, info);
+    png_write_chunk(png, (png_const_bytep) "acTL", (png_const_bytep) "\0\0\0\2\0\0\0\0", 8);
+    png_write_row(png, (png_const_bytep) "abc");
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    fclose(file);
+    refuse(path, "an animated PNG (chunk acTL at byte 33)");
+}
+
+/* Two pictures that differ in 16 bits but not in 8. */
+static void sixteen_bits_count_in_full(void **state) {
+    (void)state;
+    Error error = {0};
+    static const PngKind kind = {"rgb 16", PNG_COLOR_TYPE_RGB, 16, false};
+    for (int interlace = 0; interlace < 2; interlace++) {
+        const char *path = temporary_path("deep.png");
+        write_kind(path, &kind, interlace);
+        Image *a = image_read_png(path, &error), *b = image_read_png(path, &error);
+        assert_ok(a != NULL && b != NULL, error);
+        assert_non_null(a->pixels16);
+        for (int y = 0; y < PNG_SIDE; y++)
+            for (int x = 0; x < PNG_SIDE; x++)
+                assert_int_equal(a->pixels16[(y * PNG_SIDE + x) * 4 + 1], sample(x, y, 1, 16));
+        ImageDifference difference;
+        image_compare(a, b, &difference);
+        assert_true(difference.equal);
+        b->pixels16[(5 * PNG_SIDE + 7) * 4 + 2] ^= 1;
+        image_compare(a, b, &difference);
+        assert_true(difference.pixels == 1 && difference.largest == 1);
+        assert_true(difference.first_x == 7 && difference.first_y == 5);
+        image_destroy(a);
+        image_destroy(b);
+    }
+}
+
+/* A sample v of 8 bits is v * 257 in 16. */
+static void depths_are_compared_by_what_they_mean(void **state) {
+    (void)state;
+    ImageDifference difference;
+    Image shallow = {1, 1, (uint8_t[]){1, 128, 255, 255}, NULL};
+    Image deep = {1, 1, (uint8_t[]){1, 128, 255, 255}, (uint16_t[]){257, 128 * 257, 65535, 65535}};
+    image_compare(&shallow, &deep, &difference);
+    assert_true(difference.equal);
+    deep.pixels16[0]++;
+    image_compare(&shallow, &deep, &difference);
+    assert_true(difference.pixels == 1 && difference.largest == 1);
+}
+
+enum { SWOLLEN = 1 << 20 };
+
+/* 1 MiB of text in 1 KiB of file. */
+static void write_text_bomb(const char *path) {
+    size_t size = SWOLLEN;
+    char *text = malloc(size);
+    FILE *file = fopen(path, "wb");
+    assert_true(file != NULL && text != NULL);
+    memset(text, 'a', size - 1);
+    text[size - 1] = '\0';
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop info = png_create_info_struct(png);
+    png_text chunk = {
+        .compression = PNG_TEXT_COMPRESSION_zTXt, .key = (char *)"Bomb", .text = text, .text_length = size - 1};
+    png_init_io(png, file);
+    png_set_IHDR(png, info, 1, 1, 8, PNG_COLOR_TYPE_RGB, 0, 0, 0);
+    png_set_text(png, info, &chunk, 1);
+    png_write_info(png, info);
+    png_write_row(png, (png_const_bytep) "abc");
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    fclose(file);
+    free(text);
+}
+
+static void texts_that_swell_do_no_harm(void **state) {
+    (void)state;
+    Error error = {0};
+    const char *path = temporary_path("bomb.png");
+    static char value[SWOLLEN];
+    write_text_bomb(path);
+    Image *image = image_read_png(path, &error);
+    assert_ok(image != NULL, error);
+    assert_memory_equal(image->pixels, "abc\xFF", 4);
+    image_destroy(image);
+    assert_false(image_read_text(path, "Bomb", value, sizeof value, &error));
+    assert_int_equal(error.kind, ERROR_INPUT);
+}
+
+static void what_is_no_file_is_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_refused(image_read_png(temporary_path("missing.png"), &error), "missing.png");
+    error = (Error){0};
+    assert_null(image_read_png("/", &error));
+    assert_int_equal(error.kind, ERROR_INPUT);
+}
+
+static void a_failed_write_is_the_systems_fault(void **state) {
+    (void)state;
+    Error error = {0};
+    Image *image = patterned(2, 2);
+    assert_false(image_write_png(image, temporary_path("no/such/folder.png"), NULL, 0, &error));
+    assert_error(error, ERROR_SYSTEM, "no/such/folder.png");
+    image_destroy(image);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(written_pictures_come_back),
+        cmocka_unit_test(alpha_is_dropped),
+        cmocka_unit_test(texts_come_back),
+        cmocka_unit_test(every_kind_is_read),
+        cmocka_unit_test(truncated_files_are_refused),
+        cmocka_unit_test(every_flipped_bit_is_noticed),
+        cmocka_unit_test(large_claims_are_refused_before_they_cost),
+        cmocka_unit_test(the_limit_of_pixels_is_the_callers),
+        cmocka_unit_test(animations_are_refused),
+        cmocka_unit_test(sixteen_bits_count_in_full),
+        cmocka_unit_test(depths_are_compared_by_what_they_mean),
+        cmocka_unit_test(texts_that_swell_do_no_harm),
+        cmocka_unit_test(what_is_no_file_is_refused),
+        cmocka_unit_test(a_failed_write_is_the_systems_fault),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

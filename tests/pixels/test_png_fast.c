@@ -1,0 +1,337 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The fast decoder against libpng, on thousands of files: of every layout, filter, compression and split into chunks; then
+   the same files damaged, with checksums that are made right again. What it accepts, libpng accepts, with the same pixels;
+   and it accepts what it is for. */
+#include "testing.h"
+
+#include "regression/compare.h"
+#include "pixels/internal.h"
+
+#include <zlib.h>
+
+static uint32_t seed = 1;
+
+static uint32_t draw(uint32_t below) {
+    seed = seed * 1664525 + 1013904223;
+    return (uint32_t)((uint64_t)(seed >> 8) * below >> 24);
+}
+
+enum { SIDE = 48, ROOM = 1 << 16, CHUNKS = 4096 };
+
+typedef struct File {
+    size_t size;
+    uint8_t bytes[ROOM];
+} File;
+
+static void put_number(uint8_t *to, uint32_t value) {
+    for (int i = 0; i < 4; i++) to[i] = (uint8_t)(value >> (24 - 8 * i));
+}
+
+static uint32_t number(const uint8_t *p) {
+    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
+}
+
+static void put_chunk(File *file, const char *type, const uint8_t *data, size_t size) {
+    uint8_t *to = file->bytes + file->size;
+    assert_true(file->size + size + 12 <= ROOM);
+    put_number(to, (uint32_t)size);
+    memcpy(to + 4, type, 4);
+    if (size > 0) memcpy(to + 8, data, size);
+    put_number(to + 8 + size, (uint32_t)crc32(0, to + 4, (uInt)size + 4));
+    file->size += size + 12;
+}
+
+typedef struct Kind {
+    int color, depth, channels;
+} Kind;
+
+static const Kind kinds[] = {{0, 1, 1}, {0, 2, 1}, {0, 4, 1}, {0, 8, 1},  {2, 8, 3},  {3, 1, 1},  {3, 2, 1}, {3, 4, 1},
+                             {3, 8, 1}, {4, 8, 2}, {6, 8, 4}, {0, 16, 1}, {2, 16, 3}, {4, 16, 2}, {6, 16, 4}};
+enum { KINDS = sizeof kinds / sizeof kinds[0], SHALLOW = 11 };
+
+/* Flat (which zlib decompresses row by row), stripes, or noise. */
+static size_t make_rows(const Kind *kind, int width, int height, uint32_t filters, uint8_t *rows) {
+    uint32_t look = draw(3);
+    size_t bytes = ((size_t)width * (size_t)(kind->channels * kind->depth) + 7) / 8;
+    uint8_t *to = rows;
+    for (int y = 0; y < height; y++) {
+        *to++ = (uint8_t)(look == 0 ? 0 : draw(filters));
+        for (size_t i = 0; i < bytes; i++) *to++ = (uint8_t)(look == 0 ? 0 : look == 1 ? i / 7 % 3 : draw(256));
+    }
+    return (size_t)(to - rows);
+}
+
+static void put_palette(File *file, const Kind *kind, bool whole) {
+    uint8_t data[768];
+    uint32_t most = kind->color == 3 ? 1u << kind->depth : 256, count = whole ? most : 1 + draw(most);
+    for (uint32_t i = 0; i < 3 * count; i++) data[i] = (uint8_t)draw(256);
+    if (kind->color == 3 || (kind->color == 2 && draw(8) == 0)) put_chunk(file, "PLTE", data, 3 * count);
+    if (draw(3) > 0) return;
+    for (int i = 0; i < 6; i++) data[i] = (uint8_t)(i % 2 == 0 ? 0 : draw(2));
+    if (kind->color == 0) put_chunk(file, "tRNS", data, 2);
+    if (kind->color == 2) put_chunk(file, "tRNS", data, 6);
+    if (kind->color == 3) put_chunk(file, "tRNS", data, 1 + draw(count));
+}
+
+static void put_other(File *file) {
+    static const char *const types[] = {"tEXt", "gAMA", "bKGD", "sBIT", "pHYs", "zTXt",
+                                        "iCCP", "heLo", "eXIf", "tIME", "hIST"};
+    uint8_t data[40];
+    for (size_t i = 0; i < sizeof data; i++) data[i] = (uint8_t)draw(256);
+    if (draw(4) == 0) put_chunk(file, types[draw(11)], data, draw(sizeof data));
+}
+
+/* Window of 2^bits. */
+static size_t compress_rows(const uint8_t *rows, size_t size, int bits, uint8_t *packed) {
+    z_stream stream = {0};
+    assert_int_equal(deflateInit2(&stream, (int)draw(10), Z_DEFLATED, bits, 8, (int)draw(5)), Z_OK);
+    stream.next_in = (z_const Bytef *)rows, stream.avail_in = (uInt)size;
+    stream.next_out = packed, stream.avail_out = ROOM / 2;
+    assert_int_equal(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    deflateEnd(&stream);
+    return stream.total_out;
+}
+
+static void put_pixels(File *file, const uint8_t *packed, size_t size) {
+    for (size_t at = 0, part; at < size; at += part) {
+        part = draw(2) == 0 ? size : draw(40);
+        if (part > size - at) part = size - at;
+        put_chunk(file, "IDAT", packed + at, part);
+    }
+}
+
+/* Bytes of the rows that are replaced, and whether the rows are then compressed otherwise, in the next file. */
+static struct {
+    int bytes;
+    bool otherwise;
+} changes;
+
+static void change_rows(uint8_t *rows, size_t size, int height) {
+    uint32_t row = (uint32_t)(size / (size_t)height);
+    for (int i = 0; i < changes.bytes; i++) {
+        uint32_t place = draw((uint32_t)size);
+        if (i % 2 == 0) place -= place % row; /* the filter */
+        rows[place] = (uint8_t)draw(place % row == 0 ? 5 : 2);
+    }
+    if (changes.otherwise) draw(1);
+}
+
+/* sound: every filter is known, every colour in the palette, and the window as large as usual. */
+static void make_file(File *file, const Kind *kind, bool sound) {
+    static uint8_t rows[SIDE * (SIDE * 8 + 1)], packed[ROOM / 2];
+    int width = 1 + (int)draw(SIDE), height = 1 + (int)draw(SIDE);
+    uint8_t header[13] = {[8] = (uint8_t)kind->depth, [9] = (uint8_t)kind->color};
+    put_number(header, (uint32_t)width);
+    put_number(header + 4, (uint32_t)height);
+    memcpy(file->bytes, "\x89PNG\r\n\x1A\n", 8);
+    file->size = 8;
+    put_chunk(file, "IHDR", header, sizeof header);
+    put_other(file);
+    put_palette(file, kind, sound);
+    put_other(file);
+    size_t size = make_rows(kind, width, height, sound || draw(4) > 0 ? 5 : 6, rows);
+    change_rows(rows, size, height);
+    put_pixels(file, packed, compress_rows(rows, size, sound ? 15 : 9 + (int)draw(7), packed));
+    put_other(file);
+    put_chunk(file, "IEND", NULL, 0);
+}
+
+static Image *by_libpng(const File *file) {
+    Error error = {0};
+    Image *image = png_libpng_decode(file->bytes, file->size, "file", 1 << 20, &error);
+    if (image == NULL) assert_error(error, ERROR_INPUT, "file");
+    return image;
+}
+
+static void assert_same(const Image *a, const Image *b) {
+    assert_true(a->width == b->width && a->height == b->height);
+    assert_memory_equal(a->pixels, b->pixels, (size_t)a->width * (size_t)a->height * 4);
+}
+
+/* Whether the fast decoder accepts. */
+static bool check_file(const File *file) {
+    Image *fast;
+    if (!png_fast_decode(file->bytes, file->size, 1 << 20, &fast)) {
+        assert_null(fast);
+        return false;
+    }
+    Image *wanted = by_libpng(file);
+    assert_non_null(wanted);
+    assert_null(wanted->pixels16);
+    assert_same(fast, wanted);
+    image_destroy(fast);
+    image_destroy(wanted);
+    return true;
+}
+
+static File good, bad;
+
+static void what_it_is_for_is_accepted(void **state) {
+    (void)state;
+    for (int i = 0; i < 4000; i++) {
+        make_file(&good, &kinds[i % KINDS], true);
+        assert_int_equal(check_file(&good), i % KINDS < SHALLOW);
+    }
+}
+
+static void what_is_unusual_is_decoded_as_by_libpng(void **state) {
+    (void)state;
+    int accepted = 0;
+    for (int i = 0; i < 4000; i++) {
+        make_file(&good, &kinds[i % SHALLOW], false);
+        accepted += check_file(&good);
+    }
+    assert_true(accepted > 400 && accepted < 3600);
+}
+
+/* The second half of the picture repeats the first, 2 KiB behind it; the header claims a window of 256 bytes. */
+static void a_window_that_is_too_small_is_left_to_libpng(void **state) {
+    (void)state;
+    enum { WIDTH = 32, HEIGHT = 32, BYTES = 1 + 4 * WIDTH };
+    uint8_t rows[HEIGHT][BYTES], packed[2 * sizeof rows], header[13] = {[3] = WIDTH, [7] = HEIGHT, [8] = 8, [9] = 6};
+    for (int y = 0; y < HEIGHT; y++)
+        for (int i = 0; i < BYTES; i++)
+            rows[y][i] = (uint8_t)(i == 0 ? 0 : y < HEIGHT / 2 ? draw(256) : rows[y - HEIGHT / 2][i]);
+    for (int i = 0; i < 40; i++) {
+        size_t size = compress_rows(rows[0], sizeof rows, 15, packed);
+        int window = i % 2 == 0 ? 15 : 8;
+        packed[0] = (uint8_t)((window - 8) << 4 | 8);
+        packed[1] = (uint8_t)(31 - (packed[0] << 8) % 31);
+        memcpy(good.bytes, "\x89PNG\r\n\x1A\n", 8);
+        good.size = 8;
+        put_chunk(&good, "IHDR", header, sizeof header);
+        put_chunk(&good, "IDAT", packed, size);
+        put_chunk(&good, "IEND", NULL, 0);
+        assert_int_equal(check_file(&good), window == 15);
+    }
+}
+
+/* Positions of the chunks, and the end of the last one. */
+static int find_chunks(const File *file, size_t at[CHUNKS]) {
+    int count = 0;
+    for (at[0] = 8; at[count] < file->size; count++) at[count + 1] = at[count] + 12 + number(file->bytes + at[count]);
+    return count;
+}
+
+static void append(const uint8_t *bytes, size_t size) {
+    assert_true(bad.size + size <= ROOM);
+    memcpy(bad.bytes + bad.size, bytes, size);
+    bad.size += size;
+}
+
+/* Removes chunk i, moves it to j, or copies it there. */
+static void rearrange(const size_t at[CHUNKS], int count) {
+    int i = (int)draw((uint32_t)count), j = (int)draw((uint32_t)count);
+    bool copy = draw(2) == 0, insert = draw(2) == 0;
+    bad.size = 0;
+    append(good.bytes, 8);
+    for (int k = 0; k < count; k++) {
+        if (k == j && insert) append(good.bytes + at[i], at[i + 1] - at[i]);
+        if (k != i || copy) append(good.bytes + at[k], at[k + 1] - at[k]);
+    }
+}
+
+static void make_checksum(uint8_t *chunk) {
+    uint32_t length = number(chunk);
+    put_number(chunk + 8 + length, (uint32_t)crc32(0, chunk + 4, length + 4));
+}
+
+/* Changes bytes of a chunk, its type included, and makes its checksum right. In headers and at the ends of chunks, where
+   the stream's own checksum is, more often than elsewhere. */
+static void change_chunk(uint8_t *chunk) {
+    uint32_t length = number(chunk), from = draw(16) == 0 ? 0 : 4;
+    if (from == 4 && length == 0) return;
+    for (uint32_t n = 1 + draw(2); n > 0; n--) {
+        uint32_t place =
+            from == 0 ? draw(4) : 4 + (draw(3) == 0 ? length - 1 - draw(length < 4 ? length : 4) : draw(length));
+        chunk[4 + place] = (uint8_t)(draw(2) == 0 ? draw(256) : chunk[4 + place] ^ 1u << draw(8));
+    }
+    make_checksum(chunk);
+}
+
+/* Adds bytes to a chunk, or takes some from its end. */
+static void resize_chunk(const size_t at[CHUNKS], int i) {
+    uint8_t bytes[8];
+    uint32_t length = number(good.bytes + at[i]), kept = draw(2) == 0 ? length : length - draw(length + 1),
+             more = draw(5);
+    for (size_t k = 0; k < sizeof bytes; k++) bytes[k] = (uint8_t)draw(256);
+    bad.size = 0;
+    append(good.bytes, at[i] + 8 + kept);
+    append(bytes, more + 4);
+    put_number(bad.bytes + at[i], kept + more);
+    make_checksum(bad.bytes + at[i]);
+    append(good.bytes + at[i + 1], good.size - at[i + 1]);
+}
+
+static void damage(void) {
+    static size_t at[CHUNKS];
+    int count = find_chunks(&good, at), i = (int)draw((uint32_t)count);
+    bad.size = good.size;
+    memcpy(bad.bytes, good.bytes, good.size);
+    uint32_t how = draw(16);
+    if (how == 0) bad.size = draw((uint32_t)good.size);
+    if (how == 1) bad.bytes[draw((uint32_t)good.size)] ^= (uint8_t)(1u << draw(8));
+    if (how == 2) put_number(bad.bytes + at[i], draw(2) == 0 ? draw(100) : draw(1 << 24) << 8);
+    if (how >= 3 && how < 6) rearrange(at, count);
+    if (how >= 6 && how < 9) resize_chunk(at, i);
+    if (how >= 9) change_chunk(bad.bytes + at[how < 11 ? 0 : i]);
+}
+
+static void damaged_files_are_decoded_only_if_libpng_does(void **state) {
+    (void)state;
+    int accepted = 0;
+    for (int i = 0; i < 40000; i++) {
+        if (i % 4 == 0) make_file(&good, &kinds[draw(SHALLOW)], i % 8 == 0);
+        damage();
+        accepted += check_file(&bad);
+    }
+    assert_true(accepted > 1000 && accepted < 20000); /* else the damage tests nothing */
+}
+
+static void noise_is_refused(void **state) {
+    (void)state;
+    for (int i = 0; i < 20000; i++) {
+        bad.size = draw(200);
+        for (size_t k = 0; k < bad.size; k++) bad.bytes[k] = (uint8_t)draw(256);
+        if (i % 2 == 0) memcpy(bad.bytes, "\x89PNG\r\n\x1A\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x8\2\0\0\0\x90wS\xDE", 33);
+        assert_false(check_file(&bad));
+    }
+}
+
+/* The pixels of both, and one picture only if all are equal. */
+static void pairs_are_as_two_pictures(void **state) {
+    (void)state;
+    int same = 0, pairs = 0;
+    for (int i = 0; i < 6000; i++) {
+        uint32_t start = seed;
+        make_file(&good, &kinds[i % SHALLOW], true);
+        if (i % 8 > 0) seed = start; /* the same picture, but for: */
+        changes.bytes = i % 8 < 3 ? 0 : i % 8 - 3, changes.otherwise = i % 8 == 2;
+        make_file(&bad, &kinds[i % SHALLOW], true);
+        changes.bytes = 0, changes.otherwise = false;
+        Image *images[2], *wanted[2] = {by_libpng(&good), by_libpng(&bad)};
+        if (png_fast_decode_pair((const uint8_t *const[]){good.bytes, bad.bytes}, (const size_t[]){good.size, bad.size},
+                                 1 << 20, images)) {
+            for (int k = 0; k < 2; k++) assert_same(images[k], wanted[k]);
+            ImageDifference difference;
+            image_compare(wanted[0], wanted[1], &difference);
+            assert_true(difference.equal || images[0] != images[1]);
+            same += images[0] == images[1], pairs++;
+            image_destroy_pair(images);
+        }
+        for (int k = 0; k < 2; k++) image_destroy(wanted[k]);
+    }
+    assert_true(same > 1000 && pairs - same > 1000);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_it_is_for_is_accepted),
+        cmocka_unit_test(what_is_unusual_is_decoded_as_by_libpng),
+        cmocka_unit_test(a_window_that_is_too_small_is_left_to_libpng),
+        cmocka_unit_test(damaged_files_are_decoded_only_if_libpng_does),
+        cmocka_unit_test(noise_is_refused),
+        cmocka_unit_test(pairs_are_as_two_pictures),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

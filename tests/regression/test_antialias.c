@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Lines, rings and boxes with exact coverage: moved by a part of a pixel or sampled otherwise they have no differences;
+   erased, faded, moved by a pixel or with one wrong pixel they have. */
+#include "testing.h"
+
+#include "regression/internal.h"
+#include "regression/compare.h"
+
+#include <math.h>
+
+enum { SIDE = 48, FINE = 16 };
+
+typedef enum ShapeKind { LINE, RING, BOX } ShapeKind;
+
+/* Around the middle of the picture, turned by `degrees`. A line has a length of 36; a ring's radius is `size`. */
+typedef struct TestShape {
+    ShapeKind kind;
+    double degrees, width, size;
+} TestShape;
+
+static const TestShape shapes[] = {
+    {LINE, 0, 1, 18},   {LINE, 7, 1, 18},  {LINE, 23, 1, 18},   {LINE, 40, 1, 18}, {LINE, 68, 1, 18}, {LINE, 90, 1, 18},
+    {LINE, 7, 1.5, 18}, {LINE, 23, 2, 18}, {LINE, 68, 1.5, 18}, {RING, 0, 1, 8},   {RING, 0, 1, 17},  {RING, 0, 1.5, 8},
+    {RING, 0, 1.5, 17}, {RING, 0, 2, 17},  {BOX, 0, 0, 11},     {BOX, 13, 0, 11},  {BOX, 30, 0, 11},  {BOX, 45, 0, 11},
+};
+enum { SHAPES = sizeof shapes / sizeof *shapes };
+
+static bool covers(const TestShape *shape, double x, double y) {
+    double turn = shape->degrees * acos(-1) / 180;
+    double along = x * cos(turn) + y * sin(turn), across = y * cos(turn) - x * sin(turn);
+    switch (shape->kind) {
+    case LINE: return fabs(along) <= shape->size && fabs(across) <= shape->width / 2;
+    case RING: return fabs(hypot(x, y) - shape->size) <= shape->width / 2;
+    case BOX: return fabs(along) <= shape->size && fabs(across) <= shape->size / 2;
+    }
+    return false;
+}
+
+/* samples * samples points of each pixel decide how much of `ink` it has on `paper`. */
+typedef struct TestDrawing {
+    double x, y; /* the shape is moved by this */
+    int samples;
+    double strength;
+    uint8_t ink[3], paper[3];
+} TestDrawing;
+
+static const TestDrawing plain = {.samples = FINE, .strength = 1, .ink = {0, 0, 0}, .paper = {255, 255, 255}};
+
+static Image *drawn(const TestShape *shape, const TestDrawing *drawing) {
+    Error error = {0};
+    Image *image = image_create(SIDE, SIDE, &error);
+    assert_ok(image != NULL, error);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        int count = 0, n = drawing->samples;
+        for (int k = 0; k < n * n; k++) {
+            double x = i % SIDE + (k % n + 0.5) / n, y = i / SIDE + (k / n + 0.5) / n; /* NOLINT: whole numbers */
+            count += covers(shape, x - 24.2 - drawing->x, y - 23.7 - drawing->y);
+        }
+        double coverage = drawing->strength * count / (n * n);
+        for (int c = 0; c < 3; c++)
+            image->pixels[4 * i + c] =
+                (uint8_t)(drawing->paper[c] + coverage * (drawing->ink[c] - drawing->paper[c]) + 0.5);
+        image->pixels[4 * i + 3] = 255;
+    }
+    return image;
+}
+
+static ImageDifference difference_of(const Image *a, const Image *b) {
+    uint8_t masked[SIDE * SIDE] = {0};
+    ImageDifference difference;
+    antialias_mark(a, b, masked);
+    image_compare_masked(a, b, masked, 0, &difference);
+    return difference;
+}
+
+/* The difference of a shape drawn in two ways; not equal in at least one pixel. */
+static ImageDifference compared(const TestShape *shape, const TestDrawing *one, const TestDrawing *other) {
+    Image *a = drawn(shape, one), *b = drawn(shape, other);
+    ImageDifference difference = difference_of(a, b);
+    assert_true(difference.pixels + difference.moved > 0);
+    image_destroy(a);
+    image_destroy(b);
+    return difference;
+}
+
+static const char *name_of(const TestShape *shape) {
+    static char name[64];
+    static const char *const kinds[] = {"line", "ring", "box"};
+    snprintf(name, sizeof name, "%s of %g, %g degrees, %g", kinds[shape->kind], shape->width, shape->degrees,
+             shape->size);
+    return name;
+}
+
+static void assert_no_difference(const TestShape *shape, const TestDrawing *one, const TestDrawing *other) {
+    ImageDifference difference = compared(shape, one, other);
+    if (difference.pixels > 0)
+        fail_msg("%s: %d pixels count, %d are ignored", name_of(shape), (int)difference.pixels, (int)difference.moved);
+}
+
+static void assert_difference(const TestShape *shape, const TestDrawing *one, const TestDrawing *other) {
+    if (compared(shape, one, other).pixels == 0) fail_msg("%s: not detected", name_of(shape));
+}
+
+static void shapes_that_move_by_a_part_of_a_pixel_are_equal(void **state) {
+    (void)state;
+    static const double moves[][2] = {{0.1, 0.06}, {-0.2, 0.15}, {0.3, 0.1}, {0, -0.3}};
+    for (int i = 0; i < SHAPES; i++)
+        for (int k = 0; k < 4; k++) {
+            TestDrawing moved = plain;
+            moved.x = moves[k][0], moved.y = moves[k][1];
+            assert_no_difference(&shapes[i], &plain, &moved);
+        }
+}
+
+static void shapes_sampled_otherwise_are_equal(void **state) {
+    (void)state;
+    for (int i = 0; i < SHAPES; i++) {
+        TestDrawing coarse = plain;
+        coarse.samples = 4;
+        assert_no_difference(&shapes[i], &plain, &coarse);
+    }
+}
+
+static int grey_at(const Image *image, int x, int y) { return image->pixels[4 * (y * SIDE + x)]; }
+
+/* Whether three neighbours of a pixel are equal to it. */
+static bool has_equals(const Image *image, int x, int y) {
+    int equal = -1;
+    for (int i = 0; i < 9; i++) equal += grey_at(image, x + i % 3 - 1, y + i / 3 - 1) == grey_at(image, x, y);
+    return equal >= 3;
+}
+
+/* The method that antialias.h starts from, for a pixel of a grey picture. */
+static bool starting_method(const Image *image, const Image *other, int x, int y) {
+    int dark_x = x, dark_y = y, light_x = x, light_y = y;
+    for (int i = 0; i < 9; i++) {
+        int at_x = x + i % 3 - 1, at_y = y + i / 3 - 1, here = grey_at(image, at_x, at_y);
+        if (here < grey_at(image, dark_x, dark_y)) dark_x = at_x, dark_y = at_y;
+        if (here > grey_at(image, light_x, light_y)) light_x = at_x, light_y = at_y;
+    }
+    bool between = (dark_x != x || dark_y != y) && (light_x != x || light_y != y) && !has_equals(image, x, y);
+    return between && ((has_equals(image, dark_x, dark_y) && has_equals(other, dark_x, dark_y)) ||
+                       (has_equals(image, light_x, light_y) && has_equals(other, light_x, light_y)));
+}
+
+/* Lines and rings that move by a part of a pixel: the starting method counts pixels in the middle of most of them,
+   and none counts here. */
+static void the_starting_method_fails_where_this_one_does_not(void **state) {
+    (void)state;
+    TestDrawing moved = plain;
+    int failed = 0, lines = 0;
+    moved.x = 0.3, moved.y = 0.1;
+    for (int i = 0; i < SHAPES && shapes[i].kind != BOX; i++, lines++) {
+        Image *a = drawn(&shapes[i], &plain), *b = drawn(&shapes[i], &moved);
+        bool counts = false;
+        for (int at = SIDE; at < SIDE * (SIDE - 1); at++) {
+            int x = at % SIDE, y = at / SIDE;
+            if (x == 0 || x == SIDE - 1 || grey_at(a, x, y) == grey_at(b, x, y)) continue;
+            counts = counts || (!starting_method(a, b, x, y) && !starting_method(b, a, x, y));
+        }
+        failed += counts;
+        assert_int_equal(difference_of(a, b).pixels, 0);
+        image_destroy(a);
+        image_destroy(b);
+    }
+    assert_true(failed > lines / 2);
+}
+
+/* Any colours, and dark as well as light ink. */
+static void colours_do_not_matter(void **state) {
+    (void)state;
+    static const TestDrawing one = {.samples = FINE, .strength = 1, .ink = {250, 90, 20}, .paper = {20, 24, 60}};
+    for (int i = 0; i < SHAPES; i++) {
+        TestDrawing moved = one;
+        moved.x = -0.15, moved.y = 0.2;
+        assert_no_difference(&shapes[i], &one, &moved);
+    }
+}
+
+static void real_changes_are_detected(void **state) {
+    (void)state;
+    TestDrawing changes[] = {plain, plain, plain, plain, plain, plain};
+    changes[0].strength = 0; /* erased */
+    changes[1].strength = 0.7;
+    changes[2].ink[0] = 90;
+    changes[3].x = 0.8, changes[3].y = 0.9;
+    changes[4].x = 3, changes[4].y = 2;
+    changes[5].paper[2] = 250;
+    for (int i = 0; i < SHAPES; i++)
+        for (int k = 0; k < 6; k++) assert_difference(&shapes[i], &plain, &changes[k]);
+}
+
+/* In the picture of a shape: a pixel of the edge, the inside or the paper gets the opposite colour, or red. */
+static void single_wrong_pixels_are_detected(void **state) {
+    (void)state;
+    for (int i = 0; i < SHAPES; i++) {
+        Image *image = drawn(&shapes[i], &plain), *wrong = drawn(&shapes[i], &plain);
+        for (int at = SIDE + 1; at < SIDE * (SIDE - 1); at += 5) {
+            uint8_t *pixel = wrong->pixels + 4 * at, grey = pixel[0];
+            pixel[0] = pixel[1] = pixel[2] = grey < 128 ? 255 : 0;
+            if ((grey == 0 || grey == 255) && difference_of(image, wrong).pixels == 0)
+                fail_msg("%s: the wrong pixel %d, %d is ignored", name_of(&shapes[i]), at % SIDE, at / SIDE);
+            pixel[0] = pixel[1] = pixel[2] = grey;
+        }
+        image_destroy(image);
+        image_destroy(wrong);
+    }
+}
+
+/* A crisp edge that moves by a whole pixel has no coverage to compare. */
+static void an_edge_that_moves_by_a_pixel_differs(void **state) {
+    (void)state;
+    Error error = {0};
+    Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        memset(a->pixels + 4 * i, i % SIDE < 20 ? 0 : 255, 4);
+        memset(b->pixels + 4 * i, i % SIDE < 21 ? 0 : 255, 4);
+    }
+    assert_int_equal(difference_of(a, b).pixels, SIDE);
+    image_destroy(a);
+    image_destroy(b);
+}
+
+/* What a transparent pixel hides does not matter: premultiplied, (171, 0, 85, 128) lies half way to transparent. */
+static void transparent_edges_are_edges(void **state) {
+    (void)state;
+    Error error = {0};
+    Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            static const uint8_t opaque[4] = {171, 0, 85, 255}, half[4] = {171, 0, 85, 128}, none[4] = {0, 0, 0, 0};
+            size_t at = 4 * (size_t)(y * SIDE + x);
+            memcpy(a->pixels + at, x < y ? opaque : x == y ? half : none, 4);
+            memcpy(b->pixels + at, x < y ? opaque : none, 4);
+        }
+    ImageDifference difference = difference_of(a, b);
+    assert_int_equal(difference.pixels, 0);
+    assert_int_equal(difference.moved, SIDE);
+    image_destroy(a);
+    image_destroy(b);
+}
+
+/* A reproducible texture without flat areas: each change of brightness counts nearly everywhere. */
+static void textures_have_no_edges(void **state) {
+    (void)state;
+    Error error = {0};
+    Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+    uint32_t random = 1;
+    for (int i = 0; i < 4 * SIDE * SIDE; i++) {
+        random = random * 1664525 + 1013904223;
+        bool alpha = i % 4 == 3;
+        a->pixels[i] = (uint8_t)(alpha ? 255 : 60 + (random >> 24) / 2);
+        b->pixels[i] = (uint8_t)(alpha ? 255 : a->pixels[i] * 21 / 20);
+    }
+    assert_true(difference_of(a, b).moved < SIDE * SIDE / 25);
+    image_destroy(a);
+    image_destroy(b);
+}
+
+/* By one level, or two. */
+static void areas_that_become_lighter_differ(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int slope = 0; slope <= 2; slope++)
+        for (int more = 1; more <= 2; more++) {
+            Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+            for (int i = 0; i < 4 * SIDE * SIDE; i++) {
+                bool alpha = i % 4 == 3;
+                a->pixels[i] = (uint8_t)(alpha ? 255 : 20 + slope * (i / 4 % SIDE + i / 4 / SIDE));
+                b->pixels[i] = (uint8_t)(alpha ? 255 : a->pixels[i] + more);
+            }
+            assert_int_equal(difference_of(a, b).pixels, SIDE * SIDE);
+            image_destroy(a);
+            image_destroy(b);
+        }
+}
+
+/* Pictures smaller than the windows. */
+static void small_pictures_are_compared(void **state) {
+    (void)state;
+    Error error = {0};
+    for (int width = 1; width <= 4; width++)
+        for (int height = 1; height <= 4; height++) {
+            Image *a = image_create(width, height, &error), *b = image_create(width, height, &error);
+            uint8_t masked[16] = {0};
+            memset(a->pixels, 255, 4 * (size_t)(width * height));
+            antialias_mark(a, b, masked);
+            for (int i = 0; i < width * height; i++) assert_int_equal(masked[i], IGNORED_NOT);
+            image_destroy(a);
+            image_destroy(b);
+        }
+}
+
+static void masked_pixels_stay_masked(void **state) {
+    (void)state;
+    TestDrawing moved = plain;
+    moved.x = 0.3;
+    Image *a = drawn(&shapes[2], &plain), *b = drawn(&shapes[2], &moved);
+    uint8_t masked[SIDE * SIDE];
+    memset(masked, IGNORED_MASK, sizeof masked);
+    antialias_mark(a, b, masked);
+    for (int i = 0; i < SIDE * SIDE; i++) assert_int_equal(masked[i], IGNORED_MASK);
+    image_destroy(a);
+    image_destroy(b);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shapes_that_move_by_a_part_of_a_pixel_are_equal),
+        cmocka_unit_test(shapes_sampled_otherwise_are_equal),
+        cmocka_unit_test(the_starting_method_fails_where_this_one_does_not),
+        cmocka_unit_test(colours_do_not_matter),
+        cmocka_unit_test(real_changes_are_detected),
+        cmocka_unit_test(single_wrong_pixels_are_detected),
+        cmocka_unit_test(an_edge_that_moves_by_a_pixel_differs),
+        cmocka_unit_test(transparent_edges_are_edges),
+        cmocka_unit_test(textures_have_no_edges),
+        cmocka_unit_test(areas_that_become_lighter_differ),
+        cmocka_unit_test(small_pictures_are_compared),
+        cmocka_unit_test(masked_pixels_stay_masked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

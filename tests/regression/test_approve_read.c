@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "base/file.h"
+#include "regression/internal.h"
+
+#define HEAD "{\"format\": \"twinbox compare 1\", \"expected\": \"old\", \"actual\": \"new\""
+#define FILE_1 "{\"name\": \"1.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
+#define FILE_0 "{\"name\": \"0.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
+
+static const char *store(const char *text) {
+    Error error = {0};
+    const char *path = temporary_path("results.json");
+    assert_ok(file_write(path, text, strlen(text), &error), error);
+    return path;
+}
+
+static void failures_are_read_in_any_order_of_members(void **state) {
+    (void)state;
+    Error error = {0};
+    ApprovalList list;
+    const char *text = "{\"trajectories\": [], \"frames\": [\n"
+                       "{\"failed\": true, \"shown\": false, \"expected\": " FILE_0 ", \"actual\": null},\n"
+                       "{\"failed\": false, \"shown\": true, \"expected\": " FILE_0 ", \"actual\": " FILE_0 "},\n"
+                       "{\"other\": [1], \"actual\": " FILE_1 ", \"shown\": true, \"failed\": true}],\n"
+                       "\"fuzzy\": [0, 1e-3], \"actual\": \"n\\u0065w\", \"expected\": \"old\",\n"
+                       "\"format\": \"twinbox compare 1\"}\n";
+    assert_ok(approval_read(&list, store(text), &error), error);
+    assert_string_equal(list.expected, "old");
+    assert_string_equal(list.actual, "new");
+    assert_int_equal(list.count, 2);
+    assert_string_equal(list.items[0].expected.name, "0.png");
+    assert_string_equal(list.items[0].actual.name, "");
+    assert_true(list.items[0].expected.hash == 0xff && !list.items[0].shown);
+    assert_string_equal(list.items[1].actual.name, "1.png");
+    assert_string_equal(list.items[1].expected.name, "");
+    assert_true(list.items[1].shown);
+    approval_free(&list);
+}
+
+static void invalid_results_are_refused_with_their_place(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *why;
+    } cases[] = {
+        {"[]", "results.json:1:1: error: not a report of twinbox compare"},
+        {"{}", "results.json:1:2: error: unexpected token"},
+        {"{\"format\": \"twinbox compare 2\"", "1:12: error: not a report"},
+        {"{\"format\": 1", "1:12: error: 'format' must be a string of 1 to "},
+        {"{\"expected\": \"\"", "1:14: error: 'expected' must be a string of 1 to "},
+        {HEAD "}", "results.json: error: 'frames' is missing"},
+        {HEAD ",\n\"actual\": \"b\"}", "2:1: error: duplicate key"},
+        {HEAD ",\n1: 2}", "2:1: error: a key must be a string"},
+        {HEAD ",\n\"verdict\" 2}", "2:11: error: ':' expected"},
+        {HEAD ",\n\"frames\": {}}", "2:11: error: 'frames' must be an array"},
+        {HEAD ",\n\"frames\": [1]}", "2:12: error: a frame or trajectory must be an object"},
+        {HEAD ",\n\"frames\": [\n  {\"failed\": 1}]}", "3:3: error: 'failed' must be true or false"},
+        {HEAD ",\n\"frames\": [\n  {\"failed\": true}]}", "3:3: error: 'shown' must be true or false"},
+        {HEAD ",\n\"frames\": [\n{\"failed\": true, \"shown\": true}]}",
+         "3:1: error: an expected or an actual file is required"},
+        {HEAD ",\n\"frames\": [\n{\"failed\": true, \"shown\": true, \"actual\": 1}]}",
+         "3:1: error: 'actual' must be null or a file"},
+        {HEAD ",\n\"frames\": [{\"failed\": true, \"shown\": true, \"actual\": " FILE_0 "}, {}]}",
+         "error: 'failed' must be"},
+        {HEAD ", \"frames\": [], \"trajectories\": []}\n}", "2:1: error: end of file expected"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Error error = {0};
+        ApprovalList list;
+        if (approval_read(&list, store(cases[i].text), &error)) fail_msg("read: %s", cases[i].text);
+        assert_error(error, ERROR_INPUT, cases[i].why);
+    }
+}
+
+/* One of thousands, each with its own name, so that the table of names has grown many times. */
+static void a_file_that_is_named_twice_is_refused(void **state) {
+    (void)state;
+    enum { COUNT = 3000, SIZE = 120 };
+    for (int twice = 0; twice <= 1; twice++) {
+        Error error = {0};
+        ApprovalList list;
+        char *text = malloc(COUNT * SIZE + 200), *end = text;
+        end += sprintf(end, "%s", HEAD ", \"trajectories\": [], \"frames\": [\n");
+        for (int i = 0; i < COUNT; i++)
+            end += sprintf(end,
+                           "{\"failed\": true, \"shown\": true, \"actual\": {\"name\": \"%d.png\", \"xxh3\": "
+                           "\"00000000000000ff\"}}%s",
+                           twice && i == COUNT - 1 ? 7 : i, i < COUNT - 1 ? ",\n" : "]}");
+        const char *path = store(text);
+        free(text);
+        if (approval_read(&list, path, &error) == twice) fail_msg("twice %d: %s", twice, error.message);
+        if (twice) assert_error(error, ERROR_INPUT, "results.json:3001:1: error: '7.png' is there twice");
+        if (!twice) assert_int_equal(list.count, COUNT);
+        if (!twice) approval_free(&list);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(failures_are_read_in_any_order_of_members),
+        cmocka_unit_test(invalid_results_are_refused_with_their_place),
+        cmocka_unit_test(a_file_that_is_named_twice_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

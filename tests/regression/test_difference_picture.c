@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pictures of a report, read back: every colour of their scales, and sizes beyond one part of the compressor. */
+#include "testing.h"
+
+#include "regression/internal.h"
+#include "regression/compare.h"
+
+enum { LEVELS = 256 };
+
+static Image *read_back(uint8_t *file, size_t size) {
+    Error error = {0};
+    Image *image = file == NULL ? NULL : image_decode_png(file, size, "picture", IMAGE_MAX_PIXELS, &error);
+    assert_ok(image != NULL, error);
+    free(file);
+    return image;
+}
+
+static Image *draw(const Image *expected, const Image *actual, const uint8_t *masked) {
+    Error error = {0};
+    size_t size;
+    uint8_t *file = difference_picture(expected, actual, masked, expected->width, expected->height, &size, &error);
+    return read_back(file, size);
+}
+
+static Image *black(int width, int height) {
+    Error error = {0};
+    Image *image = image_create(width, height, &error);
+    assert_ok(image != NULL, error);
+    return image;
+}
+
+static void assert_pixel(const Image *image, int x, int red, int green, int blue) {
+    const uint8_t *p = image->pixels + 4 * x;
+    if (p[0] != red || p[1] != green || p[2] != blue || p[3] != 255)
+        fail_msg("pixel %d is %d, %d, %d, %d, not %d, %d, %d", x, p[0], p[1], p[2], p[3], red, green, blue);
+}
+
+static int luma(const uint8_t *p) { return p[0] * 3 + p[1] * 6 + p[2]; }
+
+/* Pixel x differs by x. The ends are the header's colours; between them each step is darker, or as dark. */
+static void differences_are_coloured_by_size(void **state) {
+    (void)state;
+    Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
+    for (int x = 0; x < LEVELS; x++) actual->pixels[4 * x + x % 4] = (uint8_t)x;
+    Image *drawn = draw(expected, actual, NULL);
+    assert_pixel(drawn, 0, 200, 200, 200); /* equal: pale */
+    assert_pixel(drawn, 1, 255, 176, 0);
+    assert_pixel(drawn, 255, 72, 0, 110);
+    for (int x = 2; x < LEVELS; x++) {
+        const uint8_t *p = drawn->pixels + 4 * x;
+        assert_true(luma(p) <= luma(p - 4));
+        assert_true(p[1] < 200); /* no grey of the background */
+    }
+    image_destroy(expected);
+    image_destroy(actual);
+    image_destroy(drawn);
+}
+
+static void equal_pixels_are_pale(void **state) {
+    (void)state;
+    Image *expected = black(LEVELS, 1);
+    for (int x = 0; x < LEVELS; x++) memset(expected->pixels + 4 * x, x, 4);
+    Image *drawn = draw(expected, expected, NULL);
+    for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 200 + x * 55 / 255, 200 + x * 55 / 255, 200 + x * 55 / 255);
+    image_destroy(expected);
+    image_destroy(drawn);
+}
+
+/* In diagonal lines, every eighth pixel; a masked difference is not coloured. */
+static void masked_pixels_are_hatched(void **state) {
+    (void)state;
+    uint8_t masked[LEVELS];
+    Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
+    memset(actual->pixels, 255, 4 * LEVELS);
+    memset(masked, IGNORED_MASK, sizeof masked);
+    Image *drawn = draw(expected, actual, masked);
+    for (int x = 0; x < LEVELS; x++) {
+        int grey = x % 8 == 0 ? 120 : 200;
+        assert_pixel(drawn, x, grey, grey, grey);
+    }
+    image_destroy(expected);
+    image_destroy(actual);
+    image_destroy(drawn);
+}
+
+/* Two 16-bit pictures that differ in the last bit count as different by 1. */
+static void sixteen_bits_count_in_full(void **state) {
+    (void)state;
+    uint16_t deep[2][8] = {{0}, {0, 0, 0, 0, 1}};
+    Image expected = {2, 1, (uint8_t[8]){0}, deep[0]}, actual = {2, 1, (uint8_t[8]){0}, deep[1]};
+    Image *drawn = draw(&expected, &actual, NULL);
+    assert_pixel(drawn, 0, 200, 200, 200);
+    assert_pixel(drawn, 1, 255, 176, 0);
+    image_destroy(drawn);
+}
+
+/* The header's colours at the ends; only 0 is black. */
+static void heat_goes_from_black_to_yellow(void **state) {
+    (void)state;
+    Error error = {0};
+    size_t size;
+    float values[LEVELS];
+    IndexedPng *png = heat_picture(LEVELS, 1, &error);
+    assert_ok(png != NULL, error);
+    FlipSink sink = heat_picture_sink(png);
+    for (int i = 0; i < LEVELS; i++) values[i] = (float)i / (LEVELS - 1);
+    values[1] = 1e-9f;
+    assert_ok(sink.row(sink.context, values, LEVELS, &error), error);
+    uint8_t *file = indexed_png_end(png, &size, &error);
+    Image *drawn = read_back(file, size);
+    assert_pixel(drawn, 0, 0, 0, 4);
+    assert_pixel(drawn, LEVELS - 1, 252, 255, 164);
+    for (int x = 1; x < LEVELS; x++)
+        assert_true(luma(drawn->pixels + 4 * x) >= (x == 1 ? 5 : luma(drawn->pixels + 4 * x - 4)));
+    indexed_png_destroy(png);
+    image_destroy(drawn);
+}
+
+/* Noise does not shrink: 300 KB are ten parts. */
+static void noise_comes_back(void **state) {
+    (void)state;
+    enum { WIDTH = 1000, HEIGHT = 300 };
+    Error error = {0};
+    Palette palette = {.count = LEVELS};
+    size_t size;
+    uint32_t seed = 1;
+    static uint8_t wanted[HEIGHT * WIDTH];
+    for (int i = 0; i < LEVELS; i++) memset(palette.rgb[i], 255 - i, 3);
+    IndexedPng *png = indexed_png_create(WIDTH, HEIGHT, &palette, &error);
+    assert_ok(png != NULL, error);
+    for (int y = 0; y < HEIGHT; y++) {
+        for (int x = 0; x < WIDTH; x++) wanted[y * WIDTH + x] = (uint8_t)((seed = seed * 1664525 + 1013904223) >> 24);
+        memcpy(indexed_png_row(png), wanted + y * WIDTH, WIDTH);
+        assert_ok(indexed_png_add(png, &error), error);
+    }
+    uint8_t *file = indexed_png_end(png, &size, &error);
+    Image *drawn = read_back(file, size);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(drawn->pixels[4 * i], 255 - wanted[i]);
+    indexed_png_destroy(png);
+    image_destroy(drawn);
+}
+
+static void ignored_edges_are_blue(void **state) {
+    (void)state;
+    uint8_t masked[LEVELS];
+    Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
+    memset(actual->pixels, 255, 4 * LEVELS);
+    memset(masked, IGNORED_EDGE, sizeof masked);
+    Image *drawn = draw(expected, actual, masked);
+    for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 70, 150, 235);
+    image_destroy(expected);
+    image_destroy(actual);
+    image_destroy(drawn);
+}
+
+/* Equal but for one pixel, 24 x 12 and 16 x 20. */
+static void what_only_one_picture_has_is_striped(void **state) {
+    (void)state;
+    Error error = {0};
+    size_t size;
+    Image *a = black(24, 12), *b = black(16, 20);
+    ImageDifference difference;
+    for (int i = 0; i < 24 * 12; i++) a->pixels[4 * i] = (uint8_t)(i % 24 + 9 * (i / 24));
+    for (int i = 0; i < 16 * 20; i++) b->pixels[4 * i] = (uint8_t)(i % 16 + 9 * (i / 16));
+    b->pixels[4 * (5 * 16 + 7)]++;
+    image_compare(a, b, &difference);
+    assert_false(difference.same_size);
+    image_cut_to_overlap(a, b);
+    assert_true(a->width == 16 && a->height == 12 && b->width == 16 && b->height == 12);
+    image_compare(a, b, &difference);
+    assert_true(difference.pixels == 1 && difference.first_x == 7 && difference.first_y == 5);
+    uint8_t *file = difference_picture(a, b, NULL, 24, 20, &size, &error);
+    Image *drawn = read_back(file, size);
+    int striped = 0, colored = 0;
+    for (int i = 0; i < 24 * 20; i++) {
+        const uint8_t *p = drawn->pixels + 4 * i;
+        bool inside = i % 24 < 16 && i / 24 < 12, stripe = p[0] == 150 && p[1] == 120 && p[2] == 175;
+        striped += stripe;
+        colored += p[0] != p[1];
+        assert_false(inside && stripe);
+    }
+    assert_int_equal(striped, (24 * 20 - 16 * 12) / 2);
+    assert_int_equal(colored, striped + 1);
+    image_destroy(a);
+    image_destroy(b);
+    image_destroy(drawn);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(differences_are_coloured_by_size), cmocka_unit_test(equal_pixels_are_pale),
+        cmocka_unit_test(ignored_edges_are_blue),           cmocka_unit_test(what_only_one_picture_has_is_striped),
+        cmocka_unit_test(masked_pixels_are_hatched),        cmocka_unit_test(sixteen_bits_count_in_full),
+        cmocka_unit_test(heat_goes_from_black_to_yellow),   cmocka_unit_test(noise_comes_back),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

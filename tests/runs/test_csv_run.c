@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Runs as CSV: what is written is read back bit by bit; what a file does not state is assumed and noted; what cannot be a
+   run is refused with its line. */
+#include "testing.h"
+
+#include "example.h"
+#include "runs/trajectory.h"
+
+#include <math.h>
+
+static const CsvRunOptions defaults = {.name = "file"};
+static CsvRunNotes notes;
+
+/* Two bodies in two frames. */
+#define HEAD "# dt: 1/60\n# size: 0,20,1\n# size: 1,1,2\nframe,body,x,y,angle\n"
+#define ROWS "0,0,0,-0.5,0\n0,1,0,3,0\n1,0,0,-0.5,0\n1,1,0,2,0.5\n"
+
+static Trajectory *read_text(const char *text, const CsvRunOptions *options, Error *error) {
+    return csv_run_read(write_bytes(temporary_path("run.csv"), text, strlen(text)), options, &notes, error);
+}
+
+static Trajectory *read_ok(const char *text, const CsvRunOptions *options) {
+    Error error = {0};
+    Trajectory *run = read_text(text, options, &error);
+    assert_ok(run != NULL, error);
+    return run;
+}
+
+static bool has_note(const char *text) {
+    for (int i = 0; i < notes.count; i++)
+        if (strstr(notes.lines[i], text) != NULL) return true;
+    return false;
+}
+
+static void a_small_file_is_read(void **state) {
+    (void)state;
+    Trajectory *run = read_ok(HEAD ROWS, &defaults);
+    assert_true(run->frames == 2 && run->bodies == 2 && run->bomb == -1 && run->dt == 1.0F / 60);
+    assert_true(run->no_velocities && run->no_contacts && run->scene_hash == 0);
+    assert_true(run->size[0].x == 20 && run->size[1].y == 2);
+    assert_true(run->position[3].y == 2 && run->angle[3] == 0.5F);
+    assert_memory_equal(run->fixed, ((const uint8_t[]){1, 0}), 2);
+    assert_string_equal(run->scene, "file");
+    assert_true(has_note("1 static: 0 never moves") && has_note("velocities are unknown"));
+    assert_true(has_note("the scene is called 'file'") && has_note("units are m, s and rad; y points up"));
+    trajectory_destroy(run);
+}
+
+/* Line ends of Windows, a byte order mark, blanks, another order of columns and rows, no last line end. */
+static void what_other_programs_write_is_read(void **state) {
+    (void)state;
+    Trajectory *run = read_ok("\xef\xbb\xbf# size: 0,20,1\r\n#size:1, 1, 2\r\n# made by hand\r\n"
+                              "time,angle, y ,x,body,frame,mass\r\n1.5,0.5,2,0,1,8,3\r\n1, 0, 3, 0, 1, 7, 3\r\n"
+                              "1,0,-0.5,0,0,7,3\r\n1.5,0,-0.5,0,0,8,3",
+                              &defaults);
+    assert_true(run->frames == 2 && run->dt == 0.5F && run->position[3].y == 2 && run->angle[3] == 0.5F);
+    assert_true(has_note("frame 7 of the file becomes frame 0") && has_note("unknown columns are left out: mass"));
+    assert_true(has_note("dt is 1/2 s, from the column time"));
+    trajectory_destroy(run);
+}
+
+static void times_of_few_digits_give_the_step(void **state) {
+    (void)state;
+    char text[8192] = "# size: 5,1,1\ntime,frame,body,x,y,angle\n";
+    for (int i = 0; i <= 100; i++) {
+        size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "%.5f,%d,5,%d,0,0\n", 2 + i / 60.0, i, i);
+    }
+    Trajectory *run = read_ok(text, &defaults);
+    assert_true(run->dt == (float)(1.0 / 60));
+    assert_true(has_note("bodies 5 to 5 of the file become bodies 0 to 0") && has_note("no body is static"));
+    trajectory_destroy(run);
+}
+
+static void angles_may_be_in_degrees(void **state) {
+    (void)state;
+    const CsvRunOptions degrees = {.name = "file", .degrees = true, .dt = 0.5F};
+    Trajectory *run =
+        read_ok("# size: 0,1,1\nframe,body,x,y,angle,vx,vy,omega\n0,0,0,0,180,1,2,90\n1,0,0,0,-90,1,2,90\n", &degrees);
+    assert_near(run->angle[0], 3.14159265F, 0);
+    assert_near(run->angle[1], -1.57079633F, 0);
+    assert_near(run->angular_velocity[1], 1.57079633F, 0);
+    assert_true(run->velocity[1].y == 2 && run->dt == 0.5F && !run->no_velocities);
+    trajectory_destroy(run);
+}
+
+static void sizes_may_be_in_a_file(void **state) {
+    (void)state;
+    const char *sizes = temporary_path("sizes.csv");
+    const char text[] = "height,body,width,static\n2,1,1,0\n1,0,20,1\n";
+    const CsvRunOptions options = {.name = "file", .sizes = sizes, .dt = 1};
+    write_bytes(sizes, text, strlen(text));
+    Trajectory *run = read_ok("frame,body,x,y,angle\n" ROWS, &options);
+    assert_true(run->size[0].x == 20 && run->size[1].y == 2);
+    assert_memory_equal(run->fixed, ((const uint8_t[]){1, 0}), 2);
+    trajectory_destroy(run);
+}
+
+/* A static body needs one row; one that comes late or leaves early has rows while it is there. */
+static void rows_may_be_missing_where_that_has_a_meaning(void **state) {
+    (void)state;
+    Trajectory *run = read_ok("# dt: 1\n# size: 0,20,1\n# size: 1,1,2\n# size: 2,1,1\nframe,body,x,y,angle\n"
+                              "0,0,0,-0.5,0\n0,1,0,3,0\n1,1,0,2,0\n1,2,7,7,0\n2,2,7,6,0\n",
+                              &defaults);
+    assert_true(run->fixed[0] && run->position[6].y == -0.5F);
+    assert_true(trajectory_has(run, 1, 1) && !trajectory_has(run, 2, 1));
+    assert_true(!trajectory_has(run, 0, 2) && trajectory_has(run, 1, 2) && trajectory_has(run, 2, 2));
+    trajectory_destroy(run);
+}
+
+static void what_is_written_is_read_back(void **state) {
+    (void)state;
+    const char *path = temporary_path("example.csv");
+    Error error = {0};
+    Trajectory *t = example_trajectory();
+    t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
+    t->iterations = 12;
+    assert_ok(csv_run_write(t, path, &error), error);
+    Trajectory *run = csv_run_read(path, &defaults, &notes, &error);
+    assert_ok(run != NULL, error);
+    TrajectoryDifference difference;
+    trajectory_compare(t, run, &difference);
+    assert_true(difference.equal && !difference.poses_only && run->no_contacts);
+    assert_string_equal(run->scene, t->scene);
+    assert_string_equal(run->method, t->method);
+    assert_int_equal(run->iterations, 12);
+    assert_true(run->scene_hash == t->scene_hash && run->bomb == t->bomb && run->dt == t->dt);
+    assert_memory_equal(&run->camera_center, &t->camera_center, sizeof(Vec2));
+    assert_memory_equal(&run->camera_size, &t->camera_size, sizeof(Vec2));
+    assert_memory_equal(run->fixed, t->fixed, EXAMPLE_BODIES);
+    assert_int_equal(notes.count, 1); /* the units */
+    trajectory_destroy(run);
+    trajectory_destroy(t);
+}
+
+/* A body that never moves need not be static, which the file states, too. */
+static void kinds_and_missing_velocities_are_read_back(void **state) {
+    (void)state;
+    const char *path = temporary_path("example.csv");
+    Error error = {0};
+    Trajectory *t = read_ok(HEAD ROWS, &defaults);
+    t->fixed[0] = 0;
+    assert_ok(csv_run_write(t, path, &error), error);
+    Trajectory *run = csv_run_read(path, &defaults, &notes, &error);
+    assert_ok(run != NULL, error);
+    TrajectoryDifference difference;
+    trajectory_compare(t, run, &difference);
+    assert_true(difference.equal && run->no_velocities && !run->fixed[0]);
+    trajectory_destroy(run);
+    trajectory_destroy(t);
+}
+
+static const struct {
+    const char *text, *reason;
+} refused[] = {
+    {"", "run.csv: error: the file is empty"},
+    {"# size: 0,1,1\n", "run.csv:2: error: there is no header"},
+    {"# dt: 1/60\n", "error: the sizes of the bodies are missing: give --sizes"},
+    {HEAD, "run.csv: error: has no rows"},
+    {HEAD "0,0,0,-0.5,0\n0,1,0,3,0\n1,0,0,-0.5,0\n1,1,0,nan,0\n",
+     "run.csv:8:7: error: y: 'nan' is not a finite number"},
+    {HEAD "0,0,0,-0.5,0\n0,1,0,1e39,0\n", "run.csv:6:7: error: y: '1e39' is not a finite number"},
+    {HEAD "0,0,0,-0.5,\n", "run.csv:5:12: error: angle: '' is not a finite number"},
+    {HEAD "0,0,0,-0.5\n", "run.csv:5: error: 4 fields, but the header has 5"},
+    {HEAD "0,0,0,-0.5,0,0\n", "run.csv:5: error: 6 fields, but the header has 5"},
+    {HEAD "\n" ROWS, "run.csv:5: error: the line is empty"},
+    {HEAD "-1,0,0,0,0\n", "run.csv:5:1: error: frame: '-1' is not a whole number from 0"},
+    {HEAD "0.5,0,0,0,0\n", "run.csv:5:1: error: frame: '0.5' is not a whole number"},
+    {HEAD "99999999999999999999,0,0,0,0\n", "run.csv:5:1: error: frame: '9999"},
+    {HEAD ROWS "2000000000,0,0,0,0\n", "run.csv:9: error: frame 2000000000 cannot follow from frame 0"},
+    {HEAD ROWS "2,2000000000,0,0,0\n", "run.csv:9: error: body 2000000000 has no size"},
+    {HEAD "0,0,0,0,0\n", "run.csv: error: body 1 has a size but no row"},
+    {HEAD ROWS "1,1,0,2,0.5\n", "run.csv:9: error: body 1 is twice in frame 1: also in line 8"},
+    {HEAD ROWS "3,0,0,0,0\n3,1,0,0,0\n", "run.csv:9: error: frame 3 comes here, but frame 2 has no rows"},
+    {HEAD "0,0,0,0,0\n0,1,0,0,0\n1,0,0,0,0\n2,0,0,0,0\n2,1,0,0,0\n",
+     "run.csv:9: error: body 1 is in frame 0 and in frame 2, but not in frame 1"},
+    {"# size: 0,1,1\nframe,body,x,y,angle\n0,0,0,0,0\n", "error: the time step is missing: give --dt S, a line"},
+    {"# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n", "a column time with more than one frame"},
+    {"# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n0,1,0,0,0,0\n", "the times do not rise"},
+    {"# size: 0,1,1\ntime,frame,body,x,y,angle\n0,0,0,0,0,0\n0.1,1,0,0,0,0\n1,2,0,0,0,0\n",
+     "run.csv:4: error: time 0.1 s does not fit to equal steps: frame 1 is due at 0.5 s"},
+    {"# dt: 0\n" HEAD, "run.csv:1: error: dt: expected a time in seconds"},
+    {"# size: 0,0,1\n" HEAD, "run.csv:1: error: size: expected BODY,WIDTH,HEIGHT"},
+    {"# size: 0,1,1,fixed\n" HEAD, "run.csv:1: error: size: expected BODY,WIDTH,HEIGHT"},
+    {"# sizes: 0,1,1\n" HEAD, "run.csv:1: error: '# sizes:': did you mean '# size:'?"},
+    {"# size: 1,5,5\n" HEAD ROWS, "run.csv: error: body 1 has two sizes"},
+    {"# bomb: 7\n" HEAD ROWS, "run.csv: error: the bomb is body 7, which has no size"},
+    {"# camera: 0,0,-1,1\n" HEAD ROWS, "the camera's window must be finite and not negative"},
+    {"# size: 0,1,1\nframe;body;x;y;angle\n", "run.csv:2: error: the column 'frame' is missing"},
+    {"# size: 0,1,1\nframe,body,x,y,theta\n", "run.csv:2:16: error: unknown column 'theta': did you mean 'angle'?"},
+    {"# size: 0,1,1\nframes,body,x,y,angle\n", "run.csv:2:1: error: unknown column 'frames': did you mean 'frame'?"},
+    {"# size: 0,1,1\nframe,body,x,y,angle,x\n", "run.csv:2:22: error: the column 'x' appears twice"},
+    {"# size: 0,1,1\nframe,body,x,y,angle,vx\n", "run.csv:2: error: give all of vx, vy and omega, or none"},
+};
+
+static void what_is_no_run_is_refused_with_its_line(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        Error error = {0};
+        Trajectory *run = read_text(refused[i].text, &defaults, &error);
+        if (run != NULL) fail_msg("taken: %s", refused[i].text);
+        assert_error(error, ERROR_INPUT, refused[i].reason);
+    }
+}
+
+/* A few rows must not become a huge run: each of 60,000 frames has one row, of one of 60,000 bodies. */
+static void few_rows_of_many_bodies_are_refused(void **state) {
+    (void)state;
+    enum { MANY = 60000 };
+    const char *path = temporary_path("many.csv");
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (int i = 0; i < MANY; i++) fprintf(file, "# size: %d,1,1\n", i);
+    fprintf(file, "frame,body,x,y,angle\n");
+    for (int i = 0; i < MANY; i++) fprintf(file, "%d,%d,0,0,0\n", i, i);
+    fclose(file);
+    Error error = {0};
+    const CsvRunOptions options = {.name = "many", .dt = 1};
+    assert_refused(csv_run_read(path, &options, &notes, &error),
+                   "60000 frames of 60000 bodies take 86400000000 bytes; expected at most ");
+}
+
+static void damaged_files_are_refused_or_harmless(void **state) {
+    (void)state;
+    char text[] = HEAD ROWS, damaged[sizeof text];
+    uint32_t seed = 7;
+    for (int round = 0; round < 3000; round++) {
+        memcpy(damaged, text, sizeof text);
+        for (int k = 0; k < 1 + round % 3; k++) {
+            seed = seed * 1664525 + 1013904223;
+            damaged[(seed >> 4) % (sizeof text - 1)] = "0123456789,.-\n#e \0\xff:"[(seed >> 20) % 20];
+        }
+        Error error = {0};
+        const char *path = write_bytes(temporary_path("damaged.csv"), damaged, sizeof damaged - 1);
+        Trajectory *run = csv_run_read(path, &defaults, &notes, &error);
+        if (run == NULL) assert_int_equal(error.kind, ERROR_INPUT);
+        trajectory_destroy(run);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_small_file_is_read),
+        cmocka_unit_test(what_other_programs_write_is_read),
+        cmocka_unit_test(times_of_few_digits_give_the_step),
+        cmocka_unit_test(angles_may_be_in_degrees),
+        cmocka_unit_test(sizes_may_be_in_a_file),
+        cmocka_unit_test(rows_may_be_missing_where_that_has_a_meaning),
+        cmocka_unit_test(what_is_written_is_read_back),
+        cmocka_unit_test(kinds_and_missing_velocities_are_read_back),
+        cmocka_unit_test(what_is_no_run_is_refused_with_its_line),
+        cmocka_unit_test(few_rows_of_many_bodies_are_refused),
+        cmocka_unit_test(damaged_files_are_refused_or_harmless),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

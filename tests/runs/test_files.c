@@ -1,0 +1,345 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Trajectories in files: they come back bit by bit, and what is inconsistent is refused. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "example.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static void write_file(const Trajectory *t, const char *path) {
+    Error error = {0};
+    assert_ok(trajectory_write(t, path, &error), error);
+}
+
+static void written_is_read(void **state) {
+    (void)state;
+    const char *path = temporary_path("run.npz");
+    Trajectory *t = example_trajectory();
+    t->iterations = 12;
+    write_file(t, path);
+    Error error = {0};
+    Trajectory *r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    assert_int_equal(r->iterations, 12);
+    assert_string_equal(r->scene, t->scene);
+    assert_string_equal(r->method, t->method);
+    assert_true(r->scene_hash == t->scene_hash && r->dt == t->dt && r->bomb == t->bomb);
+    assert_memory_equal(&r->camera_center, &t->camera_center, sizeof(Vec2));
+    assert_memory_equal(&r->camera_size, &t->camera_size, sizeof(Vec2));
+    assert_true(r->frames == EXAMPLE_FRAMES && r->bodies == EXAMPLE_BODIES);
+    TrajectoryDifference difference;
+    trajectory_compare(t, r, &difference);
+    assert_true(difference.equal);
+    assert_memory_equal(r->contact_start, t->contact_start, (EXAMPLE_FRAMES + 1) * sizeof *t->contact_start);
+    assert_int_equal(t->contact_start[EXAMPLE_FRAMES], 2);
+    assert_memory_equal(r->contacts, t->contacts, 2 * sizeof *t->contacts);
+    assert_string_equal(r->verdict, "falls at 0.05 s (body 1, ex\xc3\xa4mple)");
+    assert_true(r->verdict_frame == 3 && r->verdict_body == 1);
+    trajectory_destroy(r);
+    trajectory_destroy(t);
+}
+
+/* An empty world of one frame is one, too. */
+static void the_smallest_trajectory(void **state) {
+    (void)state;
+    const char *path = temporary_path("small.npz");
+    Error error = {0};
+    Trajectory *t = trajectory_create(1, 0, &error);
+    t->dt = 1;
+    write_file(t, path);
+    Trajectory *r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    assert_true(r->frames == 1 && r->bodies == 0 && r->scene[0] == '\0');
+    assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
+    trajectory_destroy(r);
+    trajectory_destroy(t);
+}
+
+static void expect_refused(const Trajectory *t, const char *reason) {
+    const char *path = temporary_path("refused.npz");
+    write_file(t, path);
+    Error error = {0};
+    Trajectory *r = trajectory_read(path, &error);
+    if (r != NULL) fail_msg("taken, though '%s'", reason);
+    assert_error(error, ERROR_INPUT, "refused.npz: error: ");
+    assert_error(error, ERROR_INPUT, reason);
+}
+
+/* Writes a value into the example, expects a refusal. */
+#define REFUSE(place, value, reason)          \
+    do {                                      \
+        Trajectory *t = example_trajectory(); \
+        t->place = (value);                   \
+        expect_refused(t, reason);            \
+        trajectory_destroy(t);                \
+    } while (0)
+
+static void bad_heads_are_refused(void **state) {
+    (void)state;
+    REFUSE(dt, 0, "dt must be finite and greater than 0 (got 0)");
+    REFUSE(dt, -1, "dt must be");
+    REFUSE(dt, NAN, "dt must be");
+    REFUSE(dt, INFINITY, "dt must be");
+    REFUSE(bomb, 3, "the bomb is body 3 of 3");
+    REFUSE(bomb, -2, "the bomb is body -2 of 3");
+    REFUSE(camera_center.x, NAN, "camera");
+    REFUSE(camera_size.y, -1, "camera");
+    REFUSE(size[1].x, 0, "body 1: its size must be finite and greater than 0");
+    REFUSE(size[2].y, INFINITY, "body 2: its size");
+    REFUSE(fixed[1], 2, "body 1: 'fixed' must be 0 or 1 (got 2)");
+    REFUSE(scene[1], '\n', "the name of the scene holds control characters");
+    REFUSE(method[0], '\33', "the name of the method holds control characters");
+    REFUSE(verdict[1], '\33', "the verdict holds control characters");
+    REFUSE(verdict[1], 0x7f, "the verdict holds control characters");
+    REFUSE(verdict_frame, 4, "the verdict is on frame 4 of 4");
+    REFUSE(verdict_frame, -2, "the verdict is on frame -2 of 4");
+    REFUSE(verdict_body, 3, "the verdict is on body 3 of 3");
+    REFUSE(verdict_body, -2, "the verdict is on body -2 of 3");
+}
+
+static void bad_poses_are_refused(void **state) {
+    (void)state;
+    int box = 2 * EXAMPLE_BODIES + 1, bomb = 1 * EXAMPLE_BODIES + 2;
+    REFUSE(position[box].x, INFINITY, "frame 2, body 1: pose and velocity are not all finite");
+    REFUSE(position[box].y, NAN, "frame 2, body 1: pose");
+    REFUSE(angle[box], NAN, "frame 2, body 1: pose");
+    REFUSE(velocity[box].x, -INFINITY, "frame 2, body 1: pose");
+    REFUSE(velocity[box].y, NAN, "frame 2, body 1: pose");
+    REFUSE(angular_velocity[box], NAN, "frame 2, body 1: pose");
+    REFUSE(angle[bomb], 0, "frame 1, body 2: pose");
+    REFUSE(velocity[bomb].y, INFINITY, "frame 1, body 2: pose");
+}
+
+/* A verdict without a body, and no verdict. */
+static void a_verdict_may_be_unknown(void **state) {
+    (void)state;
+    const char *path = temporary_path("calm.npz");
+    Error error = {0};
+    Trajectory *t = example_trajectory();
+    trajectory_judge(t, "settles", 0, -1);
+    write_file(t, path);
+    Trajectory *r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    assert_string_equal(r->verdict, "settles");
+    assert_true(r->verdict_frame == 0 && r->verdict_body == -1);
+    trajectory_destroy(r);
+    trajectory_judge(t, "", 2, 1);
+    write_file(t, path);
+    r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
+    trajectory_destroy(r);
+    trajectory_destroy(t);
+}
+
+static void leave(Trajectory *t, int frame, int body) {
+    example_pose(t, frame, body, (float[]){NAN, NAN, NAN, NAN, NAN, NAN});
+}
+
+/* A body may come and go once; a static one stays. */
+static void a_body_is_there_over_one_interval_of_frames(void **state) {
+    (void)state;
+    const char *path = temporary_path("gone.npz");
+    Error error = {0};
+    Trajectory *t = example_trajectory();
+    leave(t, 3, 2); /* the bomb: there in frame 2 only */
+    leave(t, 3, 1);
+    write_file(t, path);
+    Trajectory *r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    TrajectoryDifference difference;
+    trajectory_compare(t, r, &difference);
+    assert_true(difference.equal);
+    assert_true(trajectory_has(r, 2, 1) && !trajectory_has(r, 3, 1));
+    trajectory_destroy(r);
+    trajectory_destroy(t);
+
+    t = example_trajectory();
+    example_pose(t, 0, 2, (float[6]){0});
+    expect_refused(t, "frame 2, body 2: a removed body must not reappear");
+    trajectory_destroy(t);
+    t = example_trajectory();
+    leave(t, 3, 0);
+    expect_refused(t, "frame 3, body 0: a static body must not be removed");
+    trajectory_destroy(t);
+}
+
+/* Step 2 had its contacts where the box was in frame 1: it may be gone in frame 2, but not before. */
+static void contacts_are_of_the_bodies_before_the_step(void **state) {
+    (void)state;
+    const char *path = temporary_path("last_contact.npz");
+    Error error = {0};
+    Trajectory *t = example_trajectory();
+    leave(t, 2, 1);
+    leave(t, 3, 1);
+    write_file(t, path);
+    Trajectory *r = trajectory_read(path, &error);
+    assert_ok(r != NULL, error);
+    assert_int_equal(r->contact_start[EXAMPLE_FRAMES], 2);
+    trajectory_destroy(r);
+    leave(t, 1, 1);
+    expect_refused(t, "step 2, contact 0: bodies 0 and 1 are not an existing pair");
+    trajectory_destroy(t);
+}
+
+static void bad_contacts_are_refused(void **state) {
+    (void)state;
+    REFUSE(contacts[1].a, -1, "step 2, contact 1: bodies -1 and 1 are not an existing pair");
+    REFUSE(contacts[1].a, 1, "bodies 1 and 1 are not an existing pair");
+    REFUSE(contacts[1].b, 3, "bodies 0 and 3 are not an existing pair");
+    REFUSE(contacts[0].point.x, NAN, "step 2, contact 0: a number is NaN or infinite");
+    REFUSE(contacts[0].normal.y, INFINITY, "a number is NaN or infinite");
+    REFUSE(contacts[0].normal_impulse, NAN, "a number is NaN or infinite");
+    REFUSE(contacts[0].tangent_impulse, NAN, "a number is NaN or infinite");
+    REFUSE(contact_start[0], 1, "contact_start must rise");
+    REFUSE(contact_start[1], 1, "contact_start must rise");
+    REFUSE(contact_start[2], -1, "contact_start must rise");
+    REFUSE(contact_start[3], 3, "contact_start must rise");
+    REFUSE(contact_start[3], INT64_MAX, "contact_start must rise");
+    /* Rising, but with a contact in step 0. */
+    Trajectory *t = example_trajectory();
+    t->contact_start[1] = t->contact_start[2] = 1;
+    expect_refused(t, "contact_start must rise");
+    trajectory_destroy(t);
+}
+
+/* In step 1 the bomb is not there yet. */
+static void a_contact_of_an_absent_body_is_refused(void **state) {
+    (void)state;
+    Error error = {0};
+    Trajectory *t = trajectory_create(2, 2, &error);
+    t->dt = 1;
+    t->size[0] = t->size[1] = vec2(1, 1);
+    for (int frame = 0; frame < 2; frame++) example_pose(t, frame, 0, (float[6]){0});
+    TrajectoryContact contact = {.a = 0, .b = 1};
+    assert_ok(trajectory_add_contact(t, 1, &contact, &error), error);
+    trajectory_end_contacts(t);
+    expect_refused(t, "step 1, contact 0: bodies 0 and 1 are not an existing pair");
+    trajectory_destroy(t);
+}
+
+static void random_damage_is_refused_or_harmless(void **state) {
+    (void)state;
+    const char *path = temporary_path("damaged.npz");
+    Trajectory *t = example_trajectory();
+    write_file(t, path);
+    Error error = {0};
+    size_t size;
+    char *data = file_read(path, 1 << 20, &size, &error);
+    assert_ok(data != NULL, error);
+    uint32_t seed = 7;
+    for (int round = 0; round < 1000; round++) {
+        seed = seed * 1664525 + 1013904223;
+        size_t at = (seed >> 4) % size;
+        char mask = (char)(1 + (seed >> 24) % 255);
+        data[at] ^= mask;
+        write_bytes(path, data, size - (round % 4 == 0 ? (seed >> 12) % size : 0));
+        data[at] ^= mask;
+        Error refusal = {0};
+        Trajectory *r = trajectory_read(path, &refusal);
+        if (r == NULL) {
+            assert_error(refusal, ERROR_INPUT, "damaged.npz: error: ");
+            continue;
+        }
+        TrajectoryDifference difference;
+        trajectory_compare(t, r, &difference);
+        assert_true(difference.equal);
+        trajectory_destroy(r);
+    }
+    free(data);
+    trajectory_destroy(t);
+}
+
+static char *text_of(const char *path) {
+    Error error = {0};
+    size_t size;
+    char *text = file_read(path, 1 << 20, &size, &error);
+    assert_ok(text != NULL, error);
+    return text;
+}
+
+/* The dynamic bodies that are there, and every number exactly. */
+static void csv_gives_every_float_back(void **state) {
+    (void)state;
+    const char *path = temporary_path("run.csv");
+    Trajectory *t = example_trajectory();
+    /* With 8 digits this float and the next read the same. */
+    t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
+    Error error = {0};
+    assert_ok(trajectory_write_csv(t, path, &error), error);
+    char *text = text_of(path), *line = strtok(text, "\n");
+    assert_string_equal(line, "frame,body,x,y,angle,vx,vy,omega");
+    for (int frame = 0; frame < EXAMPLE_FRAMES; frame++) {
+        for (int body = 1; body < (frame < 2 ? 2 : 3); body++) {
+            int got_frame, got_body, i = frame * EXAMPLE_BODIES + body;
+            float s[6], want[] = {t->position[i].x, t->position[i].y, t->angle[i],
+                                  t->velocity[i].x, t->velocity[i].y, t->angular_velocity[i]};
+            line = strtok(NULL, "\n");
+            assert_non_null(line);
+            assert_int_equal(sscanf(line, "%d,%d,%f,%f,%f,%f,%f,%f", &got_frame, &got_body, &s[0], &s[1], &s[2], &s[3],
+                                    &s[4], &s[5]),
+                             8);
+            assert_true(got_frame == frame && got_body == body);
+            assert_memory_equal(s, want, sizeof s);
+        }
+    }
+    assert_null(strtok(NULL, "\n"));
+    free(text);
+    trajectory_destroy(t);
+}
+
+static void hashes_are_those_of_the_frames(void **state) {
+    (void)state;
+    const char *path = temporary_path("run.hashes");
+    Trajectory *t = example_trajectory();
+    t->fixed[1] = t->fixed[2] = 1;
+    Error error = {0};
+    assert_ok(trajectory_write_hashes(t, path, &error), error);
+    char *text = text_of(path);
+    /* Of no bodies: the start value. */
+    assert_string_equal(text,
+                        "frame,hash\n0,14650fb0739d0383\n1,14650fb0739d0383\n2,14650fb0739d0383\n3,14650fb0739d0383\n");
+    free(text);
+    t->fixed[1] = 0;
+    assert_ok(trajectory_write_hashes(t, path, &error), error);
+    text = text_of(path);
+    char line[64];
+    snprintf(line, sizeof line, "\n3,%016" PRIx64 "\n", trajectory_frame_hash(t, 3));
+    assert_non_null(strstr(text, line));
+    free(text);
+    trajectory_destroy(t);
+}
+
+static void failed_writes_tell(void **state) {
+    (void)state;
+    bool (*const writers[])(const Trajectory *, const char *, Error *) = {trajectory_write, trajectory_write_csv,
+                                                                          trajectory_write_hashes};
+    Trajectory *t = example_trajectory();
+    for (int i = 0; i < 3; i++) {
+        Error error = {0};
+        assert_false(writers[i](t, temporary_path("nowhere/run"), &error));
+        assert_error(error, ERROR_SYSTEM, "nowhere/run: error: cannot write: ");
+    }
+    trajectory_destroy(t);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(written_is_read),
+        cmocka_unit_test(the_smallest_trajectory),
+        cmocka_unit_test(bad_heads_are_refused),
+        cmocka_unit_test(bad_poses_are_refused),
+        cmocka_unit_test(a_verdict_may_be_unknown),
+        cmocka_unit_test(a_body_is_there_over_one_interval_of_frames),
+        cmocka_unit_test(contacts_are_of_the_bodies_before_the_step),
+        cmocka_unit_test(bad_contacts_are_refused),
+        cmocka_unit_test(a_contact_of_an_absent_body_is_refused),
+        cmocka_unit_test(random_damage_is_refused_or_harmless),
+        cmocka_unit_test(csv_gives_every_float_back),
+        cmocka_unit_test(hashes_are_those_of_the_frames),
+        cmocka_unit_test(failed_writes_tell),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

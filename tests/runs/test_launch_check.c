@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Launches whose bomb would start inside a body are refused, where the bodies are when it is added. */
+#include "testing.h"
+
+#include "runs/runs.h"
+
+#include <glob.h>
+
+/* A box of 1 m that begins 2 m above the ground and falls; the bomb appears beside or in it. */
+static const char falling[] = "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 100\nbodies:\n"
+                              "  - {static: true, size: [100, 20], position: [0, -10]}\n"
+                              "  - {mass: 1, size: [1, 1], position: [0, 2.5]}\n"
+                              "bomb: {x: {from: -4, to: 4, value: 3}, y: 0.75, size: [1, 1], mass: 5, frame: 60}\n";
+
+static Scene *read_scene(const char *text, const char *more) {
+    char all[1000];
+    Error error = {0};
+    snprintf(all, sizeof all, "%s%s", text, more);
+    Scene *scene = scene_read(write_bytes(temporary_path("scene.yaml"), all, strlen(all)), &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static void bodies_are_where_they_are_when_the_bomb_is_added(void **state) {
+    (void)state;
+    Scene *scene = read_scene(falling, "");
+    Error error = {0};
+    Launch launch = launch_of(scene);
+    launch.x = 0.6f;
+    launch.frame = 1; /* the box is still above */
+    assert_ok(launches_check(scene, &launch, 1, &error), error);
+    launch.frame = 60; /* it lies on the ground, in the slop */
+    assert_refused(launches_check(scene, &launch, 1, &error),
+                   "scene: error: the launch at x = 0.6 m, rotation 0 rad: the bomb would start 0.4 m "
+                   "inside body 1 in frame 60, more than the slop of 0.01 m; launch it elsewhere, or "
+                   "write 'overlaps: allowed' in the scene; free x: -4 to -0.99, 0.99 to 4");
+    scene_destroy(scene);
+}
+
+/* The first launch that is refused is named by its place in the list, in whatever order their frames come. */
+static void the_launch_is_named(void **state) {
+    (void)state;
+    Scene *scene = read_scene(falling, "");
+    Error error = {0};
+    const Launch own = launch_of(scene);
+    Launch launches[] = {own, own, own, own};
+    launches[0].x = 0, launches[0].frame = 2; /* still below the box */
+    launches[1].x = 1.2f, launches[1].frame = 70;
+    launches[2].x = -0.5f, launches[2].frame = 60;
+    assert_refused(launches_check(scene, launches, 4, &error), "launch 3 at x = -0.5 m");
+    error = (Error){0};
+    launches[2].x = -1;
+    assert_ok(launches_check(scene, launches, 4, &error), error);
+    launches[3].rotation = 0.7f; /* turned, its corner reaches into the box */
+    launches[3].x = 1.1f;
+    assert_refused(launches_check(scene, launches, 4, &error), "launch 4 at x = 1.1 m, rotation 0.7 rad",
+                   "; free x, at any rotation: -4 to -1.2, 1.2 to 4");
+    scene_destroy(scene);
+}
+
+static void a_scene_may_allow_it(void **state) {
+    (void)state;
+    Scene *scene = read_scene(falling, "overlaps: allowed\n");
+    Error error = {0};
+    Launch launch = launch_of(scene);
+    launch.x = 0;
+    assert_ok(launches_check(scene, &launch, 1, &error), error);
+    scene_destroy(scene);
+}
+
+static Trajectory *run(const char *method_text, float x, Error *error) {
+    Scene *scene = read_scene(falling, "");
+    Method method;
+    scene->bomb.body.position.x = x;
+    assert_ok(method_parse(&method, method_text, error), *error);
+    Trajectory *trajectory = simulate(scene, &method, NULL, error);
+    scene_destroy(scene);
+    return trajectory;
+}
+
+static void runs_are_refused_by_any_method(void **state) {
+    (void)state;
+    static const char *const methods[] = {"engine", "momentum", "interior"};
+    for (int i = 0; i < 3; i++) {
+        Error error = {0};
+        assert_refused(run(methods[i], 0.3f, &error), "the bomb would start 0.7 m inside body 1 in frame 60");
+        Trajectory *free_run = run(methods[i], 1.5f, (error = (Error){0}, &error));
+        assert_ok(free_run != NULL, error);
+        trajectory_destroy(free_run);
+    }
+}
+
+/* Training and scoring launches, and the launch of a single run. */
+static void check_shipped(const char *path) {
+    Error error = {0};
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    enum { COUNT = LAUNCH_GRID };
+    Launch launches[2 * COUNT + 1];
+    if (scene->bomb.present) {
+        launches[0] = launch_of(scene);
+        int count = 1;
+        if (launch_has_family(scene)) {
+            assert_ok(launches_for_training(scene, COUNT, launches + 1, &error), error);
+            assert_ok(launches_for_scoring(scene, COUNT, launches + 1 + COUNT, &error), error);
+            count += 2 * COUNT;
+        }
+        assert_ok(launches_check(scene, launches, count, &error), error);
+    }
+    scene_destroy(scene);
+}
+
+static void shipped_scenes_have_room_for_their_launches(void **state) {
+    (void)state;
+    static const char *const folders[] = {"", "families/", "stability/", "templates/"};
+    for (int i = 0; i < 4; i++) {
+        char pattern[512];
+        glob_t found;
+        snprintf(pattern, sizeof pattern, SOURCE_DIR "/scenes/%s*.yaml", folders[i]);
+        assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+        for (size_t k = 0; k < found.gl_pathc; k++) check_shipped(found.gl_pathv[k]);
+        globfree(&found);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(bodies_are_where_they_are_when_the_bomb_is_added),
+                                       cmocka_unit_test(the_launch_is_named), cmocka_unit_test(a_scene_may_allow_it),
+                                       cmocka_unit_test(runs_are_refused_by_any_method),
+                                       cmocka_unit_test(shipped_scenes_have_room_for_their_launches)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A run that is written while it is made gives the files of a run that is recorded in memory and written then. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "pictures/folders.h"
+#include "runs/runs.h"
+
+static Scene *read_scene(const char *name, int frames) {
+    char path[512];
+    snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s.yaml", name);
+    Error error = {0};
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    scene->frames = frames;
+    return scene;
+}
+
+static void record_to(const Scene *scene, const Method *method, const RecorderOutput *outputs, bool no_contacts,
+                      uint64_t *hash) {
+    Error error = {0};
+    Recorder *recorder = recorder_create_to(scene, method, outputs, 2, no_contacts, &error);
+    assert_ok(recorder != NULL, error);
+    assert_ok(simulate_watched(scene, method, &(RunWatch){.recorder = recorder}, &error), error);
+    assert_ok(recorder_finish(recorder, &error), error);
+    *hash = recorder_state_hash(recorder);
+    recorder_destroy(recorder);
+}
+
+/* Runs of one part, of many parts, of which the last is full or not, with a bomb that comes and a body that goes. */
+static void files_are_those_of_a_run_in_memory(void **state) {
+    (void)state;
+    static const struct {
+        const char *scene;
+        int frames;
+    } runs[] = {{"stack", 1}, {"stack", 90}, {"single", 300}, {"pyramid", 900}, {"stability/top_removed", 4000}};
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, "engine", &error), error);
+    for (size_t i = 0; i < 2 * sizeof runs / sizeof *runs; i++) {
+        const bool no_contacts = i % 2 == 1;
+        Scene *scene = read_scene(runs[i / 2].scene, runs[i / 2].frames);
+        Trajectory *run = simulate(scene, &method, NULL, &error);
+        assert_ok(run != NULL, error);
+        if (no_contacts) {
+            trajectory_restart_contacts(run);
+            trajectory_end_contacts(run);
+            run->no_contacts = true;
+        }
+        const char *npz = temporary_path("run.npz"), *csv = temporary_path("run.csv");
+        assert_ok(trajectory_write(run, temporary_path("expected.npz"), &error), error);
+        assert_ok(trajectory_write_csv(run, temporary_path("expected.csv"), &error), error);
+        uint64_t hash;
+        record_to(scene, &method, (RecorderOutput[]){{npz, TRAJECTORY_NPZ}, {csv, TRAJECTORY_CSV}}, no_contacts, &hash);
+        assert_same_file(npz, temporary_path("expected.npz"));
+        assert_same_file(csv, temporary_path("expected.csv"));
+        assert_true(hash == trajectory_frame_hash(run, run->frames - 1));
+        trajectory_destroy(run);
+        scene_destroy(scene);
+    }
+}
+
+/* What libzip 1.7.3 and zlib 1.2.13 wrote. */
+static void golden_files_have_the_same_bytes(void **state) {
+    (void)state;
+    static const char *const names[] = {"stack-engine", "pyramid-pair-net", "pyramid_settled-engine"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char golden[512];
+        snprintf(golden, sizeof golden, SOURCE_DIR "/golden/trajectories/%s.npz", names[i]);
+        Error error = {0};
+        Trajectory *run = trajectory_read(golden, &error);
+        assert_ok(run != NULL, error);
+        const char *again = temporary_path("again.npz");
+        assert_ok(trajectory_write(run, again, &error), error);
+        assert_same_file(again, golden);
+        trajectory_destroy(run);
+    }
+}
+
+static bool fail_late(void *context, int frame, const World *world, Error *error) {
+    (void)context, (void)world;
+    return frame < 800 || error_input(error, "observer", "enough");
+}
+
+static void a_run_that_fails_leaves_no_file(void **state) {
+    (void)state;
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, "engine", &error), error);
+    Scene *scene = read_scene("pyramid", 900);
+    const char *path = temporary_path("failed.npz");
+    const RecorderOutput output = {path, TRAJECTORY_NPZ};
+    Recorder *recorder = recorder_create_to(scene, &method, &output, 1, false, &error);
+    assert_ok(recorder != NULL, error);
+    const StepObserver observer = {fail_late, NULL};
+    const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1};
+    assert_refused(simulate_watched(scene, &method, &watch, &error), "observer: error: enough");
+    recorder_destroy(recorder);
+    assert_int_not_equal(access(path, F_OK), 0);
+    scene_destroy(scene);
+}
+
+static void too_long_runs_are_refused_before_the_first_step(void **state) {
+    (void)state;
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, "engine", &error), error);
+    Scene *scene = read_scene("pyramid", SIMULATE_MAX_STATES / 60);
+    assert_refused(recorder_create_to(scene, &method, NULL, 0, false, &error), "are too many to record");
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(files_are_those_of_a_run_in_memory),
+        cmocka_unit_test(golden_files_have_the_same_bytes),
+        cmocka_unit_test(a_run_that_fails_leaves_no_file),
+        cmocka_unit_test(too_long_runs_are_refused_before_the_first_step),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

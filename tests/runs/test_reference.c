@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The bits of Box2D-Lite: golden/grid_hash.csv and golden/run_hash.csv hold the hashes of its own runs, with sine
+   and cosine as the double function rounded to float (commit 227b71b; g++ 12.2). */
+#include "testing.h"
+#include "sanitized.h"
+
+#include "base/hash.h"
+#include "runs/runs.h"
+
+enum { SCENES = 3 };
+
+static Trajectory *run_engine(const Scene *scene) {
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, "engine", &error), error);
+    Trajectory *run = simulate(scene, &method, NULL, &error);
+    assert_ok(run != NULL, error);
+    return run;
+}
+
+static Scene *read_scene(const char *name) {
+    char path[512];
+    bool ours = strcmp(name, "pyramid78") != 0;
+    snprintf(path, sizeof path, "%s/%s/%s.yaml", SOURCE_DIR, ours ? "scenes" : "tests/scenes", name);
+    Error error = {0};
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static FILE *open_golden(const char *name, const char *header) {
+    char path[512], line[256];
+    snprintf(path, sizeof path, "%s/golden/%s", SOURCE_DIR, name);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file));
+    assert_string_equal(line, header);
+    return file;
+}
+
+static void every_launch_has_the_bits_of_box2d_lite(void **state) {
+    (void)state;
+    FILE *file = open_golden("grid_hash.csv", "scene,bomb_x,hash_f60,hash_f120,hash_f300\n");
+    char line[256], name[32], x[16];
+    unsigned long long hashes[3];
+    const int frames[3] = {60, 120, 300};
+    int launches = 0;
+    for (; fgets(line, sizeof line, file) != NULL; launches++) {
+        if (launches % sampled(9) != 0) continue;
+        assert_int_equal(sscanf(line, "%31[^,],%15[^,],%llx,%llx,%llx", name, x, &hashes[0], &hashes[1], &hashes[2]),
+                         5);
+        Scene *scene = read_scene(name);
+        scene->frames = 300;
+        scene->bomb.frame = 0;
+        scene->bomb.body.position.x = strtof(x, NULL);
+        Trajectory *run = run_engine(scene);
+        for (int i = 0; i < 3; i++)
+            if (trajectory_frame_hash(run, frames[i]) != hashes[i])
+                fail_msg("%s, bomb at x = %s: another state in frame %d or before", name, x, frames[i]);
+        trajectory_destroy(run);
+        scene_destroy(scene);
+    }
+    fclose(file);
+    assert_int_equal(launches, 201 * SCENES);
+}
+
+/* One hash for a whole run: FNV-1a over the hashes of its frames. */
+static uint64_t run_hash(const Trajectory *run) {
+    uint64_t hash = FNV1A64_START;
+    for (int frame = 0; frame < run->frames; frame++) {
+        uint64_t of_frame = trajectory_frame_hash(run, frame);
+        hash = hash_fnv1a64(hash, &of_frame, sizeof of_frame);
+    }
+    return hash;
+}
+
+static void every_frame_of_the_long_runs_has_the_bits_of_box2d_lite(void **state) {
+    (void)state;
+    FILE *file = open_golden("run_hash.csv", "name,scene,bomb_x,bomb_frame,frames,hash\n");
+    char line[256], name[64], scene_name[32], x[16];
+    unsigned long long hash;
+    int bomb_frame, frames, runs = 0;
+    for (; fgets(line, sizeof line, file) != NULL; runs++) {
+        assert_int_equal(
+            sscanf(line, "%63[^,],%31[^,],%15[^,],%d,%d,%llx", name, scene_name, x, &bomb_frame, &frames, &hash), 6);
+        Scene *scene = read_scene(scene_name);
+        scene->frames = frames;
+        scene->bomb.present = bomb_frame >= 0; /* -1: a run without a bomb */
+        scene->bomb.frame = bomb_frame;
+        scene->bomb.body.position.x = strtof(x, NULL);
+        Trajectory *run = run_engine(scene);
+        if (run_hash(run) != hash) fail_msg("%s: another state than Box2D-Lite's in some frame", name);
+        trajectory_destroy(run);
+        scene_destroy(scene);
+    }
+    fclose(file);
+    assert_int_equal(runs, 25);
+}
+
+static void two_runs_give_the_same_bits(void **state) {
+    (void)state;
+    Scene *scene = read_scene("pyramid_settled");
+    scene->frames = 240;
+    Trajectory *a = run_engine(scene), *b = run_engine(scene);
+    TrajectoryDifference difference;
+    trajectory_compare(a, b, &difference);
+    assert_true(difference.equal);
+    scene->bomb.body.position.x += 0.001f;
+    trajectory_destroy(b);
+    b = run_engine(scene);
+    trajectory_compare(a, b, &difference);
+    assert_false(difference.equal);
+    assert_int_equal(difference.frame, 180);
+    assert_int_equal(difference.body, 67);
+    trajectory_destroy(a);
+    trajectory_destroy(b);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(every_launch_has_the_bits_of_box2d_lite),
+                                       cmocka_unit_test(every_frame_of_the_long_runs_has_the_bits_of_box2d_lite),
+                                       cmocka_unit_test(two_runs_give_the_same_bits)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

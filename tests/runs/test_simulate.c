@@ -1,0 +1,201 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "runs/runs.h"
+
+static Scene *read_single(void) {
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static Trajectory *run(const Scene *scene, const char *method_text) {
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, method_text, &error), error);
+    Trajectory *trajectory = simulate(scene, &method, NULL, &error);
+    assert_ok(trajectory != NULL, error);
+    return trajectory;
+}
+
+static void a_trajectory_says_what_it_is(void **state) {
+    (void)state;
+    Scene *scene = read_single();
+    scene->frames = 60;
+    Trajectory *trajectory = run(scene, "engine:k=3");
+    assert_string_equal(trajectory->scene, "single");
+    assert_string_equal(trajectory->method, "engine:k=3");
+    assert_true(trajectory->scene_hash == scene_hash(scene));
+    assert_int_equal(trajectory->frames, 61);
+    assert_int_equal(trajectory->bodies, 3);
+    assert_int_equal(trajectory->bomb, 2);
+    assert_true(trajectory->fixed[0] && !trajectory->fixed[1]);
+    assert_near(trajectory->size[0].x, 100, 0);
+    assert_near(trajectory->dt, 1.0f / 60.0f, 0);
+    /* The box stands 3.5 m above the ground: contacts begin when it lands or the bomb hits it, and are numbered. */
+    int64_t contacts = trajectory->contact_start[61];
+    assert_true(contacts > 20);
+    assert_int_equal(trajectory->contact_start[1], 0);
+    assert_int_equal(trajectory->contact_start[20], 0);
+    for (int64_t i = 0; i < contacts; i++) assert_true(trajectory->contacts[i].a < trajectory->contacts[i].b);
+    trajectory_destroy(trajectory);
+    scene_destroy(scene);
+}
+
+/* Put in after step 10, so it is in frame 10 and has not moved there yet. */
+static void the_bomb_comes_after_the_step_it_is_told_to(void **state) {
+    (void)state;
+    Scene *scene = read_single();
+    scene->frames = 20;
+    scene->bomb.frame = 10;
+    Trajectory *trajectory = run(scene, "engine");
+    assert_false(trajectory_has(trajectory, 9, 2));
+    assert_true(trajectory_has(trajectory, 10, 2));
+    assert_near(trajectory->position[10 * 3 + 2].y, 15, 0);
+    assert_true(trajectory->position[11 * 3 + 2].y < 15);
+    trajectory_destroy(trajectory);
+    /* One that comes after the end is not in the run at all. */
+    scene->frames = 9;
+    trajectory = run(scene, "engine");
+    assert_int_equal(trajectory->bodies, 2);
+    assert_int_equal(trajectory->bomb, -1);
+    trajectory_destroy(trajectory);
+    scene_destroy(scene);
+}
+
+static Scene *read_top_removed(void) {
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/stability/top_removed.yaml", &error);
+    assert_ok(scene != NULL, error);
+    assert_int_equal(scene->last_body_until, 600);
+    scene->last_body_until = 30;
+    scene->frames = 60;
+    return scene;
+}
+
+/* Taken out after step 30, so it is not in frame 30, though step 30 had its contacts; a file tells the same. */
+static void the_last_body_goes_after_the_step_it_is_told_to(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_top_removed();
+    Trajectory *trajectory = run(scene, "engine");
+    assert_int_equal(trajectory->bodies, 12);
+    for (int frame = 0; frame <= 60; frame++) assert_int_equal(trajectory_has(trajectory, frame, 11), frame < 30);
+    for (int step = 1; step <= 60; step++) {
+        bool touched = false;
+        for (int64_t i = trajectory->contact_start[step]; i < trajectory->contact_start[step + 1]; i++)
+            touched |= trajectory->contacts[i].b == 11;
+        assert_int_equal(touched, step <= 30);
+    }
+    const char *path = temporary_path("gone.npz");
+    assert_ok(trajectory_write(trajectory, path, &error), error);
+    Trajectory *read = trajectory_read(path, &error);
+    assert_ok(read != NULL, error);
+    TrajectoryDifference difference;
+    trajectory_compare(trajectory, read, &difference);
+    assert_true(difference.equal);
+    trajectory_destroy(read);
+    trajectory_destroy(trajectory);
+    scene_destroy(scene);
+}
+
+/* One that stands aside changes no bit of the others, neither while it is there nor when it goes. */
+static void a_body_that_touches_none_of_the_others_changes_none(void **state) {
+    (void)state;
+    Scene *scene = read_top_removed();
+    scene->bodies[11].position = vec2(30, 0.5f);
+    Trajectory *with = run(scene, "engine");
+    scene->body_count = 11;
+    scene->last_body_until = 0;
+    Trajectory *without = run(scene, "engine");
+    assert_true(trajectory_has(with, 29, 11) && !trajectory_has(with, 30, 11));
+    for (int frame = 0; frame <= 60; frame++) {
+        assert_memory_equal(&with->position[frame * 12], &without->position[frame * 11], 11 * sizeof(Vec2));
+        assert_memory_equal(&with->angle[frame * 12], &without->angle[frame * 11], 11 * sizeof(float));
+        assert_memory_equal(&with->velocity[frame * 12], &without->velocity[frame * 11], 11 * sizeof(Vec2));
+    }
+    trajectory_destroy(with);
+    trajectory_destroy(without);
+    scene_destroy(scene);
+}
+
+static bool count_step(void *context, int frame, const World *world, Error *error) {
+    const ContactProblem *problem = world_problem(world);
+    int *steps = context;
+    assert_int_equal(frame, ++*steps);
+    assert_int_equal(problem->body_count, 3);
+    assert_int_equal(problem->marked, 2);
+    return frame < 7 || error_input(error, "observer", "enough");
+}
+
+static void an_observer_sees_every_step_and_may_end_the_run(void **state) {
+    (void)state;
+    Scene *scene = read_single();
+    Error error = {0};
+    Method method;
+    int steps = 0;
+    StepObserver observer = {count_step, &steps};
+    assert_ok(method_parse(&method, "engine", &error), error);
+    assert_refused(simulate_observed(scene, &method, &observer, &error), "observer: error: enough");
+    assert_int_equal(steps, 7);
+    scene_destroy(scene);
+}
+
+static bool stop(void *context, double done, double total) {
+    (void)context, (void)total;
+    return done < 5;
+}
+
+static void a_run_that_cannot_go_on_says_why(void **state) {
+    (void)state;
+    Scene *scene = read_single();
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, "engine", &error), error);
+    assert_null(simulate(scene, &method, &(Progress){stop, NULL}, &error));
+    assert_error(error, ERROR_INTERRUPTED, "single: error: stopped after step 5 of 300");
+
+    error = (Error){0};
+    scene->bomb.velocity_from_position = false;
+    scene->bomb.body.velocity = vec2(3e38f, 3e38f);
+    scene->dt = 100;
+    assert_refused(simulate(scene, &method, NULL, &error), "the state of body 2 is NaN or infinite",
+                   "in step 1 of scene single");
+
+    error = (Error){0};
+    scene->network_count = 0;
+    assert_ok(method_parse(&method, "pair-net", &error), error);
+    assert_refused(simulate(scene, &method, NULL, &error), "the scene names no network");
+    scene_destroy(scene);
+}
+
+static void methods_are_found_by_name(void **state) {
+    (void)state;
+    Error error = {0};
+    Method method;
+    int count = 0;
+    for (; method_kinds[count].description != NULL; count++) {
+        assert_ok(method_parse(&method, method_kinds[count].description->name, &error), error);
+        assert_ptr_equal(method.kind, &method_kinds[count]);
+    }
+    assert_true(count > 2);
+    assert_refused(method_parse(&method, "engin", &error),
+                   "method: error: 'engin' is not a method; did you mean 'engine'?");
+    error = (Error){0};
+    char text[METHOD_TEXT_SIZE + 1];
+    memset(text, 'x', METHOD_TEXT_SIZE);
+    text[METHOD_TEXT_SIZE] = '\0';
+    assert_refused(method_parse(&method, text, &error), "at most");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_trajectory_says_what_it_is),
+                                       cmocka_unit_test(the_bomb_comes_after_the_step_it_is_told_to),
+                                       cmocka_unit_test(the_last_body_goes_after_the_step_it_is_told_to),
+                                       cmocka_unit_test(a_body_that_touches_none_of_the_others_changes_none),
+                                       cmocka_unit_test(an_observer_sees_every_step_and_may_end_the_run),
+                                       cmocka_unit_test(a_run_that_cannot_go_on_says_why),
+                                       cmocka_unit_test(methods_are_found_by_name)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that would eat time or memory, and files damaged at random. */
+#include "scene_text.h"
+
+#include "base/yaml.h"
+
+/* A text that grows. */
+typedef struct Text {
+    char *data;
+    size_t size;
+} Text;
+
+static Text text_begin(const char *start) {
+    Text text = {malloc(8 << 20), strlen(start)};
+    assert_non_null(text.data);
+    memcpy(text.data, start, text.size);
+    return text;
+}
+
+static void text_append(Text *text, const char *more, int times) {
+    for (int i = 0; i < times; i++) {
+        memcpy(text->data + text->size, more, strlen(more));
+        text->size += strlen(more);
+    }
+}
+
+static void text_expect(Text *text, const char *message) {
+    expect_refused_bytes(text->data, text->size, message);
+    free(text->data);
+}
+
+static int text_body_count(Text *text) {
+    Error error;
+    Scene *scene = read_bytes(text->data, text->size, &error);
+    assert_ok(scene != NULL, error);
+    int count = scene->body_count;
+    scene_destroy(scene);
+    free(text->data);
+    return count;
+}
+
+/* start + unit * times (+ line end), refused with the message. */
+static void expect_flood(const char *start, const char *unit, int times, const char *message) {
+    Text text = text_begin(start);
+    text_append(&text, unit, times);
+    text_append(&text, "\n", 1);
+    text_expect(&text, message);
+}
+
+static void ten_thousand_bodies_are_the_most(void **state) {
+    (void)state;
+    static const char body[] = "  - {size: [1, 1], mass: 10, position: [-12.345, 123.456], angle: 0.123, "
+                               "velocity: [1.23, 4.56], spin: 0.123, friction: 0.25}\n";
+    Text text = text_begin(BASE "bodies:\n");
+    text_append(&text, body, 10000);
+    text_append(&text, "overlaps: allowed\n", 1);
+    assert_int_equal(text_body_count(&text), 10000);
+    text = text_begin(BASE "bodies:\n");
+    text_append(&text, body, 10001);
+    text_expect(&text, "10006:5: error: a scene must have at most 10000 bodies (got 10001)");
+}
+
+#define ROW(count) "  - {pattern: row, count: " count ", spacing: [0, 1], size: [1, 1], mass: 1, position: [0, 0]}\n"
+#define PYRAMID(rows) \
+    "  - {pattern: pyramid, count: " rows ", spacing: [2, 2], size: [1, 1], mass: 1, position: [0, 0]}\n"
+
+static void patterns_count_against_the_same_limit(void **state) {
+    (void)state;
+    Text text = text_begin(BASE "bodies:\n" ROW("10000"));
+    assert_int_equal(text_body_count(&text), 10000);
+    text = text_begin(BASE GROUND PYRAMID("140") "overlaps: allowed\n");
+    assert_int_equal(text_body_count(&text), 1 + 140 * 141 / 2);
+    expect_refused(BASE GROUND ROW("10000"), "7:27: error: a scene must have at most 10000 bodies (got 10001)");
+    expect_refused(BASE GROUND PYRAMID("141"), "7:31: error: a scene must have at most 10000 bodies (got 10012)");
+    expect_refused(BASE GROUND PYRAMID("10000"), "7:31: error: a scene must have at most 10000 bodies (got 50005001)");
+}
+
+static void many_keys_are_refused(void **state) {
+    (void)state;
+    Text text = text_begin("");
+    for (int i = 0; i < 20000; i++) text.size += (size_t)sprintf(text.data + text.size, "k%d: 1\n", i);
+    text_expect(&text, "65:1: error: a mapping must have at most 64 keys");
+}
+
+static void deep_nesting_is_refused(void **state) {
+    (void)state;
+    static const char deep[] = "lists and mappings must be nested at most 8 deep";
+    char message[128];
+    expect_flood("", "[", 4000, (snprintf(message, sizeof message, "1:9: error: %s", deep), message));
+    expect_flood("", "{a: ", 1000, (snprintf(message, sizeof message, "1:33: error: %s", deep), message));
+    expect_flood("", "- ", 2000, (snprintf(message, sizeof message, "1:17: error: %s", deep), message));
+    Text text = text_begin("");
+    for (int i = 0; i < 100; i++) text.size += (size_t)sprintf(text.data + text.size, "%*sa:\n", i, "");
+    text_expect(&text, (snprintf(message, sizeof message, "9:9: error: %s", deep), message));
+    text = text_begin("a: ");
+    text_append(&text, "[", 10000);
+    text_append(&text, "]", 10000);
+    text_expect(&text, (snprintf(message, sizeof message, "1:11: error: %s", deep), message));
+    expect_flood("", "[\n ", 500000, (snprintf(message, sizeof message, "9:2: error: %s", deep), message));
+}
+
+static void aliases_of_aliases_are_refused(void **state) {
+    (void)state;
+    Text text = text_begin("a: &a [x, x, x, x, x, x, x, x, x]\n");
+    for (int level = 1; level < 20; level++)
+        text.size +=
+            (size_t)sprintf(text.data + text.size, "%c: &%c [*%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c]\n", 'a' + level,
+                            'a' + level, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1,
+                            'a' + level - 1, 'a' + level - 1, 'a' + level - 1, 'a' + level - 1);
+    text_expect(&text, "1:4: error: anchors (&) are not allowed");
+}
+
+static void floods_are_refused(void **state) {
+    (void)state;
+    static const char key[] = "1:1: error: 'a' is not a key of a scene; known: gravity, dt, iterations, "
+                              "warm_starting, accumulate_impulses, position_correction, frames, overlaps, camera, "
+                              "bodies, bomb, networks, parameters";
+    static const char empty[] = "1:1: error: the file is empty";
+    expect_flood("a: ", "x", 300000, key);
+    expect_flood("a: ", "x\n ", 100000, key);
+    expect_flood("a: |\n", " x\n", 100000, key);
+    expect_flood("a:", " ", 300000, key);
+    expect_flood("", "#\n", 100000, empty);
+    expect_flood("", "\n", 300000, empty);
+    expect_flood("", "!a\n", 100000, "1:1: error: tags (!) are not allowed");
+    expect_flood("{\"a", "a", 300000, "1:2: error: a text in quotes has no end");
+    expect_flood("%", "%", 100000, "1:1: error: YAML directives are not allowed");
+    expect_flood("bodies: [", "a,\n ", 300000, "219998:2: error: more than 220000 values in one file");
+}
+
+static void large_line_numbers_keep_the_excerpt_aligned(void **state) {
+    (void)state;
+    Text text = text_begin("");
+    text_append(&text, "- a\n", 100000);
+    text_append(&text, "- &b c\n", 1);
+    text_expect(&text, "100001:3: error: anchors (&) are not allowed\n"
+                       "100001 | - &b c\n"
+                       "       |   ^");
+}
+
+static void large_files_are_refused(void **state) {
+    (void)state;
+    Text text = text_begin("#");
+    text_append(&text, "\n#", SOURCE_MAX_SIZE / 2);
+    Error error;
+    assert_refused(read_bytes(text.data, text.size, &error), "larger than 1572864 bytes");
+    free(text.data);
+}
+
+/* xorshift64 (Marsaglia 2003). */
+static uint32_t next_random(uint64_t *seed) {
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 7;
+    *seed ^= *seed << 17;
+    return (uint32_t)(*seed >> 32);
+}
+
+/* One to four bytes changed, or bits of them, or the rest cut off, or a few bytes gone. */
+static void damage(char *text, size_t *size, uint64_t *seed) {
+    for (uint32_t changes = 1 + next_random(seed) % 4; changes > 0 && *size > 16; changes--) {
+        size_t at = next_random(seed) % (*size - 8), gone = 1 + next_random(seed) % 8;
+        switch (next_random(seed) % 8) {
+        case 0: *size = at + 1; break;
+        case 1: memmove(text + at, text + at + gone, *size - at - gone), *size -= gone; break;
+        case 2:
+        case 3: text[at] = " \t\n:-[]{},#\"'&*!|>%?"[next_random(seed) % 20]; break;
+        case 4:
+        case 5: text[at] = (char)next_random(seed); break;
+        default: text[at] = (char)(text[at] ^ 1 << next_random(seed) % 8); break;
+        }
+    }
+}
+
+static void damaged_files_are_read_or_refused_with_their_place(void **state) {
+    (void)state;
+    static const char *const names[] = {"single", "stack", "pyramid", "pyramid_settled", "stability/time_step"};
+    uint64_t seed = 1;
+    int read = 0, refused = 0;
+    for (int run = 0; run < 4000; run++) {
+        char path[512], text[8192];
+        snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, names[run % 5]);
+        FILE *file = fopen(path, "rb");
+        assert_non_null(file);
+        size_t size = fread(text, 1, sizeof text, file);
+        fclose(file);
+        damage(text, &size, &seed);
+        Error error;
+        Scene *scene = read_bytes(text, size, &error);
+        int line, column;
+        if (scene == NULL) {
+            assert_int_equal(error.kind, ERROR_INPUT);
+            assert_int_equal(sscanf(behind_path(&error), "%d:%d: error: ", &line, &column), 2);
+            assert_true(line >= 1 && column >= 1);
+            assert_int_equal(error.message[strlen(error.message) - 1], '^');
+        }
+        *(scene == NULL ? &refused : &read) += 1;
+        scene_destroy(scene);
+    }
+    /* Damage within a comment has no effect; most other damage is detected. */
+    assert_true(read > 100);
+    assert_true(refused > 1000);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(ten_thousand_bodies_are_the_most),
+        cmocka_unit_test(patterns_count_against_the_same_limit),
+        cmocka_unit_test(many_keys_are_refused),
+        cmocka_unit_test(deep_nesting_is_refused),
+        cmocka_unit_test(aliases_of_aliases_are_refused),
+        cmocka_unit_test(floods_are_refused),
+        cmocka_unit_test(large_line_numbers_keep_the_excerpt_aligned),
+        cmocka_unit_test(large_files_are_refused),
+        cmocka_unit_test(damaged_files_are_read_or_refused_with_their_place),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

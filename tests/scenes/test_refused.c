@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Invalid scene files, and the message for each mistake. */
+#include "scene_text.h"
+
+#include "base/yaml.h"
+
+#define BOX "size: [1, 1], mass: 1, position: [0, 0]"
+#define TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
+
+static const Refused keys[] = {
+    {BASE, "1:1: error: a scene needs the key 'bodies'"},
+    {GROUND, "1:1: error: a scene needs the key 'gravity'"},
+    {"hello\n", "1:1: error: a scene must be a mapping of keys to values (got hello)"},
+    {"- 1\n", "1:1: error: a scene must be a mapping of keys to values (got a list)"},
+    {BASE GROUND "gravty: 1\n", "7:1: error: 'gravty' is not a key of a scene; did you mean 'gravity'?"},
+    {BASE GROUND "colour: red\n", "7:1: error: 'colour' is not a key of a scene; known: gravity, dt, iterations, "
+                                  "warm_starting, accumulate_impulses, "
+                                  "position_correction, frames, overlaps, camera, bodies, bomb, networks, parameters"},
+    {BASE GROUND "\"a\\eb\": red\n",
+     "7:2: error: 'a?b' is not a key of a scene; known: gravity, dt, iterations, "
+     "warm_starting, accumulate_impulses, "
+     "position_correction, frames, overlaps, camera, bodies, bomb, networks, parameters"},
+    {BASE GROUND "dt: 1/30\n", "7:1: error: key 'dt' is given twice"},
+    {BASE GROUND "[a]: 1\n", "7:1: error: a key must be a word"},
+    {BASE GROUND ": 1\n", "7:1: error: expected a key; check the indentation"},
+    {BASE GROUND "\"\": 1\n", "7:2: error: a key must be a word"},
+    {BODY("massa: 1"), "6:6: error: 'massa' is not a key of a body; did you mean 'mass'?"},
+    {BODY("frictoin: 1"), "6:6: error: 'frictoin' is not a key of a body; did you mean 'friction'?"},
+    {BODY(BOX ", mass: 1"), "6:47: error: key 'mass' is given twice"},
+    {BODY("mass: 1, position: [0, 0]"), "6:5: error: a body needs the key 'size'"},
+    {BODY("size: [1, 1], mass: 1"), "6:5: error: a body needs the key 'position'"},
+    {BASE "bodies:\n  - box\n", "6:5: error: a body must be a mapping of keys to values (got box)"},
+    {BASE "bodies:\n", "5:1: error: bodies must be a list of at least one body (got nothing)"},
+    {BASE "bodies: []\n", "5:9: error: bodies must be a list of at least one body (got none)"},
+    {BASE "bodies: {}\n", "5:9: error: bodies must be a list of at least one body (got a mapping)"},
+};
+
+static const Refused numbers[] = {
+    {"gravity: 10\n", "1:10: error: gravity must be a list of two numbers (got 10)"},
+    {"gravity: [10]\n", "1:10: error: gravity must be a list of two numbers (got 1)"},
+    {"gravity: [1, 2, 3]\n", "1:10: error: gravity must be a list of two numbers (got 3)"},
+    {"gravity: [0, [1]]\n", "1:14: error: gravity must be a number (got a list)"},
+    {"gravity: [0, -1e5]\n", "1:14: error: gravity must be from -10000 to 10000 m/s^2 (got -1e5)"},
+    {"gravity: [0, .nan]\n", "1:14: error: gravity must be a number (got .nan)"},
+    {"gravity: [.inf, 0]\n", "1:11: error: gravity must be a number (got .inf)"},
+    {"dt: NaN\n", "1:5: error: dt must be a number (got NaN)"},
+    {"dt: inf\n", "1:5: error: dt must be a number (got inf)"},
+    {"dt: 1e999\n", "1:5: error: dt must be a number (got 1e999)"},
+    {"dt: 1/0\n", "1:5: error: dt is divided by 0 (got 1/0)"},
+    {"dt: 0x1p-6\n", "1:5: error: dt must be a number (got 0x1p-6)"},
+    {"dt: 1 60\n", "1:5: error: dt must be a number (got 1 60)"},
+    {"dt:\n", "1:1: error: dt must be a number (got nothing)"},
+    {"dt: 0\n", "1:5: error: dt must be greater than 0 (got 0)"},
+    {"dt: -1/60\n", "1:5: error: dt must be greater than 0 (got -0.0166666675, from -1/60)"},
+    {"dt: 2\n", "1:5: error: dt must be from 1e-05 to 1 s (got 2)"},
+    {"dt: 1e-6\n", "1:5: error: dt must be from 1e-05 to 1 s (got 1e-6)"},
+    {"iterations: 0\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 0)"},
+    {"iterations: 2.5\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 2.5)"},
+    {"iterations: 1000001\n", "1:13: error: iterations must be a whole number from 1 to 1000000 (got 1000001)"},
+    {"iterations: 99999999999999999999\n",
+     "1:13: error: iterations must be a whole number from 1 to 1000000 (got 99999999999999999999)"},
+    {"frames: [1]\n", "1:9: error: frames must be a whole number from 1 to 1000000 (got a list)"},
+    {"warm_starting: maybe\n", "1:16: error: warm_starting must be on or off (got maybe)"},
+    {"warm_starting: [on]\n", "1:16: error: warm_starting must be on or off (got a list)"},
+    {"camera: {center: [0, 0]}\n", "1:9: error: a camera needs the key 'size'"},
+    {"camera: {size: [0, 1]}\n", "1:17: error: size must be greater than 0 (got 0)"},
+    {"camera: {zoom: 1}\n", "1:10: error: 'zoom' is not a key of a camera; known: center, size"},
+    {"dt: " TEXT_64 "\n", "1:5: error: dt must be a number (got aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
+};
+
+static const Refused bodies[] = {
+    {BODY("size: [1, 1], mass: -10, position: [0, 0]"), "6:26: error: mass must be greater than 0 (got -10)"},
+    {BODY("size: [1, 1], mass: 1e10, position: [0, 0]"), "6:26: error: mass must be from 1e-06 to 1e+09 kg (got 1e10)"},
+    {BODY("size: [1, 1], mass: {a: 1}, position: [0, 0]"), "6:26: error: mass must be a number (got a mapping)"},
+    {BODY("size: [1, 0]"), "6:16: error: size must be greater than 0 (got 0)"},
+    {BODY("size: [-1, 1]"), "6:13: error: size must be greater than 0 (got -1)"},
+    {BODY("size: [1, 1e5]"), "6:16: error: size must be from 0.001 to 10000 m (got 1e5)"},
+    {BODY("position: [0, 2e6]"), "6:20: error: position must be from -1e+06 to 1e+06 m (got 2e6)"},
+    {BODY("angle: 1e5"), "6:13: error: angle must be from -10000 to 10000 rad (got 1e5)"},
+    {BODY("velocity: [1e5, 0]"), "6:17: error: velocity must be from -10000 to 10000 m/s (got 1e5)"},
+    {BODY("spin: 1e5"), "6:12: error: spin must be from -10000 to 10000 rad/s (got 1e5)"},
+    {BODY("friction: -0.1"), "6:16: error: friction must be from 0 to 10 (got -0.1)"},
+    {BODY("friction: 11"), "6:16: error: friction must be from 0 to 10 (got 11)"},
+    {BODY("size: [1, 1], position: [0, 0]"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
+    {BODY("size: [1, 1], position: [0, 0], static: off"), "6:5: error: a body needs the key 'mass', or 'static: true'"},
+    {BODY(BOX ", static: true"), "6:26: error: a static body must not have a mass"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], velocity: [0, 0]"),
+     "6:60: error: a static body must not have the key 'velocity'"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], spin: 1"),
+     "6:56: error: a static body must not have the key 'spin'"},
+    {BODY(BOX ", pattern: heap"), "6:56: error: pattern must be row, stack or pyramid (got heap)"},
+    {BODY(BOX ", pattern: [row]"), "6:56: error: pattern must be row, stack or pyramid (got a list)"},
+    {BODY(BOX ", pattern: row, count: 3"), "6:5: error: a pattern needs the key 'spacing'"},
+    {BODY(BOX ", pattern: row, spacing: [1, 1]"), "6:5: error: a pattern needs the key 'count'"},
+    {BODY(BOX ", count: 3"), "6:54: error: count needs the key 'pattern' beside it"},
+    {BODY(BOX ", spacing: [1, 1]"), "6:56: error: spacing needs the key 'pattern' beside it"},
+    {BODY(BOX ", pattern: row, count: 0"), "6:68: error: count must be a whole number from 1 to 10000 (got 0)"},
+    {BODY(BOX ", pattern: row, count: 3, spacing: [0, 5e5]"), NULL}, /* 0, 5e5, 1e6: just within reach */
+    {BODY(BOX ", pattern: row, count: 4, spacing: [0, 5e5]"),
+     "6:68: error: body 3 of the pattern is at (0, 1.5e+06), beyond 1e+06 m"},
+};
+
+static const Refused untils[] = {
+    {BODY(BOX ", until: 300"), NULL},
+    {BODY(BOX ", until: 0"), "6:54: error: until must be a whole number from 1 to 1000000 (got 0)"},
+    {BODY(BOX ", until: 301"), "6:54: error: until 301 is after the last frame (frames: 300)"},
+    {BODY(BOX ", until: 3}\n  - {" BOX), "6:54: error: only the last body may have an until"},
+    {BODY(BOX ", until: 3") "bomb: {x: 1, y: 15, size: [1, 1], mass: 50}\n",
+     "6:54: error: until cannot be combined with a bomb"},
+    {BODY(BOX ", until: 3, pattern: row, count: 1, spacing: [1, 1]"),
+     "6:54: error: until is only for a single body, not for a pattern"},
+    {BODY("static: on, size: [1, 1], position: [0, 0], until: 1"),
+     "6:57: error: a static body must not have the key 'until'"},
+};
+
+#define BOMB "x: 1, y: 15, size: [1, 1], mass: 50"
+
+static const Refused bombs[] = {
+    {BASE GROUND "bomb: 5\n", "7:7: error: a bomb must be a mapping of keys to values (got 5)"},
+    {BASE GROUND "bomb: {y: 1}\n", "7:7: error: a bomb needs the key 'x'"},
+    {BASE GROUND "bomb: {" BOMB ", angle: 1}\n", "7:45: error: 'angle' is not a key of a bomb; known: x, y, size, "
+                                                 "mass, friction, rotation, spin, frame, velocity, impact_frames"},
+    {BASE GROUND "bomb: {" BOMB ", frame: -1}\n",
+     "7:52: error: frame must be a whole number from 0 to 1000000 (got -1)"},
+    {BASE GROUND "bomb: {" BOMB ", frame: 300}\n", NULL},
+    {BASE GROUND "bomb: {" BOMB ", frame: 301}\n", "7:7: error: the bomb's frame 301 is after the last (frames: 300)"},
+    {BASE GROUND "bomb: {" BOMB ", impact_frames: 0}\n",
+     "7:60: error: impact_frames must be a whole number from 1 to 1000000 (got 0)"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: 3}\n", "7:55: error: velocity must be a list of two numbers (got 3)"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: {}}\n", "7:55: error: a velocity law needs the key 'times_position'"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: {times: 3}}\n",
+     "7:56: error: 'times' is not a key of a velocity law; known: times_position"},
+    {BASE GROUND "bomb: {" BOMB ", velocity: {times_position: 1000}}\n",
+     "7:55: error: the bomb's start velocity is (1000, 15000) m/s; the largest allowed component is 10000"},
+};
+
+#define FAMILY(x, rest) BASE GROUND "bomb: {x: " x ", y: 15, size: [1, 1], " rest "}\n"
+
+static const Refused families[] = {
+    {FAMILY("{from: -5, to: 5, value: 5}",
+            "mass: {from: 1, to: 50}, rotation: {from: -1, to: 1}, spin: {from: 0, to: 2}"),
+     NULL},
+    {FAMILY("{from: -5}", "mass: 50"), "7:11: error: a family of launches needs the key 'to'"},
+    {FAMILY("{from: 5, to: -5}", "mass: 50"), "7:18: error: x: from must be less than to (got 5 and -5)"},
+    {FAMILY("{from: 5, to: 5}", "mass: 50"), "7:18: error: x: from must be less than to (got 5 and 5)"},
+    {FAMILY("{from: .nan, to: 5}", "mass: 50"), "7:18: error: from must be a number (got .nan)"},
+    {FAMILY("{from: -5, to: .inf}", "mass: 50"), "7:26: error: to must be a number (got .inf)"},
+    {FAMILY("{from: -2e6, to: 5}", "mass: 50"), "7:18: error: from must be from -1e+06 to 1e+06 m (got -2e6)"},
+    {FAMILY("{from: -5, to: 5, value: 6}", "mass: 50"), "7:36: error: x: value must be from -5 to 5 (got 6)"},
+    {FAMILY("{from: -5, to: 5, step: 1}", "mass: 50"),
+     "7:29: error: 'step' is not a key of a family of launches; known: from, to, value"},
+    {FAMILY("[-5, 5]", "mass: 50"), "7:11: error: x must be a number (got a list)"},
+    {FAMILY("1", "mass: {from: 0, to: 50}"), "7:48: error: from must be greater than 0 (got 0)"},
+    {FAMILY("1", "mass: 50, frame: {from: 1, to: 2}"),
+     "7:52: error: frame must be a whole number from 0 to 1000000 (got a mapping)"},
+    /* The end of the family that is farthest away is the fastest. */
+    {FAMILY("{from: -5, to: 9000}", "mass: 50, velocity: {times_position: -1.5}"),
+     "7:74: error: the bomb's start velocity is (-13500, -22.5) m/s; the largest allowed component is 10000"},
+};
+
+static const Refused networks[] = {
+    {BASE GROUND "networks: x.npz\n", "7:11: error: networks must be a mapping of methods to files (got x.npz)"},
+    {BASE GROUND "networks: {Pair: x.npz}\n", "7:12: error: a method's name must consist of a-z, 0-9 and - (got Pair)"},
+    {BASE GROUND "networks: {a: [b]}\n", "7:15: error: a network must be the path of a file (got a list)"},
+    {BASE GROUND "networks: {a: \"\"}\n", "7:16: error: a network must be the path of a file (got nothing)"},
+    {BASE GROUND "networks: {a: \"b\\nc\"}\n", "7:16: error: a network must be the path of a file (got b?c)"},
+    {BASE GROUND "networks: {a: b, a: c}\n", "7:18: error: key 'a' is given twice"},
+    {BASE GROUND "networks: {a: b, b: b, c: b, d: b, e: b, f: b, g: b, h: b, "
+                 "i: b, j: b, k: b, l: b, m: b, n: b, o: b, p: b, q: b}\n",
+     "7:108: error: a scene must have at most 16 networks"},
+    {BASE GROUND "networks: {a: " TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 TEXT_64 "}\n",
+     "7:15: error: the path of a network must have at most 511 bytes"},
+    {BASE GROUND "networks: {" TEXT_64 TEXT_64 ": b}\n",
+     "7:12: error: a method's name must consist of a-z, 0-9 and - (got "
+     "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...)"},
+};
+
+static const Refused yaml[] = {
+    {"a: &x 1\n", "1:4: error: anchors (&) are not allowed"},
+    {"a: *x\n", "1:4: error: aliases (*) are not allowed"},
+    {"a: !x 1\n", "1:4: error: tags (!) are not allowed"},
+    {"a: !!float 1\n", "1:4: error: tags (!) are not allowed"},
+    {BASE GROUND "<<: {dt: 1}\n", "7:1: error: '<<' is not a key of a scene; known: gravity, dt, iterations, "
+                                  "warm_starting, accumulate_impulses, "
+                                  "position_correction, frames, overlaps, camera, bodies, bomb, networks, parameters"},
+    {"%YAML 1.1\n---\na: 1\n", "1:1: error: YAML directives are not allowed"},
+    {BASE GROUND "---\n" BASE GROUND, "7:1: error: a file must hold one document only"},
+    {"a: \"\\0\"\n", "1:5: error: a text must not contain the character \\0"},
+    {"a: \x01\n", "1:4: error: control character 0x01"},
+    {"a: \xc2\x85\n", "1:4: error: the character U+0085 is not allowed"},
+    {"a: x\xe2\x80\xa8y\n", "1:5: error: the character U+2028 is not allowed"},
+    {"a: \xef\xbb\xbf\n", "1:4: error: the character U+FEFF is not allowed"},
+    {"a: b\n\xc3\xa4\xff\n", "2:2: error: not UTF-8 text"},
+    {"a: \xc0\x80\n", "1:4: error: not UTF-8 text"},
+    {"a: \xed\xa0\x80\n", "1:4: error: not UTF-8 text"},
+    {"a: \xf4\x90\x80\x80\n", "1:4: error: not UTF-8 text"},
+    {"a: \xe2\x82", "1:4: error: not UTF-8 text"},
+    {"\xff\xfe"
+     "a",
+     "1:1: error: not UTF-8 text"},
+    {"", "1:1: error: the file is empty"},
+    {"# nothing\n", "1:1: error: the file is empty"},
+};
+
+static void keys_are_checked(void **state) { (void)state, CHECK_TABLE(keys); }
+static void numbers_are_checked(void **state) { (void)state, CHECK_TABLE(numbers); }
+static void bodies_are_checked(void **state) { (void)state, CHECK_TABLE(bodies); }
+static void untils_are_checked(void **state) { (void)state, CHECK_TABLE(untils); }
+static void bombs_are_checked(void **state) { (void)state, CHECK_TABLE(bombs); }
+static void families_are_checked(void **state) { (void)state, CHECK_TABLE(families); }
+static void networks_are_checked(void **state) { (void)state, CHECK_TABLE(networks); }
+static void yaml_is_checked(void **state) { (void)state, CHECK_TABLE(yaml); }
+
+static void nul_bytes_are_refused(void **state) {
+    (void)state;
+    static const char text[] = "dt: 1\0\niterations: 10\n";
+    expect_refused_bytes(text, sizeof text - 1,
+                         "1:6: error: control character 0x00\n"
+                         "    1 | dt: 1?\n"
+                         "      |      ^");
+}
+
+/* Words of rare mistakes are libyaml's. */
+static const Refused syntax[] = {
+    {"gravity: [0, -10\ndt: 1\n", "2:3: error: expected ',' or ']'"},
+    {"a: {b: 1, c [1]}\n", "1:13: error: expected ',' or '}'"},
+    {"a: 1\n b: 1\n",
+     "2:3: error: a key cannot be here; check the indentation, the ':' above, and quotes around texts with ':'"},
+    {"a: [1]\n b: 1\n", "2:2: error: expected a key; check the indentation"},
+    {"a: b: c\n",
+     "1:5: error: a key cannot be here; check the indentation, the ':' above, and quotes around texts with ':'"},
+    {"a: - b\n", "1:4: error: an item '- ' cannot be here; check the indentation"},
+    {"a:\n\t- b\n", "2:1: error: a tab must not indent; use blanks"},
+    {"a: @b\n", "1:4: error: a text cannot begin with this character; use quotes"},
+    {"a: ]\n", "1:4: error: expected a value"},
+    {"a: \"\\q\"\n", "1:4: error: a text in double quotes has an unknown escape; write \\\\ for a backslash"},
+    {"a: 1\nb\nc: 1\n", "2:1: error: a key needs a ':' and a blank behind it"},
+    {"- a\nb: c\n", "2:1: error: expected '- ' for the next item; check the indentation"},
+};
+
+static void syntax_errors_have_place_and_excerpt(void **state) {
+    (void)state;
+    CHECK_TABLE(syntax);
+    Error error;
+    assert_null(read_text("dt: 1\nframes: \"3\n", &error));
+    assert_int_equal(error.kind, ERROR_INPUT);
+    assert_int_equal(strncmp(behind_path(&error), "2:9: ", 5), 0);
+    assert_non_null(strstr(error.message, "\n    2 | frames: \"3\n      | "));
+    assert_int_equal(error.message[strlen(error.message) - 1], '^');
+}
+
+static void excerpt_points_at_the_value(void **state) {
+    (void)state;
+    expect_refused("dt: 1/60\nframes: few\n", "2:9: error: frames must be a whole number from 1 to 1000000 (got few)\n"
+                                              "    2 | frames: few\n"
+                                              "      |         ^");
+    expect_refused("dt: 1/60\r\nframes: few\r\n",
+                   "2:9: error: frames must be a whole number from 1 to 1000000 (got few)\n"
+                   "    2 | frames: few\n"
+                   "      |         ^");
+}
+
+static void excerpt_keeps_tabs_and_counts_characters(void **state) {
+    (void)state;
+    expect_refused("{\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n",
+                   "1:3: error: '\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80' is not a key of a scene; known: gravity, dt, "
+                   "iterations, "
+                   "warm_starting, accumulate_impulses, position_correction, frames, overlaps, camera, bodies, bomb, "
+                   "networks, parameters\n"
+                   "    1 | {\"\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80\":\t1}\n"
+                   "      |   ^");
+    expect_refused("{dt:\t\"\xc3\xa4\"\t}\n", "1:7: error: dt must be a number (got \xc3\xa4)\n"
+                                              "    1 | {dt:\t\"\xc3\xa4\"\t}\n"
+                                              "      |     \t ^");
+    expect_refused("{\"\xc3\xa4\": 1\x07}\n", "1:8: error: control character 0x07\n"
+                                              "    1 | {\"\xc3\xa4\": 1?}\n"
+                                              "      |        ^");
+}
+
+static void byte_order_mark_is_no_character(void **state) {
+    (void)state;
+    expect_refused("\xef\xbb\xbfhello\n", "1:1: error: a scene must be a mapping of keys to values (got hello)\n"
+                                          "    1 | hello\n"
+                                          "      | ^");
+}
+
+static void places_beyond_the_text_are_shown_at_its_end(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        Place place;
+        const char *message;
+    } cases[] = {{"a\nbc\r\n", {2, 0}, "x:2:3: error: e\n    2 | bc\n      |   ^"},
+                 {"a\nbc", {9, 9}, "x:2:3: error: e\n    2 | bc\n      |   ^"},
+                 {"a\nbc", {0, 9}, "x:1:2: error: e\n    1 | a\n      |  ^"},
+                 {"", {0, 1}, "x:1:1: error: e\n    1 | \n      | ^"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[8];
+        strcpy(text, cases[i].text);
+        const Source source = {"x", text, strlen(text)};
+        Error error = {.kind = ERROR_NONE};
+        assert_false(source_error(&source, cases[i].place, &error, "e"));
+        assert_string_equal(error.message, cases[i].message);
+    }
+}
+
+/* Marks that turn the direction of text could make a line look like another one. */
+static void excerpt_hides_what_does_not_print(void **state) {
+    (void)state;
+    expect_refused("dt: \"\xe2\x80\xae\xe2\x80\x8bx\"\n", "1:6: error: dt must be a number (got ??x)\n"
+                                                          "    1 | dt: \"??x\"\n"
+                                                          "      |      ^");
+}
+
+static void excerpt_of_a_long_line_is_cut_around_the_caret(void **state) {
+    (void)state;
+    expect_refused(
+        "{dt: 1, \"" TEXT_64 TEXT_64 "\": 1, " TEXT_64 TEXT_64 ": 2}\n",
+        "1:10: error: 'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...' is not a key of a scene; known: gravity, dt, "
+        "iterations, warm_starting, accumulate_impulses, position_correction, frames, overlaps, camera, bodies, bomb, "
+        "networks, parameters\n"
+        "    1 | {dt: 1, \"" TEXT_64 "aaaaaaaaaaaaaaaaaaaaaaaaaaa...\n"
+        "      |          ^");
+    expect_refused("[" TEXT_64 TEXT_64 ", &a b, " TEXT_64 "]\n",
+                   "1:132: error: anchors (&) are not allowed\n"
+                   "    1 | ...aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa, &a b, "
+                   "aaaaaaaaaaaaaaaaaaaaaaaa...\n"
+                   "      |    "
+                   "                                                                      ^");
+}
+
+static void files_that_are_no_files_are_refused(void **state) {
+    (void)state;
+    static const char *const paths[] = {"/dev/zero", "/tmp", "/nonexistent/scene.yaml"};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        Error error = {.kind = ERROR_NONE};
+        assert_refused(scene_read(paths[i], &error), paths[i]);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(keys_are_checked),
+        cmocka_unit_test(numbers_are_checked),
+        cmocka_unit_test(bodies_are_checked),
+        cmocka_unit_test(untils_are_checked),
+        cmocka_unit_test(bombs_are_checked),
+        cmocka_unit_test(families_are_checked),
+        cmocka_unit_test(networks_are_checked),
+        cmocka_unit_test(yaml_is_checked),
+        cmocka_unit_test(nul_bytes_are_refused),
+        cmocka_unit_test(syntax_errors_have_place_and_excerpt),
+        cmocka_unit_test(excerpt_points_at_the_value),
+        cmocka_unit_test(excerpt_keeps_tabs_and_counts_characters),
+        cmocka_unit_test(byte_order_mark_is_no_character),
+        cmocka_unit_test(places_beyond_the_text_are_shown_at_its_end),
+        cmocka_unit_test(excerpt_hides_what_does_not_print),
+        cmocka_unit_test(excerpt_of_a_long_line_is_cut_around_the_caret),
+        cmocka_unit_test(files_that_are_no_files_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

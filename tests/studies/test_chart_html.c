@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the page of a chart says of times: on which processor they were measured, and which are left out. */
+#include "testing.h"
+
+#include "studies/chart.h"
+#include "base/file.h"
+
+#include <math.h>
+
+static ChartRow make_row(const char *scene, const char *method, const char *cpu) {
+    const bool timed = cpu[0] != '\0';
+    return (ChartRow){.scene = scene,
+                      .method = method,
+                      .setting = "k=10",
+                      .protocol = PROTOCOL_CLOSED,
+                      .phase = PHASE_IMPACT,
+                      .launches = 7,
+                      .us_solver = timed ? 5 : NAN,
+                      .us_solver_q1 = timed ? 4 : NAN,
+                      .us_solver_q3 = timed ? 6 : NAN,
+                      .us_step = NAN,
+                      .instructions = NAN,
+                      .error_mean = 0.5,
+                      .error_median = NAN,
+                      .error_p95 = NAN,
+                      .error_worst = NAN,
+                      .share_right = NAN,
+                      .penetration_max = NAN,
+                      .drift = NAN,
+                      .energy = NAN,
+                      .moved = NAN,
+                      .cpu = cpu};
+}
+
+/* The page of these rows, without links. To be freed. */
+static char *write_page(const ChartRow *rows, int count) {
+    Error error = {0};
+    size_t size;
+    assert_ok(csv_table_write(temporary_path("chart.csv"), &chart_layout, rows, count, &error), error);
+    assert_ok(csv_table_write(temporary_path("chart_pages.csv"), &launch_page_layout, NULL, 0, &error), error);
+    assert_ok(chart_html_write(temporary_folder, &error), error);
+    char *text = file_read(temporary_path("chart.html"), 1 << 20, &size, &error);
+    assert_ok(text != NULL, error);
+    return text;
+}
+
+static void the_page_names_the_processor(void **state) {
+    (void)state;
+    const ChartRow rows[] = {make_row("single", "engine", "Quick & <Co>"), make_row("stack", "engine", "Quick & <Co>")};
+    char *text = write_page(rows, 2);
+    assert_non_null(strstr(text, "<p class=\"soft\">Times measured on Quick &amp; &lt;Co&gt;.</p>"));
+    assert_non_null(strstr(text, "src=\"chart-stack.svg\""));
+    assert_null(strstr(text, "Without a chart"));
+    free(text);
+}
+
+static void a_scene_without_times_has_no_chart(void **state) {
+    (void)state;
+    const ChartRow rows[] = {make_row("single", "engine", "AMD"), make_row("stack", "engine", "")};
+    char *text = write_page(rows, 2);
+    assert_non_null(strstr(text, "Times measured on AMD. Those of other processors are left out."));
+    const char *stack = strstr(text, "<h2>stack, 7 launches</h2>");
+    assert_non_null(stack);
+    assert_non_null(strstr(stack, "Without a chart: its times were measured on another processor."));
+    assert_null(strstr(text, "src=\"chart-stack.svg\""));
+    assert_non_null(strstr(text, "src=\"chart-single.svg\""));
+    free(text);
+}
+
+static void old_tables_name_no_processor(void **state) {
+    (void)state;
+    ChartRow rows[] = {make_row("single", "engine", "AMD")};
+    rows[0].cpu = "";
+    char *text = write_page(rows, 1);
+    assert_null(strstr(text, "Times measured"));
+    free(text);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_page_names_the_processor),
+        cmocka_unit_test(a_scene_without_times_has_no_chart),
+        cmocka_unit_test(old_tables_name_no_processor),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

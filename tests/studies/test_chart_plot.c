@@ -1,0 +1,358 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* chart.csv: invented numbers, modelled on measured ones; twelve methods. */
+#include "python.h"
+
+#include "studies/chart.h"
+#include "studies/first_line.h"
+
+#include "base/file.h"
+#include "studies/chart_internal.h"
+#include "methods/methods.h"
+
+#include <math.h>
+
+#define SAMPLE SOURCE_DIR "/tests/studies/chart.csv"
+
+static const char *drawn_file(const char *scene, const char *ending) {
+    char name[128];
+    snprintf(name, sizeof name, "chart-%s.%s", scene, ending);
+    return temporary_path(name);
+}
+
+static const char *folder(void) {
+    temporary_path(""); /* makes it */
+    return temporary_folder;
+}
+
+static char *read_drawn(const char *scene, const char *ending, size_t *size) {
+    Error error = {0};
+    char *data = file_read(drawn_file(scene, ending), 1 << 24, size, &error);
+    assert_ok(data != NULL, error);
+    return data;
+}
+
+static void three_files_are_drawn(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
+    size_t size;
+    char *png = read_drawn("pyramid_settled", "png", &size);
+    /* 174 x 100 mm at 300 dots per inch: 2055 x 1181. */
+    assert_memory_equal(png, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x08\x07\0\0\x04\x9d", 24);
+    assert_true(size > 50000);
+    free(png);
+    char *pdf = read_drawn("pyramid_settled", "pdf", &size);
+    assert_memory_equal(pdf, "%PDF-", 5);
+    assert_true(size > 5000);
+    free(pdf);
+    expect_first_line("pdfinfo", drawn_file("pyramid_settled", "pdf"),
+                      "Title:           Speed and accuracy: pyramid_settled, 40 launches");
+    run_python(
+        "import sys, xml.etree.ElementTree as tree\n"
+        "root = tree.parse(sys.argv[1]).getroot()\n"
+        "assert root.tag == '{http://www.w3.org/2000/svg}svg', root.tag\n"
+        "assert root[0].text == 'Speed and accuracy: pyramid_settled, 40 launches', root[0].text\n"
+        "assert 'font/otf' in root[1].text and 'Arial' in root.get('font-family')\n"
+        "texts = ' | '.join(t for e in root.iter('{http://www.w3.org/2000/svg}text') for t in e.itertext())\n"
+        "for wanted in ('Impact frames', 'The 60 frames after', 'engine as shipped', 'engine:warm=off',\n"
+        "               'momentum-schedule', 'playback', 'pair-net', 'Pareto front of solvers', 'k=100', 'm/s',\n"
+        "               'pyramid_settled, 40 launches', 'Beyond the axes: reference (2232 to 2400 µs, below 0.0001 "
+        "m/s)'):\n"
+        "    assert wanted in texts, (wanted, texts)\n",
+        drawn_file("pyramid_settled", "svg"));
+}
+
+static void the_same_table_gives_the_same_files(void **state) {
+    (void)state;
+    static const char *const endings[] = {"png", "svg", "pdf"};
+    Error error = {0};
+    size_t size[2][3];
+    char *data[2][3];
+    for (int run = 0; run < 2; run++) {
+        assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
+        for (int i = 0; i < 3; i++) data[run][i] = read_drawn("pyramid_settled", endings[i], &size[run][i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(size[0][i], size[1][i]);
+        assert_memory_equal(data[0][i], data[1][i], size[0][i]);
+        free(data[0][i]);
+        free(data[1][i]);
+    }
+}
+
+#define HEADER                                                                                               \
+    "scene,method,setting,protocol,phase,launches,us_solver,us_solver_q1,us_solver_q3,us_step,instructions," \
+    "error_mean,error_median,error_p95,error_worst,share_right,penetration_max,drift,energy,moved\n"
+
+static const char *write_rows(const char *lines) {
+    Error error = {0};
+    char text[20000];
+    int length = snprintf(text, sizeof text, "%s%s", HEADER, lines);
+    const char *path = temporary_path("rows.csv");
+    assert_ok(file_write(path, text, (size_t)length, &error), error);
+    return path;
+}
+
+static void expect_refused(const char *lines, const char *scene, const char *message) {
+    Error error = {0};
+    assert_refused(chart_plot(write_rows(lines), scene, folder(), &error), message);
+    assert_int_equal(access(drawn_file("single", "png"), F_OK), -1);
+}
+
+static void tables_without_a_mark_are_refused(void **state) {
+    (void)state;
+    static const char none[] = "rows.csv: error: no row of the scene 'single' in closed loop has a time and an error";
+    expect_refused("stack,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "single", none);
+    expect_refused("single,engine,k=10,frozen,impact,40,5,4,6,,,1,,,,,,,,\n"
+                   "single,engine,k=10,closed,rest,40,5,4,6,,,1,,,,,,,,\n"
+                   "single,engine,k=30,closed,impact,40,5,4,6,,,,,,,,,,,\n"
+                   "single,engine,k=40,closed,impact,40,,,,,,1,,,,,,,,\n"
+                   "single,engine,k=50,closed,impact,40,0,0,0,,,1,,,,,,,,\n",
+                   "single", none);
+    expect_refused("single,engine,k=10,closed,impact,40,5,4,6,,,-1,,,,,,,,\n", "single",
+                   "error_mean: '-1' is less than 0");
+    expect_refused("../x,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "../x", "is not a valid scene name");
+    char many[8000] = "";
+    for (int i = 0; i <= CHART_MAX_LINES; i++)
+        snprintf(many + strlen(many), 200, "single,m%d,,closed,impact,40,5,4,6,,,1,,,,,,,,\n", i);
+    expect_refused(many, "single", "at most 32 methods");
+}
+
+static void one_mark_and_one_panel_are_enough(void **state) {
+    (void)state;
+    Error error = {0};
+    assert_ok(
+        chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &error),
+        error);
+    assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
+}
+
+/* A note names the methods whose errors have another target. Without such methods the chart has no note. */
+static void a_target_without_push_out_is_noted(void **state) {
+    (void)state;
+    Error error = {0};
+    static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                               "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                               "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n";
+    const char *const end = strchr(rows, '\n') + 1;
+    char engine[200];
+    snprintf(engine, sizeof engine, "%.*s", (int)(end - rows), rows);
+    size_t size;
+    assert_ok(chart_plot(write_rows(rows), "stack", folder(), &error), error);
+    char *noted = read_drawn("stack", "svg", &size);
+    assert_non_null(strstr(noted, "soft-step, avbd: error against the solution without the velocity that pushes"));
+    assert_ok(chart_plot(write_rows(engine), "stack", folder(), &error), error);
+    char *silent = read_drawn("stack", "svg", &size);
+    assert_null(strstr(silent, "error against"));
+    free(noted);
+    free(silent);
+}
+
+/* The maximum number of methods, with the longest names and settings. */
+static void a_full_chart_is_drawn(void **state) {
+    (void)state;
+    Error error = {0};
+    char lines[20000] = "";
+    for (int i = 0; i < CHART_MAX_LINES * 5; i++)
+        snprintf(lines + strlen(lines), 200,
+                 "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n",
+                 i % CHART_MAX_LINES, i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
+    assert_ok(chart_plot(write_rows(lines), "full", folder(), &error), error);
+}
+
+/* A table may have any texts: what is drawn of them is text. */
+static void names_stay_texts(void **state) {
+    (void)state;
+    static const char *const names[] = {"'; x='",         "</text><script>", "&amp;",
+                                        "`touch victim`", "\xc3\x28'\\",     "%s %d %n"};
+    char *lines = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&lines, &size);
+    assert_non_null(file);
+    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
+        for (int k = 1; k <= 2; k++) {
+            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,impact,40,%d,%d,%d,,,%d,,,,,,,,\n", names[i], k, names[i],
+                    5 * k, 4 * k, 6 * k, i + 1);
+            fprintf(file, "hostile,\"%s\",\"k=%d,%s\",closed,after,40,1,1,1,,,0,,,,,,,,\n", names[i], k, names[i]);
+        }
+    fclose(file);
+    const char *path = write_rows(lines);
+    free(lines);
+    Error error = {0};
+    assert_ok(chart_plot(path, "hostile", folder(), &error), error);
+    run_python("import sys, xml.etree.ElementTree as tree\n"
+               "root = tree.parse(sys.argv[1]).getroot()\n"
+               "kinds = {e.tag.split('}')[1] for e in root.iter()}\n"
+               "assert kinds == {'svg', 'title', 'style', 'rect', 'path', 'text'}, kinds\n"
+               "assert any('s ?d ?n' in (e.text or '') for e in root.iter()), 'no name'\n",
+               drawn_file("hostile", "svg"));
+}
+
+static void texts_become_plain(void **state) {
+    (void)state;
+    char plain[CHART_TEXT_SIZE];
+    chart_plain(plain, "engine, warm=off (k=10)");
+    assert_string_equal(plain, "engine, warm=off (k=10)");
+    /* Characters that names do not have. */
+    chart_plain(plain, "'\"`\\@$#;!|&<>{}^~%\n\x7f\xc3\xff?");
+    assert_string_equal(plain, "???????????????????????");
+    /* Letters of the font are kept, a letter with its mark too; others, controls and lone marks are not. */
+    chart_plain(plain, "\xc3\xa4 a\xcc\x88 \xe6\x97\xa5 \xc2\x85 q\xcc\x88");
+    assert_string_equal(plain, "\xc3\xa4 a\xcc\x88 ? ? q?");
+    chart_plain(plain, "01234567890123456789012345678901234\xc3\xa4"
+                       "6789"); /* not cut within a letter */
+    assert_string_equal(plain, "01234567890123456789012345678901234...");
+    chart_plain(plain, "0123456789012345678901234567890123456789");
+    assert_string_equal(plain, "012345678901234567890123456789012345...");
+}
+
+static void marks_are_gathered_by_line_and_time(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    assert_ok(chart_csv_read(&table,
+                             write_rows("single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+                                        "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,,\n"
+                                        "stack,engine,k=10,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                        "stack,engine,k=5,closed,impact,39,2,2,2,,,3,,,,,,,,\n"
+                                        "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,,\n"
+                                        "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,,\n"),
+                             &error),
+              error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", "rows.csv", &error), error);
+    assert_int_equal(chart.line_count, 2);
+    assert_string_equal(chart.lines[0].name, "engine");
+    assert_string_equal(chart.lines[1].name, "momentum:warm=off");
+    assert_int_equal(chart.launches, 40);
+    assert_int_equal(chart.lines[0].left_out, 0);
+    assert_int_equal(chart.floored, 1); /* 1e-9 */
+    const ChartPanel *impact = &chart.panels[0];
+    assert_int_equal(impact->count, 3);
+    assert_int_equal(chart.panels[1].count, 2);
+    assert_true(chart.panels[1].marks[0].error == 1e-4);
+    assert_string_equal(impact->marks[0].label, "k=5");
+    assert_true(impact->marks[0].on_front && !impact->marks[0].shipped);
+    assert_string_equal(impact->marks[1].label, "k=10");
+    assert_true(!impact->marks[1].on_front && impact->marks[1].shipped);
+    assert_string_equal(impact->marks[2].label, "k=7,b=0.5");
+    assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
+    chart_free(&chart);
+    chart_csv_free(&table);
+}
+
+/* A baseline a thousand times faster would push the methods that compete into a corner. */
+static void the_axes_show_what_competes(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    const char *path = write_rows("stack,engine,k=5,closed,impact,40,20,19,21,,,1,,,,,,,,\n"
+                                  "stack,engine,k=100,closed,impact,40,200,190,210,,,0.1,,,,,,,,\n"
+                                  "stack,playback,launches=25,closed,impact,40,0.2,0.1,0.3,,,0.05,,,,,,,,\n"
+                                  "stack,playback,launches=100,closed,after,40,0.4,0.3,0.5,,,0.01,,,,,,,,\n"
+                                  "stack,constant,,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                  "stack,reference,,closed,impact,40,400,390,410,,,0,,,,,,,,\n");
+    assert_ok(chart_csv_read(&table, path, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    chart_csv_free(&table);
+    assert_true(chart.us_least == 4 && chart.us_most == 210); /* the constant is near */
+    assert_true(chart.error_least == 0.1 && chart.error_most == 3);
+    assert_int_equal(chart.panels[0].count, 3);
+    assert_int_equal(chart.panels[1].count, 0);
+    assert_int_equal(chart.floored, 0);
+    const ChartLine *playback = &chart.lines[1];
+    assert_int_equal(playback->beyond, 2);
+    assert_true(playback->beyond_us[0] == 0.2 && playback->beyond_us[1] == 0.4);
+    assert_true(playback->beyond_error[0] == 0.01 && playback->beyond_error[1] == 0.05);
+    chart_free(&chart);
+    assert_ok(chart_plot(path, "stack", folder(), &error), error);
+    size_t size;
+    char *svg = read_drawn("stack", "svg", &size);
+    assert_non_null(strstr(svg, "Beyond the axes: playback (0.2 to 0.4 µs, 0.01 to 0.05 m/s), "
+                                "reference (400 µs, below 0.0001 m/s)"));
+    free(svg);
+}
+
+/* Methods keep their colour, whichever others are in the chart; all lines differ. */
+static void a_method_has_one_style_in_all_charts(void **state) {
+    (void)state;
+    const MethodDescription *engine = method_describe("engine"), *momentum = method_describe("momentum");
+    PlotStyle one[2], other[CHART_MAX_LINES];
+    plot_method_styles((const MethodDescription *[]){momentum, engine}, 2, one);
+    const MethodDescription *many[CHART_MAX_LINES] = {engine, NULL, momentum, momentum};
+    plot_method_styles(many, CHART_MAX_LINES, other);
+    assert_int_equal(one[0].colour, plot_method_colour(METHOD_GREEN));
+    assert_int_equal(one[0].colour, other[2].colour);
+    assert_int_equal(one[0].symbol, other[2].symbol);
+    assert_int_equal(other[3].colour, other[2].colour); /* a second line of one method: its symbol, open */
+    assert_true(other[3].symbol == other[2].symbol && other[3].open && !other[2].open);
+    for (int i = 0; i < CHART_MAX_LINES; i++)
+        for (int k = 0; k < i; k++)
+            assert_true(other[i].symbol != other[k].symbol || other[i].open != other[k].open ||
+                        other[i].colour != other[k].colour);
+}
+
+/* One mark by the stopping rule between two of a fixed number of sweeps would bend their line. */
+static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    const char *path = write_rows("stack,momentum,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
+                                  "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
+                                  "stack,momentum,\"k=5,near=0.1\",closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
+                                  "stack,momentum,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                  "stack,scene-net,,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                  "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n"
+                                  "stack,momentum,\"near=0.5,more=96\",closed,impact,40,6,6,6,,,1,,,,,,,,\n"
+                                  "stack,scene-net,more=96,closed,impact,40,6,6,6,,,1,,,,,,,,\n");
+    assert_ok(chart_csv_read(&table, path, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    assert_int_equal(chart.line_count, 3);
+    assert_string_equal(chart.lines[0].name, "momentum");
+    assert_string_equal(chart.lines[1].name, "momentum:near");
+    assert_string_equal(chart.lines[2].name, "scene-net");
+    assert_int_equal(chart.lines[0].marks[0], 2);
+    for (int i = 1; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 3);
+    assert_string_equal(chart.panels[0].marks[3].label, "k=5,near=0.1");
+    chart_free(&chart);
+    chart_csv_free(&table);
+}
+
+/* Two names that are equal where they are truncated. */
+static void truncated_names_stay_distinct(void **state) {
+    (void)state;
+    Error error = {0};
+    ChartTable table;
+    const char *path = write_rows(
+        "stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+        "stack,a-name-of-more-than-forty-characters-which-ends-in-2,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n");
+    assert_ok(chart_csv_read(&table, path, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    assert_int_equal(chart.line_count, 2);
+    assert_string_equal(chart.lines[0].name, "a-name-of-more-than-forty-characters...");
+    assert_string_equal(chart.lines[1].name, chart.lines[0].name);
+    chart_free(&chart);
+    chart_csv_free(&table);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(three_files_are_drawn),
+        cmocka_unit_test(the_same_table_gives_the_same_files),
+        cmocka_unit_test(tables_without_a_mark_are_refused),
+        cmocka_unit_test(one_mark_and_one_panel_are_enough),
+        cmocka_unit_test(a_target_without_push_out_is_noted),
+        cmocka_unit_test(a_full_chart_is_drawn),
+        cmocka_unit_test(names_stay_texts),
+        cmocka_unit_test(texts_become_plain),
+        cmocka_unit_test(marks_are_gathered_by_line_and_time),
+        cmocka_unit_test(the_axes_show_what_competes),
+        cmocka_unit_test(a_method_has_one_style_in_all_charts),
+        cmocka_unit_test(runs_with_a_stopping_rule_are_a_line_of_their_own),
+        cmocka_unit_test(truncated_names_stay_distinct),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "testing.h"
+
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+#include <math.h>
+
+static Scene *read_scene(const char *name) {
+    Error error = {0};
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static ClosedLoop run(const char *text, const Scene *scene) {
+    Error error = {0};
+    Method method;
+    ClosedLoop result;
+    assert_ok(method_parse(&method, text, &error), error);
+    assert_ok(closed_loop_run(&method, scene, 1, &result, &error), error);
+    return result;
+}
+
+/* The engine conserves momentum; friction and inelastic impacts only dissipate energy. */
+static void the_engine_equals_itself(void **state) {
+    (void)state;
+    Scene *scene = read_scene("single");
+    ClosedLoop result = run("engine", scene);
+    assert_near(result.frames_until_apart, CLOSED_LOOP_FRAMES, 0);
+    assert_near(result.momentum_error, 0, 0);
+    assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
+    assert_true(result.penetration_max > 0);
+    scene_destroy(scene);
+}
+
+/* With one sweep and no warm start a stack of ten sinks. */
+static void a_poor_method_diverges_from_the_engine(void **state) {
+    (void)state;
+    Scene *scene = read_scene("stack");
+    ClosedLoop poor = run("engine:k=1,warm=off", scene), same = run("engine", scene);
+    assert_true(poor.frames_until_apart > 1 && poor.frames_until_apart < 100);
+    assert_true(poor.penetration_max > same.penetration_max);
+    scene_destroy(scene);
+}
+
+/* The energy that a late bomb brings is not counted as created by the method. */
+static void energy_counts_from_the_bomb_on(void **state) {
+    (void)state;
+    Scene *scene = read_scene("single");
+    scene->bomb.frame = 30;
+    ClosedLoop result = run("engine", scene);
+    assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
+    scene_destroy(scene);
+}
+
+/* The interior method is close to the converged run of the stack for longer than to the engine's. */
+static void runs_are_compared_with_the_engine_and_with_the_converged_run(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("stack");
+    scene->frames = 60;
+    Method method;
+    RunLog engine = {0}, converged = {0};
+    Rollout rollout = {0};
+    LaunchLoop loop;
+    assert_ok(method_parse(&method, "interior", &error), error);
+    assert_ok(closed_loop_log(&engine, "engine", scene, &error), error);
+    assert_ok(closed_loop_log(&converged, "reference", scene, &error), error);
+    assert_ok(closed_loop_launch(&rollout, &method, scene, &engine, &converged, &loop, &error), error);
+    assert_true(loop.frames_engine < loop.frames_converged && loop.frames_converged <= 60);
+    assert_int_equal(loop.steps, 60);
+    assert_true(loop.energy_most >= loop.energy_put_in && loop.penetration > 0);
+    assert_ok(closed_loop_launch(&rollout, &method, scene, &engine, NULL, &loop, &error), error);
+    assert_true(isnan(loop.frames_converged));
+    rollout_free(&rollout);
+    run_log_free(&engine);
+    run_log_free(&converged);
+    scene_destroy(scene);
+}
+
+static void both_methods_are_timed(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("stack");
+    scene->frames = 60;
+    const Sampling sampling = {.after = 20, .rest = 20};
+    SnapshotList states = {0};
+    assert_ok(snapshots_add(&states, scene, &sampling, &error), error);
+    Method method;
+    double us_step = 0, us_step_engine = 0;
+    assert_ok(method_parse(&method, "engine:k=1", &error), error);
+    assert_ok(closed_loop_time(&method, &states, 3, &us_step, &us_step_engine, &error), error);
+    assert_true(us_step > 0 && us_step_engine > 0);
+    snapshots_free(&states);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_engine_equals_itself), cmocka_unit_test(a_poor_method_diverges_from_the_engine),
+        cmocka_unit_test(energy_counts_from_the_bomb_on), cmocka_unit_test(both_methods_are_timed),
+        cmocka_unit_test(runs_are_compared_with_the_engine_and_with_the_converged_run)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Who takes part in a study. */
+#include "testing.h"
+
+#include "studies/chart.h"
+
+static ContenderList parse(const char *text) {
+    Error error = {0};
+    ContenderList list;
+    assert_ok(contenders_parse(&list, text, STUDY_CHART, &error), error);
+    return list;
+}
+
+static void assert_contender(const ContenderList *list, int i, const char *name, const char *setting) {
+    assert_true(i < list->count);
+    assert_string_equal(list->items[i].name, name);
+    assert_string_equal(list->items[i].setting, setting);
+}
+
+static void a_comma_separates_methods_or_settings(void **state) {
+    (void)state;
+    ContenderList list = parse("engine:k=3,warm=off,momentum:k=20,constant,engine:k=3");
+    assert_int_equal(list.count, 4);
+    assert_contender(&list, 0, "engine", "k=3,warm=off");
+    assert_contender(&list, 1, "momentum", "k=20");
+    assert_contender(&list, 2, "constant", "");
+    assert_contender(&list, 3, "engine", "k=3");
+    assert_string_equal(list.items[0].method.text, "engine:k=3,warm=off");
+    contenders_free(&list);
+}
+
+static void a_name_alone_stands_for_all_its_settings(void **state) {
+    (void)state;
+    ContenderList engine = parse("engine"), both = parse("engine,momentum"), all = parse(NULL);
+    assert_contender(&engine, 0, "engine", "k=1");
+    assert_true(engine.count > 4);
+    assert_true(both.count > engine.count);
+    assert_contender(&both, engine.count, "momentum", "k=5");
+    assert_true(all.count > 2 * both.count);
+    contenders_free(&engine);
+    contenders_free(&both);
+    contenders_free(&all);
+}
+
+/* The engine as shipped is the mark that all others are held to. */
+static void the_engine_as_shipped_is_always_there(void **state) {
+    (void)state;
+    for (int quick = 0; quick < 2; quick++) {
+        Error error = {0};
+        ContenderList list;
+        assert_ok(contenders_parse(&list, NULL, quick ? STUDY_CHART_QUICK : STUDY_CHART, &error), error);
+        int found = 0;
+        for (int i = 0; i < list.count; i++)
+            found += strcmp(list.items[i].name, "engine") == 0 && strcmp(list.items[i].setting, "k=10") == 0;
+        assert_int_equal(found, 1);
+        contenders_free(&list);
+    }
+}
+
+static void refuse(const char *text, const char *reason) {
+    Error error = {0};
+    ContenderList list;
+    assert_refused(contenders_parse(&list, text, STUDY_CHART, &error), reason);
+}
+
+static void bad_lists_are_refused(void **state) {
+    (void)state;
+    refuse("engin", "method: error: 'engin' is not a method");
+    refuse("engine,", "is not a method");
+    refuse("", "is not a method");
+    refuse("engine:k=3,engine:k=3", "engine:k=3: error: is given twice");
+    refuse("engine,engine:k=10", "is given twice");
+    refuse("engine:sweeps=3", "'sweeps' is not a setting");
+    char text[1000];
+    memset(text, 'x', sizeof text);
+    text[999] = '\0';
+    refuse(text, "too long");
+}
+
+static void a_method_without_its_network_is_left_out(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
+    assert_ok(scene != NULL, error);
+    ContenderList list = parse("engine:k=10,pair-net:k=5,pair-net:network=x.npz");
+    const Contender *fit[3];
+    assert_int_equal(contenders_for(&list, scene, fit), 3);
+    scene->network_count = 0;
+    assert_int_equal(contenders_for(&list, scene, fit), 2);
+    assert_ptr_equal(fit[0], &list.items[0]);
+    assert_ptr_equal(fit[1], &list.items[2]);
+    contenders_free(&list);
+    scene_destroy(scene);
+}
+
+/* A run with the twin of a run's method: the twin with the settings that it names, or else with those of the run. */
+static bool has_twin(const ContenderList *list, const Contender *run) {
+    char text[METHOD_TEXT_SIZE];
+    const char *twin = run->method.kind->description->twin;
+    const bool same = strchr(twin, ':') != NULL || run->setting[0] == '\0';
+    snprintf(text, sizeof text, same ? "%s" : "%s:%s", twin, run->setting);
+    for (int i = 0; i < list->count; i++)
+        if (strcmp(list->items[i].method.text, text) == 0) return true;
+    return false;
+}
+
+/* The ablation that must stand beside it. */
+static void every_learned_method_has_its_twin_in_every_study(void **state) {
+    (void)state;
+    for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
+        Error error = {0};
+        ContenderList all;
+        assert_ok(contenders_parse(&all, NULL, study, &error), error);
+        for (int i = 0; i < all.count; i++)
+            if (all.items[i].method.kind->description->twin != NULL && !has_twin(&all, &all.items[i]))
+                fail_msg("%s has no twin in study %d", all.items[i].method.text, (int)study);
+        contenders_free(&all);
+    }
+}
+
+/* Learned: it competes and needs a network. */
+static void every_learned_method_names_its_twin(void **state) {
+    (void)state;
+    int learned = 0;
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        const MethodDescription *method = kind->description;
+        assert_int_equal(method->twin != NULL, method->needs_network && method->role == METHOD_COMPETES);
+        learned += method->twin != NULL;
+    }
+    assert_int_equal(learned, 7); /* pair-net, contact-net, scene-net, sain, hybrid, gns, subspace */
+}
+
+/* What is left out is reported. */
+static void every_method_runs_or_is_left_out(void **state) {
+    (void)state;
+    for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
+        Error error = {0};
+        ContenderList all;
+        assert_ok(contenders_parse(&all, NULL, study, &error), error);
+        const NameList left_out = contenders_left_out(study);
+        for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+            char listed[sizeof left_out.text + 4], name[64];
+            bool runs = false;
+            for (int i = 0; i < all.count; i++) runs |= all.items[i].method.kind == kind;
+            snprintf(listed, sizeof listed, ", %s, ", left_out.text);
+            snprintf(name, sizeof name, ", %s, ", kind->description->name);
+            assert_int_equal(runs, strstr(listed, name) == NULL);
+        }
+        contenders_free(&all);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_comma_separates_methods_or_settings),
+                                       cmocka_unit_test(a_name_alone_stands_for_all_its_settings),
+                                       cmocka_unit_test(every_learned_method_has_its_twin_in_every_study),
+                                       cmocka_unit_test(every_learned_method_names_its_twin),
+                                       cmocka_unit_test(every_method_runs_or_is_left_out),
+                                       cmocka_unit_test(the_engine_as_shipped_is_always_there),
+                                       cmocka_unit_test(bad_lists_are_refused),
+                                       cmocka_unit_test(a_method_without_its_network_is_left_out)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

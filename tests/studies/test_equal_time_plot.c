@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The figure of errors at equal time, of an invented chart. */
+#include "python.h"
+
+#include "studies/chart.h"
+
+#include "base/file.h"
+
+#define SAMPLE SOURCE_DIR "/tests/studies/equal_time.csv"
+
+static const char *folder(void) {
+    temporary_path(""); /* makes it */
+    return temporary_folder;
+}
+
+static void learned_methods_stand_beside_their_twins(void **state) {
+    (void)state;
+    Error error = {0};
+    bool drawn = false;
+    assert_ok(equal_time_plot(SAMPLE, folder(), &drawn, &error), error);
+    assert_true(drawn);
+    run_python("import sys, xml.etree.ElementTree as tree\n"
+               "root = tree.parse(sys.argv[1]).getroot()\n"
+               "texts = [''.join(e.itertext()).strip() for e in root.iter('{http://www.w3.org/2000/svg}text')]\n"
+               "texts = [t for t in texts if t]\n"
+               "rows = ['×20', '–', '×20', '1/20', '×10', '×50'] + ['×2.0', '1/2.0', '1']\n"
+               "names = 'engine|block|momentum|interior|scene-net|scene-net:net=off'.split('|')\n"
+               "assert texts[:len(rows + names) + 2] == rows + names + ['tower', 'wall'], texts\n"
+               "assert 'in the time of momentum:k=50; rivals learn nothing' in texts, texts\n"
+               "assert '– slower than that, or lost the scene' in texts, texts\n",
+               temporary_path("equal_time.svg"));
+}
+
+static void tables_and_three_formats_are_written(void **state) {
+    (void)state;
+    static const char *const files[] = {"equal_time.csv", "equal_time_methods.csv", "equal_time.png", "equal_time.pdf"};
+    static const char *const begins[] = {"scene,method,setting,phase,statistic,launches,us_solver,error,rival,",
+                                         "scene,method,us_solver,reach,error,rival,rival_error,ratio\n", "\x89PNG",
+                                         "%PDF-"};
+    for (int i = 0; i < 4; i++) {
+        size_t size;
+        Error error = {0};
+        char *data = file_read(temporary_path(files[i]), 1 << 24, &size, &error);
+        assert_ok(data != NULL, error);
+        assert_true(size > strlen(begins[i]));
+        assert_memory_equal(data, begins[i], strlen(begins[i]));
+        free(data);
+    }
+}
+
+/* One method alone has no rival: there are tables, but no figure. */
+static void a_method_without_rivals_has_no_figure(void **state) {
+    (void)state;
+    Error error = {0};
+    bool drawn = true;
+    const char *path = temporary_path("alone.csv");
+    ChartTable chart;
+    assert_ok(chart_csv_read(&chart, SAMPLE, &error), error);
+    assert_ok(csv_table_write(path, &chart_layout, chart.rows, 1, &error), error);
+    chart_csv_free(&chart);
+    assert_ok(equal_time_plot(path, folder(), &drawn, &error), error);
+    assert_false(drawn);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(learned_methods_stand_beside_their_twins),
+                                       cmocka_unit_test(tables_and_three_formats_are_written),
+                                       cmocka_unit_test(a_method_without_rivals_has_no_figure)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scores of launches as bytes: what was written is read back and put together, and what is damaged is refused. */
+#include "testing.h"
+
+#include "base/file.h"
+#include "studies/chart_internal.h"
+
+#include <math.h>
+
+enum { METHODS = 3, LAUNCHES = 2 };
+
+/* Of a launch, a method and a step: all different. */
+static double error_of(int launch, int method, int protocol, int phase, int step) {
+    return launch + 0.1 * method + 0.01 * protocol + 0.001 * phase + 10 * step;
+}
+
+/* The method 1 has no step after the impact. */
+static int steps_of(int launch, int method, int phase) { return method == 1 && phase > 0 ? 0 : 2 + launch + phase; }
+
+static LaunchScores make_scores(int launch, int method) {
+    LaunchScores scores = {.unconverged = method,
+                           .measures = {.penetration = {1, 2, 3}, .energy = {4, 5, NAN}, .drift = launch, .moved = 7}};
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            StepScores *steps = &scores.steps[protocol][phase];
+            steps->count = steps_of(launch, method, phase);
+            steps->error = malloc((size_t)steps->count * sizeof(double) + 1);
+            steps->share = malloc((size_t)steps->count * sizeof(double) + 1);
+            assert_true(steps->error != NULL && steps->share != NULL);
+            for (int i = 0; i < steps->count; i++) {
+                steps->error[i] = error_of(launch, method, protocol, phase, i);
+                steps->share[i] = 1.0 / (1 + i);
+            }
+        }
+    return scores;
+}
+
+static char *write_launch(int launch, size_t *size) {
+    LaunchScores scores[METHODS];
+    char *bytes = NULL;
+    FILE *stream = memory_stream(&bytes, size);
+    assert_non_null(stream);
+    for (int i = 0; i < METHODS; i++) scores[i] = make_scores(launch, i);
+    launch_scores_write(stream, scores, METHODS, 0.5 + launch);
+    assert_int_equal(fclose(stream), 0);
+    for (int i = 0; i < METHODS; i++) launch_scores_free(&scores[i]);
+    return bytes;
+}
+
+static void assert_whole(const MethodScores *scores, int method) {
+    for (int protocol = 0; protocol < PROTOCOLS; protocol++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            const PhaseScores *steps = &scores->steps[protocol][phase];
+            int at = 0;
+            for (int launch = 0; launch < LAUNCHES; launch++)
+                for (int i = 0; i < steps_of(launch, method, phase); i++, at++) {
+                    assert_true(steps->error[at] == error_of(launch, method, protocol, phase, i));
+                    assert_true(steps->share[at] == 1.0 / (1 + i));
+                }
+            assert_int_equal(steps->count, at);
+        }
+}
+
+static void launches_are_put_together(void **state) {
+    (void)state;
+    MethodScores scores[METHODS] = {0};
+    for (int launch = 0; launch < LAUNCHES; launch++) {
+        size_t size;
+        Error error = {0};
+        StoredScores stored;
+        char *bytes = write_launch(launch, &size);
+        assert_ok(stored_scores_open(&stored, "launch", bytes, size, METHODS, &error), error);
+        assert_true(stored.residual == 0.5 + launch);
+        for (int i = 0; i < METHODS; i++) assert_ok(method_scores_add(&scores[i], &stored, i, &error), error);
+        free(bytes);
+    }
+    for (int i = 0; i < METHODS; i++) {
+        assert_whole(&scores[i], i);
+        assert_int_equal(scores[i].launches, LAUNCHES);
+        assert_true(scores[i].measures[1].drift == 1 && isnan(scores[i].measures[0].energy[2]));
+        assert_int_equal(scores[i].unconverged, LAUNCHES * i);
+        int64_t solves = 0;
+        for (int phase = 0; phase < PHASES; phase++) solves += scores[i].steps[PROTOCOL_CLOSED][phase].count;
+        assert_int_equal(scores[i].solves, solves);
+    }
+    /* The later launch is worse: its mean over three steps of the impact, 10 m/s apart. */
+    assert_true(fabs(scores[2].worst[PHASE_IMPACT] - (error_of(1, 2, PROTOCOL_CLOSED, PHASE_IMPACT, 0) + 10)) < 1e-9);
+    assert_true(isnan(scores[1].worst[PHASE_REST]));
+    for (int i = 0; i < METHODS; i++) method_scores_free(&scores[i]);
+}
+
+/* Whether all methods of these bytes are read. */
+static bool are_read(const char *bytes, size_t size, int methods) {
+    Error error = {0};
+    StoredScores stored;
+    MethodScores scores = {0};
+    char *copy = malloc(size + 1); /* the sanitizers see what is read behind it */
+    assert_non_null(copy);
+    memcpy(copy, bytes, size);
+    bool ok = stored_scores_open(&stored, "launch", copy, size, methods, &error);
+    for (int i = 0; ok && i < methods; i++) ok = method_scores_add(&scores, &stored, i, &error);
+    if (!ok) assert_error(error, ERROR_INPUT, "launch: error: is no result of a launch; delete it");
+    method_scores_free(&scores);
+    free(copy);
+    return ok;
+}
+
+static void damaged_results_are_refused(void **state) {
+    (void)state;
+    size_t size;
+    char *bytes = write_launch(0, &size);
+    assert_true(are_read(bytes, size, METHODS));
+    assert_false(are_read(bytes, size, METHODS + 1));
+    assert_false(are_read(bytes, size, METHODS - 1));
+    assert_false(are_read(bytes, 0, METHODS));
+    for (size_t cut = 1; cut < size; cut++) assert_false(are_read(bytes, cut, METHODS));
+    /* The number of methods, the index and the head of the first part; the residual may be any number from 0, and a few
+       solves more may have failed. */
+    const size_t index = 2 * sizeof(int64_t), part = index + METHODS * sizeof(int64_t), counts = part + sizeof(int64_t),
+                 values = counts + sizeof(int32_t[PROTOCOLS][PHASES]) + 64;
+    for (size_t at = 0; at < counts + sizeof(int32_t[PROTOCOLS][PHASES]); at++) {
+        if ((at >= sizeof(int64_t) && at < index) || at == part) continue;
+        for (int bit = 0; bit < 8; bit++) {
+            bytes[at] = (char)(bytes[at] ^ 1 << bit);
+            if (are_read(bytes, size, METHODS)) fail_msg("bit %d of byte %d", bit, (int)at);
+            bytes[at] = (char)(bytes[at] ^ 1 << bit);
+        }
+    }
+    const double wrong[] = {-1, 1.5}; /* an error below 0; a share above 1 */
+    for (int i = 0; i < 2; i++) {
+        char kept[sizeof(double)];
+        char *at = bytes + values + (size_t)i * 2 * sizeof(double); /* two errors, two shares */
+        memcpy(kept, at, sizeof kept);
+        memcpy(at, &wrong[i], sizeof kept);
+        assert_false(are_read(bytes, size, METHODS));
+        memcpy(at, kept, sizeof kept);
+    }
+    assert_true(are_read(bytes, size, METHODS));
+    free(bytes);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(launches_are_put_together),
+        cmocka_unit_test(damaged_results_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scores of methods with a known ranking: the reference has no error, more sweeps have less, noise has more. */
+#include "testing.h"
+
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+
+static const Sampling every = {.after = 1, .rest = 1}, few = {.after = 10, .rest = 50};
+
+static Scene *read_scene(const char *name) {
+    Error error = {0};
+    char path[512];
+    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+static Stepper *make_stepper(const Scene *scene, const char *text) {
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, text, &error), error);
+    Stepper *stepper = stepper_create(&method, scene, &error);
+    assert_ok(stepper != NULL, error);
+    return stepper;
+}
+
+static void free_scores(StepScores scores[PHASES]) {
+    for (int phase = 0; phase < PHASES; phase++) step_scores_free(&scores[phase]);
+}
+
+static void the_reference_has_no_error(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("stack");
+    Stepper *stepper = make_stepper(scene, "reference");
+    Rollout rollout = {0};
+    StepScores scores[PHASES] = {0};
+    assert_ok(rollout_run(&rollout, stepper, scene, &few, scores, &error), error);
+    for (int phase = 0; phase < PHASES; phase++)
+        for (int i = 0; i < scores[phase].count; i++) {
+            assert_true(scores[phase].error[i] < 1e-5);
+            assert_true(scores[phase].share[i] == 1);
+        }
+    free_scores(scores);
+    rollout_free(&rollout);
+    stepper_destroy(stepper);
+    scene_destroy(scene);
+}
+
+/* 6 impact frames, 60 frames after; every frame is in exactly one phase. */
+static void every_frame_is_in_one_phase(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("single");
+    scene->frames = 200;
+    Stepper *stepper = make_stepper(scene, "engine");
+    Rollout rollout = {0};
+    StepScores scores[PHASES] = {0};
+    assert_ok(rollout_run(&rollout, stepper, scene, &every, scores, &error), error);
+    assert_true(rollout.log.touch > 10 && rollout.log.touch < 100);
+    assert_int_equal(scores[PHASE_IMPACT].count, 6);
+    assert_int_equal(scores[PHASE_AFTER].count, 60);
+    assert_int_equal(scores[PHASE_REST].count, 200 - 66);
+    assert_int_equal(rollout.log.phase[rollout.log.touch - 1], PHASE_REST);
+    assert_int_equal(rollout.log.phase[rollout.log.touch + 65], PHASE_AFTER);
+    assert_int_equal(rollout.log.phase[rollout.log.touch + 66], PHASE_REST);
+    free_scores(scores);
+    rollout_free(&rollout);
+    stepper_destroy(stepper);
+    scene_destroy(scene);
+}
+
+static double frozen_error(const SnapshotList *list, const Scene *scene, const char *method) {
+    Error error = {0};
+    StepScores scores[PHASES] = {0};
+    Stepper *stepper = make_stepper(scene, method);
+    World *world = scene_world(scene, &error);
+    assert_ok(world != NULL, error);
+    assert_ok(snapshots_score(list, stepper, world, scores, &error), error);
+    assert_int_equal(scores[PHASE_IMPACT].count, 6);
+    double mean = statistics_mean(scores[PHASE_IMPACT].error, scores[PHASE_IMPACT].count);
+    free_scores(scores);
+    world_destroy(world);
+    stepper_destroy(stepper);
+    return mean;
+}
+
+/* More sweeps give a smaller error; no warm start, or noise, a larger one. */
+static void methods_rank_as_expected_on_frozen_steps(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("stack");
+    SnapshotList list = {0};
+    assert_ok(snapshots_add(&list, scene, &few, &error), error);
+    assert_true(list.residual < 1e-4);
+    double by10 = frozen_error(&list, scene, "engine:k=10"), by100 = frozen_error(&list, scene, "engine:k=100");
+    double by1000 = frozen_error(&list, scene, "engine:k=1000"),
+           cold = frozen_error(&list, scene, "engine:k=10,warm=off");
+    double constant = frozen_error(&list, scene, "constant"), reference = frozen_error(&list, scene, "reference");
+    assert_true(by1000 < by100 && by100 < by10 && by10 < constant);
+    assert_true(by10 != cold);
+    assert_true(reference < 1e-5);
+    snapshots_free(&list);
+    scene_destroy(scene);
+}
+
+/* The engine's frozen steps are those of its closed loop, so the errors are the same. */
+static void frozen_steps_of_the_engine_are_its_own(void **state) {
+    (void)state;
+    Error error = {0};
+    Scene *scene = read_scene("pyramid_settled");
+    SnapshotList list = {0};
+    StepScores frozen[PHASES] = {0}, closed[PHASES] = {0};
+    Rollout rollout = {0};
+    Stepper *stepper = make_stepper(scene, "engine");
+    assert_ok(snapshots_add(&list, scene, &few, &error), error);
+    assert_ok(rollout_run(&rollout, stepper, scene, &few, closed, &error), error);
+    assert_ok(snapshots_score(&list, stepper, rollout.world, frozen, &error), error);
+    for (int phase = 0; phase < PHASES; phase++) {
+        assert_int_equal(frozen[phase].count, closed[phase].count);
+        for (int i = 0; i < frozen[phase].count; i++) assert_near(frozen[phase].error[i], closed[phase].error[i], 0);
+    }
+    assert_int_equal(closed[PHASE_IMPACT].count, 4);
+    free_scores(frozen);
+    free_scores(closed);
+    rollout_free(&rollout);
+    snapshots_free(&list);
+    stepper_destroy(stepper);
+    scene_destroy(scene);
+}
+
+/* Keeps every body in place, with velocity 0. */
+static bool stand_still(void *state, World *world, const Step *step, Error *error) {
+    ContactProblem problem;
+    ContactSolution *solution;
+    (void)state;
+    if (!world_begin_step(world, step->scene->dt, &problem, &solution, error)) return false;
+    for (int i = 0; i < problem.body_count; i++) solution->velocities[i] = (BodyVelocity){0};
+    for (int i = 0; i < problem.contact_count; i++) solution->impulses[i] = (ContactImpulse){0};
+    return world_end_step(world, error);
+}
+
+static void *create_nothing(const Settings *settings, const Scene *scene, Error *error) {
+    static int nothing;
+    (void)settings;
+    (void)scene;
+    (void)error;
+    return &nothing;
+}
+
+static void destroy_nothing(void *state) { (void)state; }
+
+/* A method that has come to rest where a box overlaps the ground. */
+static Stepper *make_still_stepper(const Scene *scene, bool no_push_out) {
+    static SteppingKind stepping = {.create = create_nothing, .step = stand_still, .destroy = destroy_nothing};
+    static MethodKind kind = {&stepping.description, NULL, &stepping};
+    const Method method = {.text = "still", .kind = &kind};
+    Error error = {0};
+    stepping.description = (MethodDescription){.name = "still", .no_push_out = no_push_out};
+    Stepper *stepper = stepper_create(&method, scene, &error);
+    assert_ok(stepper != NULL, error);
+    return stepper;
+}
+
+/* The errors of the first step of a scene: frozen, and of a run of this many frames: closed loop. */
+static void assert_errors(const Scene *scene, Stepper *stepper, double expected, double tolerance) {
+    Error error = {0};
+    Rollout rollout = {0};
+    StepScores closed[PHASES] = {0}, frozen[PHASES] = {0};
+    Scene first = *scene;
+    first.frames = 1;
+    SnapshotList list = {.no_push_out = true};
+    assert_ok(snapshots_add(&list, &first, &every, &error), error);
+    assert_ok(rollout_run(&rollout, stepper, scene, &every, closed, &error), error);
+    assert_ok(snapshots_score(&list, stepper, rollout.world, frozen, &error), error);
+    assert_int_equal(frozen[PHASE_REST].count, 1);
+    assert_int_equal(closed[PHASE_REST].count, scene->frames);
+    assert_near(frozen[PHASE_REST].error[0], expected, tolerance);
+    for (int i = 0; i < scene->frames; i++) assert_near(closed[PHASE_REST].error[i], expected, tolerance);
+    free_scores(closed);
+    free_scores(frozen);
+    snapshots_free(&list);
+    rollout_free(&rollout);
+    stepper_destroy(stepper);
+}
+
+/* A box 60 mm in the ground: position correction pushes it out at 0.2 (60 mm - 10 mm) / dt = 0.6 m/s. That is the error
+   of a method that keeps velocity 0, but not if its description has no_push_out, nor without position correction. */
+static void push_out_counts_for_methods_that_have_it(void **state) {
+    (void)state;
+    BodyDef bodies[] = {{.fixed = true, .size = {200, 20}, .position = {0, -10}, .friction = 0.2f},
+                        {.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.44f}}};
+    Scene scene = {.name = "overlap",
+                   .gravity = {0, -10},
+                   .dt = 1.0f / 60.0f,
+                   .iterations = 10,
+                   .frames = 3,
+                   .warm_starting = true,
+                   .accumulate_impulses = true,
+                   .position_correction = true,
+                   .body_count = 2,
+                   .bodies = bodies};
+    assert_errors(&scene, make_still_stepper(&scene, false), 0.6, 1e-5);
+    assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
+    assert_errors(&scene, make_stepper(&scene, "avbd:k=50"), 0, 1e-3);
+    assert_errors(&scene, make_stepper(&scene, "soft-step"), 0, 0.2); /* its one relaxing sweep leaves a spin */
+    assert_errors(&scene, make_stepper(&scene, "engine:k=100"), 0, 1e-4);
+    scene.position_correction = false;
+    assert_errors(&scene, make_still_stepper(&scene, false), 0, 1e-5);
+    assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_reference_has_no_error),
+                                       cmocka_unit_test(every_frame_is_in_one_phase),
+                                       cmocka_unit_test(methods_rank_as_expected_on_frozen_steps),
+                                       cmocka_unit_test(frozen_steps_of_the_engine_are_its_own),
+                                       cmocka_unit_test(push_out_counts_for_methods_that_have_it)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Measures of synthetic logs. */
+#include "testing.h"
+
+#include "studies/chart.h"
+
+#include <math.h>
+
+enum { FRAMES = 10, BODIES = 3 };
+
+/* A ground and two boxes; the bomb is added after step 2 and touches in step 5; 2 impact frames. */
+static const BodyDef defs[BODIES] = {
+    {.size = {100, 20}, .fixed = true}, {.size = {1, 1}, .mass = 1}, {.size = {1, 1}, .mass = 1}};
+static Scene scene_by_hand(void) {
+    Scene scene = {.dt = 0.5f, .frames = FRAMES, .body_count = BODIES, .bodies = (BodyDef *)defs, .gravity = {0, -10}};
+    scene.bomb.present = true;
+    scene.bomb.frame = 2;
+    return scene;
+}
+
+typedef struct Handmade {
+    Vec2 position[(FRAMES + 1) * BODIES];
+    double energy[FRAMES + 1], penetration[FRAMES + 1];
+    Phase phase[FRAMES + 1];
+    Vec2 bomb[FRAMES + 1];
+} Handmade;
+
+static RunLog log_by_hand(Handmade *made) {
+    for (int frame = 0; frame <= FRAMES; frame++) {
+        for (int body = 0; body < BODIES; body++) made->position[frame * BODIES + body] = vec2((float)body, 0);
+        made->bomb[frame] = vec2(0, 0);
+        made->energy[frame] = 100;
+        made->penetration[frame] = 0.01;
+        made->phase[frame] = frame < 5 ? PHASE_REST : frame < 7 ? PHASE_IMPACT : PHASE_AFTER;
+    }
+    return (RunLog){.bodies = BODIES,
+                    .frames = FRAMES,
+                    .touch = 5,
+                    .launch_frame = 2,
+                    .end_frame = FRAMES,
+                    .position = made->position,
+                    .energy = made->energy,
+                    .penetration = made->penetration,
+                    .phase = made->phase,
+                    .bomb = made->bomb};
+}
+
+static void equal_runs_have_no_differences(void **state) {
+    (void)state;
+    Handmade a, b;
+    const Scene scene = scene_by_hand();
+    const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
+    RunMeasures measures = run_measures(&log, &converged, &scene);
+    for (int phase = 0; phase < PHASES; phase++) {
+        assert_near(measures.energy[phase], 0, 0);
+        assert_near(measures.penetration[phase], 0.01, 0);
+    }
+    assert_near(measures.drift, 0, 0);
+    assert_near(measures.moved, 0, 0);
+}
+
+static void differences_are_assigned_to_their_phase(void **state) {
+    (void)state;
+    Handmade a, b;
+    const Scene scene = scene_by_hand();
+    const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
+    a.energy[5] = 104;                               /* impact: (4 + 0) / 2 */
+    a.energy[10] = 108;                              /* after: 8 / 4 */
+    a.penetration[6] = 0.3;                          /* impact */
+    a.position[4 * BODIES + 1] = vec2(1.03f, 0.04f); /* just before the touch: 0.05 of one box of two */
+    a.position[10 * BODIES + 1] = vec2(1.6f, 0);     /* 0.6 m in the end */
+    a.position[10 * BODIES + 2] = vec2(2.4f, 0);     /* 0.4 m: has not moved */
+    a.position[10 * BODIES + 0] = vec2(9, 0);        /* the ground does not count */
+    RunMeasures measures = run_measures(&log, &converged, &scene);
+    assert_near(measures.energy[PHASE_IMPACT], 2, 1e-12);
+    assert_near(measures.energy[PHASE_AFTER], 2, 1e-12);
+    assert_near(measures.energy[PHASE_REST], 0, 0);
+    assert_near(measures.penetration[PHASE_IMPACT], 0.3, 0);
+    assert_near(measures.penetration[PHASE_AFTER], 0.01, 0);
+    assert_near(measures.drift, 0.025, 1e-6);
+    assert_near(measures.moved, 1, 0);
+}
+
+static void motion_before_the_launch_is_not_counted(void **state) {
+    (void)state;
+    Handmade a, b;
+    const Scene scene = scene_by_hand();
+    const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
+    for (int frame = 2; frame <= FRAMES; frame++) a.position[frame * BODIES + 1] = vec2(7, 0);
+    assert_near(run_measures(&log, &converged, &scene).moved, 0, 0);
+}
+
+static void in_a_run_that_ended_early_all_boxes_moved(void **state) {
+    (void)state;
+    Handmade a, b;
+    const Scene scene = scene_by_hand();
+    RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
+    log.frames = 3;
+    log.touch = 0;
+    RunMeasures measures = run_measures(&log, &converged, &scene);
+    assert_near(measures.moved, 2, 0);
+    assert_true(isnan(measures.energy[PHASE_IMPACT]));
+    assert_true(isnan(measures.penetration[PHASE_AFTER]));
+    assert_near(measures.energy[PHASE_REST], 0, 0);
+    assert_true(isnan(measures.drift));
+}
+
+static void runs_part_where_a_body_or_the_bomb_is_away(void **state) {
+    (void)state;
+    Handmade a, b;
+    RunLog log = log_by_hand(&a), other = log_by_hand(&b);
+    assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), FRAMES); /* never */
+    a.bomb[9] = vec2(0, 0.2f);
+    assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), 9);
+    a.position[7 * BODIES + 2] = vec2(2.05f, 0); /* near enough */
+    b.position[8 * BODIES + 1] = vec2(1, -0.2f);
+    assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), 8);
+    log.frames = 3; /* NaN in step 4 */
+    assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), 4);
+    assert_int_equal(run_log_apart(&log, &other, 0.1, 2), 2);
+}
+
+/* Two steps: one creates 0.5 N s and falls back, the other clamps an impulse to its cone, which is no fallback. */
+static void momentum_and_fallbacks_are_added(void **state) {
+    (void)state;
+    Error error = {0};
+    BodyDef box = {.size = {1, 1}, .mass = 1};
+    const Scene scene = {.dt = 0.5f, .frames = 2, .body_count = 1, .bodies = &box};
+    World *world = scene_world(&scene, &error);
+    assert_ok(world != NULL, error);
+    RunLog log = {0};
+    assert_true(run_log_begin(&log, &scene, world));
+    for (int frame = 1; frame <= 2; frame++) {
+        ContactProblem problem;
+        ContactSolution *solution;
+        assert_ok(world_begin_step(world, scene.dt, &problem, &solution, &error), error);
+        solution->velocities[0] = (BodyVelocity){vec2(1, 0), 0};
+        solution->momentum_error = frame == 1 ? 0.5f : 0;
+        solution->fallbacks = (NetworkFallbacks){.beyond_training = frame == 1, .outside_cone = frame == 2};
+        assert_ok(world_end_step(world, &error), error);
+        run_log_step(&log, &scene, world, frame, PHASE_REST);
+    }
+    assert_near(log.momentum_error, 0.5, 0);
+    assert_int_equal(log.fallen_back, 1);
+    assert_near(log.bomb[2].x, 0, 0); /* a scene without a bomb */
+    assert_true(run_log_begin(&log, &scene, world));
+    assert_near(log.momentum_error, 0, 0);
+    assert_int_equal(log.fallen_back, 0);
+    run_log_free(&log);
+    world_destroy(world);
+}
+
+/* A box of 3 kg, 2 m up, at 4 m/s and 6 rad/s: 3 (16 / 2 + 10 2) + 3 (1 + 1) / 12 36 / 2 = 93 J. */
+static void energy_is_kinetic_and_potential(void **state) {
+    (void)state;
+    Error error = {0};
+    BodyDef box = {.size = {1, 1}, .mass = 3, .position = {5, 2}, .velocity = {0, 4}, .angular_velocity = 6};
+    Scene scene = {.dt = 0.5f, .frames = 1, .body_count = 1, .bodies = &box, .gravity = {0, -10}};
+    World *world = scene_world(&scene, &error);
+    assert_ok(world != NULL, error);
+    RunLog log = {0};
+    assert_true(run_log_begin(&log, &scene, world));
+    assert_near(log.energy[0], 3 * (8 + 20) + 0.5 * 0.5 * 36, 1e-4);
+    run_log_free(&log);
+    world_destroy(world);
+}
+
+static void quantiles_are_interpolated(void **state) {
+    (void)state;
+    double values[] = {5, 1, 4, 2, 3};
+    assert_near(statistics_mean(values, 5), 3, 0);
+    assert_near(statistics_quantile(values, 5, 0.5), 3, 0);
+    assert_near(statistics_quantile(values, 5, 0.25), 2, 0);
+    assert_near(statistics_quantile(values, 5, 0.95), 4.8, 1e-12);
+    assert_near(statistics_quantile(values, 1, 0.95), 1, 0);
+    assert_true(isnan(statistics_quantile(values, 0, 0.5)) && isnan(statistics_mean(values, 0)));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_runs_have_no_differences),
+                                       cmocka_unit_test(differences_are_assigned_to_their_phase),
+                                       cmocka_unit_test(motion_before_the_launch_is_not_counted),
+                                       cmocka_unit_test(in_a_run_that_ended_early_all_boxes_moved),
+                                       cmocka_unit_test(runs_part_where_a_body_or_the_bomb_is_away),
+                                       cmocka_unit_test(momentum_and_fallbacks_are_added),
+                                       cmocka_unit_test(energy_is_kinetic_and_potential),
+                                       cmocka_unit_test(quantiles_are_interpolated)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The scenes of `twinbox new` stand without the bomb, as their comments state, with each parameter at both ends. */
+#include "testing.h"
+
+#include "runs/verdict.h"
+
+enum { STEPS = 600 }; /* 10 s; the bomb comes after one */
+
+static const char *const methods[] = {"engine", "momentum", "interior"};
+
+static void check_stands(const char *path, const SceneSetting *settings, int count) {
+    Error error = {0};
+    EnergyLog converged = {0};
+    Method reference;
+    Scene *scene = scene_read_with(path, settings, count, &error);
+    assert_ok(scene != NULL, error);
+    scene->bomb.present = false;
+    scene->frames = STEPS;
+    assert_ok(method_parse(&reference, "reference", &error), error);
+    assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
+    VerdictRun run = verdict_run_of(scene);
+    assert_true(run.stands);
+    run.converged = &converged;
+    for (int i = 0; i < 3; i++) {
+        Method method;
+        VerdictReading reading;
+        assert_ok(method_parse(&method, methods[i], &error), error);
+        assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
+        if (!verdict_holds(reading.verdict))
+            fail_msg("%s with %s = %g: %s %s at body %d, frame %d", path, count > 0 ? settings->name : "",
+                     count > 0 ? settings->value : 0, methods[i], verdict_name(reading.verdict), reading.body,
+                     reading.frame);
+    }
+    energy_log_free(&converged);
+    scene_destroy(scene);
+}
+
+static void check_template(const char *name) {
+    char path[512];
+    Error error = {0};
+    snprintf(path, sizeof path, SOURCE_DIR "/scenes/templates/%s.yaml", name);
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    assert_true(scene->bomb.present && scene_span_varies(&scene->bomb.x));
+    assert_in_range(scene->parameter_count, 1, 2);
+    check_stands(path, NULL, 0);
+    for (int i = 0; i < scene->parameter_count; i++) {
+        SceneSetting setting = {.value = scene->parameters[i].from};
+        strcpy(setting.name, scene->parameters[i].name);
+        if (strcmp(setting.name, "bomb_mass") == 0) continue;
+        check_stands(path, &setting, 1);
+        setting.value = scene->parameters[i].to;
+        check_stands(path, &setting, 1);
+    }
+    scene_destroy(scene);
+}
+
+static void wall(void **state) { (void)state, check_template("wall"); }
+static void stack(void **state) { (void)state, check_template("stack"); }
+static void pyramid(void **state) { (void)state, check_template("pyramid"); }
+static void arch(void **state) { (void)state, check_template("arch"); }
+static void dominoes(void **state) { (void)state, check_template("dominoes"); }
+
+/* "With 10 iterations it falls." */
+static void the_arch_needs_its_iterations(void **state) {
+    (void)state;
+    Error error = {0};
+    EnergyLog converged = {0};
+    Method reference, engine;
+    VerdictReading reading;
+    Scene *scene = scene_read(SOURCE_DIR "/scenes/templates/arch.yaml", &error);
+    assert_ok(scene != NULL, error);
+    scene->bomb.present = false;
+    scene->frames = STEPS;
+    scene->iterations = 10;
+    assert_true(method_parse(&reference, "reference", &error) && method_parse(&engine, "engine", &error));
+    assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
+    VerdictRun run = verdict_run_of(scene);
+    run.converged = &converged;
+    assert_ok(verdict_run(&reading, scene, &engine, &run, &error), error);
+    assert_string_equal(verdict_name(reading.verdict), "falls");
+    energy_log_free(&converged);
+    scene_destroy(scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(wall),     cmocka_unit_test(stack),
+                                       cmocka_unit_test(pyramid),  cmocka_unit_test(arch),
+                                       cmocka_unit_test(dominoes), cmocka_unit_test(the_arch_needs_its_iterations)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Both sides of the limits of holding, falling and sinking, on synthetic runs. */
+#include "studies/trial.h"
+
+#include <math.h>
+
+static void a_resting_box_settles(void **state) {
+    (void)state;
+    Trial trial;
+    trial_begin(&trial);
+    trial_go(&trial, TRIAL_FRAMES);
+    assert_false(verdict_watch_is_final(&trial.watch));
+    assert_reading(trial_end(&trial), VERDICT_SETTLES, -1, 1, 0, 0, "J");
+}
+
+/* 1 kg: v^2 / 2. The second box is still: the mean is half of that. */
+static VerdictReading run_at_speed(double energy, bool second_box) {
+    Trial trial;
+    trial_begin(&trial);
+    if (second_box) {
+        trial.bodies[trial.count] = trial_box;
+        trial.bodies[trial.count++].position.x = 3;
+    }
+    trial.bodies[1].velocity.y = (float)sqrt(2 * energy);
+    trial_go(&trial, TRIAL_FRAMES);
+    return trial_end(&trial);
+}
+
+static void settling_is_judged_by_mean_kinetic_energy(void **state) {
+    (void)state;
+    assert_reading(run_at_speed(0.99e-4, false), VERDICT_SETTLES, -1, 1, 0.99e-4, 1e-9, "J");
+    assert_reading(run_at_speed(1.01e-4, false), VERDICT_SWAYS, -1, TRIAL_FRAMES, 1.01e-4, 1e-9, "J");
+    assert_reading(run_at_speed(1.98e-4, true), VERDICT_SETTLES, -1, 1, 0.99e-4, 1e-9, "J");
+    assert_reading(run_at_speed(2.02e-4, true), VERDICT_SWAYS, -1, TRIAL_FRAMES, 1.01e-4, 1e-9, "J");
+}
+
+/* Moves up to this frame, then rests. */
+static VerdictReading run_that_moves_until(int frame) {
+    Trial trial;
+    trial_begin(&trial);
+    trial.bodies[1].angular_velocity = 1; /* 1 / (2 6) J */
+    trial_go(&trial, frame);
+    trial.bodies[1].angular_velocity = 0;
+    trial_go(&trial, TRIAL_FRAMES);
+    return trial_end(&trial);
+}
+
+static void settling_takes_sixty_frames(void **state) {
+    (void)state;
+    assert_reading(run_that_moves_until(TRIAL_FRAMES - 60), VERDICT_SETTLES, -1, TRIAL_FRAMES - 59, 0, 0, "J");
+    assert_reading(run_that_moves_until(TRIAL_FRAMES - 59), VERDICT_SWAYS, -1, TRIAL_FRAMES - 59, 1.0 / 12, 1e-9, "J");
+}
+
+/* A jump of the box in the step after `frame`. */
+static VerdictReading run_with_jump(int frame, float way, bool stands, int bomb) {
+    Trial trial;
+    trial_begin(&trial);
+    trial.run.stands = stands;
+    trial.bomb = bomb;
+    trial_go(&trial, frame);
+    trial.bodies[1].position.x += way;
+    trial_go(&trial, TRIAL_FRAMES);
+    return trial_end(&trial);
+}
+
+static void creeping_is_five_centimetres_in_ten_seconds(void **state) {
+    (void)state;
+    /* Moved at 15 s, found at 20 s: the first comparison is that of 20 s with 10 s. */
+    assert_verdict(run_with_jump(900, 0.0499f, true, -1), VERDICT_SETTLES);
+    assert_reading(run_with_jump(900, 0.0501f, true, -1), VERDICT_CREEPS, 1, 1200, 0.0501, 1e-6, "m");
+    assert_reading(run_with_jump(3599, -0.0501f, true, -1), VERDICT_CREEPS, 1, 3600, 0.0501, 1e-6, "m");
+    assert_verdict(run_with_jump(599, 1, true, -1), VERDICT_SETTLES); /* before 10 s */
+}
+
+/* Ten seconds are exactly 600 steps: 0.0501 m in 601 steps would be less than 0.05 m in 600. */
+static void creeping_may_be_even(void **state) {
+    (void)state;
+    for (int side = 0; side < 2; side++) {
+        Trial trial;
+        trial_begin(&trial);
+        double way = side == 0 ? 0.0499 : 0.0501;
+        for (int frame = 1; frame <= TRIAL_FRAMES; frame++) {
+            trial.bodies[1].position.x = (float)(way * frame / 600);
+            trial_go(&trial, frame);
+        }
+        assert_verdict(trial_end(&trial), side == 0 ? VERDICT_SETTLES : VERDICT_CREEPS);
+    }
+}
+
+static void creeping_counts_only_at_the_end_if_nothing_must_stand(void **state) {
+    (void)state;
+    assert_verdict(run_with_jump(900, 1, false, -1), VERDICT_SETTLES);
+    assert_verdict(run_with_jump(2999, 1, false, -1), VERDICT_SETTLES); /* 50 s: just before the last ten */
+    assert_reading(run_with_jump(3000, 1, false, -1), VERDICT_CREEPS, 1, 3600, 1, 1e-6, "m");
+    assert_verdict(run_with_jump(3000, 1, false, 1), VERDICT_SETTLES); /* the bomb may roll */
+    assert_verdict(run_with_jump(3000, 1, true, 1), VERDICT_CREEPS);
+}
+
+/* 3570 frames: seconds are counted back from there, and the last ten begin at 2970. */
+static void the_last_ten_seconds_end_with_the_run(void **state) {
+    (void)state;
+    for (int side = 0; side < 2; side++) {
+        Trial trial;
+        trial_begin(&trial);
+        trial.run.frames = 3570;
+        trial.run.stands = false;
+        trial_go(&trial, side == 0 ? 2969 : 2970);
+        trial.bodies[1].position.x = 0.06f;
+        trial_go(&trial, 3570);
+        assert_verdict(trial_end(&trial), side == 0 ? VERDICT_SETTLES : VERDICT_CREEPS);
+    }
+}
+
+/* A box of 2 x 1 is moved in the second step, well above the ground. */
+static VerdictReading run_with_pose(float lower, float degrees, bool stands) {
+    Trial trial;
+    trial_begin(&trial);
+    trial.run.stands = stands;
+    trial.bodies[0].position.y = -20;
+    trial.bodies[1].size.x = 2;
+    trial.bodies[1].angle = 7;
+    trial_go(&trial, 1);
+    trial.bodies[1].position.y -= lower;
+    trial.bodies[1].angle += degrees * 3.14159265f / 180;
+    trial_go(&trial, TRIAL_FRAMES);
+    return trial_end(&trial);
+}
+
+static void falling_is_half_a_side_or_thirty_degrees(void **state) {
+    (void)state;
+    assert_verdict(run_with_pose(0.499f, 0, true), VERDICT_SETTLES);
+    assert_reading(run_with_pose(0.501f, 0, true), VERDICT_FALLS, 1, 2, 0.501, 1e-6, "m");
+    assert_verdict(run_with_pose(0, 29.9f, true), VERDICT_SETTLES);
+    assert_reading(run_with_pose(0, 30.1f, true), VERDICT_FALLS, 1, 2, 30.1, 1e-4, "deg");
+    assert_reading(run_with_pose(0, -30.1f, true), VERDICT_FALLS, 1, 2, 30.1, 1e-4, "deg");
+    assert_verdict(run_with_pose(0, 30.1f, false), VERDICT_SETTLES); /* not meant to stand */
+    assert_verdict(run_with_pose(-3, 0, true), VERDICT_SETTLES);     /* higher */
+}
+
+/* Down is the direction of gravity. */
+static void falling_goes_along_gravity(void **state) {
+    (void)state;
+    for (int side = 0; side < 2; side++) {
+        Trial trial;
+        trial_begin(&trial);
+        trial.run.gravity = vec2(-3, 0);
+        trial_go(&trial, 1);
+        trial.bodies[1].position.x += side == 0 ? 1.0f : -1.0f;
+        trial_go(&trial, 60);
+        assert_verdict(trial_end(&trial), side == 0 ? VERDICT_SETTLES : VERDICT_FALLS);
+    }
+}
+
+/* It drops 3 m before its first contact, then 0.1 m per step. */
+static void gaps_may_close_before_a_body_falls(void **state) {
+    (void)state;
+    Trial trial;
+    trial_begin(&trial);
+    trial.bodies[0].position.y = -20;
+    trial.bodies[1].position.y = -1;
+    trial.contact_count = 0;
+    trial_go(&trial, 1);
+    trial.bodies[1].position.y = -4;
+    trial_go(&trial, 2);
+    trial.contact_count = 1;
+    trial_go(&trial, 30);
+    for (int i = 1; i <= 5; i++) {
+        assert_true(trial.watch.worst.verdict < VERDICT_FALLS);
+        trial.bodies[1].position.y = -4.05f - 0.1f * (float)i;
+        trial_go(&trial, 30 + i);
+    }
+    assert_reading(trial_end(&trial), VERDICT_FALLS, 1, 35, 0.55, 1e-6, "m");
+}
+
+/* A contact of this depth for so many steps, with a box of this size. */
+static VerdictReading run_with_depth(float depth, int steps, Vec2 size) {
+    Trial trial;
+    trial_begin(&trial);
+    trial.bodies[1].size = size;
+    trial.contact_count = 2;
+    trial.contacts[1] = trial.contacts[0];
+    trial.contacts[1].separation = -depth;
+    trial_go(&trial, steps);
+    trial.contact_count = 1;
+    trial_go(&trial, steps + 1);
+    trial.contact_count = 2;
+    trial_go(&trial, steps + 1 + 59);
+    trial.contact_count = 1;
+    trial_go(&trial, TRIAL_FRAMES);
+    return trial_end(&trial);
+}
+
+static void sinking_is_a_second_deeper_than_a_twentieth(void **state) {
+    (void)state;
+    assert_verdict(run_with_depth(0.0499f, 2000, vec2(1, 1)), VERDICT_SETTLES);
+    assert_reading(run_with_depth(0.0501f, 60, vec2(1, 1)), VERDICT_SINKS, 1, 60, 0.0501, 1e-6, "m");
+    assert_verdict(run_with_depth(0.0501f, 59, vec2(1, 1)), VERDICT_SETTLES);
+    assert_verdict(run_with_depth(0.0999f, 60, vec2(3, 2)), VERDICT_SETTLES);
+    assert_verdict(run_with_depth(0.1001f, 60, vec2(3, 2)), VERDICT_SINKS);
+    /* Thin: twice the slop. */
+    assert_verdict(run_with_depth(0.0199f, 60, vec2(0.1f, 1)), VERDICT_SETTLES);
+    assert_verdict(run_with_depth(0.0201f, 60, vec2(0.1f, 1)), VERDICT_SINKS);
+}
+
+/* The deepest relative to its size: 0.07 m of 1 m, not 0.11 m of 2 m. Of a dynamic and a static body the dynamic
+   one. */
+static void sinking_names_the_body(void **state) {
+    (void)state;
+    Trial trial;
+    trial_begin(&trial);
+    trial.count = 4;
+    trial.bodies[2] = trial.bodies[3] = trial_box;
+    trial.bodies[2].size = trial.bodies[3].size = vec2(2, 2);
+    trial.bodies[2].inv_mass = trial.bodies[2].inv_inertia = 0;
+    trial.bodies[2].position = vec2(1.5f, 1);
+    trial.bodies[3].position = vec2(9, 2);
+    trial.contact_count = 2;
+    trial.contacts[0] = (ContactPoint){.a = 1, .b = 2, .separation = -0.07f};
+    trial.contacts[1] = (ContactPoint){.a = 0, .b = 3, .separation = -0.11f};
+    trial_go(&trial, 60);
+    assert_reading(trial_end(&trial), VERDICT_SINKS, 1, 60, 0.07, 1e-6, "m");
+}
+
+/* dt = 1/20 s: 20 steps are a second, 200 are ten. */
+static void seconds_are_steps_of_the_scene(void **state) {
+    (void)state;
+    Trial trial;
+    trial_begin(&trial);
+    trial.run.dt = 1.0f / 20.0f;
+    trial.run.frames = 1200;
+    trial_go(&trial, 300);
+    trial.bodies[1].position.x = 0.06f;
+    trial_go(&trial, 1000);
+    trial.contacts[0].separation = -0.06f;
+    assert_int_equal(trial.watch.worst.frame, 400);
+    trial_go(&trial, 1100);
+    assert_reading(trial_end(&trial), VERDICT_SINKS, 1, 1020, 0.06, 1e-6, "m");
+}
+
+/* The last body is removed at the end of a step that has a contact of it; another one replaces it, far away. */
+static void bodies_may_be_removed_and_added(void **state) {
+    (void)state;
+    Trial trial;
+    trial_begin(&trial);
+    trial.count = 3;
+    trial.bodies[2] = trial_box;
+    trial.bodies[2].position = vec2(0, 1.5f);
+    trial.contact_count = 2;
+    trial.contacts[1] = (ContactPoint){.a = 1, .b = 2, .separation = -0.3f};
+    trial_go(&trial, 59);
+    trial.count = 2;
+    trial_go(&trial, 60);
+    trial.contact_count = 1;
+    trial_go(&trial, 700);
+    trial.count = 4;
+    trial.bodies[2].position = vec2(20, 0.5f);
+    trial.bodies[3] = trial.bodies[2];
+    trial.bodies[3].position = vec2(-20, 0.5f);
+    trial_go(&trial, TRIAL_FRAMES);
+    assert_verdict(trial_end(&trial), VERDICT_SETTLES);
+}
+
+/* 0.5 m up in the first ten seconds, then 0.03 m sideways and 0.04 m up: a drift of 0.05 m, and 1 kg 10 m/s^2 0.04
+   m. */
+static void drift_is_counted_after_ten_seconds(void **state) {
+    (void)state;
+    Trial trial;
+    trial_begin(&trial);
+    trial_go(&trial, 300);
+    trial.bodies[1].position.y = 1;
+    trial_go(&trial, 600);
+    const VerdictReading before = verdict_watch_end(&trial.watch);
+    assert_true(isnan(before.drift) && isnan(before.gained));
+    trial.bodies[1].position = vec2(0.03f, 1.04f);
+    trial_go(&trial, TRIAL_FRAMES);
+    const VerdictReading after = trial_end(&trial);
+    assert_near(after.drift, 0.05, 1e-6);
+    assert_near(after.gained, 0.4, 1e-5);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_resting_box_settles),
+                                       cmocka_unit_test(settling_is_judged_by_mean_kinetic_energy),
+                                       cmocka_unit_test(settling_takes_sixty_frames),
+                                       cmocka_unit_test(creeping_is_five_centimetres_in_ten_seconds),
+                                       cmocka_unit_test(creeping_may_be_even),
+                                       cmocka_unit_test(creeping_counts_only_at_the_end_if_nothing_must_stand),
+                                       cmocka_unit_test(the_last_ten_seconds_end_with_the_run),
+                                       cmocka_unit_test(falling_is_half_a_side_or_thirty_degrees),
+                                       cmocka_unit_test(falling_goes_along_gravity),
+                                       cmocka_unit_test(gaps_may_close_before_a_body_falls),
+                                       cmocka_unit_test(sinking_is_a_second_deeper_than_a_twentieth),
+                                       cmocka_unit_test(sinking_names_the_body),
+                                       cmocka_unit_test(seconds_are_steps_of_the_scene),
+                                       cmocka_unit_test(bodies_may_be_removed_and_added),
+                                       cmocka_unit_test(drift_is_counted_after_ten_seconds)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Verdicts without a converged run, as `simulate` gives them: by the run's own energy. */
+#include "studies/trial.h"
+
+#include "studies/stability.h"
+
+/* A box of 1 kg at 10 m/s^2, alone: 1 J lifts it by 0.1 m, and 1% of that is allowed. */
+static void begin_alone(Trial *trial) {
+    trial_begin(trial);
+    trial->run.converged = NULL;
+}
+
+/* m: the box rises by this for one step; 10 J per metre. */
+static VerdictReading lifted_by(float rise) {
+    Trial trial;
+    begin_alone(&trial);
+    trial_go(&trial, 100);
+    trial.bodies[1].position.y += rise;
+    trial_go(&trial, 101);
+    return trial_end(&trial);
+}
+
+static void energy_may_not_exceed_what_was_brought(void **state) {
+    (void)state;
+    assert_verdict(lifted_by(0.0009f), VERDICT_SETTLES);
+    assert_reading(lifted_by(0.0011f), VERDICT_EXPLODES, -1, 101, 0.011, 1e-5, "J");
+}
+
+/* From 3 m to 0.5 m, 25 J are lost: 5% of them, 0.125 m, may come back. The box has lost its 25 J for a whole second. */
+static VerdictReading regains(float rise) {
+    Trial trial;
+    begin_alone(&trial);
+    trial.run.stands = false;
+    trial.bodies[1].position.y = 3;
+    trial_go(&trial, 10);
+    trial.bodies[1].position.y = 0.5f;
+    trial_go(&trial, 180);
+    trial.bodies[1].position.y += rise;
+    trial_go(&trial, 181);
+    return trial_end(&trial);
+}
+
+static void a_little_lost_energy_may_come_back(void **state) {
+    (void)state;
+    assert_verdict(regains(0.12f), VERDICT_SETTLES);
+    assert_reading(regains(0.13f), VERDICT_EXPLODES, -1, 181, 1.3, 1e-5, "J");
+}
+
+static void an_added_body_brings_its_energy(void **state) {
+    (void)state;
+    Trial trial;
+    begin_alone(&trial);
+    trial_go(&trial, 100);
+    trial.bodies[trial.count++] = trial_box;
+    trial.bodies[2].position = vec2(3, 50);
+    trial.bodies[2].velocity = vec2(0, -30);
+    trial_go(&trial, 101);
+    assert_false(verdict_watch_is_final(&trial.watch));
+    trial.bodies[2].velocity = vec2(0, -35); /* 162 J more; 9.95 J are 1% of its 495 J and 450 J */
+    trial_go(&trial, 102);
+    assert_reading(trial_end(&trial), VERDICT_EXPLODES, 2, 102, 162.5, 1e-3, "J");
+}
+
+/* Boxes that overlap by 0.2 m at the start are pushed apart: 2 J. After the first second nothing may be gained. */
+static VerdictReading pushed_apart_at(int frame) {
+    Trial trial;
+    begin_alone(&trial);
+    trial.contacts[0].separation = -0.2f;
+    trial_go(&trial, 1);
+    trial.contacts[0].separation = -0.01f;
+    trial_go(&trial, frame - 1);
+    trial.bodies[1].position.y += 0.2f;
+    trial_go(&trial, 120);
+    return trial_end(&trial);
+}
+
+static void an_overlap_at_the_start_may_add_energy(void **state) {
+    (void)state;
+    assert_verdict(pushed_apart_at(30), VERDICT_SETTLES);
+    assert_verdict(pushed_apart_at(90), VERDICT_EXPLODES);
+}
+
+/* Until the bomb touches the box, the box is meant to stand. */
+static VerdictReading falls_at(int frame, bool *fallen) {
+    Trial trial;
+    begin_alone(&trial);
+    trial.run.stands = false;
+    trial.run.until_bomb = true;
+    for (int step = 1; step <= 50; step++) {
+        if (step == frame) trial.bodies[1].angle = 1;
+        if (step == 10) {
+            trial.bodies[2] = trial_box;
+            trial.bodies[2].position = vec2(0, 5);
+            trial.count = 3;
+        }
+        if (step == 11) trial.bomb = 2;
+        if (step == 20) trial.contacts[trial.contact_count++] = (ContactPoint){.a = 1, .b = 2};
+        trial_go(&trial, step);
+    }
+    *fallen = trial.watch.bodies[1].fallen;
+    return trial_end(&trial);
+}
+
+static void falling_is_judged_until_the_bomb_touches(void **state) {
+    (void)state;
+    bool fallen;
+    assert_reading(falls_at(15, &fallen), VERDICT_FALLS, 1, 15, 57.2958, 1e-3, "deg");
+    assert_verdict(falls_at(25, &fallen), VERDICT_SWAYS);
+    assert_true(fallen);
+    assert_verdict(falls_at(51, &fallen), VERDICT_SWAYS);
+    assert_false(fallen);
+}
+
+static Scene *scene_at(const StabilityStudy *study, double value) {
+    Error error = {0};
+    SceneSetting settings[2] = {{.value = value}, study->fixed};
+    snprintf(settings[0].name, sizeof settings[0].name, "%s", study->parameter);
+    const StabilityPlace place = {.scenes = SOURCE_DIR "/scenes", .scene = study->scene};
+    Scene *scene = stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+/* The rule and the table of studies agree on which scenes are meant to stand. */
+static void scenes_without_bomb_and_speed_stand(void **state) {
+    (void)state;
+    for (int i = 0; i < stability_study_count; i++) {
+        Scene *scene = scene_at(&stability_studies[i], stability_studies[i].scan.to);
+        if (verdict_run_of(scene).stands != stability_studies[i].stands)
+            fail_msg("%s is %smeant to stand", stability_studies[i].name, stability_studies[i].stands ? "" : "not ");
+        scene_destroy(scene);
+    }
+}
+
+static void judge_both(const Scene *scene, const char *text, bool stands, const EnergyLog *converged, int found[2]) {
+    Error error = {0};
+    Method method;
+    VerdictReading alone, converging;
+    assert_ok(method_parse(&method, text, &error), error);
+    const VerdictRun runs[2] = {beside(scene, stands, converged), beside(scene, stands, NULL)};
+    assert_ok(verdict_run(&converging, scene, &method, &runs[0], &error), error);
+    assert_ok(verdict_run(&alone, scene, &method, &runs[1], &error), error);
+    found[0] += converging.verdict >= VERDICT_EXPLODES;
+    found[1] += alone.verdict != converging.verdict;
+}
+
+/* In three studies, a third of the runs explode, and the verdicts with and without a converged run are the same. */
+static void verdicts_agree_with_those_beside_the_converged_run(void **state) {
+    (void)state;
+    static const char *const names[] = {"iterations_cold", "heavy_on_one", "bomb_speed"};
+    static const char *const methods[] = {"engine", "momentum:k=10",
+                                          "pair-net:network=" SOURCE_DIR "/scenes/networks/pair-net.npz"};
+    int found[2] = {0, 0}, count = 0;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const StabilityStudy *study = stability_study_find(names[i]);
+        double values[BORDER_POINTS_MAX];
+        const int value_count = border_scan_values(&study->scan, values);
+        for (int v = 0; v < value_count; v++) {
+            Error error = {0};
+            EnergyLog converged = {0};
+            Scene *scene = scene_at(study, values[v]);
+            if (scene->frames > 600) scene->frames = 600;
+            assert_ok(converged_run_once(&converged, scene, &error), error);
+            for (size_t m = 0; m < sizeof methods / sizeof *methods; m++, count++)
+                judge_both(scene, methods[m], study->stands, &converged, found);
+            energy_log_free(&converged);
+            scene_destroy(scene);
+        }
+    }
+    printf("%d runs, %d explode or are NaN or infinite, %d have another verdict alone\n", count, found[0], found[1]);
+    assert_true(found[0] >= count / 4);
+    assert_int_equal(found[1], 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(energy_may_not_exceed_what_was_brought),
+        cmocka_unit_test(a_little_lost_energy_may_come_back),
+        cmocka_unit_test(an_added_body_brings_its_energy),
+        cmocka_unit_test(an_overlap_at_the_start_may_add_energy),
+        cmocka_unit_test(falling_is_judged_until_the_bomb_touches),
+        cmocka_unit_test(scenes_without_bomb_and_speed_stand),
+        cmocka_unit_test(verdicts_agree_with_those_beside_the_converged_run),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

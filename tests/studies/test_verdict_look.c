@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Looks of verdicts: distinguishable in grey too. */
+#include "testing.h"
+
+#include "studies/stability.h"
+
+#include <math.h>
+
+/* CIE 1931 luminance from sRGB, as in a grey print. */
+static double luminance(uint32_t rgb) {
+    double sum = 0;
+    static const double weights[] = {0.2126, 0.7152, 0.0722};
+    for (int i = 0; i < 3; i++) {
+        double value = (rgb >> (16 - 8 * i) & 255u) / 255.0;
+        sum += weights[i] * (value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4));
+    }
+    return sum;
+}
+
+/* CIE 1976 L*, 0 to 100. */
+static double lightness(uint32_t colour) { return 116 * cbrt(luminance(colour)) - 16; }
+
+static void the_worse_the_darker(void **state) {
+    (void)state;
+    for (int look = 1; look < VERDICTS; look++) {
+        double step = lightness(verdict_looks[look - 1].fill) - lightness(verdict_looks[look].fill);
+        if (step < 6) fail_msg("%s is darker than the one before by %g only", verdict_looks[look].name, step);
+    }
+    assert_true(lightness(verdict_looks[VERDICT_CREEPS].fill) > 75);
+    assert_true(lightness(verdict_looks[VERDICT_FALLS].fill) < 72);
+}
+
+/* WCAG 2.1 requires a contrast of 3:1 for graphics. The dot of "settles" is meant to be faint. */
+static void symbols_stand_out_and_differ(void **state) {
+    (void)state;
+    for (int look = VERDICT_SWAYS; look < VERDICTS; look++) {
+        double fill = luminance(verdict_looks[look].fill) + 0.05, ink = luminance(verdict_looks[look].ink) + 0.05;
+        if (fmax(fill, ink) / fmin(fill, ink) < 3) fail_msg("%s: too little contrast", verdict_looks[look].name);
+        for (int other = 0; other < look; other++)
+            assert_true(verdict_looks[other].symbol != verdict_looks[look].symbol ||
+                        verdict_looks[other].open != verdict_looks[look].open ||
+                        verdict_looks[look].size > 2 * verdict_looks[other].size);
+    }
+}
+
+static void looks_are_those_of_the_verdicts(void **state) {
+    (void)state;
+    for (int verdict = 0; verdict < VERDICTS; verdict++) {
+        assert_string_equal(verdict_looks[verdict].name, verdict_name((Verdict)verdict));
+        assert_string_equal(verdict_words[verdict], verdict_name((Verdict)verdict));
+    }
+    assert_string_equal(verdict_words[LOOK_NOT_APPLICABLE], verdict_looks[LOOK_NOT_APPLICABLE].name);
+    assert_null(verdict_words[LOOK_MISSING]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_worse_the_darker),
+        cmocka_unit_test(symbols_stand_out_and_differ),
+        cmocka_unit_test(looks_are_those_of_the_verdicts),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
