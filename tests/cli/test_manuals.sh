@@ -23,8 +23,8 @@ equal "pages of section 5" "$(cd "$pages/man5" && echo *)" "$(printf '%s.5\n' $f
 
 # shown PAGE: as text of 80 columns, without bold and underlining.
 shown() { mandoc -T utf8 -O width=80 "$1" | col -bx; }
-# section PAGE NAME: its lines, as one.
-section() { shown "$1" | awk -v name="$2" '/^[A-Z]/ { found = $0 == name; next } found { print }' | xargs -0 | tr -s ' \n' ' ' | sed 's/^ //; s/ $//'; }
+# section NAME: the lines of that section of text, as one.
+section() { awk -v name="$1" '/^[A-Z]/ { found = $0 == name; next } found { print }' text | xargs -0 | tr -s ' \n' ' ' | sed 's/^ //; s/ $//'; }
 
 # lacking FILE <LINES: those that are nowhere in the file.
 lacking() { awk 'NR == FNR { text = text $0 "\n"; next } !index(text, $0)' "$1" -; }
@@ -34,14 +34,20 @@ if ! command -v mandoc >/dev/null; then
     finish
 fi
 version=$("$twinbox" --version)
+groff=
+if ! command -v groff >/dev/null; then
+    :
+elif printf '.TH A 1\n.SH B\n' | groff -man -ww -z 2>&1 | grep -q .; then
+    echo "groff has no macros for manual pages: not tested"
+else
+    groff=yes
+fi
 for page in "$pages"/man?/*; do
     checks=$((checks + 1))
     # Pages have a version and no date; examples are as long as they are.
     mandoc -T lint "$page" | grep -v -e 'missing date, using ""' -e "input text line longer than 80" >warnings &&
         fail "mandoc warns: $(<warnings)"
-    if command -v groff >/dev/null && printf '.TH A 1\n.SH B\n' | groff -man -ww -z 2>&1 | grep -q . ; then
-        echo "groff has no macros for manual pages: not tested"
-    elif command -v groff >/dev/null; then
+    if [ $groff ]; then
         LC_ALL=C.UTF-8 groff -t -k -man -T utf8 -ww -z "$page" 2>warnings
         [ -s warnings ] && fail "groff warns: $(<warnings)"
     fi
@@ -57,9 +63,9 @@ for name in $commands; do
     page=$pages/man1/twinbox-$name.1
     summary=$("$twinbox" --help | sed -n "s/^  $name  *//p")
     shown "$page" >text
-    equal "name in $page" "$(section "$page" NAME)" "twinbox-$name - $summary"
+    equal "name in $page" "$(section NAME)" "twinbox-$name - $summary"
     ARGP_HELP_FMT=rmargin=4000 "$twinbox" "$name" --help >help
-    equal "synopsis in $page" "$(section "$page" SYNOPSIS)" \
+    equal "synopsis in $page" "$(section SYNOPSIS)" \
         "$(sed -n 's/^\(Usage\|  or\): *//p' help | xargs -0 | tr -s ' \n' ' ' | sed 's/ $//')"
     sed -n '/^Example/q; s/^ \{1,6\}\(-[^ ], \|    \)\(--[a-z-]*\).*/\2/p' help | sort >listed
     sed -n '/^OPTIONS/,/^[B-NP-Z]/s/^       \(-., \)\?\(--[a-z-]*\).*/\2/p' text | sort >paged

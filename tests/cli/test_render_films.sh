@@ -11,7 +11,7 @@ draw() { run 0 render "$@" --size 96x64 -q; }
 for rate in 20 60 120; do
     run 0 simulate "$scenes/single.yaml" --dt 1/$rate --frames $rate -o $rate.npz
 done
-for fps in 24 30 60; do
+for fps in 24 60; do
     for rate in 20 120; do
         rm -rf film
         draw $rate.npz -o film --fps $fps --video film.mp4

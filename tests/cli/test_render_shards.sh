@@ -4,8 +4,7 @@
 . "$(dirname "$0")/checks.sh"
 
 run 0 simulate "$scenes/stack.yaml" -o engine.npz
-film="engine.npz $scenes/stack.yaml --size 128x72 --show ghosts,timeline"
-sanitized && film="$film --frames 0:99"
+film="engine.npz $scenes/stack.yaml --size 128x72 --show ghosts,timeline --frames 0:99"
 videos="--video film.mp4 --video film.gif"
 run 0 render $film $videos -o whole
 mkdir own

@@ -3,40 +3,28 @@
 # Every #include in src/ keeps to the direction of dependencies in src/layers.txt, and no room includes another one's internal
 # headers.
 set -u
-source_dir=$2
-
-declare -A neighbours
-while IFS=: read -r room names; do neighbours[$room]=$names; done < <(grep '^[a-z]' "$source_dir/src/layers.txt")
-
-# All rooms that $1 may include from.
-reach() {
-    local room
-    echo "$1" base
-    for room in ${neighbours[$1]}; do reach "$room"; done
-}
-
-status=0
-for path in "$source_dir"/src/*; do
-    room=$(basename "$path")
-    [ -d "$path" ] || [ "$room" = main.c ] || continue
-    if [ -z "${neighbours[$room]+known}" ]; then
-        echo "src/$room is missing in src/layers.txt"
-        status=1
-        continue
-    fi
-    allowed=" $(reach "$room" | tr '\n' ' ') "
-    while IFS=: read -r file line include; do
-        target=$(sed -E 's/.*"([^"]*)".*/\1/' <<<"$include")
-        # A header without a folder lies beside the file or is made by the build.
-        [[ $target == */* ]] || continue
-        if [[ $allowed != *" ${target%%/*} "* ]]; then
-            echo "${file#"$source_dir"/}:$line: may not include $target"
-            status=1
-        fi
-        if [[ $target == */internal.h || $target == *_internal.h ]] && [ "${target%%/*}" != "$room" ]; then
-            echo "${file#"$source_dir"/}:$line: $target is for its own room"
-            status=1
-        fi
-    done < <(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' "$path" --include='*.[ch]' /dev/null)
-done
-exit $status
+cd "$2/src" || exit 1
+# A header without a folder lies beside the file or is made by the build.
+grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"[^"]*/' . --include='*.[ch]' | awk -F'[:"]' '
+    # All rooms that this one may include from.
+    function reach(room, from,    names, i, n) {
+        may[room, from] = may[room, "base"] = 1
+        n = split(neighbours[from], names, " ")
+        for (i = 1; i <= n; i++) reach(room, names[i])
+    }
+    function complain(what) { print what; failed = 1 }
+    FILENAME != "-" { if (/^[a-z]/) neighbours[$1] = substr($0, length($1) + 2); next }
+    {
+        split($1, path, "/")
+        split($4, target, "/")
+        room = path[2]
+        place = "src/" substr($1, 3) ":" $2
+        if (!(room in neighbours)) {
+            if (!missed[room]++) complain("src/" room " is missing in src/layers.txt")
+            next
+        }
+        if (!reached[room]++) reach(room, room)
+        if (!((room, target[1]) in may)) complain(place ": may not include " $4)
+        if ($4 ~ /[\/_]internal\.h$/ && target[1] != room) complain(place ": " $4 " is for its own room")
+    }
+    END { exit failed }' layers.txt -
