@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Why a function failed, as a message that main() prints unchanged.
-
-   A function that can fail returns bool or NULL and takes an Error * as its last argument. Both setters return false,
-   so a failing function ends in `return error_input(error, ...)`. The first error stays: a caller passes it on
-   unchanged. Arguments may be any text: control characters in them become visible (visible_text.h). Ends of lines do, too,
-   unless the format has one. */
+/* What every file may need: errors, text, arrays, hashes, numbers and settings from text. No files, no threads. */
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* Why a function failed, as a message that main() prints unchanged.
+
+   A function that can fail returns bool or NULL and takes an Error * as its last argument. Both setters return false,
+   so a failing function ends in `return error_input(error, ...)`. The first error stays: a caller passes it on
+   unchanged. Arguments may be any text: control characters in them become visible (visible_text()). Ends of lines do, too,
+   unless the format has one. */
 
 /* The values are the program's exit statuses. */
 typedef enum ErrorKind {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Files that are whole or absent: paths, reading, writing beside the name and renaming, temporary files, locks. */
 #pragma once
 #include "base/base.h"
 

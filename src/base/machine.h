@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The machine and the process: cores, clocks, memory, programs that are run, progress of long work. */
 #pragma once
 #include "base/base.h"
 

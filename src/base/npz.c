@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An open .npz file. Internal to npz_open.c, which checks the directory, and npz.c, which reads the arrays. */
+/* An open .npz file. */
 #include "base/npz.h"
 
 #include "base/base.h"

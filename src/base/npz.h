@@ -92,8 +92,8 @@ bool npz_read_scalar(NpzFile *file, const char *name, NpzType type, void *value,
 /* Checks that the text `kind` and the int32 `version` have these values. */
 bool npz_check_kind(NpzFile *file, const char *kind, int32_t version, Error *error);
 
-/* The header of one .npy array (NumPy format specification). npz_stream.c writes it before the data of each member,
-   npz.c parses it. Only those two and npy_convert.c include this file. */
+/* The header of one .npy array (NumPy format specification). npz_write.c writes it before the data of each member,
+   npz.c parses it. */
 
 /* Enough for the longest header of four dimensions; a longer one is refused. */
 enum { NPY_HEAD_MAX = 512, NPY_REASON_SIZE = 128 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The data of one array on its way into a file: checksum and deflate. A small array is one deflate stream. A large one
    is deflated block by block, and only blocks that shrink to a quarter: deflate takes a second per 30 MB to save an
-   eighth of velocities, but a tenth of that where a world rests. Only npz_stream.c includes this. */
+   eighth of velocities, but a tenth of that where a world rests. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"
@@ -32,8 +32,7 @@ typedef struct NpzPack {
 } NpzPack;
 
 /* Writes a zip piece by piece into a draft. libzip takes a member's data only when it closes the archive, in one thread;
-   and which bytes it writes depends on its version. The same members give the same bytes here: time stamps are fixed.
-   Only npz_stream.c includes this. */
+   and which bytes it writes depends on its version. The same members give the same bytes here: time stamps are fixed. */
 
 enum { ZIP_NAME_SIZE = 72 };
 

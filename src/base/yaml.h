@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The text of a YAML file, and messages that show a place in it, as a compiler does. */
+/* YAML files: their text with places for messages, their tree, and mappings that are read by tables of keys. */
 #pragma once
 #include "base/base.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/* The text of a YAML file, and messages that show a place in it, as a compiler does. */
 
 enum { SOURCE_MAX_SIZE = 3 << 19 }; /* bytes: 157 for each of 10,000 bodies, one per line */
 

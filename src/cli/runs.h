@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The runs that show what happened in a cell of a stability map. */
+/* The parts of the larger commands: compare, simulate, stability, train. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -19,6 +19,8 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/* The runs that show what happened in a cell of a stability map. */
 
 /* The origin of a map's runs. */
 typedef struct ClipMap {

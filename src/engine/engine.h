@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Plane vectors and rotations in float32. The order of every operation here is part of the engine's result:
-   the trajectories are compared bit by bit. */
+/* The engine: plane vectors, boxes, manifolds, broad phase, bodies, the contact problem and the step of a world. It
+   knows no file, no method and no bomb. */
 #pragma once
 #include "base/base.h"
 
@@ -8,6 +8,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* Plane vectors and rotations in float32. The order of every operation here is part of the engine's result:
+   the trajectories are compared bit by bit. */
 
 typedef struct Vec2 {
     float x, y;

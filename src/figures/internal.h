@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A network is drawn as units, or as matrices if it has too many units. */
+/* What the figures of this room share: drawings of networks and contacts, places of labels, objects of PDF, the
+   rasteriser. */
 #pragma once
 #include "base/base.h"
 #include "figures/figure.h"
@@ -15,6 +16,8 @@
 
 #include <stdbool.h>
 #include <stdio.h>
+
+/* A network is drawn as units, or as matrices if it has too many units. */
 
 /* With more units in a layer, the matrices are drawn. */
 enum { UNITS_MAX = 40 };

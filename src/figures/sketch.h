@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The axes of plots: from values to places on the page, and ticks at round numbers. */
+/* A pen for pages in mm: paths, text and pictures as PDF, SVG and PNG; on it axes, series and legends of plots. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+
+/* The axes of plots: from values to places on the page, and ticks at round numbers. */
 
 /* The range of the values above 0. */
 typedef struct PlotRange {

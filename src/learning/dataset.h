@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Poses of a scene's launches, recorded for training. */
+/* Datasets: launches that are run and recorded, rows of touching pairs, subsets, files. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -12,6 +12,8 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* Poses of a scene's launches, recorded for training. */
 
 typedef struct LaunchRuns {
     int count;        /* of launches */

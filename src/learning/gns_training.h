@@ -1,13 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix of
-   gns_net.h's.
-
-   Noise: a random walk of each particle's velocities, with the standard deviation `noise` in the newest; positions move by
-   its sum. The target is the acceleration from the noisy velocity to the true next one, less a tenth of what would undo the
-   noise of the position in one step: so overlaps and gaps close again. The paper corrects the velocity only; the tenth is that
-   of Pfaff, Fortunato, Sanchez-Gonzalez, Battaglia, "Learning Mesh-Based Simulation with Graph Networks" (2021), for
-   second-order dynamics. In half of the examples each box is also displaced as a whole, so that there are overlaps as deep as
-   those of runs; the paper's particles are disturbed one by one only. */
+/* Training of gns: examples of recorded launches, the gradient, the fit. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -19,6 +11,16 @@
 #include "scenes/scenes.h"
 
 #include <stdint.h>
+
+/* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix of
+   gns_net.h's.
+
+   Noise: a random walk of each particle's velocities, with the standard deviation `noise` in the newest; positions move by
+   its sum. The target is the acceleration from the noisy velocity to the true next one, less a tenth of what would undo the
+   noise of the position in one step: so overlaps and gaps close again. The paper corrects the velocity only; the tenth is that
+   of Pfaff, Fortunato, Sanchez-Gonzalez, Battaglia, "Learning Mesh-Based Simulation with Graph Networks" (2021), for
+   second-order dynamics. In half of the examples each box is also displaced as a whole, so that there are overlaps as deep as
+   those of runs; the paper's particles are disturbed one by one only. */
 
 enum {
     GNS_MAX_SCENES = 8,

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The second form of hybrid's learning: beside the memory a network of scene-net makes one training step for each step that
-   becomes an entry, on that step alone (nets/kinds.h, learning/scene_training_internal.h). Its slots and projections are
-   those of the first entries. Source: Robbins, Monro, "A Stochastic Approximation Method" (1951), with Adam. */
+/* Training of hybrid: its memory of impacts, launch after launch, and the network beside it. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -10,6 +8,10 @@
 #include "scenes/scenes.h"
 
 #include <stdint.h>
+
+/* The second form of hybrid's learning: beside the memory a network of scene-net makes one training step for each step that
+   becomes an entry, on that step alone (nets/kinds.h, learning/scene_training_internal.h). Its slots and projections are
+   those of the first entries. Source: Robbins, Monro, "A Stochastic Approximation Method" (1951), with Adam. */
 
 enum { ONLINE_FIRST = 300 }; /* entries that make the network; it trains on the next ones */
 

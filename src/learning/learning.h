@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Adam: each weight steps by its mean slope, divided by the root of its mean squared slope. Same bits on every machine.
-   Source: Kingma, Ba, "Adam: A Method for Stochastic Optimization" (2015). */
+/* What all trainings share: Adam and the state of a training on disk. */
 #pragma once
 #include "base/base.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* Adam: each weight steps by its mean slope, divided by the root of its mean squared slope. Same bits on every machine.
+   Source: Kingma, Ba, "Adam: A Method for Stochastic Optimization" (2015). */
 
 #define ADAM_DECAY 0.9 /* Kingma and Ba, as the others */
 #define ADAM_SQUARE_DECAY 0.999

@@ -1,4 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of pair networks: losses, laws of physics, optimisers. */
+#pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
+
 /* Physical laws for one touching pair: the violation of each law by a change of the pair's velocities, and the gradient
    of the violation with respect to that change. The change of a static body is ignored.
 
@@ -8,12 +16,6 @@
        cone      distance of the pair's impulse J from Coulomb's friction cone, N s: max(0, |J.t| - mu max(J.n, 0))
                  along the tangent plus max(0, -J.n) for pulling. J is the impulse on b, or if b is static minus that
                  on a */
-#pragma once
-#include "base/base.h"
-#include "base/machine.h"
-#include "learning/dataset.h"
-#include "methods/pair.h"
-#include "nets/nets.h"
 
 enum { LAW_MOMENTUM, LAW_ENERGY, LAW_APPROACH, LAW_CONE, LAWS };
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dataset rows prepared for training: normalised inputs and targets, in the block layout of network_gradient.h. */
+/* The parts of the training of pair networks. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 #include "nets/nets.h"
+
+/* Dataset rows prepared for training: normalised inputs and targets, in the block layout of network_gradient.h. */
 
 typedef struct Samples {
     int64_t rows, blocks; /* the last block is padded with zeros */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training data of a form of sain: what its network sees of each receiver in recorded problems, and the correction that
-   would make its velocity converged. */
+/* Training of sain: recorded launches, samples, loss, rounds. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -11,6 +10,9 @@
 #include "methods/solvers.h"
 #include "nets/nets.h"
 #include "scenes/scenes.h"
+
+/* Training data of a form of sain: what its network sees of each receiver in recorded problems, and the correction that
+   would make its velocity converged. */
 
 typedef struct RelationSample {
     int first, rows; /* in rows */

@@ -1,14 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Differentiable momentum sweeps (methods/solvers.h, in colour order) in double: reverse-mode derivatives of a loss of
-   the final velocities with respect to the start impulses and the momentum factors. A network that predicts the start
-   of a solve can thus be trained on the result of the solve.
-
-   A sweep is piecewise linear. The backward pass uses the piece that each visit took in the forward pass, so the
-   derivative is exact, except at a kink, where it is that of one of the two pieces. Sources: Griewank and Walther,
-   "Evaluating Derivatives" (2008), chapter 3 (reverse mode); Monga, Li, Eldar, "Algorithm Unrolling" (2021) (training
-   through an unrolled solver).
-
-   by_x denotes the derivative of the loss with respect to x. */
+/* Training of scene-net: recorded impacts, first weights, loss through unrolled sweeps, scores. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -24,6 +15,17 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+
+/* Differentiable momentum sweeps (methods/solvers.h, in colour order) in double: reverse-mode derivatives of a loss of
+   the final velocities with respect to the start impulses and the momentum factors. A network that predicts the start
+   of a solve can thus be trained on the result of the solve.
+
+   A sweep is piecewise linear. The backward pass uses the piece that each visit took in the forward pass, so the
+   derivative is exact, except at a kink, where it is that of one of the two pieces. Sources: Griewank and Walther,
+   "Evaluating Derivatives" (2008), chapter 3 (reverse mode); Monga, Li, Eldar, "Algorithm Unrolling" (2021) (training
+   through an unrolled solver).
+
+   by_x denotes the derivative of the loss with respect to x. */
 
 /* One contact point. `normal` and `tangent` are Jacobian rows: linear part for b (negated for a), angular part for a
    and for b. Their product with the velocities is the relative velocity of the contact point of b along the

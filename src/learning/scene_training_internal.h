@@ -1,12 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Products C Q of directions Q with the covariance C of the columns of n sparse rows A:
-
-       C Q = A^T (A Q - 1 mean^T Q) / n - mean (sum of the rows of (A Q - 1 mean^T Q))^T / n
-
-   C is never formed. The mean is subtracted from the products A Q and not from the rows, which would lose their
-   sparsity. The last term is 0 except for rounding errors, which it cancels if the mean is large. Own code:
-   GSL's sparse matrices are in double, multiply a single vector at a time and use one thread; here the bits are the
-   same for any number of threads (tests/learning/test_principal.c). */
+/* The parts of the training of scene-net. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -17,6 +10,15 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* Products C Q of directions Q with the covariance C of the columns of n sparse rows A:
+
+       C Q = A^T (A Q - 1 mean^T Q) / n - mean (sum of the rows of (A Q - 1 mean^T Q))^T / n
+
+   C is never formed. The mean is subtracted from the products A Q and not from the rows, which would lose their
+   sparsity. The last term is 0 except for rounding errors, which it cancels if the mean is large. Own code:
+   GSL's sparse matrices are in double, multiply a single vector at a time and use one thread; here the bits are the
+   same for any number of threads (tests/learning/test_principal.c). */
 
 /* Compressed sparse rows: row i has value[k] in column[k] for begin[i] <= k < begin[i + 1], in any order, each column
    at most once. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Recorded launches as numbers and as components (nets/kinds.h). Holden et al. 2019, section 4.1. */
+/* Training of subspace: components of recorded launches, windows of frames, the fit of the predictors. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -10,6 +10,8 @@
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
+
+/* Recorded launches as numbers and as components (nets/kinds.h). Holden et al. 2019, section 4.1. */
 
 /* States of launches from one step before the bomb appears on: that first state is where the bodies come from, by their
    velocities. */

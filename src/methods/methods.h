@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What lists, charts, studies and captions know of a method. A field left zero has a sensible default: a name and a
-   summary are enough to begin with. */
+/* Methods: what describes one, the interface of contact solvers and of steppers, the list of all, and how a scene is
+   stepped. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -9,6 +9,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* What lists, charts, studies and captions know of a method. A field left zero has a sensible default: a name and a
+   summary are enough to begin with. */
 
 /* What a method's results are compared for. */
 typedef enum MethodRole {

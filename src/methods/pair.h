@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The state within a step between two sweeps: velocities and impulses so far, and one Jacobi sweep from there. */
+/* A touching pair as a pair network sees it. */
 #pragma once
 #include "engine/engine.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/* The state within a step between two sweeps: velocities and impulses so far, and one Jacobi sweep from there. */
 
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct PairMoment {

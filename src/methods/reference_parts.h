@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reference's workspace and the parts of a solve. Only the files of the reference include this. */
+/* The reference's workspace and the parts of a solve. */
 #pragma once
 #include "engine/engine.h"
 #include "methods/block_lu.h"

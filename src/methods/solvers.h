@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The networks of sain (methods/sain.c). A relation network answers each row of a view with effects; the effects of a
-   receiver's rows are added; an object network answers its own state and the sum with its outputs. Here the first has
-   two hidden layers of 32 units and 16 effects, the second one of 32. The interaction network of Battaglia et al.
-   (2016) has four of 150 and 50 effects, and one of 100; a reimplementation of Ajay et al. (2019) has 128, 64, 32 and
-   16. */
+/* The states and helpers of contact solvers that others share or train. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -17,6 +13,12 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/* The networks of sain (methods/sain.c). A relation network answers each row of a view with effects; the effects of a
+   receiver's rows are added; an object network answers its own state and the sum with its outputs. Here the first has
+   two hidden layers of 32 units and 16 effects, the second one of 32. The interaction network of Battaglia et al.
+   (2016) has four of 150 and 50 effects, and one of 100; a reimplementation of Ajay et al. (2019) has 128, 64, 32 and
+   16. */
 
 enum {
     RELATION_VERSION = 1,

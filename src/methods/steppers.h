@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A box as particles: its corners, the middles of its edges and its centre; and the rigid box that fits nine particles
-   best. Rigid fit of points: Müller, Heidelberger, Teschner, Gross, "Meshless Deformations Based on Shape Matching"
-   (2005); in the plane the polar decomposition has a closed form. */
+/* What steppers share: particles and graphs of gns, free flight, contacts of the last step, poses of subspace. */
 #pragma once
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -11,6 +9,10 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/* A box as particles: its corners, the middles of its edges and its centre; and the rigid box that fits nine particles
+   best. Rigid fit of points: Müller, Heidelberger, Teschner, Gross, "Meshless Deformations Based on Shape Matching"
+   (2005); in the plane the polar decomposition has a closed form. */
 
 enum { BOX_PARTICLES = 9 };
 

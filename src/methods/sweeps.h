@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Islands: bodies that contacts connect, through bodies that move. */
+/* Sweeps over contacts: the scalar reference implementation, fast kernels, blocks, islands and the order of visits. */
 #pragma once
 #include "engine/engine.h"
 
@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+
+/* Islands: bodies that contacts connect, through bodies that move. */
 
 /* Work space. Zero-initialise; arrays grow and are reused. */
 typedef struct Islands {

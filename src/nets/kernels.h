@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The loops over particles and edges, compiled once for each instruction set (CMakeLists.txt) from gns_kernels_code.h. All
-   perform the same operations in the same order, so they have the same bits. Rows are items, features are innermost. */
+/* The loops of inference, compiled once for each instruction set. All perform the same operations in the same order. */
 #pragma once
 #include "nets/nets.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/* The loops over particles and edges, compiled once for each instruction set (CMakeLists.txt) from gns_kernels_code.h. All
+   perform the same operations in the same order, so they have the same bits. Rows are items, features are innermost. */
 
 typedef struct GnsKernels {
     const char *name;

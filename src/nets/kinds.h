@@ -1,4 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The kinds of networks beyond layers: gns, scene networks with slots, subspace; their shapes and files. */
+#pragma once
+#include "base/base.h"
+#include "nets/kernels.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 /* The network of gns (methods/gns.c): a graph network over particles. Source: Sanchez-Gonzalez, Godwin, Pfaff, Ying,
    Leskovec, Battaglia, "Learning to Simulate Complex Physics with Graph Networks" (2020), section 3 and appendix.
 
@@ -8,14 +18,6 @@
 
    Each function is a perceptron with two hidden layers (ReLU); all but the decoder end in a layer norm. Each round has its
    own weights. float32; sums run in one order, so the bits are the same on every machine. */
-#pragma once
-#include "base/base.h"
-#include "nets/kernels.h"
-
-#include <math.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 enum {
     GNS_VERSION = 1,

@@ -1,4 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Networks of layers: activations in a fixed order of operations, inference, gradients, files. */
+#pragma once
+#include "base/base.h"
+#include "base/npz.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
 /* Sigmoid, tanh, ReLU and e^y in a fixed sequence of operations, so that the bits do not depend on maths library, compiler
    or instruction set, and without calls or branches, so that the compiler vectorises loops over them.
 
@@ -10,14 +20,6 @@
    multiples to be exact (Cody and Waite, "Software Manual for the Elementary Functions", 1980). The polynomial is e^r =
    1 + r + r^2 g(r), g interpolated at the Chebyshev nodes of |r| <= ln 2 / 2; its error is 1.0e-8 in float32, 1.7e-17
    in double. Adding 1.5 * 2^23 (2^52 in double) rounds to an integer and leaves it in the low bits of the sum. */
-#pragma once
-#include "base/base.h"
-#include "base/npz.h"
-
-#include <math.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
 
 /* Returns e^r - 1, and 2^k in *power; y in [-87, 88.8], where k = 128 gives infinity; NaN stays NaN. */
 static inline float exp_parts_float(float y, float *power) {

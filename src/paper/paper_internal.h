@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The study of gns: how far its runs are from those that it was trained on, by rounds of messages and with noise or without;
-   how the shapes of boxes last; large piles; what the paper's own size costs. */
+/* The studies of the paper: networks, scores, rates, transfer, laws, and the systems that it cites. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -16,6 +15,9 @@
 #include "studies/chart.h"
 
 #include <stdio.h>
+
+/* The study of gns: how far its runs are from those that it was trained on, by rounds of messages and with noise or without;
+   how the shapes of boxes last; large piles; what the paper's own size costs. */
 
 /* What a row of system_gns.csv is about. */
 typedef enum GnsMeasure { GNS_ROLLOUT, GNS_LARGE, GNS_COST } GnsMeasure;

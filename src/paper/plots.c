@@ -117,7 +117,7 @@ static void keep_shown(Rates *rates, RateRow *rows, int count) {
 
 static void make_ticks(Rates *rates) {
     static const char *const names[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid,\nsettled"};
-    char text[8];
+    char text[12];
     for (int scene = 0; scene < PAPER_SCENES; scene++) plot_tick_add(&rates->scenes, scene, false, names[scene]);
     for (int share = 0; share <= 100; share += 20) {
         snprintf(text, sizeof text, "%d", share);

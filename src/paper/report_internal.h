@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A Markdown text as one HTML5 page that needs no other file, for phones, screens and paper. */
+/* The parts of the report: template, findings, tables, plots, illustrations. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -13,6 +13,8 @@
 
 #include <stddef.h>
 #include <stdio.h>
+
+/* A Markdown text as one HTML5 page that needs no other file, for phones, screens and paper. */
 
 typedef struct HtmlPage {
     const char *markdown; /* CommonMark with GitHub's tables; raw HTML in it is left out */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pose of a body at a moment. */
+/* The parts of a picture: poses, marks, captions, cards, grids, extents. */
 #pragma once
 #include "base/base.h"
 #include "pictures/picture.h"
@@ -8,6 +8,8 @@
 #include "runs/trajectory.h"
 
 #include <math.h>
+
+/* The pose of a body at a moment. */
 
 typedef struct Pose {
     double x, y, angle; /* m, rad; NaN or infinite if the body does not exist */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What HTML pages share: base64, escaped text, the house style. */
 #pragma once
 #include <stddef.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The camera, from metres to pixels: the same for all panels. */
+/* What a frame shows: camera, panels, captions, legend, timeline, theme. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -9,6 +9,8 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/* The camera, from metres to pixels: the same for all panels. */
 
 /* A point (x, y) in metres is at pixel (left + scale * x, top - scale * y) of a panel. `left` and `top` are
    integers, and so is a large scale: grid lines at whole metres then fall between pixels and stay crisp. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Deflated bytes on their way into a page. */
+/* The parts of a page that plays runs: packed states and contacts, marks, the viewer. */
 #pragma once
 #include "base/base.h"
 #include "pictures/picture.h"
@@ -8,6 +8,8 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* Deflated bytes on their way into a page. */
 
 typedef struct Bytes {
     uint8_t *data; /* freed by the caller; NULL: nothing */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Text entries of a picture's PNG file that state its origin. No date: the same picture gives the same file. */
+/* The parts of rendering: frame texts, workers, videos, manifests. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -9,6 +9,8 @@
 #include "runs/trajectory.h"
 
 #include <stdint.h>
+
+/* Text entries of a picture's PNG file that state its origin. No date: the same picture gives the same file. */
 
 enum {
     FRAME_TEXTS_MAX = 6,

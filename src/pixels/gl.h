@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The OpenGL functions that the renderer calls, loaded at run time through the context. */
+/* OpenGL without a display: contexts, canvas, shapes, text in the built-in font. */
 #pragma once
 #include "base/base.h"
 #include "pixels/png.h"
@@ -9,6 +9,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* The OpenGL functions that the renderer calls, loaded at run time through the context. */
 
 #define GL_FUNCTIONS(X)                                          \
     X(PFNGLATTACHSHADERPROC, AttachShader)                       \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The GLSL of shaders/, embedded in the binary by tools/embed.cmake. */
+/* The parts of this room: shaders, damage, chunks and filters of PNG files. */
 #pragma once
 #include "base/base.h"
 #include "pixels/gl.h"
@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <zlib.h>
+
+/* The GLSL of shaders/, embedded in the binary by tools/embed.cmake. */
 
 extern const char shader_rect_vert[], shader_rect_frag[];
 extern const char shader_shape_vert[], shader_shape_frag[];

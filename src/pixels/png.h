@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Checks that a file is a PNG picture without decompressing it, at the cost of a CRC over its bytes. For files that need
-   no decoding, because they equal another file byte by byte: two truncated downloads are equal, too. */
+/* Images and PNG files: check, read, write. */
 #pragma once
 #include "base/base.h"
 
@@ -8,6 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+
+/* Checks that a file is a PNG picture without decompressing it, at the cost of a CRC over its bytes. For files that need
+   no decoding, because they equal another file byte by byte: two truncated downloads are equal, too. */
 
 /* The first bytes only. ERROR_INPUT if the file is empty, a Git LFS pointer or no PNG file. */
 bool png_check_start(const uint8_t *data, size_t size, const char *path, Error *error);

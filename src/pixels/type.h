@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Refuses text that cannot be drawn, before any work is done. */
+/* The built-in font: its characters, widths and outlines, and the check of text. */
 #pragma once
 #include "base/base.h"
 
 #include <stdbool.h>
 #include <stddef.h>
+
+/* Refuses text that cannot be drawn, before any work is done. */
 
 /* ERROR_INPUT, which names the character, if the font lacks one, or if the text is not UTF-8; `where`: the option or file
    that it comes from. NULL passes. */

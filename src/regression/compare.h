@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* PNG sequences: files of a folder whose names consist of a stem and a number, such as frame_000123.png. A folder
-   may hold several sequences (stems), pictures without number, and subfolders with pictures. A single file is a
-   sequence of one. */
+/* Comparison of PNG sequences: pairs, masks, differing pixels and their regions. */
 #pragma once
 #include "base/base.h"
 #include "pixels/png.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* PNG sequences: files of a folder whose names consist of a stem and a number, such as frame_000123.png. A folder
+   may hold several sequences (stems), pictures without number, and subfolders with pictures. A single file is a
+   sequence of one. */
 
 typedef struct SequenceFrame {
     char *path;

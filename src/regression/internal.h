@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The fixed parts of report.html (src/regression/page), embedded in the binary by base/tools/embed.cmake. */
+/* The parts of this room: antialiasing, boxes that are found again, changes in words, the report. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -16,6 +16,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+
+/* The fixed parts of report.html (src/regression/page), embedded in the binary by base/tools/embed.cmake. */
 
 extern const char report_page_css[], report_page_html[], report_help_html[];
 extern const char report_stage_js[], report_list_js[], report_page_js[]; /* one scope, in this order */
@@ -35,7 +37,7 @@ typedef struct RegressionCase {
 int regression_case_count(const Regression *regression);
 RegressionCase regression_case(const Regression *regression, int i);
 
-/* The parts of a comparison's report. Only regression_report.c and the writers of parts include this. */
+/* The parts of a comparison's report. */
 
 enum { REPORT_KINDS = 4 }; /* expected, actual, difference, FLIP */
 extern const char report_kind_letters[REPORT_KINDS + 1];
@@ -84,7 +86,7 @@ void report_write_tap(FILE *file, const void *report);
 void report_write_json(FILE *file, const void *report);
 
 /* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder, even
-   if one is made meanwhile. Only approve.c and the page, which states the command, include this. */
+   if one is made meanwhile. */
 
 typedef struct Root {
     int folder;       /* an open directory */
@@ -101,7 +103,7 @@ typedef struct ApprovePlace {
    are not looked at. */
 const char *path_below_current(const char *path);
 
-/* Reads the failures from results.json. Only approve.c includes this. */
+/* Reads the failures from results.json. */
 
 typedef struct ApprovalFile {
     const char *name; /* relative to the folder; empty: there was no file */
@@ -237,7 +239,7 @@ typedef struct NamingScene {
 bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,
                  FrameChanges *changes, Error *error);
 
-/* The part of naming that knows bodies. Only naming.c includes this. */
+/* The part of naming that knows bodies. */
 
 /* Owners of differing pixels: CHANGE i is OWNER_FIRST + i. */
 enum { OWNER_NONE, OWNER_UNKNOWN, OWNER_FIRST };
@@ -251,7 +253,7 @@ typedef struct Naming {
     FrameChanges *changes;
 } Naming;
 
-/* One panel for naming: its bodies as drawn, and what its pixels tell of one of them. Only naming_*.c include this. */
+/* One panel for naming: its bodies as drawn, and what its pixels tell of one of them. */
 
 /* A body as drawn in a panel. */
 typedef struct Drawn {
@@ -293,7 +295,7 @@ ViewRect panel_unknown(const Panel *panel);
 /* Explains the unknown pixels, which are within `changed`, by a change of one body. */
 BodyFit panel_fit(Panel *panel, int body, ViewRect changed);
 
-/* Groups failed frames by cause. Only regression.c includes this. */
+/* Groups failed frames by cause. */
 
 /* Fills `causes`. A frame may have several. False with error set if out of memory. */
 bool regression_find_causes(Regression *regression, Error *error);
@@ -325,14 +327,14 @@ bool regression_decide(const Regression *regression, RegressionFrame *frame, con
    that compare names. Only if it has a limit of FLIP: FLIP takes longer than everything else. */
 bool regression_measure_first(Regression *regression, Error *error);
 
-/* Regions and names of what changed in a frame. Only regression_frame.c includes this. */
+/* Regions and names of what changed in a frame. */
 
 /* Sets `changes` and `other_view` of a frame whose pixels differ. data: the two PNG files, whose texts are read.
    Thread-safe. False with error set if out of memory. */
 bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                              const Image *const images[SIDES], const uint8_t *masked, Error *error);
 
-/* Compares the states behind the pictures. Only regression.c and regression_frame.c include this. */
+/* Compares the states behind the pictures. */
 
 /* Finds and compares the .npz files of the same name in both folders. Ignores those that are a trajectory in neither
    folder; ERROR_INPUT if only one of the two is a trajectory. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A picture that masks where it is neither black nor transparent. It is decompressed when it is first drawn on a picture of
-   its size: a small file of any size costs nothing where it does not fit. Only mask.c includes this. */
+   its size: a small file of any size costs nothing where it does not fit. */
 #include "base/base.h"
 #include "pixels/png.h"
 #include "regression/compare.h"

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a region of differing pixels shows in twinbox's own pictures. */
+/* What compare names in twinbox's own pictures: the view of a frame, bodies, texts, regions. */
 #pragma once
 #include "base/base.h"
 #include "regression/compare.h"
 #include "runs/trajectory.h"
 
 #include <stdbool.h>
+
+/* What a region of differing pixels shows in twinbox's own pictures. */
 
 enum { CHANGES_MAX = 12 };
 

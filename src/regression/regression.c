@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The comparison of one frame's pictures. Only regression.c includes this. */
+/* The comparison of one frame's pictures. */
 #include "regression/regression.h"
 
 #include "base/base.h"

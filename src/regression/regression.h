@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How far a picture may differ and still pass. Nothing given: every pixel must be equal. */
+/* A comparison of two folders: limits, rules, states, causes, the verdict. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -8,6 +8,8 @@
 #include "regression/flip.h"
 #include "regression/naming.h"
 #include "runs/trajectory.h"
+
+/* How far a picture may differ and still pass. Nothing given: every pixel must be equal. */
 
 /* Bits of Tolerance.given. */
 typedef enum ToleranceLimit {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Accepts the changes that a comparison's report shows. Nothing else changes expected files. */
+/* What a comparison writes, and what approve accepts. */
 #pragma once
 #include "base/base.h"
 #include "base/json.h"
@@ -8,6 +8,8 @@
 
 #include <stddef.h>
 #include <stdio.h>
+
+/* Accepts the changes that a comparison's report shows. Nothing else changes expected files. */
 
 typedef struct Approval {
     int replaced, added, removed; /* files of the expected folder */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The rules of a comparison in memory. Only rules.c and rules_read.c include this. */
+/* The rules of a comparison in memory. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/yaml.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pieces that a merge does not find, and the shards that are to do them. */
+/* The parts of this room: pieces that are missing, arrays and rows of runs, checks of verdicts. */
 #pragma once
 #include "base/base.h"
 #include "base/npz.h"
@@ -12,6 +12,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* The pieces that a merge does not find, and the shards that are to do them. */
 
 enum { MISSING_NAMED = 5 };
 
@@ -60,7 +62,7 @@ bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line
 /* Index of the body with this number; -1: it has no size. */
 int csv_head_body(const CsvHead *head, int64_t number);
 
-/* Which arrays a run has, and what others may have called them. Only trajectory_read.c includes this. */
+/* Which arrays a run has, and what others may have called them. */
 
 /* False with error set if the file is one of another kind, lacks a needed array, has a part of those that only come
    together, or has an unknown array that looks like one that it lacks: then the error suggests that name. Other unknown arrays are

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The file of a finished piece: some lines of text that say what it is, an empty line, then its results. */
+/* Studies in pieces: the plan, shards, files of pieces, run.json, the merge. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+
+/* The file of a finished piece: some lines of text that say what it is, an empty line, then its results. */
 
 enum { PIECE_NAME_SIZE = 128, PIECE_MAX_SIZE = 1 << 28 };
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The arrays that a problem file holds for bodies and contacts. Only problem_read.c, problem_write.c and problem_bytes.c include
-   this. */
+/* The arrays that a problem file holds for bodies and contacts. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Runs a scene with a method and records the trajectory. */
+/* Runs: a scene stepped with a method and recorded; checks of launches; problem files; growth of distances. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -11,6 +11,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
+
+/* Runs a scene with a method and records the trajectory. */
 
 /* Called with the world after every step; frame: number of the step, 1 .. frames. */
 typedef struct StepObserver {

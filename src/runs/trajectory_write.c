@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A trajectory as .npz, part by part. Only trajectory_stream.c includes this. */
+/* A trajectory as .npz, part by part. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The energy that the bodies of a run have, and how much of it is available to be lost. */
+/* The verdict on a run: the energy of its bodies, what is watched while it is made, how it ended. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
@@ -7,6 +7,8 @@
 #include "scenes/scenes.h"
 
 #include <stddef.h>
+
+/* The energy that the bodies of a run have, and how much of it is available to be lost. */
 
 /* Begin with energy_balance_begin(). */
 typedef struct EnergyBalance {

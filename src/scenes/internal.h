@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The types of values in scene files; base/yaml.h reads the mappings. */
+/* The reading of scene files: fields, patterns, chains, bodies, overlaps. */
 #pragma once
 #include "base/base.h"
 #include "base/yaml.h"
@@ -7,6 +7,8 @@
 #include "scenes/scenes.h"
 
 #include <stdint.h>
+
+/* The types of values in scene files; base/yaml.h reads the mappings. */
 
 /* The ranges keep a scene within what float32 can compute: no product of them is infinite, and no inverse. */
 extern const Range range_size, range_mass, range_position, range_angle, range_speed, range_spin, range_friction,

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The phases of a run, counted from the step in which the bomb first touches a box that can move: impact (the scene
-   sets the number of frames), the 60 frames after, and all other frames. */
+/* Scenes: bodies, bomb, launches, parameters; worlds made from them; the phases of a run. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
 #include "engine/engine.h"
 
 #include <stdint.h>
+
+/* The phases of a run, counted from the step in which the bomb first touches a box that can move: impact (the scene
+   sets the number of frames), the 60 frames after, and all other frames. */
 
 typedef enum Phase { PHASE_IMPACT, PHASE_AFTER, PHASE_REST } Phase;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* stability.html: the maps of a study as tables, whose cells link to pages of runs. */
+/* Speed against accuracy: contenders, launches, scores, times, rows and pages of charts. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -13,6 +13,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* stability.html: the maps of a study as tables, whose cells link to pages of runs. */
 
 extern const char stability_css[]; /* page/stability.css */
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The scores of the methods on the launches of a scene. Those of one launch are stored as bytes of this machine: the number of
-   methods, the launch's residual, where each method's part ends, then the parts; so one method's is found at once. */
+/* The parts of the chart study and of its drawings. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -12,6 +11,9 @@
 
 #include <stdbool.h>
 #include <stdio.h>
+
+/* The scores of the methods on the launches of a scene. Those of one launch are stored as bytes of this machine: the number of
+   methods, the launch's residual, where each method's part ends, then the parts; so one method's is found at once. */
 
 /* A method on one launch. Zero-initialise. */
 typedef struct LaunchScores {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How verdicts are drawn: a tile with a symbol. Worse is darker, readable in grey and for the colour-blind; holding is
-   light and round, failing dark and angular, readable in black and white. */
+/* Stability: cases, searches for borders, scans, maps, tables, pages. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -14,6 +13,9 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/* How verdicts are drawn: a tile with a symbol. Worse is darker, readable in grey and for the colour-blind; holding is
+   light and round, failing dark and angular, readable in black and white. */
 
 /* Continues Verdict: cells without a verdict. */
 enum { LOOK_NOT_APPLICABLE = VERDICTS, LOOK_MISSING, VERDICT_LOOKS };

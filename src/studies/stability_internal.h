@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The borders figure: how far each method holds in each study. */
+/* The parts of the stability figures. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -11,6 +11,8 @@
 #include "studies/stability.h"
 
 #include <stdio.h>
+
+/* The borders figure: how far each method holds in each study. */
 
 enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
 
