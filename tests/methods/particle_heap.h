@@ -30,8 +30,11 @@ static inline void make_heap(ParticleHeap *heap, const int order[HEAP_BODIES]) {
         heap->body[i] = (GnsBody){{1, 1}, body == 2 ? 5 : 1, body == 2};
         box_particles_place(heap->position + (ptrdiff_t)i * BOX_PARTICLES, heap->body[i].size, &pose);
         for (int p = i * BOX_PARTICLES; p < (i + 1) * BOX_PARTICLES; p++)
-            for (int k = 0; k < GNS_HISTORY; k++)
-                heap->velocity[p][k] = vec2(random_between(&random, -2, 2), random_between(&random, -2, 2));
+            for (int k = 0; k < GNS_HISTORY; k++) {
+                /* One after the other: compilers differ in the order of a call's arguments. */
+                const float upwards = random_between(&random, -2, 2);
+                heap->velocity[p][k] = vec2(random_between(&random, -2, 2), upwards);
+            }
     }
     heap->ground = box_make(vec2(0, -10), vec2(100, 20), 0);
     heap->particles = (GnsParticles){HEAP_BODIES, heap->body, heap->position, heap->velocity};
