@@ -26,9 +26,10 @@ static inline void start_python(void) {
     int in[2], out[2];
     assert_true(pipe(in) == 0 && pipe(out) == 0);
     if (fork() == 0) {
+        /* By its whole path: Python looks for its modules beside the first python3 of PATH otherwise. */
         dup2(in[0], 0), dup2(out[1], 1);
         close(in[0]), close(in[1]), close(out[0]), close(out[1]);
-        execl("/usr/bin/python3", "python3", "-c", python_loop, (char *)NULL);
+        execl("/usr/bin/python3", "/usr/bin/python3", "-c", python_loop, (char *)NULL);
         _exit(127);
     }
     close(in[0]), close(out[1]);
