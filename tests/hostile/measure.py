@@ -6,12 +6,16 @@ import resource
 import subprocess
 import sys
 import time
+import zlib
 
 twinbox, scenes = os.path.abspath(sys.argv[1]), sys.argv[2]
 limited = len(sys.argv) == 3
 MiB = 1 << 20
 MEMORY, CPU = 64 * MiB, 0.1  # of refused input, beside that of a process that has nothing to do
 PER_BYTE_MEMORY, PER_BYTE_CPU = 2, 50e-9  # of its files
+# Processor time is stated for a machine that inflates 32 MiB of zeros in 109 ms. There the dearest refused input took 59 ms.
+# Another machine, or a busy one, has as much more or less time as it takes for these zeros in the same run.
+YARDSTICK, YARDSTICK_SECONDS = zlib.compress(bytes(32 * MiB), 1), 0.109
 single, stack = f"{scenes}/single.yaml", f"{scenes}/stack.yaml"
 
 # Exit status, a part of the message, the files, and the arguments, among which @ is the next file.
@@ -116,13 +120,23 @@ def measure(arguments, address):
     return os.waitstatus_to_exitcode(status), words, used.ru_utime + used.ru_stime, used.ru_maxrss * 1024
 
 
+def slowness():
+    """Processor time of the yardstick over that of the machine for which budgets are stated."""
+    least = float("inf")
+    for _ in range(5):
+        began = time.process_time()
+        zlib.crc32(zlib.decompress(YARDSTICK))
+        least = min(least, time.process_time() - began)
+    return least / YARDSTICK_SECONDS
+
+
 def check(case, idle):
     """What is wrong with a case; "" if nothing."""
     status, message, files, words = case
     names = iter(files * 2)
     arguments = [word.replace("@", next(names)) if "@" in word else word for word in words.split()]
     size = sum(os.stat(name).st_size for name in files)
-    memory, seconds = MEMORY + PER_BYTE_MEMORY * size, CPU + PER_BYTE_CPU * size
+    memory, seconds = MEMORY + PER_BYTE_MEMORY * size, slow * (CPU + PER_BYTE_CPU * size)
     for attempt in range(3):  # the first one may have to load the program
         found, errors, used, resident = measure(arguments, idle[0] + memory if limited else None)
         if used <= seconds:
@@ -151,6 +165,7 @@ def check_accepted(case, idle):
 
 verbose = os.environ.get("VERBOSE") is not None
 idle = idle_memory() if limited else [0, 0]
+slow = slowness()
 failed = 0
 for case in CASES:
     wrong = check(case, idle)
