@@ -12,6 +12,7 @@
 #include "pixels/png.h"
 #include "pixels/type.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -130,6 +131,7 @@ static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const cha
 
 static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matrices, int count, const char *title,
                      Error *error) {
+    assert(count > 0);
     Matrices all = {.spec = spec, .count = count, .matrices = matrices};
     const double usable = spec->width - 0.4, line = line_height(spec->points);
     all.columns =

@@ -67,7 +67,6 @@ static double polish(Reference *r, double aim, double ahead) {
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
    on the start. */
 #include "methods/reference_path.h"
-#include "methods/reference_path.h"
 
 enum { START_SWEEPS = 2, FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
 

@@ -446,8 +446,6 @@ static bool follow(Reference *r, int most, bool carefully) {
     return r->best <= r->enough;
 }
 
-#include "methods/reference_newton.h"
-
 static double clamp(double x, double limit) { return x > limit ? limit : x < -limit ? -limit : x; }
 static double larger(double x, double y) { return x > y ? x : y; }
 

@@ -211,8 +211,6 @@ void reference_store(Reference *r, const ContactProblem *problem) {
     }
 }
 
-#include "methods/reference_parts.h"
-
 static const ReferenceKernels *kernels(const Reference *r) {
 #ifdef TWINBOX_AVX
     if (!r->scalar && sweeps_can(SWEEP_AVX2)) return &reference_avx2;

@@ -198,12 +198,13 @@ bool video_write_y4m(const VideoOptions *options, int file, const Progress *prog
     int width, height;
     char header[Y4M_HEADER_SIZE];
     if (!video_frame_size(options, &width, &height, error)) return false;
-    Y4mTarget target = {.file = file, .size = y4m_frame_size(width, height)};
-    target.frame = malloc(target.size);
-    if (target.frame == NULL) return error_memory(error, options->path);
+    const size_t size = y4m_frame_size(width, height);
+    uint8_t *frame = malloc(size);
+    Y4mTarget target = {.file = file, .size = size, .frame = frame};
+    if (frame == NULL) return error_memory(error, options->path);
     y4m_header(header, width, height, options->frame_rate);
     bool stopped = !write_all(&target, header, strlen(header)), ok = true;
     if (!stopped) ok = video_feed(options, 1, width, height, write_y4m_frame, &target, &stopped, progress, error);
-    free(target.frame);
+    free(frame);
     return ok && (!stopped || error_system(error, options->path, "cannot write: %s", strerror(target.cause)));
 }

@@ -192,13 +192,15 @@ static bool keep_name(ApprovalFile *file) {
 }
 
 static bool add_item(ApprovalList *list, ApprovalItem item) {
-    const bool kept = keep_name(&item.expected);
-    bool ok = keep_name(&item.actual) && kept &&
-              array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item);
+    if (!array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item)) return false;
+    ApprovalItem *added = &list->items[list->count];
+    *added = item;
+    const bool kept = keep_name(&added->expected);
+    const bool ok = keep_name(&added->actual) && kept;
     if (ok)
-        list->items[list->count++] = item;
+        list->count++;
     else
-        free_names(&item);
+        free_names(added);
     return ok;
 }
 

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "regression/compare.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -237,6 +238,7 @@ static bool pair_group(Pairing *pairing, Range a, Range b, Error *error) {
 
 /* Takes the first frames for which `compare` finds no difference; none unless `any`. */
 static Range take_leading(Range *range, bool any, int (*compare)(const SequenceFrame *, const SequenceFrame *)) {
+    assert(range->count == 0 || range->frames[0] != NULL);
     Range leading = {range->frames, any};
     while (any && leading.count < range->count && compare(range->frames[0], range->frames[leading.count]) == 0)
         leading.count++;
@@ -292,7 +294,7 @@ SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b
     }
     size_t most = (size_t)a->count + (size_t)b->count + 1;
     Pairing pairing = {.pairs = malloc(most * sizeof *pairing.pairs)};
-    const SequenceFrame **frames = malloc(most * sizeof *frames);
+    const SequenceFrame **frames = calloc(most, sizeof *frames);
     bool ok = pairing.pairs != NULL && frames != NULL ? pair_sequences(&pairing, a, b, frames, error)
                                                       : error_memory(error, a->folder);
     free(frames);

@@ -11,6 +11,7 @@
 #include "studies/chart.h"
 #include "studies/stability_internal.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,12 +109,15 @@ static bool stability_plan_make(StabilityPlan *plan, const StabilityStudy *const
     plan->groups = calloc(count + 1, sizeof *plan->groups);
     plan->pieces = calloc(count + 1, sizeof *plan->pieces);
     if (plan->groups == NULL || plan->pieces == NULL) return error_memory(error, "stability");
-    for (int i = 0; i < study_count; i++)
+    for (int i = 0; i < study_count; i++) {
+        assert(studies[i] != NULL);
         add_group(
             plan,
             (StabilityGroup){.scan = {studies[i], scenes, methods}, .name = studies[i]->name, .items = methods->count},
             studies[i]->weight, studies[i]->file == NULL, 0);
+    }
     for (int i = 0; i < map_count; i++) {
+        assert(maps[i] != NULL);
         const int cells = stability_grid_cells(maps[i], quick), all = stability_grid_cells(maps[i], false);
         add_group(plan,
                   (StabilityGroup){.grid = {maps[i], scenes, methods, quick}, .name = maps[i]->name, .items = cells},
@@ -279,8 +283,8 @@ static bool choose(Run *run, Error *error) {
     const StabilityMap *maps = own != NULL ? own->maps : stability_maps;
     const int study_count = own != NULL ? own->study_count : stability_study_count,
               map_count = own != NULL ? own->map_count : stability_map_count;
-    run->studies = malloc(((size_t)study_count + 1) * sizeof *run->studies);
-    run->maps = malloc(((size_t)map_count + 1) * sizeof *run->maps);
+    run->studies = calloc((size_t)study_count + 1, sizeof *run->studies);
+    run->maps = calloc((size_t)map_count + 1, sizeof *run->maps);
     if (run->studies == NULL || run->maps == NULL) return error_memory(error, "stability");
     for (int i = 0; i < study_count; i++)
         if (is_named(options, studies[i].name, studies[i].quick)) run->studies[run->study_count++] = &studies[i];

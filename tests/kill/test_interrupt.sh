@@ -41,6 +41,11 @@ waiting() {
 # working SIGNAL COMMAND...: the command would work for a long time.
 working() {
     start "${@:2}"
+    # A study is at work once its folder is there, which a busy machine makes late.
+    for _ in $(seq 1000); do
+        [ -e "${folder:-.}" ] && break
+        sleep 0.01
+    done
     sleep 0.2
     kill "-$1" $running
     interrupted "$2, which works"
@@ -72,10 +77,10 @@ working INT page "$scenes/pyramid.yaml" -o new.html
 working INT dataset "$scenes/pyramid.yaml" --random 5000 -o new.npz
 working TERM train --kind scene-net "$scenes/stack.yaml" -o new.npz --iterations 100000
 [ -e new.json ] && fail "an interrupted run has a verdict"
-working TERM paper -o paper --scenes "$scenes"
+folder=paper working TERM paper -o paper --scenes "$scenes"
 [ -e paper/report.html ] && fail "an interrupted study has a report"
-working INT stability -o study --scenes "$scenes"
-working TERM chart "$scenes/pyramid.yaml" -o chart
+folder=study working INT stability -o study --scenes "$scenes"
+folder=chart working TERM chart "$scenes/pyramid.yaml" -o chart
 equal "tables of interrupted studies" "$(find study chart paper -name '*.csv')" ""
 # A training that was stopped early is stored, once it has reported.
 rm -f new.npz
