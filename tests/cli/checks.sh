@@ -59,18 +59,22 @@ unchanged() {
     equal "files after '$text'" "$(find "$place" -type f | sort | xargs md5sum)" "$before"
 }
 
+# strike SIGNAL STATUS WHEN ARGUMENT...: sends the signal to the command once the shell command WHEN succeeds, and checks
+# how it ends.
+strike() {
+    local signal=$1 wanted=$2 when=$3
+    shift 3
+    "$twinbox" "$@" >out 2>err </dev/null &
+    until eval "$when" >/dev/null 2>&1 || ! kill -0 $! 2>/dev/null; do sleep 0.01; done
+    kill -"$signal" $!
+    wait $! 2>/dev/null
+    equal "exit status of $1 after $signal" $? "$wanted"
+}
+
 # kill_shard PIECES ARGUMENT...: kills the command once that folder has two files. Sets kept: how many it has.
 kill_shard() {
     local pieces=$1
-    shift
-    OMP_NUM_THREADS=1 "$twinbox" "$@" >out 2>err </dev/null &
-    for _ in $(seq 6000); do
-        [ "$(ls "$pieces" 2>/dev/null | wc -l)" -ge 2 ] && break
-        kill -0 $! 2>/dev/null || break
-        sleep 0.01
-    done
-    kill -KILL $!
-    wait $! 2>/dev/null
+    OMP_NUM_THREADS=1 strike KILL 137 "[ \$(ls '$pieces' | wc -l) -ge 2 ]" "${@:2}"
     kept=$(ls "$pieces" | wc -l)
 }
 

@@ -62,37 +62,25 @@ complains "quick/chart.csv: error: a finished chart is drawn as it is: give only
 run 2 chart nowhere.csv -o again
 complains "nowhere.csv: error:"
 
+! sanitized || finish
 few=engine:k=10,momentum:k=20,substepping:substeps=10,pair-net,scene-net
 run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
 without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||
     fail "other numbers of the pyramid: $(head -5 difference)"
 
 # An interrupted chart continues where it stopped, with the same numbers. What was done is read, not done again: a piece that
-# is cut off is refused. For a sanitizer, two methods are enough.
-methods=
-if sanitized; then
-    methods="--methods engine,momentum"
-    run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o whole --quick $methods
-    without_times whole/chart.csv >figures.csv
-fi
-"$twinbox" chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick $methods >out 2>err </dev/null &
-for _ in $(seq 2000); do
-    compgen -G 'part/parts-*/0000/*' >/dev/null && break
-    sleep 0.01
-done
-kill -INT $!
-wait $!
-equal "exit status of an interrupted chart" $? 130
+# is cut off is refused.
+strike INT 130 "ls part/parts-*/0000/*" chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
 complains "stopped"
 [ -e part/chart.csv ] && fail "an interrupted chart has a table"
 set -- part/parts-*/0000/*
 [ -s "$1" ] || fail "nothing is kept of an interrupted chart"
 cp "$1" piece
 truncate -s -1 "$1"
-run 2 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick $methods
+run 2 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
 complains "$1: error: is damaged or cut off; delete it"
 cp piece "$1"
-run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick $methods
+run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
 without_times part/chart.csv | cmp -s - figures.csv || fail "a continued chart has other numbers"
 equal "what is left of the pieces" "$(ls part | grep -c parts)" 0
 

@@ -35,6 +35,8 @@ assert len(files) < len(listed), "no two phases share a page"
 PYTHON
 checks=$((checks + 1))
 
+! sanitized || finish
+
 # The worst launch, and the error of its worst step, measured in another way.
 printf 'x\n1.02\n-2.02\n0.3\n' >launches.csv
 run 0 chart "$scenes/stack.yaml" -o own --quick --pages --methods engine:k=10 --launches launches.csv
@@ -64,14 +66,7 @@ checks=$((checks + 1))
 
 # Interrupted while pages are written, it continues with them: those that are done are read, not written again.
 slow="$scenes/stack.yaml --quick --pages --methods $few --launches 60"
-"$twinbox" chart $slow -o part >out 2>err </dev/null &
-for _ in $(seq 6000); do
-    grep -qs '^chart_pages:' part/parts-*/0000/0000000 && break
-    sleep 0.01
-done
-kill -INT $!
-wait $!
-equal "exit status of interrupted pages" $? 130
+strike INT 130 "grep '^chart_pages:' part/parts-*/0000/0000000" chart $slow -o part
 [ -e part/chart.csv ] && [ ! -e part/chart.html ] || fail "pages were interrupted: $(ls part)"
 first=$(grep -l '^chart_pages:' part/parts-*/0000/0000000)
 cp "$first" done

@@ -15,14 +15,6 @@ figures() {
     done
 }
 
-# await FOLDER NUMBER: until the study in the background has done the part, or ended.
-await() {
-    until ls "$1"/parts-*/0000/000000"$2" >/dev/null 2>&1; do
-        kill -0 $study 2>/dev/null || break
-        sleep 0.01
-    done
-}
-
 run 2 paper
 complains "-o DIR is needed"
 run 2 paper -o none --scenes nowhere
@@ -33,12 +25,7 @@ run 3 paper -o /proc/none --quick --scenes "$scenes"
 
 # A study that is interrupted keeps what it has done. A sanitizer would take minutes for a study: it sees one begin and be
 # interrupted, and every part of a study in tests/paper.
-"$twinbox" paper -o quick --quick --scenes "$scenes" >out 2>err </dev/null &
-study=$!
-await quick 7
-kill -INT $study
-wait $study
-equal "exit status of an interrupted study" $? 130
+strike INT 130 "ls quick/parts-*/0000/0000007" paper -o quick --quick --scenes "$scenes"
 complains "stopped"
 ! sanitized || finish
 [ -e quick/report.html ] && fail "an interrupted study has a report"

@@ -5,10 +5,10 @@
 
 run 0 simulate "$scenes/stack.yaml" -o engine.npz
 film="engine.npz $scenes/stack.yaml --size 128x72 --show ghosts,timeline --frames 0:99"
-videos="--video film.mp4 --video film.gif"
+videos="--video film.gif"
 run 0 render $film $videos -o whole
 mkdir own
-mv film.mp4 film.gif own
+mv film.gif own
 last=$(ls whole | grep -c png)
 [ "$last" -gt 96 ] || fail "the film has only $last pictures"
 
@@ -16,7 +16,7 @@ last=$(ls whole | grep -c png)
 same() {
     checks=$((checks + 1))
     diff -r -x shards whole "$2" >difference || fail "$1: $(head -3 difference)"
-    cmp own/film.mp4 film.mp4 && cmp own/film.gif film.gif || fail "$1: other videos"
+    cmp own/film.gif film.gif || fail "$1: another video"
 }
 
 # Each shard writes frames and its pieces, and nothing else.
@@ -25,7 +25,7 @@ for i in 1 2 3; do
     says "shard $i of 3: "
     says "twinbox merge shards"
     equal "files beside the frames" "$(ls shards | grep -v '^frame_.*png$')" shards
-    [ -e film.mp4 ] && fail "a shard has written a video"
+    [ -e film.gif ] && fail "a shard has written a video"
     [ $i = 3 ] && break
     run 1 merge shards
     complains "pieces are missing: pictures "
@@ -33,6 +33,7 @@ for i in 1 2 3; do
 done
 run 0 merge shards
 same "three shards" shards
+! sanitized || finish
 rm film.*
 run 0 merge shards
 same "a second merge" shards

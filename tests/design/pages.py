@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks the Markdown pages of the repository.
 
-    pages.py TWINBOX SOURCES
+    pages.py TWINBOX SOURCES [blocks]
 
 - Every page can be reached from README.md. Every relative link, picture and anchor exists in a fresh clone.
 - README.md keeps its limits.
 - Every file of src, tests, scenes, golden or shaders that a page names exists, or a block of the page writes it. NAME,
   ROOM, COMMAND and WHAT stand for any text. So does every test that a page names.
 - Every option after `twinbox COMMAND` in a shell block, a sentence or an example of --help is one of that command.
-- Marked blocks run, page by page from top to bottom, in a fresh copy of the sources with twinbox on PATH, as a user
-  would type them. The marks are words after the language of a block and are invisible when rendered:
+- With `blocks`, marked blocks run instead, page by page from top to bottom, in a fresh copy of the sources with twinbox on
+  PATH, as a user would type them. The marks are words after the language of a block and are invisible when rendered:
 
       ```sh quick            is run by bash and must succeed
       ```sh quick status=1   must end with this status
@@ -131,6 +131,15 @@ def check_options(place, text):
                 check(option in known, place, f"twinbox {call[1]} has no option {option}")
 
 
+def check_commands(page):
+    """In sentences and in blocks."""
+    for number, command in page.commands:
+        check_options(f"{page.path}:{number}", command.replace("\n", " "))
+    for block in page.blocks:
+        if block.language == "sh":
+            check_options(f"{page.path}:{block.line}", block.text())
+
+
 def check_examples():
     """Of the help of all commands, in lines that are not wrapped."""
     environment = {**os.environ, "ARGP_HELP_FMT": "rmargin=1000"}
@@ -171,12 +180,8 @@ def run(place, block, folder):
 
 def run_blocks(page, folder):
     printed = None
-    for number, command in page.commands:
-        check_options(f"{page.path}:{number}", command.replace("\n", " "))
     for block in page.blocks:
         place = f"{page.path}:{block.line}"
-        if block.language == "sh":
-            check_options(place, block.text())
         if name := block.value("file"):
             path = os.path.normpath(os.path.join(folder, name))
             os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -193,19 +198,23 @@ def run_blocks(page, folder):
 
 def check_blocks():
     for page in pages.values():
-        with tempfile.TemporaryDirectory() as folder:
-            clone = os.path.join(folder, "twinbox")
-            if any(block.marks for block in page.blocks):
+        if any(block.marks for block in page.blocks):
+            with tempfile.TemporaryDirectory() as folder:
+                clone = os.path.join(folder, "twinbox")
                 shutil.copytree(root, clone, ignore=lambda _, names: NOT_IN_A_CLONE & set(names))
-            run_blocks(page, clone)
+                run_blocks(page, clone)
 
 
-check_blocks_end()
-check_links()
-check_readme()
-for page in pages.values():
-    check_paths(page)
-check_examples()
-check_blocks()
+def check_pages():
+    check_blocks_end()
+    check_links()
+    check_readme()
+    for page in pages.values():
+        check_paths(page)
+        check_commands(page)
+    check_examples()
+
+
+check_blocks() if sys.argv[3:] == ["blocks"] else check_pages()
 print(f"{len(pages)} pages, {checks} checks, {failures} failures")
 sys.exit(failures > 0)

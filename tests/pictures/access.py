@@ -69,7 +69,7 @@ def check_tab(checks, page, what):
 
 def check_looks(checks, browser, audit):
     """Everything open, so that every text is there: a pinned body, all marks, all ways of comparing, the dialog."""
-    page = browser.open("three.html", before=audit)
+    page = browser.open("three.html", before=audit, clock=True)
     for width, height in (1440, 900), (390, 844):
         for dark in False, True:
             what = f"{width} {'dark' if dark else 'light'}"

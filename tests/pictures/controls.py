@@ -135,13 +135,15 @@ def check_buttons(checks, page):
                                                     [True, True, 0.25])
 
 
-def check_sizes(checks, page):
+def check_sizes(checks, browser):
     """Windows of all shapes, and screens with more pixels, one after the other in one page."""
+    page = browser.open("three.html")
     for size in (700, 600, 2), (320, 480, 1), (2200, 700, 1.5), (1440, 900, 1):
         page.resize(*size)
         page.settle()
         page.wait(SHARP, limit=20)
     checks.quiet("other windows", page)
+    page.close()
 
 
 def main():
@@ -153,7 +155,7 @@ def main():
                            file)
         checks.twinbox("page", *files, "-o", "three.html")
         loaded = [runs.load(file) for file in files]
-        page = browser.open("three.html")
+        page = browser.open("three.html", clock=True)
         page.wait("player.ready(player.data.frames - 1)")
         frames = check_marks(checks, page, loaded)
         Keys(checks, page, frames).all()
@@ -170,9 +172,9 @@ def main():
         check_command(checks, page)
         check_saved(checks, browser, page)
         check_malformed(checks, browser, page)
-        check_sizes(checks, page)
         checks.quiet("the page", page)
         page.close()
+        check_sizes(checks, browser)
         check_time(checks, browser)
         check_touch(checks, browser)
 

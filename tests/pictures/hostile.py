@@ -43,7 +43,7 @@ class Pages:
         """The page of these runs, drawn in all ways."""
         files = [name if name.endswith(".npz") else name + ".npz" for name in names]
         self.checks.twinbox("page", *files, *options, "-o", "page.html")
-        page = self.browser.open("page.html", **looks)
+        page = self.browser.open("page.html", clock=True, **looks)
         page.run(DRAW_ALL)
         page.settle()
         self.checks.quiet(" and ".join(names), page)

@@ -104,7 +104,7 @@ def check_places(checks, browser, scene):
         checks.empty(f"{scene}: corners", faults)
         checks.true(f"{scene}: boxes compared", boxes > 0)
     for frame in GOLDEN[scene]:
-        golden = pictures.decode(page, f"golden/frames/{scene}_{frame:06d}.png")
+        golden = pictures.read(f"golden/frames/{scene}_{frame:06d}.png")
         drawn = pictures.draw(page, *SIZE, frame)
         moved, measured = pictures.moved_boxes(golden, drawn, panels, loaded, frame)
         checks.empty(f"{scene} frame {frame}: boxes drawn elsewhere than in golden/frames", moved)
@@ -139,7 +139,7 @@ def check_sight(checks, page, panels, loaded):
     faults, _ = corner_faults(page, panels, loaded, frame)
     checks.equal("boxes that were moved, by corners", [fault.split(":")[0] for fault in faults],
                  [f"panel 1 frame {frame} body {body}"])
-    golden = pictures.decode(page, f"golden/frames/stack_{frame:06d}.png")
+    golden = pictures.read(f"golden/frames/stack_{frame:06d}.png")
     moved, _ = pictures.moved_boxes(golden, pictures.draw(page, *SIZE, frame), panels, loaded, frame)
     checks.true("the box that was moved, by pixels", any(f"panel 1 body {body} " in text for text in moved), moved)
 
