@@ -125,6 +125,29 @@ static inline bool array_reserve(void **items, size_t *capacity, size_t wanted, 
     return wanted <= *capacity || array_grow(items, capacity, wanted, item_size);
 }
 
+/* Arrays of an object whose sizes grow together, in one block of memory. Zero-initialise; to free it, free `memory`. */
+typedef struct ArrayBlock {
+    void *memory;
+    size_t capacity; /* bytes */
+} ArrayBlock;
+
+typedef struct ArrayPart {
+    void *array; /* address of the pointer to its items */
+    size_t size; /* bytes */
+} ArrayPart;
+
+#define ARRAY_PART(items, count) \
+    { &(items), (size_t)(count) * sizeof *(items) }
+
+/* Lets the pointers of all parts point into the block; each array begins at a cache line. The items are undefined
+   afterwards. Allocates nothing if the block was as large before; the block at least doubles otherwise. False when memory
+   is short; pointers and items then stay. */
+bool array_block_reserve(ArrayBlock *block, const ArrayPart *parts, size_t count);
+
+#define ARRAY_BLOCK_RESERVE(block, ...)                            \
+    array_block_reserve((block), (const ArrayPart[]){__VA_ARGS__}, \
+                        sizeof((const ArrayPart[]){__VA_ARGS__}) / sizeof(ArrayPart))
+
 /* SplitMix64: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014). */
 
 static inline uint64_t split_mix(uint64_t *state) {

@@ -28,14 +28,14 @@ static void guess_states(Reference *r, double ahead) {
         g->dt = reference_choose(sticks, stiff_t, zero);
         g->rn = reference_choose(closed, -stiff_n * g->gap, -g->normal);
         g->rt = reference_choose(sticks, -stiff_t * g->slip, g->s * g->normal - g->tangent);
-        push(&r->pairs[REFERENCE_PAIRS * i], g->normal + g->rn, g->tangent + g->rt + g->s * g->rn, r->changes);
+        push(&r->pairs[BLOCK_PAIRS * i], g->normal + g->rn, g->tangent + g->rt + g->s * g->rn, r->changes);
     }
 }
 
 static void take_impulses(Reference *r) {
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
-        const Relative change = relative(g, &r->pairs[REFERENCE_PAIRS * i], r->changes);
+        const Relative change = relative(&g->rows, &r->pairs[BLOCK_PAIRS * i], r->changes);
         const Vec4 by = g->rn - g->dn * change.normal;
         const Vec4 tangent = g->tangent + g->rt + g->s * by - g->dt * change.tangent;
         g->normal = reference_larger(g->normal + by, reference_all(0));

@@ -80,7 +80,7 @@ static inline void push_right_side(Reference *r, int i) {
     const ReferencePoint *now = &g->now;
     g->rn = (g->wanted_n - now->l * g->missing_normal) * g->over_z;
     g->rt = g->dt * (g->wanted_q / now->w - g->wanted_p / now->u - g->missing_tangent);
-    push(&r->pairs[REFERENCE_PAIRS * i], now->l + g->rn, now->t + g->rt + g->s * g->rn, r->changes);
+    push(&r->pairs[BLOCK_PAIRS * i], now->l + g->rn, now->t + g->rt + g->s * g->rn, r->changes);
 }
 
 /* The changes of a group by the last solve into `step`. */
@@ -106,7 +106,7 @@ static inline Vec4 nearest_bound(const ReferencePoint *now, const ReferencePoint
 /* The share of `step` that leads to the nearest bound. */
 static double room_for(Vec4 most) {
     double worst = 1e-9;
-    for (int k = 0; k < REFERENCE_SLOTS; k++) worst = most[k] > worst ? most[k] : worst;
+    for (int k = 0; k < BLOCK_SLOTS; k++) worst = most[k] > worst ? most[k] : worst;
     return 1 / worst;
 }
 
@@ -146,7 +146,7 @@ static double end_step(Reference *r) {
     solve_changes(r);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
-        direction(g, relative(g, &r->pairs[REFERENCE_PAIRS * i], r->changes), soft);
+        direction(g, relative(&g->rows, &r->pairs[BLOCK_PAIRS * i], r->changes), soft);
         most = reference_larger(nearest_bound(&g->now, &g->step), most);
     }
     return room_for(most);
@@ -195,22 +195,22 @@ static inline void move_point(ReferenceGroup *g, double share) {
 }
 
 static void move(Reference *r, double share) {
-    for (int k = 0; k < r->lu.count; k++) r->moved[k] += share * r->changes[k];
+    for (int k = 0; k < r->graph.lu.count; k++) r->moved[k] += share * r->changes[k];
     for (int i = 0; i < r->group_count; i++) {
         move_point(&r->groups[i], share);
-        look_at(&r->groups[i], &r->pairs[REFERENCE_PAIRS * i], r->moved);
+        look_at(&r->groups[i], &r->pairs[BLOCK_PAIRS * i], r->moved);
     }
 }
 
 static void keep(Reference *r, int place, double target) {
     for (int i = 0; i < r->group_count; i++) r->kept[place].points[i] = r->groups[i].now;
-    memcpy(r->kept[place].moved, r->moved, ((size_t)r->lu.count + 1) * sizeof *r->moved);
+    memcpy(r->kept[place].moved, r->moved, ((size_t)r->graph.lu.count + 1) * sizeof *r->moved);
     r->kept[place].target = target;
 }
 
 static double return_to(Reference *r, int place) {
     for (int i = 0; i < r->group_count; i++) r->groups[i].now = r->kept[place].points[i];
-    memcpy(r->moved, r->kept[place].moved, ((size_t)r->lu.count + 1) * sizeof *r->moved);
+    memcpy(r->moved, r->kept[place].moved, ((size_t)r->graph.lu.count + 1) * sizeof *r->moved);
     look(r);
     return r->kept[place].target;
 }
@@ -218,8 +218,8 @@ static double return_to(Reference *r, int place) {
 /* The sign of the determinant, from the diagonal of the factors: it changes where the path turns back. */
 static bool goes_forward(const Reference *r) {
     bool forward = true;
-    for (int k = 0; k < r->lu.count; k++)
-        for (int c = 0; c < 3; c++) forward ^= r->lu.blocks[k].column[c][c] < 0;
+    for (int k = 0; k < r->graph.lu.count; k++)
+        for (int c = 0; c < 3; c++) forward ^= r->graph.lu.blocks[k].column[c][c] < 0;
     return forward;
 }
 
@@ -267,7 +267,7 @@ static ReferencePoint combine(const ReferencePoint *x, double share, const Refer
 /* Newton's step at the present target into `along`, and the derivative by the logarithm of the target into `step`.
    Returns the square of the former's length. */
 static double find_directions(Reference *r, double target) {
-    const size_t bodies = (size_t)r->lu.count;
+    const size_t bodies = (size_t)r->graph.lu.count;
     begin_step(r, target);
     end_step(r);
     const double squared = product(r, true);
@@ -295,7 +295,7 @@ static double grown(double target, double by) { return fabs(by) <= 700 ? target 
 static double advance(Tracker *tracker, double by) {
     Reference *r = tracker->r;
     for (int i = 0; i < r->group_count; i++) r->groups[i].step = combine(&r->groups[i].along, by, &r->groups[i].step);
-    for (int k = 0; k < r->lu.count; k++) r->changes[k] = r->first_changes[k] + by * r->changes[k];
+    for (int k = 0; k < r->graph.lu.count; k++) r->changes[k] = r->first_changes[k] + by * r->changes[k];
     const double limit = arc_share * step_room(r), share = limit < 1 ? limit : 1;
     move(r, share);
     tracker->target = grown(tracker->target, share * by);
@@ -410,7 +410,7 @@ static double largest_impulse(const Reference *r) {
         most = reference_larger(g->weight * g->now.l * g->inverse_normal, most);
     }
     double largest = 0;
-    for (int k = 0; k < REFERENCE_SLOTS; k++) largest = most[k] > largest ? most[k] : largest;
+    for (int k = 0; k < BLOCK_SLOTS; k++) largest = most[k] > largest ? most[k] : largest;
     return largest;
 }
 
@@ -450,18 +450,18 @@ static double clamp(double x, double limit) { return x > limit ? limit : x < -li
 static double larger(double x, double y) { return x > y ? x : y; }
 
 /* One contact: first its normal impulse, then its tangent impulse. Returns the larger change. */
-static double visit(Reference *r, const ReferencePair *pair, ReferenceGroup *g, int slot) {
+static double visit(Reference *r, const BlockPair *pair, ReferenceGroup *g, int slot) {
     Vec4 *a = &r->moved[pair->a], *b = &r->moved[pair->b];
     const int k = slot % 2;
     const double gap = g->free_normal[slot] + reference_sum(pair->normal[k] * between(pair, r->moved));
     const double normal = larger(g->normal[slot] - g->mass_normal[slot] * gap, 0), dn = normal - g->normal[slot];
-    *a += r->inverses[pair->a] * as_body_a(pair->normal[k] * reference_all(dn));
-    *b += r->inverses[pair->b] * (pair->normal[k] * reference_all(dn));
+    *a += r->graph.inverses[pair->a] * as_body_a(pair->normal[k] * reference_all(dn));
+    *b += r->graph.inverses[pair->b] * (pair->normal[k] * reference_all(dn));
     const double slip = g->free_tangent[slot] + reference_sum(pair->tangent[k] * between(pair, r->moved));
     const double tangent = clamp(g->tangent[slot] - g->mass_tangent[slot] * slip, g->friction[slot] * normal);
     const double dt = tangent - g->tangent[slot];
-    *a += r->inverses[pair->a] * as_body_a(pair->tangent[k] * reference_all(dt));
-    *b += r->inverses[pair->b] * (pair->tangent[k] * reference_all(dt));
+    *a += r->graph.inverses[pair->a] * as_body_a(pair->tangent[k] * reference_all(dt));
+    *b += r->graph.inverses[pair->b] * (pair->tangent[k] * reference_all(dt));
     g->normal[slot] = normal;
     g->tangent[slot] = tangent;
     return larger(fabs(dn) * g->inverse_normal[slot], fabs(dt) * g->inverse_tangent[slot]);
@@ -470,9 +470,9 @@ static double visit(Reference *r, const ReferencePair *pair, ReferenceGroup *g, 
 static double sweep(Reference *r) {
     double most = 0;
     for (int i = 0; i < r->pair_count; i++)
-        for (int k = 0; k < r->pairs[i].count; k++) {
-            ReferenceGroup *group = &r->groups[i / REFERENCE_PAIRS];
-            const int slot = i % REFERENCE_PAIRS * 2 + k;
+        for (int k = 0; k < r->first[i + 1] - r->first[i]; k++) {
+            ReferenceGroup *group = &r->groups[i / BLOCK_PAIRS];
+            const int slot = i % BLOCK_PAIRS * 2 + k;
             if (!(group->weight[slot] > 0)) continue;
             const double change = visit(r, &r->pairs[i], group, slot);
             most = change > most || isnan(change) ? change : most;
