@@ -251,6 +251,9 @@ typedef struct ContactSolution {
     NetworkFallbacks fallbacks; /* zeros for most methods */
 } ContactSolution;
 
+/* Velocities before any impulse, and no impulses. */
+void contact_solution_begin(const ContactProblem *problem, ContactSolution *solution);
+
 /* Solves a contact problem: fills the solution. False with error set only when memory is short or the problem cannot be
    solved at all. Allocates nothing once the state has met a problem of that size. */
 typedef bool ContactSolve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);

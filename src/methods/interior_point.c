@@ -75,20 +75,6 @@ void interior_iterate(Interior *s, const InteriorKernels *kernels, const Interio
     if (!(estimate < too_large)) s->residual = INFINITY;
 }
 
-static bool store_bodies(const Interior *s, const ContactProblem *problem, ContactSolution *solution) {
-    for (int i = 0; i < problem->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        solution->velocities[i] = (BodyVelocity){body->velocity, body->angular_velocity};
-    }
-    bool finite = true;
-    for (int k = 0; k < s->graph.lu.count; k++) {
-        const Vec4 v = s->velocities[k];
-        solution->velocities[s->graph.bodies[k]] = (BodyVelocity){vec2((float)v[0], (float)v[1]), (float)v[2]};
-        finite &= isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
-    }
-    return finite;
-}
-
 /* Rounded into the cone. */
 static ContactImpulse impulse_of(const InteriorGroup *group, int slot, float friction) {
     const float normal = (float)group->answer_normal[slot], limit = friction * normal;
@@ -96,15 +82,20 @@ static ContactImpulse impulse_of(const InteriorGroup *group, int slot, float fri
 }
 
 bool interior_end(const Interior *s, const Sweeps *sweeps, const ContactProblem *problem, ContactSolution *solution) {
+    bool finite = true;
+    contact_solution_begin(problem, solution);
     for (int i = 0; i < sweeps->pair_count; i++) {
-        const SweepPair *pair = &sweeps->pairs[i];
-        const InteriorGroup *group = &s->groups[i / BLOCK_PAIRS];
-        const bool moves = s->pairs[i].a < s->graph.lu.count || s->pairs[i].b < s->graph.lu.count;
-        for (int k = 0; k < sweep_pair_points(pair); k++)
+        if (s->pairs[i].a == s->graph.lu.count && s->pairs[i].b == s->graph.lu.count) continue;
+        for (int k = 0; k < sweep_pair_points(&sweeps->pairs[i]); k++)
             solution->impulses[sweeps->first[i] + k] =
-                moves ? impulse_of(group, i % BLOCK_PAIRS * 2 + k, pair->friction) : (ContactImpulse){0};
+                impulse_of(&s->groups[i / BLOCK_PAIRS], i % BLOCK_PAIRS * 2 + k, sweeps->pairs[i].friction);
     }
-    return store_bodies(s, problem, solution);
+    for (int k = 0; k < s->graph.lu.count; k++) {
+        const Vec4 v = s->velocities[k];
+        solution->velocities[s->graph.bodies[k]] = (BodyVelocity){vec2((float)v[0], (float)v[1]), (float)v[2]};
+        finite &= isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+    }
+    return finite;
 }
 
 /* Packs sweeps into groups of contact slots, and numbers the bodies that take part. */

@@ -15,7 +15,7 @@ typedef struct PairMoment {
     /* filled by pair_moment_jacobi(): */
     ContactImpulse *alone; /* [contact_count] added by each contact alone */
     BodyVelocity *pushes;  /* [body_count] change of each body by all of these */
-    size_t velocity_capacity, impulse_capacity, alone_capacity, push_capacity;
+    ArrayBlock arrays;
 } PairMoment;
 
 void pair_moment_free(PairMoment *moment);

@@ -186,25 +186,15 @@ void pair_solver_destroy(void *state) {
     free(solver);
 }
 
-PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *error) {
-    const char *path = settings_get(chosen, "network");
-    if (path == NULL) {
-        error_input(error, name, "the scene names no network for it: use %s:network=FILE", name);
-        return NULL;
-    }
-    PairSolver *solver = calloc(1, sizeof *solver);
-    if (solver == NULL) {
-        error_memory(error, name);
-        return NULL;
-    }
-    solver->sweep_count = 10;
-    bool predicts = true;
-    if (settings_int(chosen, "k", 1, SWEEPS_MAX, &solver->sweep_count, error) &&
-        settings_bool(chosen, "net", &predicts, error) && pair_network_read(&solver->network, path, error)) {
-        solver->network.constant = !predicts;
+PairSolver *pair_solver_create(const char *name, const SettingSpec *known, const Settings *chosen, Error *error) {
+    static const PairSolver standard = {.sweep_count = 10, .predicts = true};
+    const char *path = method_network(chosen, NULL, name, error);
+    PairSolver *solver = path != NULL ? settings_make(chosen, known, &standard, sizeof standard, name, error) : NULL;
+    if (solver == NULL || pair_network_read(&solver->network, path, error)) {
+        if (solver != NULL) solver->network.constant = !solver->predicts;
         return solver;
     }
-    pair_solver_destroy(solver);
+    free(solver);
     return NULL;
 }
 
@@ -305,9 +295,7 @@ static void push_points(const ContactProblem *problem, int first, const float *o
 bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     PairSolver *solver = state;
     PairNetwork *network = &solver->network;
-    for (int i = 0; i < problem->body_count; i++)
-        solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
-    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+    contact_solution_begin(problem, solution);
     solution->momentum_error = 0;
     solution->fallbacks = (NetworkFallbacks){0};
     if (network->target == TARGET_IMPULSE) {
@@ -344,10 +332,10 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
    the same velocities, so an impulse travels one pair per step, and a box between two others is pushed twice. */
 
 static const SettingSpec contact_net_settings[] = {
-    {"network", "file of a network with the target points (default: the scene's)"}, PAIR_SOLVER_NET, {NULL, NULL}};
+    {"network", "file of a network with the target points (default: the scene's)", SETTING_OWN}, PAIR_SOLVER_NET, {0}};
 
 static void *contact_net_create(const Settings *chosen, Error *error) {
-    PairSolver *solver = pair_solver_create("contact-net", chosen, error);
+    PairSolver *solver = pair_solver_create("contact-net", contact_net_settings, chosen, error);
     if (solver == NULL || solver->network.target == TARGET_POINTS) return solver;
     error_input(error, settings_get(chosen, "network"),
                 "the network has the target %s, which is for pair-net; contact-net needs the target points",
@@ -372,7 +360,7 @@ const ContactSolverKind solver_contact_net = {
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};
 
-/* Sequential impulses (sequential_impulses.c) written as a network of rectifiers, relu(x) = max(x, 0). With m = mu Pn'
+/* Sequential impulses (sweeps_scalar.c) written as a network of rectifiers, relu(x) = max(x, 0). With m = mu Pn'
    and w = Pt - mass_t vt,
 
        Pn' = relu(Pn - mass_n (vn - bias)),   Pt' = -m + relu(w + m) - relu(w - m)
@@ -389,22 +377,11 @@ const ContactSolverKind solver_contact_net = {
    contact do not add. Source of ReLU networks as piecewise linear functions, and of these functions as networks: Arora,
    Basu, Mianjy, Mukherjee, "Understanding Deep Neural Networks with Rectified Linear Units" (2018). */
 
-typedef struct ReluNet {
-    int sweep_count;
-} ReluNet;
-
-static const SettingSpec relu_net_settings[] = {
-    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, {NULL, NULL}};
+static const SettingSpec relu_net_settings[] = {SWEEPS_SETTING, {0}};
 
 static void *relu_net_create(const Settings *chosen, Error *error) {
-    ReluNet values = {.sweep_count = 10};
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error)) return NULL;
-    ReluNet *solver = malloc(sizeof *solver);
-    if (solver == NULL)
-        error_memory(error, "relu-net");
-    else
-        *solver = values;
-    return solver;
+    static const StoppingRule standard = {.k = 10};
+    return settings_make(chosen, relu_net_settings, &standard, sizeof standard, "relu-net", error);
 }
 
 /* The layers of one contact: the normal impulse, then the tangent impulse from the velocities that result. */
@@ -426,9 +403,9 @@ static void visit(const ContactPoint *contact, const ProblemBody *bodies, BodyVe
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     (void)error;
     static const SequentialOptions start = {.accumulate = true, .warm = true, .relaxation = 1.0f};
-    const ReluNet *solver = state;
+    const StoppingRule *rule = state;
     sequential_impulses_begin(problem, &start, solution);
-    for (int sweep = 0; sweep < solver->sweep_count; sweep++)
+    for (int sweep = 0; sweep < rule->k; sweep++)
         for (int i = 0; i < problem->contact_count; i++)
             visit(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i]);
     return true;
@@ -472,11 +449,10 @@ const ContactSolverKind solver_relu_net = {
    a velocity that should be zero adds up to sinking. With inputs in the frame of the contact, its warm starts are 0 in
    its own runs, since it returns no impulses, but those of the engine in its training data. */
 
-static const SettingSpec settings[] = {
-    {"network", "file of the trained network (default: the scene's)"},
-    {"k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)"},
-    PAIR_SOLVER_NET,
-    {NULL, NULL}};
+static const SettingSpec settings[] = {{"network", "file of the trained network (default: the scene's)", SETTING_OWN},
+                                       PAIR_SOLVER_SWEEPS,
+                                       PAIR_SOLVER_NET,
+                                       {0}};
 
 static bool check(const PairNetwork *network, const char *path, Error *error) {
     if (network->target == TARGET_POINTS)
@@ -493,7 +469,7 @@ static bool check(const PairNetwork *network, const char *path, Error *error) {
 }
 
 static void *create(const Settings *chosen, Error *error) {
-    PairSolver *solver = pair_solver_create("pair-net", chosen, error);
+    PairSolver *solver = pair_solver_create("pair-net", settings, chosen, error);
     if (solver == NULL || check(&solver->network, settings_get(chosen, "network"), error)) return solver;
     pair_solver_destroy(solver);
     return NULL;

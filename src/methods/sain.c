@@ -38,29 +38,19 @@ void relation_networks_destroy(RelationNetworks *networks) {
 }
 
 void relation_answers_free(RelationAnswers *answers) {
-    free(answers->outputs);
-    free(answers->known);
-    free(answers->effects);
-    free(answers->inputs);
-    free(answers->columns);
-    free(answers->scratch);
+    free(answers->arrays.memory);
     *answers = (RelationAnswers){0};
 }
 
 static bool reserve(RelationAnswers *answers, const RelationNetwork *network, const RelationView *view) {
     const size_t bodies = (size_t)view->body_count + 1, rows = (size_t)view->row_count + 1,
                  relation = network_batch_scratch(network->relation), object = network_batch_scratch(network->object);
-    return array_reserve((void **)&answers->outputs, &answers->output_capacity, bodies * RELATION_OUTPUTS,
-                         sizeof(float)) &&
-           array_reserve((void **)&answers->known, &answers->known_capacity, bodies, sizeof(bool)) &&
-           array_reserve((void **)&answers->effects, &answers->effect_capacity, rows * RELATION_EFFECTS,
-                         sizeof(float)) &&
-           array_reserve((void **)&answers->inputs, &answers->input_capacity, bodies * RELATION_OBJECT_INPUTS,
-                         sizeof(float)) &&
-           array_reserve((void **)&answers->columns, &answers->column_capacity, bodies * RELATION_OUTPUTS,
-                         sizeof(float)) &&
-           array_reserve((void **)&answers->scratch, &answers->scratch_capacity, relation > object ? relation : object,
-                         sizeof(float));
+    return ARRAY_BLOCK_RESERVE(&answers->arrays, ARRAY_PART(answers->outputs, bodies * RELATION_OUTPUTS),
+                               ARRAY_PART(answers->known, bodies),
+                               ARRAY_PART(answers->effects, rows * RELATION_EFFECTS),
+                               ARRAY_PART(answers->inputs, bodies * RELATION_OBJECT_INPUTS),
+                               ARRAY_PART(answers->columns, bodies * RELATION_OUTPUTS),
+                               ARRAY_PART(answers->scratch, relation > object ? relation : object));
 }
 
 /* A NaN counts as outside, and is moved to the lower end. */
@@ -217,11 +207,13 @@ typedef struct Sain {
 } Sain;
 
 static const SettingSpec settings[] = {
-    {"network", "file of the trained networks (default: the scene's)"},
-    {"engine", "on|off|shuffled: what the network knows of the engine: all, nothing, or what it did to another body "
-               "(default: on)"},
-    {"net", "on|off: off is the engine alone (default: on)"},
-    {NULL, NULL}};
+    {"network", "file of the trained networks (default: the scene's)", SETTING_OWN},
+    {"engine",
+     "on|off|shuffled: what the network knows of the engine: all, nothing, or what it did to another body (default: "
+     "on)",
+     SETTING_OWN},
+    {"net", "on|off: off is the engine alone (default: on)", SETTING_BOOL(Sain, predicts)},
+    {0}};
 
 static void destroy(void *state) {
     Sain *solver = state;
@@ -262,14 +254,10 @@ static bool read_form(const Settings *chosen, RelationForm *form, Error *error) 
 }
 
 static void *create(const Settings *chosen, Error *error) {
-    const char *path = settings_get(chosen, "network");
-    if (path == NULL) {
-        error_input(error, "sain", "the scene names no network for it: use sain:network=FILE");
-        return NULL;
-    }
-    Sain *solver = make(error);
+    const char *path = method_network(chosen, NULL, "sain", error);
+    Sain *solver = path != NULL ? make(error) : NULL;
     if (solver == NULL) return NULL;
-    if (read_form(chosen, &solver->form, error) && settings_bool(chosen, "net", &solver->predicts, error) &&
+    if (read_form(chosen, &solver->form, error) && settings_read(chosen, settings, solver, error) &&
         relation_networks_read(&solver->own, path, error)) {
         solver->network = &solver->own.forms[solver->form];
         return solver;
@@ -285,13 +273,6 @@ bool sain_make(ContactSolver *solver, const RelationNetwork *network, RelationFo
     state->form = form;
     *solver = (ContactSolver){&solver_sain, state};
     return true;
-}
-
-/* Without an engine: velocities before the step, no impulses. */
-static void forget_engine(const ContactProblem *problem, ContactSolution *solution) {
-    for (int i = 0; i < problem->body_count; i++)
-        solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
-    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
 }
 
 /* All are finite and within the limits of the training data. */
@@ -330,7 +311,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     Sain *solver = state;
     const bool alone = solver->form == RELATION_ALONE && solver->predicts;
     if (alone)
-        forget_engine(problem, solution);
+        contact_solution_begin(problem, solution);
     else if (!solver_engine.solve(solver->engine, problem, solution, error))
         return false;
     if (!solver->predicts) return true;
