@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Boxes as particles, the graph of particles, and the forward pass over it (methods/steppers.h). */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/steppers.h"

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Interior points (methods/interior_point_internal.h): the iterations, and how sweeps are packed into groups of contact
+   slots. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/block_lu.h"
@@ -98,7 +100,7 @@ bool interior_end(const Interior *s, const Sweeps *sweeps, const ContactProblem 
     return finite;
 }
 
-/* Packs sweeps into groups of contact slots, and numbers the bodies that take part. */
+/* Packs sweeps into groups of contact slots. */
 
 /* Friction below this is computed as this: the interval of t must have an inside. The impulses are clamped to the true
    one in the end. */

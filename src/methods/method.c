@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Methods by name: texts and looks, the registry, solvers and steppers made from their settings (methods/methods.h). */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

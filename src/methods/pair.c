@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a network sees of a pair (methods/pair.h). */
 #include "methods/pair.h"
 
 #include "base/base.h"

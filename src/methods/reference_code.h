@@ -1,13 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#pragma once
-#include "methods/reference.h"
-#include "nets/nets.h"
+/* Interior points with a sparse direct solve over the bodies (methods/block_lu.h), run to the end.
+
+   1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
+      sliding) are those of a solution, a linear solve finds it (polish): nearly always at rest.
+   2. Else the central path is followed to the solution (reference_path.h), also where it turns back.
+   3. If the path is lost, again from another distance and with another stiffness.
+
+   The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
+   on the start. Included once by each reference_*.c. */
+#include "methods/reference_newton.h"
+#include "methods/reference_path.h"
 
 /* Contact states by the next visit of sequential impulses: open, sticking or sliding. For given states the contact
    problem is linear. Where contacts are redundant it has no or many solutions; a large stiffness keeps it regular, and
    has no effect once the impulses stay (the proximal point method). Impulses of redundant contacts may have far to go
    at tiny velocities, until one of them slides or opens: visits with more than the effective mass look ahead. */
-#include "methods/reference_newton.h"
 
 enum { POLISH_STEPS = 3 };
 
@@ -56,17 +63,6 @@ static double polish(Reference *r, double aim, double ahead) {
     }
     return miss;
 }
-
-/* Interior points with a sparse direct solve over the bodies (methods/block_lu.h), run to the end.
-
-   1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
-      sliding) are those of a solution, a linear solve finds it (reference_active.h): nearly always at rest.
-   2. Else the central path is followed to the solution (reference_path.h), also where it turns back (reference_arc.h).
-   3. If the path is lost, again from another distance and with another stiffness.
-
-   The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
-   on the start. */
-#include "methods/reference_path.h"
 
 enum { START_SWEEPS = 2, FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
 

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#pragma once
-#include "methods/block_lu.h"
-#include "methods/reference.h"
-
-#include <string.h>
-
 /* The linear systems of the reference: with M the masses and J_n, J_t the rows,
 
        (M + J_n^T D_n J_n + J_t^T (s D_n J_n + D_t J_t)) dv = J^T (impulses of the right-hand side) - M v,
 
    where v is the change of velocity so far. Impulses then change by dl = r_n - D_n J_n dv and
    dt = r_t + s dl - D_t J_t dv. */
+#pragma once
+#include "methods/block_lu.h"
 #include "methods/block_lu_code.h"
+#include "methods/reference.h"
 #include "methods/reference_parts.h"
+
+#include <string.h>
 
 /* x += J^T impulses, of a group's pairs */
 static inline void push(const BlockPair pairs[BLOCK_PAIRS], Vec4 normal, Vec4 tangent, Vec4 *x) {

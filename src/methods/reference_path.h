@@ -1,8 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#pragma once
-#include "methods/reference.h"
-#include "nets/nets.h"
-
 /* Interior points on the way to the solution. A point on the central path of the target c (m/s)^2 satisfies
 
        M v = J_n^T l + J_t^T t,   z = J_n v + free,   q - p = J_t v + free,
@@ -13,7 +9,10 @@
    may be redundant: a tiny compliance around the current impulses keeps the system regular and does not move its
    solution. Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); Friedlander,
    Orban, "A Primal-Dual Regularized Interior-Point Method for Convex Quadratic Programs" (2012). */
+#pragma once
+#include "methods/reference.h"
 #include "methods/reference_newton.h"
+#include "nets/nets.h"
 
 /* m/s: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would throw z, p, q about. */
 static const double rounding = 1e-12;

@@ -1,4 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Simulator-augmented interaction networks. The engine solves each step with 10 sweeps; then a network corrects the
+   velocity and the spin of each body that touches another:
+
+       e_rs = relation(r, s),   v_r = v_r(engine) + scale_r * object(r, sum over s of e_rs)
+
+   for each receiver r and each sender s that touches it (methods/relation_view.h). It is trained on the converged
+   solution minus the engine's (learning/sain_training.h). Impulses, the warm start of the next step, stay
+   those of the engine. Two ablations have networks of their own in the same file: engine=off sees the velocities before
+   the step and predicts their whole change, without impulses (an interaction network); engine=shuffled sees, and
+   corrects, what the engine did to another body. Source: Ajay, Bauza, Wu, Fazeli, Tenenbaum, Rodriguez, Kaelbling,
+   "Combining Physical Simulators and Object-Based Networks for Control" (2019), arXiv 1904.06580. Their network
+   corrects poses of two pushed discs at the rate of a controller; here velocities, as positions follow from them.
+
+   A body whose inputs are beyond those of the training data keeps what the engine did; without an engine its inputs are
+   moved to the ends of their ranges. An answer that is NaN, infinite or larger than in training is discarded.
+
+   Fails where a correction depends on bodies further away: a message crosses one contact in a step, an impact the whole
+   stack. Corrections are no impulses: they create momentum, and may push boxes into each other. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "engine/engine.h"
@@ -109,7 +127,7 @@ bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, R
 
 /* Files of sain: .npz with version, kind ("sain"), command, and as float32 for each form F = on, off, shuffled:
    F_pair_weights and F_body_weights, weights and biases of the relation and the object network, each as one vector
-   (network_gradient.h); offsets and scales of their inputs, F_pair_offset, F_pair_scale, F_body_offset, F_body_scale;
+   (nets/nets.h); offsets and scales of their inputs, F_pair_offset, F_pair_scale, F_body_offset, F_body_scale;
    ranges, F_pair_low, F_pair_high, F_body_low, F_body_high; F_limit. */
 
 #define KIND "sain"
@@ -176,25 +194,6 @@ bool relation_networks_read(RelationNetworks *networks, const char *path, Error 
     if (!ok) relation_networks_destroy(networks);
     return ok;
 }
-
-/* Simulator-augmented interaction networks. The engine solves each step with 10 sweeps; then a network corrects the
-   velocity and the spin of each body that touches another:
-
-       e_rs = relation(r, s),   v_r = v_r(engine) + scale_r * object(r, sum over s of e_rs)
-
-   for each receiver r and each sender s that touches it (methods/relation_view.h). It is trained on the converged
-   solution minus the engine's (learning/sain_training.h). Impulses, the warm start of the next step, stay
-   those of the engine. Two ablations have networks of their own in the same file: engine=off sees the velocities before
-   the step and predicts their whole change, without impulses (an interaction network); engine=shuffled sees, and
-   corrects, what the engine did to another body. Source: Ajay, Bauza, Wu, Fazeli, Tenenbaum, Rodriguez, Kaelbling,
-   "Combining Physical Simulators and Object-Based Networks for Control" (2019), arXiv 1904.06580. Their network
-   corrects poses of two pushed discs at the rate of a controller; here velocities, as positions follow from them.
-
-   A body whose inputs are beyond those of the training data keeps what the engine did; without an engine its inputs are
-   moved to the ends of their ranges. An answer that is NaN, infinite or larger than in training is discarded.
-
-   Fails where a correction depends on bodies further away: a message crosses one contact in a step, an impact the whole
-   stack. Corrections are no impulses: they create momentum, and may push boxes into each other. */
 
 typedef struct Sain {
     RelationNetworks own; /* empty if the network is another's */
