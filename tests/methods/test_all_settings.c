@@ -15,8 +15,7 @@ static void assert_settings(const char *text, int iterations, const char *wanted
 }
 
 /* Contact solvers take k from the scene; steppers have their own. */
-static void what_is_not_given_is_the_scenes_or_the_methods(void **state) {
-    (void)state;
+TEST(what_is_not_given_is_the_scenes_or_the_methods) {
     assert_settings("engine", 10, "k=10");
     assert_settings("engine:k=20", 10, "k=20");
     assert_settings("engine", 0, "");
@@ -31,8 +30,7 @@ static void what_is_not_given_is_the_scenes_or_the_methods(void **state) {
 }
 
 /* No method with a k is forgotten. */
-static void every_method_with_k_has_one(void **state) {
-    (void)state;
+TEST(every_method_with_k_has_one) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         Settings settings;
         assert_true(method_all_settings(&settings, kind->description->name, 12));
@@ -43,10 +41,4 @@ static void every_method_with_k_has_one(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_not_given_is_the_scenes_or_the_methods),
-        cmocka_unit_test(every_method_with_k_has_one),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -32,8 +32,7 @@ static void steps_allocate_nothing_by(const ContactSolverKind *kind, const char 
     world_destroy(world);
 }
 
-static void a_settled_pyramid_steps_without_allocating(void **state) {
-    (void)state;
+TEST(a_settled_pyramid_steps_without_allocating) {
     steps_allocate_nothing_by(&solver_engine, "");
     steps_allocate_nothing_by(&solver_engine, "k=7,near=1e-4");
     steps_allocate_nothing_by(&solver_over_relaxation, "");
@@ -50,8 +49,7 @@ static void a_settled_pyramid_steps_without_allocating(void **state) {
 }
 
 /* The network's pyramid would not stand, so each is asked about the engine's, twice. */
-static void pair_networks_solve_without_allocating(void **state) {
-    (void)state;
+TEST(pair_networks_solve_without_allocating) {
     Error error = {0};
     World *world = make_pyramid();
     ContactSolver engine = make_engine("");
@@ -75,8 +73,7 @@ static void pair_networks_solve_without_allocating(void **state) {
     world_destroy(world);
 }
 
-static void a_view_of_no_larger_problem_allocates_nothing(void **state) {
-    (void)state;
+TEST(a_view_of_no_larger_problem_allocates_nothing) {
     static RandomProblem large, small;
     uint32_t seed = 1;
     SceneView view = {0};
@@ -95,8 +92,7 @@ static void a_view_of_no_larger_problem_allocates_nothing(void **state) {
     slot_network_destroy(network);
 }
 
-static void a_network_of_a_scene_solves_without_allocating(void **state) {
-    (void)state;
+TEST(a_network_of_a_scene_solves_without_allocating) {
     static RandomProblem random;
     uint32_t seed = 4;
     Error error = {0};
@@ -120,8 +116,7 @@ static void a_network_of_a_scene_solves_without_allocating(void **state) {
     slot_network_destroy(network);
 }
 
-static void corrected_steps_allocate_nothing(void **state) {
-    (void)state;
+TEST(corrected_steps_allocate_nothing) {
     Error error = {0};
     uint32_t seed = 1;
     RelationNetwork network;
@@ -144,11 +139,4 @@ static void corrected_steps_allocate_nothing(void **state) {
     relation_network_destroy(&network);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating),
-                                       cmocka_unit_test(pair_networks_solve_without_allocating),
-                                       cmocka_unit_test(a_view_of_no_larger_problem_allocates_nothing),
-                                       cmocka_unit_test(a_network_of_a_scene_solves_without_allocating),
-                                       cmocka_unit_test(corrected_steps_allocate_nothing)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

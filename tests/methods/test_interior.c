@@ -84,8 +84,7 @@ static double residual_of(const ContactProblem *problem, const ContactSolution *
 }
 
 /* The error of the velocities follows `near`. */
-static void impacts_have_the_reference_solution(void **state) {
-    (void)state;
+TEST(impacts_have_the_reference_solution) {
     World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_heap(4), make_heap(9)};
     for (int i = 0; i < 4; i++) {
         Error error = {0};
@@ -101,8 +100,7 @@ static void impacts_have_the_reference_solution(void **state) {
 
 /* Friction allows several solutions here, 0.07 m/s apart, so this is about the residual alone. Shallow contacts close by
    up to 1 mm/s. */
-static void impacts_of_a_pyramid_are_solved_to_the_tolerance(void **state) {
-    (void)state;
+TEST(impacts_of_a_pyramid_are_solved_to_the_tolerance) {
     static const struct {
         const char *text;
         double most;
@@ -140,8 +138,7 @@ static void fit_masses(RandomProblem *random) {
 }
 
 /* Some random problems have no solution, or the reference does not find it; most have. */
-static void random_problems_have_the_reference_solution(void **state) {
-    (void)state;
+TEST(random_problems_have_the_reference_solution) {
     static RandomProblem random;
     uint32_t seed = 3;
     int compared = 0, agree = 0;
@@ -158,8 +155,7 @@ static void random_problems_have_the_reference_solution(void **state) {
 }
 
 /* For any problem: impulses inside the cone, velocities that are those of the impulses. */
-static void cone_and_velocities_fit(void **state) {
-    (void)state;
+TEST(cone_and_velocities_fit) {
     static RandomProblem random;
     uint32_t seed = 11;
     for (int run = 0; run < 60; run++) {
@@ -178,8 +174,7 @@ static void cone_and_velocities_fit(void **state) {
 }
 
 /* The rounding of the velocities to float is all that is lost: 2^-24 of each. */
-static void momentum_is_exact(void **state) {
-    (void)state;
+TEST(momentum_is_exact) {
     World *world = make_struck_stack(3);
     const ContactProblem *problem = next_problem(world);
     ContactProblem free = *problem;
@@ -215,8 +210,7 @@ static uint64_t bits_of_a_run(int steps) {
 }
 
 /* Made by this test; any processor and compiler must give it. */
-static void a_run_has_these_bits(void **state) {
-    (void)state;
+TEST(a_run_has_these_bits) {
     const uint64_t expected = UINT64_C(0x37fd41bc468a2c58), found = bits_of_a_run(60);
     if (found != expected) fail_msg("%016llx", (unsigned long long)found);
 }
@@ -262,8 +256,7 @@ static double log_of_estimates(const ContactProblem *problem) {
 
 /* The estimate decides when the velocities of the answer are computed. Too small it would cost time for answers that are
    refused, too large it would cost iterations. */
-static void the_estimate_is_near_the_residual(void **state) {
-    (void)state;
+TEST(the_estimate_is_near_the_residual) {
     World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_struck_pyramid(1), make_struck_pyramid(4),
                        make_heap(4)};
     double sum = 0;
@@ -274,8 +267,7 @@ static void the_estimate_is_near_the_residual(void **state) {
     assert_true(fabs(sum / (5 * 8)) < log(1.5));
 }
 
-static void kernels_have_the_bits_of_the_scalar_one(void **state) {
-    (void)state;
+TEST(kernels_have_the_bits_of_the_scalar_one) {
     static RandomProblem random;
     uint32_t seed = 21;
     for (int run = 0; run < 50; run++) {
@@ -289,8 +281,7 @@ static void kernels_have_the_bits_of_the_scalar_one(void **state) {
 }
 
 /* The same problem gives the same bits whatever the solver has solved before. */
-static void earlier_problems_leave_no_trace(void **state) {
-    (void)state;
+TEST(earlier_problems_leave_no_trace) {
     Error error = {0};
     World *pyramid = make_struck_pyramid(2), *stack = make_struck_stack(3);
     const ContactProblem *first = next_problem(pyramid), *second = next_problem(stack);
@@ -310,8 +301,7 @@ static void earlier_problems_leave_no_trace(void **state) {
     world_destroy(stack);
 }
 
-static void without_contacts_bodies_keep_their_velocities(void **state) {
-    (void)state;
+TEST(without_contacts_bodies_keep_their_velocities) {
     const ProblemBody body = {.inv_mass = 1, .inv_inertia = 6, .velocity = {1, 2}, .angular_velocity = 3};
     const ContactProblem problem = {.body_count = 1, .marked = -1, .dt = world_dt, .bodies = &body};
     ContactSolution found = make_solution(&problem);
@@ -323,8 +313,7 @@ static void without_contacts_bodies_keep_their_velocities(void **state) {
 }
 
 /* No impulse could change anything between static bodies: they are left out of the matrix and of the residual. */
-static void two_static_bodies_are_no_obstacle(void **state) {
-    (void)state;
+TEST(two_static_bodies_are_no_obstacle) {
     const ProblemBody bodies[] = {
         {.velocity = {0, 0}}, {.velocity = {0, -1}}, {.inv_mass = 1, .inv_inertia = 6, .velocity = {0, -1}}};
     ContactPoint contacts[] = {
@@ -342,8 +331,7 @@ static void two_static_bodies_are_no_obstacle(void **state) {
 }
 
 /* A million to one. */
-static void a_huge_mass_ratio_is_solved(void **state) {
-    (void)state;
+TEST(a_huge_mass_ratio_is_solved) {
     World *world = make_world();
     add_ground(world, 0.2f);
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.495f}});
@@ -357,8 +345,7 @@ static void a_huge_mass_ratio_is_solved(void **state) {
 }
 
 /* Sweeps solve a problem with a NaN, and say so: with their bits, whatever these are. */
-static void a_nan_ends_in_the_fallback(void **state) {
-    (void)state;
+TEST(a_nan_ends_in_the_fallback) {
     World *world = make_struck_stack(3);
     ContactProblem problem = *next_problem(world);
     ContactPoint contacts[64];
@@ -399,8 +386,7 @@ static double residual_of_jam(float jam) {
     return residual;
 }
 
-static void impulses_too_large_for_float_are_no_solution(void **state) {
-    (void)state;
+TEST(impulses_too_large_for_float_are_no_solution) {
     assert_true(residual_of_jam(1e3f) <= 1);
     assert_true(isinf(residual_of_jam(1e10f)));
 }
@@ -421,8 +407,7 @@ static World *make_boxes(int rows, bool stacks) {
 }
 
 /* 820 boxes: in a pyramid they have 1,560 - 819 loops, in stacks none. The bits are those of sweeps with momentum. */
-static void large_pyramids_are_left_to_sweeps_and_stacks_are_not(void **state) {
-    (void)state;
+TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
         World *world = make_boxes(40, stacks);
         const ContactProblem *problem = next_problem(world);
@@ -438,8 +423,7 @@ static void large_pyramids_are_left_to_sweeps_and_stacks_are_not(void **state) {
     }
 }
 
-static void settings_out_of_range_are_refused(void **state) {
-    (void)state;
+TEST(settings_out_of_range_are_refused) {
     static const char *const texts[] = {"near=0", "near=-1", "near=nan", "near=x"};
     for (int i = 0; i < 4; i++) {
         Error error = {0};
@@ -449,24 +433,10 @@ static void settings_out_of_range_are_refused(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(impacts_have_the_reference_solution),
-                                       cmocka_unit_test(impacts_of_a_pyramid_are_solved_to_the_tolerance),
-                                       cmocka_unit_test(random_problems_have_the_reference_solution),
-                                       cmocka_unit_test(cone_and_velocities_fit),
-                                       cmocka_unit_test(momentum_is_exact),
-                                       cmocka_unit_test(a_run_has_these_bits),
-                                       cmocka_unit_test(the_estimate_is_near_the_residual),
-                                       cmocka_unit_test(kernels_have_the_bits_of_the_scalar_one),
-                                       cmocka_unit_test(earlier_problems_leave_no_trace),
-                                       cmocka_unit_test(without_contacts_bodies_keep_their_velocities),
-                                       cmocka_unit_test(two_static_bodies_are_no_obstacle),
-                                       cmocka_unit_test(a_huge_mass_ratio_is_solved),
-                                       cmocka_unit_test(a_nan_ends_in_the_fallback),
-                                       cmocka_unit_test(impulses_too_large_for_float_are_no_solution),
-                                       cmocka_unit_test(large_pyramids_are_left_to_sweeps_and_stacks_are_not),
-                                       cmocka_unit_test(settings_out_of_range_are_refused)};
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+static int free_reference(void **state) {
+    (void)state;
     reference_free(&reference);
-    return failed;
+    return 0;
 }
+
+RUN_TESTS(NULL, free_reference)

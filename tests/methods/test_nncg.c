@@ -63,8 +63,7 @@ static int solve_plainly(const ContactProblem *problem, int count, ContactSoluti
     return begun_anew;
 }
 
-static void random_problems_have_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(random_problems_have_the_bits_of_the_plain_text) {
     static RandomProblem random;
     uint32_t seed = 17;
     const int counts[] = {1, 2, 3, 10, 25};
@@ -113,14 +112,9 @@ static float missing_weight(const ContactSolverKind *kind) {
     return missing;
 }
 
-static void a_stack_carries_its_weight_at_once(void **state) {
-    (void)state;
+TEST(a_stack_carries_its_weight_at_once) {
     assert_true(missing_weight(&solver_nncg) < 0.01f);
     assert_true(missing_weight(&solver_engine) > 0.1f);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(a_stack_carries_its_weight_at_once)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -23,8 +23,7 @@ static Trajectory *run(const char *method_text, float x, int frame) {
 }
 
 /* Of two launches recorded, x = -2.5 and 2.5 m, the nearer one. */
-static void the_nearest_launch_is_played(void **state) {
-    (void)state;
+TEST(the_nearest_launch_is_played) {
     Launch recorded[2];
     Error error = {0};
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
@@ -44,8 +43,7 @@ static void the_nearest_launch_is_played(void **state) {
     }
 }
 
-static void a_scene_without_a_bomb_has_nothing_to_play(void **state) {
-    (void)state;
+TEST(a_scene_without_a_bomb_has_nothing_to_play) {
     Error error = {0};
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     assert_ok(scene != NULL, error);
@@ -57,8 +55,4 @@ static void a_scene_without_a_bomb_has_nothing_to_play(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_nearest_launch_is_played),
-                                       cmocka_unit_test(a_scene_without_a_bomb_has_nothing_to_play)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

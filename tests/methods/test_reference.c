@@ -7,8 +7,7 @@
 static const double g = 10;
 
 /* Under box i of n lie the weights of all above: m g dt (n - i). All are at rest, and stay there. */
-static void a_stack_on_ground_carries_its_weight(void **state) {
-    (void)state;
+TEST(a_stack_on_ground_carries_its_weight) {
     enum { BOXES = 10 };
     World *world = make_world();
     add_ground(world, 0.2f);
@@ -54,8 +53,7 @@ static OnSlope put_on_slope(float angle, float mu) {
 
 /* It sticks if and only if tan(angle) <= mu: friction is then m g dt sin(angle); else mu m g dt cos(angle), and the box
    is off at g dt (sin - mu cos). */
-static void a_box_on_a_slope_sticks_below_the_friction_angle(void **state) {
-    (void)state;
+TEST(a_box_on_a_slope_sticks_below_the_friction_angle) {
     for (float mu = 0.2f; mu < 0.75f; mu += 0.25f) {
         double dt = (double)world_dt;
         float gentle = 0.97f * atanf(mu), steep = 1.05f * atanf(mu);
@@ -71,8 +69,7 @@ static void a_box_on_a_slope_sticks_below_the_friction_angle(void **state) {
 }
 
 /* Two boxes meet head on in the air: they go on as one, with the mean of their momenta, and keep falling. */
-static void boxes_that_crash_go_on_together(void **state) {
-    (void)state;
+TEST(boxes_that_crash_go_on_together) {
     World *world = make_world();
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 3, .position = {0, 10}, .velocity = {4, 0}});
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .position = {0.995f, 10}, .velocity = {-2, 0}});
@@ -89,8 +86,7 @@ static void boxes_that_crash_go_on_together(void **state) {
 }
 
 /* 1000 kg on 1 kg on the ground: what slows the sweeps (10 of them leave half the weight) does not matter here. */
-static void a_light_box_carries_a_heavy_one(void **state) {
-    (void)state;
+TEST(a_light_box_carries_a_heavy_one) {
     World *world = make_world();
     add_ground(world, 0.2f);
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}});
@@ -107,8 +103,7 @@ static void a_light_box_carries_a_heavy_one(void **state) {
 }
 
 /* Static ground that moves at 0.1 m/s takes a box along: its friction could give it mu g dt = 0.17 m/s in the step. */
-static void ground_that_moves_takes_a_box_along(void **state) {
-    (void)state;
+TEST(ground_that_moves_takes_a_box_along) {
     World *world = make_world();
     add_body(world,
              &(BodyDef){.size = {100, 20}, .fixed = true, .friction = 1, .position = {0, -10}, .velocity = {0.1f, 0}});
@@ -124,8 +119,7 @@ static void ground_that_moves_takes_a_box_along(void **state) {
 }
 
 /* A plate that lies on more boxes than a sweep has rounds: together they carry it, and the ground them. */
-static void a_plate_lies_on_very_many_boxes(void **state) {
-    (void)state;
+TEST(a_plate_lies_on_very_many_boxes) {
     enum { BOXES = 70 };
     World *world = make_world();
     add_ground(world, 0.2f);
@@ -188,8 +182,7 @@ static double fastest_spin(Reference *reference, const ContactProblem *problem) 
 /* Boxes that just touch part by a rounding error now and then, and lose contacts. The next step is then another problem:
    with all contacts the tower stands; without one of the lowest box and one between the second and the third, a box
    turns at more than 4 rad/s. */
-static void contacts_lost_by_rounding_change_the_solution(void **state) {
-    (void)state;
+TEST(contacts_lost_by_rounding_change_the_solution) {
     World *world = make_shifted_tower();
     Reference reference = {0};
     ContactSolver converged = make_solver(&solver_reference, "");
@@ -214,8 +207,7 @@ static void contacts_lost_by_rounding_change_the_solution(void **state) {
     world_destroy(world);
 }
 
-static void nothing_that_touches_is_solved_at_once(void **state) {
-    (void)state;
+TEST(nothing_that_touches_is_solved_at_once) {
     World *world = make_world();
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .position = {0, 9}, .velocity = {3, 0}});
     Reference reference = {0};
@@ -227,14 +219,4 @@ static void nothing_that_touches_is_solved_at_once(void **state) {
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_stack_on_ground_carries_its_weight),
-                                       cmocka_unit_test(a_box_on_a_slope_sticks_below_the_friction_angle),
-                                       cmocka_unit_test(boxes_that_crash_go_on_together),
-                                       cmocka_unit_test(a_light_box_carries_a_heavy_one),
-                                       cmocka_unit_test(ground_that_moves_takes_a_box_along),
-                                       cmocka_unit_test(a_plate_lies_on_very_many_boxes),
-                                       cmocka_unit_test(contacts_lost_by_rounding_change_the_solution),
-                                       cmocka_unit_test(nothing_that_touches_is_solved_at_once)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -59,8 +59,7 @@ static void plain_sweep(Plain *plain, const ContactProblem *problem) {
     }
 }
 
-static void many_plain_sweeps_find_the_same(void **state) {
-    (void)state;
+TEST(many_plain_sweeps_find_the_same) {
     for (int steps = 2; steps < 26; steps += 4) {
         World *world = make_heap(steps);
         Reference reference = {0};
@@ -97,8 +96,7 @@ static void assert_fixed_point(const ContactSolverKind *kind, const char *text, 
     free_solver(&solver);
 }
 
-static void the_reference_is_a_fixed_point_of_every_convergent_solver(void **state) {
-    (void)state;
+TEST(the_reference_is_a_fixed_point_of_every_convergent_solver) {
     for (int steps = 2; steps < 26; steps += 4) {
         World *world = make_heap(steps);
         Reference reference = {0};
@@ -130,8 +128,7 @@ static void sweep_impulses(const ContactProblem *problem, int sweeps, ContactImp
 }
 
 /* The residual falls with the sweeps of the engine. Begun from a solution, the first linear solve finds it again. */
-static void the_residual_tells_how_far_impulses_are_off(void **state) {
-    (void)state;
+TEST(the_residual_tells_how_far_impulses_are_off) {
     World *world = make_heap(10);
     Reference reference = {0}, again = {0};
     const ContactProblem *problem = solve_next(world, &reference);
@@ -168,8 +165,7 @@ static void push_all(Plain *plain, const ContactProblem *problem, const ContactI
 }
 
 /* The residual is the largest |change of impulse| / effective mass of one more plain sweep. */
-static void the_residual_is_what_a_plain_sweep_changes(void **state) {
-    (void)state;
+TEST(the_residual_is_what_a_plain_sweep_changes) {
     World *world = make_heap(10);
     Reference reference = {0};
     const ContactProblem *problem = solve_next(world, &reference);
@@ -195,8 +191,7 @@ static void the_residual_is_what_a_plain_sweep_changes(void **state) {
 }
 
 /* Every impulse of the reference pushes, stays in the cone and leaves no contact closing faster than its bias. */
-static void the_reference_keeps_the_law_of_contact(void **state) {
-    (void)state;
+TEST(the_reference_keeps_the_law_of_contact) {
     World *world = make_heap(10);
     Reference reference = {0};
     const ContactProblem *problem = solve_next(world, &reference);
@@ -216,11 +211,4 @@ static void the_reference_keeps_the_law_of_contact(void **state) {
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_reference_keeps_the_law_of_contact),
-                                       cmocka_unit_test(many_plain_sweeps_find_the_same),
-                                       cmocka_unit_test(the_reference_is_a_fixed_point_of_every_convergent_solver),
-                                       cmocka_unit_test(the_residual_tells_how_far_impulses_are_off),
-                                       cmocka_unit_test(the_residual_is_what_a_plain_sweep_changes)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

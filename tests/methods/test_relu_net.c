@@ -31,8 +31,7 @@ static int check_visit(RandomProblem *random) {
     return branch;
 }
 
-static void a_visit_takes_the_engines_branch(void **state) {
-    (void)state;
+TEST(a_visit_takes_the_engines_branch) {
     uint32_t seed = 1;
     int met[BRANCHES] = {0};
     RandomProblem random;
@@ -53,8 +52,7 @@ static void momentum_of(const ContactProblem *problem, const BodyVelocity *veloc
     }
 }
 
-static void momentum_is_kept(void **state) {
-    (void)state;
+TEST(momentum_is_kept) {
     uint32_t seed = 3;
     for (int run = 0; run < 50; run++) {
         RandomProblem random;
@@ -75,8 +73,4 @@ static void momentum_is_kept(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_visit_takes_the_engines_branch),
-                                       cmocka_unit_test(momentum_is_kept)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -40,8 +40,7 @@ static World *make_crash(void) {
 }
 
 /* The chain's impulse needs many sweeps; then all must have found the same velocities. */
-static void all_meet_the_plain_sweeps(void **state) {
-    (void)state;
+TEST(all_meet_the_plain_sweeps) {
     World *world = make_crash();
     const ContactProblem *problem = world_problem(world);
     ContactSolution plain = make_solution(problem), found = make_solution(problem);
@@ -71,8 +70,7 @@ static void linear_momentum(const ContactProblem *problem, const BodyVelocity *a
 }
 
 /* After any number of sweeps: the last thing done is a sweep, not an extrapolation. */
-static void cone_momentum_and_velocities_fit_after_every_sweep(void **state) {
-    (void)state;
+TEST(cone_momentum_and_velocities_fit_after_every_sweep) {
     World *world = make_crash();
     const ContactProblem *problem = world_problem(world);
     ContactSolution found = make_solution(problem);
@@ -100,8 +98,7 @@ static void cone_momentum_and_velocities_fit_after_every_sweep(void **state) {
 }
 
 /* Contacts never pull: a box that flies up from the ground keeps its velocity. */
-static void a_box_that_leaves_the_ground_is_not_held(void **state) {
-    (void)state;
+TEST(a_box_that_leaves_the_ground_is_not_held) {
     World *world = make_world();
     add_ground(world, 0.5f);
     add_body(world,
@@ -122,8 +119,7 @@ static void a_box_that_leaves_the_ground_is_not_held(void **state) {
 }
 
 /* Without the warm start it matters no more what the problem says of it. */
-static void a_cold_engine_starts_from_zero(void **state) {
-    (void)state;
+TEST(a_cold_engine_starts_from_zero) {
     World *world = make_world();
     add_ground(world, 0.2f);
     for (int i = 0; i < 5; i++)
@@ -149,8 +145,7 @@ static void a_cold_engine_starts_from_zero(void **state) {
     world_destroy(world);
 }
 
-static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(numbers_that_overflow_have_the_bits_of_the_plain_text) {
     World *world = make_crash();
     ContactProblem problem = *world_problem(world);
     ContactPoint contacts[32];
@@ -175,8 +170,7 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
     world_destroy(world);
 }
 
-static void settings_out_of_range_are_refused(void **state) {
-    (void)state;
+TEST(settings_out_of_range_are_refused) {
     assert_settings_refused(&solver_momentum, "k=0", "k");
     assert_settings_refused(&solver_over_relaxation, "k=0", "k");
     assert_settings_refused(&solver_block, "k=0", "k");
@@ -189,12 +183,4 @@ static void settings_out_of_range_are_refused(void **state) {
     assert_settings_refused(&solver_engine, "warm=maybe", "warm");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(all_meet_the_plain_sweeps),
-                                       cmocka_unit_test(cone_momentum_and_velocities_fit_after_every_sweep),
-                                       cmocka_unit_test(a_box_that_leaves_the_ground_is_not_held),
-                                       cmocka_unit_test(a_cold_engine_starts_from_zero),
-                                       cmocka_unit_test(numbers_that_overflow_have_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(settings_out_of_range_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

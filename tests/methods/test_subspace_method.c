@@ -54,8 +54,7 @@ static Watch run(const Scene *scene, const Method *method, NetworkFallbacks *fal
 }
 
 /* The box stays, the bomb flies on a straight line: gravity is missing, and counted as momentum created. */
-static void boxes_go_on_as_they_move(void **state) {
-    (void)state;
+TEST(boxes_go_on_as_they_move) {
     Scene *scene = read_scene();
     scene->frames = 10;
     scene->bomb.body.angular_velocity = 3;
@@ -76,8 +75,7 @@ static void boxes_go_on_as_they_move(void **state) {
 }
 
 /* Sine and cosine go on in a straight line, so the angle does what they tell. */
-static void angles_follow_sine_and_cosine(void **state) {
-    (void)state;
+TEST(angles_follow_sine_and_cosine) {
     Scene *scene = read_scene();
     scene->frames = 4;
     scene->bomb.body.angle = 9; /* more than a turn */
@@ -105,8 +103,7 @@ static void step_world(Stepper *stepper, World *world, const Scene *scene, int f
 }
 
 /* The steps of one world do not change those of another: the second starts from its own poses. */
-static void another_world_starts_from_its_poses(void **state) {
-    (void)state;
+TEST(another_world_starts_from_its_poses) {
     Scene *scene = read_scene();
     Launch launch = launch_of(scene);
     launch.x = -2;
@@ -130,8 +127,7 @@ static void another_world_starts_from_its_poses(void **state) {
     scene_destroy(scene);
 }
 
-static void before_the_bomb_the_recorded_run_is_repeated(void **state) {
-    (void)state;
+TEST(before_the_bomb_the_recorded_run_is_repeated) {
     Scene *scene = read_scene();
     scene->bomb.frame = 5;
     scene->frames = 5;
@@ -152,8 +148,7 @@ static void before_the_bomb_the_recorded_run_is_repeated(void **state) {
 }
 
 /* As `twinbox check` runs a scene. */
-static void without_its_bomb_a_launch_stands_still(void **state) {
-    (void)state;
+TEST(without_its_bomb_a_launch_stands_still) {
     Scene *scene = read_scene();
     scene->frames = 3;
     SubspaceNet *net = subspace_net_by_hand(0);
@@ -165,8 +160,7 @@ static void without_its_bomb_a_launch_stands_still(void **state) {
     scene_destroy(scene);
 }
 
-static void what_training_did_not_see_is_counted(void **state) {
-    (void)state;
+TEST(what_training_did_not_see_is_counted) {
     Scene *scene = read_scene();
     scene->frames = 10;
     SubspaceNet *net = subspace_net_by_hand(0);
@@ -188,8 +182,7 @@ static void what_training_did_not_see_is_counted(void **state) {
 }
 
 /* A basis so large that poses overflow: bodies stay where they are. */
-static void poses_that_are_not_finite_are_discarded(void **state) {
-    (void)state;
+TEST(poses_that_are_not_finite_are_discarded) {
     Scene *scene = read_scene();
     scene->frames = 3;
     SubspaceNet *net = subspace_net_by_hand(0);
@@ -211,8 +204,7 @@ static void refuse(const Method *method, const Scene *scene, const char *reason)
     assert_refused(stepper_create(method, scene, &error), reason);
 }
 
-static void what_does_not_fit_is_refused(void **state) {
-    (void)state;
+TEST(what_does_not_fit_is_refused) {
     Scene *scene = read_scene();
     Error error = {0};
     SubspaceNet *net = subspace_net_by_hand(0);
@@ -237,14 +229,4 @@ static void what_does_not_fit_is_refused(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_go_on_as_they_move),
-                                       cmocka_unit_test(angles_follow_sine_and_cosine),
-                                       cmocka_unit_test(another_world_starts_from_its_poses),
-                                       cmocka_unit_test(before_the_bomb_the_recorded_run_is_repeated),
-                                       cmocka_unit_test(without_its_bomb_a_launch_stands_still),
-                                       cmocka_unit_test(what_training_did_not_see_is_counted),
-                                       cmocka_unit_test(poses_that_are_not_finite_are_discarded),
-                                       cmocka_unit_test(what_does_not_fit_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

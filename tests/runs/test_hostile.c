@@ -125,8 +125,7 @@ static bool needs_files(const Method *method, const Scene *scene) {
 }
 
 /* The reference is held to fewer scenes: it takes its time. */
-static void no_method_leaves_the_finite_numbers(void **state) {
-    (void)state;
+TEST(no_method_leaves_the_finite_numbers) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         Error error = {0};
         Method method;
@@ -146,8 +145,7 @@ static void no_method_leaves_the_finite_numbers(void **state) {
 }
 
 /* So there is something to refuse. */
-static void a_step_that_blows_up_is_refused(void **state) {
-    (void)state;
+TEST(a_step_that_blows_up_is_refused) {
     Error error = {0};
     Method method;
     Scene scene;
@@ -157,8 +155,4 @@ static void a_step_that_blows_up_is_refused(void **state) {
     assert_true(run_scene(&scene, -1, &method));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_method_leaves_the_finite_numbers),
-                                       cmocka_unit_test(a_step_that_blows_up_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

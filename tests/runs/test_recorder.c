@@ -28,8 +28,7 @@ static void record_to(const Scene *scene, const Method *method, const RecorderOu
 }
 
 /* Runs of one part, of many parts, of which the last is full or not, with a bomb that comes and a body that goes. */
-static void files_are_those_of_a_run_in_memory(void **state) {
-    (void)state;
+TEST(files_are_those_of_a_run_in_memory) {
     static const struct {
         const char *scene;
         int frames;
@@ -61,8 +60,7 @@ static void files_are_those_of_a_run_in_memory(void **state) {
 }
 
 /* What libzip 1.7.3 and zlib 1.2.13 wrote. */
-static void golden_files_have_the_same_bytes(void **state) {
-    (void)state;
+TEST(golden_files_have_the_same_bytes) {
     static const char *const names[] = {"stack-engine", "pyramid-pair-net", "pyramid_settled-engine"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char golden[512];
@@ -82,8 +80,7 @@ static bool fail_late(void *context, int frame, const World *world, Error *error
     return frame < 800 || error_input(error, "observer", "enough");
 }
 
-static void a_run_that_fails_leaves_no_file(void **state) {
-    (void)state;
+TEST(a_run_that_fails_leaves_no_file) {
     Error error = {0};
     Method method;
     assert_ok(method_parse(&method, "engine", &error), error);
@@ -100,8 +97,7 @@ static void a_run_that_fails_leaves_no_file(void **state) {
     scene_destroy(scene);
 }
 
-static void too_long_runs_are_refused_before_the_first_step(void **state) {
-    (void)state;
+TEST(too_long_runs_are_refused_before_the_first_step) {
     Error error = {0};
     Method method;
     assert_ok(method_parse(&method, "engine", &error), error);
@@ -110,12 +106,4 @@ static void too_long_runs_are_refused_before_the_first_step(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(files_are_those_of_a_run_in_memory),
-        cmocka_unit_test(golden_files_have_the_same_bytes),
-        cmocka_unit_test(a_run_that_fails_leaves_no_file),
-        cmocka_unit_test(too_long_runs_are_refused_before_the_first_step),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -38,8 +38,7 @@ static FILE *open_golden(const char *name, const char *header) {
     return file;
 }
 
-static void every_launch_has_the_bits_of_box2d_lite(void **state) {
-    (void)state;
+TEST(every_launch_has_the_bits_of_box2d_lite) {
     FILE *file = open_golden("grid_hash.csv", "scene,bomb_x,hash_f60,hash_f120,hash_f300\n");
     char line[256], name[32], x[16];
     unsigned long long hashes[3];
@@ -74,8 +73,7 @@ static uint64_t run_hash(const Trajectory *run) {
     return hash;
 }
 
-static void every_frame_of_the_long_runs_has_the_bits_of_box2d_lite(void **state) {
-    (void)state;
+TEST(every_frame_of_the_long_runs_has_the_bits_of_box2d_lite) {
     FILE *file = open_golden("run_hash.csv", "name,scene,bomb_x,bomb_frame,frames,hash\n");
     char line[256], name[64], scene_name[32], x[16];
     unsigned long long hash;
@@ -97,8 +95,7 @@ static void every_frame_of_the_long_runs_has_the_bits_of_box2d_lite(void **state
     assert_int_equal(runs, 25);
 }
 
-static void two_runs_give_the_same_bits(void **state) {
-    (void)state;
+TEST(two_runs_give_the_same_bits) {
     Scene *scene = read_scene("pyramid_settled");
     scene->frames = 240;
     Trajectory *a = run_engine(scene), *b = run_engine(scene);
@@ -117,9 +114,4 @@ static void two_runs_give_the_same_bits(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_launch_has_the_bits_of_box2d_lite),
-                                       cmocka_unit_test(every_frame_of_the_long_runs_has_the_bits_of_box2d_lite),
-                                       cmocka_unit_test(two_runs_give_the_same_bits)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -47,18 +47,8 @@ static void every_step_converges(const char *method) {
     reference_free(&steps.reference);
 }
 
-static void every_step_of_the_engine_converges(void **state) {
-    (void)state;
-    every_step_converges("engine");
-}
+TEST(every_step_of_the_engine_converges) { every_step_converges("engine"); }
 
-static void every_step_in_closed_loop_converges(void **state) {
-    (void)state;
-    every_step_converges("reference");
-}
+TEST(every_step_in_closed_loop_converges) { every_step_converges("reference"); }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_step_of_the_engine_converges),
-                                       cmocka_unit_test(every_step_in_closed_loop_converges)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

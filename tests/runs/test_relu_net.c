@@ -59,8 +59,7 @@ static void run_scene(const char *name, int sweeps) {
     scene_destroy(scene);
 }
 
-static void every_frame_is_the_engines(void **state) {
-    (void)state;
+TEST(every_frame_is_the_engines) {
     lower_ends = released = 0;
     run_scene("single", 10);
     run_scene("stack", 13);
@@ -69,7 +68,4 @@ static void every_frame_is_the_engines(void **state) {
     assert_true(lower_ends > 1000 && released > 1000);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_frame_is_the_engines)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

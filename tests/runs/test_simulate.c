@@ -19,8 +19,7 @@ static Trajectory *run(const Scene *scene, const char *method_text) {
     return trajectory;
 }
 
-static void a_trajectory_says_what_it_is(void **state) {
-    (void)state;
+TEST(a_trajectory_says_what_it_is) {
     Scene *scene = read_single();
     scene->frames = 60;
     Trajectory *trajectory = run(scene, "engine:k=3");
@@ -44,8 +43,7 @@ static void a_trajectory_says_what_it_is(void **state) {
 }
 
 /* Put in after step 10, so it is in frame 10 and has not moved there yet. */
-static void the_bomb_comes_after_the_step_it_is_told_to(void **state) {
-    (void)state;
+TEST(the_bomb_comes_after_the_step_it_is_told_to) {
     Scene *scene = read_single();
     scene->frames = 20;
     scene->bomb.frame = 10;
@@ -75,8 +73,7 @@ static Scene *read_top_removed(void) {
 }
 
 /* Taken out after step 30, so it is not in frame 30, though step 30 had its contacts; a file tells the same. */
-static void the_last_body_goes_after_the_step_it_is_told_to(void **state) {
-    (void)state;
+TEST(the_last_body_goes_after_the_step_it_is_told_to) {
     Error error = {0};
     Scene *scene = read_top_removed();
     Trajectory *trajectory = run(scene, "engine");
@@ -101,8 +98,7 @@ static void the_last_body_goes_after_the_step_it_is_told_to(void **state) {
 }
 
 /* One that stands aside changes no bit of the others, neither while it is there nor when it goes. */
-static void a_body_that_touches_none_of_the_others_changes_none(void **state) {
-    (void)state;
+TEST(a_body_that_touches_none_of_the_others_changes_none) {
     Scene *scene = read_top_removed();
     scene->bodies[11].position = vec2(30, 0.5f);
     Trajectory *with = run(scene, "engine");
@@ -129,8 +125,7 @@ static bool count_step(void *context, int frame, const World *world, Error *erro
     return frame < 7 || error_input(error, "observer", "enough");
 }
 
-static void an_observer_sees_every_step_and_may_end_the_run(void **state) {
-    (void)state;
+TEST(an_observer_sees_every_step_and_may_end_the_run) {
     Scene *scene = read_single();
     Error error = {0};
     Method method;
@@ -147,8 +142,7 @@ static bool stop(void *context, double done, double total) {
     return done < 5;
 }
 
-static void a_run_that_cannot_go_on_says_why(void **state) {
-    (void)state;
+TEST(a_run_that_cannot_go_on_says_why) {
     Scene *scene = read_single();
     Error error = {0};
     Method method;
@@ -170,8 +164,7 @@ static void a_run_that_cannot_go_on_says_why(void **state) {
     scene_destroy(scene);
 }
 
-static void methods_are_found_by_name(void **state) {
-    (void)state;
+TEST(methods_are_found_by_name) {
     Error error = {0};
     Method method;
     int count = 0;
@@ -189,13 +182,4 @@ static void methods_are_found_by_name(void **state) {
     assert_refused(method_parse(&method, text, &error), "at most");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_trajectory_says_what_it_is),
-                                       cmocka_unit_test(the_bomb_comes_after_the_step_it_is_told_to),
-                                       cmocka_unit_test(the_last_body_goes_after_the_step_it_is_told_to),
-                                       cmocka_unit_test(a_body_that_touches_none_of_the_others_changes_none),
-                                       cmocka_unit_test(an_observer_sees_every_step_and_may_end_the_run),
-                                       cmocka_unit_test(a_run_that_cannot_go_on_says_why),
-                                       cmocka_unit_test(methods_are_found_by_name)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

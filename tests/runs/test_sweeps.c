@@ -41,14 +41,10 @@ static void run_scene(const char *name, float bomb_x) {
     scene_destroy(scene);
 }
 
-static void every_frame_has_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(every_frame_has_the_bits_of_the_plain_text) {
     const char *const names[] = {"single", "stack", "pyramid", "pyramid_settled"};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 5; k += sampled(3)) run_scene(names[i], -5 + 2.35f * (float)k);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_frame_has_the_bits_of_the_plain_text)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)
