@@ -33,19 +33,15 @@ static void steps_allocate_nothing_by(const ContactSolverKind *kind, const char 
 }
 
 TEST(a_settled_pyramid_steps_without_allocating) {
-    steps_allocate_nothing_by(&solver_engine, "");
-    steps_allocate_nothing_by(&solver_engine, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_over_relaxation, "");
-    steps_allocate_nothing_by(&solver_over_relaxation, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_momentum, "");
-    steps_allocate_nothing_by(&solver_momentum, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_block, "");
-    steps_allocate_nothing_by(&solver_block, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_nncg, "");
-    steps_allocate_nothing_by(&solver_nncg, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_relu_net, "");
-    steps_allocate_nothing_by(&solver_interior, "");
-    steps_allocate_nothing_by(&solver_hybrid, "");
+    static const ContactSolverKind *const by_rule[] = {&solver_engine, &solver_over_relaxation, &solver_momentum,
+                                                       &solver_block, &solver_nncg},
+                                          *const others[] = {&solver_relu_net, &solver_interior, &solver_hybrid,
+                                                             &solver_reference};
+    for (size_t i = 0; i < sizeof by_rule / sizeof *by_rule; i++) {
+        steps_allocate_nothing_by(by_rule[i], "");
+        steps_allocate_nothing_by(by_rule[i], "k=7,near=1e-4");
+    }
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) steps_allocate_nothing_by(others[i], "");
 }
 
 /* The network's pyramid would not stand, so each is asked about the engine's, twice. */

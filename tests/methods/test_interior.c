@@ -423,16 +423,6 @@ TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
     }
 }
 
-TEST(settings_out_of_range_are_refused) {
-    static const char *const texts[] = {"near=0", "near=-1", "near=nan", "near=x"};
-    for (int i = 0; i < 4; i++) {
-        Error error = {0};
-        Settings settings;
-        assert_ok(settings_parse(&settings, texts[i], solver_interior.description.settings, "interior", &error), error);
-        assert_refused(solver_interior.create(&settings, &error), "near");
-    }
-}
-
 static int free_reference(void **state) {
     (void)state;
     reference_free(&reference);

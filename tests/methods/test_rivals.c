@@ -170,17 +170,4 @@ TEST(numbers_that_overflow_have_the_bits_of_the_plain_text) {
     world_destroy(world);
 }
 
-TEST(settings_out_of_range_are_refused) {
-    assert_settings_refused(&solver_momentum, "k=0", "k");
-    assert_settings_refused(&solver_over_relaxation, "k=0", "k");
-    assert_settings_refused(&solver_block, "k=0", "k");
-    assert_settings_refused(&solver_nncg, "k=0", "k");
-    assert_settings_refused(&solver_relu_net, "k=0", "k");
-    assert_settings_refused(&solver_nncg, "k=ten", "k");
-    assert_settings_refused(&solver_over_relaxation, "omega=0", "omega");
-    assert_settings_refused(&solver_over_relaxation, "omega=2", "omega");
-    assert_settings_refused(&solver_over_relaxation, "omega=nan", "omega");
-    assert_settings_refused(&solver_engine, "warm=maybe", "warm");
-}
-
 RUN_TESTS(NULL, NULL)

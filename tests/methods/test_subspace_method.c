@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws of the method with a network made by hand: boxes go on as they move. */
-#include "testing.h"
+#include "runs/made.h"
 
 #include "methods/subspace_nets.h"
 #include "scenes/scenes.h"
@@ -10,13 +10,6 @@
 #include <math.h>
 
 static const float dt = 1 / 60.0f;
-
-static Scene *read_scene(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
 
 /* Writes a net for the scene; returns the method with it. */
 static Method method_of(SubspaceNet *net, const Scene *scene, const char *name) {
@@ -55,7 +48,7 @@ static Watch run(const Scene *scene, const Method *method, NetworkFallbacks *fal
 
 /* The box stays, the bomb flies on a straight line: gravity is missing, and counted as momentum created. */
 TEST(boxes_go_on_as_they_move) {
-    Scene *scene = read_scene();
+    Scene *scene = scene_named("single");
     scene->frames = 10;
     scene->bomb.body.angular_velocity = 3;
     SubspaceNet *net = subspace_net_by_hand(0);
@@ -76,7 +69,7 @@ TEST(boxes_go_on_as_they_move) {
 
 /* Sine and cosine go on in a straight line, so the angle does what they tell. */
 TEST(angles_follow_sine_and_cosine) {
-    Scene *scene = read_scene();
+    Scene *scene = scene_named("single");
     scene->frames = 4;
     scene->bomb.body.angle = 9; /* more than a turn */
     scene->bomb.body.angular_velocity = 1.5f;
@@ -90,13 +83,6 @@ TEST(angles_follow_sine_and_cosine) {
     scene_destroy(scene);
 }
 
-static World *launched_world(const Scene *scene) {
-    Error error = {0};
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
-    return world;
-}
-
 static void step_world(Stepper *stepper, World *world, const Scene *scene, int frame) {
     Error error = {0};
     assert_ok(stepper_step(stepper, world, &(Step){.scene = scene, .frame = frame}, &error), error);
@@ -104,7 +90,7 @@ static void step_world(Stepper *stepper, World *world, const Scene *scene, int f
 
 /* The steps of one world do not change those of another: the second starts from its own poses. */
 TEST(another_world_starts_from_its_poses) {
-    Scene *scene = read_scene();
+    Scene *scene = scene_named("single");
     Launch launch = launch_of(scene);
     launch.x = -2;
     const Scene other = launch_scene(scene, &launch);
@@ -113,7 +99,7 @@ TEST(another_world_starts_from_its_poses) {
     Error error = {0};
     Stepper *both = stepper_create(&method, scene, &error), *alone = stepper_create(&method, scene, &error);
     assert_true(both != NULL && alone != NULL);
-    World *first = launched_world(scene), *second = launched_world(&other), *expected = launched_world(&other);
+    World *first = world_of(scene), *second = world_of(&other), *expected = world_of(&other);
     for (int frame = 1; frame <= 3; frame++) step_world(both, first, scene, frame);
     for (int frame = 4; frame <= 6; frame++) step_world(both, second, &other, frame);
     for (int frame = 1; frame <= 3; frame++) step_world(alone, expected, &other, frame);
@@ -128,7 +114,7 @@ TEST(another_world_starts_from_its_poses) {
 }
 
 TEST(before_the_bomb_the_recorded_run_is_repeated) {
-    Scene *scene = read_scene();
+    Scene *scene = scene_named("single");
     scene->bomb.frame = 5;
     scene->frames = 5;
     SubspaceNet *net = subspace_net_by_hand(3);
@@ -149,7 +135,7 @@ TEST(before_the_bomb_the_recorded_run_is_repeated) {
 
 /* As `twinbox check` runs a scene. */
 TEST(without_its_bomb_a_launch_stands_still) {
-    Scene *scene = read_scene();
+    Scene *scene = scene_named("single");
     scene->frames = 3;
     SubspaceNet *net = subspace_net_by_hand(0);
     const Method method = method_of(net, scene, "subspace");
@@ -161,7 +147,7 @@ TEST(without_its_bomb_a_launch_stands_still) {
 }
 
 TEST(what_training_did_not_see_is_counted) {
-    Scene *scene = read_scene();
+    Scene *scene = scene_named("single");
     scene->frames = 10;
     SubspaceNet *net = subspace_net_by_hand(0);
     Method method = method_of(net, scene, "subspace");
@@ -183,7 +169,7 @@ TEST(what_training_did_not_see_is_counted) {
 
 /* A basis so large that poses overflow: bodies stay where they are. */
 TEST(poses_that_are_not_finite_are_discarded) {
-    Scene *scene = read_scene();
+    Scene *scene = scene_named("single");
     scene->frames = 3;
     SubspaceNet *net = subspace_net_by_hand(0);
     for (int k = 4; k < TEST_NUMBERS; k++) {
@@ -205,12 +191,11 @@ static void refuse(const Method *method, const Scene *scene, const char *reason)
 }
 
 TEST(what_does_not_fit_is_refused) {
-    Scene *scene = read_scene();
+    Scene *scene = scene_named("single");
     Error error = {0};
     SubspaceNet *net = subspace_net_by_hand(0);
     Method method = method_of(net, scene, "subspace");
-    Scene *stack = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
-    assert_ok(stack != NULL, error);
+    Scene *stack = scene_named("stack");
     refuse(&method, stack, "the network is for scene single with 2 bodies that move; scene stack has 11");
     scene->bodies[1].mass = 20;
     refuse(&method, scene, "by_hand.npz: error: the network is for scene single; bodies, bomb, gravity or time");

@@ -1,20 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small steps: what they must have in common with whole ones. */
-#include "testing.h"
+#include "runs/made.h"
 
 #include "runs/runs.h"
 
 static Trajectory *run(const char *scene_name, const char *method_text, int frames) {
-    Error error = {0};
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, scene_name);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(scene_name);
     if (frames > 0) scene->frames = frames;
-    Method method;
-    assert_ok(method_parse(&method, method_text, &error), error);
-    Trajectory *trajectory = simulate(scene, &method, NULL, &error);
-    assert_ok(trajectory != NULL, error);
+    Trajectory *trajectory = run_by(scene, method_text);
     scene_destroy(scene);
     return trajectory;
 }

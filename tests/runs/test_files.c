@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trajectories in files: they come back bit by bit, and what is inconsistent is refused. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "example.h"
@@ -18,9 +18,7 @@ TEST(written_is_read) {
     Trajectory *t = example_trajectory();
     t->iterations = 12;
     write_file(t, path);
-    Error error = {0};
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     assert_int_equal(r->iterations, 12);
     assert_string_equal(r->scene, t->scene);
     assert_string_equal(r->method, t->method);
@@ -47,8 +45,7 @@ TEST(the_smallest_trajectory) {
     Trajectory *t = trajectory_create(1, 0, &error);
     t->dt = 1;
     write_file(t, path);
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     assert_true(r->frames == 1 && r->bodies == 0 && r->scene[0] == '\0');
     assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
     trajectory_destroy(r);
@@ -115,8 +112,7 @@ TEST(a_verdict_may_be_unknown) {
     Trajectory *t = example_trajectory();
     trajectory_judge(t, "settles", 0, -1);
     write_file(t, path);
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     assert_string_equal(r->verdict, "settles");
     assert_true(r->verdict_frame == 0 && r->verdict_body == -1);
     trajectory_destroy(r);
@@ -136,13 +132,11 @@ static void leave(Trajectory *t, int frame, int body) {
 /* A body may come and go once; a static one stays. */
 TEST(a_body_is_there_over_one_interval_of_frames) {
     const char *path = temporary_path("gone.npz");
-    Error error = {0};
     Trajectory *t = example_trajectory();
     leave(t, 3, 2); /* the bomb: there in frame 2 only */
     leave(t, 3, 1);
     write_file(t, path);
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     TrajectoryDifference difference;
     trajectory_compare(t, r, &difference);
     assert_true(difference.equal);
@@ -163,13 +157,11 @@ TEST(a_body_is_there_over_one_interval_of_frames) {
 /* Step 2 had its contacts where the box was in frame 1: it may be gone in frame 2, but not before. */
 TEST(contacts_are_of_the_bodies_before_the_step) {
     const char *path = temporary_path("last_contact.npz");
-    Error error = {0};
     Trajectory *t = example_trajectory();
     leave(t, 2, 1);
     leave(t, 3, 1);
     write_file(t, path);
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     assert_int_equal(r->contact_start[EXAMPLE_FRAMES], 2);
     trajectory_destroy(r);
     leave(t, 1, 1);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs of other programs: position, angle, size and dt are enough; what is absent has a meaning; wrong names are named. */
-#include "testing.h"
+#include "made.h"
 
 #include "example.h"
 #include "python.h"
@@ -25,9 +25,7 @@ static const char *make(const char *name, const char *change) {
 }
 
 static Trajectory *read_changed(const char *name, const char *change) {
-    Error error = {0};
-    Trajectory *t = trajectory_read(make(name, change), &error);
-    assert_ok(t != NULL, error);
+    Trajectory *t = trajectory_of(make(name, change));
     return t;
 }
 
@@ -87,8 +85,7 @@ TEST(a_run_without_velocities_is_written_without) {
                "f = np.load(sys.argv[1])\n"
                "assert f.files == 'version scene method scene_hash dt bomb camera size fixed position angle'.split()\n",
                path);
-    Trajectory *again = trajectory_read(path, &error);
-    assert_ok(again != NULL, error);
+    Trajectory *again = trajectory_of(path);
     assert_true(again->no_velocities && again->no_contacts);
     assert_string_equal(again->scene, "run");
     TrajectoryDifference difference;

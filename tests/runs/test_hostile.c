@@ -2,7 +2,7 @@
 /* Scenes from the ends of what a file may hold (scenes/scene_read.c): thin and huge boxes, feathers under a million tonnes,
    shots and spins beyond all reason, half of it inside each other. What a method makes of them may be nonsense; it may
    not be a number that is none, nor be kept where a step is refused. */
-#include "testing.h"
+#include "made.h"
 
 #include "engine/uniform.h"
 #include "runs/runs.h"
@@ -103,10 +103,8 @@ static void assert_finite(const World *world, const char *method, int scene, int
 /* True where a step was refused. */
 static bool run_scene(const Scene *scene, int number, const Method *method) {
     Error error = {0};
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
-    Stepper *stepper = stepper_create(method, scene, &error);
-    assert_ok(stepper != NULL, error);
+    World *world = world_of(scene);
+    Stepper *stepper = stepper_of(scene, method);
     bool ok = true;
     for (int step = 1; ok && step <= scene->frames; step++) {
         ok = simulate_step(stepper, world, &(Step){.scene = scene, .frame = step}, &error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NumPy reads a trajectory, and a trajectory that NumPy wrote is read. */
-#include "testing.h"
+#include "made.h"
 
 #include "example.h"
 #include "python.h"
@@ -62,9 +62,7 @@ TEST(numpy_reads_every_member) {
 TEST(what_numpy_writes_is_read) {
     const char *path = temporary_path("numpy.npz");
     run_python(MAKE SAVE, path);
-    Error error = {0};
-    Trajectory *t = trajectory_read(path, &error);
-    assert_ok(t != NULL, error);
+    Trajectory *t = trajectory_of(path);
     assert_string_equal(t->scene, "falling");
     assert_string_equal(t->method, "by hand");
     assert_true(t->frames == 3 && t->bodies == 1 && t->bomb == -1 && t->dt == 0.5F && t->scene_hash == 5);

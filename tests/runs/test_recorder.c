@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run that is written while it is made gives the files of a run that is recorded in memory and written then. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "pictures/folders.h"
 #include "runs/runs.h"
 
 static Scene *read_scene(const char *name, int frames) {
-    char path[512];
-    snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s.yaml", name);
-    Error error = {0};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(name);
     scene->frames = frames;
     return scene;
 }
@@ -34,8 +30,7 @@ TEST(files_are_those_of_a_run_in_memory) {
         int frames;
     } runs[] = {{"stack", 1}, {"stack", 90}, {"single", 300}, {"pyramid", 900}, {"stability/top_removed", 4000}};
     Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     for (size_t i = 0; i < 2 * sizeof runs / sizeof *runs; i++) {
         const bool no_contacts = i % 2 == 1;
         Scene *scene = read_scene(runs[i / 2].scene, runs[i / 2].frames);
@@ -66,8 +61,7 @@ TEST(golden_files_have_the_same_bytes) {
         char golden[512];
         snprintf(golden, sizeof golden, SOURCE_DIR "/golden/trajectories/%s.npz", names[i]);
         Error error = {0};
-        Trajectory *run = trajectory_read(golden, &error);
-        assert_ok(run != NULL, error);
+        Trajectory *run = trajectory_of(golden);
         const char *again = temporary_path("again.npz");
         assert_ok(trajectory_write(run, again, &error), error);
         assert_same_file(again, golden);
@@ -82,8 +76,7 @@ static bool fail_late(void *context, int frame, const World *world, Error *error
 
 TEST(a_run_that_fails_leaves_no_file) {
     Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     Scene *scene = read_scene("pyramid", 900);
     const char *path = temporary_path("failed.npz");
     const RecorderOutput output = {path, TRAJECTORY_NPZ};
@@ -99,8 +92,7 @@ TEST(a_run_that_fails_leaves_no_file) {
 
 TEST(too_long_runs_are_refused_before_the_first_step) {
     Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     Scene *scene = read_scene("pyramid", SIMULATE_MAX_STATES / 60);
     assert_refused(recorder_create_to(scene, &method, NULL, 0, false, &error), "are too many to record");
     scene_destroy(scene);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The network of rectifiers gives what the engine does, frame by frame of the scenes. */
-#include "testing.h"
+#include "made.h"
 
 #include "runs/runs.h"
 #include "methods/kernels.h"
@@ -44,13 +44,10 @@ static bool agrees(void *context, int frame, const World *world, Error *error) {
 }
 
 static void run_scene(const char *name, int sweeps) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
     Method engine, net;
     ContactSolver solver;
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(name);
     scene->iterations = sweeps;
     assert_ok(method_parse(&engine, "engine", &error) && method_parse(&net, "relu-net", &error), error);
     assert_ok(method_create_solver(&net, scene, &solver, &error), error);

@@ -1,28 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "made.h"
 
 #include "runs/runs.h"
 
-static Scene *read_single(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
-
-static Trajectory *run(const Scene *scene, const char *method_text) {
-    Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, method_text, &error), error);
-    Trajectory *trajectory = simulate(scene, &method, NULL, &error);
-    assert_ok(trajectory != NULL, error);
-    return trajectory;
-}
-
 TEST(a_trajectory_says_what_it_is) {
-    Scene *scene = read_single();
+    Scene *scene = scene_named("single");
     scene->frames = 60;
-    Trajectory *trajectory = run(scene, "engine:k=3");
+    Trajectory *trajectory = run_by(scene, "engine:k=3");
     assert_string_equal(trajectory->scene, "single");
     assert_string_equal(trajectory->method, "engine:k=3");
     assert_true(trajectory->scene_hash == scene_hash(scene));
@@ -44,10 +28,10 @@ TEST(a_trajectory_says_what_it_is) {
 
 /* Put in after step 10, so it is in frame 10 and has not moved there yet. */
 TEST(the_bomb_comes_after_the_step_it_is_told_to) {
-    Scene *scene = read_single();
+    Scene *scene = scene_named("single");
     scene->frames = 20;
     scene->bomb.frame = 10;
-    Trajectory *trajectory = run(scene, "engine");
+    Trajectory *trajectory = run_by(scene, "engine");
     assert_false(trajectory_has(trajectory, 9, 2));
     assert_true(trajectory_has(trajectory, 10, 2));
     assert_near(trajectory->position[10 * 3 + 2].y, 15, 0);
@@ -55,7 +39,7 @@ TEST(the_bomb_comes_after_the_step_it_is_told_to) {
     trajectory_destroy(trajectory);
     /* One that comes after the end is not in the run at all. */
     scene->frames = 9;
-    trajectory = run(scene, "engine");
+    trajectory = run_by(scene, "engine");
     assert_int_equal(trajectory->bodies, 2);
     assert_int_equal(trajectory->bomb, -1);
     trajectory_destroy(trajectory);
@@ -63,9 +47,7 @@ TEST(the_bomb_comes_after_the_step_it_is_told_to) {
 }
 
 static Scene *read_top_removed(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/stability/top_removed.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("stability/top_removed");
     assert_int_equal(scene->last_body_until, 600);
     scene->last_body_until = 30;
     scene->frames = 60;
@@ -76,7 +58,7 @@ static Scene *read_top_removed(void) {
 TEST(the_last_body_goes_after_the_step_it_is_told_to) {
     Error error = {0};
     Scene *scene = read_top_removed();
-    Trajectory *trajectory = run(scene, "engine");
+    Trajectory *trajectory = run_by(scene, "engine");
     assert_int_equal(trajectory->bodies, 12);
     for (int frame = 0; frame <= 60; frame++) assert_int_equal(trajectory_has(trajectory, frame, 11), frame < 30);
     for (int step = 1; step <= 60; step++) {
@@ -87,8 +69,7 @@ TEST(the_last_body_goes_after_the_step_it_is_told_to) {
     }
     const char *path = temporary_path("gone.npz");
     assert_ok(trajectory_write(trajectory, path, &error), error);
-    Trajectory *read = trajectory_read(path, &error);
-    assert_ok(read != NULL, error);
+    Trajectory *read = trajectory_of(path);
     TrajectoryDifference difference;
     trajectory_compare(trajectory, read, &difference);
     assert_true(difference.equal);
@@ -101,10 +82,10 @@ TEST(the_last_body_goes_after_the_step_it_is_told_to) {
 TEST(a_body_that_touches_none_of_the_others_changes_none) {
     Scene *scene = read_top_removed();
     scene->bodies[11].position = vec2(30, 0.5f);
-    Trajectory *with = run(scene, "engine");
+    Trajectory *with = run_by(scene, "engine");
     scene->body_count = 11;
     scene->last_body_until = 0;
-    Trajectory *without = run(scene, "engine");
+    Trajectory *without = run_by(scene, "engine");
     assert_true(trajectory_has(with, 29, 11) && !trajectory_has(with, 30, 11));
     for (int frame = 0; frame <= 60; frame++) {
         assert_memory_equal(&with->position[frame * 12], &without->position[frame * 11], 11 * sizeof(Vec2));
@@ -126,7 +107,7 @@ static bool count_step(void *context, int frame, const World *world, Error *erro
 }
 
 TEST(an_observer_sees_every_step_and_may_end_the_run) {
-    Scene *scene = read_single();
+    Scene *scene = scene_named("single");
     Error error = {0};
     Method method;
     int steps = 0;
@@ -143,10 +124,9 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(a_run_that_cannot_go_on_says_why) {
-    Scene *scene = read_single();
+    Scene *scene = scene_named("single");
     Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     assert_null(simulate(scene, &method, &(Progress){stop, NULL}, &error));
     assert_error(error, ERROR_INTERRUPTED, "single: error: stopped after step 5 of 300");
 

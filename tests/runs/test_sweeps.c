@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The fast sweeps have the bits of the plain text, frame by frame of the scenes. */
-#include "testing.h"
+#include "made.h"
 #include "sanitized.h"
 
 #include "runs/runs.h"
@@ -25,14 +25,10 @@ static bool agree(void *context, int frame, const World *world, Error *error) {
 }
 
 static void run_scene(const char *name, float bomb_x) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(name);
     scene->bomb.body.position.x = bomb_x;
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     KernelChoice kernels = {.reference = {.plain = {.scalar = true}}};
     assert_ok(simulate_observed(scene, &method, &(StepObserver){agree, &kernels}, &error), error);
     free_kernels(kernels.engine);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scenes in scenes/, body by body in closed form; every key of the format; hash and world of a scene. */
 #include "scene_text.h"
+#include "runs/made.h"
 
 static Scene *shipped(const char *name) {
     char path[512];
@@ -269,10 +270,8 @@ TEST(hash_keeps_with_all_else) {
 }
 
 TEST(world_has_the_bodies_in_order_and_the_bomb_last) {
-    Error error = {.kind = ERROR_NONE};
     Scene *scene = shipped("pyramid");
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(scene);
     assert_int_equal(world_body_count(world), 68);
     for (int i = 0; i < 67; i++) assert_same_vector(world_bodies(world)[i].position, scene->bodies[i].position);
     assert_same_vector(world_bodies(world)[67].position, vec2(scene->bomb.body.position.x, 15));
@@ -284,8 +283,7 @@ TEST(world_has_the_bodies_in_order_and_the_bomb_last) {
 TEST(world_has_no_bomb_before_its_frame) {
     Error error = {.kind = ERROR_NONE};
     Scene *scene = shipped("pyramid_settled");
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(scene);
     assert_int_equal(world_body_count(world), 67);
     scene->bomb.body.position.x = -4;
     assert_ok(scene_add_bomb(scene, world, &error), error);
