@@ -21,8 +21,6 @@
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
-#include <stdlib.h>
-
 /* Box2D's limit for the condition number of K. */
 static const float max_condition = 1000.0f;
 
@@ -122,26 +120,21 @@ void block_solve(const ContactProblem *problem, int count, ContactSolution *solu
     for (int i = 0; i < count; i++) block_sweep(problem, solution);
 }
 
-typedef struct BlockSolver {
-    StoppingRule rule;
-    Sweeps sweeps;
-} BlockSolver;
-
 static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS, {0}};
 
 static void *create(const Settings *chosen, Error *error) {
-    static const BlockSolver standard = {.rule.k = 10};
+    static const SweepState standard = {.rule.k = 10};
     return stopping_make(chosen, settings, &standard, sizeof standard, "block", error);
 }
 
-static void solve_scalar(const BlockSolver *solver, const ContactProblem *problem, ContactSolution *solution) {
+static void solve_scalar(const SweepState *solver, const ContactProblem *problem, ContactSolution *solution) {
     block_solve(problem, solver->rule.k, solution);
     for (int done = 0; stopping_needs_more_scalar(&solver->rule, done, problem, solution); done += STOPPING_BLOCK)
         for (int i = 0; i < STOPPING_BLOCK; i++) block_sweep(problem, solution);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    BlockSolver *solver = state;
+    SweepState *solver = state;
     if (sweeps_can(SWEEP_AVX2)) {
         if (!sweeps_begin_blocks(&solver->sweeps, problem) ||
             !stopping_run(&solver->rule, &solver->sweeps, problem, sweeps_run_blocks))
@@ -150,13 +143,6 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     }
     solve_scalar(solver, problem, solution);
     return true;
-}
-
-static void destroy(void *state) {
-    BlockSolver *solver = state;
-    if (solver == NULL) return;
-    sweeps_free(&solver->sweeps);
-    free(solver);
 }
 
 const ContactSolverKind solver_block = {
@@ -170,4 +156,4 @@ const ContactSolverKind solver_block = {
                     .stability = METHOD_NO_RUNS},
     .create = create,
     .solve = solve,
-    .destroy = destroy};
+    .destroy = sweep_state_destroy};

@@ -7,37 +7,29 @@
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
-#include <stdlib.h>
-
-typedef struct SequentialImpulses {
-    StoppingRule rule;
-    SequentialOptions options;
-    Sweeps sweeps;
-} SequentialImpulses;
-
 static const SettingSpec settings[] = {
     SWEEPS_SETTING,
     {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)",
-     SETTING_BOOL(SequentialImpulses, options.accumulate)},
+     SETTING_BOOL(SweepState, options.accumulate)},
     {"warm", "on|off: warm start from the previous step's impulses (default: on)",
-     SETTING_BOOL(SequentialImpulses, options.warm)},
+     SETTING_BOOL(SweepState, options.warm)},
     STOPPING_SETTINGS,
     {0}};
 
 static void *create(const Settings *chosen, Error *error) {
-    static const SequentialImpulses standard = {.rule.k = 10,
-                                                .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
+    static const SweepState standard = {.rule.k = 10,
+                                        .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
     return stopping_make(chosen, settings, &standard, sizeof standard, "engine", error);
 }
 
-static void solve_scalar(const SequentialImpulses *solver, const ContactProblem *problem, ContactSolution *solution) {
+static void solve_scalar(const SweepState *solver, const ContactProblem *problem, ContactSolution *solution) {
     sequential_impulses_solve(problem, &solver->options, solver->rule.k, solution);
     for (int done = 0; stopping_needs_more_scalar(&solver->rule, done, problem, solution); done += STOPPING_BLOCK)
         for (int i = 0; i < STOPPING_BLOCK; i++) sequential_impulses_sweep(problem, &solver->options, solution);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    SequentialImpulses *solver = state;
+    SweepState *solver = state;
     const SequentialOptions *options = &solver->options;
     if (options->accumulate) {
         if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, options->warm, options->relaxation) ||
@@ -47,13 +39,6 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     }
     solve_scalar(solver, problem, solution);
     return true;
-}
-
-static void destroy(void *state) {
-    SequentialImpulses *solver = state;
-    if (solver == NULL) return;
-    sweeps_free(&solver->sweeps);
-    free(solver);
 }
 
 const ContactSolverKind solver_engine = {
@@ -69,4 +54,4 @@ const ContactSolverKind solver_engine = {
                     .stability_place = 1},
     .create = create,
     .solve = solve,
-    .destroy = destroy};
+    .destroy = sweep_state_destroy};

@@ -14,21 +14,14 @@ static const double slip_aim = 4;
 /* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. */
 static const double stiffest = 1e12;
 
-typedef long long Mask4 __attribute__((vector_size(32), aligned(16), may_alias));
-
-static inline Vec4 choose(Mask4 mask, Vec4 x, Vec4 y) { return (Vec4)((mask & (Mask4)x) | (~mask & (Mask4)y)); }
-static inline Vec4 smaller(Vec4 x, Vec4 y) { return choose((Mask4)(x < y), x, y); }
-static inline Vec4 larger(Vec4 x, Vec4 y) { return choose((Mask4)(x > y), x, y); }
-static inline Vec4 clamp4(Vec4 x, Vec4 limit) { return larger(smaller(x, limit), -limit); }
-static inline Vec4 all4(double x) { return (Vec4){x, x, x, x}; }
-static inline double sum4(Vec4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+static inline Vec4 clamp4(Vec4 x, Vec4 limit) { return larger4(smaller4(x, limit), -limit); }
 
 /* The targets of the products. */
 static inline void aim(InteriorGroup *g, double tau2) {
     const Vec4 softest = all4(1 / stiffest), bound = g->friction * g->l;
-    g->aim_normal = larger(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
+    g->aim_normal = larger4(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
     g->aim_tangent =
-        larger(slip_aim * tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
+        larger4(slip_aim * tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
 }
 
 /* Impulses on the contacts of a group. */
@@ -79,14 +72,14 @@ static inline Changes changes_of(const InteriorGroup *g, Relative dv, Vec4 secon
 static inline void correct(InteriorGroup *g, Relative dv) {
     const Changes by = changes_of(g, dv, all4(0), all4(0));
     const Vec4 bound = g->friction * g->l;
-    g->rn -= clamp4(by.l * by.z, larger(g->aim_normal, g->l * g->z)) * g->over_z;
-    g->second_p = -clamp4(by.p * by.upper, larger(g->aim_tangent, g->p * (bound - g->t)));
-    g->second_q = -clamp4(by.q * by.lower, larger(g->aim_tangent, g->q * (bound + g->t)));
+    g->rn -= clamp4(by.l * by.z, larger4(g->aim_normal, g->l * g->z)) * g->over_z;
+    g->second_p = -clamp4(by.p * by.upper, larger4(g->aim_tangent, g->p * (bound - g->t)));
+    g->second_q = -clamp4(by.q * by.lower, larger4(g->aim_tangent, g->q * (bound + g->t)));
     g->rt -= g->dt * (g->second_p * g->upper - g->second_q * g->lower);
 }
 
 static inline Vec4 missing_normal(const InteriorGroup *g) {
-    return smaller(g->answer_normal * g->inverse_normal, g->normal - g->bias);
+    return smaller4(g->answer_normal * g->inverse_normal, g->normal - g->bias);
 }
 
 static inline Vec4 missing_tangent(const InteriorGroup *g) {
@@ -102,13 +95,13 @@ static inline Vec4 squared_residual(const InteriorGroup *g) {
 
 /* The iterate stays inside all bounds. */
 static inline void limit(InteriorGroup *g, const Changes *by) {
-    const Vec4 l = larger(g->l + by->l, kept * g->l), bound = g->friction * l, before = g->friction * g->l;
-    const Vec4 share = 1 - kept_distance * (1 - larger(g->t, -g->t) / before);
-    g->t = clamp4(g->t + by->t, smaller(share, all4(1 - 1e-13)) * bound);
+    const Vec4 l = larger4(g->l + by->l, kept * g->l), bound = g->friction * l, before = g->friction * g->l;
+    const Vec4 share = 1 - kept_distance * (1 - larger4(g->t, -g->t) / before);
+    g->t = clamp4(g->t + by->t, smaller4(share, all4(1 - 1e-13)) * bound);
     g->l = l;
-    g->z = larger(g->z + by->z, kept * g->z);
-    g->p = larger(g->p + by->p, kept_slip * g->p);
-    g->q = larger(g->q + by->q, kept_slip * g->q);
+    g->z = larger4(g->z + by->z, kept * g->z);
+    g->p = larger4(g->p + by->p, kept_slip * g->p);
+    g->q = larger4(g->q + by->q, kept_slip * g->q);
 }
 
 /* The next iterate, and the answer: the full step, inside the cone. Returns the answer's squared residual at the
@@ -116,7 +109,7 @@ static inline void limit(InteriorGroup *g, const Changes *by) {
 static inline Vec4 advance(InteriorGroup *g, Relative dv) {
     const Changes by = changes_of(g, dv, g->second_p, g->second_q);
     const Vec4 l = g->l + by.l, t = g->t + by.t;
-    g->answer_normal = larger(l, all4(0));
+    g->answer_normal = larger4(l, all4(0));
     g->answer_tangent = clamp4(t, g->friction * g->answer_normal);
     limit(g, &by);
     g->normal += dv.normal;

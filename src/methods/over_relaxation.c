@@ -14,41 +14,26 @@
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
-#include <stdlib.h>
-
-typedef struct OverRelaxation {
-    StoppingRule rule;
-    SequentialOptions options;
-    Sweeps sweeps;
-} OverRelaxation;
-
 static const SettingSpec settings[] = {SWEEPS_SETTING,
                                        {"omega", "factor of every increment, from 0.01 to 1.99 (default: 1.5)",
-                                        SETTING_FLOAT(OverRelaxation, options.relaxation, 0.01f, 1.99f)},
+                                        SETTING_FLOAT(SweepState, options.relaxation, 0.01f, 1.99f)},
                                        STOPPING_SETTINGS,
                                        {0}};
 
 static void *create(const Settings *chosen, Error *error) {
-    static const OverRelaxation standard = {.rule.k = 10,
-                                            .options = {.accumulate = true, .warm = true, .relaxation = 1.5f}};
+    static const SweepState standard = {.rule.k = 10,
+                                        .options = {.accumulate = true, .warm = true, .relaxation = 1.5f}};
     return stopping_make(chosen, settings, &standard, sizeof standard, "over-relaxation", error);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    OverRelaxation *solver = state;
+    SweepState *solver = state;
     if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, true, solver->options.relaxation) ||
         !stopping_run(&solver->rule, &solver->sweeps, problem, sweeps_run))
         return error_memory(error, "over-relaxation");
     if (!sweeps_end(&solver->sweeps, solution))
         sequential_impulses_solve(problem, &solver->options, solver->rule.k, solution);
     return true;
-}
-
-static void destroy(void *state) {
-    OverRelaxation *solver = state;
-    if (solver == NULL) return;
-    sweeps_free(&solver->sweeps);
-    free(solver);
 }
 
 const ContactSolverKind solver_over_relaxation = {
@@ -62,4 +47,4 @@ const ContactSolverKind solver_over_relaxation = {
                     .stability = METHOD_NO_RUNS},
     .create = create,
     .solve = solve,
-    .destroy = destroy};
+    .destroy = sweep_state_destroy};

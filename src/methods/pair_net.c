@@ -93,7 +93,7 @@ bool pair_network_read(PairNetwork *pair, const char *path, Error *error) {
     return ok;
 }
 
-static int pair_network_count_pairs(const ContactProblem *problem) {
+static int pairs_of(const ContactProblem *problem) {
     int pairs = 0;
     for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) pairs++;
     return pairs;
@@ -113,7 +113,7 @@ static bool find_moment(PairNetwork *pair, const ContactProblem *problem, const 
 }
 
 const float *pair_network_predict(PairNetwork *pair, const ContactProblem *problem, int *pairs) {
-    const int count = *pairs = pair_network_count_pairs(problem), width = pair_views[pair->view].count;
+    const int count = *pairs = pairs_of(problem), width = pair_views[pair->view].count;
     const size_t inputs_size = (size_t)count * (size_t)width;
     const size_t outputs_size = (size_t)count * (size_t)pair_network_outputs(pair);
     if (!array_reserve((void **)&pair->numbers, &pair->capacity, inputs_size + outputs_size + 1, sizeof(float)))
@@ -171,8 +171,8 @@ static void share_relative_change(const ContactProblem *problem, int first, Vec2
 /* Converts outputs (one number every `stride`) to changes of the two bodies in world axes: of velocity (2) and angular
    velocity (1) of a, then of b. Six outputs are these changes. Two outputs are the change of the relative velocity: the
    bodies get the effect of the impulse that makes it, at the mean of the contact points. Not for TARGET_POINTS. */
-static void pair_network_changes(const PairNetwork *pair, const ContactProblem *problem, int first,
-                                 const float *outputs, int stride, float changes[PAIR_CHANGES]) {
+static void changes_of(const PairNetwork *pair, const ContactProblem *problem, int first, const float *outputs,
+                       int stride, float changes[PAIR_CHANGES]) {
     const bool two = pair_network_outputs(pair) == 2;
     for (int i = 0; i < PAIR_CHANGES; i++) changes[i] = two ? 0 : outputs[i * stride];
     if (two) changes[3] = outputs[0], changes[4] = outputs[stride];
@@ -234,7 +234,7 @@ static void add_changes(const PairNetwork *network, const ContactProblem *proble
         solution->momentum_error += (float)created_momentum(body_a, body_b, changes);
 }
 
-static bool pair_solver_count_pairs(PairSolver *solver, const ContactProblem *problem) {
+static bool count_pairs(PairSolver *solver, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1;
     if (!array_reserve((void **)&solver->pair_counts, &solver->count_capacity, bodies, sizeof *solver->pair_counts))
         return false;
@@ -259,7 +259,7 @@ static void visit_pairs(PairSolver *solver, const ContactProblem *problem, Conta
         for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
             float outputs[PAIR_CHANGES], changes[PAIR_CHANGES];
             pair_network_predict_one(&solver->network, problem, &now, first, outputs);
-            pair_network_changes(&solver->network, problem, first, outputs, 1, changes);
+            changes_of(&solver->network, problem, first, outputs, 1, changes);
             add_changes(&solver->network, problem, first, changes, solution);
         }
 }
@@ -306,7 +306,7 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
     }
     int pairs;
     const float *outputs = pair_network_predict(network, problem, &pairs);
-    if (outputs == NULL || (network->target == TARGET_NET && !pair_solver_count_pairs(solver, problem)))
+    if (outputs == NULL || (network->target == TARGET_NET && !count_pairs(solver, problem)))
         return error_memory(error, "pair network");
     for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first), outputs++) {
         if (network->target == TARGET_POINTS) {
@@ -314,7 +314,7 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
             continue;
         }
         float changes[PAIR_CHANGES];
-        pair_network_changes(network, problem, first, outputs, pairs, changes);
+        changes_of(network, problem, first, outputs, pairs, changes);
         if (network->target == TARGET_NET) take_shares(solver, &problem->contacts[first], changes);
         add_changes(network, problem, first, changes, solution);
     }

@@ -22,19 +22,19 @@ static const double stiff = 1e12; /* times the effective mass */
 
 /* ahead: of the visit, times the effective mass. */
 static void guess_states(Reference *r, double ahead) {
-    const Vec4 zero = reference_all(0), factor = reference_all(ahead > 1 ? ahead : stiff);
+    const Vec4 zero = all4(0), factor = all4(ahead > 1 ? ahead : stiff);
     momentum_left(r);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const Vec4 l = g->normal - ahead * g->mass_normal * g->gap, t = g->tangent - ahead * g->mass_tangent * g->slip;
-        const ReferenceMask closed = (ReferenceMask)(l > zero), up = closed & (ReferenceMask)(t > g->friction * l),
-                            down = closed & (ReferenceMask)(t < -g->friction * l), sticks = closed & ~up & ~down;
+        const Mask4 closed = (Mask4)(l > zero), up = closed & (Mask4)(t > g->friction * l),
+                    down = closed & (Mask4)(t < -g->friction * l), sticks = closed & ~up & ~down;
         const Vec4 stiff_n = factor * g->mass_normal, stiff_t = factor * g->mass_tangent;
-        g->s = reference_choose(up, g->friction, reference_choose(down, -g->friction, zero));
-        g->dn = reference_choose(closed, stiff_n, zero);
-        g->dt = reference_choose(sticks, stiff_t, zero);
-        g->rn = reference_choose(closed, -stiff_n * g->gap, -g->normal);
-        g->rt = reference_choose(sticks, -stiff_t * g->slip, g->s * g->normal - g->tangent);
+        g->s = choose4(up, g->friction, choose4(down, -g->friction, zero));
+        g->dn = choose4(closed, stiff_n, zero);
+        g->dt = choose4(sticks, stiff_t, zero);
+        g->rn = choose4(closed, -stiff_n * g->gap, -g->normal);
+        g->rt = choose4(sticks, -stiff_t * g->slip, g->s * g->normal - g->tangent);
         push(&r->pairs[BLOCK_PAIRS * i], g->normal + g->rn, g->tangent + g->rt + g->s * g->rn, r->changes);
     }
 }
@@ -45,8 +45,8 @@ static void take_impulses(Reference *r) {
         const Relative change = relative(&g->rows, &r->pairs[BLOCK_PAIRS * i], r->changes);
         const Vec4 by = g->rn - g->dn * change.normal;
         const Vec4 tangent = g->tangent + g->rt + g->s * by - g->dt * change.tangent;
-        g->normal = reference_larger(g->normal + by, reference_all(0));
-        g->tangent = reference_clamp(tangent, g->friction * g->normal);
+        g->normal = larger4(g->normal + by, all4(0));
+        g->tangent = clamp_between(tangent, g->friction * g->normal);
     }
 }
 

@@ -47,29 +47,29 @@ static void apply(Reference *r) {
     look(r);
 }
 
-static inline Vec4 magnitude(Vec4 x) { return reference_larger(x, -x); }
+static inline Vec4 magnitude(Vec4 x) { return larger4(x, -x); }
 
 static double missed(Reference *r, double *rms) {
-    Vec4 most = reference_all(0), sum = reference_all(0);
+    Vec4 most = all4(0), sum = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
         const Vec4 close = g->normal * g->inverse_normal;
-        const Vec4 normal = magnitude(g->weight * reference_choose((ReferenceMask)(close < g->gap), close, g->gap));
-        const Vec4 wanted = reference_clamp(g->tangent - g->mass_tangent * g->slip, g->friction * g->normal);
+        const Vec4 normal = magnitude(g->weight * choose4((Mask4)(close < g->gap), close, g->gap));
+        const Vec4 wanted = clamp_between(g->tangent - g->mass_tangent * g->slip, g->friction * g->normal);
         const Vec4 tangent = magnitude(g->weight * (g->tangent - wanted) * g->inverse_tangent);
-        most = reference_larger(normal, reference_larger(tangent, most));
+        most = larger4(normal, larger4(tangent, most));
         sum += normal * normal + tangent * tangent;
     }
     double largest = 0;
     for (int k = 0; k < BLOCK_SLOTS; k++) largest = most[k] > largest ? most[k] : largest;
-    const double total = reference_sum(sum);
+    const double total = sum4(sum);
     if (rms != NULL) *rms = r->contact_count > 0 ? sqrt(total / r->contact_count) : 0;
     return isnan(total) ? (double)NAN : largest;
 }
 
 /* The pair's J^T D J in its own coordinates, by columns. */
 static inline void stiffness(const ReferenceGroup *g, const BlockPair *pair, int slot, Vec4 columns[4]) {
-    for (int c = 0; c < 4; c++) columns[c] = reference_all(0);
+    for (int c = 0; c < 4; c++) columns[c] = all4(0);
     for (int k = 0; k < 2; k++) {
         const Vec4 along = (pair->normal[k] + pair->tangent[k] * g->s[slot + k]) * g->dn[slot + k];
         const Vec4 across = pair->tangent[k] * g->dt[slot + k];
@@ -93,10 +93,10 @@ static void factor_matrix(Reference *r) {
 /* The right-hand side without its impulses, into `changes`. */
 static void momentum_left(Reference *r) {
     for (int k = 0; k < r->graph.lu.count; k++) r->changes[k] = -r->graph.masses[k] * r->moved[k];
-    r->changes[r->graph.lu.count] = reference_all(0);
+    r->changes[r->graph.lu.count] = all4(0);
 }
 
 static void solve_changes(Reference *r) {
     block_lu_solve(&r->graph.lu, r->changes);
-    r->changes[r->graph.lu.count] = reference_all(0);
+    r->changes[r->graph.lu.count] = all4(0);
 }

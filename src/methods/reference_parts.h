@@ -34,17 +34,9 @@ struct ReferenceGroup {
 /* Points that a solve may go back to: before it got stuck; before a step along the path. */
 enum { KEPT_ON_WAY, KEPT_ON_PATH, KEPT };
 
-static inline Vec4 reference_all(double x) { return (Vec4){x, x, x, x}; }
-static inline double reference_sum(Vec4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
-
-typedef long long ReferenceMask __attribute__((vector_size(32), aligned(16), may_alias));
-static inline Vec4 reference_choose(ReferenceMask mask, Vec4 x, Vec4 y) {
-    return (Vec4)((mask & (ReferenceMask)x) | (~mask & (ReferenceMask)y));
-}
-static inline Vec4 reference_larger(Vec4 x, Vec4 y) { return reference_choose((ReferenceMask)(x > y), x, y); }
-static inline Vec4 reference_clamp(Vec4 x, Vec4 limit) {
-    const Vec4 low = reference_larger(x, -limit);
-    return reference_choose((ReferenceMask)(low < limit), low, limit);
+static inline Vec4 clamp_between(Vec4 x, Vec4 limit) {
+    const Vec4 low = larger4(x, -limit);
+    return choose4((Mask4)(low < limit), low, limit);
 }
 
 /* The solve, and the residual of `normal` and `tangent`, compiled for several instruction sets with the same bits:

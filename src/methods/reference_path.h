@@ -20,7 +20,7 @@ static const double inside = 0.5, calm = 0.01; /* of the start: offset from the 
 static const double bound_share = 0.995;       /* of the way to the nearest bound that a step may go */
 static const double least_shrink = 1e-4;       /* of the target, in a step */
 
-static Vec4 beyond_rounding(Vec4 x) { return x - reference_clamp(x, reference_all(rounding)); }
+static Vec4 beyond_rounding(Vec4 x) { return x - clamp_between(x, all4(rounding)); }
 
 static void begin(Reference *r, double scale) {
     double rms;
@@ -30,18 +30,18 @@ static void begin(Reference *r, double scale) {
     }
     apply(r);
     missed(r, &rms);
-    const Vec4 off = reference_all(inside * (scale * rms + calm)), zero = reference_all(0), one = reference_all(1);
+    const Vec4 off = all4(inside * (scale * rms + calm)), zero = all4(0), one = all4(1);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         ReferencePoint *now = &g->now;
-        const ReferenceMask used = (ReferenceMask)(g->weight > zero);
-        now->l = reference_choose(used, g->normal + off * g->mass_normal, one);
-        now->t = reference_clamp(g->tangent, 0.9 * g->friction * now->l);
+        const Mask4 used = (Mask4)(g->weight > zero);
+        now->l = choose4(used, g->normal + off * g->mass_normal, one);
+        now->t = clamp_between(g->tangent, 0.9 * g->friction * now->l);
         now->u = g->friction * now->l - now->t;
         now->w = g->friction * now->l + now->t;
-        now->z = reference_choose(used, reference_larger(g->gap, zero) + off, one);
-        now->p = reference_choose(used, reference_larger(-g->slip, zero) + off, one);
-        now->q = reference_choose(used, reference_larger(g->slip, zero) + off, one);
+        now->z = choose4(used, larger4(g->gap, zero) + off, one);
+        now->p = choose4(used, larger4(-g->slip, zero) + off, one);
+        now->q = choose4(used, larger4(g->slip, zero) + off, one);
     }
 }
 
@@ -96,10 +96,10 @@ static inline void direction(ReferenceGroup *g, Relative change, Vec4 soft) {
 }
 
 static inline Vec4 nearest_bound(const ReferencePoint *now, const ReferencePoint *by) {
-    const Vec4 normal = reference_larger(-by->l / now->l, -by->z / now->z);
-    const Vec4 up = reference_larger(-by->u / now->u, -by->p / now->p);
-    const Vec4 down = reference_larger(-by->w / now->w, -by->q / now->q);
-    return reference_larger(normal, reference_larger(up, down));
+    const Vec4 normal = larger4(-by->l / now->l, -by->z / now->z);
+    const Vec4 up = larger4(-by->u / now->u, -by->p / now->p);
+    const Vec4 down = larger4(-by->w / now->w, -by->q / now->q);
+    return larger4(normal, larger4(up, down));
 }
 
 /* The share of `step` that leads to the nearest bound. */
@@ -110,15 +110,14 @@ static double room_for(Vec4 most) {
 }
 
 static double step_room(const Reference *r) {
-    Vec4 most = reference_all(0);
-    for (int i = 0; i < r->group_count; i++)
-        most = reference_larger(nearest_bound(&r->groups[i].now, &r->groups[i].step), most);
+    Vec4 most = all4(0);
+    for (int i = 0; i < r->group_count; i++) most = larger4(nearest_bound(&r->groups[i].now, &r->groups[i].step), most);
     return room_for(most);
 }
 
 /* A Newton step towards products of the target, into `step`: the first solve with a matrix, which factorizes it, */
 static void begin_step(Reference *r, double target) {
-    const Vec4 soft = reference_all(1 / r->stiffest);
+    const Vec4 soft = all4(1 / r->stiffest);
     momentum_left(r);
     for (int i = 0; i < r->group_count; i++) {
         linearise(&r->groups[i], soft);
@@ -140,13 +139,13 @@ static void begin_next_step(Reference *r, double target, double second) {
 
 /* and the solve. Returns the share of the step that leads to the nearest bound. */
 static double end_step(Reference *r) {
-    const Vec4 soft = reference_all(1 / r->stiffest);
-    Vec4 most = reference_all(0);
+    const Vec4 soft = all4(1 / r->stiffest);
+    Vec4 most = all4(0);
     solve_changes(r);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         direction(g, relative(&g->rows, &r->pairs[BLOCK_PAIRS * i], r->changes), soft);
-        most = reference_larger(nearest_bound(&g->now, &g->step), most);
+        most = larger4(nearest_bound(&g->now, &g->step), most);
     }
     return room_for(most);
 }
@@ -157,17 +156,17 @@ static inline Vec4 products(const ReferenceGroup *g, Vec4 normal, Vec4 up, Vec4 
 
 /* The mean of the products, over their masses: the target that the point is nearest to. */
 static double mean_product(const Reference *r) {
-    Vec4 sum = reference_all(0);
+    Vec4 sum = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferencePoint *now = &r->groups[i].now;
         sum += products(&r->groups[i], now->l * now->z, now->u * now->p, now->w * now->q);
     }
-    return reference_sum(sum) / (3 * r->contact_count);
+    return sum4(sum) / (3 * r->contact_count);
 }
 
 /* The same after a share of the step. */
 static double mean_product_after(const Reference *r, double share) {
-    Vec4 sum = reference_all(0);
+    Vec4 sum = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now, *by = &g->step;
@@ -175,11 +174,11 @@ static double mean_product_after(const Reference *r, double share) {
                         (now->u + share * by->u) * (now->p + share * by->p),
                         (now->w + share * by->w) * (now->q + share * by->q));
     }
-    return reference_sum(sum) / (3 * r->contact_count);
+    return sum4(sum) / (3 * r->contact_count);
 }
 
 static inline void move_point(ReferenceGroup *g, double share) {
-    const Vec4 half = reference_all(0.5);
+    const Vec4 half = all4(0.5);
     ReferencePoint *now = &g->now;
     const ReferencePoint *by = &g->step;
     now->l += share * by->l;
@@ -187,9 +186,9 @@ static inline void move_point(ReferenceGroup *g, double share) {
     now->p += share * by->p;
     now->q += share * by->q;
     const Vec4 u = now->u + share * by->u, w = now->w + share * by->w, both = 2 * g->friction * now->l;
-    const ReferenceMask slides_up = (ReferenceMask)(u < w); /* the smaller one is precise */
-    now->u = reference_choose(slides_up, u, both - w);
-    now->w = reference_choose(slides_up, both - u, w);
+    const Mask4 slides_up = (Mask4)(u < w); /* the smaller one is precise */
+    now->u = choose4(slides_up, u, both - w);
+    now->w = choose4(slides_up, both - u, w);
     now->t = half * (now->w - now->u);
 }
 
@@ -247,7 +246,7 @@ typedef struct Tracker {
 
 /* Product of two directions, per bound. */
 static double product(const Reference *r, bool with_itself) {
-    Vec4 sum = reference_all(0);
+    Vec4 sum = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferencePoint *now = &r->groups[i].now, *x = &r->groups[i].step;
         const ReferencePoint *y = with_itself ? x : &r->groups[i].along;
@@ -255,7 +254,7 @@ static double product(const Reference *r, bool with_itself) {
         const Vec4 up = x->u * y->u / (now->u * now->u) + x->p * y->p / (now->p * now->p);
         sum += normal + up + x->w * y->w / (now->w * now->w) + x->q * y->q / (now->q * now->q);
     }
-    return reference_sum(sum) / (3 * r->contact_count);
+    return sum4(sum) / (3 * r->contact_count);
 }
 
 static ReferencePoint combine(const ReferencePoint *x, double share, const ReferencePoint *y) {
@@ -368,16 +367,16 @@ static void keep_best(Reference *r, double miss) {
 
 /* The impulses that the point stands for: bounds that it is close to are reached. Keeps them if they are the best. */
 static void answer(Reference *r) {
-    const Vec4 zero = reference_all(0);
+    const Vec4 zero = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now;
-        const ReferenceMask closed = (ReferenceMask)(now->l * g->inverse_normal > now->z);
-        g->normal = reference_choose(closed, now->l, zero);
+        const Mask4 closed = (Mask4)(now->l * g->inverse_normal > now->z);
+        g->normal = choose4(closed, now->l, zero);
         const Vec4 bound = g->friction * g->normal;
-        const ReferenceMask up = (ReferenceMask)(now->u * g->inverse_tangent < now->p),
-                            down = (ReferenceMask)(now->w * g->inverse_tangent < now->q);
-        g->tangent = reference_choose(up, bound, reference_choose(down, -bound, reference_clamp(now->t, bound)));
+        const Mask4 up = (Mask4)(now->u * g->inverse_tangent < now->p),
+                    down = (Mask4)(now->w * g->inverse_tangent < now->q);
+        g->tangent = choose4(up, bound, choose4(down, -bound, clamp_between(now->t, bound)));
     }
     Vec4 *moved = r->moved;
     r->moved = r->changes;
@@ -403,10 +402,10 @@ static double centre_step(Reference *r, double mean) {
 
 /* m/s, over effective masses. */
 static double largest_impulse(const Reference *r) {
-    Vec4 most = reference_all(0);
+    Vec4 most = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
-        most = reference_larger(g->weight * g->now.l * g->inverse_normal, most);
+        most = larger4(g->weight * g->now.l * g->inverse_normal, most);
     }
     double largest = 0;
     for (int k = 0; k < BLOCK_SLOTS; k++) largest = most[k] > largest ? most[k] : largest;
@@ -452,15 +451,15 @@ static double larger(double x, double y) { return x > y ? x : y; }
 static double visit(Reference *r, const BlockPair *pair, ReferenceGroup *g, int slot) {
     Vec4 *a = &r->moved[pair->a], *b = &r->moved[pair->b];
     const int k = slot % 2;
-    const double gap = g->free_normal[slot] + reference_sum(pair->normal[k] * between(pair, r->moved));
+    const double gap = g->free_normal[slot] + sum4(pair->normal[k] * between(pair, r->moved));
     const double normal = larger(g->normal[slot] - g->mass_normal[slot] * gap, 0), dn = normal - g->normal[slot];
-    *a += r->graph.inverses[pair->a] * as_body_a(pair->normal[k] * reference_all(dn));
-    *b += r->graph.inverses[pair->b] * (pair->normal[k] * reference_all(dn));
-    const double slip = g->free_tangent[slot] + reference_sum(pair->tangent[k] * between(pair, r->moved));
+    *a += r->graph.inverses[pair->a] * as_body_a(pair->normal[k] * all4(dn));
+    *b += r->graph.inverses[pair->b] * (pair->normal[k] * all4(dn));
+    const double slip = g->free_tangent[slot] + sum4(pair->tangent[k] * between(pair, r->moved));
     const double tangent = clamp(g->tangent[slot] - g->mass_tangent[slot] * slip, g->friction[slot] * normal);
     const double dt = tangent - g->tangent[slot];
-    *a += r->graph.inverses[pair->a] * as_body_a(pair->tangent[k] * reference_all(dt));
-    *b += r->graph.inverses[pair->b] * (pair->tangent[k] * reference_all(dt));
+    *a += r->graph.inverses[pair->a] * as_body_a(pair->tangent[k] * all4(dt));
+    *b += r->graph.inverses[pair->b] * (pair->tangent[k] * all4(dt));
     g->normal[slot] = normal;
     g->tangent[slot] = tangent;
     return larger(fabs(dn) * g->inverse_normal[slot], fabs(dt) * g->inverse_tangent[slot]);

@@ -60,8 +60,8 @@ static void load_slot(ReferenceGroup *group, int slot, BlockPair *pair, int k, c
     group->inverse_normal[slot] = 1 / (double)contact->mass_normal;
     group->inverse_tangent[slot] = 1 / (double)contact->mass_tangent;
     group->friction[slot] = friction > friction_min ? friction : friction_min;
-    group->free_normal[slot] = reference_sum(pair->normal[k] * before) - (double)contact->bias;
-    group->free_tangent[slot] = reference_sum(pair->tangent[k] * before);
+    group->free_normal[slot] = sum4(pair->normal[k] * before) - (double)contact->bias;
+    group->free_tangent[slot] = sum4(pair->tangent[k] * before);
 }
 
 /* A slot that takes part in all operations and has no effect. */
@@ -232,8 +232,7 @@ static void *create(const Settings *chosen, Error *error) {
     return reference;
 }
 
-static bool reference_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution,
-                                   Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Reference *reference = state;
     if (!reference_solve(reference, problem, NULL, error)) return false;
     reference_round(reference, problem, solution);
@@ -255,5 +254,5 @@ const ContactSolverKind solver_reference = {
                     .role = METHOD_REFERENCE,
                     .stability_place = 6},
     .create = create,
-    .solve = reference_solver_solve,
+    .solve = solve,
     .destroy = destroy};

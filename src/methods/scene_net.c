@@ -36,7 +36,7 @@ void scene_view_free(SceneView *view) {
     *view = (SceneView){0};
 }
 
-static bool scene_view_reserve(SceneView *view, const ContactProblem *problem) {
+static bool reserve_view(SceneView *view, const ContactProblem *problem) {
     const size_t contacts = (size_t)problem->contact_count + 1, bodies = (size_t)problem->body_count;
     if (!ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->state, bodies * SLOT_BODY_NUMBERS),
                              ARRAY_PART(view->ones, contacts), ARRAY_PART(view->warm, 2 * contacts),
@@ -113,7 +113,7 @@ static void load_contact(SceneView *view, const SlotNetwork *network, const Cont
 }
 
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
-    if (!scene_view_reserve(view, problem)) return false;
+    if (!reserve_view(view, problem)) return false;
     const ProblemBody *bomb = &problem->bodies[network->bomb];
     load_body(view->bomb, bomb);
     const float turns = turns_of(bomb);
@@ -126,7 +126,7 @@ bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactP
     return true;
 }
 
-static void scene_prediction_free(ScenePrediction *prediction) {
+static void free_prediction(ScenePrediction *prediction) {
     scene_view_free(&prediction->view);
     free(prediction->arrays.memory);
     *prediction = (ScenePrediction){0};
@@ -134,8 +134,8 @@ static void scene_prediction_free(ScenePrediction *prediction) {
 
 /* *known: whether all inputs are within the range of the training data. The problem must have the network's bodies.
    False when memory is short. */
-static bool scene_prediction_in_range(ScenePrediction *prediction, const SlotNetwork *network,
-                                      const ContactProblem *problem, bool *known) {
+static bool look_in_range(ScenePrediction *prediction, const SlotNetwork *network, const ContactProblem *problem,
+                          bool *known) {
     const size_t contacts = (size_t)problem->contact_count;
     if (!scene_view_take(&prediction->view, network, problem) ||
         !ARRAY_BLOCK_RESERVE(&prediction->arrays, ARRAY_PART(prediction->outputs, 2 * contacts),
@@ -149,10 +149,10 @@ static bool scene_prediction_in_range(ScenePrediction *prediction, const SlotNet
     return true;
 }
 
-/* After scene_prediction_in_range() of the same problem: fills `change`, with the predicted impulses clamped to their
+/* After look_in_range() of the same problem: fills `change`, with the predicted impulses clamped to their
    friction cones, and counts those that were outside. NaN or infinite if the network's outputs are. */
-static void scene_prediction_make(ScenePrediction *prediction, const SlotNetwork *network,
-                                  const ContactProblem *problem, NetworkFallbacks *fallbacks) {
+static void predict(ScenePrediction *prediction, const SlotNetwork *network, const ContactProblem *problem,
+                    NetworkFallbacks *fallbacks) {
     const SceneView *view = &prediction->view;
     slot_network_predict(network, prediction->inputs, &view->slots, prediction->first, prediction->second,
                          prediction->outputs);
@@ -227,7 +227,7 @@ static void destroy(void *state) {
     if (solver == NULL) return;
     slot_network_destroy(solver->own);
     momentum_free(&solver->momentum);
-    scene_prediction_free(&solver->prediction);
+    free_prediction(&solver->prediction);
     free(solver->rest_factors);
     free(solver->half_factors);
     free(solver->more_factors);
@@ -349,8 +349,7 @@ static bool choose_route(SceneNet *solver, const ContactProblem *problem, Route 
         if (known) *route = ROUTE_CALM;
         return true;
     }
-    if (known && !scene_prediction_in_range(&solver->prediction, network, problem, &known))
-        return error_memory(error, "scene-net");
+    if (known && !look_in_range(&solver->prediction, network, problem, &known)) return error_memory(error, "scene-net");
     if (known) *route = ROUTE_NETWORK;
     fallbacks->beyond_training += !known;
     return true;
@@ -369,7 +368,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     solution->fallbacks = (NetworkFallbacks){0};
     if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
     if (route == ROUTE_NETWORK && solver->choice.predicts) {
-        scene_prediction_make(&solver->prediction, solver->network, problem, &solution->fallbacks);
+        predict(&solver->prediction, solver->network, problem, &solution->fallbacks);
         sweeps_push(sweeps, solver->prediction.change);
         if (!is_bounded(sweeps)) {
             solution->fallbacks.not_finite++;

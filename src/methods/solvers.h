@@ -112,6 +112,15 @@ bool stopping_read(StoppingRule *rule, const Settings *chosen, Error *error);
 void *stopping_make(const Settings *chosen, const SettingSpec *known, const void *standard, size_t size,
                     const char *what, Error *error);
 
+/* The state of a method of plain sweeps. */
+typedef struct SweepState {
+    StoppingRule rule;
+    SequentialOptions options;
+    Sweeps sweeps;
+} SweepState;
+
+void sweep_state_destroy(void *state);
+
 /* True if another block must follow the first k sweeps and `done` more. */
 bool stopping_needs_more(const StoppingRule *rule, int done, const Sweeps *sweeps, const ContactProblem *problem);
 

@@ -134,3 +134,10 @@ bool stopping_run(const StoppingRule *rule, Sweeps *sweeps, const ContactProblem
         if (!run(sweeps, STOPPING_BLOCK)) return false;
     return true;
 }
+
+void sweep_state_destroy(void *state) {
+    SweepState *solver = state;
+    if (solver == NULL) return;
+    sweeps_free(&solver->sweeps);
+    free(solver);
+}

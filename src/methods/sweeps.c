@@ -121,7 +121,7 @@ static bool add_visit(SweepSchedule *schedule, Sweeps *sweeps, int32_t pair, int
 
 /* Makes the schedule of that many sweeps over the pairs; turns: with momentum extrapolation. False when memory is
    short. */
-static bool sweeps_schedule(SweepSchedule *schedule, Sweeps *sweeps, int count, bool turns) {
+static bool make_schedule(SweepSchedule *schedule, Sweeps *sweeps, int count, bool turns) {
     schedule->sweeps = count;
     schedule->level_count = 0;
     schedule->body_turn_count = 0;
@@ -171,8 +171,7 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
         (rest == 0 || sweeps->rest.sweeps == rest) && sweeps->scheduled_turns == turns)
         return true;
     sweeps->scheduled_count = 0;
-    if (!sweeps_schedule(&sweeps->whole, sweeps, at_once, turns) ||
-        !sweeps_schedule(&sweeps->rest, sweeps, rest, turns))
+    if (!make_schedule(&sweeps->whole, sweeps, at_once, turns) || !make_schedule(&sweeps->rest, sweeps, rest, turns))
         return false;
     memcpy(sweeps->scheduled, sweeps->ends, size);
     sweeps->scheduled_count = sweeps->pair_count;
@@ -183,7 +182,7 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
 
 /* The number of sweeps in one schedule: an equal part of all sweeps, if possible. With momentum extrapolation an even
    number if the schedule is run more than once: each run begins in the same half of the bodies and sums. */
-static int sweeps_at_once(const Sweeps *sweeps, int count, bool turns) {
+static int sweeps_of_schedule(const Sweeps *sweeps, int count, bool turns) {
     const int limit = sweeps->coloured ? COLOURED_AT_ONCE : SWEEPS_AT_ONCE;
     int most = VISITS_AT_ONCE / sweeps->pair_count;
     if (most > limit) most = limit;
@@ -197,7 +196,7 @@ static int sweeps_at_once(const Sweeps *sweeps, int count, bool turns) {
 /* True to use lanes: the processor has them and enough visits share a level. */
 static bool run(Sweeps *sweeps, const float *factors, int count) {
     bool turns = factors != NULL;
-    int at_once = sweeps_at_once(sweeps, count, turns);
+    int at_once = sweeps_of_schedule(sweeps, count, turns);
     if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once, turns)) return false;
     bool narrow = LEVEL_PAYS * sweeps->whole.level_count > at_once * sweeps->pair_count;
     if (sweeps->kernel == SWEEP_ONE_BY_ONE || narrow) {
@@ -213,7 +212,7 @@ static bool run(Sweeps *sweeps, const float *factors, int count) {
 
 bool sweeps_run_blocks(Sweeps *sweeps, int count) {
     if (sweeps->pair_count == 0) return true;
-    int at_once = sweeps_at_once(sweeps, count, false);
+    int at_once = sweeps_of_schedule(sweeps, count, false);
     if (!reschedule(sweeps, at_once, count % at_once, false)) return false;
     int done = 0;
     for (; done + at_once <= count; done += at_once) sweeps_run_blocks_avx2(sweeps, &sweeps->whole);

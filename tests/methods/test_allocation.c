@@ -13,8 +13,7 @@ static World *make_pyramid(void) {
     for (int row = 0; row < 11; row++)
         for (int i = row; i < 11; i++) {
             float x = 1.125f * ((float)i - 0.5f * (float)row);
-            add_body(world,
-                     &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.5f + (float)row}});
+            add_box(world, 10, 0.2f, vec2(x, 0.5f + (float)row));
         }
     return world;
 }

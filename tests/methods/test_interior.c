@@ -12,14 +12,6 @@
 
 static Reference reference;
 
-/* The contact problem that the world's next step meets. The engine makes the step. */
-static const ContactProblem *next_problem(World *world) {
-    ContactSolver engine = make_engine("k=1");
-    run(world, &engine, 1);
-    free_solver(&engine);
-    return world_problem(world);
-}
-
 static double error_of(const char *settings, const ContactProblem *problem, const ReferenceVelocity *expected) {
     ContactSolution found = make_solution(problem);
     solve_with(&solver_interior, settings, problem, &found);
@@ -32,18 +24,14 @@ static double error_of(const char *settings, const ContactProblem *problem, cons
 static World *make_struck_stack(int steps) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < 10; i++)
-        add_body(world,
-                 &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.49f + 0.98f * (float)i}});
+    for (int i = 0; i < 10; i++) add_box(world, 1, 0.2f, vec2(0, 0.49f + 0.98f * (float)i));
     add_body(world, &(BodyDef){.size = {1, 1},
                                .mass = 10,
                                .friction = 0.2f,
                                .position = {0.2f, 10.3f},
                                .angle = 0.1f,
                                .velocity = {-3, -8}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, steps);
-    free_solver(&engine);
+    run_engine(world, "", steps);
     return world;
 }
 
@@ -53,15 +41,11 @@ static World *make_struck_pyramid(int steps) {
     for (int row = 0; row < 6; row++)
         for (int i = row; i < 6; i++) {
             const float x = 1.125f * ((float)i - 0.5f * (float)row);
-            add_body(
-                world,
-                &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.49f + 0.98f * (float)row}});
+            add_box(world, 10, 0.2f, vec2(x, 0.49f + 0.98f * (float)row));
         }
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 50, .friction = 0.2f, .position = {2.6f, 6.6f}, .velocity = {1, -15}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, steps);
-    free_solver(&engine);
+    run_engine(world, "", steps);
     return world;
 }
 
@@ -334,8 +318,8 @@ TEST(two_static_bodies_are_no_obstacle) {
 TEST(a_huge_mass_ratio_is_solved) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.495f}});
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1e6f, .friction = 0.2f, .position = {0, 1.49f}});
+    add_box(world, 1, 0.2f, vec2(0, 0.495f));
+    add_box(world, 1e6f, 0.2f, vec2(0, 1.49f));
     ContactSolver solver = make_solver(&solver_interior, "");
     run(world, &solver, 300);
     assert_near(world_bodies(world)[1].position.y, 0.49f, 0.01f);

@@ -28,17 +28,8 @@ static World *make_struck_wall(float x, float angle, int steps) {
                                .position = {x, 0.99f * (float)COURSES + 0.8f},
                                .angle = angle,
                                .velocity = {-1.3f * x, -17}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, steps);
-    free_solver(&engine);
+    run_engine(world, "", steps);
     return world;
-}
-
-static const ContactProblem *next_problem(World *world) {
-    ContactSolver engine = make_engine("k=1");
-    run(world, &engine, 1);
-    free_solver(&engine);
-    return world_problem(world);
 }
 
 /* The largest change by one more visit of a contact, m/s. */

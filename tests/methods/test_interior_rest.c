@@ -50,8 +50,7 @@ TEST(stacks_at_rest_stay_in_place) {
     for (int k = 0; k < 3; k++) {
         World *world = make_world();
         add_ground(world, 0.2f);
-        for (int i = 0; i < heights[k]; i++)
-            add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+        for (int i = 0; i < heights[k]; i++) add_box(world, 1, 0.2f, vec2(0, 0.5f + (float)i));
         ContactSolver solver = make_solver(&solver_interior, "");
         run(world, &solver, 1200);
         assert_true(moved(world, &solver, 600) < 1e-6);
@@ -65,11 +64,7 @@ TEST(many_stacks_stand_as_one_does) {
     World *world = make_world();
     add_ground(world, 0.2f);
     for (int k = 0; k < 8; k++)
-        for (int i = 0; i < 20; i++)
-            add_body(world, &(BodyDef){.size = {1, 1},
-                                       .mass = 1,
-                                       .friction = 0.2f,
-                                       .position = {5 * (float)(k - 4), 0.5f + (float)i}});
+        for (int i = 0; i < 20; i++) add_box(world, 1, 0.2f, vec2(5 * (float)(k - 4), 0.5f + (float)i));
     ContactSolver solver = make_solver(&solver_interior, "");
     run(world, &solver, 900);
     for (int k = 0; k < 8; k++) {
@@ -91,7 +86,7 @@ TEST(a_box_that_friction_holds_does_not_creep) {
         World *world = world_create(&def, &error);
         assert_ok(world != NULL, error);
         add_ground(world, 0.2f);
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}});
+        add_box(world, 1, 0.2f, vec2(0, 0.5f));
         ContactSolver solver = make_solver(&solver_interior, "");
         run(world, &solver, 120);
         assert_true(moved(world, &solver, 600) < 1e-5);

@@ -104,8 +104,7 @@ TEST(a_resting_stacks_impulses_carry_its_weight) {
     enum { BOXES = 5 };
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < BOXES; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    for (int i = 0; i < BOXES; i++) add_box(world, 2, 0.2f, vec2(0, 0.5f + (float)i));
     ContactSolver solver = make_judged("k=30");
     run(world, &solver, 1200);
     const ContactProblem *problem = world_problem(world);
@@ -156,7 +155,7 @@ TEST(friction_stays_in_its_cone) {
 TEST(the_form_without_accumulation_keeps_a_box_up) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}});
+    add_box(world, 1, 0.2f, vec2(0, 0.5f));
     ContactSolver engine = make_engine("accumulate=off");
     run(world, &engine, 300);
     assert_near(world_bodies(world)[1].position.y, 0.5f, 0.02f);

@@ -95,8 +95,7 @@ static float missing_weight(const ContactSolverKind *kind) {
     enum { BOXES = 10 };
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < BOXES; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    for (int i = 0; i < BOXES; i++) add_box(world, 2, 0.2f, vec2(0, 0.5f + (float)i));
     ContactSolver solver = make_solver(kind, "k=60");
     run(world, &solver, 1);
     const ContactProblem *problem = world_problem(world);

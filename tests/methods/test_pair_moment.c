@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What contacts would do next, each as if it were alone. */
+#include "worlds.h"
 #include "testing.h"
 
 #include "engine/uniform.h"
@@ -155,9 +156,7 @@ TEST(others_are_all_without_the_own) {
             for (int k = 0; k < 2; k++) {
                 const BodyVelocity others = pair_moment_others(&all.moment, &all.problem, first, bodies[k]);
                 const BodyVelocity *expected = &without.moment.pushes[bodies[k]];
-                assert_near(others.linear.x, expected->linear.x, 1e-4);
-                assert_near(others.linear.y, expected->linear.y, 1e-4);
-                assert_near(others.angular, expected->angular, 1e-4);
+                assert_velocity(others, expected->linear.x, expected->linear.y, expected->angular, 1e-4);
             }
             first += pair_contact_count(&all.problem, first);
             pair_moment_free(&without.moment);

@@ -39,12 +39,8 @@ static const char *pair_constant(int outputs, const float *values) {
 TEST(two_outputs_act_as_one_impulse_in_the_middle) {
     BodyVelocity v[3];
     assert_near(solve(pair_constant(2, (const float[]){3, 6}), bodies, v), 0, 0);
-    assert_near(v[0].linear.x, 1 - 0.5 * 2, 1e-6);
-    assert_near(v[0].linear.y, 2 - 0.5 * 4, 1e-6);
-    assert_near(v[0].angular, 0.5 - 3 * (0.125 * 4 - 0.5 * 2), 1e-6);
-    assert_near(v[1].linear.x, 2, 1e-6);
-    assert_near(v[1].linear.y, -1 + 4, 1e-6);
-    assert_near(v[1].angular, 6 * (-0.125 * 4 + 0.5 * 2), 1e-6);
+    assert_velocity(v[0], 1 - 0.5 * 2, 2 - 0.5 * 4, 0.5 - 3 * (0.125 * 4 - 0.5 * 2), 1e-6);
+    assert_velocity(v[1], 2, -1 + 4, 6 * (-0.125 * 4 + 0.5 * 2), 1e-6);
     /* Momentum 2 (1, 2) + 1 (0, -1) = (2, 3), before and after. */
     assert_near(2 * v[0].linear.x + v[1].linear.x, 2, 1e-5);
     assert_near(2 * v[0].linear.y + v[1].linear.y, 3, 1e-5);
@@ -54,12 +50,8 @@ TEST(two_outputs_act_as_one_impulse_in_the_middle) {
 TEST(six_outputs_are_added_as_they_are) {
     BodyVelocity v[3];
     assert_near(solve(pair_constant(6, six), bodies, v), sqrt(6 * 6 + 9 * 9), 1e-5);
-    assert_near(v[0].linear.x, 2, 0);
-    assert_near(v[0].linear.y, 4, 0);
-    assert_near(v[0].angular, 3.5, 0);
-    assert_near(v[1].linear.x, 4, 0);
-    assert_near(v[1].linear.y, 4, 0);
-    assert_near(v[1].angular, 6, 0);
+    assert_velocity(v[0], 2, 4, 3.5, 0);
+    assert_velocity(v[1], 4, 4, 6, 0);
     assert_near(v[2].linear.x, 0, 0);
 }
 
@@ -86,18 +78,12 @@ TEST(outputs_by_contact_are_turned_into_the_world) {
         .body_count = 3, .contact_count = 1, .marked = -1, .bodies = bodies, .contacts = &slanted};
     solve_by(&solver_pair_net, constant_network(PAIR_CONTACT, TARGET_PAIR, 6, (const float[]){5, 0, 1, 0, 5, 2}), 1,
              &problem, v, impulses);
-    assert_near(v[0].linear.x, 1 + 3, 1e-6);
-    assert_near(v[0].linear.y, 2 + 4, 1e-6);
-    assert_near(v[0].angular, 0.5 + 1, 1e-6);
-    assert_near(v[1].linear.x, 0 + 4, 1e-6);
-    assert_near(v[1].linear.y, -1 - 3, 1e-6);
-    assert_near(v[1].angular, 2, 1e-6);
+    assert_velocity(v[0], 1 + 3, 2 + 4, 0.5 + 1, 1e-6);
+    assert_velocity(v[1], 0 + 4, -1 - 3, 2, 1e-6);
     /* Two outputs: the relative velocity changes by (3, 4), by the impulse (2, 8/3) through (0.125, 0.5). */
     solve_by(&solver_pair_net, constant_network(PAIR_NEIGHBOURS, TARGET_PAIR, 2, (const float[]){5, 0}), 1, &problem, v,
              impulses);
-    assert_near(v[0].linear.x, 1 - 0.5 * 2, 1e-6);
-    assert_near(v[0].linear.y, 2 - 0.5 * 8 / 3, 1e-6);
-    assert_near(v[0].angular, 0.5 - 3 * (0.125 * 8 / 3 - 0.5 * 2), 1e-6);
+    assert_velocity(v[0], 1 - 0.5 * 2, 2 - 0.5 * 8 / 3, 0.5 - 3 * (0.125 * 8 / 3 - 0.5 * 2), 1e-6);
     assert_near(v[1].linear.x, 2, 1e-6);
     assert_near(v[1].linear.y, -1 + 8 / 3.0, 1e-6);
 }
@@ -111,9 +97,7 @@ TEST(a_net_change_is_the_mean_over_a_bodys_pairs) {
         solve_by(&solver_pair_net, constant_network(PAIR_RELATIVE, TARGET_NET, 6, six), 1, &chain, v, impulses);
     assert_near(v[0].linear.x, 1 + 1, 1e-6);
     assert_near(v[0].angular, 3, 1e-6);
-    assert_near(v[1].linear.x, 2.5, 1e-6);
-    assert_near(v[1].linear.y, 3.5, 1e-6);
-    assert_near(v[1].angular, 4.5, 1e-6);
+    assert_velocity(v[1], 2.5, 3.5, 4.5, 1e-6);
     assert_near(v[2].linear.y, 5, 1e-6);
     assert_near(v[2].angular, 6, 1e-6);
     assert_near(made, sqrt(4 * 4 + 6.5 * 6.5) + sqrt(16.5 * 16.5 + 21 * 21), 1e-4);

@@ -11,8 +11,7 @@ TEST(a_stack_on_ground_carries_its_weight) {
     enum { BOXES = 10 };
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < BOXES; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    for (int i = 0; i < BOXES; i++) add_box(world, 2, 0.2f, vec2(0, 0.5f + (float)i));
     Reference reference = {0};
     const ContactProblem *problem = solve_next(world, &reference);
     assert_int_equal(problem->contact_count, 2 * BOXES);
@@ -89,8 +88,8 @@ TEST(boxes_that_crash_go_on_together) {
 TEST(a_light_box_carries_a_heavy_one) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}});
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1000, .friction = 0.2f, .position = {0, 1.5f}});
+    add_box(world, 1, 0.2f, vec2(0, 0.5f));
+    add_box(world, 1000, 0.2f, vec2(0, 1.5f));
     Reference reference = {0};
     solve_next(world, &reference);
     double dt = (double)world_dt;
@@ -107,7 +106,7 @@ TEST(ground_that_moves_takes_a_box_along) {
     World *world = make_world();
     add_body(world,
              &(BodyDef){.size = {100, 20}, .fixed = true, .friction = 1, .position = {0, -10}, .velocity = {0.1f, 0}});
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 3, .friction = 1, .position = {0, 0.5f}});
+    add_box(world, 3, 1, vec2(0, 0.5f));
     Reference reference = {0};
     solve_next(world, &reference);
     assert_near(reference.velocities[0].x, 0.1f, 0);
@@ -128,9 +127,7 @@ TEST(a_plate_lies_on_very_many_boxes) {
                  &(BodyDef){.size = {0.5f, 1}, .mass = 1, .friction = 0.2f, .position = {0.6f * (float)i, 0.5f}});
     add_body(world, &(BodyDef){.size = {60, 1}, .mass = 500, .friction = 0.2f, .position = {0.3f * (BOXES - 1), 1.5f}});
     Reference reference = {0};
-    ContactSolver engine = make_engine("k=1");
-    run(world, &engine, 1);
-    free_solver(&engine);
+    run_engine(world, "k=1", 1);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 4 * BOXES);
     Error error = {0};
@@ -171,9 +168,8 @@ static double fastest_spin(Reference *reference, const ContactProblem *problem) 
     solve_with(&solver_nncg, "k=3000", problem, &found);
     double fastest = 0;
     for (int i = 0; i < problem->body_count; i++) {
-        assert_near(velocities[i].linear.x, reference->velocities[i].x, 1e-4);
-        assert_near(velocities[i].linear.y, reference->velocities[i].y, 1e-4);
-        assert_near(velocities[i].angular, reference->velocities[i].spin, 1e-4);
+        assert_velocity(velocities[i], reference->velocities[i].x, reference->velocities[i].y,
+                        reference->velocities[i].spin, 1e-4);
         fastest = fmax(fastest, fabs(reference->velocities[i].spin));
     }
     return fastest;

@@ -89,9 +89,8 @@ static void assert_fixed_point(const ContactSolverKind *kind, const char *text, 
     ContactSolution solution = {velocities, impulses, 0, {0}};
     assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
     for (int i = 0; i < problem->body_count; i++) {
-        assert_near(velocities[i].linear.x, reference->velocities[i].x, 2e-5);
-        assert_near(velocities[i].linear.y, reference->velocities[i].y, 2e-5);
-        assert_near(velocities[i].angular, reference->velocities[i].spin, 2e-5);
+        assert_velocity(velocities[i], reference->velocities[i].x, reference->velocities[i].y,
+                        reference->velocities[i].spin, 2e-5);
     }
     free_solver(&solver);
 }

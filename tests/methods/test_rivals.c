@@ -27,14 +27,10 @@ static const ContactSolverKind *const sweepers[] = {&solver_engine, &solver_mome
 /* Four boxes in the air, which a fast and heavy one is about to hit; no ground, so momentum is kept. */
 static World *make_crash(void) {
     World *world = make_world();
-    for (int i = 0; i < 4; i++)
-        add_body(world,
-                 &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {0.1f * (float)i, (float)i}});
+    for (int i = 0; i < 4; i++) add_box(world, 1, 0.5f, vec2(0.1f * (float)i, (float)i));
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 5, .friction = 0.5f, .position = {0.6f, 3.99f}, .velocity = {-1, -5}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, 1);
-    free_solver(&engine);
+    run_engine(world, "", 1);
     assert_true(world_problem(world)->contact_count >= 6);
     return world;
 }
@@ -50,9 +46,8 @@ TEST(all_meet_the_plain_sweeps) {
     for (size_t r = 0; r < COUNT(converged); r++) {
         solve_with(converged[r].kind, converged[r].text, problem, &found);
         for (int i = 0; i < problem->body_count; i++) {
-            assert_near(found.velocities[i].linear.x, plain.velocities[i].linear.x, 5e-3);
-            assert_near(found.velocities[i].linear.y, plain.velocities[i].linear.y, 5e-3);
-            assert_near(found.velocities[i].angular, plain.velocities[i].angular, 5e-3);
+            assert_velocity(found.velocities[i], plain.velocities[i].linear.x, plain.velocities[i].linear.y,
+                            plain.velocities[i].angular, 5e-3);
         }
     }
     free_solution(&plain);
@@ -103,9 +98,7 @@ TEST(a_box_that_leaves_the_ground_is_not_held) {
     add_ground(world, 0.5f);
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {2, 3}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, 1);
-    free_solver(&engine);
+    run_engine(world, "", 1);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 2);
     ContactSolution found = make_solution(problem);
@@ -122,11 +115,8 @@ TEST(a_box_that_leaves_the_ground_is_not_held) {
 TEST(a_cold_engine_starts_from_zero) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < 5; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, 60);
-    free_solver(&engine);
+    for (int i = 0; i < 5; i++) add_box(world, 1, 0.2f, vec2(0, 0.5f + (float)i));
+    run_engine(world, "", 60);
     ContactProblem cold = *world_problem(world);
     ContactPoint contacts[16];
     assert_in_range(cold.contact_count, 1, 16);

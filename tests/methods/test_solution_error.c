@@ -75,8 +75,7 @@ TEST(nothing_that_moves_is_no_error) {
 TEST(more_sweeps_rank_better_and_a_perturbed_solution_worse) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < 5; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.49f + (float)i}});
+    for (int i = 0; i < 5; i++) add_box(world, 1, 0.2f, vec2(0, 0.49f + (float)i));
     ContactSolver engine = make_engine("k=3");
     run(world, &engine, 1);
     const ContactProblem *landed = world_problem(world);

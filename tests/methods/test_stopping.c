@@ -13,17 +13,11 @@ enum { KINDS = sizeof kinds / sizeof *kinds, IN_PLACE = 4 /* those whose blocks 
 static World *make_struck(float speed) {
     World *world = make_world();
     add_ground(world, 0.4f);
-    for (int i = 0; i < 12; i++)
-        add_body(world, &(BodyDef){.size = {1, 1},
-                                   .mass = 1,
-                                   .friction = 0.4f,
-                                   .position = {1.05f * (float)(i % 3), 0.5f + (float)(i / 3)}});
+    for (int i = 0; i < 12; i++) add_box(world, 1, 0.4f, vec2(1.05f * (float)(i % 3), 0.5f + (float)(i / 3)));
     add_body(
         world,
         &(BodyDef){.size = {1, 1}, .mass = 8, .friction = 0.4f, .position = {1.3f, 4.49f}, .velocity = {1, -speed}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, 1);
-    free_solver(&engine);
+    run_engine(world, "", 1);
     assert_true(world_problem(world)->contact_count >= 20);
     return world;
 }
@@ -36,9 +30,8 @@ TEST(a_small_residual_is_as_good_as_converged) {
     for (int kind = 0; kind < KINDS; kind++) {
         solve_with(kinds[kind], "near=1e-5,more=20000", problem, &found);
         for (int i = 0; i < problem->body_count; i++) {
-            assert_near(found.velocities[i].linear.x, converged.velocities[i].linear.x, 5e-3);
-            assert_near(found.velocities[i].linear.y, converged.velocities[i].linear.y, 5e-3);
-            assert_near(found.velocities[i].angular, converged.velocities[i].angular, 5e-3);
+            assert_velocity(found.velocities[i], converged.velocities[i].linear.x, converged.velocities[i].linear.y,
+                            converged.velocities[i].angular, 5e-3);
         }
     }
     free_solution(&converged);

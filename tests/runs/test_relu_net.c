@@ -4,6 +4,7 @@
 
 #include "runs/runs.h"
 #include "methods/kernels.h"
+#include "methods/worlds.h"
 
 enum { ROUNDINGS = 50 }; /* that ten sweeps gather; a branch taken wrongly makes thousands */
 
@@ -33,9 +34,7 @@ static bool agrees(void *context, int frame, const World *world, Error *error) {
     assert_ok(net->kind->solve(net->state, problem, &found, error), *error);
     for (int i = 0; i < problem->body_count; i++) {
         const BodyVelocity is = found.velocities[i], expected = engine->velocities[i];
-        assert_near(is.linear.x, expected.linear.x, ROUNDINGS * rounding);
-        assert_near(is.linear.y, expected.linear.y, ROUNDINGS * rounding);
-        assert_near(is.angular, expected.angular, ROUNDINGS * rounding);
+        assert_velocity(is, expected.linear.x, expected.linear.y, expected.angular, ROUNDINGS * rounding);
     }
     for (int i = 0; i < problem->contact_count; i++)
         assert_same_impulse(&problem->contacts[i], found.impulses[i], engine->impulses[i], rounding);
