@@ -3,10 +3,9 @@
    compiled once for each instruction set. All perform the same operations in the same order, so they have the same
    bits. */
 #include "methods/block_lu.h"
+#include "methods/vec4.h"
 
 #include <string.h>
-
-static inline Vec4 vec4(double x, double y, double z, double w) { return (Vec4){x, y, z, w}; }
 
 /* The coordinates of a pair: linear velocity of body b minus that of body a, spin of b, spin of a. Turns an impulse in
    these into that on body a. */

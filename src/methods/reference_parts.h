@@ -4,6 +4,7 @@
 #include "engine/engine.h"
 #include "methods/block_lu.h"
 #include "methods/reference.h"
+#include "methods/vec4.h"
 
 #include <math.h>
 
