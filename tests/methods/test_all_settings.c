@@ -2,7 +2,6 @@
 /* The settings of a method, given or not. */
 #include "runs/made.h"
 
-#include "methods/methods.h"
 #include "methods/sweeps.h"
 
 static void assert_settings(const char *text, int iterations, const char *wanted) {

@@ -2,9 +2,6 @@
 /* What playback plays is what was recorded. */
 #include "runs/made.h"
 
-#include "scenes/scenes.h"
-#include "runs/runs.h"
-
 static Trajectory *run(const char *method_text, float x, int frame) {
     Scene *scene = scene_named("single");
     scene->bomb.frame = 20;

@@ -4,7 +4,6 @@
 #include "runs/made.h"
 
 #include "base/hash.h"
-#include "runs/runs.h"
 
 #include <math.h>
 

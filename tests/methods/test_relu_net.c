@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The network of rectifiers is the engine: visit by visit, branch by branch. On the scenes' frames:
    tests/runs/test_relu_net.c. */
+#include "consistent.h"
 #include "kernels.h"
 #include "random_problem.h"
 
@@ -43,15 +44,6 @@ TEST(a_visit_takes_the_engines_branch) {
     for (int branch = 0; branch < BRANCHES; branch++) assert_true(met[branch] > 100);
 }
 
-/* Momentum of all bodies, N s. */
-static void momentum_of(const ContactProblem *problem, const BodyVelocity *velocities, double sum[2]) {
-    sum[0] = sum[1] = 0;
-    for (int i = 0; i < problem->body_count; i++) {
-        sum[0] += (double)velocities[i].linear.x / (double)problem->bodies[i].inv_mass;
-        sum[1] += (double)velocities[i].linear.y / (double)problem->bodies[i].inv_mass;
-    }
-}
-
 TEST(momentum_is_kept) {
     uint32_t seed = 3;
     for (int run = 0; run < 50; run++) {
@@ -64,9 +56,9 @@ TEST(momentum_is_kept) {
         BodyVelocity start[BODIES_MAX];
         for (int i = 0; i < random.problem.body_count; i++)
             start[i] = (BodyVelocity){random.bodies[i].velocity, random.bodies[i].angular_velocity};
-        momentum_of(&random.problem, start, before);
+        linear_momentum(&random.problem, NULL, before);
         solve_with(&solver_relu_net, "", &random.problem, &found);
-        momentum_of(&random.problem, found.velocities, after);
+        linear_momentum(&random.problem, found.velocities, after);
         for (int i = 0; i < 2; i++) assert_near(before[i], after[i], 1e-3);
         assert_memory_not_equal(start, found.velocities, sizeof *start * (size_t)random.problem.body_count);
         free_solution(&found);

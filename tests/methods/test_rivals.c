@@ -55,15 +55,6 @@ TEST(all_meet_the_plain_sweeps) {
     world_destroy(world);
 }
 
-static void linear_momentum(const ContactProblem *problem, const BodyVelocity *after, double sum[2]) {
-    sum[0] = sum[1] = 0;
-    for (int i = 0; i < problem->body_count; i++) {
-        Vec2 v = after != NULL ? after[i].linear : problem->bodies[i].velocity;
-        sum[0] += (double)v.x / (double)problem->bodies[i].inv_mass;
-        sum[1] += (double)v.y / (double)problem->bodies[i].inv_mass;
-    }
-}
-
 /* After any number of sweeps: the last thing done is a sweep, not an extrapolation. */
 TEST(cone_momentum_and_velocities_fit_after_every_sweep) {
     World *world = make_crash();

@@ -3,8 +3,6 @@
 #include "runs/made.h"
 
 #include "methods/subspace_nets.h"
-#include "scenes/scenes.h"
-#include "runs/runs.h"
 #include "methods/steppers.h"
 
 #include <math.h>

@@ -2,8 +2,6 @@
 /* Small steps: what they must have in common with whole ones. */
 #include "runs/made.h"
 
-#include "runs/runs.h"
-
 static Trajectory *run(const char *scene_name, const char *method_text, int frames) {
     Scene *scene = scene_named(scene_name);
     if (frames > 0) scene->frames = frames;

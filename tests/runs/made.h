@@ -50,3 +50,10 @@ static inline Trajectory *trajectory_of(const char *path) {
     assert_ok(run != NULL, error);
     return run;
 }
+
+/* Of the same frames and bodies, with the same bits. */
+static inline void assert_same_run(const Trajectory *a, const Trajectory *b) {
+    TrajectoryDifference difference;
+    trajectory_compare(a, b, &difference);
+    assert_true(difference.equal);
+}

@@ -5,7 +5,6 @@
 #include "made.h"
 
 #include "engine/uniform.h"
-#include "runs/runs.h"
 
 #include <math.h>
 

@@ -4,7 +4,6 @@
 
 #include "base/file.h"
 #include "pictures/folders.h"
-#include "runs/runs.h"
 
 static Scene *read_scene(const char *name, int frames) {
     Scene *scene = scene_named(name);

@@ -4,7 +4,6 @@
 #include "sanitized.h"
 
 #include "methods/reference.h"
-#include "runs/runs.h"
 
 typedef struct Steps {
     Reference reference;

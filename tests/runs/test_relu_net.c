@@ -2,7 +2,6 @@
 /* The network of rectifiers gives what the engine does, frame by frame of the scenes. */
 #include "made.h"
 
-#include "runs/runs.h"
 #include "methods/kernels.h"
 #include "methods/worlds.h"
 

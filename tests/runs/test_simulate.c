@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "made.h"
 
-#include "runs/runs.h"
-
 TEST(a_trajectory_says_what_it_is) {
     Scene *scene = scene_named("single");
     scene->frames = 60;
@@ -70,9 +68,7 @@ TEST(the_last_body_goes_after_the_step_it_is_told_to) {
     const char *path = temporary_path("gone.npz");
     assert_ok(trajectory_write(trajectory, path, &error), error);
     Trajectory *read = trajectory_of(path);
-    TrajectoryDifference difference;
-    trajectory_compare(trajectory, read, &difference);
-    assert_true(difference.equal);
+    assert_same_run(trajectory, read);
     trajectory_destroy(read);
     trajectory_destroy(trajectory);
     scene_destroy(scene);

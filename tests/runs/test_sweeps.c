@@ -3,7 +3,6 @@
 #include "made.h"
 #include "sanitized.h"
 
-#include "runs/runs.h"
 #include "methods/kernels.h"
 #include "methods/reference_kernels.h"
 
