@@ -97,9 +97,7 @@ TEST(impulses_stay_in_their_cones) {
         }
         ContactSolution warm = {expected, impulses, 0, {0}};
         sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true, 1}, &warm);
-        for (int i = 0; i < random.problem.body_count; i++) {
-            assert_velocity(v[i], expected[i].linear.x, expected[i].linear.y, expected[i].angular, 0);
-        }
+        assert_velocities(v, expected, random.problem.body_count, 0);
     }
     assert_true(pushed > 100 && sliding > 50);
 }
@@ -124,9 +122,7 @@ TEST(a_network_of_zeros_is_the_warm_start) {
             assert_near(impulses[i].normal, started[i].normal, 0);
             assert_near(impulses[i].tangent, started[i].tangent, 0);
         }
-        for (int i = 0; i < random.problem.body_count; i++) {
-            assert_velocity(v[i], expected[i].linear.x, expected[i].linear.y, expected[i].angular, 0);
-        }
+        assert_velocities(v, expected, random.problem.body_count, 0);
     }
 }
 

@@ -45,10 +45,7 @@ TEST(all_meet_the_plain_sweeps) {
     assert_true(fabsf(found.velocities[0].linear.y - plain.velocities[0].linear.y) > 0.1f);
     for (size_t r = 0; r < COUNT(converged); r++) {
         solve_with(converged[r].kind, converged[r].text, problem, &found);
-        for (int i = 0; i < problem->body_count; i++) {
-            assert_velocity(found.velocities[i], plain.velocities[i].linear.x, plain.velocities[i].linear.y,
-                            plain.velocities[i].angular, 5e-3);
-        }
+        assert_velocities(found.velocities, plain.velocities, problem->body_count, 5e-3);
     }
     free_solution(&plain);
     free_solution(&found);

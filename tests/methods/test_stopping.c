@@ -29,10 +29,7 @@ TEST(a_small_residual_is_as_good_as_converged) {
     sequential_impulses_solve(problem, &engine_options, 100000, &converged);
     for (int kind = 0; kind < KINDS; kind++) {
         solve_with(kinds[kind], "near=1e-5,more=20000", problem, &found);
-        for (int i = 0; i < problem->body_count; i++) {
-            assert_velocity(found.velocities[i], converged.velocities[i].linear.x, converged.velocities[i].linear.y,
-                            converged.velocities[i].angular, 5e-3);
-        }
+        assert_velocities(found.velocities, converged.velocities, problem->body_count, 5e-3);
     }
     free_solution(&converged);
     free_solution(&found);

@@ -16,6 +16,12 @@ static const float world_dt = 1.0f / 60.0f;
         assert_near((actual_velocity).angular, (spin), (tolerance));        \
     } while (0)
 
+static inline void assert_velocities(const BodyVelocity *found, const BodyVelocity *expected, int count,
+                                     double tolerance) {
+    for (int i = 0; i < count; i++)
+        assert_velocity(found[i], expected[i].linear.x, expected[i].linear.y, expected[i].angular, tolerance);
+}
+
 /* A solver with these settings ("k=10"). */
 static inline ContactSolver make_solver(const ContactSolverKind *kind, const char *text) {
     Error error = {0};

@@ -31,10 +31,7 @@ static bool agrees(void *context, int frame, const World *world, Error *error) {
     const double rounding = rounding_of(problem);
     ContactSolution found = make_solution(problem);
     assert_ok(net->kind->solve(net->state, problem, &found, error), *error);
-    for (int i = 0; i < problem->body_count; i++) {
-        const BodyVelocity is = found.velocities[i], expected = engine->velocities[i];
-        assert_velocity(is, expected.linear.x, expected.linear.y, expected.angular, ROUNDINGS * rounding);
-    }
+    assert_velocities(found.velocities, engine->velocities, problem->body_count, ROUNDINGS * rounding);
     for (int i = 0; i < problem->contact_count; i++)
         assert_same_impulse(&problem->contacts[i], found.impulses[i], engine->impulses[i], rounding);
     free_solution(&found);
