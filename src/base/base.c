@@ -318,3 +318,25 @@ bool array_grow(void **items, size_t *capacity, size_t wanted, size_t item_size)
     *capacity = room;
     return true;
 }
+
+enum { CACHE_LINE = 64 }; /* bytes: vectors that cross one cost twice */
+
+static size_t whole_lines(size_t size) { return (size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE; }
+
+bool array_block_reserve(ArrayBlock *block, const ArrayPart *parts, size_t count) {
+    size_t size = CACHE_LINE;
+    for (size_t i = 0; i < count; i++) size += whole_lines(parts[i].size);
+    if (size > block->capacity) {
+        const size_t room = size / 2 > block->capacity ? size : 2 * block->capacity;
+        void *memory = malloc(room);
+        if (memory == NULL) return false;
+        free(block->memory);
+        *block = (ArrayBlock){memory, room};
+    }
+    char *next = (char *)block->memory + (whole_lines((uintptr_t)block->memory) - (uintptr_t)block->memory);
+    for (size_t i = 0; i < count; i++) {
+        memcpy(parts[i].array, &next, sizeof next);
+        next += whole_lines(parts[i].size);
+    }
+    return true;
+}

@@ -125,6 +125,29 @@ static inline bool array_reserve(void **items, size_t *capacity, size_t wanted, 
     return wanted <= *capacity || array_grow(items, capacity, wanted, item_size);
 }
 
+/* Arrays of an object whose sizes grow together, in one block of memory. Zero-initialise; to free it, free `memory`. */
+typedef struct ArrayBlock {
+    void *memory;
+    size_t capacity; /* bytes */
+} ArrayBlock;
+
+typedef struct ArrayPart {
+    void *array; /* address of the pointer to its items */
+    size_t size; /* bytes */
+} ArrayPart;
+
+#define ARRAY_PART(items, count) \
+    { &(items), (size_t)(count) * sizeof *(items) }
+
+/* Lets the pointers of all parts point into the block; each array begins at a cache line. The items are undefined
+   afterwards. Allocates nothing if the block was as large before; the block at least doubles otherwise. False when memory
+   is short; pointers and items then stay. */
+bool array_block_reserve(ArrayBlock *block, const ArrayPart *parts, size_t count);
+
+#define ARRAY_BLOCK_RESERVE(block, ...)                            \
+    array_block_reserve((block), (const ArrayPart[]){__VA_ARGS__}, \
+                        sizeof((const ArrayPart[]){__VA_ARGS__}) / sizeof(ArrayPart))
+
 /* SplitMix64: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014). */
 
 static inline uint64_t split_mix(uint64_t *state) {
@@ -148,10 +171,28 @@ typedef struct Settings {
     Setting items[SETTINGS_MAX];
 } Settings;
 
-/* A key that a method knows, and what it means; a table of these ends with a NULL key. */
+typedef enum SettingType {
+    SETTING_IS_OWN, /* whoever has the table reads it with settings_get */
+    SETTING_IS_INT,
+    SETTING_IS_FLOAT,
+    SETTING_IS_BOOL /* on|off */
+} SettingType;
+
+/* A key that a method knows, what it means, and the member that gets its value; a table of these ends with {0}. */
 typedef struct SettingSpec {
     const char *key, *summary;
+    SettingType type;   /* type and what follows: one of the macros below */
+    size_t at;          /* of the member, bytes */
+    double least, most; /* numbers: bounds */
 } SettingSpec;
+
+#define SETTING_AT(T, member, is) (offsetof(T, member) + 0 * sizeof(_Generic(&((T *)NULL)->member, is * : 0)))
+#define SETTING_OWN .type = SETTING_IS_OWN
+#define SETTING_BOOL(T, member) .type = SETTING_IS_BOOL, .at = SETTING_AT(T, member, bool)
+#define SETTING_INT(T, member, minimum, maximum) \
+    .type = SETTING_IS_INT, .at = SETTING_AT(T, member, int), .least = (minimum), .most = (maximum)
+#define SETTING_FLOAT(T, member, minimum, maximum) \
+    .type = SETTING_IS_FLOAT, .at = SETTING_AT(T, member, float), .least = (double)(minimum), .most = (double)(maximum)
 
 /* Parses "key=value,..." (may be empty). Every key must be in the table (NULL: none), once. `where` begins the message. */
 bool settings_parse(Settings *settings, const char *text, const SettingSpec *known, const char *where, Error *error);
@@ -165,15 +206,13 @@ const char *settings_get(const Settings *settings, const char *key);
 /* Sets key to value unless it is set. False if there is no room. */
 bool settings_default(Settings *settings, const char *key, const char *value);
 
-/* The value of key as a whole number of [minimum, maximum]; *value is unchanged if the key is missing. */
-bool settings_int(const Settings *settings, const char *key, int minimum, int maximum, int *value, Error *error);
+/* Sets the members of *values for which a setting is given; the table has their types and bounds. */
+bool settings_read(const Settings *settings, const SettingSpec *known, void *values, Error *error);
 
-/* The same for a number of [minimum, maximum]. */
-bool settings_float(const Settings *settings, const char *key, float minimum, float maximum, float *value,
-                    Error *error);
-
-/* on|off, the same way. */
-bool settings_bool(const Settings *settings, const char *key, bool *value, Error *error);
+/* A copy of the `size` bytes of *standard with the settings, which the caller frees; NULL with error set. what: begins the
+   message when memory is short. */
+void *settings_make(const Settings *settings, const SettingSpec *known, const void *standard, size_t size,
+                    const char *what, Error *error);
 
 /* Libraries that read a file report a lack of memory or of descriptors as damage of the file. What they leave in errno
    tells the truth, if it was 0 before. */

@@ -199,33 +199,48 @@ bool settings_default(Settings *settings, const char *key, const char *value) {
     return true;
 }
 
-bool settings_int(const Settings *settings, const char *key, int minimum, int maximum, int *value, Error *error) {
-    const char *text = settings_get(settings, key);
-    if (text == NULL) return true;
-    int64_t number;
-    if (!parse_int(text, minimum, maximum, &number))
-        return error_input(error, key, "must be a whole number from %d to %d (got '%.64s')", minimum, maximum, text);
-    *value = (int)number;
-    return true;
-}
-
-bool settings_float(const Settings *settings, const char *key, float minimum, float maximum, float *value,
-                    Error *error) {
-    const char *text = settings_get(settings, key);
-    if (text == NULL) return true;
+static bool read_number(const SettingSpec *spec, const char *text, void *value, Error *error) {
+    int64_t whole;
     float number;
-    if (!parse_float(text, &number) || number < minimum || number > maximum)
-        return error_input(error, key, "must be a number from %g to %g (got '%.64s')", (double)minimum, (double)maximum,
+    if (spec->type == SETTING_IS_INT) {
+        if (!parse_int(text, (int64_t)spec->least, (int64_t)spec->most, &whole))
+            return error_input(error, spec->key, "must be a whole number from %d to %d (got '%.64s')", (int)spec->least,
+                               (int)spec->most, text);
+        *(int *)value = (int)whole;
+        return true;
+    }
+    if (!parse_float(text, &number) || (double)number < spec->least || (double)number > spec->most)
+        return error_input(error, spec->key, "must be a number from %g to %g (got '%.64s')", spec->least, spec->most,
                            text);
-    *value = number;
+    *(float *)value = number;
     return true;
 }
 
-bool settings_bool(const Settings *settings, const char *key, bool *value, Error *error) {
-    const char *text = settings_get(settings, key);
-    if (text == NULL) return true;
-    bool on = strcmp(text, "on") == 0;
-    if (!on && strcmp(text, "off") != 0) return error_input(error, key, "must be on or off (got '%.64s')", text);
-    *value = on;
+bool settings_read(const Settings *settings, const SettingSpec *known, void *values, Error *error) {
+    for (const SettingSpec *spec = known; spec->key != NULL; spec++) {
+        const char *text = settings_get(settings, spec->key);
+        void *value = (char *)values + spec->at;
+        if (text == NULL || spec->type == SETTING_IS_OWN) continue;
+        if (spec->type != SETTING_IS_BOOL) {
+            if (!read_number(spec, text, value, error)) return false;
+            continue;
+        }
+        const bool on = *(bool *)value = strcmp(text, "on") == 0;
+        if (!on && strcmp(text, "off") != 0)
+            return error_input(error, spec->key, "must be on or off (got '%.64s')", text);
+    }
     return true;
+}
+
+void *settings_make(const Settings *settings, const SettingSpec *known, const void *standard, size_t size,
+                    const char *what, Error *error) {
+    void *values = malloc(size);
+    if (values == NULL) {
+        error_memory(error, what);
+        return NULL;
+    }
+    memcpy(values, standard, size);
+    if (settings_read(settings, known, values, error)) return values;
+    free(values);
+    return NULL;
 }

@@ -117,3 +117,9 @@ void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float
         contact->friction = sqrtf(friction[contact->a] * friction[contact->b]);
     }
 }
+
+void contact_solution_begin(const ContactProblem *problem, ContactSolution *solution) {
+    for (int i = 0; i < problem->body_count; i++)
+        solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
+    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+}

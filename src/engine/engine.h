@@ -149,7 +149,7 @@ typedef struct SortAndSweep {
 void sort_and_sweep_free(SortAndSweep *sweep);
 bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *bounds, const bool *fixed, int count);
 
-/* How deep boxes overlap, by separating axes in double. For what a scene places, not for contacts: manifold.h prefers
+/* How deep boxes overlap, by separating axes in double. For what a scene places, not for contacts: the narrow phase prefers
    the face of the last step to the axis of the smallest overlap. */
 
 /* The smallest overlap of two boxes along the axes of their faces, m; negative: they are apart by that much along one.
@@ -250,6 +250,9 @@ typedef struct ContactSolution {
     float momentum_error;
     NetworkFallbacks fallbacks; /* zeros for most methods */
 } ContactSolution;
+
+/* Velocities before any impulse, and no impulses. */
+void contact_solution_begin(const ContactProblem *problem, ContactSolution *solution);
 
 /* Solves a contact problem: fills the solution. False with error set only when memory is short or the problem cannot be
    solved at all. Allocates nothing once the state has met a problem of that size. */

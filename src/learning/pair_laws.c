@@ -243,9 +243,10 @@ bool law_weights_any(const LawNumbers *weights) {
 }
 
 bool law_weights_parse(const char *text, LawNumbers *weights, Error *error) {
-    SettingSpec known[LAWS + 1] = {{NULL, NULL}};
+    SettingSpec known[LAWS + 1] = {{0}};
     Settings settings;
-    for (int law = 0; law < LAWS; law++) known[law] = (SettingSpec){laws_known[law].name, laws_known[law].summary};
+    for (int law = 0; law < LAWS; law++)
+        known[law] = (SettingSpec){laws_known[law].name, laws_known[law].summary, SETTING_OWN};
     if (!settings_parse(&settings, text, known, "laws", error)) return false;
     *weights = (LawNumbers){{0}};
     for (int law = 0; law < LAWS; law++) {

@@ -1,5 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of avbd (avbd.c): its state in a step, the step's start, and its passes. */
+/* Augmented vertex block descent (AVBD): a step is implicit Euler, solved on positions, body after body. Chris Giles,
+   Elie Diaz and Cem Yuksel, "Augmented Vertex Block Descent" (SIGGRAPH 2025), with the choices of their 2D program.
+
+   d is the displacement of a body in the step (x, y, angle), y = v dt + g dt^2 what it would be without contacts, J the
+   gradient of a contact's gap C(d) = C0 + J d. A visit of a body solves one 3 x 3 system,
+
+       (M / dt^2 + sum k J J^T) delta = -M / dt^2 (d - y) + sum J f,   f = l - k C,   f >= 0 or |f| <= mu l_normal
+
+   and adds delta to d. After each pass over the bodies, every contact takes l = f, and the penalty k rises by beta |C|
+   while f is inside its bounds. l and k are those of the step before, k times gamma. So the forces come from the
+   multipliers l, and k need not be large.
+
+   Overlap does not change velocities: C0 is left out of the passes, the velocity is d / dt after the last of them, and
+   one more pass with C0 moves the bodies out (post-stabilization, the default of the 2D program). With the setting
+   alpha, every pass has (1 - alpha) C0 and multipliers decay by alpha gamma, as in the paper.
+
+   Contacts that stick keep their points on both bodies, so that a slope does not creep. The gap ends at
+   COLLISION_MARGIN, or resting contacts would come and go.
+
+   Fails where passes are few: bodies move by what their neighbours did before, so momentum is not conserved until the
+   passes have converged, and a shock moves up a stack one box a pass. New contacts begin soft. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -9,9 +29,12 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#define AVBD_PENALTY_MIN 1.0f /* N/m */
-#define AVBD_PENALTY_MAX 1e9f /* N/m */
+#define PENALTY_MIN 1.0f         /* N/m */
+#define PENALTY_MAX 1e9f         /* N/m */
+#define COLLISION_MARGIN 0.0005f /* m, overlap at rest */
+#define STICK_DISTANCE 0.01f     /* m, by which points that stick may slide */
 
 /* A displacement or its gradient. */
 typedef struct Vec3 {
@@ -52,23 +75,19 @@ typedef struct Avbd {
     AvbdContact *contacts, *last; /* [contacts] of this step and the last */
     int *visits;                  /* [2 contacts] contacts of a body, body after body */
     int body_count, contact_count;
-    size_t body_capacity, rotation_capacity, pose_capacity, before_capacity, contact_capacity, last_capacity,
-        visit_capacity;
+    ArrayBlock arrays; /* of this step */
+    size_t before_capacity, last_capacity;
 } Avbd;
 
-/* The start of a step of avbd: where bodies and contacts begin, with what forces and penalties. */
-
-#define COLLISION_MARGIN 0.0005f /* m, overlap at rest */
+/* The start of a step: where bodies and contacts begin, with what forces and penalties. */
 
 static bool reserve(Avbd *avbd, const ContactProblem *problem) {
-    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    return array_reserve((void **)&avbd->bodies, &avbd->body_capacity, bodies, sizeof *avbd->bodies) &&
-           array_reserve((void **)&avbd->rotations, &avbd->rotation_capacity, bodies, sizeof *avbd->rotations) &&
-           array_reserve((void **)&avbd->poses, &avbd->pose_capacity, bodies, sizeof *avbd->poses) &&
-           array_reserve((void **)&avbd->before, &avbd->before_capacity, bodies, sizeof *avbd->before) &&
-           array_reserve((void **)&avbd->contacts, &avbd->contact_capacity, contacts, sizeof *avbd->contacts) &&
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    return array_reserve((void **)&avbd->before, &avbd->before_capacity, bodies, sizeof *avbd->before) &&
            array_reserve((void **)&avbd->last, &avbd->last_capacity, contacts, sizeof *avbd->last) &&
-           array_reserve((void **)&avbd->visits, &avbd->visit_capacity, 2 * contacts, sizeof *avbd->visits);
+           ARRAY_BLOCK_RESERVE(&avbd->arrays, ARRAY_PART(avbd->bodies, bodies), ARRAY_PART(avbd->rotations, bodies),
+                               ARRAY_PART(avbd->poses, bodies), ARRAY_PART(avbd->contacts, contacts),
+                               ARRAY_PART(avbd->visits, 2 * contacts));
 }
 
 /* The share of gravity that the last step's acceleration had: 0 at rest, 1 in free fall. */
@@ -105,7 +124,7 @@ static AvbdRow make_row(Vec2 axis, Vec2 arm_a, Vec2 arm_b, float start) {
    only the impulse tells which it is: then the penalty is that at which a pass moves as far as a rigid contact would. */
 static float first_penalty(const Avbd *avbd, const AvbdRow *last, bool loaded, float mass, float dt) {
     float penalty = last != NULL ? avbd->gamma * last->penalty : loaded ? mass / (dt * dt) : 0;
-    return contact_clamp(penalty, AVBD_PENALTY_MIN, AVBD_PENALTY_MAX);
+    return contact_clamp(penalty, PENALTY_MIN, PENALTY_MAX);
 }
 
 /* Multipliers are the world's impulses, so that a copy of a world has them. */
@@ -161,20 +180,19 @@ static void list_visits(Avbd *avbd) {
 }
 
 /* Fills the state for a step of the world that has begun. False when memory is short. */
-static bool avbd_begin(Avbd *avbd, const World *world, const ContactProblem *problem, const Step *step) {
-    if (!step_memory_match(&avbd->memory, world, step) || !reserve(avbd, problem)) return false;
+static bool begin(Avbd *avbd, const BegunStep *begun) {
+    const ContactProblem *problem = begun->problem;
+    if (!step_memory_match(&avbd->memory, begun->world, begun->step) || !reserve(avbd, problem)) return false;
     avbd->body_count = problem->body_count;
     avbd->contact_count = problem->contact_count;
     for (int i = 0; i < avbd->body_count; i++)
-        begin_body(avbd, &world_bodies(world)[i], i, step->scene->gravity, problem->dt);
+        begin_body(avbd, &world_bodies(begun->world)[i], i, begun->step->scene->gravity, problem->dt);
     for (int i = 0; i < avbd->contact_count; i++) begin_contact(avbd, &problem->contacts[i], i, problem->dt);
     list_visits(avbd);
     return true;
 }
 
-/* The passes of avbd over all bodies. */
-
-#define STICK_DISTANCE 0.01f /* m, by which points that stick may slide */
+/* The passes over all bodies. */
 
 static float dot(const Vec3 *a, const Vec3 *b) { return a->x * b->x + a->y * b->y + a->turn * b->turn; }
 
@@ -248,7 +266,7 @@ static void visit_bodies(Avbd *avbd, float share) {
 }
 
 static void raise_penalty(const Avbd *avbd, AvbdRow *row, float gap) {
-    row->penalty = contact_clamp(row->penalty + avbd->beta * fabsf(gap), AVBD_PENALTY_MIN, AVBD_PENALTY_MAX);
+    row->penalty = contact_clamp(row->penalty + avbd->beta * fabsf(gap), PENALTY_MIN, PENALTY_MAX);
 }
 
 /* The friction bound is that of the normal force before this update, as in the visits. */
@@ -267,9 +285,9 @@ static void update_multipliers(Avbd *avbd, float share) {
     }
 }
 
-/* Makes the passes of a step: moves the bodies, fills the velocities of the solution. */
-/* The velocities of the solution come from the displacements before the pass that only moves bodies out. */
-static void avbd_solve(Avbd *avbd, const Step *step, const ContactProblem *problem, ContactSolution *solution) {
+/* Makes the passes of a step: moves the bodies, and fills the velocities of the solution, which come from the displacements
+   before the pass that only moves bodies out. */
+static void make_passes(Avbd *avbd, const Step *step, const ContactProblem *problem, ContactSolution *solution) {
     const bool correct = step->scene->position_correction, stabilize = avbd->alpha < 0 && correct;
     const float share = avbd->alpha < 0 || !correct ? 0.0f : 1.0f - avbd->alpha, inverse_dt = 1.0f / problem->dt;
     for (int k = 0; k < avbd->iterations; k++) {
@@ -286,67 +304,34 @@ static void avbd_solve(Avbd *avbd, const Step *step, const ContactProblem *probl
     if (stabilize) visit_bodies(avbd, 1);
 }
 
-/* Augmented vertex block descent (AVBD): a step is implicit Euler, solved on positions, body after body. Chris Giles,
-   Elie Diaz and Cem Yuksel, "Augmented Vertex Block Descent" (SIGGRAPH 2025), with the choices of their 2D program.
-
-   d is the displacement of a body in the step (x, y, angle), y = v dt + g dt^2 what it would be without contacts, J the
-   gradient of a contact's gap C(d) = C0 + J d. A visit of a body solves one 3 x 3 system,
-
-       (M / dt^2 + sum k J J^T) delta = -M / dt^2 (d - y) + sum J f,   f = l - k C,   f >= 0 or |f| <= mu l_normal
-
-   and adds delta to d. After each pass over the bodies, every contact takes l = f, and the penalty k rises by beta |C|
-   while f is inside its bounds. l and k are those of the step before, k times gamma. So the forces come from the
-   multipliers l, and k need not be large.
-
-   Overlap does not change velocities: C0 is left out of the passes, the velocity is d / dt after the last of them, and
-   one more pass with C0 moves the bodies out (post-stabilization, the default of the 2D program). With the setting
-   alpha, every pass has (1 - alpha) C0 and multipliers decay by alpha gamma, as in the paper.
-
-   Contacts that stick keep their points on both bodies, so that a slope does not creep. The gap ends at
-   COLLISION_MARGIN, or resting contacts would come and go.
-
-   Fails where passes are few: bodies move by what their neighbours did before, so momentum is not conserved until the
-   passes have converged, and a shock moves up a stack one box a pass. New contacts begin soft. */
-
 static const SettingSpec settings[] = {
-    {"k", "passes over all bodies per step (default: 10)"},
-    {"alpha", "share of the overlap that a step leaves (default: one more pass removes it instead)"},
-    {"beta", "rise of a penalty, N/m for each m of gap and pass (default: 1e5)"},
-    {"gamma", "share of a penalty that the next step begins with (default: 0.99)"},
-    {NULL, NULL}};
+    {"k", "passes over all bodies per step (default: 10)", SETTING_INT(Avbd, iterations, 1, 10000)},
+    {"alpha", "share of the overlap that a step leaves (default: one more pass removes it instead)",
+     SETTING_FLOAT(Avbd, alpha, 0, 1)},
+    {"beta", "rise of a penalty, N/m for each m of gap and pass (default: 1e5)", SETTING_FLOAT(Avbd, beta, 0, 1e12f)},
+    {"gamma", "share of a penalty that the next step begins with (default: 0.99)", SETTING_FLOAT(Avbd, gamma, 0, 1)},
+    {0}};
 
 static void destroy(void *state) {
     Avbd *avbd = state;
     step_memory_free(&avbd->memory);
-    free(avbd->bodies);
-    free(avbd->rotations);
-    free(avbd->poses);
+    free(avbd->arrays.memory);
     free(avbd->before);
-    free(avbd->contacts);
     free(avbd->last);
-    free(avbd->visits);
     free(avbd);
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    static const Avbd standard = {.iterations = 10, .alpha = -1, .beta = 1e5f, .gamma = 0.99f};
     (void)scene;
-    Avbd *avbd = calloc(1, sizeof *avbd);
-    if (avbd == NULL) {
-        error_memory(error, "avbd");
-        return NULL;
-    }
-    *avbd = (Avbd){.iterations = 10, .alpha = -1, .beta = 1e5f, .gamma = 0.99f};
-    if (settings_int(chosen, "k", 1, 10000, &avbd->iterations, error) &&
-        settings_float(chosen, "alpha", 0, 1, &avbd->alpha, error) &&
-        settings_float(chosen, "beta", 0, 1e12f, &avbd->beta, error) &&
-        settings_float(chosen, "gamma", 0, 1, &avbd->gamma, error))
-        return avbd;
-    destroy(avbd);
-    return NULL;
+    return settings_make(chosen, settings, &standard, sizeof standard, "avbd", error);
 }
 
 /* The momentum that no contact force accounts for: 0 once the passes have converged. */
-static float momentum_error(const Avbd *avbd, const ContactProblem *problem, const ContactSolution *solution) {
+static void measure(void *state, const BegunStep *begun) {
+    const Avbd *avbd = state;
+    const ContactProblem *problem = begun->problem;
+    ContactSolution *solution = begun->solution;
     float sum = 0;
     for (int i = 0; i < avbd->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
@@ -361,7 +346,7 @@ static float momentum_error(const Avbd *avbd, const ContactProblem *problem, con
         }
         sum += sqrtf(vec2_dot(change, change));
     }
-    return sum;
+    solution->momentum_error = sum;
 }
 
 /* False if an impulse is NaN or infinite. */
@@ -381,34 +366,19 @@ static bool end(Avbd *avbd, const ContactProblem *problem, ContactSolution *solu
     return finite;
 }
 
-/* What the next step begins with. */
-static void keep(Avbd *avbd, const World *world) {
-    AvbdContact *contacts = avbd->last;
-    size_t capacity = avbd->last_capacity;
-    avbd->last = avbd->contacts;
-    avbd->last_capacity = avbd->contact_capacity;
-    avbd->contacts = contacts;
-    avbd->contact_capacity = capacity;
-    for (int i = 0; i < avbd->body_count; i++) avbd->before[i] = avbd->bodies[i].start;
-    step_memory_keep(&avbd->memory, world);
+static bool solve(void *state, BegunStep *begun, Error *error) {
+    Avbd *avbd = state;
+    if (!begin(avbd, begun)) return error_memory(error, "avbd");
+    make_passes(avbd, begun->step, begun->problem, begun->solution);
+    begun->poses = avbd->poses;
+    return end(avbd, begun->problem, begun->solution) || error_input(error, "avbd", "an impulse is NaN or infinite");
 }
 
-static bool step(void *state, World *world, const Step *which, Error *error) {
+static void keep(void *state, const World *world) {
     Avbd *avbd = state;
-    ContactProblem problem;
-    ContactSolution *solution;
-    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
-    step_solving_begins(which);
-    bool begun = avbd_begin(avbd, world, &problem, which);
-    if (begun) avbd_solve(avbd, which, &problem, solution);
-    bool finite = begun && end(avbd, &problem, solution);
-    step_solving_ends(which);
-    if (!begun) return error_memory(error, "avbd");
-    if (!finite) return error_input(error, "avbd", "an impulse is NaN or infinite");
-    solution->momentum_error = momentum_error(avbd, &problem, solution);
-    if (!world_end_step_at(world, avbd->poses, error)) return false;
-    keep(avbd, world);
-    return true;
+    memcpy(avbd->last, avbd->contacts, (size_t)avbd->contact_count * sizeof *avbd->last);
+    for (int i = 0; i < avbd->body_count; i++) avbd->before[i] = avbd->bodies[i].start;
+    step_memory_keep(&avbd->memory, world);
 }
 
 const SteppingKind stepping_avbd = {
@@ -423,5 +393,7 @@ const SteppingKind stepping_avbd = {
                     .chart_quick = METHOD_RUNS("k=10"),
                     .stability = METHOD_NO_RUNS},
     .create = create,
-    .step = step,
+    .solve = solve,
+    .measure = measure,
+    .keep = keep,
     .destroy = destroy};

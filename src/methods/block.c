@@ -21,8 +21,6 @@
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
-#include <stdlib.h>
-
 /* Box2D's limit for the condition number of K. */
 static const float max_condition = 1000.0f;
 
@@ -122,54 +120,29 @@ void block_solve(const ContactProblem *problem, int count, ContactSolution *solu
     for (int i = 0; i < count; i++) block_sweep(problem, solution);
 }
 
-/* Block solver: sequential impulses that solve the two normal impulses of a pair together. Method, source and where it
-   fails: methods/block.c. */
-
-typedef struct BlockSolver {
-    int sweep_count;
-    StoppingRule rule;
-    Sweeps sweeps;
-} BlockSolver;
-
-static const SettingSpec settings[] = {
-    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, STOPPING_SETTINGS, {NULL, NULL}};
+static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS, {0}};
 
 static void *create(const Settings *chosen, Error *error) {
-    int sweep_count = 10;
-    StoppingRule rule = {0};
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error) || !stopping_read(&rule, chosen, error))
-        return NULL;
-    BlockSolver *solver = calloc(1, sizeof *solver);
-    if (solver == NULL)
-        error_memory(error, "block");
-    else
-        *solver = (BlockSolver){.sweep_count = sweep_count, .rule = rule};
-    return solver;
+    static const SweepState standard = {.rule.k = 10};
+    return stopping_make(chosen, settings, &standard, sizeof standard, "block", error);
 }
 
-static void solve_scalar(const BlockSolver *solver, const ContactProblem *problem, ContactSolution *solution) {
-    block_solve(problem, solver->sweep_count, solution);
+static void solve_scalar(const SweepState *solver, const ContactProblem *problem, ContactSolution *solution) {
+    block_solve(problem, solver->rule.k, solution);
     for (int done = 0; stopping_needs_more_scalar(&solver->rule, done, problem, solution); done += STOPPING_BLOCK)
         for (int i = 0; i < STOPPING_BLOCK; i++) block_sweep(problem, solution);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    BlockSolver *solver = state;
+    SweepState *solver = state;
     if (sweeps_can(SWEEP_AVX2)) {
         if (!sweeps_begin_blocks(&solver->sweeps, problem) ||
-            !stopping_run(&solver->rule, &solver->sweeps, problem, solver->sweep_count, sweeps_run_blocks))
+            !stopping_run(&solver->rule, &solver->sweeps, problem, sweeps_run_blocks))
             return error_memory(error, "block");
         if (sweeps_end(&solver->sweeps, solution)) return true;
     }
     solve_scalar(solver, problem, solution);
     return true;
-}
-
-static void destroy(void *state) {
-    BlockSolver *solver = state;
-    if (solver == NULL) return;
-    sweeps_free(&solver->sweeps);
-    free(solver);
 }
 
 const ContactSolverKind solver_block = {
@@ -183,4 +156,4 @@ const ContactSolverKind solver_block = {
                     .stability = METHOD_NO_RUNS},
     .create = create,
     .solve = solve,
-    .destroy = destroy};
+    .destroy = sweep_state_destroy};

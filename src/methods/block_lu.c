@@ -1,38 +1,31 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The symbolic part: the pattern with fill. A row's blocks are the columns on the paths from its neighbours
-   towards the root of the elimination tree: each is found once, so the time is that of writing the pattern. Source:
-   Liu, "The Role of Elimination Trees in Sparse Factorization" (1990). */
+/* The symbolic part: the graph of a contact problem, and the pattern with fill. A row's blocks are the columns on the paths
+   from its neighbours towards the root of the elimination tree: each is found once, so the time is that of writing the
+   pattern. Source: Liu, "The Role of Elimination Trees in Sparse Factorization" (1990). */
 #include "methods/block_lu.h"
 
 #include "base/base.h"
+#include "engine/engine.h"
 #include "methods/block_order.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { CACHE_LINE = 64 }; /* bytes */
-
 void block_lu_free(BlockLu *lu) {
-    void *arrays[] = {lu->memory, lu->column, lu->row,   lu->row_start, lu->in_row, lu->position, lu->places,
-                      lu->edges,  lu->order,  lu->start, lu->neighbour, lu->parent, lu->mark,     lu->find};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    free(lu->graph.memory);
+    free(lu->filled.memory);
+    free(lu->in_row);
     block_order_free(&lu->choice);
     *lu = (BlockLu){0};
 }
 
 static bool reserve(BlockLu *lu, int count, int edge_count) {
-    const size_t nodes = (size_t)count + 1, edges = (size_t)edge_count + 1, size = sizeof(int32_t);
-    return array_reserve((void **)&lu->column, &lu->column_capacity, nodes, size) &&
-           array_reserve((void **)&lu->position, &lu->position_capacity, nodes, size) &&
-           array_reserve((void **)&lu->order, &lu->order_capacity, nodes, size) &&
-           array_reserve((void **)&lu->start, &lu->start_capacity, nodes + 1, size) &&
-           array_reserve((void **)&lu->parent, &lu->parent_capacity, nodes, size) &&
-           array_reserve((void **)&lu->find, &lu->find_capacity, nodes, size) &&
-           array_reserve((void **)&lu->mark, &lu->mark_capacity, nodes, size) &&
-           array_reserve((void **)&lu->row_start, &lu->row_start_capacity, nodes, size) &&
-           array_reserve((void **)&lu->neighbour, &lu->neighbour_capacity, 2 * edges, size) &&
-           array_reserve((void **)&lu->places, &lu->place_capacity, edges, sizeof *lu->places) &&
-           array_reserve((void **)&lu->edges, &lu->edge_capacity, edges, sizeof *lu->edges);
+    const size_t nodes = (size_t)count + 2, edges = (size_t)edge_count + 1;
+    return ARRAY_BLOCK_RESERVE(&lu->graph, ARRAY_PART(lu->column, nodes), ARRAY_PART(lu->position, nodes),
+                               ARRAY_PART(lu->order, nodes), ARRAY_PART(lu->start, nodes),
+                               ARRAY_PART(lu->parent, nodes), ARRAY_PART(lu->find, nodes), ARRAY_PART(lu->mark, nodes),
+                               ARRAY_PART(lu->row_start, nodes), ARRAY_PART(lu->neighbour, 2 * edges),
+                               ARRAY_PART(lu->places, edges), ARRAY_PART(lu->edges, edges));
 }
 
 /* Lists of neighbours, without the repeated ones. */
@@ -104,15 +97,9 @@ static void list_blocks(BlockLu *lu) {
         }
 }
 
-/* Blocks are read in vectors of 32 bytes; those that cross a cache line cost twice. */
 static bool reserve_blocks(BlockLu *lu) {
-    const size_t blocks = (size_t)lu->count + 2 * (size_t)lu->below + 3;
-    if (!array_reserve((void **)&lu->row, &lu->row_capacity, (size_t)lu->below + 1, sizeof *lu->row) ||
-        !array_reserve(&lu->memory, &lu->block_capacity, blocks + 1, sizeof *lu->blocks))
-        return false;
-    const size_t beyond = (uintptr_t)lu->memory % CACHE_LINE;
-    lu->blocks = (Block3 *)((char *)lu->memory + (beyond > 0 ? CACHE_LINE - beyond : 0));
-    return true;
+    const size_t below = (size_t)lu->below, blocks = (size_t)lu->count + 2 * below + 3;
+    return ARRAY_BLOCK_RESERVE(&lu->filled, ARRAY_PART(lu->blocks, blocks), ARRAY_PART(lu->row, below + 1));
 }
 
 static int find_block(const BlockLu *lu, int row, int column) {
@@ -140,12 +127,94 @@ bool block_lu_analyse(BlockLu *lu, int count, const BlockEdge *edges, int edge_c
     lu->count = count;
     if (size > 0) memcpy(lu->edges, edges, size);
     connect(lu, edge_count);
-    const BlockGraph graph = {count, lu->start, lu->neighbour};
-    if (!block_order_choose(&lu->choice, &graph, lu->order)) return false;
+    const BlockNeighbours neighbours = {count, lu->start, lu->neighbour};
+    if (!block_order_choose(&lu->choice, &neighbours, lu->order)) return false;
     for (int k = 0; k < count; k++) lu->position[lu->order[k]] = k;
     if (!walk_rows(lu) || !reserve_blocks(lu)) return false;
     list_blocks(lu);
     lu->edge_count = edge_count;
     place_edges(lu);
     return true;
+}
+
+void block_graph_free(BlockGraph *graph) {
+    block_lu_free(&graph->lu);
+    free(graph->memory.memory);
+    *graph = (BlockGraph){0};
+}
+
+bool block_graph_reserve(BlockGraph *graph, int body_count, int pair_count) {
+    const size_t bodies = (size_t)body_count + 1, pairs = (size_t)pair_count + 1;
+    return ARRAY_BLOCK_RESERVE(&graph->memory, ARRAY_PART(graph->masses, bodies), ARRAY_PART(graph->inverses, bodies),
+                               ARRAY_PART(graph->bodies, bodies), ARRAY_PART(graph->nodes, bodies),
+                               ARRAY_PART(graph->ends, pairs), ARRAY_PART(graph->edges, pairs),
+                               ARRAY_PART(graph->edge_of, pairs));
+}
+
+/* Returns the number of nodes. */
+static int number_bodies(BlockGraph *graph, const ContactProblem *problem, int pair_count) {
+    memset(graph->nodes, 0, (size_t)problem->body_count * sizeof *graph->nodes);
+    for (int i = 0; i < pair_count; i++) graph->nodes[graph->ends[i].a] = graph->nodes[graph->ends[i].b] = 1;
+    int count = 0;
+    for (int i = 0; i < problem->body_count; i++)
+        graph->nodes[i] = graph->nodes[i] && problem_body_moves(&problem->bodies[i]) ? count++ : -1;
+    return count;
+}
+
+/* Returns the number of edges. */
+static int list_edges(BlockGraph *graph, int pair_count) {
+    int edges = 0;
+    for (int i = 0; i < pair_count; i++) {
+        const int a = graph->nodes[graph->ends[i].a], b = graph->nodes[graph->ends[i].b];
+        graph->edge_of[i] = a >= 0 && b >= 0 ? edges : -1;
+        if (graph->edge_of[i] >= 0) graph->edges[edges++] = (BlockEdge){a, b};
+    }
+    return edges;
+}
+
+/* A body that can move but has no inverse mass, in a direction, is 1e20 kg or kg m^2 heavy. */
+static double mass_of(float inverse) { return inverse > 0 ? 1 / (double)inverse : 1e20; }
+
+bool block_graph_load(BlockGraph *graph, const ContactProblem *problem, int pair_count) {
+    const int count = number_bodies(graph, problem, pair_count);
+    if (!block_lu_analyse(&graph->lu, count, graph->edges, list_edges(graph, pair_count))) return false;
+    for (int i = 0; i < problem->body_count; i++) {
+        if (graph->nodes[i] < 0) continue;
+        const ProblemBody *body = &problem->bodies[i];
+        const int k = graph->lu.position[graph->nodes[i]];
+        const double mass = mass_of(body->inv_mass), inverse = (double)body->inv_mass;
+        graph->bodies[k] = i;
+        graph->masses[k] = (Vec4){mass, mass, mass_of(body->inv_inertia), 0};
+        graph->inverses[k] = (Vec4){inverse, inverse, (double)body->inv_inertia, 0};
+    }
+    graph->masses[count] = graph->inverses[count] = (Vec4){0};
+    return true;
+}
+
+bool block_graph_place(const BlockGraph *graph, int i, BlockPair *pair) {
+    const BlockLu *lu = &graph->lu;
+    const int32_t spare = block_lu_spare(lu);
+    pair->a = block_graph_position(graph, graph->ends[i].a);
+    pair->b = block_graph_position(graph, graph->ends[i].b);
+    pair->place = graph->edge_of[i] >= 0 ? lu->places[graph->edge_of[i]] : (BlockPlace){spare, spare};
+    return pair->a < lu->count || pair->b < lu->count;
+}
+
+void block_rows_load(BlockRows *rows, int slot, BlockPair *pair, int k, Vec2 normal, Vec2 arm_a, Vec2 arm_b) {
+    const double x = (double)normal.x, y = (double)normal.y, bx = (double)arm_b.x, by = (double)arm_b.y,
+                 ax = (double)arm_a.x, ay = (double)arm_a.y;
+    const Vec4 along = {x, y, bx * y - by * x, ay * x - ax * y}, across = {y, -x, -(bx * x + by * y), ax * x + ay * y};
+    pair->normal[k] = along;
+    pair->tangent[k] = across;
+    rows->normal_x[slot] = x;
+    rows->normal_y[slot] = y;
+    rows->normal_b[slot] = along[2];
+    rows->normal_a[slot] = along[3];
+    rows->tangent_b[slot] = across[2];
+    rows->tangent_a[slot] = across[3];
+}
+
+Vec4 block_pair_velocity(const ProblemBody *a, const ProblemBody *b) {
+    return (Vec4){(double)b->velocity.x - (double)a->velocity.x, (double)b->velocity.y - (double)a->velocity.y,
+                  (double)b->angular_velocity, (double)a->angular_velocity};
 }

@@ -1,13 +1,39 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers of the factorization; included by interior_code.h, which is compiled once for each instruction set. All
-   perform the same operations in the same order, so they have the same bits. */
+/* The numbers of contact graphs and of the factorization; included by interior_code.h and reference_code.h, which are
+   compiled once for each instruction set. All perform the same operations in the same order, so they have the same
+   bits. */
 #include "methods/block_lu.h"
+#include "methods/vec4.h"
 
-static inline Vec4 vec4(double x, double y, double z, double w) { return (Vec4){x, y, z, w}; }
+#include <string.h>
 
 /* The coordinates of a pair: linear velocity of body b minus that of body a, spin of b, spin of a. Turns an impulse in
    these into that on body a. */
 static inline Vec4 as_body_a(Vec4 x) { return vec4(x[0], x[1], x[3], x[2]) * vec4(-1, -1, 1, 1); }
+
+/* J_n x and J_t x of four contacts. */
+typedef struct Relative {
+    Vec4 normal, tangent;
+} Relative;
+
+static inline Relative relative(const BlockRows *rows, const BlockPair pairs[BLOCK_PAIRS], const Vec4 *x) {
+    const Vec4 a = x[pairs[0].a], b = x[pairs[0].b], c = x[pairs[1].a], d = x[pairs[1].b], ab = b - a, cd = d - c;
+    const Vec4 along_x = vec4(ab[0], ab[0], cd[0], cd[0]), along_y = vec4(ab[1], ab[1], cd[1], cd[1]);
+    const Vec4 spin_a = vec4(a[2], a[2], c[2], c[2]), spin_b = vec4(b[2], b[2], d[2], d[2]);
+    return (Relative){
+        (rows->normal_x * along_x + rows->normal_y * along_y) + (rows->normal_b * spin_b + rows->normal_a * spin_a),
+        (rows->normal_y * along_x - rows->normal_x * along_y) + (rows->tangent_b * spin_b + rows->tangent_a * spin_a)};
+}
+
+/* The masses on the diagonal, and zeros elsewhere. */
+static void begin_blocks(BlockGraph *graph) {
+    BlockLu *lu = &graph->lu;
+    for (int k = 0; k < lu->count; k++) {
+        const Vec4 m = graph->masses[k];
+        lu->blocks[k] = (Block3){{vec4(m[0], 0, 0, 0), vec4(0, m[1], 0, 0), vec4(0, 0, m[2], 0)}};
+    }
+    memset(lu->blocks + lu->count, 0, (2 * (size_t)lu->below + 3) * sizeof *lu->blocks);
+}
 
 /* Adds a matrix over the coordinates of a pair, given by columns, to the blocks of bodies a and b. */
 static inline void block_add_pair(Block3 *blocks, int a, int b, BlockPlace place, const Vec4 columns[4]) {

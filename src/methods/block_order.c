@@ -40,7 +40,7 @@ typedef struct Rows {
     int degree[EXACT_MAX];
 } Rows;
 
-static bool load_rows(BlockOrder *order, const BlockGraph *graph, Rows *rows) {
+static bool load_rows(BlockOrder *order, const BlockNeighbours *graph, Rows *rows) {
     const size_t count = (size_t)graph->count, words = (count + WORD - 1) / WORD, size = count * words;
     if (!array_reserve((void **)&order->words, &order->word_capacity, 2 * size + 1, sizeof *order->words)) return false;
     memset(order->words, 0, 2 * size * sizeof *order->words);
@@ -89,7 +89,7 @@ static void eliminate(Rows *rows, int node) {
         }
 }
 
-static bool by_exact_degrees(BlockOrder *order, const BlockGraph *graph, int32_t *nodes) {
+static bool by_exact_degrees(BlockOrder *order, const BlockNeighbours *graph, int32_t *nodes) {
     Rows rows;
     if (!load_rows(order, graph, &rows)) return false;
     for (int k = 0; k < graph->count; k++) {
@@ -100,7 +100,7 @@ static bool by_exact_degrees(BlockOrder *order, const BlockGraph *graph, int32_t
 }
 
 /* amd_2() and not amd_order(), which allocates. */
-static bool by_approximate_degrees(BlockOrder *order, const BlockGraph *graph, int32_t *nodes) {
+static bool by_approximate_degrees(BlockOrder *order, const BlockNeighbours *graph, int32_t *nodes) {
     enum { ARRAYS = 8 };
     const int count = graph->count, used = graph->start[count], lists = used + used / 5 + count; /* AMD wants room */
     if (!array_reserve((void **)&order->numbers, &order->number_capacity, ARRAYS * (size_t)count + (size_t)lists + 1,
@@ -119,7 +119,7 @@ static bool by_approximate_degrees(BlockOrder *order, const BlockGraph *graph, i
     return true;
 }
 
-bool block_order_choose(BlockOrder *order, const BlockGraph *graph, int32_t *nodes) {
+bool block_order_choose(BlockOrder *order, const BlockNeighbours *graph, int32_t *nodes) {
     return graph->count <= EXACT_MAX ? by_exact_degrees(order, graph, nodes)
                                      : by_approximate_degrees(order, graph, nodes);
 }

@@ -13,10 +13,10 @@
 
 /* Node i has the neighbours neighbour[start[i]] to neighbour[start[i + 1] - 1], each once, in both directions, and not
    itself. */
-typedef struct BlockGraph {
+typedef struct BlockNeighbours {
     int count;
     const int32_t *start, *neighbour;
-} BlockGraph;
+} BlockNeighbours;
 
 /* Work space. Zero-initialise; arrays grow and are reused. */
 typedef struct BlockOrder {
@@ -28,4 +28,4 @@ typedef struct BlockOrder {
 void block_order_free(BlockOrder *order);
 
 /* Sets nodes[count], from the first that is eliminated to the last. False when memory is short. */
-bool block_order_choose(BlockOrder *order, const BlockGraph *graph, int32_t *nodes);
+bool block_order_choose(BlockOrder *order, const BlockNeighbours *graph, int32_t *nodes);

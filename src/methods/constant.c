@@ -8,12 +8,12 @@
 #include "methods/solvers.h"
 
 static const SettingSpec settings[] = {
-    {"network", "file of the network with that training data (default: the scene's)"},
-    {"k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)"},
-    {NULL, NULL}};
+    {"network", "file of the network with that training data (default: the scene's)", SETTING_OWN},
+    PAIR_SOLVER_SWEEPS,
+    {0}};
 
 static void *create(const Settings *chosen, Error *error) {
-    PairSolver *solver = pair_solver_create("constant", chosen, error);
+    PairSolver *solver = pair_solver_create("constant", settings, chosen, error);
     if (solver != NULL) solver->network.constant = true;
     return solver;
 }

@@ -7,62 +7,38 @@
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
-#include <stdlib.h>
-
-typedef struct SequentialImpulses {
-    int sweep_count;
-    StoppingRule rule;
-    SequentialOptions options;
-    SweepKernel kernel;
-    Sweeps sweeps;
-} SequentialImpulses;
-
 static const SettingSpec settings[] = {
-    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
-    {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)"},
-    {"warm", "on|off: warm start from the previous step's impulses (default: on)"},
+    SWEEPS_SETTING,
+    {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)",
+     SETTING_BOOL(SweepState, options.accumulate)},
+    {"warm", "on|off: warm start from the previous step's impulses (default: on)",
+     SETTING_BOOL(SweepState, options.warm)},
     STOPPING_SETTINGS,
-    {NULL, NULL}};
+    {0}};
 
 static void *create(const Settings *chosen, Error *error) {
-    SequentialImpulses values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
-    values.kernel = sweeps_best_kernel();
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error) ||
-        !settings_bool(chosen, "accumulate", &values.options.accumulate, error) ||
-        !settings_bool(chosen, "warm", &values.options.warm, error) || !stopping_read(&values.rule, chosen, error))
-        return NULL;
-    SequentialImpulses *solver = malloc(sizeof *solver);
-    if (solver == NULL)
-        error_memory(error, "engine");
-    else
-        *solver = values;
-    return solver;
+    static const SweepState standard = {.rule.k = 10,
+                                        .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
+    return stopping_make(chosen, settings, &standard, sizeof standard, "engine", error);
 }
 
-static void solve_scalar(const SequentialImpulses *solver, const ContactProblem *problem, ContactSolution *solution) {
-    sequential_impulses_solve(problem, &solver->options, solver->sweep_count, solution);
+static void solve_scalar(const SweepState *solver, const ContactProblem *problem, ContactSolution *solution) {
+    sequential_impulses_solve(problem, &solver->options, solver->rule.k, solution);
     for (int done = 0; stopping_needs_more_scalar(&solver->rule, done, problem, solution); done += STOPPING_BLOCK)
         for (int i = 0; i < STOPPING_BLOCK; i++) sequential_impulses_sweep(problem, &solver->options, solution);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    SequentialImpulses *solver = state;
+    SweepState *solver = state;
     const SequentialOptions *options = &solver->options;
     if (options->accumulate) {
-        if (!sweeps_begin(&solver->sweeps, solver->kernel, problem, options->warm, options->relaxation) ||
-            !stopping_run(&solver->rule, &solver->sweeps, problem, solver->sweep_count, sweeps_run))
+        if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, options->warm, options->relaxation) ||
+            !stopping_run(&solver->rule, &solver->sweeps, problem, sweeps_run))
             return error_memory(error, "engine");
         if (sweeps_end(&solver->sweeps, solution)) return true;
     }
     solve_scalar(solver, problem, solution);
     return true;
-}
-
-static void destroy(void *state) {
-    SequentialImpulses *solver = state;
-    if (solver == NULL) return;
-    sweeps_free(&solver->sweeps);
-    free(solver);
 }
 
 const ContactSolverKind solver_engine = {
@@ -78,4 +54,4 @@ const ContactSolverKind solver_engine = {
                     .stability_place = 1},
     .create = create,
     .solve = solve,
-    .destroy = destroy};
+    .destroy = sweep_state_destroy};

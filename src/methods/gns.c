@@ -32,11 +32,6 @@
 /* Accelerations beyond this multiple of the strongest in training are discarded. */
 static const float beyond_strongest = 2.0f;
 
-static const SettingSpec settings[] = {{"network", "file of the network (default: the scene's)"},
-                                       {"net", "off: gravity alone (default: on)"},
-                                       {"rigid", "off: particles are not put back to rigid boxes (default: on)"},
-                                       {NULL, NULL}};
-
 typedef struct Gns {
     GnsNet net;
     bool uses_net, rigid;
@@ -49,23 +44,23 @@ typedef struct Gns {
     StepMemory memory;
     GnsGraph graph;
     GnsPass pass;
-    size_t body_capacity, body_list_capacity, place_capacity, ground_capacity, pose_capacity, touched_capacity,
-        position_capacity, velocity_capacity, last_position_capacity, last_velocity_capacity;
+    ArrayBlock arrays; /* but `place` and `last`, which outlive a step */
+    size_t place_capacity, position_capacity, velocity_capacity;
 } Gns;
+
+static const SettingSpec settings[] = {
+    {"network", "file of the network (default: the scene's)", SETTING_OWN},
+    {"net", "off: gravity alone (default: on)", SETTING_BOOL(Gns, uses_net)},
+    {"rigid", "off: particles are not put back to rigid boxes (default: on)", SETTING_BOOL(Gns, rigid)},
+    {0}};
 
 static void destroy(void *state) {
     Gns *gns = state;
     gns_net_free(&gns->net);
-    free(gns->particles.body);
-    free(gns->particles.position);
-    free(gns->particles.velocity);
+    free(gns->arrays.memory);
     free(gns->last.position);
     free(gns->last.velocity);
-    free(gns->body);
     free(gns->place);
-    free(gns->ground);
-    free(gns->poses);
-    free(gns->touched);
     step_memory_free(&gns->memory);
     gns_graph_free(&gns->graph);
     gns_pass_free(&gns->pass);
@@ -73,19 +68,14 @@ static void destroy(void *state) {
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
-    Gns *gns = calloc(1, sizeof *gns);
-    if (gns == NULL) {
-        error_memory(error, "gns");
-        return NULL;
-    }
-    gns->uses_net = gns->rigid = true;
+    static const Gns standard = {.uses_net = true, .rigid = true};
+    Gns *gns = settings_make(chosen, settings, &standard, sizeof standard, "gns", error);
+    if (gns == NULL || !gns->uses_net) return gns;
     const char *path = settings_get(chosen, "network");
     if (path == NULL) path = scene_network(scene, "gns");
-    bool ok = settings_bool(chosen, "net", &gns->uses_net, error) && settings_bool(chosen, "rigid", &gns->rigid, error);
-    if (ok && gns->uses_net)
-        ok = path != NULL ? gns_net_read(&gns->net, path, error)
-                          : error_input(error, "gns", "needs a network: network=FILE, or the scene's `networks`");
-    if (ok) return gns;
+    if (path != NULL ? gns_net_read(&gns->net, path, error)
+                     : error_input(error, "gns", "needs a network: network=FILE, or the scene's `networks`"))
+        return gns;
     destroy(gns);
     return NULL;
 }
@@ -93,16 +83,13 @@ static void *create(const Settings *chosen, const Scene *scene, Error *error) {
 static bool reserve(Gns *gns, int bodies) {
     const size_t count = (size_t)bodies, particles = count * BOX_PARTICLES;
     GnsParticles *now = &gns->particles, *last = &gns->last;
-    return array_reserve((void **)&now->body, &gns->body_capacity, count, sizeof *now->body) &&
-           array_reserve((void **)&gns->body, &gns->body_list_capacity, count, sizeof *gns->body) &&
-           array_reserve((void **)&gns->place, &gns->place_capacity, count, sizeof *gns->place) &&
-           array_reserve((void **)&gns->ground, &gns->ground_capacity, count, sizeof *gns->ground) &&
-           array_reserve((void **)&gns->poses, &gns->pose_capacity, count, sizeof *gns->poses) &&
-           array_reserve((void **)&gns->touched, &gns->touched_capacity, count, sizeof *gns->touched) &&
-           array_reserve((void **)&now->position, &gns->position_capacity, particles, sizeof *now->position) &&
-           array_reserve((void **)&now->velocity, &gns->velocity_capacity, particles, sizeof *now->velocity) &&
-           array_reserve((void **)&last->position, &gns->last_position_capacity, particles, sizeof *last->position) &&
-           array_reserve((void **)&last->velocity, &gns->last_velocity_capacity, particles, sizeof *last->velocity);
+    return array_reserve((void **)&gns->place, &gns->place_capacity, count, sizeof *gns->place) &&
+           array_reserve((void **)&last->position, &gns->position_capacity, particles, sizeof *last->position) &&
+           array_reserve((void **)&last->velocity, &gns->velocity_capacity, particles, sizeof *last->velocity) &&
+           ARRAY_BLOCK_RESERVE(&gns->arrays, ARRAY_PART(now->body, count), ARRAY_PART(now->position, particles),
+                               ARRAY_PART(now->velocity, particles), ARRAY_PART(gns->body, count),
+                               ARRAY_PART(gns->ground, count), ARRAY_PART(gns->poses, count),
+                               ARRAY_PART(gns->touched, count));
 }
 
 /* A past of constant velocity and spin: the particles of the poses dt, 2 dt, ... ago. */
@@ -128,9 +115,11 @@ static void take_past(Gns *gns, int i, int place) {
 }
 
 /* Particles of all bodies that move, and the boxes that do not. */
-static bool begin(Gns *gns, const World *world, const ContactProblem *problem, const Step *step) {
-    if (!reserve(gns, problem->body_count + 1) || !step_memory_match(&gns->memory, world, step)) return false;
-    const Body *bodies = world_bodies(world);
+static bool begin(Gns *gns, const BegunStep *begun) {
+    const ContactProblem *problem = begun->problem;
+    if (!reserve(gns, problem->body_count + 1) || !step_memory_match(&gns->memory, begun->world, begun->step))
+        return false;
+    const Body *bodies = world_bodies(begun->world);
     gns->particles.bodies = gns->ground_count = 0;
     for (int i = 0; i < problem->body_count; i++) {
         const Body *body = &bodies[i];
@@ -200,54 +189,38 @@ static void end_body(Gns *gns, int i, const ContactProblem *problem, ContactSolu
         (BodyVelocity){vec2_scale(per, vec2_sub(pose->position, before.position)), per * (pose->angle - before.angle)};
 }
 
-static bool solve(Gns *gns, const World *world, const ContactProblem *problem, const Step *step,
-                  ContactSolution *solution) {
-    if (!begin(gns, world, problem, step)) return false;
-    if (gns->uses_net) {
-        if (!gns_graph_build(&gns->graph, &gns->particles, gns->ground, gns->ground_count, &gns->net.scales) ||
-            !gns_forward(&gns->pass, &gns->net.layout, gns->net.parameters, &gns->graph))
-            return false;
-        solution->fallbacks.beyond_training += gns->graph.beyond ? 1 : 0;
-    }
-    for (int i = 0; i < problem->body_count; i++) solution->velocities[i] = (BodyVelocity){{0, 0}, 0};
+static bool predict(Gns *gns) {
+    return gns_graph_build(&gns->graph, &gns->particles, gns->ground, gns->ground_count, &gns->net.scales) &&
+           gns_forward(&gns->pass, &gns->net.layout, gns->net.parameters, &gns->graph);
+}
+
+static bool solve(void *state, BegunStep *begun, Error *error) {
+    Gns *gns = state;
+    const ContactProblem *problem = begun->problem;
+    ContactSolution *solution = begun->solution;
+    if (!begin(gns, begun) || (gns->uses_net && !predict(gns))) return error_memory(error, "gns");
+    solution->fallbacks.beyond_training += gns->uses_net && gns->graph.beyond;
+    memset(solution->velocities, 0, (size_t)problem->body_count * sizeof *solution->velocities);
+    memset(solution->impulses, 0, (size_t)problem->contact_count * sizeof *solution->impulses);
     for (int i = 0; i < gns->particles.bodies; i++) {
-        move_particles(gns, i, step->scene->gravity, problem->dt, &solution->fallbacks);
+        move_particles(gns, i, begun->step->scene->gravity, problem->dt, &solution->fallbacks);
         end_body(gns, i, problem, solution);
     }
+    begun->poses = gns->poses;
     return true;
 }
 
-/* What the next step begins with. */
-static void keep(Gns *gns, const World *world) {
-    Vec2 *position = gns->last.position;
-    Vec2(*velocity)[GNS_HISTORY] = gns->last.velocity;
-    const size_t positions = gns->last_position_capacity, velocities = gns->last_velocity_capacity;
-    gns->last.position = gns->particles.position;
-    gns->last.velocity = gns->particles.velocity;
-    gns->last_position_capacity = gns->position_capacity;
-    gns->last_velocity_capacity = gns->velocity_capacity;
-    gns->particles.position = position;
-    gns->particles.velocity = velocity;
-    gns->position_capacity = positions;
-    gns->velocity_capacity = velocities;
+static void measure(void *state, const BegunStep *begun) {
+    begun->solution->momentum_error = free_flight_momentum(begun->problem, begun->solution, ((Gns *)state)->touched);
+}
+
+static void keep(void *state, const World *world) {
+    Gns *gns = state;
+    const size_t count = (size_t)gns_particle_count(&gns->particles);
+    memcpy(gns->last.position, gns->particles.position, count * sizeof *gns->last.position);
+    memcpy(gns->last.velocity, gns->particles.velocity, count * sizeof *gns->last.velocity);
     for (int i = 0; i < gns->particles.bodies; i++) gns->place[gns->body[i]] = i;
     step_memory_keep(&gns->memory, world);
-}
-
-static bool step(void *state, World *world, const Step *which, Error *error) {
-    Gns *gns = state;
-    ContactProblem problem;
-    ContactSolution *solution;
-    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
-    step_solving_begins(which);
-    const bool solved = solve(gns, world, &problem, which, solution);
-    step_solving_ends(which);
-    if (!solved) return error_memory(error, "gns");
-    for (int i = 0; i < problem.contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
-    solution->momentum_error = free_flight_momentum(&problem, solution, gns->touched);
-    if (!world_end_step_at(world, gns->poses, error)) return false;
-    keep(gns, world);
-    return true;
 }
 
 float gns_shape_distance(const void *state) {
@@ -274,5 +247,7 @@ const SteppingKind stepping_gns = {
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
     .create = create,
-    .step = step,
+    .solve = solve,
+    .measure = measure,
+    .keep = keep,
     .destroy = destroy};

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Boxes as particles, the graph of particles, and the forward pass over it (methods/steppers.h). */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/steppers.h"
@@ -211,13 +212,7 @@ bool gns_forward(GnsPass *pass, const GnsLayout *layout, const float *parameters
 static const float cell_limit = 1e9f;
 
 void gns_graph_free(GnsGraph *graph) {
-    free(graph->node_inputs);
-    free(graph->edge_inputs);
-    free(graph->receiver);
-    free(graph->sender);
-    free(graph->first);
-    free(graph->next);
-    free(graph->cell);
+    free(graph->arrays.memory);
     *graph = (GnsGraph){0};
 }
 
@@ -230,15 +225,11 @@ static int list_count(int nodes) {
 
 static bool reserve(GnsGraph *graph, int nodes) {
     const size_t count = (size_t)nodes, edges = count * GNS_NEIGHBOURS;
-    return array_reserve((void **)&graph->node_inputs, &graph->node_capacity, count, GNS_NODE_INPUTS * sizeof(float)) &&
-           array_reserve((void **)&graph->edge_inputs, &graph->edge_input_capacity, edges,
-                         GNS_EDGE_INPUTS * sizeof(float)) &&
-           array_reserve((void **)&graph->receiver, &graph->receiver_capacity, edges, sizeof *graph->receiver) &&
-           array_reserve((void **)&graph->sender, &graph->sender_capacity, edges, sizeof *graph->sender) &&
-           array_reserve((void **)&graph->first, &graph->first_capacity, (size_t)list_count(nodes),
-                         sizeof *graph->first) &&
-           array_reserve((void **)&graph->next, &graph->next_capacity, count, sizeof *graph->next) &&
-           array_reserve((void **)&graph->cell, &graph->cell_capacity, count, sizeof *graph->cell);
+    return ARRAY_BLOCK_RESERVE(&graph->arrays, ARRAY_PART(graph->node_inputs, count * GNS_NODE_INPUTS),
+                               ARRAY_PART(graph->edge_inputs, edges * GNS_EDGE_INPUTS),
+                               ARRAY_PART(graph->receiver, edges), ARRAY_PART(graph->sender, edges),
+                               ARRAY_PART(graph->first, list_count(nodes)), ARRAY_PART(graph->next, count),
+                               ARRAY_PART(graph->cell, count));
 }
 
 static int64_t cell_of(float x, float radius) {

@@ -7,7 +7,7 @@
 
    clamped to the friction cones. Impulses act on both bodies alike, so momentum is conserved whatever is stored. All other
    steps are those of `interior:near=0.001` (interior.c), which the reference helps out. The memory does not change while
-   it answers: the same file gives the same run. It grows between launches (tabulation_training/).
+   it answers: the same file gives the same run. It grows between launches (learning/hybrid_entries.c).
 
    Sources: Pope, "Computationally efficient implementation of combustion chemistry using in situ adaptive tabulation"
    (1997); Lu, Pope, "An improved algorithm for in situ adaptive tabulation" (2009). The combination of engine and memory is
@@ -53,14 +53,15 @@ typedef struct Hybrid {
     void *interior;    /* state of solver_interior */
     float *others;     /* [6 (body_count - 1)] */
     char *words;       /* BodyWords[body_count], dt, ContactWords[contact_count] */
-    size_t other_capacity, word_capacity;
+    ArrayBlock arrays; /* others and words */
     float bomb[TABULATION_NUMBERS], key[TABULATION_KEY_MAX];
 } Hybrid;
 
 static const SettingSpec settings[] = {
-    {"network", "file of the memory (default: the scene's; without one nothing is answered)"},
-    {"net", "on|off: off solves every step to convergence, as interior:near=0.001 (default: on)"},
-    {NULL, NULL}};
+    {"network", "file of the memory (default: the scene's; without one nothing is answered)", SETTING_OWN},
+    {"net", "on|off: off solves every step to convergence, as interior:near=0.001 (default: on)",
+     SETTING_BOOL(Hybrid, retrieves)},
+    {0}};
 
 static void destroy(void *state) {
     Hybrid *hybrid = state;
@@ -68,8 +69,7 @@ static void destroy(void *state) {
     tabulation_destroy(hybrid->own);
     free(hybrid->path);
     if (hybrid->interior != NULL) solver_interior.destroy(hybrid->interior);
-    free(hybrid->others);
-    free(hybrid->words);
+    free(hybrid->arrays.memory);
     free(hybrid);
 }
 
@@ -93,7 +93,7 @@ static void *create(const Settings *chosen, Error *error) {
     Hybrid *hybrid = make(error);
     const char *path = settings_get(chosen, "network");
     if (hybrid == NULL) return NULL;
-    bool ok = settings_bool(chosen, "net", &hybrid->retrieves, error);
+    bool ok = settings_read(chosen, settings, hybrid, error);
     if (ok && path != NULL)
         ok = ((hybrid->path = strdup(path)) != NULL || error_memory(error, "hybrid")) &&
              (hybrid->memory = hybrid->own = tabulation_read(path, error)) != NULL;
@@ -126,10 +126,9 @@ static bool fits(const Hybrid *hybrid, const ContactProblem *problem, Error *err
 
 static bool reserve(Hybrid *hybrid, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    return array_reserve((void **)&hybrid->others, &hybrid->other_capacity, bodies * TABULATION_NUMBERS,
-                         sizeof *hybrid->others) &&
-           array_reserve((void **)&hybrid->words, &hybrid->word_capacity,
-                         bodies * sizeof(BodyWords) + sizeof problem->dt + contacts * sizeof(ContactWords), 1);
+    const size_t words = bodies * sizeof(BodyWords) + sizeof problem->dt + contacts * sizeof(ContactWords);
+    return ARRAY_BLOCK_RESERVE(&hybrid->arrays, ARRAY_PART(hybrid->others, bodies * TABULATION_NUMBERS),
+                               ARRAY_PART(hybrid->words, words));
 }
 
 static uint64_t hash_contacts(const Hybrid *hybrid, const ContactProblem *problem) {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What an iteration does with the contacts of a group, between the solves: targets, linearisation, correction, limits.
-   Included by interior_code.h. The compiler may use wider registers, but not change the order of operations. */
-#include "methods/block_lu.h"
+/* An iteration (methods/interior_point_internal.h): first what it does with the contacts of a group, between the solves,
+   then with all. Included once by each interior_*.c. The compiler may use wider registers, but not change the order of
+   operations. */
+#include "methods/block_lu_code.h"
 #include "methods/interior_point_internal.h"
 
 #include <math.h>
@@ -13,21 +14,14 @@ static const double slip_aim = 4;
 /* Largest D at the target, as a multiple of the effective mass: the contact is then open by l / m / stiffest. */
 static const double stiffest = 1e12;
 
-typedef long long Mask4 __attribute__((vector_size(32), aligned(16), may_alias));
-
-static inline Vec4 choose(Mask4 mask, Vec4 x, Vec4 y) { return (Vec4)((mask & (Mask4)x) | (~mask & (Mask4)y)); }
-static inline Vec4 smaller(Vec4 x, Vec4 y) { return choose((Mask4)(x < y), x, y); }
-static inline Vec4 larger(Vec4 x, Vec4 y) { return choose((Mask4)(x > y), x, y); }
-static inline Vec4 clamp4(Vec4 x, Vec4 limit) { return larger(smaller(x, limit), -limit); }
-static inline Vec4 all4(double x) { return (Vec4){x, x, x, x}; }
-static inline double sum4(Vec4 x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+static inline Vec4 clamp4(Vec4 x, Vec4 limit) { return larger4(smaller4(x, limit), -limit); }
 
 /* The targets of the products. */
 static inline void aim(InteriorGroup *g, double tau2) {
     const Vec4 softest = all4(1 / stiffest), bound = g->friction * g->l;
-    g->aim_normal = larger(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
+    g->aim_normal = larger4(tau2 * g->mass_normal, softest * g->l * g->l * g->inverse_normal);
     g->aim_tangent =
-        larger(slip_aim * tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
+        larger4(slip_aim * tau2 * g->mass_tangent * g->friction, softest * bound * bound * g->inverse_tangent);
 }
 
 /* Impulses on the contacts of a group. */
@@ -56,11 +50,6 @@ static inline void linearise(InteriorGroup *g) {
     g->rt = -g->dt * (g->tangent + g->aim_tangent * g->upper - g->aim_tangent * g->lower);
 }
 
-/* J_n x and J_t x */
-typedef struct Relative {
-    Vec4 normal, tangent;
-} Relative;
-
 /* The changes of a group by a solve, before any limit. */
 typedef struct Changes {
     Vec4 l, z, t, p, q;
@@ -83,14 +72,14 @@ static inline Changes changes_of(const InteriorGroup *g, Relative dv, Vec4 secon
 static inline void correct(InteriorGroup *g, Relative dv) {
     const Changes by = changes_of(g, dv, all4(0), all4(0));
     const Vec4 bound = g->friction * g->l;
-    g->rn -= clamp4(by.l * by.z, larger(g->aim_normal, g->l * g->z)) * g->over_z;
-    g->second_p = -clamp4(by.p * by.upper, larger(g->aim_tangent, g->p * (bound - g->t)));
-    g->second_q = -clamp4(by.q * by.lower, larger(g->aim_tangent, g->q * (bound + g->t)));
+    g->rn -= clamp4(by.l * by.z, larger4(g->aim_normal, g->l * g->z)) * g->over_z;
+    g->second_p = -clamp4(by.p * by.upper, larger4(g->aim_tangent, g->p * (bound - g->t)));
+    g->second_q = -clamp4(by.q * by.lower, larger4(g->aim_tangent, g->q * (bound + g->t)));
     g->rt -= g->dt * (g->second_p * g->upper - g->second_q * g->lower);
 }
 
 static inline Vec4 missing_normal(const InteriorGroup *g) {
-    return smaller(g->answer_normal * g->inverse_normal, g->normal - g->bias);
+    return smaller4(g->answer_normal * g->inverse_normal, g->normal - g->bias);
 }
 
 static inline Vec4 missing_tangent(const InteriorGroup *g) {
@@ -106,13 +95,13 @@ static inline Vec4 squared_residual(const InteriorGroup *g) {
 
 /* The iterate stays inside all bounds. */
 static inline void limit(InteriorGroup *g, const Changes *by) {
-    const Vec4 l = larger(g->l + by->l, kept * g->l), bound = g->friction * l, before = g->friction * g->l;
-    const Vec4 share = 1 - kept_distance * (1 - larger(g->t, -g->t) / before);
-    g->t = clamp4(g->t + by->t, smaller(share, all4(1 - 1e-13)) * bound);
+    const Vec4 l = larger4(g->l + by->l, kept * g->l), bound = g->friction * l, before = g->friction * g->l;
+    const Vec4 share = 1 - kept_distance * (1 - larger4(g->t, -g->t) / before);
+    g->t = clamp4(g->t + by->t, smaller4(share, all4(1 - 1e-13)) * bound);
     g->l = l;
-    g->z = larger(g->z + by->z, kept * g->z);
-    g->p = larger(g->p + by->p, kept_slip * g->p);
-    g->q = larger(g->q + by->q, kept_slip * g->q);
+    g->z = larger4(g->z + by->z, kept * g->z);
+    g->p = larger4(g->p + by->p, kept_slip * g->p);
+    g->q = larger4(g->q + by->q, kept_slip * g->q);
 }
 
 /* The next iterate, and the answer: the full step, inside the cone. Returns the answer's squared residual at the
@@ -120,7 +109,7 @@ static inline void limit(InteriorGroup *g, const Changes *by) {
 static inline Vec4 advance(InteriorGroup *g, Relative dv) {
     const Changes by = changes_of(g, dv, g->second_p, g->second_q);
     const Vec4 l = g->l + by.l, t = g->t + by.t;
-    g->answer_normal = larger(l, all4(0));
+    g->answer_normal = larger4(l, all4(0));
     g->answer_tangent = clamp4(t, g->friction * g->answer_normal);
     limit(g, &by);
     g->normal += dv.normal;
@@ -129,20 +118,16 @@ static inline Vec4 advance(InteriorGroup *g, Relative dv) {
            square((t - g->answer_tangent) * g->inverse_tangent);
 }
 
-/* The numbers of the iterations; included once by each interior_*.c. The compiler may use wider registers, but not
-   change the order of operations. */
-#include "methods/block_lu_code.h"
-
 /* x = M (v' - v) */
 static void momentum_left(const Interior *s, Vec4 *x) {
-    for (int k = 0; k < s->lu.count; k++) x[k] = s->masses[k] * (s->start[k] - s->velocities[k]);
-    x[s->lu.count] = all4(0);
+    for (int k = 0; k < s->graph.lu.count; k++) x[k] = s->graph.masses[k] * (s->start[k] - s->velocities[k]);
+    x[s->graph.lu.count] = all4(0);
 }
 
 /* x += J^T impulses */
-static inline void push(const InteriorPair pairs[GROUP_PAIRS], Impulses by, Vec4 *x) {
-    for (int half = 0, slot = 0; half < GROUP_PAIRS; half++, slot += 2) {
-        const InteriorPair *pair = &pairs[half];
+static inline void push(const BlockPair pairs[BLOCK_PAIRS], Impulses by, Vec4 *x) {
+    for (int half = 0, slot = 0; half < BLOCK_PAIRS; half++, slot += 2) {
+        const BlockPair *pair = &pairs[half];
         const Vec4 force = (pair->normal[0] * by.normal[slot] + pair->tangent[0] * by.tangent[slot]) +
                            (pair->normal[1] * by.normal[slot + 1] + pair->tangent[1] * by.tangent[slot + 1]);
         x[pair->a] += as_body_a(force);
@@ -152,63 +137,44 @@ static inline void push(const InteriorPair pairs[GROUP_PAIRS], Impulses by, Vec4
 
 /* The pair's J^T D J in its own coordinates, by columns. The first two rows of J are those of the normal, for both
    contacts. */
-static inline void stiffness(const InteriorGroup *g, const InteriorPair *pair, int slot, Vec4 columns[4]) {
+static inline void stiffness(const InteriorGroup *g, const BlockPair *pair, int slot, Vec4 columns[4]) {
     const Vec4 *n = pair->normal, *t = pair->tangent;
     const Vec4 along[2] = {(n[0] + t[0] * g->s[slot]) * g->dn[slot], (n[1] + t[1] * g->s[slot + 1]) * g->dn[slot + 1]};
     const Vec4 across[2] = {t[0] * g->dt[slot], t[1] * g->dt[slot + 1]};
     const Vec4 both_along = along[0] + along[1], both_across = across[0] + across[1];
-    const double x = g->normal_x[slot], y = g->normal_y[slot];
+    const double x = g->rows.normal_x[slot], y = g->rows.normal_y[slot];
     columns[0] = both_along * x + both_across * y;
     columns[1] = both_along * y - both_across * x;
-    columns[2] = (along[0] * g->normal_b[slot] + across[0] * g->tangent_b[slot]) +
-                 (along[1] * g->normal_b[slot + 1] + across[1] * g->tangent_b[slot + 1]);
-    columns[3] = (along[0] * g->normal_a[slot] + across[0] * g->tangent_a[slot]) +
-                 (along[1] * g->normal_a[slot + 1] + across[1] * g->tangent_a[slot + 1]);
-}
-
-/* The masses, and zeros elsewhere. */
-static void begin_blocks(const Interior *s, BlockLu *lu) {
-    for (int k = 0; k < lu->count; k++) {
-        const Vec4 m = s->masses[k];
-        lu->blocks[k] = (Block3){{vec4(m[0], 0, 0, 0), vec4(0, m[1], 0, 0), vec4(0, 0, m[2], 0)}};
-    }
-    const Block3 zero = {{all4(0), all4(0), all4(0)}};
-    for (int i = lu->count; i < lu->count + 2 * lu->below + 3; i++) lu->blocks[i] = zero;
+    columns[2] = (along[0] * g->rows.normal_b[slot] + across[0] * g->rows.tangent_b[slot]) +
+                 (along[1] * g->rows.normal_b[slot + 1] + across[1] * g->rows.tangent_b[slot + 1]);
+    columns[3] = (along[0] * g->rows.normal_a[slot] + across[0] * g->rows.tangent_a[slot]) +
+                 (along[1] * g->rows.normal_a[slot + 1] + across[1] * g->rows.tangent_a[slot + 1]);
 }
 
 /* The matrix and the right-hand side. */
 static void assemble(Interior *s, double target, Vec4 *right) {
-    begin_blocks(s, &s->lu);
+    begin_blocks(&s->graph);
     momentum_left(s, right);
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
-        const InteriorPair *pairs = &s->pairs[GROUP_PAIRS * i];
+        const BlockPair *pairs = &s->pairs[BLOCK_PAIRS * i];
         aim(g, target);
         linearise(g);
         push(pairs, right_side(g), right);
-        for (int half = 0; half < GROUP_PAIRS; half++) {
+        for (int half = 0; half < BLOCK_PAIRS; half++) {
             Vec4 columns[4];
             stiffness(g, &pairs[half], 2 * half, columns);
-            block_add_pair(s->lu.blocks, pairs[half].a, pairs[half].b, pairs[half].place, columns);
+            block_add_pair(s->graph.lu.blocks, pairs[half].a, pairs[half].b, pairs[half].place, columns);
         }
     }
-}
-
-static inline Relative relative(const InteriorGroup *g, const InteriorPair pairs[GROUP_PAIRS], const Vec4 *x) {
-    const Vec4 a = x[pairs[0].a], b = x[pairs[0].b], c = x[pairs[1].a], d = x[pairs[1].b], ab = b - a, cd = d - c;
-    const Vec4 along_x = vec4(ab[0], ab[0], cd[0], cd[0]), along_y = vec4(ab[1], ab[1], cd[1], cd[1]);
-    const Vec4 spin_a = vec4(a[2], a[2], c[2], c[2]), spin_b = vec4(b[2], b[2], d[2], d[2]);
-    return (Relative){(g->normal_x * along_x + g->normal_y * along_y) + (g->normal_b * spin_b + g->normal_a * spin_a),
-                      (g->normal_y * along_x - g->normal_x * along_y) +
-                          (g->tangent_b * spin_b + g->tangent_a * spin_a)};
 }
 
 static void correct_all(Interior *s, const Vec4 *x, Vec4 *right) {
     momentum_left(s, right);
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
-        const InteriorPair *pairs = &s->pairs[GROUP_PAIRS * i];
-        correct(g, relative(g, pairs, x));
+        const BlockPair *pairs = &s->pairs[BLOCK_PAIRS * i];
+        correct(g, relative(&g->rows, pairs, x));
         push(pairs, right_side(g), right);
     }
 }
@@ -219,22 +185,22 @@ static double mean_root(const Interior *s, Vec4 sum) {
 
 static double advance_all(Interior *s, const Vec4 *x) {
     Vec4 sum = all4(0);
-    for (int k = 0; k < s->lu.count; k++) s->velocities[k] += x[k];
+    for (int k = 0; k < s->graph.lu.count; k++) s->velocities[k] += x[k];
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
-        sum += advance(g, relative(g, &s->pairs[GROUP_PAIRS * i], x));
+        sum += advance(g, relative(&g->rows, &s->pairs[BLOCK_PAIRS * i], x));
     }
     return mean_root(s, sum);
 }
 
 static void solve_changes(const Interior *s, Vec4 *x) {
-    block_lu_solve(&s->lu, x);
-    x[s->lu.count] = all4(0);
+    block_lu_solve(&s->graph.lu, x);
+    x[s->graph.lu.count] = all4(0);
 }
 
 static double iterate(Interior *s, double target) {
     assemble(s, target, s->changes);
-    block_lu_factor(&s->lu);
+    block_lu_factor(&s->graph.lu);
     solve_changes(s, s->changes);
     correct_all(s, s->changes, s->corrected);
     solve_changes(s, s->corrected);
@@ -243,16 +209,16 @@ static double iterate(Interior *s, double target) {
 
 static double answer(Interior *s) {
     Vec4 *x = s->changes, sum = all4(0);
-    for (int k = 0; k <= s->lu.count; k++) x[k] = all4(0);
+    for (int k = 0; k <= s->graph.lu.count; k++) x[k] = all4(0);
     for (int i = 0; i < s->group_count; i++)
-        push(&s->pairs[GROUP_PAIRS * i], (Impulses){s->groups[i].answer_normal, s->groups[i].answer_tangent}, x);
-    for (int k = 0; k <= s->lu.count; k++) {
-        x[k] *= s->inverses[k];
+        push(&s->pairs[BLOCK_PAIRS * i], (Impulses){s->groups[i].answer_normal, s->groups[i].answer_tangent}, x);
+    for (int k = 0; k <= s->graph.lu.count; k++) {
+        x[k] *= s->graph.inverses[k];
         s->velocities[k] = s->start[k] + x[k];
     }
     for (int i = 0; i < s->group_count; i++) {
         InteriorGroup *g = &s->groups[i];
-        const Relative dv = relative(g, &s->pairs[GROUP_PAIRS * i], x);
+        const Relative dv = relative(&g->rows, &s->pairs[BLOCK_PAIRS * i], x);
         g->normal = g->free_normal + dv.normal;
         g->tangent = g->free_tangent + dv.tangent;
         sum += squared_residual(g);

@@ -34,17 +34,14 @@
    hundred bodies the time of the factorization grows faster than the number of contacts (block_lu.h). Same bits on
    every instruction set: double, a fixed order of operations, no fused multiply-add. */
 #pragma once
+#include "base/base.h"
 #include "engine/engine.h"
 #include "methods/block_lu.h"
 #include "methods/sweeps.h"
 
-enum { GROUP_SLOTS = 4, GROUP_PAIRS = 2 };
-
-/* Four contact slots: two of each of two pairs. A slot without a contact has zero rows, so it has no effect. */
+/* Four contact slots. One without a contact has zero rows, so it has no effect. */
 typedef struct InteriorGroup {
-    Vec4 normal_x, normal_y;              /* the tangent is (normal_y, -normal_x) */
-    Vec4 normal_b, normal_a;              /* J_n of the spins of b and a, m */
-    Vec4 tangent_b, tangent_a;            /* J_t of the spins, m */
+    BlockRows rows;                       /* J_n and J_t */
     Vec4 mass_normal, mass_tangent;       /* kg, effective; 1 without a contact */
     Vec4 inverse_normal, inverse_tangent; /* 1/kg; 0 without a contact */
     Vec4 friction, bias, depth;           /* depth: m, overlap */
@@ -60,32 +57,18 @@ typedef struct InteriorGroup {
     Vec4 second_p, second_q;      /* products of the corrector */
 } InteriorGroup;
 
-/* The rows of a pair's slots in the coordinates (linear velocity of b minus that of a, spin of b, spin of a), and
-   where its bodies and blocks are. */
-typedef struct InteriorPair {
-    Vec4 normal[2], tangent[2];
-    int32_t a, b; /* positions of the bodies in the elimination, also of their diagonal blocks; `count` for a body that
-                         does not move */
-    BlockPlace place; /* of the blocks that couple them */
-} InteriorPair;
-
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct Interior {
-    BlockLu lu;
+    BlockGraph graph;
     int group_count, contact_count; /* contact_count: that act on a moving body */
     InteriorGroup *groups;
-    InteriorPair *pairs; /* [2 group_count] */
-    /* [lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused. changes: of the
-       first solve of an iteration; corrected: of the second */
-    Vec4 *velocities, *start, *masses, *inverses, *changes, *corrected;
-    int32_t *bodies;  /* [lu.count] */
-    int32_t *nodes;   /* [body_count] -1 for bodies without contact */
-    BlockEdge *edges; /* [pair_count] */
-    int32_t *edge_of; /* [pair_count] -1 for a pair with a body that does not move */
-    double residual;  /* m/s, of the answer */
-    int iterations;   /* of the last solve */
-    size_t group_capacity, pair_capacity, velocity_capacity, start_capacity, mass_capacity, inverse_capacity,
-        change_capacity, corrected_capacity, body_capacity, node_capacity, edge_capacity, edge_of_capacity;
+    BlockPair *pairs; /* [2 group_count] */
+    /* [graph.lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused. changes: of
+       the first solve of an iteration; corrected: of the second */
+    Vec4 *velocities, *start, *changes, *corrected;
+    double residual; /* m/s, of the answer */
+    int iterations;  /* of the last solve */
+    ArrayBlock memory;
 } Interior;
 
 /* The parts that are compiled for several instruction sets. */
@@ -106,11 +89,6 @@ extern const InteriorKernels interior_scalar, interior_avx2;
 const InteriorKernels *interior_best(void);
 
 void interior_free(Interior *interior);
-
-/* True if an impulse of the pair changes anything. */
-static inline bool interior_pair_moves(const Interior *interior, const InteriorPair *pair) {
-    return pair->a < interior->lu.count || pair->b < interior->lu.count;
-}
 
 /* Loads the impulses and velocities of sweeps over the problem, and sets `residual` to theirs. The residual is the root
    mean square over contacts of what one more visit would change: normal and tangent velocity, |change of impulse| /

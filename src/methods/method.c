@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Methods by name: texts and looks, the registry, solvers and steppers made from their settings (methods/methods.h). */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -140,6 +141,13 @@ bool method_lacks_network(const Method *method, const Scene *scene) {
            scene_network(scene, description->name) == NULL;
 }
 
+const char *method_network(const Settings *settings, const Scene *scene, const char *name, Error *error) {
+    const char *path = settings_get(settings, "network");
+    if (path == NULL && scene != NULL) path = scene_network(scene, name);
+    if (path == NULL) error_input(error, name, "the scene names no network for it: use %s:network=FILE", name);
+    return path;
+}
+
 struct Stepper {
     const MethodDescription *description;
     ContactSolver solver;         /* in the standard step */
@@ -191,7 +199,7 @@ static bool solve_metered(void *state, const ContactProblem *problem, ContactSol
 }
 
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
-    if (stepper->stepping != NULL) return stepper->stepping->step(stepper->state, world, step, error);
+    if (stepper->stepping != NULL) return stepping_step(stepper->stepping, stepper->state, world, step, error);
     MeteredSolver metered = {&stepper->solver, step};
     return world_step(world, solve_metered, &metered, step->scene->dt, error);
 }

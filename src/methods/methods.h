@@ -20,7 +20,7 @@ typedef enum MethodRole {
     METHOD_REFERENCE /* the converged solution: errors of other methods are measured against it */
 } MethodRole;
 
-/* By its colour a reader finds a method again in all pictures (methods/methods.h). They differ with all common kinds of
+/* By its colour a reader finds a method again in all pictures. They differ with all common kinds of
    colour blindness. The palettes are in pictures/theme.c and figures/sketch_plot.c. */
 typedef enum MethodColour {
     METHOD_NO_COLOUR, /* any that is left */
@@ -68,8 +68,7 @@ typedef struct MethodDescription {
     bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
                             that it is scored against have none of position correction either */
     bool no_contacts;   /* it moves bodies without contacts: collision detection in its step serves measurement and
-                            pictures only, so that its time is that between step_solving_begins() and step_solving_ends()
-                            (methods/methods.h), not the whole step's */
+                            pictures only, so that its time is that of solve(), not the whole step's */
     bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
     bool needs_network; /* runs only if the setting `network` or the scene names a file */
     const char *twin;   /* of a learned method: its ablation, as on the command line ("sain:net=off"); it takes the same
@@ -82,8 +81,7 @@ typedef struct MethodDescription {
     int stability_place; /* 1, 2, ...: place in the stability study; 0: behind those that have one, in registry order */
 } MethodDescription;
 
-/* The interface that every contact solver implements: a constant struct of functions, listed once in
-   methods/methods.h. */
+/* The interface that every contact solver implements: a constant struct of functions, listed once below. */
 
 typedef struct ContactSolverKind {
     MethodDescription description;
@@ -102,9 +100,8 @@ typedef struct ContactSolver {
 /* The list of methods. To add a contact solver, write one file in this folder that defines solver_NAME, and add one
    line SOLVER(NAME) here. */
 
-/* In the order of lists and charts. SOLVER(x) is solver_x of this folder; STEPPING(x) is stepping_x of simulate/, for
-   methods that need more than one solver call in a step (methods/methods.h). New methods go to the end: lines of a
-   chart get their colours in this order. */
+/* In the order of lists and charts. SOLVER(x) is solver_x; STEPPING(x) is stepping_x, for methods that need more than one
+   solver call in a step. New methods go to the end: lines of a chart get their colours in this order. */
 #define METHODS(SOLVER, STEPPING) \
     SOLVER(engine)                \
     SOLVER(over_relaxation)       \
@@ -155,23 +152,35 @@ static inline void step_solving_ends(const Step *step) {
     if (step->meter != NULL) step->meter->solving += step->meter->now();
 }
 
+/* A step after collision detection and before motion. */
+typedef struct BegunStep {
+    const World *world;
+    const Step *step;
+    const ContactProblem *problem;
+    ContactSolution *solution; /* to be filled */
+    const BodyPose *poses;     /* out: [body_count] where the bodies end; NULL: where their velocities lead */
+} BegunStep;
+
 typedef struct SteppingKind {
     MethodDescription description;
     /* Returns the state for a scene with any launch; NULL with error set if the scene or a setting is refused. */
     void *(*create)(const Settings *settings, const Scene *scene, Error *error);
-    /* Advances the world by one step of the scene: begins, solves and ends it (engine/engine.h). Allocates
-       nothing once it has seen a problem of that size. */
-    bool (*step)(void *state, World *world, const Step *step, Error *error);
+    /* Solves the step; this is what a meter measures. Allocates nothing once it has seen a problem of that size. */
+    bool (*solve)(void *state, BegunStep *begun, Error *error);
+    void (*measure)(void *state, const BegunStep *begun); /* momentum_error of the solution; NULL: it is 0 */
+    void (*keep)(void *state, const World *world);        /* what the next step begins with; NULL: nothing */
     void (*destroy)(void *state);
 } SteppingKind;
 
-/* Listed in methods/methods.h. */
+/* Advances the world by one step of the scene; on failure the world is unchanged. */
+bool stepping_step(const SteppingKind *kind, void *state, World *world, const Step *step, Error *error);
+
 #define STEPPING_DECLARED(name) extern const SteppingKind stepping_##name;
 METHODS(METHOD_OMITTED, STEPPING_DECLARED)
 #undef STEPPING_DECLARED
 
 /* A method: how a scene is advanced by one step. Most methods are a contact solver in the standard step; the others are
-   steppers (stepping.h). */
+   steppers. */
 
 enum { METHOD_TEXT_SIZE = 128 };
 
@@ -185,7 +194,7 @@ typedef struct MethodKind {
 /* The registry, in the order of lists and charts; ended by a NULL description. */
 extern const MethodKind method_kinds[];
 
-/* An entry for each line of the list METHODS (methods/methods.h). */
+/* An entry for each line of the list METHODS. */
 #define METHOD_KIND_SOLVER(name) {&solver_##name.description, &solver_##name, NULL},
 #define METHOD_KIND_STEPPING(name) {&stepping_##name.description, NULL, &stepping_##name},
 
@@ -216,6 +225,10 @@ bool method_create_solver(const Method *method, const Scene *scene, ContactSolve
 /* True if the method needs a network and neither its settings nor the scene name one. */
 bool method_lacks_network(const Method *method, const Scene *scene);
 
+/* The file in the setting `network`, else the scene's for the method of that name (scene: may be NULL); NULL with error
+   set. */
+const char *method_network(const Settings *settings, const Scene *scene, const char *name, Error *error);
+
 /* A method in use. It steps worlds of one scene, with any launch, one world after the other. */
 typedef struct Stepper Stepper;
 
@@ -232,7 +245,7 @@ bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error
 /* How methods are named and told apart in all pictures: captions, legends, charts and figures.
 
    The name is the method's text as on the command line ("momentum:k=20"), without the folders of its files. The colour is
-   the one that its description states (methods/methods.h), unless another run of the picture has it. */
+   the one that its description states, unless another run of the picture has it. */
 
 /* Copies a method's text without the folders of its files, which differ between machines. Returns its length. */
 size_t method_name(char *name, size_t size, const char *text);

@@ -75,19 +75,9 @@ float *momentum_factors_make(int count) {
 
 void momentum_free(Momentum *momentum) {
     sweeps_free(&momentum->sweeps);
-    free(momentum->before.velocities);
-    free(momentum->before.impulses);
+    free(momentum->arrays.memory);
     free(momentum->more_factors);
     *momentum = (Momentum){0};
-}
-
-/* Without a stopping rule momentum_solve() has `count` sweeps. */
-static bool read_rule(Momentum *momentum, const Settings *chosen, Error *error) {
-    StoppingRule *rule = &momentum->rule;
-    if (!stopping_read(rule, chosen, error)) return false;
-    if (rule->more == 0) return true;
-    momentum->more_factors = momentum_factors_make(rule->more);
-    return momentum->more_factors != NULL || error_memory(error, "momentum");
 }
 
 bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors) {
@@ -106,23 +96,20 @@ bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const flo
         return error_memory(error, "momentum");
     if (sweeps_end(&momentum->sweeps, solution)) return true;
     ContactSolution *before = &momentum->before;
-    if (!array_reserve((void **)&before->velocities, &momentum->body_capacity, (size_t)problem->body_count,
-                       sizeof *before->velocities) ||
-        !array_reserve((void **)&before->impulses, &momentum->contact_capacity, (size_t)problem->contact_count,
-                       sizeof *before->impulses))
+    if (!ARRAY_BLOCK_RESERVE(&momentum->arrays, ARRAY_PART(before->velocities, problem->body_count),
+                             ARRAY_PART(before->impulses, problem->contact_count)))
         return error_memory(error, "momentum");
     momentum_solve_scalar(problem, momentum->sweeps.colours.visits, factors, count, before, solution);
     return true;
 }
 
 typedef struct State {
+    StoppingRule rule;
     Momentum momentum;
-    int sweep_count;
-    float *factors; /* [sweep_count] */
+    float *factors; /* [rule.k] */
 } State;
 
-static const SettingSpec settings[] = {
-    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, STOPPING_SETTINGS, {NULL, NULL}};
+static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS, {0}};
 
 static void destroy(void *state) {
     State *solver = state;
@@ -133,24 +120,21 @@ static void destroy(void *state) {
 }
 
 static void *create(const Settings *chosen, Error *error) {
-    int sweep_count = 10;
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error)) return NULL;
-    State *solver = calloc(1, sizeof *solver);
-    if (solver != NULL) solver->factors = momentum_factors_make(sweep_count);
-    if (solver == NULL || solver->factors == NULL) {
-        destroy(solver);
-        error_memory(error, "momentum");
-        return NULL;
-    }
-    solver->sweep_count = sweep_count;
-    if (read_rule(&solver->momentum, chosen, error)) return solver;
+    static const State standard = {.rule.k = 10};
+    State *solver = stopping_make(chosen, settings, &standard, sizeof standard, "momentum", error);
+    if (solver == NULL) return NULL;
+    solver->factors = momentum_factors_make(solver->rule.k);
+    solver->momentum.rule = solver->rule;
+    if (solver->rule.more > 0) solver->momentum.more_factors = momentum_factors_make(solver->rule.more);
+    if (solver->factors != NULL && (solver->rule.more == 0 || solver->momentum.more_factors != NULL)) return solver;
     destroy(solver);
+    error_memory(error, "momentum");
     return NULL;
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
-    return momentum_solve(&solver->momentum, problem, solver->factors, solver->sweep_count, solution, error);
+    return momentum_solve(&solver->momentum, problem, solver->factors, solver->rule.k, solution, error);
 }
 
 const ContactSolverKind solver_momentum = {

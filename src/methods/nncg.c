@@ -34,33 +34,25 @@ _Static_assert(sizeof(NncgRow) == sizeof(SweepBody), "a body is a row");
 _Static_assert(sizeof(NncgRow) == sizeof((SweepPair){0}).sums, "the sums of a pair are a row");
 
 typedef struct Nncg {
-    int sweep_count;
     StoppingRule rule;
     Sweeps sweeps;
     NncgRow *pair_before, *pair_direction; /* [pair_count] p and d */
     NncgRow *body_before, *body_direction; /* [body_count] the same of the velocities */
-    size_t pair_capacity[2], body_capacity[2];
+    ArrayBlock arrays;
 } Nncg;
 
-static const SettingSpec settings[] = {
-    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, STOPPING_SETTINGS, {NULL, NULL}};
+static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS, {0}};
 
 static void *create(const Settings *chosen, Error *error) {
-    int sweep_count = 10;
-    StoppingRule rule = {0};
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &sweep_count, error) || !stopping_read(&rule, chosen, error))
-        return NULL;
-    Nncg *solver = calloc(1, sizeof *solver);
-    if (solver == NULL)
-        error_memory(error, "nncg");
-    else
-        *solver = (Nncg){.sweep_count = sweep_count, .rule = rule};
-    return solver;
+    static const Nncg standard = {.rule.k = 10};
+    return stopping_make(chosen, settings, &standard, sizeof standard, "nncg", error);
 }
 
-static bool reserve(NncgRow **before, NncgRow **direction, size_t capacity[2], int count) {
-    return array_reserve((void **)before, &capacity[0], (size_t)count + 1, sizeof **before) &&
-           array_reserve((void **)direction, &capacity[1], (size_t)count + 1, sizeof **direction);
+static bool reserve(Nncg *solver) {
+    const size_t pairs = (size_t)solver->sweeps.pair_count, bodies = (size_t)solver->sweeps.body_count;
+    return ARRAY_BLOCK_RESERVE(&solver->arrays, ARRAY_PART(solver->pair_before, pairs),
+                               ARRAY_PART(solver->pair_direction, pairs), ARRAY_PART(solver->body_before, bodies),
+                               ARRAY_PART(solver->body_direction, bodies));
 }
 
 /* p = p', d = 0 */
@@ -123,18 +115,14 @@ static void extrapolate(Nncg *solver, float beta) {
 
 /* True after sweep number `sweep`, counted from 1, if none follows. */
 static bool is_last(const Nncg *solver, int sweep, const ContactProblem *problem) {
-    const int done = sweep - solver->sweep_count;
+    const int done = sweep - solver->rule.k;
     return done >= 0 && done % STOPPING_BLOCK == 0 &&
            !stopping_needs_more(&solver->rule, done, &solver->sweeps, problem);
 }
 
 /* False when memory is short. */
 static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
-    const Sweeps *sweeps = &solver->sweeps;
-    if (!sweeps_begin(&solver->sweeps, kernel, problem, true, 1.0f) ||
-        !reserve(&solver->pair_before, &solver->pair_direction, solver->pair_capacity, sweeps->pair_count) ||
-        !reserve(&solver->body_before, &solver->body_direction, solver->body_capacity, sweeps->body_count))
-        return false;
+    if (!sweeps_begin(&solver->sweeps, kernel, problem, true, 1.0f) || !reserve(solver)) return false;
     restart(solver);
     float squared_before = 0.0f;
     for (int sweep = 1;; sweep++) {
@@ -163,10 +151,7 @@ static void destroy(void *state) {
     Nncg *solver = state;
     if (solver == NULL) return;
     sweeps_free(&solver->sweeps);
-    free(solver->pair_before);
-    free(solver->pair_direction);
-    free(solver->body_before);
-    free(solver->body_direction);
+    free(solver->arrays.memory);
     free(solver);
 }
 

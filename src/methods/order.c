@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The order of visits by colours, and the loops of islands (methods/sweeps.h). */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/sweeps.h"
@@ -7,18 +8,14 @@
 #include <string.h>
 
 void colours_free(Colours *colours) {
-    free(colours->visits);
-    free(colours->pairs);
-    free(colours->colour);
-    free(colours->taken);
+    free(colours->arrays.memory);
     *colours = (Colours){0};
 }
 
 static bool reserve(Colours *colours, size_t contacts, size_t bodies) {
-    return array_reserve((void **)&colours->visits, &colours->visit_capacity, contacts, sizeof *colours->visits) &&
-           array_reserve((void **)&colours->pairs, &colours->pair_capacity, contacts + 1, sizeof *colours->pairs) &&
-           array_reserve((void **)&colours->colour, &colours->colour_capacity, contacts, sizeof *colours->colour) &&
-           array_reserve((void **)&colours->taken, &colours->taken_capacity, bodies, sizeof *colours->taken);
+    return ARRAY_BLOCK_RESERVE(&colours->arrays, ARRAY_PART(colours->visits, contacts),
+                               ARRAY_PART(colours->pairs, contacts + 1), ARRAY_PART(colours->colour, contacts),
+                               ARRAY_PART(colours->taken, bodies));
 }
 
 /* Returns their number. */
@@ -57,8 +54,7 @@ bool colours_order(Colours *colours, const ContactProblem *problem) {
 }
 
 void islands_free(Islands *islands) {
-    free(islands->parent);
-    free(islands->loops);
+    free(islands->arrays.memory);
     *islands = (Islands){0};
 }
 
@@ -69,9 +65,8 @@ static int32_t find(int32_t *parent, int32_t body) {
 }
 
 int islands_most_loops(Islands *islands, const ContactProblem *problem) {
-    const size_t bodies = (size_t)problem->body_count + 1, size = sizeof(int32_t);
-    if (!array_reserve((void **)&islands->parent, &islands->parent_capacity, bodies, size) ||
-        !array_reserve((void **)&islands->loops, &islands->loop_capacity, bodies, size))
+    if (!ARRAY_BLOCK_RESERVE(&islands->arrays, ARRAY_PART(islands->parent, problem->body_count),
+                             ARRAY_PART(islands->loops, problem->body_count)))
         return -1;
     int32_t *parent = islands->parent, *loops = islands->loops;
     for (int i = 0; i < problem->body_count; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projected successive over-relaxation: sequential impulses (sequential_impulses.c) with every increment scaled by
+/* Projected successive over-relaxation: sequential impulses (sweeps_scalar.c) with every increment scaled by
    omega,
 
        Pn' = max(Pn + omega mass_n (bias - vn), 0),   Pt' = clamp(Pt - omega mass_t vt, -mu Pn', mu Pn')
@@ -14,49 +14,26 @@
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
-#include <stdlib.h>
-
-typedef struct OverRelaxation {
-    int sweep_count;
-    StoppingRule rule;
-    SequentialOptions options;
-    Sweeps sweeps;
-} OverRelaxation;
-
-static const SettingSpec settings[] = {{"k", "sweeps over all contacts per step (default: the scene's, else 10)"},
-                                       {"omega", "factor of every increment, from 0.01 to 1.99 (default: 1.5)"},
+static const SettingSpec settings[] = {SWEEPS_SETTING,
+                                       {"omega", "factor of every increment, from 0.01 to 1.99 (default: 1.5)",
+                                        SETTING_FLOAT(SweepState, options.relaxation, 0.01f, 1.99f)},
                                        STOPPING_SETTINGS,
-                                       {NULL, NULL}};
+                                       {0}};
 
 static void *create(const Settings *chosen, Error *error) {
-    OverRelaxation values = {.sweep_count = 10, .options = {.accumulate = true, .warm = true, .relaxation = 1.5f}};
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error) ||
-        !settings_float(chosen, "omega", 0.01f, 1.99f, &values.options.relaxation, error) ||
-        !stopping_read(&values.rule, chosen, error))
-        return NULL;
-    OverRelaxation *solver = malloc(sizeof *solver);
-    if (solver == NULL)
-        error_memory(error, "over-relaxation");
-    else
-        *solver = values;
-    return solver;
+    static const SweepState standard = {.rule.k = 10,
+                                        .options = {.accumulate = true, .warm = true, .relaxation = 1.5f}};
+    return stopping_make(chosen, settings, &standard, sizeof standard, "over-relaxation", error);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    OverRelaxation *solver = state;
+    SweepState *solver = state;
     if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, true, solver->options.relaxation) ||
-        !stopping_run(&solver->rule, &solver->sweeps, problem, solver->sweep_count, sweeps_run))
+        !stopping_run(&solver->rule, &solver->sweeps, problem, sweeps_run))
         return error_memory(error, "over-relaxation");
     if (!sweeps_end(&solver->sweeps, solution))
-        sequential_impulses_solve(problem, &solver->options, solver->sweep_count, solution);
+        sequential_impulses_solve(problem, &solver->options, solver->rule.k, solution);
     return true;
-}
-
-static void destroy(void *state) {
-    OverRelaxation *solver = state;
-    if (solver == NULL) return;
-    sweeps_free(&solver->sweeps);
-    free(solver);
 }
 
 const ContactSolverKind solver_over_relaxation = {
@@ -70,4 +47,4 @@ const ContactSolverKind solver_over_relaxation = {
                     .stability = METHOD_NO_RUNS},
     .create = create,
     .solve = solve,
-    .destroy = destroy};
+    .destroy = sweep_state_destroy};

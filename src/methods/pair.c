@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a network sees of a pair (methods/pair.h). */
 #include "methods/pair.h"
 
 #include "base/base.h"
@@ -9,19 +10,15 @@
 #include <string.h>
 
 void pair_moment_free(PairMoment *moment) {
-    free(moment->velocities);
-    free(moment->impulses);
-    free(moment->alone);
-    free(moment->pushes);
+    free(moment->arrays.memory);
     *moment = (PairMoment){0};
 }
 
 bool pair_moment_reserve(PairMoment *moment, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count + 1;
-    return array_reserve((void **)&moment->velocities, &moment->velocity_capacity, bodies, sizeof(BodyVelocity)) &&
-           array_reserve((void **)&moment->impulses, &moment->impulse_capacity, contacts, sizeof(ContactImpulse)) &&
-           array_reserve((void **)&moment->alone, &moment->alone_capacity, contacts, sizeof(ContactImpulse)) &&
-           array_reserve((void **)&moment->pushes, &moment->push_capacity, bodies, sizeof(BodyVelocity));
+    return ARRAY_BLOCK_RESERVE(&moment->arrays, ARRAY_PART(moment->velocities, bodies),
+                               ARRAY_PART(moment->impulses, contacts), ARRAY_PART(moment->alone, contacts),
+                               ARRAY_PART(moment->pushes, bodies));
 }
 
 ContactSolution pair_moment_solution(const PairMoment *moment) {

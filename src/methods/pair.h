@@ -15,7 +15,7 @@ typedef struct PairMoment {
     /* filled by pair_moment_jacobi(): */
     ContactImpulse *alone; /* [contact_count] added by each contact alone */
     BodyVelocity *pushes;  /* [body_count] change of each body by all of these */
-    size_t velocity_capacity, impulse_capacity, alone_capacity, push_capacity;
+    ArrayBlock arrays;
 } PairMoment;
 
 void pair_moment_free(PairMoment *moment);
@@ -48,7 +48,7 @@ BodyVelocity pair_moment_others(const PairMoment *moment, const ContactProblem *
                       change of relative velocity that they make), both arms; then a's share of the inverse masses, and
                       1 where there is a second point (0, and zeros for the point, where not)
      neighbours   32: the same, and of a, then of b, velocity (2) and spin (1): what other pairs would change next if
-                      each contact were alone (pair_moment.h), and what has changed since the step began */
+                      each contact were alone, and what has changed since the step began */
 typedef enum PairView {
     PAIR_RELATIVE,
     PAIR_RAW,

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Networks of pairs: their files and predictions, the solver that applies them, and the methods contact-net, pair-net and
+   relu-net, whose network is computed. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -91,7 +93,7 @@ bool pair_network_read(PairNetwork *pair, const char *path, Error *error) {
     return ok;
 }
 
-static int pair_network_count_pairs(const ContactProblem *problem) {
+static int pairs_of(const ContactProblem *problem) {
     int pairs = 0;
     for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) pairs++;
     return pairs;
@@ -111,7 +113,7 @@ static bool find_moment(PairNetwork *pair, const ContactProblem *problem, const 
 }
 
 const float *pair_network_predict(PairNetwork *pair, const ContactProblem *problem, int *pairs) {
-    const int count = *pairs = pair_network_count_pairs(problem), width = pair_views[pair->view].count;
+    const int count = *pairs = pairs_of(problem), width = pair_views[pair->view].count;
     const size_t inputs_size = (size_t)count * (size_t)width;
     const size_t outputs_size = (size_t)count * (size_t)pair_network_outputs(pair);
     if (!array_reserve((void **)&pair->numbers, &pair->capacity, inputs_size + outputs_size + 1, sizeof(float)))
@@ -169,8 +171,8 @@ static void share_relative_change(const ContactProblem *problem, int first, Vec2
 /* Converts outputs (one number every `stride`) to changes of the two bodies in world axes: of velocity (2) and angular
    velocity (1) of a, then of b. Six outputs are these changes. Two outputs are the change of the relative velocity: the
    bodies get the effect of the impulse that makes it, at the mean of the contact points. Not for TARGET_POINTS. */
-static void pair_network_changes(const PairNetwork *pair, const ContactProblem *problem, int first,
-                                 const float *outputs, int stride, float changes[PAIR_CHANGES]) {
+static void changes_of(const PairNetwork *pair, const ContactProblem *problem, int first, const float *outputs,
+                       int stride, float changes[PAIR_CHANGES]) {
     const bool two = pair_network_outputs(pair) == 2;
     for (int i = 0; i < PAIR_CHANGES; i++) changes[i] = two ? 0 : outputs[i * stride];
     if (two) changes[3] = outputs[0], changes[4] = outputs[stride];
@@ -186,25 +188,15 @@ void pair_solver_destroy(void *state) {
     free(solver);
 }
 
-PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *error) {
-    const char *path = settings_get(chosen, "network");
-    if (path == NULL) {
-        error_input(error, name, "the scene names no network for it: use %s:network=FILE", name);
-        return NULL;
-    }
-    PairSolver *solver = calloc(1, sizeof *solver);
-    if (solver == NULL) {
-        error_memory(error, name);
-        return NULL;
-    }
-    solver->sweep_count = 10;
-    bool predicts = true;
-    if (settings_int(chosen, "k", 1, SWEEPS_MAX, &solver->sweep_count, error) &&
-        settings_bool(chosen, "net", &predicts, error) && pair_network_read(&solver->network, path, error)) {
-        solver->network.constant = !predicts;
+PairSolver *pair_solver_create(const char *name, const SettingSpec *known, const Settings *chosen, Error *error) {
+    static const PairSolver standard = {.sweep_count = 10, .predicts = true};
+    const char *path = method_network(chosen, NULL, name, error);
+    PairSolver *solver = path != NULL ? settings_make(chosen, known, &standard, sizeof standard, name, error) : NULL;
+    if (solver == NULL || pair_network_read(&solver->network, path, error)) {
+        if (solver != NULL) solver->network.constant = !solver->predicts;
         return solver;
     }
-    pair_solver_destroy(solver);
+    free(solver);
     return NULL;
 }
 
@@ -242,7 +234,7 @@ static void add_changes(const PairNetwork *network, const ContactProblem *proble
         solution->momentum_error += (float)created_momentum(body_a, body_b, changes);
 }
 
-static bool pair_solver_count_pairs(PairSolver *solver, const ContactProblem *problem) {
+static bool count_pairs(PairSolver *solver, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1;
     if (!array_reserve((void **)&solver->pair_counts, &solver->count_capacity, bodies, sizeof *solver->pair_counts))
         return false;
@@ -267,7 +259,7 @@ static void visit_pairs(PairSolver *solver, const ContactProblem *problem, Conta
         for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first)) {
             float outputs[PAIR_CHANGES], changes[PAIR_CHANGES];
             pair_network_predict_one(&solver->network, problem, &now, first, outputs);
-            pair_network_changes(&solver->network, problem, first, outputs, 1, changes);
+            changes_of(&solver->network, problem, first, outputs, 1, changes);
             add_changes(&solver->network, problem, first, changes, solution);
         }
 }
@@ -305,9 +297,7 @@ static void push_points(const ContactProblem *problem, int first, const float *o
 bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     PairSolver *solver = state;
     PairNetwork *network = &solver->network;
-    for (int i = 0; i < problem->body_count; i++)
-        solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
-    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+    contact_solution_begin(problem, solution);
     solution->momentum_error = 0;
     solution->fallbacks = (NetworkFallbacks){0};
     if (network->target == TARGET_IMPULSE) {
@@ -316,7 +306,7 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
     }
     int pairs;
     const float *outputs = pair_network_predict(network, problem, &pairs);
-    if (outputs == NULL || (network->target == TARGET_NET && !pair_solver_count_pairs(solver, problem)))
+    if (outputs == NULL || (network->target == TARGET_NET && !count_pairs(solver, problem)))
         return error_memory(error, "pair network");
     for (int first = 0; first < problem->contact_count; first += pair_contact_count(problem, first), outputs++) {
         if (network->target == TARGET_POINTS) {
@@ -324,7 +314,7 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
             continue;
         }
         float changes[PAIR_CHANGES];
-        pair_network_changes(network, problem, first, outputs, pairs, changes);
+        changes_of(network, problem, first, outputs, pairs, changes);
         if (network->target == TARGET_NET) take_shares(solver, &problem->contacts[first], changes);
         add_changes(network, problem, first, changes, solution);
     }
@@ -344,10 +334,10 @@ bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSoluti
    the same velocities, so an impulse travels one pair per step, and a box between two others is pushed twice. */
 
 static const SettingSpec contact_net_settings[] = {
-    {"network", "file of a network with the target points (default: the scene's)"}, PAIR_SOLVER_NET, {NULL, NULL}};
+    {"network", "file of a network with the target points (default: the scene's)", SETTING_OWN}, PAIR_SOLVER_NET, {0}};
 
 static void *contact_net_create(const Settings *chosen, Error *error) {
-    PairSolver *solver = pair_solver_create("contact-net", chosen, error);
+    PairSolver *solver = pair_solver_create("contact-net", contact_net_settings, chosen, error);
     if (solver == NULL || solver->network.target == TARGET_POINTS) return solver;
     error_input(error, settings_get(chosen, "network"),
                 "the network has the target %s, which is for pair-net; contact-net needs the target points",
@@ -372,7 +362,7 @@ const ContactSolverKind solver_contact_net = {
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};
 
-/* Sequential impulses (sequential_impulses.c) written as a network of rectifiers, relu(x) = max(x, 0). With m = mu Pn'
+/* Sequential impulses (sweeps_scalar.c) written as a network of rectifiers, relu(x) = max(x, 0). With m = mu Pn'
    and w = Pt - mass_t vt,
 
        Pn' = relu(Pn - mass_n (vn - bias)),   Pt' = -m + relu(w + m) - relu(w - m)
@@ -389,22 +379,11 @@ const ContactSolverKind solver_contact_net = {
    contact do not add. Source of ReLU networks as piecewise linear functions, and of these functions as networks: Arora,
    Basu, Mianjy, Mukherjee, "Understanding Deep Neural Networks with Rectified Linear Units" (2018). */
 
-typedef struct ReluNet {
-    int sweep_count;
-} ReluNet;
-
-static const SettingSpec relu_net_settings[] = {
-    {"k", "sweeps over all contacts per step (default: the scene's, else 10)"}, {NULL, NULL}};
+static const SettingSpec relu_net_settings[] = {SWEEPS_SETTING, {0}};
 
 static void *relu_net_create(const Settings *chosen, Error *error) {
-    ReluNet values = {.sweep_count = 10};
-    if (!settings_int(chosen, "k", 1, SWEEPS_MAX, &values.sweep_count, error)) return NULL;
-    ReluNet *solver = malloc(sizeof *solver);
-    if (solver == NULL)
-        error_memory(error, "relu-net");
-    else
-        *solver = values;
-    return solver;
+    static const StoppingRule standard = {.k = 10};
+    return settings_make(chosen, relu_net_settings, &standard, sizeof standard, "relu-net", error);
 }
 
 /* The layers of one contact: the normal impulse, then the tangent impulse from the velocities that result. */
@@ -426,9 +405,9 @@ static void visit(const ContactPoint *contact, const ProblemBody *bodies, BodyVe
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     (void)error;
     static const SequentialOptions start = {.accumulate = true, .warm = true, .relaxation = 1.0f};
-    const ReluNet *solver = state;
+    const StoppingRule *rule = state;
     sequential_impulses_begin(problem, &start, solution);
-    for (int sweep = 0; sweep < solver->sweep_count; sweep++)
+    for (int sweep = 0; sweep < rule->k; sweep++)
         for (int i = 0; i < problem->contact_count; i++)
             visit(&problem->contacts[i], problem->bodies, solution->velocities, &solution->impulses[i]);
     return true;
@@ -472,11 +451,10 @@ const ContactSolverKind solver_relu_net = {
    a velocity that should be zero adds up to sinking. With inputs in the frame of the contact, its warm starts are 0 in
    its own runs, since it returns no impulses, but those of the engine in its training data. */
 
-static const SettingSpec settings[] = {
-    {"network", "file of the trained network (default: the scene's)"},
-    {"k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)"},
-    PAIR_SOLVER_NET,
-    {NULL, NULL}};
+static const SettingSpec settings[] = {{"network", "file of the trained network (default: the scene's)", SETTING_OWN},
+                                       PAIR_SOLVER_SWEEPS,
+                                       PAIR_SOLVER_NET,
+                                       {0}};
 
 static bool check(const PairNetwork *network, const char *path, Error *error) {
     if (network->target == TARGET_POINTS)
@@ -493,7 +471,7 @@ static bool check(const PairNetwork *network, const char *path, Error *error) {
 }
 
 static void *create(const Settings *chosen, Error *error) {
-    PairSolver *solver = pair_solver_create("pair-net", chosen, error);
+    PairSolver *solver = pair_solver_create("pair-net", settings, chosen, error);
     if (solver == NULL || check(&solver->network, settings_get(chosen, "network"), error)) return solver;
     pair_solver_destroy(solver);
     return NULL;

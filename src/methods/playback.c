@@ -32,8 +32,9 @@ typedef struct Playback {
     const BodyVelocity *last_nearest; /* and its nearest recording, [frames, bodies] */
 } Playback;
 
-static const SettingSpec settings[] = {
-    {"launches", "recorded launches, spread over the training family (default: 100)"}, {NULL, NULL}};
+static const SettingSpec settings[] = {{"launches", "recorded launches, spread over the training family (default: 100)",
+                                        SETTING_INT(Playback, launch_count, 1, 10000)},
+                                       {0}};
 
 static void destroy(void *state) {
     Playback *playback = state;
@@ -104,15 +105,11 @@ static bool fill(Playback *playback, const Scene *scene, Error *error) {
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
-    Playback *playback = calloc(1, sizeof *playback);
-    if (playback == NULL) {
-        error_memory(error, "playback");
-        return NULL;
-    }
-    playback->launch_count = 100;
-    bool ok = settings_int(chosen, "launches", 1, 10000, &playback->launch_count, error);
-    if (ok && (!scene->bomb.present || scene->bomb.frame > scene->frames))
-        ok = error_input(error, "playback", "scene %s has no bomb: nothing to play back", scene->name);
+    static const Playback standard = {.launch_count = 100};
+    Playback *playback = settings_make(chosen, settings, &standard, sizeof standard, "playback", error);
+    if (playback == NULL) return NULL;
+    bool ok = scene->bomb.present && scene->bomb.frame <= scene->frames;
+    if (!ok) error_input(error, "playback", "scene %s has no bomb: nothing to play back", scene->name);
     if (ok && allocate(playback, scene, error) && fill(playback, scene, error)) return playback;
     destroy(playback);
     return NULL;
@@ -147,18 +144,15 @@ static const BodyVelocity *recorded(Playback *playback, const Step *which, int *
     return run + (size_t)(frame - 1) * (size_t)*bodies;
 }
 
-static bool step(void *state, World *world, const Step *which, Error *error) {
-    ContactProblem problem;
-    ContactSolution *solution;
-    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
-    step_solving_begins(which);
+static bool solve(void *state, BegunStep *begun, Error *error) {
+    (void)error;
     int bodies;
-    const BodyVelocity *velocities = recorded(state, which, &bodies);
-    for (int i = 0; i < problem.body_count; i++)
+    const BodyVelocity *velocities = recorded(state, begun->step, &bodies);
+    const ContactSolution *solution = begun->solution;
+    for (int i = 0; i < begun->problem->body_count; i++)
         solution->velocities[i] = velocities != NULL && i < bodies ? velocities[i] : (BodyVelocity){{0, 0}, 0};
-    for (int i = 0; i < problem.contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
-    step_solving_ends(which);
-    return world_end_step(world, error);
+    for (int i = 0; i < begun->problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+    return true;
 }
 
 const SteppingKind stepping_playback = {
@@ -172,5 +166,5 @@ const SteppingKind stepping_playback = {
                     .chart_quick = METHOD_RUNS("launches=25"),
                     .stability = METHOD_NO_RUNS},
     .create = create,
-    .step = step,
+    .solve = solve,
     .destroy = destroy};

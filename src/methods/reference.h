@@ -22,7 +22,6 @@ typedef struct ReferenceImpulse {
 } ReferenceImpulse;
 
 typedef struct ReferenceGroup ReferenceGroup;
-typedef struct ReferencePair ReferencePair;
 typedef struct ReferencePoint ReferencePoint;
 
 /* Zero-initialise; arrays grow and are reused. Holds the results of the last solve. residual: the largest change of a
@@ -35,12 +34,13 @@ typedef struct Reference {
     int attempts;                  /* 0: the start's contact states were right; 1: interior points; more: begun again */
     bool scalar;                   /* set by the caller: no vector instructions; slower, with the same bits */
     /* workspace */
-    BlockLu lu;
+    BlockGraph graph;
     int group_count, pair_count, contact_count; /* contact_count: that act on a moving body */
     ReferenceGroup *groups;
-    ReferencePair *pairs; /* [2 group_count] */
-    /* [lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused */
-    Vec4 *masses, *inverses, *moved, *changes, *first_changes;
+    BlockPair *pairs; /* [2 group_count] */
+    int32_t *first;   /* [pair_count + 1] pair i has the contacts first[i] to first[i + 1] - 1 of the problem */
+    /* [graph.lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused */
+    Vec4 *moved, *changes, *first_changes;
     struct {
         ReferencePoint *points;
         Vec4 *moved;
@@ -52,14 +52,7 @@ typedef struct Reference {
     int left;           /* that this attempt may still use */
     double stiffest;    /* a contact resists by at most this times its effective mass */
     double best;        /* residual of the best answer, m/s */
-    int32_t *bodies;    /* [lu.count] */
-    int32_t *nodes;     /* [body_count] -1 for bodies without contact */
-    BlockEdge *edges;   /* [pair_count] */
-    int32_t *edge_of;   /* [pair_count] -1 for a pair with a body that does not move */
-    ReferencePoint *points;
-    Vec4 *numbers;
-    size_t velocity_capacity, impulse_capacity, group_capacity, pair_capacity, body_capacity, node_capacity,
-        edge_capacity, edge_of_capacity, point_capacity, number_capacity;
+    ArrayBlock memory;
 } Reference;
 
 /* m/s. A solve aims at a tenth of it. All 31,200 steps of scenes/stack and scenes/pyramid_settled with the engine (40

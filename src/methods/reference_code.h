@@ -1,13 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#pragma once
-#include "methods/reference.h"
-#include "nets/nets.h"
+/* Interior points with a sparse direct solve over the bodies (methods/block_lu.h), run to the end.
+
+   1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
+      sliding) are those of a solution, a linear solve finds it (polish): nearly always at rest.
+   2. Else the central path is followed to the solution (reference_path.h), also where it turns back.
+   3. If the path is lost, again from another distance and with another stiffness.
+
+   The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
+   on the start. Included once by each reference_*.c. */
+#include "methods/reference_newton.h"
+#include "methods/reference_path.h"
 
 /* Contact states by the next visit of sequential impulses: open, sticking or sliding. For given states the contact
    problem is linear. Where contacts are redundant it has no or many solutions; a large stiffness keeps it regular, and
    has no effect once the impulses stay (the proximal point method). Impulses of redundant contacts may have far to go
    at tiny velocities, until one of them slides or opens: visits with more than the effective mass look ahead. */
-#include "methods/reference_newton.h"
 
 enum { POLISH_STEPS = 3 };
 
@@ -15,31 +22,31 @@ static const double stiff = 1e12; /* times the effective mass */
 
 /* ahead: of the visit, times the effective mass. */
 static void guess_states(Reference *r, double ahead) {
-    const Vec4 zero = reference_all(0), factor = reference_all(ahead > 1 ? ahead : stiff);
+    const Vec4 zero = all4(0), factor = all4(ahead > 1 ? ahead : stiff);
     momentum_left(r);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const Vec4 l = g->normal - ahead * g->mass_normal * g->gap, t = g->tangent - ahead * g->mass_tangent * g->slip;
-        const ReferenceMask closed = (ReferenceMask)(l > zero), up = closed & (ReferenceMask)(t > g->friction * l),
-                            down = closed & (ReferenceMask)(t < -g->friction * l), sticks = closed & ~up & ~down;
+        const Mask4 closed = (Mask4)(l > zero), up = closed & (Mask4)(t > g->friction * l),
+                    down = closed & (Mask4)(t < -g->friction * l), sticks = closed & ~up & ~down;
         const Vec4 stiff_n = factor * g->mass_normal, stiff_t = factor * g->mass_tangent;
-        g->s = reference_choose(up, g->friction, reference_choose(down, -g->friction, zero));
-        g->dn = reference_choose(closed, stiff_n, zero);
-        g->dt = reference_choose(sticks, stiff_t, zero);
-        g->rn = reference_choose(closed, -stiff_n * g->gap, -g->normal);
-        g->rt = reference_choose(sticks, -stiff_t * g->slip, g->s * g->normal - g->tangent);
-        push(&r->pairs[REFERENCE_PAIRS * i], g->normal + g->rn, g->tangent + g->rt + g->s * g->rn, r->changes);
+        g->s = choose4(up, g->friction, choose4(down, -g->friction, zero));
+        g->dn = choose4(closed, stiff_n, zero);
+        g->dt = choose4(sticks, stiff_t, zero);
+        g->rn = choose4(closed, -stiff_n * g->gap, -g->normal);
+        g->rt = choose4(sticks, -stiff_t * g->slip, g->s * g->normal - g->tangent);
+        push(&r->pairs[BLOCK_PAIRS * i], g->normal + g->rn, g->tangent + g->rt + g->s * g->rn, r->changes);
     }
 }
 
 static void take_impulses(Reference *r) {
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
-        const Relative change = relative(g, &r->pairs[REFERENCE_PAIRS * i], r->changes);
+        const Relative change = relative(&g->rows, &r->pairs[BLOCK_PAIRS * i], r->changes);
         const Vec4 by = g->rn - g->dn * change.normal;
         const Vec4 tangent = g->tangent + g->rt + g->s * by - g->dt * change.tangent;
-        g->normal = reference_larger(g->normal + by, reference_all(0));
-        g->tangent = reference_clamp(tangent, g->friction * g->normal);
+        g->normal = larger4(g->normal + by, all4(0));
+        g->tangent = clamp_between(tangent, g->friction * g->normal);
     }
 }
 
@@ -56,17 +63,6 @@ static double polish(Reference *r, double aim, double ahead) {
     }
     return miss;
 }
-
-/* Interior points with a sparse direct solve over the bodies (methods/block_lu.h), run to the end.
-
-   1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
-      sliding) are those of a solution, a linear solve finds it (reference_active.h): nearly always at rest.
-   2. Else the central path is followed to the solution (reference_path.h), also where it turns back (reference_arc.h).
-   3. If the path is lost, again from another distance and with another stiffness.
-
-   The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
-   on the start. */
-#include "methods/reference_path.h"
 
 enum { START_SWEEPS = 2, FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
 

@@ -1,8 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#pragma once
-#include "methods/reference.h"
-#include "nets/nets.h"
-
 /* Interior points on the way to the solution. A point on the central path of the target c (m/s)^2 satisfies
 
        M v = J_n^T l + J_t^T t,   z = J_n v + free,   q - p = J_t v + free,
@@ -13,7 +9,10 @@
    may be redundant: a tiny compliance around the current impulses keeps the system regular and does not move its
    solution. Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); Friedlander,
    Orban, "A Primal-Dual Regularized Interior-Point Method for Convex Quadratic Programs" (2012). */
+#pragma once
+#include "methods/reference.h"
 #include "methods/reference_newton.h"
+#include "nets/nets.h"
 
 /* m/s: gaps between the velocities and z, p, q that are rounding errors. Corrected, they would throw z, p, q about. */
 static const double rounding = 1e-12;
@@ -21,7 +20,7 @@ static const double inside = 0.5, calm = 0.01; /* of the start: offset from the 
 static const double bound_share = 0.995;       /* of the way to the nearest bound that a step may go */
 static const double least_shrink = 1e-4;       /* of the target, in a step */
 
-static Vec4 beyond_rounding(Vec4 x) { return x - reference_clamp(x, reference_all(rounding)); }
+static Vec4 beyond_rounding(Vec4 x) { return x - clamp_between(x, all4(rounding)); }
 
 static void begin(Reference *r, double scale) {
     double rms;
@@ -31,18 +30,18 @@ static void begin(Reference *r, double scale) {
     }
     apply(r);
     missed(r, &rms);
-    const Vec4 off = reference_all(inside * (scale * rms + calm)), zero = reference_all(0), one = reference_all(1);
+    const Vec4 off = all4(inside * (scale * rms + calm)), zero = all4(0), one = all4(1);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         ReferencePoint *now = &g->now;
-        const ReferenceMask used = (ReferenceMask)(g->weight > zero);
-        now->l = reference_choose(used, g->normal + off * g->mass_normal, one);
-        now->t = reference_clamp(g->tangent, 0.9 * g->friction * now->l);
+        const Mask4 used = (Mask4)(g->weight > zero);
+        now->l = choose4(used, g->normal + off * g->mass_normal, one);
+        now->t = clamp_between(g->tangent, 0.9 * g->friction * now->l);
         now->u = g->friction * now->l - now->t;
         now->w = g->friction * now->l + now->t;
-        now->z = reference_choose(used, reference_larger(g->gap, zero) + off, one);
-        now->p = reference_choose(used, reference_larger(-g->slip, zero) + off, one);
-        now->q = reference_choose(used, reference_larger(g->slip, zero) + off, one);
+        now->z = choose4(used, larger4(g->gap, zero) + off, one);
+        now->p = choose4(used, larger4(-g->slip, zero) + off, one);
+        now->q = choose4(used, larger4(g->slip, zero) + off, one);
     }
 }
 
@@ -80,7 +79,7 @@ static inline void push_right_side(Reference *r, int i) {
     const ReferencePoint *now = &g->now;
     g->rn = (g->wanted_n - now->l * g->missing_normal) * g->over_z;
     g->rt = g->dt * (g->wanted_q / now->w - g->wanted_p / now->u - g->missing_tangent);
-    push(&r->pairs[REFERENCE_PAIRS * i], now->l + g->rn, now->t + g->rt + g->s * g->rn, r->changes);
+    push(&r->pairs[BLOCK_PAIRS * i], now->l + g->rn, now->t + g->rt + g->s * g->rn, r->changes);
 }
 
 /* The changes of a group by the last solve into `step`. */
@@ -97,29 +96,28 @@ static inline void direction(ReferenceGroup *g, Relative change, Vec4 soft) {
 }
 
 static inline Vec4 nearest_bound(const ReferencePoint *now, const ReferencePoint *by) {
-    const Vec4 normal = reference_larger(-by->l / now->l, -by->z / now->z);
-    const Vec4 up = reference_larger(-by->u / now->u, -by->p / now->p);
-    const Vec4 down = reference_larger(-by->w / now->w, -by->q / now->q);
-    return reference_larger(normal, reference_larger(up, down));
+    const Vec4 normal = larger4(-by->l / now->l, -by->z / now->z);
+    const Vec4 up = larger4(-by->u / now->u, -by->p / now->p);
+    const Vec4 down = larger4(-by->w / now->w, -by->q / now->q);
+    return larger4(normal, larger4(up, down));
 }
 
 /* The share of `step` that leads to the nearest bound. */
 static double room_for(Vec4 most) {
     double worst = 1e-9;
-    for (int k = 0; k < REFERENCE_SLOTS; k++) worst = most[k] > worst ? most[k] : worst;
+    for (int k = 0; k < BLOCK_SLOTS; k++) worst = most[k] > worst ? most[k] : worst;
     return 1 / worst;
 }
 
 static double step_room(const Reference *r) {
-    Vec4 most = reference_all(0);
-    for (int i = 0; i < r->group_count; i++)
-        most = reference_larger(nearest_bound(&r->groups[i].now, &r->groups[i].step), most);
+    Vec4 most = all4(0);
+    for (int i = 0; i < r->group_count; i++) most = larger4(nearest_bound(&r->groups[i].now, &r->groups[i].step), most);
     return room_for(most);
 }
 
 /* A Newton step towards products of the target, into `step`: the first solve with a matrix, which factorizes it, */
 static void begin_step(Reference *r, double target) {
-    const Vec4 soft = reference_all(1 / r->stiffest);
+    const Vec4 soft = all4(1 / r->stiffest);
     momentum_left(r);
     for (int i = 0; i < r->group_count; i++) {
         linearise(&r->groups[i], soft);
@@ -141,13 +139,13 @@ static void begin_next_step(Reference *r, double target, double second) {
 
 /* and the solve. Returns the share of the step that leads to the nearest bound. */
 static double end_step(Reference *r) {
-    const Vec4 soft = reference_all(1 / r->stiffest);
-    Vec4 most = reference_all(0);
+    const Vec4 soft = all4(1 / r->stiffest);
+    Vec4 most = all4(0);
     solve_changes(r);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
-        direction(g, relative(g, &r->pairs[REFERENCE_PAIRS * i], r->changes), soft);
-        most = reference_larger(nearest_bound(&g->now, &g->step), most);
+        direction(g, relative(&g->rows, &r->pairs[BLOCK_PAIRS * i], r->changes), soft);
+        most = larger4(nearest_bound(&g->now, &g->step), most);
     }
     return room_for(most);
 }
@@ -158,17 +156,17 @@ static inline Vec4 products(const ReferenceGroup *g, Vec4 normal, Vec4 up, Vec4 
 
 /* The mean of the products, over their masses: the target that the point is nearest to. */
 static double mean_product(const Reference *r) {
-    Vec4 sum = reference_all(0);
+    Vec4 sum = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferencePoint *now = &r->groups[i].now;
         sum += products(&r->groups[i], now->l * now->z, now->u * now->p, now->w * now->q);
     }
-    return reference_sum(sum) / (3 * r->contact_count);
+    return sum4(sum) / (3 * r->contact_count);
 }
 
 /* The same after a share of the step. */
 static double mean_product_after(const Reference *r, double share) {
-    Vec4 sum = reference_all(0);
+    Vec4 sum = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now, *by = &g->step;
@@ -176,11 +174,11 @@ static double mean_product_after(const Reference *r, double share) {
                         (now->u + share * by->u) * (now->p + share * by->p),
                         (now->w + share * by->w) * (now->q + share * by->q));
     }
-    return reference_sum(sum) / (3 * r->contact_count);
+    return sum4(sum) / (3 * r->contact_count);
 }
 
 static inline void move_point(ReferenceGroup *g, double share) {
-    const Vec4 half = reference_all(0.5);
+    const Vec4 half = all4(0.5);
     ReferencePoint *now = &g->now;
     const ReferencePoint *by = &g->step;
     now->l += share * by->l;
@@ -188,29 +186,29 @@ static inline void move_point(ReferenceGroup *g, double share) {
     now->p += share * by->p;
     now->q += share * by->q;
     const Vec4 u = now->u + share * by->u, w = now->w + share * by->w, both = 2 * g->friction * now->l;
-    const ReferenceMask slides_up = (ReferenceMask)(u < w); /* the smaller one is precise */
-    now->u = reference_choose(slides_up, u, both - w);
-    now->w = reference_choose(slides_up, both - u, w);
+    const Mask4 slides_up = (Mask4)(u < w); /* the smaller one is precise */
+    now->u = choose4(slides_up, u, both - w);
+    now->w = choose4(slides_up, both - u, w);
     now->t = half * (now->w - now->u);
 }
 
 static void move(Reference *r, double share) {
-    for (int k = 0; k < r->lu.count; k++) r->moved[k] += share * r->changes[k];
+    for (int k = 0; k < r->graph.lu.count; k++) r->moved[k] += share * r->changes[k];
     for (int i = 0; i < r->group_count; i++) {
         move_point(&r->groups[i], share);
-        look_at(&r->groups[i], &r->pairs[REFERENCE_PAIRS * i], r->moved);
+        look_at(&r->groups[i], &r->pairs[BLOCK_PAIRS * i], r->moved);
     }
 }
 
 static void keep(Reference *r, int place, double target) {
     for (int i = 0; i < r->group_count; i++) r->kept[place].points[i] = r->groups[i].now;
-    memcpy(r->kept[place].moved, r->moved, ((size_t)r->lu.count + 1) * sizeof *r->moved);
+    memcpy(r->kept[place].moved, r->moved, ((size_t)r->graph.lu.count + 1) * sizeof *r->moved);
     r->kept[place].target = target;
 }
 
 static double return_to(Reference *r, int place) {
     for (int i = 0; i < r->group_count; i++) r->groups[i].now = r->kept[place].points[i];
-    memcpy(r->moved, r->kept[place].moved, ((size_t)r->lu.count + 1) * sizeof *r->moved);
+    memcpy(r->moved, r->kept[place].moved, ((size_t)r->graph.lu.count + 1) * sizeof *r->moved);
     look(r);
     return r->kept[place].target;
 }
@@ -218,8 +216,8 @@ static double return_to(Reference *r, int place) {
 /* The sign of the determinant, from the diagonal of the factors: it changes where the path turns back. */
 static bool goes_forward(const Reference *r) {
     bool forward = true;
-    for (int k = 0; k < r->lu.count; k++)
-        for (int c = 0; c < 3; c++) forward ^= r->lu.blocks[k].column[c][c] < 0;
+    for (int k = 0; k < r->graph.lu.count; k++)
+        for (int c = 0; c < 3; c++) forward ^= r->graph.lu.blocks[k].column[c][c] < 0;
     return forward;
 }
 
@@ -248,7 +246,7 @@ typedef struct Tracker {
 
 /* Product of two directions, per bound. */
 static double product(const Reference *r, bool with_itself) {
-    Vec4 sum = reference_all(0);
+    Vec4 sum = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferencePoint *now = &r->groups[i].now, *x = &r->groups[i].step;
         const ReferencePoint *y = with_itself ? x : &r->groups[i].along;
@@ -256,7 +254,7 @@ static double product(const Reference *r, bool with_itself) {
         const Vec4 up = x->u * y->u / (now->u * now->u) + x->p * y->p / (now->p * now->p);
         sum += normal + up + x->w * y->w / (now->w * now->w) + x->q * y->q / (now->q * now->q);
     }
-    return reference_sum(sum) / (3 * r->contact_count);
+    return sum4(sum) / (3 * r->contact_count);
 }
 
 static ReferencePoint combine(const ReferencePoint *x, double share, const ReferencePoint *y) {
@@ -267,7 +265,7 @@ static ReferencePoint combine(const ReferencePoint *x, double share, const Refer
 /* Newton's step at the present target into `along`, and the derivative by the logarithm of the target into `step`.
    Returns the square of the former's length. */
 static double find_directions(Reference *r, double target) {
-    const size_t bodies = (size_t)r->lu.count;
+    const size_t bodies = (size_t)r->graph.lu.count;
     begin_step(r, target);
     end_step(r);
     const double squared = product(r, true);
@@ -295,7 +293,7 @@ static double grown(double target, double by) { return fabs(by) <= 700 ? target 
 static double advance(Tracker *tracker, double by) {
     Reference *r = tracker->r;
     for (int i = 0; i < r->group_count; i++) r->groups[i].step = combine(&r->groups[i].along, by, &r->groups[i].step);
-    for (int k = 0; k < r->lu.count; k++) r->changes[k] = r->first_changes[k] + by * r->changes[k];
+    for (int k = 0; k < r->graph.lu.count; k++) r->changes[k] = r->first_changes[k] + by * r->changes[k];
     const double limit = arc_share * step_room(r), share = limit < 1 ? limit : 1;
     move(r, share);
     tracker->target = grown(tracker->target, share * by);
@@ -369,16 +367,16 @@ static void keep_best(Reference *r, double miss) {
 
 /* The impulses that the point stands for: bounds that it is close to are reached. Keeps them if they are the best. */
 static void answer(Reference *r) {
-    const Vec4 zero = reference_all(0);
+    const Vec4 zero = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now;
-        const ReferenceMask closed = (ReferenceMask)(now->l * g->inverse_normal > now->z);
-        g->normal = reference_choose(closed, now->l, zero);
+        const Mask4 closed = (Mask4)(now->l * g->inverse_normal > now->z);
+        g->normal = choose4(closed, now->l, zero);
         const Vec4 bound = g->friction * g->normal;
-        const ReferenceMask up = (ReferenceMask)(now->u * g->inverse_tangent < now->p),
-                            down = (ReferenceMask)(now->w * g->inverse_tangent < now->q);
-        g->tangent = reference_choose(up, bound, reference_choose(down, -bound, reference_clamp(now->t, bound)));
+        const Mask4 up = (Mask4)(now->u * g->inverse_tangent < now->p),
+                    down = (Mask4)(now->w * g->inverse_tangent < now->q);
+        g->tangent = choose4(up, bound, choose4(down, -bound, clamp_between(now->t, bound)));
     }
     Vec4 *moved = r->moved;
     r->moved = r->changes;
@@ -404,13 +402,13 @@ static double centre_step(Reference *r, double mean) {
 
 /* m/s, over effective masses. */
 static double largest_impulse(const Reference *r) {
-    Vec4 most = reference_all(0);
+    Vec4 most = all4(0);
     for (int i = 0; i < r->group_count; i++) {
         const ReferenceGroup *g = &r->groups[i];
-        most = reference_larger(g->weight * g->now.l * g->inverse_normal, most);
+        most = larger4(g->weight * g->now.l * g->inverse_normal, most);
     }
     double largest = 0;
-    for (int k = 0; k < REFERENCE_SLOTS; k++) largest = most[k] > largest ? most[k] : largest;
+    for (int k = 0; k < BLOCK_SLOTS; k++) largest = most[k] > largest ? most[k] : largest;
     return largest;
 }
 
@@ -450,18 +448,18 @@ static double clamp(double x, double limit) { return x > limit ? limit : x < -li
 static double larger(double x, double y) { return x > y ? x : y; }
 
 /* One contact: first its normal impulse, then its tangent impulse. Returns the larger change. */
-static double visit(Reference *r, const ReferencePair *pair, ReferenceGroup *g, int slot) {
+static double visit(Reference *r, const BlockPair *pair, ReferenceGroup *g, int slot) {
     Vec4 *a = &r->moved[pair->a], *b = &r->moved[pair->b];
     const int k = slot % 2;
-    const double gap = g->free_normal[slot] + reference_sum(pair->normal[k] * between(pair, r->moved));
+    const double gap = g->free_normal[slot] + sum4(pair->normal[k] * between(pair, r->moved));
     const double normal = larger(g->normal[slot] - g->mass_normal[slot] * gap, 0), dn = normal - g->normal[slot];
-    *a += r->inverses[pair->a] * as_body_a(pair->normal[k] * reference_all(dn));
-    *b += r->inverses[pair->b] * (pair->normal[k] * reference_all(dn));
-    const double slip = g->free_tangent[slot] + reference_sum(pair->tangent[k] * between(pair, r->moved));
+    *a += r->graph.inverses[pair->a] * as_body_a(pair->normal[k] * all4(dn));
+    *b += r->graph.inverses[pair->b] * (pair->normal[k] * all4(dn));
+    const double slip = g->free_tangent[slot] + sum4(pair->tangent[k] * between(pair, r->moved));
     const double tangent = clamp(g->tangent[slot] - g->mass_tangent[slot] * slip, g->friction[slot] * normal);
     const double dt = tangent - g->tangent[slot];
-    *a += r->inverses[pair->a] * as_body_a(pair->tangent[k] * reference_all(dt));
-    *b += r->inverses[pair->b] * (pair->tangent[k] * reference_all(dt));
+    *a += r->graph.inverses[pair->a] * as_body_a(pair->tangent[k] * all4(dt));
+    *b += r->graph.inverses[pair->b] * (pair->tangent[k] * all4(dt));
     g->normal[slot] = normal;
     g->tangent[slot] = tangent;
     return larger(fabs(dn) * g->inverse_normal[slot], fabs(dt) * g->inverse_tangent[slot]);
@@ -470,9 +468,9 @@ static double visit(Reference *r, const ReferencePair *pair, ReferenceGroup *g, 
 static double sweep(Reference *r) {
     double most = 0;
     for (int i = 0; i < r->pair_count; i++)
-        for (int k = 0; k < r->pairs[i].count; k++) {
-            ReferenceGroup *group = &r->groups[i / REFERENCE_PAIRS];
-            const int slot = i % REFERENCE_PAIRS * 2 + k;
+        for (int k = 0; k < r->first[i + 1] - r->first[i]; k++) {
+            ReferenceGroup *group = &r->groups[i / BLOCK_PAIRS];
+            const int slot = i % BLOCK_PAIRS * 2 + k;
             if (!(group->weight[slot] > 0)) continue;
             const double change = visit(r, &r->pairs[i], group, slot);
             most = change > most || isnan(change) ? change : most;

@@ -1,65 +1,38 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The reference (methods/reference.h): packs a contact problem into groups of four contacts, solves it (reference_code.h),
+   measures the error of a method, and is a method itself. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/block_lu.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
+#include "methods/reference_parts.h"
 #include "methods/sweeps.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* Packs contact problems into groups of four contacts. */
-#include "methods/reference_parts.h"
-
-enum { NUMBERS = 7 }; /* arrays of one Vec4 for each body */
 
 /* Without friction, a cone this narrow: its inside is not empty. */
 static const double friction_min = 1e-12;
-/* kg, kg m^2: of what cannot move in one of its directions. */
-static const double mass_max = 1e20;
 
 void reference_free(Reference *r) {
-    block_lu_free(&r->lu);
-    void *arrays[] = {r->velocities, r->impulses, r->groups,  r->pairs,  r->bodies,
-                      r->nodes,      r->edges,    r->edge_of, r->points, r->numbers};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    block_graph_free(&r->graph);
+    free(r->memory.memory);
     *r = (Reference){0};
 }
 
 static bool reserve(Reference *r, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1, contacts = (size_t)problem->contact_count + 1;
-    const size_t pairs = contacts + REFERENCE_PAIRS, groups = pairs / REFERENCE_PAIRS + 1;
-    if (!array_reserve((void **)&r->velocities, &r->velocity_capacity, bodies, sizeof *r->velocities) ||
-        !array_reserve((void **)&r->impulses, &r->impulse_capacity, contacts, sizeof *r->impulses) ||
-        !array_reserve((void **)&r->groups, &r->group_capacity, groups, sizeof *r->groups) ||
-        !array_reserve((void **)&r->pairs, &r->pair_capacity, pairs, sizeof *r->pairs) ||
-        !array_reserve((void **)&r->bodies, &r->body_capacity, bodies, sizeof *r->bodies) ||
-        !array_reserve((void **)&r->nodes, &r->node_capacity, bodies, sizeof *r->nodes) ||
-        !array_reserve((void **)&r->edges, &r->edge_capacity, pairs, sizeof *r->edges) ||
-        !array_reserve((void **)&r->edge_of, &r->edge_of_capacity, pairs, sizeof *r->edge_of) ||
-        !array_reserve((void **)&r->points, &r->point_capacity, KEPT * groups, sizeof *r->points) ||
-        !array_reserve((void **)&r->numbers, &r->number_capacity, NUMBERS * bodies, sizeof *r->numbers))
-        return false;
-    Vec4 **arrays[NUMBERS] = {&r->masses,        &r->inverses,      &r->moved,        &r->changes,
-                              &r->first_changes, &r->kept[0].moved, &r->kept[1].moved};
-    for (size_t i = 0; i < NUMBERS; i++) *arrays[i] = r->numbers + i * bodies;
-    for (size_t i = 0; i < KEPT; i++) r->kept[i].points = r->points + i * groups;
-    return true;
-}
-
-/* Nodes are the moving bodies that touch something, in the order of the bodies. Returns their number. */
-static int number_bodies(Reference *r, const ContactProblem *problem) {
-    memset(r->nodes, 0, (size_t)problem->body_count * sizeof *r->nodes);
-    for (int i = 0; i < problem->contact_count; i++)
-        r->nodes[problem->contacts[i].a] = r->nodes[problem->contacts[i].b] = 1;
-    int count = 0;
-    for (int i = 0; i < problem->body_count; i++)
-        r->nodes[i] = r->nodes[i] && problem_body_moves(&problem->bodies[i]) ? count++ : -1;
-    return count;
+    const size_t pairs = contacts + BLOCK_PAIRS, groups = pairs / BLOCK_PAIRS + 1;
+    return block_graph_reserve(&r->graph, problem->body_count, problem->contact_count) &&
+           ARRAY_BLOCK_RESERVE(&r->memory, ARRAY_PART(r->velocities, bodies), ARRAY_PART(r->impulses, contacts),
+                               ARRAY_PART(r->groups, groups), ARRAY_PART(r->pairs, pairs), ARRAY_PART(r->first, pairs),
+                               ARRAY_PART(r->kept[0].points, groups), ARRAY_PART(r->kept[1].points, groups),
+                               ARRAY_PART(r->kept[0].moved, bodies), ARRAY_PART(r->kept[1].moved, bodies),
+                               ARRAY_PART(r->moved, bodies), ARRAY_PART(r->changes, bodies),
+                               ARRAY_PART(r->first_changes, bodies));
 }
 
 /* Pairs of one or two contacts, in the order of the problem. */
@@ -68,76 +41,27 @@ static void find_pairs(Reference *r, const ContactProblem *problem) {
     for (int i = 0; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         const bool same = i > 0 && contact[-1].a == contact->a && contact[-1].b == contact->b;
-        if (same && r->pairs[r->pair_count - 1].count == 1)
-            r->pairs[r->pair_count - 1].count++;
-        else
-            r->pairs[r->pair_count++] = (ReferencePair){.first = i, .count = 1};
+        if (same && r->first[r->pair_count - 1] == i - 1) continue;
+        r->graph.ends[r->pair_count] = (BlockEdge){contact->a, contact->b};
+        r->first[r->pair_count++] = i;
     }
-    r->group_count = (r->pair_count + REFERENCE_PAIRS - 1) / REFERENCE_PAIRS;
-    r->pairs[r->pair_count] = (ReferencePair){0};
+    r->first[r->pair_count] = problem->contact_count;
+    r->group_count = (r->pair_count + BLOCK_PAIRS - 1) / BLOCK_PAIRS;
 }
 
-static bool analyse(Reference *r, const ContactProblem *problem) {
-    const int count = number_bodies(r, problem);
-    find_pairs(r, problem);
-    int edges = 0;
-    for (int i = 0; i < r->pair_count; i++) {
-        const ContactPoint *contact = &problem->contacts[r->pairs[i].first];
-        const int a = r->nodes[contact->a], b = r->nodes[contact->b];
-        r->edge_of[i] = a >= 0 && b >= 0 ? edges : -1;
-        if (r->edge_of[i] >= 0) r->edges[edges++] = (BlockEdge){a, b};
-    }
-    return block_lu_analyse(&r->lu, count, r->edges, edges);
-}
-
-static double mass_of(float inverse) { return inverse > 0 ? 1 / (double)inverse : mass_max; }
-
-static void load_bodies(Reference *r, const ContactProblem *problem) {
-    const int count = r->lu.count;
-    for (int i = 0; i < problem->body_count; i++) {
-        if (r->nodes[i] < 0) continue;
-        const ProblemBody *body = &problem->bodies[i];
-        const int k = r->lu.position[r->nodes[i]];
-        const double mass = mass_of(body->inv_mass), inverse = (double)body->inv_mass;
-        r->bodies[k] = i;
-        r->masses[k] = (Vec4){mass, mass, mass_of(body->inv_inertia), 0};
-        r->inverses[k] = (Vec4){inverse, inverse, (double)body->inv_inertia, 0};
-    }
-    r->masses[count] = r->inverses[count] = r->moved[count] = r->changes[count] = (Vec4){0};
-    r->first_changes[count] = r->kept[0].moved[count] = r->kept[1].moved[count] = (Vec4){0};
-}
-
-/* The row of a direction at a contact point. */
-static Vec4 row_of(const ContactPoint *contact, double x, double y) {
-    return (Vec4){x, y, (double)contact->arm_b.x * y - (double)contact->arm_b.y * x,
-                  (double)contact->arm_a.y * x - (double)contact->arm_a.x * y};
-}
-
-static Vec4 relative_velocity(const ProblemBody *a, const ProblemBody *b) {
-    return (Vec4){(double)b->velocity.x - (double)a->velocity.x, (double)b->velocity.y - (double)a->velocity.y,
-                  (double)b->angular_velocity, (double)a->angular_velocity};
-}
-
-static void load_slot(ReferenceGroup *group, int slot, ReferencePair *pair, int k, const ContactProblem *problem) {
-    const ContactPoint *contact = &problem->contacts[pair->first + k];
-    const double x = (double)contact->normal.x, y = (double)contact->normal.y, friction = (double)contact->friction;
-    const Vec4 before = relative_velocity(&problem->bodies[contact->a], &problem->bodies[contact->b]);
-    pair->normal[k] = row_of(contact, x, y);
-    pair->tangent[k] = row_of(contact, y, -x);
-    group->normal_x[slot] = x;
-    group->normal_y[slot] = y;
-    group->normal_b[slot] = pair->normal[k][2];
-    group->normal_a[slot] = pair->normal[k][3];
-    group->tangent_b[slot] = pair->tangent[k][2];
-    group->tangent_a[slot] = pair->tangent[k][3];
+static void load_slot(ReferenceGroup *group, int slot, BlockPair *pair, int k, const ContactProblem *problem, int i) {
+    const ContactPoint *contact = &problem->contacts[i];
+    const double friction = (double)contact->friction;
+    const Vec4 before = block_pair_velocity(&problem->bodies[contact->a], &problem->bodies[contact->b]);
+    block_rows_load(&group->rows, slot, pair, k, contact->normal, contact->arm_a, contact->arm_b);
     group->weight[slot] = 1;
     group->mass_normal[slot] = (double)contact->mass_normal;
     group->mass_tangent[slot] = (double)contact->mass_tangent;
     group->inverse_normal[slot] = 1 / (double)contact->mass_normal;
     group->inverse_tangent[slot] = 1 / (double)contact->mass_tangent;
     group->friction[slot] = friction > friction_min ? friction : friction_min;
-    group->free_normal[slot] = reference_sum(pair->normal[k] * before) - (double)contact->bias;
-    group->free_tangent[slot] = reference_sum(pair->tangent[k] * before);
+    group->free_normal[slot] = sum4(pair->normal[k] * before) - (double)contact->bias;
+    group->free_tangent[slot] = sum4(pair->tangent[k] * before);
 }
 
 /* A slot that takes part in all operations and has no effect. */
@@ -147,65 +71,58 @@ static void clear_group(ReferenceGroup *group) {
     group->now = (ReferencePoint){.l = one, .u = one, .w = one, .z = one, .p = one, .q = one};
 }
 
+/* One that changes nothing, as all its bodies are fixed, keeps its cleared slots. */
 static void load_pair(Reference *r, int i, const ContactProblem *problem) {
-    ReferencePair *pair = &r->pairs[i];
-    const int fixed = r->lu.count, spare = block_lu_spare(&r->lu);
-    pair->a = pair->b = fixed;
-    pair->place = (BlockPlace){spare, spare};
-    if (i >= r->pair_count) return;
-    const ContactPoint *contact = &problem->contacts[pair->first];
-    const int node_a = r->nodes[contact->a], node_b = r->nodes[contact->b];
-    if (node_a < 0 && node_b < 0) return; /* no impulse changes anything */
-    if (node_a >= 0) pair->a = r->lu.position[node_a];
-    if (node_b >= 0) pair->b = r->lu.position[node_b];
-    if (r->edge_of[i] >= 0) pair->place = r->lu.places[r->edge_of[i]];
-    r->contact_count += pair->count;
-    for (int k = 0; k < pair->count; k++)
-        load_slot(&r->groups[i / REFERENCE_PAIRS], i % REFERENCE_PAIRS * 2 + k, pair, k, problem);
+    BlockPair *pair = &r->pairs[i];
+    if (!block_graph_place(&r->graph, i, pair)) return;
+    const int first = r->first[i], count = r->first[i + 1] - first;
+    r->contact_count += count;
+    for (int k = 0; k < count; k++)
+        load_slot(&r->groups[i / BLOCK_PAIRS], i % BLOCK_PAIRS * 2 + k, pair, k, problem, first + k);
 }
 
 bool reference_reserve(Reference *r, const ContactProblem *problem) {
-    return reserve(r, problem) && analyse(r, problem);
+    if (!reserve(r, problem)) return false;
+    find_pairs(r, problem);
+    return block_graph_load(&r->graph, problem, r->pair_count);
 }
 
-bool reference_load(Reference *r, const ContactProblem *problem) {
+/* The problem, without impulses. False when memory is short. */
+static bool load(Reference *r, const ContactProblem *problem) {
     if (!reference_reserve(r, problem)) return false;
-    load_bodies(r, problem);
+    const int32_t none = r->graph.lu.count, spare = block_lu_spare(&r->graph.lu);
+    Vec4 *const numbers[] = {r->moved, r->changes, r->first_changes, r->kept[0].moved, r->kept[1].moved};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) numbers[i][none] = (Vec4){0};
     r->contact_count = r->factorizations = r->attempts = 0;
     for (int i = 0; i < r->group_count; i++) clear_group(&r->groups[i]);
-    for (int i = 0; i < REFERENCE_PAIRS * r->group_count; i++) load_pair(r, i, problem);
+    for (int i = 0; i < BLOCK_PAIRS * r->group_count; i++)
+        r->pairs[i] = (BlockPair){.a = none, .b = none, .place = {spare, spare}};
+    for (int i = 0; i < r->pair_count; i++) load_pair(r, i, problem);
     return true;
 }
 
-void reference_start(Reference *r, const ContactProblem *problem, const ContactImpulse *start) {
+/* The warm start, or the given impulses, as `normal` and `tangent`. */
+static void set_start(Reference *r, const ContactProblem *problem, const ContactImpulse *given) {
     for (int i = 0; i < r->pair_count; i++)
-        for (int k = 0; k < r->pairs[i].count; k++) {
-            const ContactPoint *contact = &problem->contacts[r->pairs[i].first + k];
-            const ContactImpulse *given = start != NULL ? &start[r->pairs[i].first + k] : NULL;
-            ReferenceGroup *group = &r->groups[i / REFERENCE_PAIRS];
-            const int slot = i % REFERENCE_PAIRS * 2 + k;
-            group->normal[slot] = (double)(given != NULL ? given->normal : contact->warm_normal);
-            group->tangent[slot] = (double)(given != NULL ? given->tangent : contact->warm_tangent);
+        for (int x = r->first[i], slot = i % BLOCK_PAIRS * 2; x < r->first[i + 1]; x++, slot++) {
+            const ContactPoint *contact = &problem->contacts[x];
+            ReferenceGroup *group = &r->groups[i / BLOCK_PAIRS];
+            group->normal[slot] = (double)(given != NULL ? given[x].normal : contact->warm_normal);
+            group->tangent[slot] = (double)(given != NULL ? given[x].tangent : contact->warm_tangent);
         }
 }
 
-static void store_impulses(Reference *r, const ContactProblem *problem) {
+static void store(Reference *r, const ContactProblem *problem) {
     for (int i = 0; i < r->pair_count; i++)
-        for (int k = 0; k < r->pairs[i].count; k++) {
-            const ReferenceGroup *group = &r->groups[i / REFERENCE_PAIRS];
-            const int slot = i % REFERENCE_PAIRS * 2 + k, contact = r->pairs[i].first + k;
-            const double limit = (double)problem->contacts[contact].friction * group->normal[slot];
-            const double tangent = group->tangent[slot];
-            r->impulses[contact].normal = group->normal[slot];
-            r->impulses[contact].tangent = tangent > limit ? limit : tangent < -limit ? -limit : tangent;
+        for (int x = r->first[i], slot = i % BLOCK_PAIRS * 2; x < r->first[i + 1]; x++, slot++) {
+            const ReferenceGroup *group = &r->groups[i / BLOCK_PAIRS];
+            const double normal = group->normal[slot], tangent = group->tangent[slot];
+            const double limit = (double)problem->contacts[x].friction * normal;
+            r->impulses[x] = (ReferenceImpulse){normal, tangent > limit ? limit : tangent < -limit ? -limit : tangent};
         }
-}
-
-void reference_store(Reference *r, const ContactProblem *problem) {
-    store_impulses(r, problem);
     for (int i = 0; i < problem->body_count; i++) {
         const ProblemBody *body = &problem->bodies[i];
-        const Vec4 moved = r->moved[r->nodes[i] >= 0 ? r->lu.position[r->nodes[i]] : r->lu.count];
+        const Vec4 moved = r->moved[block_graph_position(&r->graph, i)];
         r->velocities[i] = (ReferenceVelocity){(double)body->velocity.x + moved[0], (double)body->velocity.y + moved[1],
                                                (double)body->angular_velocity + moved[2]};
     }
@@ -224,10 +141,10 @@ static const ReferenceKernels *kernels(const Reference *r) {
 static const double jammed = 2e4;
 
 static bool solve_scaled(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
-    if (!reference_load(r, problem)) return error_memory(error, "reference");
-    reference_start(r, problem, start);
+    if (!load(r, problem)) return error_memory(error, "reference");
+    set_start(r, problem, start);
     kernels(r)->run(r);
-    reference_store(r, problem);
+    store(r, problem);
     return true;
 }
 
@@ -261,8 +178,8 @@ void reference_round(const Reference *r, const ContactProblem *problem, ContactS
 
 bool reference_residual(Reference *r, const ContactProblem *problem, const ContactImpulse *impulses, double *residual,
                         Error *error) {
-    if (!reference_load(r, problem)) return error_memory(error, "reference");
-    reference_start(r, problem, impulses);
+    if (!load(r, problem)) return error_memory(error, "reference");
+    set_start(r, problem, impulses);
     *residual = kernels(r)->residual(r);
     return true;
 }
@@ -315,8 +232,7 @@ static void *create(const Settings *chosen, Error *error) {
     return reference;
 }
 
-static bool reference_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution,
-                                   Error *error) {
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     Reference *reference = state;
     if (!reference_solve(reference, problem, NULL, error)) return false;
     reference_round(reference, problem, solution);
@@ -338,5 +254,5 @@ const ContactSolverKind solver_reference = {
                     .role = METHOD_REFERENCE,
                     .stability_place = 6},
     .create = create,
-    .solve = reference_solver_solve,
+    .solve = solve,
     .destroy = destroy};

@@ -27,13 +27,7 @@ typedef struct RelationRow {
 } RelationRow;
 
 void relation_view_free(RelationView *view) {
-    free(view->bodies);
-    free(view->pair_inputs);
-    free(view->body_inputs);
-    free(view->changed);
-    free(view->warmed);
-    free(view->receivers);
-    free(view->rows);
+    free(view->arrays.memory);
     *view = (RelationView){0};
 }
 
@@ -260,15 +254,10 @@ static void fill_body(const RelationView *view, const ContactProblem *problem, i
 
 static bool reserve(RelationView *view, const ContactProblem *problem) {
     const size_t bodies = (size_t)problem->body_count + 1, rows = 2 * (size_t)problem->contact_count + 1;
-    return array_reserve((void **)&view->bodies, &view->body_capacity, bodies, sizeof *view->bodies) &&
-           array_reserve((void **)&view->changed, &view->changed_capacity, bodies, sizeof *view->changed) &&
-           array_reserve((void **)&view->warmed, &view->warmed_capacity, bodies, sizeof *view->warmed) &&
-           array_reserve((void **)&view->receivers, &view->receiver_capacity, bodies, sizeof *view->receivers) &&
-           array_reserve((void **)&view->rows, &view->row_capacity, rows, sizeof *view->rows) &&
-           array_reserve((void **)&view->pair_inputs, &view->pair_capacity, rows * RELATION_PAIR_INPUTS,
-                         sizeof *view->pair_inputs) &&
-           array_reserve((void **)&view->body_inputs, &view->input_capacity, bodies * RELATION_BODY_INPUTS,
-                         sizeof *view->body_inputs);
+    return ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->bodies, bodies), ARRAY_PART(view->changed, bodies),
+                               ARRAY_PART(view->warmed, bodies), ARRAY_PART(view->receivers, bodies),
+                               ARRAY_PART(view->rows, rows), ARRAY_PART(view->pair_inputs, rows * RELATION_PAIR_INPUTS),
+                               ARRAY_PART(view->body_inputs, bodies * RELATION_BODY_INPUTS));
 }
 
 bool relation_view_make(RelationView *view, const ContactProblem *problem, const BodyVelocity *engine,

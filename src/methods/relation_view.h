@@ -15,6 +15,7 @@
    normal the two touch: the centre of the ground, ten metres below, says nothing. Mass is the receiver's share of the
    inverse masses, which is all that velocities depend on. */
 #pragma once
+#include "base/base.h"
 #include "engine/engine.h"
 
 #include <stddef.h>
@@ -55,8 +56,7 @@ typedef struct RelationView {
     BodyVelocity *warmed; /* [bodies of the problem] velocities after the impulses of the step before */
     int *receivers;       /* [bodies of the problem] index in bodies, or -1 */
     struct RelationRow *rows;
-    size_t body_capacity, pair_capacity, input_capacity, changed_capacity, warmed_capacity, receiver_capacity,
-        row_capacity;
+    ArrayBlock arrays;
 } RelationView;
 
 void relation_view_free(RelationView *view);

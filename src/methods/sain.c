@@ -1,4 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Simulator-augmented interaction networks. The engine solves each step with 10 sweeps; then a network corrects the
+   velocity and the spin of each body that touches another:
+
+       e_rs = relation(r, s),   v_r = v_r(engine) + scale_r * object(r, sum over s of e_rs)
+
+   for each receiver r and each sender s that touches it (methods/relation_view.h). It is trained on the converged
+   solution minus the engine's (learning/sain_training.h). Impulses, the warm start of the next step, stay
+   those of the engine. Two ablations have networks of their own in the same file: engine=off sees the velocities before
+   the step and predicts their whole change, without impulses (an interaction network); engine=shuffled sees, and
+   corrects, what the engine did to another body. Source: Ajay, Bauza, Wu, Fazeli, Tenenbaum, Rodriguez, Kaelbling,
+   "Combining Physical Simulators and Object-Based Networks for Control" (2019), arXiv 1904.06580. Their network
+   corrects poses of two pushed discs at the rate of a controller; here velocities, as positions follow from them.
+
+   A body whose inputs are beyond those of the training data keeps what the engine did; without an engine its inputs are
+   moved to the ends of their ranges. An answer that is NaN, infinite or larger than in training is discarded.
+
+   Fails where a correction depends on bodies further away: a message crosses one contact in a step, an impact the whole
+   stack. Corrections are no impulses: they create momentum, and may push boxes into each other. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "engine/engine.h"
@@ -38,29 +56,19 @@ void relation_networks_destroy(RelationNetworks *networks) {
 }
 
 void relation_answers_free(RelationAnswers *answers) {
-    free(answers->outputs);
-    free(answers->known);
-    free(answers->effects);
-    free(answers->inputs);
-    free(answers->columns);
-    free(answers->scratch);
+    free(answers->arrays.memory);
     *answers = (RelationAnswers){0};
 }
 
 static bool reserve(RelationAnswers *answers, const RelationNetwork *network, const RelationView *view) {
     const size_t bodies = (size_t)view->body_count + 1, rows = (size_t)view->row_count + 1,
                  relation = network_batch_scratch(network->relation), object = network_batch_scratch(network->object);
-    return array_reserve((void **)&answers->outputs, &answers->output_capacity, bodies * RELATION_OUTPUTS,
-                         sizeof(float)) &&
-           array_reserve((void **)&answers->known, &answers->known_capacity, bodies, sizeof(bool)) &&
-           array_reserve((void **)&answers->effects, &answers->effect_capacity, rows * RELATION_EFFECTS,
-                         sizeof(float)) &&
-           array_reserve((void **)&answers->inputs, &answers->input_capacity, bodies * RELATION_OBJECT_INPUTS,
-                         sizeof(float)) &&
-           array_reserve((void **)&answers->columns, &answers->column_capacity, bodies * RELATION_OUTPUTS,
-                         sizeof(float)) &&
-           array_reserve((void **)&answers->scratch, &answers->scratch_capacity, relation > object ? relation : object,
-                         sizeof(float));
+    return ARRAY_BLOCK_RESERVE(&answers->arrays, ARRAY_PART(answers->outputs, bodies * RELATION_OUTPUTS),
+                               ARRAY_PART(answers->known, bodies),
+                               ARRAY_PART(answers->effects, rows * RELATION_EFFECTS),
+                               ARRAY_PART(answers->inputs, bodies * RELATION_OBJECT_INPUTS),
+                               ARRAY_PART(answers->columns, bodies * RELATION_OUTPUTS),
+                               ARRAY_PART(answers->scratch, relation > object ? relation : object));
 }
 
 /* A NaN counts as outside, and is moved to the lower end. */
@@ -119,7 +127,7 @@ bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, R
 
 /* Files of sain: .npz with version, kind ("sain"), command, and as float32 for each form F = on, off, shuffled:
    F_pair_weights and F_body_weights, weights and biases of the relation and the object network, each as one vector
-   (network_gradient.h); offsets and scales of their inputs, F_pair_offset, F_pair_scale, F_body_offset, F_body_scale;
+   (nets/nets.h); offsets and scales of their inputs, F_pair_offset, F_pair_scale, F_body_offset, F_body_scale;
    ranges, F_pair_low, F_pair_high, F_body_low, F_body_high; F_limit. */
 
 #define KIND "sain"
@@ -187,25 +195,6 @@ bool relation_networks_read(RelationNetworks *networks, const char *path, Error 
     return ok;
 }
 
-/* Simulator-augmented interaction networks. The engine solves each step with 10 sweeps; then a network corrects the
-   velocity and the spin of each body that touches another:
-
-       e_rs = relation(r, s),   v_r = v_r(engine) + scale_r * object(r, sum over s of e_rs)
-
-   for each receiver r and each sender s that touches it (methods/relation_view.h). It is trained on the converged
-   solution minus the engine's (learning/sain_training.h). Impulses, the warm start of the next step, stay
-   those of the engine. Two ablations have networks of their own in the same file: engine=off sees the velocities before
-   the step and predicts their whole change, without impulses (an interaction network); engine=shuffled sees, and
-   corrects, what the engine did to another body. Source: Ajay, Bauza, Wu, Fazeli, Tenenbaum, Rodriguez, Kaelbling,
-   "Combining Physical Simulators and Object-Based Networks for Control" (2019), arXiv 1904.06580. Their network
-   corrects poses of two pushed discs at the rate of a controller; here velocities, as positions follow from them.
-
-   A body whose inputs are beyond those of the training data keeps what the engine did; without an engine its inputs are
-   moved to the ends of their ranges. An answer that is NaN, infinite or larger than in training is discarded.
-
-   Fails where a correction depends on bodies further away: a message crosses one contact in a step, an impact the whole
-   stack. Corrections are no impulses: they create momentum, and may push boxes into each other. */
-
 typedef struct Sain {
     RelationNetworks own; /* empty if the network is another's */
     const RelationNetwork *network;
@@ -217,11 +206,13 @@ typedef struct Sain {
 } Sain;
 
 static const SettingSpec settings[] = {
-    {"network", "file of the trained networks (default: the scene's)"},
-    {"engine", "on|off|shuffled: what the network knows of the engine: all, nothing, or what it did to another body "
-               "(default: on)"},
-    {"net", "on|off: off is the engine alone (default: on)"},
-    {NULL, NULL}};
+    {"network", "file of the trained networks (default: the scene's)", SETTING_OWN},
+    {"engine",
+     "on|off|shuffled: what the network knows of the engine: all, nothing, or what it did to another body (default: "
+     "on)",
+     SETTING_OWN},
+    {"net", "on|off: off is the engine alone (default: on)", SETTING_BOOL(Sain, predicts)},
+    {0}};
 
 static void destroy(void *state) {
     Sain *solver = state;
@@ -262,14 +253,10 @@ static bool read_form(const Settings *chosen, RelationForm *form, Error *error) 
 }
 
 static void *create(const Settings *chosen, Error *error) {
-    const char *path = settings_get(chosen, "network");
-    if (path == NULL) {
-        error_input(error, "sain", "the scene names no network for it: use sain:network=FILE");
-        return NULL;
-    }
-    Sain *solver = make(error);
+    const char *path = method_network(chosen, NULL, "sain", error);
+    Sain *solver = path != NULL ? make(error) : NULL;
     if (solver == NULL) return NULL;
-    if (read_form(chosen, &solver->form, error) && settings_bool(chosen, "net", &solver->predicts, error) &&
+    if (read_form(chosen, &solver->form, error) && settings_read(chosen, settings, solver, error) &&
         relation_networks_read(&solver->own, path, error)) {
         solver->network = &solver->own.forms[solver->form];
         return solver;
@@ -285,13 +272,6 @@ bool sain_make(ContactSolver *solver, const RelationNetwork *network, RelationFo
     state->form = form;
     *solver = (ContactSolver){&solver_sain, state};
     return true;
-}
-
-/* Without an engine: velocities before the step, no impulses. */
-static void forget_engine(const ContactProblem *problem, ContactSolution *solution) {
-    for (int i = 0; i < problem->body_count; i++)
-        solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
-    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
 }
 
 /* All are finite and within the limits of the training data. */
@@ -330,7 +310,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     Sain *solver = state;
     const bool alone = solver->form == RELATION_ALONE && solver->predicts;
     if (alone)
-        forget_engine(problem, solution);
+        contact_solution_begin(problem, solution);
     else if (!solver_engine.solve(solver->engine, problem, solution, error))
         return false;
     if (!solver->predicts) return true;

@@ -1,5 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The prediction of a slot network (nets/kinds.h) for a contact problem. */
+/* A network for the impacts of one scene. It sees all bodies and contacts at once and predicts where the impulses will
+   end; a few sweeps then correct the prediction. Sweeps alone carry a shock through a stack one contact per sweep.
+
+   The network is used only if the residual of the warm start reaches the gate and the step resembles the
+   training data: the same mass of the bomb, and all inputs within their range. All other steps are solved as by
+   momentum (momentum.c). The residual after the sweeps correlates with the error, also on held-out launches: so few
+   sweeps follow at first, and more if the residual is still large. Impulses act on both bodies alike and sweeps clamp
+   them to their cones, so momentum is conserved whatever the network predicts. Source: a warm start by a network for
+   the whole problem, as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization
+   Algorithms" (2024), which also trains through the iterations that follow. Fails on other scenes, which have other
+   slots; it refuses them. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -16,34 +26,24 @@ typedef struct ScenePrediction {
     float inputs[4 * SLOT_WIDTH_MAX], first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX];
     float *outputs;         /* [2 slots present] */
     ContactImpulse *change; /* [contact_count] from the warm start to the prediction */
-    size_t output_capacity, change_capacity;
+    ArrayBlock arrays;
 } ScenePrediction;
 
 static const float quarter_turn = 1.57079632679489662f; /* rad */
 
 void scene_view_free(SceneView *view) {
-    free(view->contacts);
-    free(view->base);
-    free(view->state);
-    free(view->ones);
-    free(view->warm);
-    free(view->present);
-    free(view->impulses);
+    free(view->arrays.memory);
     *view = (SceneView){0};
 }
 
-static bool scene_view_reserve(SceneView *view, const ContactProblem *problem) {
+static bool reserve_view(SceneView *view, const ContactProblem *problem) {
     const size_t contacts = (size_t)problem->contact_count + 1, bodies = (size_t)problem->body_count;
-    if (!array_reserve((void **)&view->state, &view->state_capacity, bodies * SLOT_BODY_NUMBERS, sizeof(float)) ||
-        !array_reserve((void **)&view->warm, &view->warm_capacity, 2 * contacts, sizeof(float)) ||
-        !array_reserve((void **)&view->present, &view->present_capacity, contacts, sizeof(int32_t)) ||
-        !array_reserve((void **)&view->impulses, &view->impulse_capacity, 2 * contacts, sizeof(int32_t)) ||
-        !array_reserve((void **)&view->contacts, &view->contact_capacity, contacts, sizeof(int32_t)) ||
-        !array_reserve((void **)&view->base, &view->base_capacity, contacts, sizeof *view->base))
+    if (!ARRAY_BLOCK_RESERVE(&view->arrays, ARRAY_PART(view->state, bodies * SLOT_BODY_NUMBERS),
+                             ARRAY_PART(view->ones, contacts), ARRAY_PART(view->warm, 2 * contacts),
+                             ARRAY_PART(view->present, contacts), ARRAY_PART(view->impulses, 2 * contacts),
+                             ARRAY_PART(view->contacts, contacts), ARRAY_PART(view->base, contacts)))
         return false;
-    const size_t had = view->ones_capacity;
-    if (!array_reserve((void **)&view->ones, &view->ones_capacity, contacts, sizeof(float))) return false;
-    for (size_t i = had; i < view->ones_capacity; i++) view->ones[i] = 1;
+    for (size_t i = 0; i < contacts; i++) view->ones[i] = 1;
     return true;
 }
 
@@ -113,7 +113,7 @@ static void load_contact(SceneView *view, const SlotNetwork *network, const Cont
 }
 
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
-    if (!scene_view_reserve(view, problem)) return false;
+    if (!reserve_view(view, problem)) return false;
     const ProblemBody *bomb = &problem->bodies[network->bomb];
     load_body(view->bomb, bomb);
     const float turns = turns_of(bomb);
@@ -126,26 +126,20 @@ bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactP
     return true;
 }
 
-static void scene_prediction_free(ScenePrediction *prediction) {
+static void free_prediction(ScenePrediction *prediction) {
     scene_view_free(&prediction->view);
-    free(prediction->outputs);
-    free(prediction->change);
+    free(prediction->arrays.memory);
     *prediction = (ScenePrediction){0};
-}
-
-static bool scene_prediction_reserve(ScenePrediction *prediction, size_t contacts) {
-    return array_reserve((void **)&prediction->outputs, &prediction->output_capacity, 2 * contacts,
-                         sizeof *prediction->outputs) &&
-           array_reserve((void **)&prediction->change, &prediction->change_capacity, contacts,
-                         sizeof *prediction->change);
 }
 
 /* *known: whether all inputs are within the range of the training data. The problem must have the network's bodies.
    False when memory is short. */
-static bool scene_prediction_in_range(ScenePrediction *prediction, const SlotNetwork *network,
-                                      const ContactProblem *problem, bool *known) {
+static bool look_in_range(ScenePrediction *prediction, const SlotNetwork *network, const ContactProblem *problem,
+                          bool *known) {
+    const size_t contacts = (size_t)problem->contact_count;
     if (!scene_view_take(&prediction->view, network, problem) ||
-        !scene_prediction_reserve(prediction, (size_t)problem->contact_count))
+        !ARRAY_BLOCK_RESERVE(&prediction->arrays, ARRAY_PART(prediction->outputs, 2 * contacts),
+                             ARRAY_PART(prediction->change, contacts)))
         return false;
     slot_network_look(network, &prediction->view.slots, prediction->inputs);
     int within = 1; /* branchless, so that the loop is vectorised */
@@ -155,10 +149,10 @@ static bool scene_prediction_in_range(ScenePrediction *prediction, const SlotNet
     return true;
 }
 
-/* After scene_prediction_in_range() of the same problem: fills `change`, with the predicted impulses clamped to their
+/* After look_in_range() of the same problem: fills `change`, with the predicted impulses clamped to their
    friction cones, and counts those that were outside. NaN or infinite if the network's outputs are. */
-static void scene_prediction_make(ScenePrediction *prediction, const SlotNetwork *network,
-                                  const ContactProblem *problem, NetworkFallbacks *fallbacks) {
+static void predict(ScenePrediction *prediction, const SlotNetwork *network, const ContactProblem *problem,
+                    NetworkFallbacks *fallbacks) {
     const SceneView *view = &prediction->view;
     slot_network_predict(network, prediction->inputs, &view->slots, prediction->first, prediction->second,
                          prediction->outputs);
@@ -179,18 +173,6 @@ static void scene_prediction_make(ScenePrediction *prediction, const SlotNetwork
     }
 }
 
-/* A network for the impacts of one scene. It sees all bodies and contacts at once and predicts where the impulses will
-   end; a few sweeps then correct the prediction. Sweeps alone carry a shock through a stack one contact per sweep.
-
-   The network is used only if the residual of the warm start (residual.h) reaches the gate and the step resembles the
-   training data: the same mass of the bomb, and all inputs within their range. All other steps are solved as by
-   momentum (momentum.c). The residual after the sweeps correlates with the error, also on held-out launches: so few
-   sweeps follow at first, and more if the residual is still large. Impulses act on both bodies alike and sweeps clamp
-   them to their cones, so momentum is conserved whatever the network predicts. Source: a warm start by a network for
-   the whole problem, as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization
-   Algorithms" (2024), which also trains through the iterations that follow. Fails on other scenes, which have other
-   slots; it refuses them. */
-
 enum { REST_SWEEPS = 20, CALM_MORE = 24 };
 
 /* More sweeps follow the network while the residual is this large; for a calm step, while it is this share of it. */
@@ -208,42 +190,44 @@ typedef enum Route {
 /* Sweeps cannot correct velocities beyond this: rounding alone would leave errors above 1e-3 m/s. */
 static const float speed_max = 1e4f; /* m/s and rad/s */
 
+/* What settings choose. */
+typedef struct SceneNetChoice {
+    int after, rest;   /* sweeps after the network, and without it */
+    bool predicts;     /* false: the network is not evaluated */
+    StoppingRule rule; /* after the network; after calm steps a share of it */
+} SceneNetChoice;
+
 typedef struct SceneNet {
     SlotNetwork *own;           /* or NULL */
     const SlotNetwork *network; /* the same, or the caller's */
     Momentum momentum;
     ScenePrediction prediction;
-    bool predicts;                        /* false: the network is not evaluated */
-    int after, rest, half;                /* sweeps after the network, and without it */
-    StoppingRule rule;                    /* after the network; after calm steps a share of it */
+    SceneNetChoice choice;
+    int half;                             /* sweeps in calm steps */
     float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
     bool after_without_momentum;          /* all of them are 0 */
     float *rest_factors, *half_factors;   /* [rest], [half] */
     float *more_factors;                  /* [rule.more] of the sweeps that follow if the residual is too large */
 } SceneNet;
 
-/* What settings choose. */
-typedef struct SceneNetChoice {
-    int after, rest;
-    bool predicts;
-    StoppingRule rule;
-} SceneNetChoice;
-
 static const SettingSpec settings[] = {
-    {"network", "file of the trained network (default: the scene's)"},
-    {"after", "sweeps after the network (default: as in its training)"},
-    {"near", "residual, m/s: after those, blocks of 8 follow while it is at least this (default: 0.02)"},
-    {"more", "sweeps that may follow, rounded up to whole blocks (default: 48)"},
-    {"rest", "sweeps with momentum in steps without the network (default: 20; half in calm steps)"},
-    {"net", "on|off: off leaves out all that is learned, the prediction and the factors (default: on)"},
-    {NULL, NULL}};
+    {"network", "file of the trained network (default: the scene's)", SETTING_OWN},
+    {"after", "sweeps after the network (default: as in its training)",
+     SETTING_INT(SceneNetChoice, after, 0, SLOT_SWEEPS_MAX)},
+    {"near", "residual, m/s: after those, blocks of 8 follow while it is at least this (default: 0.02)", SETTING_OWN},
+    {"more", "sweeps that may follow, rounded up to whole blocks (default: 48)", SETTING_OWN},
+    {"rest", "sweeps with momentum in steps without the network (default: 20; half in calm steps)",
+     SETTING_INT(SceneNetChoice, rest, 1, SWEEPS_MAX)},
+    {"net", "on|off: off leaves out all that is learned, the prediction and the factors (default: on)",
+     SETTING_BOOL(SceneNetChoice, predicts)},
+    {0}};
 
 static void destroy(void *state) {
     SceneNet *solver = state;
     if (solver == NULL) return;
     slot_network_destroy(solver->own);
     momentum_free(&solver->momentum);
-    scene_prediction_free(&solver->prediction);
+    free_prediction(&solver->prediction);
     free(solver->rest_factors);
     free(solver->half_factors);
     free(solver->more_factors);
@@ -255,11 +239,12 @@ static void choose_factors(SceneNet *solver) {
     const SlotNetwork *network = solver->network;
     bool learned = false;
     for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
-    learned |= !solver->predicts;
+    learned |= !solver->choice.predicts;
     solver->after_without_momentum = !learned;
-    for (int s = 0; s < solver->after; s++)
-        solver->after_factors[s] = solver->after == network->sweeps && solver->predicts ? network->factors[s]
-                                   : learned ? momentum_factor_tuned(s, solver->after)
+    for (int s = 0; s < solver->choice.after; s++)
+        solver->after_factors[s] = solver->choice.after == network->sweeps && solver->choice.predicts
+                                       ? network->factors[s]
+                                   : learned ? momentum_factor_tuned(s, solver->choice.after)
                                              : 0;
 }
 
@@ -270,14 +255,11 @@ static SceneNet *make(const SlotNetwork *network, const SceneNetChoice *choice, 
         return NULL;
     }
     solver->network = network;
-    solver->predicts = choice->predicts;
-    solver->after = choice->after;
-    solver->rest = choice->rest;
-    solver->rule = choice->rule;
+    solver->choice = *choice;
     solver->half = (choice->rest + 1) / 2;
-    solver->rest_factors = momentum_factors_make(solver->rest);
+    solver->rest_factors = momentum_factors_make(solver->choice.rest);
     solver->half_factors = momentum_factors_make(solver->half);
-    solver->more_factors = momentum_factors_make(solver->rule.more);
+    solver->more_factors = momentum_factors_make(solver->choice.rule.more);
     if (solver->rest_factors == NULL || solver->half_factors == NULL || solver->more_factors == NULL) {
         destroy(solver);
         error_memory(error, "scene-net");
@@ -288,19 +270,13 @@ static SceneNet *make(const SlotNetwork *network, const SceneNetChoice *choice, 
 }
 
 static void *create(const Settings *chosen, Error *error) {
-    const char *path = settings_get(chosen, "network");
-    if (path == NULL) {
-        error_input(error, "scene-net", "the scene names no network for it: use scene-net:network=FILE");
-        return NULL;
-    }
-    SlotNetwork *network = slot_network_read(path, error);
+    const char *path = method_network(chosen, NULL, "scene-net", error);
+    SlotNetwork *network = path != NULL ? slot_network_read(path, error) : NULL;
     if (network == NULL) return NULL;
-    SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {near_default, STOPPING_MORE}};
-    SceneNet *solver = NULL;
-    if (settings_int(chosen, "after", 0, SLOT_SWEEPS_MAX, &choice.after, error) &&
-        settings_int(chosen, "rest", 1, SWEEPS_MAX, &choice.rest, error) &&
-        settings_bool(chosen, "net", &choice.predicts, error) && stopping_read(&choice.rule, chosen, error))
-        solver = make(network, &choice, error);
+    SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {0, near_default, STOPPING_MORE}};
+    SceneNet *solver = settings_read(chosen, settings, &choice, error) && stopping_read(&choice.rule, chosen, error)
+                           ? make(network, &choice, error)
+                           : NULL;
     if (solver == NULL)
         slot_network_destroy(network);
     else
@@ -341,8 +317,8 @@ static bool is_bounded(const Sweeps *sweeps) {
 
 static bool run_after(SceneNet *solver) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    return solver->after_without_momentum ? sweeps_run(sweeps, solver->after)
-                                          : sweeps_run_momentum(sweeps, solver->after_factors, solver->after);
+    return solver->after_without_momentum ? sweeps_run(sweeps, solver->choice.after)
+                                          : sweeps_run_momentum(sweeps, solver->after_factors, solver->choice.after);
 }
 
 static bool run_more(SceneNet *solver, const ContactProblem *problem, const StoppingRule *rule) {
@@ -351,15 +327,15 @@ static bool run_more(SceneNet *solver, const ContactProblem *problem, const Stop
 
 static bool run(SceneNet *solver, const ContactProblem *problem, Route route) {
     Sweeps *sweeps = &solver->momentum.sweeps;
-    const StoppingRule *rule = &solver->rule;
-    const StoppingRule calm = {calm_share * rule->near, rule->more < CALM_MORE ? rule->more : CALM_MORE};
+    const StoppingRule *rule = &solver->choice.rule;
+    const StoppingRule calm = {0, calm_share * rule->near, rule->more < CALM_MORE ? rule->more : CALM_MORE};
     switch (route) {
     case ROUTE_CALM:
         return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) && run_more(solver, problem, &calm);
     case ROUTE_NETWORK: return run_after(solver) && run_more(solver, problem, rule);
     case ROUTE_MOMENTUM: break;
     }
-    return sweeps_run_momentum(sweeps, solver->rest_factors, solver->rest);
+    return sweeps_run_momentum(sweeps, solver->rest_factors, solver->choice.rest);
 }
 
 /* After the warm start. */
@@ -373,15 +349,14 @@ static bool choose_route(SceneNet *solver, const ContactProblem *problem, Route 
         if (known) *route = ROUTE_CALM;
         return true;
     }
-    if (known && !scene_prediction_in_range(&solver->prediction, network, problem, &known))
-        return error_memory(error, "scene-net");
+    if (known && !look_in_range(&solver->prediction, network, problem, &known)) return error_memory(error, "scene-net");
     if (known) *route = ROUTE_NETWORK;
     fallbacks->beyond_training += !known;
     return true;
 }
 
 static bool solve_without(SceneNet *solver, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->rest, solution, error);
+    return momentum_solve(&solver->momentum, problem, solver->rest_factors, solver->choice.rest, solution, error);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
@@ -392,8 +367,8 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     Route route;
     solution->fallbacks = (NetworkFallbacks){0};
     if (!choose_route(solver, problem, &route, &solution->fallbacks, error)) return false;
-    if (route == ROUTE_NETWORK && solver->predicts) {
-        scene_prediction_make(&solver->prediction, solver->network, problem, &solution->fallbacks);
+    if (route == ROUTE_NETWORK && solver->choice.predicts) {
+        predict(&solver->prediction, solver->network, problem, &solution->fallbacks);
         sweeps_push(sweeps, solver->prediction.change);
         if (!is_bounded(sweeps)) {
             solution->fallbacks.not_finite++;
@@ -402,7 +377,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     }
     if (!run(solver, problem, route)) return error_memory(error, "scene-net");
     if (sweeps_end(sweeps, solution)) return true;
-    solution->fallbacks.not_finite += route == ROUTE_NETWORK && solver->predicts;
+    solution->fallbacks.not_finite += route == ROUTE_NETWORK && solver->choice.predicts;
     return solve_without(solver, problem, solution, error);
 }
 
@@ -423,7 +398,7 @@ const ContactSolverKind solver_scene_net = {
 
 bool scene_net_make(ContactSolver *solver, const SlotNetwork *network, float near, Error *error) {
     solver->kind = &solver_scene_net;
-    const SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {near, STOPPING_MORE}};
+    const SceneNetChoice choice = {network->sweeps, REST_SWEEPS, true, {0, near, STOPPING_MORE}};
     solver->state = make(network, &choice, error);
     return solver->state != NULL;
 }

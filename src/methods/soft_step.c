@@ -1,5 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of soft-step (soft_step.c): its state in a step, and its substeps. */
+/* Soft step: the solver of Box2D v3. One collision pass, then n substeps of h = dt / n; each applies its gravity and
+   the impulses of the substep before, visits all contacts once as damped springs, moves the bodies, and visits all
+   contacts once more without the springs (relaxation), with friction, so that the velocity that corrects overlap does
+   not stay in the bodies. Erin Catto, "Solver2D" (box2d.org, 2024) and "Soft Constraints" (GDC 2011).
+
+   A contact of effective mass m with overlap s < 0, relative normal velocity v and impulse p of this substep gets
+
+       dp = -m (c v + c r s) - (1 - c) p,   c = w h (2 z + w h) / (1 + w h (2 z + w h)),   r = w / (2 z + w h),
+
+   w = 2 pi hertz, z the damping ratio; c r s is at least -3 m/s. While s > 0, dp = -m (v + s / h): the gap may close,
+   no more. The arms of impulses stay those of the collision pass; s follows the poses.
+
+   Box2D sees contacts before boxes touch. Here they must overlap, so surfaces are SKIN inside the boxes; without it
+   contacts would come and go. Left out are Box2D's bounds on speed, its continuous collision, sleep and restitution. It
+   visits one contact after the other, not four at a time.
+
+   Fails as few sweeps do: n substeps carry a shock through about 2 n boxes. Heavy boxes sink into light ones. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -10,7 +26,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* c, 1 - c and c r of the equation in soft_step.c. */
+/* c, 1 - c and c r of the equation. */
 typedef struct Softness {
     float mass_share, impulse_share, bias_rate;
 } Softness;
@@ -48,11 +64,11 @@ typedef struct SoftStep {
     SoftPoint *points;
     ContactImpulse *kept; /* [contacts of the last step] impulses of its last substep */
     int pair_count, body_count, point_count;
-    size_t body_capacity, pose_capacity, pair_capacity, point_capacity, kept_capacity;
+    ArrayBlock arrays; /* of this step */
+    size_t kept_capacity;
 } SoftStep;
 
-/* The substeps of soft-step. */
-
+#define SKIN 0.005f         /* m, Box2D's linear slop */
 #define PUSH_OUT_SPEED 3.0f /* m/s, the limit of correction */
 
 static void push(SoftBody *a, SoftBody *b, const SoftPoint *point, Vec2 impulse) {
@@ -149,7 +165,7 @@ static void integrate(SoftStep *stepping, float h) {
 }
 
 /* Takes all substeps of a step that has begun: moves bodies and poses, fills the points' impulses. */
-static void soft_step_solve(SoftStep *stepping, Vec2 gravity, float dt) {
+static void take_substeps(SoftStep *stepping, Vec2 gravity, float dt) {
     const float h = dt / (float)stepping->substeps, inverse_h = 1.0f / h;
     for (int i = 0; i < stepping->substeps; i++) {
         apply_forces(stepping, vec2_scale(h, gravity));
@@ -159,58 +175,24 @@ static void soft_step_solve(SoftStep *stepping, Vec2 gravity, float dt) {
     }
 }
 
-/* Soft step: the solver of Box2D v3. One collision pass, then n substeps of h = dt / n; each applies its gravity and
-   the impulses of the substep before, visits all contacts once as damped springs, moves the bodies, and visits all
-   contacts once more without the springs (relaxation), with friction, so that the velocity that corrects overlap does
-   not stay in the bodies. Erin Catto, "Solver2D" (box2d.org, 2024) and "Soft Constraints" (GDC 2011).
-
-   A contact of effective mass m with overlap s < 0, relative normal velocity v and impulse p of this substep gets
-
-       dp = -m (c v + c r s) - (1 - c) p,   c = w h (2 z + w h) / (1 + w h (2 z + w h)),   r = w / (2 z + w h),
-
-   w = 2 pi hertz, z the damping ratio; c r s is at least -3 m/s. While s > 0, dp = -m (v + s / h): the gap may close,
-   no more. The arms of impulses stay those of the collision pass; s follows the poses.
-
-   Box2D sees contacts before boxes touch. Here they must overlap, so surfaces are SKIN inside the boxes; without it
-   contacts would come and go. Left out are Box2D's bounds on speed, its continuous collision, sleep and restitution. It
-   visits one contact after the other, not four at a time.
-
-   Fails as few sweeps do: n substeps carry a shock through about 2 n boxes. Heavy boxes sink into light ones. */
-
-#define SKIN 0.005f /* m, Box2D's linear slop */
-
-static const SettingSpec settings[] = {{"substeps", "substeps per step (default: 4)"},
-                                       {"hertz", "frequency of the contacts' springs (default: 30)"},
-                                       {"damping", "their damping ratio (default: 10)"},
-                                       {NULL, NULL}};
+static const SettingSpec settings[] = {
+    {"substeps", "substeps per step (default: 4)", SETTING_INT(SoftStep, substeps, 1, 1000)},
+    {"hertz", "frequency of the contacts' springs (default: 30)", SETTING_FLOAT(SoftStep, hertz, 0.01f, 1e4f)},
+    {"damping", "their damping ratio (default: 10)", SETTING_FLOAT(SoftStep, damping, 0, 1e3f)},
+    {0}};
 
 static void destroy(void *state) {
     SoftStep *stepping = state;
     step_memory_free(&stepping->memory);
-    free(stepping->bodies);
-    free(stepping->poses);
-    free(stepping->pairs);
-    free(stepping->points);
+    free(stepping->arrays.memory);
     free(stepping->kept);
     free(stepping);
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    static const SoftStep standard = {.substeps = 4, .hertz = 30, .damping = 10};
     (void)scene;
-    SoftStep *stepping = calloc(1, sizeof *stepping);
-    if (stepping == NULL) {
-        error_memory(error, "soft-step");
-        return NULL;
-    }
-    stepping->substeps = 4;
-    stepping->hertz = 30;
-    stepping->damping = 10;
-    if (settings_int(chosen, "substeps", 1, 1000, &stepping->substeps, error) &&
-        settings_float(chosen, "hertz", 0.01f, 1e4f, &stepping->hertz, error) &&
-        settings_float(chosen, "damping", 0, 1e3f, &stepping->damping, error))
-        return stepping;
-    destroy(stepping);
-    return NULL;
+    return settings_make(chosen, settings, &standard, sizeof standard, "soft-step", error);
 }
 
 static Softness make_softness(float hertz, float damping, float h) {
@@ -228,12 +210,11 @@ static void set_softness(SoftStep *stepping, const Scene *scene, float h) {
 }
 
 static bool reserve(SoftStep *stepping, const ContactProblem *problem) {
-    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    return array_reserve((void **)&stepping->bodies, &stepping->body_capacity, bodies, sizeof *stepping->bodies) &&
-           array_reserve((void **)&stepping->poses, &stepping->pose_capacity, bodies, sizeof *stepping->poses) &&
-           array_reserve((void **)&stepping->pairs, &stepping->pair_capacity, contacts, sizeof *stepping->pairs) &&
-           array_reserve((void **)&stepping->points, &stepping->point_capacity, contacts, sizeof *stepping->points) &&
-           array_reserve((void **)&stepping->kept, &stepping->kept_capacity, contacts, sizeof *stepping->kept);
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    return array_reserve((void **)&stepping->kept, &stepping->kept_capacity, contacts, sizeof *stepping->kept) &&
+           ARRAY_BLOCK_RESERVE(&stepping->arrays, ARRAY_PART(stepping->bodies, bodies),
+                               ARRAY_PART(stepping->poses, bodies), ARRAY_PART(stepping->pairs, contacts),
+                               ARRAY_PART(stepping->points, contacts));
 }
 
 /* The impulses of the last substep; in an unknown step an equal share of those of the last step. */
@@ -275,14 +256,15 @@ static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) 
                                       .impulse = warm_start(stepping, contact, i)};
 }
 
-static bool begin(SoftStep *stepping, const World *world, const ContactProblem *problem, const Step *step) {
-    if (!step_memory_match(&stepping->memory, world, step) || !reserve(stepping, problem)) return false;
-    set_softness(stepping, step->scene, problem->dt / (float)stepping->substeps);
+static bool begin(SoftStep *stepping, const BegunStep *begun) {
+    const ContactProblem *problem = begun->problem;
+    if (!step_memory_match(&stepping->memory, begun->world, begun->step) || !reserve(stepping, problem)) return false;
+    set_softness(stepping, begun->step->scene, problem->dt / (float)stepping->substeps);
     stepping->body_count = problem->body_count;
     stepping->point_count = problem->contact_count;
     stepping->pair_count = 0;
     for (int i = 0; i < problem->body_count; i++) {
-        const Body *body = &world_bodies(world)[i];
+        const Body *body = &world_bodies(begun->world)[i];
         stepping->bodies[i] = (SoftBody){.velocity = body->velocity,
                                          .spin = body->angular_velocity,
                                          .inv_mass = body->inv_mass,
@@ -306,22 +288,18 @@ static bool end(SoftStep *stepping, ContactSolution *solution) {
     return finite;
 }
 
-static bool step(void *state, World *world, const Step *which, Error *error) {
+static bool solve(void *state, BegunStep *begun, Error *error) {
     SoftStep *stepping = state;
-    ContactProblem problem;
-    ContactSolution *solution;
-    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
-    step_solving_begins(which);
-    bool begun = begin(stepping, world, &problem, which);
-    if (begun) soft_step_solve(stepping, which->scene->gravity, problem.dt);
-    bool finite = begun && end(stepping, solution);
-    step_solving_ends(which);
-    if (!begun) return error_memory(error, "soft-step");
-    if (!finite) return error_input(error, "soft-step", "an impulse is NaN or infinite");
-    if (!world_end_step_at(world, stepping->poses, error)) return false;
+    if (!begin(stepping, begun)) return error_memory(error, "soft-step");
+    take_substeps(stepping, begun->step->scene->gravity, begun->problem->dt);
+    begun->poses = stepping->poses;
+    return end(stepping, begun->solution) || error_input(error, "soft-step", "an impulse is NaN or infinite");
+}
+
+static void keep(void *state, const World *world) {
+    SoftStep *stepping = state;
     step_memory_keep(&stepping->memory, world);
     for (int i = 0; i < stepping->point_count; i++) stepping->kept[i] = stepping->points[i].impulse;
-    return true;
 }
 
 const SteppingKind stepping_soft_step = {
@@ -336,5 +314,6 @@ const SteppingKind stepping_soft_step = {
                     .chart_quick = METHOD_RUNS("substeps=4"),
                     .stability = METHOD_NO_RUNS},
     .create = create,
-    .step = step,
+    .solve = solve,
+    .keep = keep,
     .destroy = destroy};

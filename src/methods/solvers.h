@@ -61,7 +61,7 @@ typedef struct RelationAnswers {
     float *outputs; /* [body_count, RELATION_OUTPUTS] */
     bool *known;    /* [body_count] all inputs of the body and its rows are within the ranges of the training data */
     float *effects, *inputs, *columns, *scratch;
-    size_t output_capacity, known_capacity, effect_capacity, input_capacity, column_capacity, scratch_capacity;
+    ArrayBlock arrays;
 } RelationAnswers;
 
 void relation_answers_free(RelationAnswers *answers);
@@ -74,31 +74,52 @@ bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, R
 /* The networks remain the caller's and must outlive the solver. False with error set when memory is short. */
 bool sain_make(ContactSolver *solver, const RelationNetwork *network, RelationForm form, Error *error);
 
-/* The stopping rule of the iterative methods: after the first k sweeps, blocks of 8 follow while the residual
-   (residual.h) is at least `near`, up to `more` sweeps. Most steps need few sweeps and an impact needs many, so the rule
-   spends them where they are needed. Fails where the residual is small and the error is not: an error that is spread
-   over a whole stack leaves each contact close to its target. */
+/* The stopping rule of the iterative methods: after the first k sweeps, blocks of 8 follow while the residual is at least
+   `near`, up to `more` sweeps. Most steps need few sweeps and an impact needs many, so the rule spends them where they
+   are needed. Fails where the residual is small and the error is not: an error that is spread over a whole stack leaves
+   each contact close to its target. */
 
 enum {
     STOPPING_BLOCK = 8, /* sweeps; the residual is read before each block */
     STOPPING_MORE = 48  /* the default of `more` */
 };
 
-/* The rule's settings, for a method's table. */
-#define STOPPING_SETTINGS                                                                                             \
-    {"near", "residual, m/s: after k sweeps, blocks of 8 follow while it is at least this (default: none follow)"}, { \
-        "more", "with near: sweeps that may follow, rounded up to whole blocks (default: 48)"                         \
-    }
-
-/* Zero: no sweeps follow. */
+/* `more` 0: none follow the first k. */
 typedef struct StoppingRule {
+    int k;      /* sweeps */
     float near; /* m/s, RMS over the contacts */
     int more;   /* a multiple of STOPPING_BLOCK */
 } StoppingRule;
 
-/* Overwrites the rule, which has the method's defaults, with the settings. ERROR_INPUT for a value out of range, and
+/* The rule's settings, for the table of a method whose state begins with its rule. */
+#define SWEEPS_SETTING                                                            \
+    {                                                                             \
+        "k", "sweeps over all contacts per step (default: the scene's, else 10)", \
+            SETTING_INT(StoppingRule, k, 1, SWEEPS_MAX)                           \
+    }
+#define STOPPING_SETTINGS                                                                                          \
+    {"near", "residual, m/s: after k sweeps, blocks of 8 follow while it is at least this (default: none follow)", \
+     SETTING_OWN},                                                                                                 \
+    {                                                                                                              \
+        "more", "with near: sweeps that may follow, rounded up to whole blocks (default: 48)", SETTING_OWN         \
+    }
+
+/* Overwrites the rule, which has the method's defaults, with `near` and `more`. ERROR_INPUT for a value out of range, and
    for `more` where no rule is. */
 bool stopping_read(StoppingRule *rule, const Settings *chosen, Error *error);
+
+/* settings_make() and stopping_read() for a state that begins with its rule. */
+void *stopping_make(const Settings *chosen, const SettingSpec *known, const void *standard, size_t size,
+                    const char *what, Error *error);
+
+/* The state of a method of plain sweeps. */
+typedef struct SweepState {
+    StoppingRule rule;
+    SequentialOptions options;
+    Sweeps sweeps;
+} SweepState;
+
+void sweep_state_destroy(void *state);
 
 /* True if another block must follow the first k sweeps and `done` more. */
 bool stopping_needs_more(const StoppingRule *rule, int done, const Sweeps *sweeps, const ContactProblem *problem);
@@ -107,9 +128,8 @@ bool stopping_needs_more(const StoppingRule *rule, int done, const Sweeps *sweep
 bool stopping_needs_more_scalar(const StoppingRule *rule, int done, const ContactProblem *problem,
                                 const ContactSolution *solution);
 
-/* k sweeps, and more by the rule. run: sweeps_run or sweeps_run_blocks. False when memory is short. */
-bool stopping_run(const StoppingRule *rule, Sweeps *sweeps, const ContactProblem *problem, int k,
-                  bool (*run)(Sweeps *, int));
+/* All sweeps of the rule. run: sweeps_run or sweeps_run_blocks. False when memory is short. */
+bool stopping_run(const StoppingRule *rule, Sweeps *sweeps, const ContactProblem *problem, bool (*run)(Sweeps *, int));
 
 /* Sweeps with momentum: a scalar reference implementation, and the fast one of the solvers, which visits contacts in
    the order of colours (methods/sweeps.h). The solvers choose the factors. */
@@ -132,9 +152,9 @@ float *momentum_factors_make(int count);
 typedef struct Momentum {
     Sweeps sweeps;
     ContactSolution before; /* work space of the scalar implementation */
-    size_t body_capacity, contact_capacity;
-    StoppingRule rule;
-    float *more_factors; /* [rule.more] */
+    ArrayBlock arrays;      /* of `before` */
+    StoppingRule rule;      /* its k does not count */
+    float *more_factors;    /* [rule.more] */
 } Momentum;
 
 /* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb
@@ -216,18 +236,27 @@ void pair_network_predict_one(PairNetwork *pair, const ContactProblem *problem, 
 typedef struct PairSolver {
     PairNetwork network;
     int sweep_count;  /* for TARGET_IMPULSE */
+    bool predicts;    /* false: the network's `constant` */
     int *pair_counts; /* [body_count] number of pairs of each body */
     size_t count_capacity;
 } PairSolver;
 
-#define PAIR_SOLVER_NET \
-    { "net", "on|off: off predicts the mean of the training data for every pair (default: on)" }
+#define PAIR_SOLVER_SWEEPS                                                                             \
+    {                                                                                                  \
+        "k", "sweeps over all pairs per step, for the target impulse (default: the scene's, else 10)", \
+            SETTING_INT(PairSolver, sweep_count, 1, SWEEPS_MAX)                                        \
+    }
+#define PAIR_SOLVER_NET                                                                           \
+    {                                                                                             \
+        "net", "on|off: off predicts the mean of the training data for every pair (default: on)", \
+            SETTING_BOOL(PairSolver, predicts)                                                    \
+    }
 
-/* Reads the settings network, k (default: 10) and net. NULL with error set if one is refused. name: of the method. */
-PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *error);
+/* Reads the network and the settings of the table. NULL with error set if one is refused. name: of the method. */
+PairSolver *pair_solver_create(const char *name, const SettingSpec *known, const Settings *chosen, Error *error);
 void pair_solver_destroy(void *state);
 
-/* Solves the step with the network, as its target requires: pair_net.c and contact_net.c. */
+/* Solves the step with the network, as its target requires. */
 bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);
 
 /* The residual of the impulses in a set of sweeps: how far contacts are from their target velocities. After the warm
@@ -263,8 +292,7 @@ typedef struct SceneView {
     /* The arrays that `slots` points to: */
     float bomb[SLOT_BODY_NUMBERS], *state, *ones, *warm;
     int32_t *present, *impulses;
-    size_t state_capacity, ones_capacity, warm_capacity, present_capacity, impulse_capacity, contact_capacity,
-        base_capacity;
+    ArrayBlock arrays;
 } SceneView;
 
 void scene_view_free(SceneView *view);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What steppers share: particles and graphs of gns, free flight, contacts of the last step, poses of subspace. */
 #pragma once
+#include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "nets/kernels.h"
@@ -33,7 +34,7 @@ float box_particles_distance(const Vec2 *particles, Vec2 size, const BodyPose *p
 double plane_angle(double cosine, double sine);
 
 /* What the network of gns sees: particles as nodes, and an edge each way between two that are nearer than the radius.
-   Source: gns_net.h.
+   Source: nets/kinds.h.
 
    Inputs of a node: the particle's last GNS_HISTORY velocities, oldest first, over the unit of velocity (10 numbers); 1 for
    the bomb, else 0; the way to the nearest static box: its distance over the radius, at most 1, and its direction times 1
@@ -71,8 +72,7 @@ typedef struct GnsGraph {
     bool beyond;       /* a particle was faster than any in training, or has too many neighbours: inputs were clamped */
     int *first, *next; /* the grid: heads of its lists of particles, and the particle after each; -1: no more */
     int64_t (*cell)[2]; /* [nodes] */
-    size_t node_capacity, edge_capacity, edge_input_capacity, receiver_capacity, sender_capacity, first_capacity,
-        next_capacity, cell_capacity;
+    ArrayBlock arrays;
 } GnsGraph;
 
 void gns_graph_free(GnsGraph *graph);

@@ -23,14 +23,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COMPONENTS_DEFAULT = 32 };
-
-static const SettingSpec settings[] = {
-    {"network", "file of the trained network (default: the scene's)"},
-    {"components", "8|32|128: principal components, at most as many as the scene has (default: 32)"},
-    {"net", "on|off: off leaves out the network; the linear term predicts alone (default: on)"},
-    {NULL, NULL}};
-
 typedef struct SubspaceStepper {
     SubspaceNet *net;
     Subspace subspace;
@@ -38,9 +30,20 @@ typedef struct SubspaceStepper {
     int after_count; /* 0: it did not */
     BodyPose *poses; /* [bodies of the world] */
     bool *touched;   /* [bodies of the world] */
-    size_t after_capacity, pose_capacity, touched_capacity;
-    float *start; /* [2, 4 bodies] numbers of the state before and of the state */
+    float *start;    /* [2, 4 bodies] numbers of the state before and of the state */
+    int components;
+    bool corrects;
+    ArrayBlock arrays; /* poses and touched */
+    size_t after_capacity;
 } SubspaceStepper;
+
+static const SettingSpec settings[] = {
+    {"network", "file of the trained network (default: the scene's)", SETTING_OWN},
+    {"components", "8|32|128: principal components, at most as many as the scene has (default: 32)",
+     SETTING_INT(SubspaceStepper, components, 1, SUBSPACE_COMPONENTS_MAX)},
+    {"net", "on|off: off leaves out the network; the linear term predicts alone (default: on)",
+     SETTING_BOOL(SubspaceStepper, corrects)},
+    {0}};
 
 uint64_t subspace_physics(const Scene *scene) {
     Scene plain = *scene;
@@ -75,17 +78,9 @@ static void destroy(void *state) {
     subspace_free(&method->subspace);
     subspace_net_destroy(method->net);
     free(method->after);
-    free(method->poses);
-    free(method->touched);
+    free(method->arrays.memory);
     free(method->start);
     free(method);
-}
-
-static bool read_components(const Settings *chosen, int *components, Error *error) {
-    *components = COMPONENTS_DEFAULT;
-    if (!settings_int(chosen, "components", 1, SUBSPACE_COMPONENTS_MAX, components, error)) return false;
-    return *components == 8 || *components == 32 || *components == 128 ||
-           error_input(error, "subspace", "components must be 8, 32 or 128 (got %d)", *components);
 }
 
 static bool check_scene(const SubspaceNet *net, const Scene *scene, const char *path, Error *error) {
@@ -100,31 +95,24 @@ static bool check_scene(const SubspaceNet *net, const Scene *scene, const char *
                        scene->name);
 }
 
-static bool prepare(SubspaceStepper *method, const char *path, const Settings *chosen, const Scene *scene,
-                    Error *error) {
-    int components;
-    bool corrects = true;
-    if (!read_components(chosen, &components, error) || !settings_bool(chosen, "net", &corrects, error) ||
-        (method->net = subspace_net_read(path, error)) == NULL || !check_scene(method->net, scene, path, error))
-        return false;
+static bool prepare(SubspaceStepper *method, const char *path, const Scene *scene, Error *error) {
+    const int components = method->components;
+    if (components != 8 && components != 32 && components != 128)
+        return error_input(error, "subspace", "components must be 8, 32 or 128 (got %d)", components);
+    method->net = subspace_net_read(path, error);
+    if (method->net == NULL || !check_scene(method->net, scene, path, error)) return false;
     method->start = calloc(2 * SUBSPACE_POSE * (size_t)method->net->shape.bodies, sizeof *method->start);
     if (method->start == NULL) return error_memory(error, "subspace");
-    return subspace_make(&method->subspace, method->net, subspace_net_choose(method->net, components), corrects, error);
+    return subspace_make(&method->subspace, method->net, subspace_net_choose(method->net, components), method->corrects,
+                         error);
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
-    const char *path = settings_get(chosen, "network");
-    if (path == NULL) path = scene_network(scene, "subspace");
-    if (path == NULL) {
-        error_input(error, "subspace", "the scene names no network for it: use subspace:network=FILE");
-        return NULL;
-    }
-    SubspaceStepper *method = calloc(1, sizeof *method);
-    if (method == NULL) {
-        error_memory(error, "subspace");
-        return NULL;
-    }
-    if (prepare(method, path, chosen, scene, error)) return method;
+    static const SubspaceStepper standard = {.components = 32, .corrects = true};
+    const char *path = method_network(chosen, scene, "subspace", error);
+    SubspaceStepper *method =
+        path != NULL ? settings_make(chosen, settings, &standard, sizeof standard, "subspace", error) : NULL;
+    if (method == NULL || prepare(method, path, scene, error)) return method;
     destroy(method);
     return NULL;
 }
@@ -209,8 +197,8 @@ static void fill(const SubspaceStepper *method, const Body *bodies, const Contac
 
 static bool reserve(SubspaceStepper *method, size_t bodies, Error *error) {
     return (array_reserve((void **)&method->after, &method->after_capacity, bodies, sizeof *method->after) &&
-            array_reserve((void **)&method->poses, &method->pose_capacity, bodies, sizeof *method->poses) &&
-            array_reserve((void **)&method->touched, &method->touched_capacity, bodies, sizeof *method->touched)) ||
+            ARRAY_BLOCK_RESERVE(&method->arrays, ARRAY_PART(method->poses, bodies),
+                                ARRAY_PART(method->touched, bodies))) ||
            error_memory(error, "subspace");
 }
 
@@ -224,28 +212,32 @@ static bool check_world(const SubspaceStepper *method, const Body *bodies, const
                        moving, method->net->shape.bodies);
 }
 
-static bool step(void *state, World *world, const Step *which, Error *error) {
+static bool solve(void *state, BegunStep *begun, Error *error) {
     SubspaceStepper *method = state;
-    ContactProblem problem;
-    ContactSolution *solution;
-    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error) ||
-        !reserve(method, (size_t)problem.body_count, error))
+    const ContactProblem *problem = begun->problem;
+    const Body *bodies = world_bodies(begun->world);
+    if (!reserve(method, (size_t)problem->body_count, error) || !check_world(method, bodies, problem, error))
         return false;
-    const Body *bodies = world_bodies(world);
-    if (!check_world(method, bodies, &problem, error)) return false;
-    step_solving_begins(which);
-    for (int i = 0; i < problem.body_count; i++) method->poses[i] = (BodyPose){bodies[i].position, bodies[i].angle};
-    if (problem.marked >= 0)
-        solution->fallbacks = predict(method, bodies, &problem, which);
+    for (int i = 0; i < problem->body_count; i++) method->poses[i] = (BodyPose){bodies[i].position, bodies[i].angle};
+    if (problem->marked >= 0)
+        begun->solution->fallbacks = predict(method, bodies, problem, begun->step);
     else
-        repeat(method, bodies, problem.body_count, which->frame);
-    fill(method, bodies, &problem, solution);
-    step_solving_ends(which);
-    solution->momentum_error = free_flight_momentum(&problem, solution, method->touched);
-    if (!world_end_step_at(world, method->poses, error)) return false;
-    method->after_count = problem.marked >= 0 ? problem.body_count : 0;
-    memcpy(method->after, world_bodies(world), (size_t)problem.body_count * sizeof *method->after);
+        repeat(method, bodies, problem->body_count, begun->step->frame);
+    fill(method, bodies, problem, begun->solution);
+    begun->poses = method->poses;
     return true;
+}
+
+static void measure(void *state, const BegunStep *begun) {
+    bool *touched = ((SubspaceStepper *)state)->touched;
+    begun->solution->momentum_error = free_flight_momentum(begun->problem, begun->solution, touched);
+}
+
+static void keep(void *state, const World *world) {
+    SubspaceStepper *method = state;
+    const ContactProblem *problem = world_problem(world);
+    method->after_count = problem->marked >= 0 ? problem->body_count : 0;
+    memcpy(method->after, world_bodies(world), (size_t)problem->body_count * sizeof *method->after);
 }
 
 const SteppingKind stepping_subspace = {
@@ -263,5 +255,7 @@ const SteppingKind stepping_subspace = {
                     .chart_quick = METHOD_NO_RUNS,
                     .stability = METHOD_NO_RUNS},
     .create = create,
-    .step = step,
+    .solve = solve,
+    .measure = measure,
+    .keep = keep,
     .destroy = destroy};

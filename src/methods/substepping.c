@@ -1,90 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/base.h"
-#include "engine/engine.h"
-#include "methods/methods.h"
-#include "methods/steppers.h"
-#include "methods/sweeps.h"
-#include "scenes/scenes.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-void step_memory_free(StepMemory *memory) {
-    free(memory->bodies);
-    free(memory->contacts);
-    free(memory->known);
-    free(memory->before);
-    *memory = (StepMemory){0};
-}
-
-static bool step_memory_reserve(StepMemory *memory, size_t bodies, size_t contacts) {
-    return array_reserve((void **)&memory->bodies, &memory->body_capacity, bodies, sizeof *memory->bodies) &&
-           array_reserve((void **)&memory->contacts, &memory->contact_capacity, contacts, sizeof *memory->contacts) &&
-           array_reserve((void **)&memory->known, &memory->known_capacity, bodies, sizeof *memory->known) &&
-           array_reserve((void **)&memory->before, &memory->before_capacity, contacts, sizeof *memory->before);
-}
-
-/* A body has no padding: eleven floats. */
-static bool same_body(const Body *x, const Body *y) { return memcmp(x, y, sizeof *x) == 0; }
-
-static bool earlier(const KeptContact *kept, const ContactPoint *contact) {
-    return kept->a < contact->a || (kept->a == contact->a && kept->b < contact->b);
-}
-
-/* Both lists rise by (a, b). */
-static void match_contacts(StepMemory *memory, const ContactProblem *problem) {
-    for (int i = 0, first = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        memory->before[i] = -1;
-        if (!memory->known[contact->a] || !memory->known[contact->b]) continue;
-        while (first < memory->contact_count && earlier(&memory->contacts[first], contact)) first++;
-        for (int j = first; j < memory->contact_count; j++) {
-            const KeptContact *kept = &memory->contacts[j];
-            if (kept->a != contact->a || kept->b != contact->b) break;
-            if (kept->feature == contact->feature) memory->before[i] = j;
-        }
-    }
-}
-
-bool step_memory_match(StepMemory *memory, const World *world, const Step *step) {
-    const ContactProblem *problem = world_problem(world);
-    const Body *bodies = world_bodies(world);
-    if (step->frame == 1) memory->body_count = memory->contact_count = 0;
-    if (!step->scene->warm_starting) memory->contact_count = 0;
-    if (!step_memory_reserve(memory, (size_t)problem->body_count, (size_t)problem->contact_count)) return false;
-    for (int i = 0; i < problem->body_count; i++)
-        memory->known[i] = i < memory->body_count && same_body(&bodies[i], &memory->bodies[i]);
-    match_contacts(memory, problem);
-    return true;
-}
-
-void step_memory_keep(StepMemory *memory, const World *world) {
-    const ContactProblem *problem = world_problem(world);
-    memory->body_count = problem->body_count;
-    memory->contact_count = problem->contact_count;
-    if (problem->body_count > 0)
-        memcpy(memory->bodies, world_bodies(world), (size_t)problem->body_count * sizeof *memory->bodies);
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        memory->contacts[i] = (KeptContact){contact->a, contact->b, contact->feature};
-    }
-}
-
-float free_flight_momentum(const ContactProblem *problem, const ContactSolution *solution, bool *touched) {
-    float sum = 0;
-    memset(touched, 0, (size_t)problem->body_count * sizeof *touched);
-    for (int i = 0; i < problem->contact_count; i++)
-        touched[problem->contacts[i].a] = touched[problem->contacts[i].b] = true;
-    for (int i = 0; i < problem->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        if (touched[i] || body->inv_mass == 0) continue;
-        const Vec2 change = vec2_sub(solution->velocities[i].linear, body->velocity);
-        sum += sqrtf(vec2_dot(change, change)) / body->inv_mass;
-    }
-    return sum;
-}
-
 /* Substepping: one collision pass, then n small steps of dt / n, each with its share of gravity, k sweeps of sequential
    impulses, and integration (Macklin et al., "Small Steps in Physics Simulation", 2019; temporal Gauss-Seidel).
 
@@ -96,6 +10,16 @@ float free_flight_momentum(const ContactProblem *problem, const ContactSolution 
 
    Fails as n k sweeps of one whole step do: a shock travels no further through a stack. It is slower, because sweeps of
    different small steps cannot overlap. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+#include "methods/sweeps.h"
+#include "scenes/scenes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 typedef struct Substepping {
     int substeps, sweeps_each;
@@ -104,45 +28,32 @@ typedef struct Substepping {
     BodyVelocity *pushes;  /* [bodies] change by gravity and warm start in each small step */
     ContactImpulse *share; /* [contacts] share of the warm start in each small step */
     float *separations;    /* [contacts] current */
-    size_t pose_capacity, push_capacity, share_capacity, separation_capacity;
+    ArrayBlock arrays;
 } Substepping;
 
 static const SettingSpec settings[] = {
-    {"substeps", "small steps per step (default: 4)"}, {"k", "sweeps per small step (default: 1)"}, {NULL, NULL}};
+    {"substeps", "small steps per step (default: 4)", SETTING_INT(Substepping, substeps, 1, 1000)},
+    {"k", "sweeps per small step (default: 1)", SETTING_INT(Substepping, sweeps_each, 1, SWEEPS_MAX)},
+    {0}};
 
 static void destroy(void *state) {
     Substepping *stepping = state;
     sweeps_free(&stepping->sweeps);
-    free(stepping->poses);
-    free(stepping->pushes);
-    free(stepping->share);
-    free(stepping->separations);
+    free(stepping->arrays.memory);
     free(stepping);
 }
 
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
+    static const Substepping standard = {.substeps = 4, .sweeps_each = 1};
     (void)scene;
-    Substepping *stepping = calloc(1, sizeof *stepping);
-    if (stepping == NULL) {
-        error_memory(error, "substepping");
-        return NULL;
-    }
-    stepping->substeps = 4;
-    stepping->sweeps_each = 1;
-    if (settings_int(chosen, "substeps", 1, 1000, &stepping->substeps, error) &&
-        settings_int(chosen, "k", 1, SWEEPS_MAX, &stepping->sweeps_each, error))
-        return stepping;
-    destroy(stepping);
-    return NULL;
+    return settings_make(chosen, settings, &standard, sizeof standard, "substepping", error);
 }
 
 static bool reserve(Substepping *stepping, const ContactProblem *problem) {
-    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    return array_reserve((void **)&stepping->poses, &stepping->pose_capacity, bodies, sizeof *stepping->poses) &&
-           array_reserve((void **)&stepping->pushes, &stepping->push_capacity, bodies, sizeof *stepping->pushes) &&
-           array_reserve((void **)&stepping->share, &stepping->share_capacity, contacts, sizeof *stepping->share) &&
-           array_reserve((void **)&stepping->separations, &stepping->separation_capacity, contacts,
-                         sizeof *stepping->separations);
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    return ARRAY_BLOCK_RESERVE(&stepping->arrays, ARRAY_PART(stepping->poses, bodies),
+                               ARRAY_PART(stepping->pushes, bodies), ARRAY_PART(stepping->share, contacts),
+                               ARRAY_PART(stepping->separations, contacts));
 }
 
 /* The same for every small step, as arms and masses do not change. */
@@ -227,29 +138,21 @@ static void update_biases(Substepping *stepping, const ContactProblem *problem, 
         }
 }
 
-static bool solve(Substepping *stepping, const Scene *scene, const ContactProblem *problem) {
+static bool solve(void *state, BegunStep *begun, Error *error) {
+    Substepping *stepping = state;
+    const Scene *scene = begun->step->scene;
+    const ContactProblem *problem = begun->problem;
     const float dt = problem->dt / (float)stepping->substeps;
+    if (!begin(stepping, begun->world, problem, scene->gravity)) return error_memory(error, "substepping");
     for (int i = 0; i < stepping->substeps; i++) {
         if (i > 0) push(stepping);
-        if (!sweeps_run(&stepping->sweeps, stepping->sweeps_each)) return false;
+        if (!sweeps_run(&stepping->sweeps, stepping->sweeps_each)) return error_memory(error, "substepping");
         integrate(stepping, dt);
         if (scene->position_correction) update_biases(stepping, problem, dt, 1.0f / problem->dt);
     }
+    sweeps_end(&stepping->sweeps, begun->solution); /* the world refuses a NaN or infinite result */
+    begun->poses = stepping->poses;
     return true;
-}
-
-static bool step(void *state, World *world, const Step *which, Error *error) {
-    Substepping *stepping = state;
-    ContactProblem problem;
-    ContactSolution *solution;
-    if (!world_begin_step(world, which->scene->dt, &problem, &solution, error)) return false;
-    step_solving_begins(which);
-    bool solved = begin(stepping, world, &problem, which->scene->gravity) && solve(stepping, which->scene, &problem);
-    /* The world refuses a NaN or infinite result. */
-    if (solved) sweeps_end(&stepping->sweeps, solution);
-    step_solving_ends(which);
-    if (!solved) return error_memory(error, "substepping");
-    return world_end_step_at(world, stepping->poses, error);
 }
 
 const SteppingKind stepping_substepping = {
@@ -263,5 +166,5 @@ const SteppingKind stepping_substepping = {
                     .chart_quick = METHOD_RUNS("substeps=10"),
                     .stability_place = 4},
     .create = create,
-    .step = step,
+    .solve = solve,
     .destroy = destroy};

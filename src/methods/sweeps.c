@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* List scheduling: assigns visits, in the order of the sweeps, to the first level that comes after all their
+/* Sweeps over many contacts at once: their schedule, the runs, and how a contact problem is packed for them.
+
+   List scheduling assigns visits, in the order of the sweeps, to the first level that comes after all their
    dependencies and has a free slot. Visits of different sweeps share levels. */
 #include "methods/sweeps.h"
 
@@ -88,10 +90,8 @@ static bool add_body_turn(SweepSchedule *schedule, Sweeps *sweeps, int32_t body,
 /* Counting sort of the bodies' turns by level. */
 static bool sort_body_turns(SweepSchedule *schedule) {
     size_t count = (size_t)schedule->body_turn_count, levels = (size_t)schedule->level_count;
-    if (!array_reserve((void **)&schedule->body_turns, &schedule->body_turn_capacity, count,
-                       sizeof *schedule->body_turns) ||
-        !array_reserve((void **)&schedule->turns_end, &schedule->turns_end_capacity, levels + 1,
-                       sizeof *schedule->turns_end))
+    if (!ARRAY_BLOCK_RESERVE(&schedule->sorted, ARRAY_PART(schedule->body_turns, count),
+                             ARRAY_PART(schedule->turns_end, levels + 1)))
         return false;
     int32_t *end = schedule->turns_end;
     memset(end, 0, (levels + 1) * sizeof *end);
@@ -121,7 +121,7 @@ static bool add_visit(SweepSchedule *schedule, Sweeps *sweeps, int32_t pair, int
 
 /* Makes the schedule of that many sweeps over the pairs; turns: with momentum extrapolation. False when memory is
    short. */
-static bool sweeps_schedule(SweepSchedule *schedule, Sweeps *sweeps, int count, bool turns) {
+static bool make_schedule(SweepSchedule *schedule, Sweeps *sweeps, int count, bool turns) {
     schedule->sweeps = count;
     schedule->level_count = 0;
     schedule->body_turn_count = 0;
@@ -139,28 +139,20 @@ enum {
     LEVEL_PAYS = 3            /* visits per level from which on lanes are faster */
 };
 
+static void free_schedule(SweepSchedule *schedule) {
+    free(schedule->levels);
+    free(schedule->filled);
+    free(schedule->open);
+    free(schedule->turns);
+    free(schedule->unsorted);
+    free(schedule->sorted.memory);
+}
+
 void sweeps_free(Sweeps *sweeps) {
-    SweepSchedule *schedules[] = {&sweeps->whole, &sweeps->rest};
-    for (int i = 0; i < 2; i++) {
-        free(schedules[i]->levels);
-        free(schedules[i]->filled);
-        free(schedules[i]->open);
-        free(schedules[i]->turns);
-        free(schedules[i]->body_turns);
-        free(schedules[i]->unsorted);
-        free(schedules[i]->turns_end);
-    }
-    free(sweeps->bodies);
-    free(sweeps->pairs);
-    free(sweeps->ends);
+    free_schedule(&sweeps->whole);
+    free_schedule(&sweeps->rest);
     free(sweeps->scheduled);
-    free(sweeps->moves);
-    free(sweeps->quiet_since);
-    free(sweeps->changed_at);
-    free(sweeps->ready);
-    free(sweeps->seen);
-    free(sweeps->sums);
-    free(sweeps->first);
+    free(sweeps->arrays.memory);
     colours_free(&sweeps->colours);
     *sweeps = (Sweeps){0};
 }
@@ -179,8 +171,7 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
         (rest == 0 || sweeps->rest.sweeps == rest) && sweeps->scheduled_turns == turns)
         return true;
     sweeps->scheduled_count = 0;
-    if (!sweeps_schedule(&sweeps->whole, sweeps, at_once, turns) ||
-        !sweeps_schedule(&sweeps->rest, sweeps, rest, turns))
+    if (!make_schedule(&sweeps->whole, sweeps, at_once, turns) || !make_schedule(&sweeps->rest, sweeps, rest, turns))
         return false;
     memcpy(sweeps->scheduled, sweeps->ends, size);
     sweeps->scheduled_count = sweeps->pair_count;
@@ -191,7 +182,7 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
 
 /* The number of sweeps in one schedule: an equal part of all sweeps, if possible. With momentum extrapolation an even
    number if the schedule is run more than once: each run begins in the same half of the bodies and sums. */
-static int sweeps_at_once(const Sweeps *sweeps, int count, bool turns) {
+static int sweeps_of_schedule(const Sweeps *sweeps, int count, bool turns) {
     const int limit = sweeps->coloured ? COLOURED_AT_ONCE : SWEEPS_AT_ONCE;
     int most = VISITS_AT_ONCE / sweeps->pair_count;
     if (most > limit) most = limit;
@@ -205,7 +196,7 @@ static int sweeps_at_once(const Sweeps *sweeps, int count, bool turns) {
 /* True to use lanes: the processor has them and enough visits share a level. */
 static bool run(Sweeps *sweeps, const float *factors, int count) {
     bool turns = factors != NULL;
-    int at_once = sweeps_at_once(sweeps, count, turns);
+    int at_once = sweeps_of_schedule(sweeps, count, turns);
     if (sweeps->kernel != SWEEP_ONE_BY_ONE && !reschedule(sweeps, at_once, count % at_once, turns)) return false;
     bool narrow = LEVEL_PAYS * sweeps->whole.level_count > at_once * sweeps->pair_count;
     if (sweeps->kernel == SWEEP_ONE_BY_ONE || narrow) {
@@ -221,7 +212,7 @@ static bool run(Sweeps *sweeps, const float *factors, int count) {
 
 bool sweeps_run_blocks(Sweeps *sweeps, int count) {
     if (sweeps->pair_count == 0) return true;
-    int at_once = sweeps_at_once(sweeps, count, false);
+    int at_once = sweeps_of_schedule(sweeps, count, false);
     if (!reschedule(sweeps, at_once, count % at_once, false)) return false;
     int done = 0;
     for (; done + at_once <= count; done += at_once) sweeps_run_blocks_avx2(sweeps, &sweeps->whole);
@@ -232,15 +223,11 @@ bool sweeps_run_blocks(Sweeps *sweeps, int count) {
 bool sweeps_run(Sweeps *sweeps, int count) { return sweeps->pair_count == 0 || run(sweeps, NULL, count); }
 
 /* Both halves are equal: before the first sweep there is no change to extrapolate. */
-static bool begin_turns(Sweeps *sweeps) {
+static void begin_turns(Sweeps *sweeps) {
     size_t half = (size_t)sweeps->pair_count + 1, bodies = (size_t)sweeps->body_count + 1;
-    if (!array_reserve((void **)&sweeps->sums, &sweeps->sums_capacity, 4 * half, sizeof *sweeps->sums) ||
-        !array_reserve((void **)&sweeps->seen, &sweeps->seen_capacity, bodies, sizeof *sweeps->seen))
-        return false;
     memcpy(sweeps->bodies + bodies, sweeps->bodies, bodies * sizeof *sweeps->bodies);
     for (size_t i = 0; i < half; i++) memcpy(sweeps->sums + 2 * i, sweeps->pairs[i].sums, sizeof sweeps->pairs[i].sums);
     memcpy(sweeps->sums + 2 * half, sweeps->sums, 2 * half * sizeof *sweeps->sums);
-    return true;
 }
 
 static void swap_halves(Sweeps *sweeps) {
@@ -262,7 +249,8 @@ static void end_turns(Sweeps *sweeps, int count) {
 
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count) {
     if (sweeps->pair_count == 0 || count == 0) return true;
-    if (!begin_turns(sweeps) || !run(sweeps, factors, count)) return false;
+    begin_turns(sweeps);
+    if (!run(sweeps, factors, count)) return false;
     end_turns(sweeps, count);
     return true;
 }
@@ -294,17 +282,13 @@ bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution) {
 /* Packs a contact problem into records of bodies, and of pairs in the order of visits. */
 
 static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
-    size_t bodies = (size_t)problem->body_count + 1, pairs = (size_t)problem->contact_count + 1;
-    if (2 * bodies <= sweeps->body_capacity && bodies <= sweeps->ready_capacity && pairs <= sweeps->scheduled_capacity)
-        return true;
-    return array_reserve((void **)&sweeps->bodies, &sweeps->body_capacity, 2 * bodies, sizeof *sweeps->bodies) &&
-           array_reserve((void **)&sweeps->moves, &sweeps->moves_capacity, bodies, sizeof *sweeps->moves) &&
-           array_reserve((void **)&sweeps->ready, &sweeps->ready_capacity, bodies, sizeof *sweeps->ready) &&
-           array_reserve((void **)&sweeps->first, &sweeps->first_capacity, pairs, sizeof *sweeps->first) &&
-           array_reserve((void **)&sweeps->pairs, &sweeps->pair_capacity, pairs, sizeof *sweeps->pairs) &&
-           array_reserve((void **)&sweeps->quiet_since, &sweeps->quiet_capacity, pairs, sizeof *sweeps->quiet_since) &&
-           array_reserve((void **)&sweeps->changed_at, &sweeps->changed_capacity, bodies, sizeof *sweeps->changed_at) &&
-           array_reserve((void **)&sweeps->ends, &sweeps->ends_capacity, pairs, sizeof *sweeps->ends) &&
+    const size_t bodies = (size_t)problem->body_count + 1, pairs = (size_t)problem->contact_count + 1;
+    return ARRAY_BLOCK_RESERVE(&sweeps->arrays, ARRAY_PART(sweeps->bodies, 2 * bodies),
+                               ARRAY_PART(sweeps->pairs, pairs), ARRAY_PART(sweeps->first, pairs),
+                               ARRAY_PART(sweeps->ends, pairs), ARRAY_PART(sweeps->sums, 4 * pairs),
+                               ARRAY_PART(sweeps->moves, bodies), ARRAY_PART(sweeps->quiet_since, pairs),
+                               ARRAY_PART(sweeps->changed_at, bodies), ARRAY_PART(sweeps->ready, bodies),
+                               ARRAY_PART(sweeps->seen, bodies)) &&
            array_reserve((void **)&sweeps->scheduled, &sweeps->scheduled_capacity, pairs, sizeof *sweeps->scheduled);
 }
 

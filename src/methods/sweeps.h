@@ -13,7 +13,7 @@
 /* Work space. Zero-initialise; arrays grow and are reused. */
 typedef struct Islands {
     int32_t *parent, *loops; /* [body_count] */
-    size_t parent_capacity, loop_capacity;
+    ArrayBlock arrays;
 } Islands;
 
 void islands_free(Islands *islands);
@@ -79,7 +79,7 @@ typedef struct Colours {
     int32_t *pairs;  /* [pairs + 1] the first contact of each pair, and the end */
     uint8_t *colour; /* [pairs] */
     uint64_t *taken; /* [body_count] one bit per colour */
-    size_t visit_capacity, pair_capacity, colour_capacity, taken_capacity;
+    ArrayBlock arrays;
 } Colours;
 
 void colours_free(Colours *colours);
@@ -98,12 +98,12 @@ static inline int colours_take(uint64_t *taken, const ContactProblem *problem, c
 /* Fills colours->visits. False when memory is short. */
 bool colours_order(Colours *colours, const ContactProblem *problem);
 
-/* Vectorised sweeps over contacts, with the bits of the scalar reference implementation (sequential_impulses.c).
+/* Vectorised sweeps over contacts, with the bits of the scalar reference implementation (sweeps_scalar.c).
 
-   Contacts that share no moving body commute exactly. sweeps_schedule.c sorts the visits of several sweeps into levels
+   Contacts that share no moving body commute exactly. sweeps.c sorts the visits of several sweeps into levels
    of independent visits, and a level is solved in the lanes of a vector, one pair of bodies per lane (sweeps_lanes.h).
    For few contacts, or on a processor without such vectors, visits run one by one on the same packed records. Visits
-   follow the order of the problem's contacts, which is the engine's, or colours (colours.h): fewer levels, other bits.
+   follow the order of the problem's contacts, which is the engine's, or colours: fewer levels, other bits.
 
    Exact as long as all numbers are finite; sweeps_end() returns false otherwise. */
 
@@ -176,7 +176,8 @@ typedef struct SweepSchedule {
     SweepBodyTurn *unsorted;   /* [body_turn_count] while scheduling */
     int32_t *turns_end;        /* [level_count + 1] the end of each level's body_turns */
     int body_turn_count;
-    size_t turn_capacity, body_turn_capacity, unsorted_capacity, turns_end_capacity;
+    size_t turn_capacity, unsorted_capacity;
+    ArrayBlock sorted; /* body_turns and turns_end */
 } SweepSchedule;
 
 /* The two bodies of a pair. A body that no impulse moves is stored as ~index: its visits commute. */
@@ -210,9 +211,8 @@ typedef struct Sweeps {
     int64_t *changed_at;       /* [body_count] one by one: number of the visit that last changed the body */
     int32_t *ready;            /* [body_count] while scheduling: the first level that may visit the body */
     int32_t *seen; /* [body_count] while scheduling with momentum extrapolation: sweeps that have visited the body */
-    size_t sums_capacity, seen_capacity, quiet_capacity, changed_capacity;
-    size_t body_capacity, pair_capacity, ends_capacity, scheduled_capacity, moves_capacity, ready_capacity;
-    size_t first_capacity;
+    ArrayBlock arrays; /* all but `scheduled`, the colours' and the schedules' */
+    size_t scheduled_capacity;
 } Sweeps;
 
 void sweeps_free(Sweeps *sweeps);
@@ -221,7 +221,7 @@ void sweeps_free(Sweeps *sweeps);
    when memory is short. */
 bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation);
 
-/* The same with visits in the order of colours (colours.h): faster, with other bits. With warm start, without
+/* The same with visits in the order of colours: faster, with other bits. With warm start, without
    relaxation. */
 bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem);
 
@@ -295,7 +295,7 @@ static inline float contact_clamp(float value, float low, float high) {
     return low > capped ? low : capped;
 }
 
-/* Internal functions of sweeps.c and sweeps_load.c. */
+/* Internal functions of the sweeps. */
 
 enum { SWEEPS_AT_ONCE = 16 }; /* sweeps in one schedule, which is run repeatedly */
 

@@ -243,9 +243,7 @@ static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies
 
 void sequential_impulses_begin(const ContactProblem *problem, const SequentialOptions *options,
                                ContactSolution *solution) {
-    for (int i = 0; i < problem->body_count; i++)
-        solution->velocities[i] = (BodyVelocity){problem->bodies[i].velocity, problem->bodies[i].angular_velocity};
-    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0, 0};
+    contact_solution_begin(problem, solution);
     if (options->accumulate) warm_start(problem, options->warm, solution);
 }
 

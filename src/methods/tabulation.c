@@ -32,8 +32,7 @@ static bool grow_table(Tabulation *memory) {
 }
 
 /* Gives an array that keeps its items room for `count` of `size` bytes. False when memory is short; the array stays valid. */
-/* The new size of an array that keeps its items; false when memory is short. */
-static bool tabulation_resize(void **items, size_t count, size_t size) {
+static bool resize(void **items, size_t count, size_t size) {
     void *grown = realloc(*items, count * size);
     if (grown == NULL) return false;
     *items = grown;
@@ -51,9 +50,9 @@ int tabulation_set(const Tabulation *memory, uint64_t hash, int contacts) {
 int tabulation_add_set(Tabulation *memory, uint64_t hash, int contacts) {
     if ((size_t)memory->set_count >= memory->set_capacity) {
         const size_t count = 2 * memory->set_capacity + 16;
-        if (!tabulation_resize((void **)&memory->set_hash, count, sizeof *memory->set_hash) ||
-            !tabulation_resize((void **)&memory->set_contacts, count, sizeof *memory->set_contacts) ||
-            !tabulation_resize((void **)&memory->set_lists, count, sizeof *memory->set_lists))
+        if (!resize((void **)&memory->set_hash, count, sizeof *memory->set_hash) ||
+            !resize((void **)&memory->set_contacts, count, sizeof *memory->set_contacts) ||
+            !resize((void **)&memory->set_lists, count, sizeof *memory->set_lists))
             return -1;
         memory->set_capacity = count;
     }
@@ -84,12 +83,12 @@ static int place_of(const Tabulation *memory, const TabulationList *list, float 
 }
 
 /* Room for one more entry in a set's list; false when memory is short. Then the entry, added last, goes to its place. */
-static bool tabulation_list_reserve(Tabulation *memory, int set) {
+static bool reserve_list(Tabulation *memory, int set) {
     TabulationList *list = &memory->set_lists[set];
     return array_reserve((void **)&list->entries, &list->capacity, (size_t)list->count + 1, sizeof *list->entries);
 }
 
-static void tabulation_list_insert(Tabulation *memory, int entry) {
+static void insert_listed(Tabulation *memory, int entry) {
     TabulationList *list = &memory->set_lists[memory->entry_set[entry]];
     int at = place_of(memory, list, first_number(memory, entry));
     for (int i = list->count++; i > at; i--) list->entries[i] = list->entries[i - 1];
@@ -305,18 +304,18 @@ size_t tabulation_entry_bytes(const Tabulation *memory, int contacts) {
 static bool reserve_entry(Tabulation *memory, int contacts) {
     const size_t key = (size_t)memory->key_size, impulses = memory->impulse_count + (size_t)contacts;
     if (impulses > memory->impulse_capacity) {
-        if (!tabulation_resize((void **)&memory->impulses, 2 * impulses, sizeof *memory->impulses)) return false;
+        if (!resize((void **)&memory->impulses, 2 * impulses, sizeof *memory->impulses)) return false;
         memory->impulse_capacity = 2 * impulses;
     }
     if ((size_t)memory->entry_count < memory->entry_capacity) return true;
     const size_t count = 2 * memory->entry_capacity + 16;
-    if (!tabulation_resize((void **)&memory->entry_set, count, sizeof *memory->entry_set) ||
-        !tabulation_resize((void **)&memory->entry_begin, count, sizeof *memory->entry_begin) ||
-        !tabulation_resize((void **)&memory->keys, count * key, sizeof *memory->keys) ||
-        !tabulation_resize((void **)&memory->metrics, count * (size_t)memory->metric_size, sizeof *memory->metrics) ||
-        !tabulation_resize((void **)&memory->reach, count, sizeof *memory->reach) ||
-        !tabulation_resize((void **)&memory->near, count * TABULATION_NEAR, sizeof *memory->near) ||
-        !tabulation_resize((void **)&memory->weights, count * TABULATION_NEAR * key, sizeof *memory->weights))
+    if (!resize((void **)&memory->entry_set, count, sizeof *memory->entry_set) ||
+        !resize((void **)&memory->entry_begin, count, sizeof *memory->entry_begin) ||
+        !resize((void **)&memory->keys, count * key, sizeof *memory->keys) ||
+        !resize((void **)&memory->metrics, count * (size_t)memory->metric_size, sizeof *memory->metrics) ||
+        !resize((void **)&memory->reach, count, sizeof *memory->reach) ||
+        !resize((void **)&memory->near, count * TABULATION_NEAR, sizeof *memory->near) ||
+        !resize((void **)&memory->weights, count * TABULATION_NEAR * key, sizeof *memory->weights))
         return false;
     memory->entry_capacity = count;
     return true;
@@ -328,7 +327,7 @@ bool tabulation_add(Tabulation *memory, const TabulationQuery *query, const Tabu
         return error_memory(error, "hybrid");
     int set = tabulation_set(memory, query->hash, query->contacts);
     if (set < 0) set = tabulation_add_set(memory, query->hash, query->contacts);
-    if (set < 0 || !tabulation_list_reserve(memory, set)) return error_memory(error, "hybrid");
+    if (set < 0 || !reserve_list(memory, set)) return error_memory(error, "hybrid");
     memory->entry_set[e] = set;
     memory->entry_begin[e] = memory->impulse_count;
     memory->reach[e] = entry->reach;
@@ -341,6 +340,6 @@ bool tabulation_add(Tabulation *memory, const TabulationQuery *query, const Tabu
                (size_t)query->contacts * sizeof *entry->impulses);
     memory->impulse_count += (size_t)query->contacts;
     memory->entry_count++;
-    tabulation_list_insert(memory, (int)e);
+    insert_listed(memory, (int)e);
     return true;
 }

@@ -70,7 +70,7 @@ static bool step_learned(GnsRolloutRollouts *runs, int frame, Error *error) {
     Error failure = {0};
     StepMeter meter = {.now = meter_time};
     const Step step = {runs->scene, frame, &meter};
-    if (!runs->broken) runs->broken = !stepping_gns.step(runs->gns, runs->learned, &step, &failure);
+    if (!runs->broken) runs->broken = !stepping_step(&stepping_gns, runs->gns, runs->learned, &step, &failure);
     if (failure.kind != ERROR_NONE && failure.kind != ERROR_INPUT) return *error = failure, false;
     runs->nanoseconds += meter.solving;
     return frame != runs->scene->bomb.frame || scene_add_bomb(runs->scene, runs->learned, error);

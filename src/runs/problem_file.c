@@ -47,7 +47,7 @@ static const ProblemField contact_fields[CONTACT_FIELDS] = {
 
 /* Reads contact problems from untrusted files. */
 
-static bool problem_read_read_head(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
+static bool read_file_head(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
     int32_t frame, bomb;
     float dt;
     if (!npz_check_kind(file, PROBLEM_KIND, PROBLEM_VERSION, error) ||
@@ -201,7 +201,7 @@ StoredProblem *problem_read(const char *path, Error *error) {
     if (file == NULL) return NULL;
     StoredProblem *stored = calloc(1, sizeof *stored);
     bool done = stored != NULL || error_memory(error, path);
-    done = done && problem_read_read_head(stored, file, path, error) && read_counts(stored, file, path, error) &&
+    done = done && read_file_head(stored, file, path, error) && read_counts(stored, file, path, error) &&
            read_fields(stored, file, path, error) && read_contact_heads(stored, file, error) &&
            check(stored, path, error);
     npz_close(file);
@@ -298,7 +298,7 @@ void problem_bytes_write(const ContactProblem *problem, FILE *out) {
     stream_put(out, problem->contacts, sizeof *problem->contacts, (size_t)problem->contact_count);
 }
 
-static bool problem_bytes_read_head(ContactProblem *problem, ProblemBytes *bytes, Error *error) {
+static bool read_bytes_head(ContactProblem *problem, ProblemBytes *bytes, Error *error) {
     Head head;
     *problem = (ContactProblem){0};
     if (!problem_bytes_take(bytes, &head, 1, sizeof head, error)) return false;
@@ -334,7 +334,7 @@ static bool is_possible(const ContactProblem *problem) {
 
 /* Memory is taken only for what is there. */
 bool problem_bytes_read(ContactProblem *problem, ProblemBytes *bytes, Error *error) {
-    if (!problem_bytes_read_head(problem, bytes, error)) return false;
+    if (!read_bytes_head(problem, bytes, error)) return false;
     const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
     if (bytes->left < bodies * sizeof(ProblemBody) + contacts * sizeof(ContactPoint))
         return problem_bytes_refuse(bytes, error);

@@ -49,7 +49,7 @@ static bool check_body(CsvImport *import, int body, Error *error) {
     return true;
 }
 
-static void csv_import_note(CsvRunNotes *notes, const char *format, ...);
+static void add_note(CsvRunNotes *notes, const char *format, ...);
 
 static void note_static(const CsvImport *import) {
     const Trajectory *run = import->run;
@@ -64,15 +64,15 @@ static void note_static(const CsvImport *import) {
     }
     if (import->head.states_static) return;
     if (count == 0)
-        csv_import_note(import->notes, "no body is static: each of them moves");
+        add_note(import->notes, "no body is static: each of them moves");
     else
-        csv_import_note(import->notes, "%d static: %s%s never move%s", count, list, count > 8 ? ", ..." : "",
-                        count == 1 ? "s" : "");
+        add_note(import->notes, "%d static: %s%s never move%s", count, list, count > 8 ? ", ..." : "",
+                 count == 1 ? "s" : "");
 }
 
 /* Completes the bodies once all rows are read: sizes, which are static, poses of static bodies in frames without their row.
    False with error set if a body is missing between two of its frames. */
-static bool csv_import_finish_bodies(CsvImport *import, Error *error) {
+static bool finish_bodies(CsvImport *import, Error *error) {
     Trajectory *run = import->run;
     for (int body = 0; body < run->bodies; body++) {
         run->size[body] = import->head.bodies[body].size;
@@ -93,7 +93,7 @@ static const size_t MAX_SIZE = (size_t)1 << 30;
 static const double TIME_TOLERANCE = 0.01;  /* of a step */
 static const double WHOLE_TOLERANCE = 1e-4; /* relative: 1/dt this near a whole number is that number */
 
-static void csv_import_note(CsvRunNotes *notes, const char *format, ...) {
+static void add_note(CsvRunNotes *notes, const char *format, ...) {
     va_list arguments;
     if (notes->count == CSV_RUN_NOTES_MAX) return;
     va_start(arguments, format);
@@ -154,7 +154,7 @@ static bool choose_step(CsvImport *import, float *dt, Error *error) {
     if (given > 0 || stated > 0) {
         *dt = given > 0 ? given : stated;
         if (given > 0 && stated > 0 && given != stated)
-            csv_import_note(import->notes, "dt is %g s, as given; the file states %g s", (double)given, (double)stated);
+            add_note(import->notes, "dt is %g s, as given; the file states %g s", (double)given, (double)stated);
         return true;
     }
     if (!has_times(import) || steps == 0)
@@ -167,9 +167,9 @@ static bool choose_step(CsvImport *import, float *dt, Error *error) {
     const double rate = rint(1 / step);
     if (fabs(rate * step - 1) < WHOLE_TOLERANCE) {
         step = 1 / rate;
-        csv_import_note(import->notes, "dt is 1/%.0f s, from the column time", rate);
+        add_note(import->notes, "dt is 1/%.0f s, from the column time", rate);
     } else
-        csv_import_note(import->notes, "dt is %.9g s, from the column time", step);
+        add_note(import->notes, "dt is %.9g s, from the column time", step);
     *dt = (float)step;
     return true;
 }
@@ -257,17 +257,15 @@ static void note_numbers(const CsvImport *import) {
     const CsvHead *head = &import->head;
     const int64_t least = head->bodies[0].number, most = head->bodies[head->count - 1].number;
     CsvRunNotes *notes = import->notes;
-    if (import->first != 0) csv_import_note(notes, "frame %" PRId64 " of the file becomes frame 0", import->first);
+    if (import->first != 0) add_note(notes, "frame %" PRId64 " of the file becomes frame 0", import->first);
     if (least != 0 || most >= (int64_t)head->count)
-        csv_import_note(notes, "bodies %" PRId64 " to %" PRId64 " of the file become bodies 0 to %zu", least, most,
-                        head->count - 1);
-    if (head->scene[0] == '\0') csv_import_note(notes, "the scene is called '%s'", import->run->scene);
-    if (head->method[0] == '\0') csv_import_note(notes, "the method is called '%s'", import->run->method);
-    if (import->run->no_velocities)
-        csv_import_note(notes, "velocities are unknown: there are no columns vx, vy and omega");
-    if (import->rows.ignored[0] != '\0')
-        csv_import_note(notes, "unknown columns are left out: %s", import->rows.ignored);
-    csv_import_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
+        add_note(notes, "bodies %" PRId64 " to %" PRId64 " of the file become bodies 0 to %zu", least, most,
+                 head->count - 1);
+    if (head->scene[0] == '\0') add_note(notes, "the scene is called '%s'", import->run->scene);
+    if (head->method[0] == '\0') add_note(notes, "the method is called '%s'", import->run->method);
+    if (import->run->no_velocities) add_note(notes, "velocities are unknown: there are no columns vx, vy and omega");
+    if (import->rows.ignored[0] != '\0') add_note(notes, "unknown columns are left out: %s", import->rows.ignored);
+    add_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
 }
 
 static bool make_run(CsvImport *import, Error *error) {
@@ -280,7 +278,7 @@ static bool make_run(CsvImport *import, Error *error) {
     import->run->dt = dt;
     import->run->no_contacts = true;
     import->run->no_velocities = import->rows.field[COL_VX] < 0;
-    if (!fill(import, error) || !check_frames(import, error) || !csv_import_finish_bodies(import, error) ||
+    if (!fill(import, error) || !check_frames(import, error) || !finish_bodies(import, error) ||
         !finish_head(import, error))
         return false;
     note_numbers(import);

@@ -48,7 +48,7 @@ Trajectory *simulate(const Scene *scene, const Method *method, const Progress *p
 
 /* What reading a scene does not check: its launches, its networks, and its parameters at their ends. */
 
-/* The launch of a single run and those of training and scoring: none puts the bomb inside a body (launch_check.h). */
+/* The launch of a single run and those of training and scoring: none puts the bomb inside a body. */
 bool scene_check_launches(const Scene *scene, Error *error);
 
 /* Reads each network that the scene names and runs one step with it, with the bomb and without. */

@@ -4,7 +4,18 @@
 
 #include "base/base.h"
 
-static const SettingSpec known[] = {{"iterations", "sweeps"}, {"network", "a file"}, {"warm", "on or off"}, {0}};
+typedef struct Values {
+    int iterations;
+    float share;
+    bool warm;
+} Values;
+
+static const SettingSpec known[] = {{"iterations", "sweeps", SETTING_INT(Values, iterations, 1, 12)},
+                                    {"share", "of a step", SETTING_FLOAT(Values, share, 0.25f, 2)},
+                                    {"network", "a file", SETTING_OWN},
+                                    {"warm", "on or off", SETTING_BOOL(Values, warm)},
+                                    {0}};
+static const Values standard = {5, 0.5f, true};
 static const SettingSpec none[] = {{0}};
 
 static Settings parsed(const char *text) {
@@ -20,38 +31,16 @@ static void values_are_found_by_key(void **state) {
     assert_int_equal(settings.count, 3);
     assert_string_equal(settings_get(&settings, "network"), "a=b.npz");
     assert_null(settings_get(&settings, "warms"));
-    int iterations = 1;
-    bool warm = true;
     Error error = {0};
-    assert_ok(settings_int(&settings, "iterations", 1, 12, &iterations, &error), error);
-    assert_int_equal(iterations, 12);
-    assert_ok(settings_bool(&settings, "warm", &warm, &error), error);
-    assert_false(warm);
-}
-
-static void missing_keys_leave_the_value(void **state) {
-    (void)state;
-    Settings settings = parsed("");
-    int iterations = 5;
-    bool warm = true;
-    Error error = {0};
-    assert_true(settings_int(&settings, "iterations", 1, 10, &iterations, &error));
-    assert_true(settings_bool(&settings, "warm", &warm, &error));
-    assert_int_equal(iterations, 5);
-    assert_true(warm);
-}
-
-static void a_number_is_read_in_its_range(void **state) {
-    (void)state;
-    Settings settings = parsed("iterations=1.25");
-    float value = 0;
-    Error error = {0};
-    assert_ok(settings_float(&settings, "iterations", 1, 2, &value, &error), error);
-    assert_true(value == 1.25f);
-    assert_ok(settings_float(&settings, "warm", 1, 2, &value, &error), error);
-    assert_true(value == 1.25f);
-    assert_refused(settings_float(&settings, "iterations", 0, 1, &value, &error),
-                   "iterations: error: must be a number from 0 to 1 (got '1.25')");
+    Values *values = settings_make(&settings, known, &standard, sizeof standard, "test", &error);
+    assert_ok(values != NULL, error);
+    assert_int_equal(values->iterations, 12);
+    assert_false(values->warm);
+    assert_true(values->share == 0.5f); /* not given */
+    free(values);
+    values = settings_make(&(Settings){0}, known, &standard, sizeof standard, "test", &error);
+    assert_memory_equal(values, &standard, sizeof standard);
+    free(values);
 }
 
 static void defaults_do_not_replace(void **state) {
@@ -82,7 +71,7 @@ static void bad_settings_are_refused(void **state) {
     refuse("warm=on,", known, "not key=value");
     refuse(",warm=on", known, "not key=value");
     refuse("warm=on,warm=off", known, "'warm' is given twice");
-    refuse("colour=red", known, "'colour' is not a setting; known: iterations, network, warm");
+    refuse("colour=red", known, "'colour' is not a setting; known: iterations, share, network, warm");
     refuse("colour=red", none, "'colour' is not a setting; known: none");
     char text[SETTING_VALUE_SIZE + 16];
     memset(text, 'x', sizeof text);
@@ -111,22 +100,30 @@ static void too_many_settings_are_refused(void **state) {
 
 static void bad_values_are_refused(void **state) {
     (void)state;
-    Settings settings = parsed("iterations=0,warm=yes");
-    int iterations = 5;
-    bool warm = true;
-    Error error = {0}, other = {0};
-    assert_refused(settings_int(&settings, "iterations", 1, 10, &iterations, &error),
-                   "iterations: error: must be a whole number from 1 to 10 (got '0')");
-    assert_int_equal(iterations, 5);
-    assert_false(settings_bool(&settings, "warm", &warm, &other));
-    assert_error(other, ERROR_INPUT, "warm: error: must be on or off (got 'yes')");
-    assert_true(warm);
+    static const char *const bad[][2] = {
+        {"iterations=0", "iterations: error: must be a whole number from 1 to 12 (got '0')"},
+        {"iterations=13", "iterations: error: must be a whole number from 1 to 12 (got '13')"},
+        {"iterations=1.5", "iterations: error: must be a whole number from 1 to 12 (got '1.5')"},
+        {"share=0.249", "share: error: must be a number from 0.25 to 2 (got '0.249')"},
+        {"share=2.001", "share: error: must be a number from 0.25 to 2 (got '2.001')"},
+        {"share=x", "share: error: must be a number from 0.25 to 2 (got 'x')"},
+        {"warm=yes", "warm: error: must be on or off (got 'yes')"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        const Settings settings = parsed(bad[i][0]);
+        Error error = {0};
+        assert_refused(settings_make(&settings, known, &standard, sizeof standard, "test", &error) != NULL, bad[i][1]);
+    }
+    const Settings settings = parsed("iterations=1,share=1.25,warm=off");
+    Values values = standard;
+    Error error = {0};
+    assert_ok(settings_read(&settings, known, &values, &error), error);
+    assert_true(values.iterations == 1 && values.share == 1.25f && !values.warm);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_are_found_by_key),       cmocka_unit_test(missing_keys_leave_the_value),
-        cmocka_unit_test(a_number_is_read_in_its_range), cmocka_unit_test(defaults_do_not_replace),
+        cmocka_unit_test(values_are_found_by_key),       cmocka_unit_test(defaults_do_not_replace),
         cmocka_unit_test(bad_settings_are_refused),      cmocka_unit_test(bad_values_are_refused),
         cmocka_unit_test(too_many_settings_are_refused),
     };

@@ -41,18 +41,11 @@ static void no_touching_pair_is_lost(float far_away, float spread) {
     free(list.pairs);
 }
 
-static void touching_pairs_are_found_near_the_origin(void **state) {
-    (void)state;
-    no_touching_pair_is_lost(0, 8);
-}
+TEST(touching_pairs_are_found_near_the_origin) { no_touching_pair_is_lost(0, 8); }
 
-static void touching_pairs_are_found_far_from_the_origin(void **state) {
-    (void)state;
-    no_touching_pair_is_lost(1e6f, 8);
-}
+TEST(touching_pairs_are_found_far_from_the_origin) { no_touching_pair_is_lost(1e6f, 8); }
 
-static void pairs_rise_and_fixed_bodies_do_not_pair(void **state) {
-    (void)state;
+TEST(pairs_rise_and_fixed_bodies_do_not_pair) {
     Bounds all = {{-1, -1}, {1, 1}};
     const Bounds bounds[4] = {all, all, all, {{5, 5}, {6, 6}}};
     const bool fixed[4] = {true, false, true, false};
@@ -119,8 +112,7 @@ static void run_drift(const Drift *drift) {
     free(expected.pairs);
 }
 
-static void sort_and_sweep_finds_the_pairs_of_the_plain_text(void **state) {
-    (void)state;
+TEST(sort_and_sweep_finds_the_pairs_of_the_plain_text) {
     const Drift drifts[] = {{"a heap", {10, 10}, 0, 1, 20, 0.1f},
                             {"a tower", {1, 200}, 0, 1, 3, 0.1f},
                             {"a row", {200, 1}, 0, 1, 3, 0.1f},
@@ -133,19 +125,11 @@ static void sort_and_sweep_finds_the_pairs_of_the_plain_text(void **state) {
     for (size_t i = 0; i < sizeof drifts / sizeof drifts[0]; i++) run_drift(&drifts[i]);
 }
 
-static void bounds_hold_the_turned_box(void **state) {
-    (void)state;
+TEST(bounds_hold_the_turned_box) {
     Box box = box_make(vec2(2, 3), vec2(2, 2), 0.25f * 3.14159265f);
     Bounds bounds = bounds_of_box(&box);
     assert_near(bounds.low.x, 2 - sqrtf(2), 1e-4f);
     assert_near(bounds.high.y, 3 + sqrtf(2), 1e-4f);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(touching_pairs_are_found_near_the_origin),
-                                       cmocka_unit_test(touching_pairs_are_found_far_from_the_origin),
-                                       cmocka_unit_test(pairs_rise_and_fixed_bodies_do_not_pair),
-                                       cmocka_unit_test(sort_and_sweep_finds_the_pairs_of_the_plain_text),
-                                       cmocka_unit_test(bounds_hold_the_turned_box)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -20,8 +20,7 @@ static void add_box(World *world, float x) {
     assert_ok(world_add_body(world, &box, &error), error);
 }
 
-static void a_problem_outlives_added_bodies(void **state) {
-    (void)state;
+TEST(a_problem_outlives_added_bodies) {
     Error error = {0};
     World *world = world_create(&(WorldDef){.gravity = {0, -10}}, &error);
     assert_ok(world != NULL, error);
@@ -48,7 +47,4 @@ static void a_problem_outlives_added_bodies(void **state) {
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_problem_outlives_added_bodies)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -16,8 +16,7 @@ static uint32_t feature(Edge a_in, Edge a_out, Edge b_in, Edge b_out) {
 }
 
 /* A unit box 0.02 m deep in the ground: its two lower corners, each named by the edges that meet there. */
-static void box_on_ground_touches_with_its_lower_corners(void **state) {
-    (void)state;
+TEST(box_on_ground_touches_with_its_lower_corners) {
     Manifold m = collide(box_make(vec2(0, -10), vec2(100, 20), 0), box_make(vec2(3, 0.48f), vec2(1, 1), 0));
     assert_int_equal(m.count, 2);
     assert_near(m.normal.x, 0, 0);
@@ -34,8 +33,7 @@ static void box_on_ground_touches_with_its_lower_corners(void **state) {
 }
 
 /* Half over the edge of the box below: one corner of its own, one cut by the side of the box below. */
-static void overhanging_box_is_clipped_to_the_box_below(void **state) {
-    (void)state;
+TEST(overhanging_box_is_clipped_to_the_box_below) {
     Manifold m = collide(box_make(vec2(0, 0), vec2(1, 1), 0), box_make(vec2(0.5f, 0.99f), vec2(1, 1), 0));
     assert_int_equal(m.count, 2);
     assert_near(m.points[0].position.x, 0, tolerance);
@@ -50,8 +48,7 @@ static void overhanging_box_is_clipped_to_the_box_below(void **state) {
 }
 
 /* A corner of a box turned by 45 degrees pokes 0.01 m into the ground. */
-static void a_corner_touches_in_one_point(void **state) {
-    (void)state;
+TEST(a_corner_touches_in_one_point) {
     float reach = sqrtf(0.5f);
     Manifold m = collide(box_make(vec2(0, -10), vec2(100, 20), 0),
                          box_make(vec2(1, reach - 0.01f), vec2(1, 1), 0.25f * 3.14159265f));
@@ -60,8 +57,7 @@ static void a_corner_touches_in_one_point(void **state) {
     assert_near(m.points[0].separation, -0.01f, 1e-4f);
 }
 
-static void boxes_apart_do_not_touch(void **state) {
-    (void)state;
+TEST(boxes_apart_do_not_touch) {
     Box a = box_make(vec2(0, 0), vec2(1, 1), 0);
     assert_int_equal(collide(a, box_make(vec2(1.001f, 0), vec2(1, 1), 0)).count, 0);
     assert_int_equal(collide(a, box_make(vec2(0, -1.001f), vec2(1, 1), 0)).count, 0);
@@ -70,8 +66,7 @@ static void boxes_apart_do_not_touch(void **state) {
 }
 
 /* Box2D-Lite's choices where both signs are as good. */
-static void ties_go_to_the_negative_normal(void **state) {
-    (void)state;
+TEST(ties_go_to_the_negative_normal) {
     Manifold m = collide(box_make(vec2(0, 0), vec2(1, 1), 0), box_make(vec2(0, 0), vec2(1, 1), 0));
     assert_int_equal(m.count, 2);
     assert_near(m.normal.x, -1, 0);
@@ -86,8 +81,7 @@ static bool contains(const Box *box, Vec2 point, float margin) {
 
 /* Laws of any manifold: a unit normal from a to b, overlaps that are not positive, points on the reference box and
    within the overlap of the incident one; and the boxes apart once b is moved out along the normal. */
-static void manifolds_of_random_boxes_obey_their_laws(void **state) {
-    (void)state;
+TEST(manifolds_of_random_boxes_obey_their_laws) {
     uint32_t seed = 1;
     int touching = 0;
     for (int i = 0; i < 20000; i++) {
@@ -115,8 +109,7 @@ static void manifolds_of_random_boxes_obey_their_laws(void **state) {
 }
 
 /* A point found as a's corner in b is found as such from the other side: normal turned, feature halves swapped. */
-static void swapping_the_boxes_swaps_the_manifold(void **state) {
-    (void)state;
+TEST(swapping_the_boxes_swaps_the_manifold) {
     Box wide = box_make(vec2(0, 0), vec2(4, 1), 0.1f), small = box_make(vec2(0.3f, 0.9f), vec2(1, 1), 0.15f);
     Manifold m = collide(wide, small), swapped = collide(small, wide);
     assert_int_equal(m.count, 2);
@@ -130,13 +123,4 @@ static void swapping_the_boxes_swaps_the_manifold(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(box_on_ground_touches_with_its_lower_corners),
-                                       cmocka_unit_test(overhanging_box_is_clipped_to_the_box_below),
-                                       cmocka_unit_test(a_corner_touches_in_one_point),
-                                       cmocka_unit_test(boxes_apart_do_not_touch),
-                                       cmocka_unit_test(ties_go_to_the_negative_normal),
-                                       cmocka_unit_test(manifolds_of_random_boxes_obey_their_laws),
-                                       cmocka_unit_test(swapping_the_boxes_swaps_the_manifold)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -12,8 +12,7 @@ static const double depth = 0.01;
 
 static Box unit_box(float x, float y, float angle) { return box_make(vec2(x, y), vec2(1, 1), angle); }
 
-static void depth_is_the_smallest_overlap(void **state) {
-    (void)state;
+TEST(depth_is_the_smallest_overlap) {
     const Box a = unit_box(0, 0, 0), beside = unit_box(0.75f, 0.25f, 0), apart = unit_box(0.5f, 1.5f, 0);
     assert_near(overlap_depth(&a, &beside), 0.25, 1e-7);
     assert_near(overlap_depth(&a, &apart), -0.5, 1e-7);
@@ -32,8 +31,7 @@ static Box random_box(uint32_t *seed) {
 }
 
 /* The engine may choose a face of deeper penetration, never one of less. */
-static void narrow_phase_finds_the_same_pairs(void **state) {
-    (void)state;
+TEST(narrow_phase_finds_the_same_pairs) {
     uint32_t seed = 1;
     int touching = 0;
     for (int i = 0; i < 20000; i++) {
@@ -52,8 +50,7 @@ static void narrow_phase_finds_the_same_pairs(void **state) {
 }
 
 /* Just inside the ends of the span they overlap by more than the depth, just outside they do not. */
-static void spans_end_where_the_overlap_does(void **state) {
-    (void)state;
+TEST(spans_end_where_the_overlap_does) {
     uint32_t seed = 2;
     int spans = 0;
     for (int i = 0; i < 5000; i++) {
@@ -76,8 +73,7 @@ static void spans_end_where_the_overlap_does(void **state) {
     assert_true(spans > 1000);
 }
 
-static void boxes_that_never_meet_have_no_span(void **state) {
-    (void)state;
+TEST(boxes_that_never_meet_have_no_span) {
     const Box ground = box_make(vec2(0, -10), vec2(100, 20), 0), above = unit_box(0, 5, 0.3f),
               beside = unit_box(60, -1, 0);
     OverlapSpan span = overlap_span(&ground, &above, depth, true);
@@ -88,8 +84,7 @@ static void boxes_that_never_meet_have_no_span(void **state) {
 }
 
 /* Positions are float32: 1e6 m from the origin they are 6 cm apart, so boxes that touch may overlap by that. */
-static void rounding_is_no_overlap(void **state) {
-    (void)state;
+TEST(rounding_is_no_overlap) {
     const Box a = unit_box(1e6f, 0, 0), touching = unit_box(1e6f + 0.9375f, 0, 0),
               inside = unit_box(1e6f + 0.25f, 0, 0);
     assert_false(overlap_exceeds(&a, &touching, depth));
@@ -99,8 +94,7 @@ static void rounding_is_no_overlap(void **state) {
 enum { BODIES = 60 };
 
 /* A pair that overlaps is found if there is one, on either axis of the sweep. */
-static void some_pair_is_found_if_there_is_one(void **state) {
-    (void)state;
+TEST(some_pair_is_found_if_there_is_one) {
     uint32_t seed = 3;
     int with = 0, without = 0;
     for (int round = 0; round < 400; round++) {
@@ -129,10 +123,4 @@ static void some_pair_is_found_if_there_is_one(void **state) {
     assert_true(with > 20 && without > 20);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_is_the_smallest_overlap),    cmocka_unit_test(narrow_phase_finds_the_same_pairs),
-        cmocka_unit_test(spans_end_where_the_overlap_does), cmocka_unit_test(boxes_that_never_meet_have_no_span),
-        cmocka_unit_test(rounding_is_no_overlap),           cmocka_unit_test(some_pair_is_found_if_there_is_one)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

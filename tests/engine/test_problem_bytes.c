@@ -47,8 +47,7 @@ static bool read_copy(const Written *written, size_t size, ContactProblem *probl
     return ok;
 }
 
-static void written_is_read(void **state) {
-    (void)state;
+TEST(written_is_read) {
     Written written;
     Error error;
     ContactProblem problem;
@@ -65,8 +64,7 @@ static void written_is_read(void **state) {
     problem_bytes_free(&problem);
 }
 
-static void cut_off_is_refused(void **state) {
-    (void)state;
+TEST(cut_off_is_refused) {
     Written written;
     Error error;
     ContactProblem problem;
@@ -86,8 +84,7 @@ static void refused(const Written *written) {
     problem_bytes_free(&problem);
 }
 
-static void impossible_numbers_are_refused(void **state) {
-    (void)state;
+TEST(impossible_numbers_are_refused) {
     Written written;
     const struct {
         int bodies, contacts, bomb;
@@ -126,11 +123,4 @@ static void impossible_numbers_are_refused(void **state) {
     refused(&written);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(written_is_read),
-        cmocka_unit_test(cut_off_is_refused),
-        cmocka_unit_test(impossible_numbers_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

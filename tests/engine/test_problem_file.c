@@ -48,8 +48,7 @@ static void make_example(Example *example) {
     example->contacts[2].b = 2;
 }
 
-static void written_is_read(void **state) {
-    (void)state;
+TEST(written_is_read) {
     const char *path = temporary_path("problem.npz");
     Example example;
     make_example(&example);
@@ -68,8 +67,7 @@ static void written_is_read(void **state) {
     problem_destroy(stored);
 }
 
-static void a_problem_without_contacts_is_one(void **state) {
-    (void)state;
+TEST(a_problem_without_contacts_is_one) {
     const char *path = temporary_path("alone.npz");
     Example example;
     make_example(&example);
@@ -104,8 +102,7 @@ static void expect_refused(const Example *example, int frame, const char *scene,
         expect_refused(&example, 1, "stack", reason); \
     } while (0)
 
-static void bad_heads_are_refused(void **state) {
-    (void)state;
+TEST(bad_heads_are_refused) {
     REFUSE(problem.dt, 0, "dt must be finite and greater than 0 (got 0)");
     REFUSE(problem.dt, -1, "dt must be");
     REFUSE(problem.dt, NAN, "dt must be");
@@ -118,8 +115,7 @@ static void bad_heads_are_refused(void **state) {
     expect_refused(&example, 1, "st\033[2Jack", "control characters");
 }
 
-static void bad_bodies_are_refused(void **state) {
-    (void)state;
+TEST(bad_bodies_are_refused) {
     REFUSE(bodies[1].position.y, INFINITY, "position[1] is not finite");
     REFUSE(bodies[2].angle, NAN, "angle[2] is not finite");
     REFUSE(bodies[2].velocity.x, NAN, "velocity[2] is not finite");
@@ -132,8 +128,7 @@ static void bad_bodies_are_refused(void **state) {
     REFUSE(bodies[1].inv_inertia, -1, "body 1: inverse mass and inertia");
 }
 
-static void bad_contacts_are_refused(void **state) {
-    (void)state;
+TEST(bad_contacts_are_refused) {
     REFUSE(contacts[0].a, -1, "contact 0: bodies -1 and 1 are not a valid pair");
     REFUSE(contacts[0].a, 1, "contact 0: bodies 1 and 1 are not a valid pair");
     REFUSE(contacts[2].b, 3, "contact 2: bodies 0 and 3 are not a valid pair");
@@ -152,19 +147,11 @@ static void bad_contacts_are_refused(void **state) {
     REFUSE(contacts[1].warm_tangent, NAN, "contact_warm[1] is not finite");
 }
 
-static void contacts_of_static_bodies_are_refused(void **state) {
-    (void)state;
+TEST(contacts_of_static_bodies_are_refused) {
     Example example;
     make_example(&example);
     example.bodies[1] = example.bodies[0];
     expect_refused(&example, 1, "stack", "contact 0: bodies 0 and 1 are both static");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(written_is_read),          cmocka_unit_test(a_problem_without_contacts_is_one),
-        cmocka_unit_test(bad_heads_are_refused),    cmocka_unit_test(bad_bodies_are_refused),
-        cmocka_unit_test(bad_contacts_are_refused), cmocka_unit_test(contacts_of_static_bodies_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -41,8 +41,7 @@ static void step(World *world, FakeSolver *fake) {
 
 /* A unit box of mass 3 (inertia m (1 + 1) / 12 = 0.5) whose corners are 0.5 m below and beside its centre:
    1/m_n = 1/3 + (1/0.5) 0.5^2, and the same along the tangent. Depth 0.03 m: bias = 0.2 / dt (0.03 - 0.01). */
-static void a_contact_problem_holds_what_the_step_froze(void **state) {
-    (void)state;
+TEST(a_contact_problem_holds_what_the_step_froze) {
     World *world = box_on_ground(true, true, 0.47f);
     FakeSolver fake = {0};
     world_mark(world, 1);
@@ -69,8 +68,7 @@ static void a_contact_problem_holds_what_the_step_froze(void **state) {
     world_destroy(world);
 }
 
-static void position_correction_can_be_switched_off(void **state) {
-    (void)state;
+TEST(position_correction_can_be_switched_off) {
     World *world = box_on_ground(true, false, 0.47f);
     FakeSolver fake = {0};
     step(world, &fake);
@@ -79,8 +77,7 @@ static void position_correction_can_be_switched_off(void **state) {
 }
 
 /* The impulses of a step come back as the warm start of the next, point by point; not once the pair has parted. */
-static void impulses_persist_while_the_pair_touches(void **state) {
-    (void)state;
+TEST(impulses_persist_while_the_pair_touches) {
     World *world = box_on_ground(true, true, 0.495f);
     FakeSolver fake = {.impulse = 7};
     step(world, &fake);
@@ -101,8 +98,7 @@ static void impulses_persist_while_the_pair_touches(void **state) {
     world_destroy(world);
 }
 
-static void warm_starting_can_be_switched_off(void **state) {
-    (void)state;
+TEST(warm_starting_can_be_switched_off) {
     World *world = box_on_ground(false, true, 0.495f);
     FakeSolver fake = {.impulse = 7};
     step(world, &fake);
@@ -121,8 +117,7 @@ static void fail_step(World *world, FakeSolver *fake, const char *message) {
 }
 
 /* Unchanged means: the bodies, and the impulses that the next step starts from. */
-static void a_step_that_fails_leaves_the_world_unchanged(void **state) {
-    (void)state;
+TEST(a_step_that_fails_leaves_the_world_unchanged) {
     World *world = box_on_ground(true, true, 0.495f);
     FakeSolver fake = {.impulse = 7};
     step(world, &fake);
@@ -135,8 +130,7 @@ static void a_step_that_fails_leaves_the_world_unchanged(void **state) {
 }
 
 /* A copy continues as the original does, impulses included; a step that is begun and not ended changes neither. */
-static void a_copy_goes_on_as_the_original(void **state) {
-    (void)state;
+TEST(a_copy_goes_on_as_the_original) {
     Error error = {0};
     World *world = box_on_ground(true, true, 0.495f), *copy = box_on_ground(false, false, 3);
     FakeSolver fake = {.impulse = 7, .velocity = -0.1f};
@@ -158,8 +152,7 @@ static void a_copy_goes_on_as_the_original(void **state) {
 }
 
 /* Poses from the method, velocities from the solution. */
-static void a_step_can_end_at_poses_given(void **state) {
-    (void)state;
+TEST(a_step_can_end_at_poses_given) {
     Error error = {0};
     World *world = box_on_ground(true, true, 2);
     ContactProblem problem;
@@ -188,8 +181,7 @@ static void expect_warm(const World *world, int contact, float warm) {
 }
 
 /* What the step did can be read until the next, which has the others' contacts and their impulses. */
-static void a_body_taken_out_takes_its_contacts_with_it(void **state) {
-    (void)state;
+TEST(a_body_taken_out_takes_its_contacts_with_it) {
     World *world = two_boxes_on_ground(vec2(1, 1));
     FakeSolver fake = {.impulse = 7};
     world_mark(world, 2);
@@ -208,8 +200,7 @@ static void a_body_taken_out_takes_its_contacts_with_it(void **state) {
 }
 
 /* A body added in its place has neither its impulses nor its box; a copy made meanwhile continues alike. */
-static void a_body_in_the_place_of_one_taken_out_starts_anew(void **state) {
-    (void)state;
+TEST(a_body_in_the_place_of_one_taken_out_starts_anew) {
     Error error = {0};
     for (int same_size = 0; same_size <= 1; same_size++) {
         World *world = two_boxes_on_ground(vec2(1, 1)), *copy = box_on_ground(false, false, 3);
@@ -231,8 +222,7 @@ static void a_body_in_the_place_of_one_taken_out_starts_anew(void **state) {
 }
 
 /* n boxes in one place are n (n - 1) / 2 pairs: 1448 are just below 2^20, 1449 above. */
-static void too_many_pairs_are_refused(void **state) {
-    (void)state;
+TEST(too_many_pairs_are_refused) {
     Error error = {0};
     const WorldDef def = {.gravity = {0, -10}};
     const BodyDef box = {.size = {1, 1}, .mass = 1};
@@ -250,8 +240,7 @@ static void too_many_pairs_are_refused(void **state) {
     world_destroy(world);
 }
 
-static void fixed_bodies_stay(void **state) {
-    (void)state;
+TEST(fixed_bodies_stay) {
     World *world = box_on_ground(true, true, 5);
     FakeSolver fake = {0};
     for (int i = 0; i < 10; i++) step(world, &fake);
@@ -261,17 +250,4 @@ static void fixed_bodies_stay(void **state) {
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_contact_problem_holds_what_the_step_froze),
-                                       cmocka_unit_test(position_correction_can_be_switched_off),
-                                       cmocka_unit_test(impulses_persist_while_the_pair_touches),
-                                       cmocka_unit_test(warm_starting_can_be_switched_off),
-                                       cmocka_unit_test(a_step_that_fails_leaves_the_world_unchanged),
-                                       cmocka_unit_test(a_copy_goes_on_as_the_original),
-                                       cmocka_unit_test(a_step_can_end_at_poses_given),
-                                       cmocka_unit_test(a_body_taken_out_takes_its_contacts_with_it),
-                                       cmocka_unit_test(a_body_in_the_place_of_one_taken_out_starts_anew),
-                                       cmocka_unit_test(too_many_pairs_are_refused),
-                                       cmocka_unit_test(fixed_bodies_stay)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

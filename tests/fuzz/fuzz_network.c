@@ -111,7 +111,7 @@ static void read_sain(const char *path) {
     if (!ok) return;
     float pair[RELATION_PAIR_INPUTS] = {0}, inputs[RELATION_BODY_INPUTS] = {0};
     RelationBody body = {.rows = 1, .axis = {1, 0}, .radius = 1};
-    RelationView view = {1, 1, &body, pair, inputs, .row_capacity = 0};
+    RelationView view = {.body_count = 1, .row_count = 1, .bodies = &body, .pair_inputs = pair, .body_inputs = inputs};
     RelationAnswers answers = {0};
     for (int f = 0; f < RELATION_FORMS; f++) {
         if (!relation_answer(&answers, &networks.forms[f], &view, true)) fuzz_fail("memory");

@@ -51,3 +51,13 @@ static inline void assert_velocities_fit(const ContactProblem *problem, const Co
         assert_near(found->velocities[i].linear.y, y, rounding * sum);
     }
 }
+
+/* N s: momentum of all bodies, which move; before the solve with NULL. */
+static inline void linear_momentum(const ContactProblem *problem, const BodyVelocity *after, double sum[2]) {
+    sum[0] = sum[1] = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        Vec2 v = after != NULL ? after[i].linear : problem->bodies[i].velocity;
+        sum[0] += (double)v.x / (double)problem->bodies[i].inv_mass;
+        sum[1] += (double)v.y / (double)problem->bodies[i].inv_mass;
+    }
+}

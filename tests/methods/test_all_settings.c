@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The settings of a method, given or not. */
-#include "testing.h"
+#include "runs/made.h"
 
-#include "methods/methods.h"
+#include "methods/sweeps.h"
 
 static void assert_settings(const char *text, int iterations, const char *wanted) {
     Settings settings;
@@ -15,8 +15,7 @@ static void assert_settings(const char *text, int iterations, const char *wanted
 }
 
 /* Contact solvers take k from the scene; steppers have their own. */
-static void what_is_not_given_is_the_scenes_or_the_methods(void **state) {
-    (void)state;
+TEST(what_is_not_given_is_the_scenes_or_the_methods) {
     assert_settings("engine", 10, "k=10");
     assert_settings("engine:k=20", 10, "k=20");
     assert_settings("engine", 0, "");
@@ -31,8 +30,7 @@ static void what_is_not_given_is_the_scenes_or_the_methods(void **state) {
 }
 
 /* No method with a k is forgotten. */
-static void every_method_with_k_has_one(void **state) {
-    (void)state;
+TEST(every_method_with_k_has_one) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         Settings settings;
         assert_true(method_all_settings(&settings, kind->description->name, 12));
@@ -43,10 +41,61 @@ static void every_method_with_k_has_one(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_not_given_is_the_scenes_or_the_methods),
-        cmocka_unit_test(every_method_with_k_has_one),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+/* A solver or stepper of the method with this one setting. */
+static void refuse(const MethodKind *kind, const Scene *scene, const char *key, const char *value) {
+    Error error = {0};
+    Settings settings = {0};
+    char begins[64];
+    snprintf(begins, sizeof begins, "%s: error: must be ", key);
+    assert_true(settings_default(&settings, key, value));
+    assert_refused(kind->solver != NULL ? kind->solver->create(&settings, &error)
+                                        : kind->stepping->create(&settings, scene, &error),
+                   begins);
 }
+
+/* Of every number and switch of every method that can be made without a file, whatever the method does with it. */
+TEST(settings_out_of_range_are_refused) {
+    Scene *scene = scene_named("stack");
+    int settings = 0;
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        if (kind->description->needs_network && strcmp(kind->description->name, "gns") != 0) continue;
+        for (const SettingSpec *spec = kind->description->settings; spec != NULL && spec->key != NULL; spec++) {
+            char beyond[32], below[32];
+            if (spec->type == SETTING_IS_OWN) continue;
+            snprintf(below, sizeof below, "%.9g", spec->least - (spec->least > 0 ? spec->least / 2 : 1));
+            snprintf(beyond, sizeof beyond, "%.9g", spec->most + (spec->type == SETTING_IS_INT ? 1 : 0.1));
+            const char *const values[] = {spec->type == SETTING_IS_BOOL ? "maybe" : below,
+                                          spec->most < 1e6 ? beyond : "x", "nan", "ten"};
+            for (int i = 0; i < 4; i++) refuse(kind, scene, spec->key, values[i]);
+            settings++;
+        }
+    }
+    assert_true(settings >= 20);
+    scene_destroy(scene);
+}
+
+/* The bounds that files and charts rely on. */
+TEST(bounds_are_these) {
+    static const struct {
+        const char *method, *key;
+        double least, most;
+    } bounds[] = {{"engine", "k", 1, SWEEPS_MAX},
+                  {"momentum", "k", 1, SWEEPS_MAX},
+                  {"relu-net", "k", 1, SWEEPS_MAX},
+                  {"over-relaxation", "omega", 0.01, 1.99},
+                  {"interior", "near", 1e-9, 1e6},
+                  {"avbd", "k", 1, 10000},
+                  {"avbd", "alpha", 0, 1},
+                  {"avbd", "gamma", 0, 1},
+                  {"soft-step", "substeps", 1, 1000},
+                  {"soft-step", "hertz", 0.01, 1e4},
+                  {"playback", "launches", 1, 10000}};
+    for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
+        const SettingSpec *spec = method_describe(bounds[i].method)->settings;
+        while (strcmp(spec->key, bounds[i].key) != 0) spec++;
+        assert_near(spec->least, bounds[i].least, 1e-6 * bounds[i].least);
+        assert_near(spec->most, bounds[i].most, 1e-6 * bounds[i].most);
+    }
+}
+
+RUN_TESTS(NULL, NULL)

@@ -13,8 +13,7 @@ static World *make_pyramid(void) {
     for (int row = 0; row < 11; row++)
         for (int i = row; i < 11; i++) {
             float x = 1.125f * ((float)i - 0.5f * (float)row);
-            add_body(world,
-                     &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.5f + (float)row}});
+            add_box(world, 10, 0.2f, vec2(x, 0.5f + (float)row));
         }
     return world;
 }
@@ -32,26 +31,20 @@ static void steps_allocate_nothing_by(const ContactSolverKind *kind, const char 
     world_destroy(world);
 }
 
-static void a_settled_pyramid_steps_without_allocating(void **state) {
-    (void)state;
-    steps_allocate_nothing_by(&solver_engine, "");
-    steps_allocate_nothing_by(&solver_engine, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_over_relaxation, "");
-    steps_allocate_nothing_by(&solver_over_relaxation, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_momentum, "");
-    steps_allocate_nothing_by(&solver_momentum, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_block, "");
-    steps_allocate_nothing_by(&solver_block, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_nncg, "");
-    steps_allocate_nothing_by(&solver_nncg, "k=7,near=1e-4");
-    steps_allocate_nothing_by(&solver_relu_net, "");
-    steps_allocate_nothing_by(&solver_interior, "");
-    steps_allocate_nothing_by(&solver_hybrid, "");
+TEST(a_settled_pyramid_steps_without_allocating) {
+    static const ContactSolverKind *const by_rule[] = {&solver_engine, &solver_over_relaxation, &solver_momentum,
+                                                       &solver_block, &solver_nncg},
+                                          *const others[] = {&solver_relu_net, &solver_interior, &solver_hybrid,
+                                                             &solver_reference};
+    for (size_t i = 0; i < sizeof by_rule / sizeof *by_rule; i++) {
+        steps_allocate_nothing_by(by_rule[i], "");
+        steps_allocate_nothing_by(by_rule[i], "k=7,near=1e-4");
+    }
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) steps_allocate_nothing_by(others[i], "");
 }
 
 /* The network's pyramid would not stand, so each is asked about the engine's, twice. */
-static void pair_networks_solve_without_allocating(void **state) {
-    (void)state;
+TEST(pair_networks_solve_without_allocating) {
     Error error = {0};
     World *world = make_pyramid();
     ContactSolver engine = make_engine("");
@@ -75,8 +68,7 @@ static void pair_networks_solve_without_allocating(void **state) {
     world_destroy(world);
 }
 
-static void a_view_of_no_larger_problem_allocates_nothing(void **state) {
-    (void)state;
+TEST(a_view_of_no_larger_problem_allocates_nothing) {
     static RandomProblem large, small;
     uint32_t seed = 1;
     SceneView view = {0};
@@ -95,8 +87,7 @@ static void a_view_of_no_larger_problem_allocates_nothing(void **state) {
     slot_network_destroy(network);
 }
 
-static void a_network_of_a_scene_solves_without_allocating(void **state) {
-    (void)state;
+TEST(a_network_of_a_scene_solves_without_allocating) {
     static RandomProblem random;
     uint32_t seed = 4;
     Error error = {0};
@@ -120,8 +111,7 @@ static void a_network_of_a_scene_solves_without_allocating(void **state) {
     slot_network_destroy(network);
 }
 
-static void corrected_steps_allocate_nothing(void **state) {
-    (void)state;
+TEST(corrected_steps_allocate_nothing) {
     Error error = {0};
     uint32_t seed = 1;
     RelationNetwork network;
@@ -144,11 +134,4 @@ static void corrected_steps_allocate_nothing(void **state) {
     relation_network_destroy(&network);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_settled_pyramid_steps_without_allocating),
-                                       cmocka_unit_test(pair_networks_solve_without_allocating),
-                                       cmocka_unit_test(a_view_of_no_larger_problem_allocates_nothing),
-                                       cmocka_unit_test(a_network_of_a_scene_solves_without_allocating),
-                                       cmocka_unit_test(corrected_steps_allocate_nothing)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

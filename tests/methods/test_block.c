@@ -7,8 +7,7 @@
 #include "methods/sweeps.h"
 #include "worlds.h"
 
-static void random_problems_have_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(random_problems_have_the_bits_of_the_plain_text) {
     static RandomProblem random;
     uint32_t seed = 23;
     const int counts[] = {1, 2, 10, 17, 40};
@@ -71,8 +70,7 @@ static void solve_once(const ContactSolverKind *kind, const Landing *landing, Co
 }
 
 /* Falling and turning a little: p1 + p2 = m v and (p2 - p1) / 2 = -I w stop it, and both push. */
-static void a_box_on_two_points_stops_in_one_sweep(void **state) {
-    (void)state;
+TEST(a_box_on_two_points_stops_in_one_sweep) {
     Landing landing;
     make_landing(&landing, vec2(0, -3), 1.5f, -0.5f, 0.5f);
     ContactSolution found = make_solution(&landing.problem);
@@ -87,8 +85,7 @@ static void a_box_on_two_points_stops_in_one_sweep(void **state) {
 }
 
 /* v >= 0, x >= 0, v x = 0 at both points, whatever comes: and all four cases do come. */
-static void one_sweep_solves_the_complementarity_problem(void **state) {
-    (void)state;
+TEST(one_sweep_solves_the_complementarity_problem) {
     uint32_t seed = 29;
     int cases[4] = {0};
     for (int i = 0; i < 500; i++) {
@@ -113,8 +110,7 @@ static void one_sweep_solves_the_complementarity_problem(void **state) {
 }
 
 /* Points that coincide have no inverse: then one by one, and the box stops all the same. */
-static void points_that_coincide_are_solved_one_by_one(void **state) {
-    (void)state;
+TEST(points_that_coincide_are_solved_one_by_one) {
     Landing landing;
     make_landing(&landing, vec2(0, -3), 0, -0.5f, 0.5f);
     assert_true(block_make(&landing.contacts[0], &landing.contacts[1], landing.bodies).inverse_determinant > 0);
@@ -128,8 +124,7 @@ static void points_that_coincide_are_solved_one_by_one(void **state) {
 }
 
 /* Where numbers overflow the order of visits shows; then the plain text decides. */
-static void what_overflows_has_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(what_overflows_has_the_bits_of_the_plain_text) {
     static RandomProblem random;
     uint32_t seed = 31;
     make_random(&random, &seed, 60, 0.1f, 1);
@@ -150,11 +145,4 @@ static void what_overflows_has_the_bits_of_the_plain_text(void **state) {
     free_solution(&found);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(a_box_on_two_points_stops_in_one_sweep),
-                                       cmocka_unit_test(one_sweep_solves_the_complementarity_problem),
-                                       cmocka_unit_test(points_that_coincide_are_solved_one_by_one),
-                                       cmocka_unit_test(what_overflows_has_the_bits_of_the_plain_text)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

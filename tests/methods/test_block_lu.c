@@ -4,8 +4,7 @@
 
 static RandomBlocks blocks;
 
-static void the_solution_is_that_of_a_dense_solve(void **state) {
-    (void)state;
+TEST(the_solution_is_that_of_a_dense_solve) {
     const InteriorKernels *kernels[2];
     const int kernel_count = list_kernels(kernels);
     BlockLu lu = {0};
@@ -27,8 +26,7 @@ static void the_solution_is_that_of_a_dense_solve(void **state) {
     block_lu_free(&lu);
 }
 
-static void kernels_have_the_same_bits(void **state) {
-    (void)state;
+TEST(kernels_have_the_same_bits) {
     const InteriorKernels *kernels[2];
     if (list_kernels(kernels) < 2) skip();
     BlockLu lu = {0};
@@ -59,8 +57,7 @@ static Block3 stiffness_of_face(double stiff) {
 
 /* A stack of closed contacts: stiffness 1e9 beside masses of 1. A pull on its end moves all links alike, by its size
    over their number; along the faces only the last link moves. The inverse of a pivot would lose these digits. */
-static void a_stiff_chain_moves_as_one(void **state) {
-    (void)state;
+TEST(a_stiff_chain_moves_as_one) {
     enum { LINKS = 20 };
     const Block3 face = stiffness_of_face(1e9);
     BlockLu lu = {0};
@@ -94,8 +91,7 @@ static void a_stiff_chain_moves_as_one(void **state) {
 /* Closed contacts next to open ones: stiffnesses from 1 to 1e12 beside masses of 1. Whatever the condition, each row of
    A x = b holds up to the rounding of its terms, which elimination without exchanges multiplies by the growth of the
    factors. An inverse by cofactors loses this. */
-static void rows_hold_whatever_the_condition(void **state) {
-    (void)state;
+TEST(rows_hold_whatever_the_condition) {
     BlockLu lu = {0};
     uint32_t seed = 9;
     Vec4 x[NODES_MAX];
@@ -119,8 +115,7 @@ static void rows_hold_whatever_the_condition(void **state) {
 }
 
 /* A star, whose hub must come last: any other order fills in. */
-static void the_hub_of_a_star_is_eliminated_last(void **state) {
-    (void)state;
+TEST(the_hub_of_a_star_is_eliminated_last) {
     enum { RAYS = 30 };
     BlockLu lu = {0};
     BlockEdge edges[RAYS];
@@ -131,8 +126,7 @@ static void the_hub_of_a_star_is_eliminated_last(void **state) {
     block_lu_free(&lu);
 }
 
-static void an_empty_matrix_is_no_error(void **state) {
-    (void)state;
+TEST(an_empty_matrix_is_no_error) {
     BlockLu lu = {0};
     assert_true(block_lu_analyse(&lu, 0, NULL, 0));
     interior_best()->factor(&lu);
@@ -142,12 +136,4 @@ static void an_empty_matrix_is_no_error(void **state) {
     block_lu_free(&lu);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_solution_is_that_of_a_dense_solve),
-                                       cmocka_unit_test(kernels_have_the_same_bits),
-                                       cmocka_unit_test(a_stiff_chain_moves_as_one),
-                                       cmocka_unit_test(rows_hold_whatever_the_condition),
-                                       cmocka_unit_test(the_hub_of_a_star_is_eliminated_last),
-                                       cmocka_unit_test(an_empty_matrix_is_no_error)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -39,8 +39,7 @@ static int make_trees(int trees, int size) {
     return count;
 }
 
-static void trees_do_not_fill_in(void **state) {
-    (void)state;
+TEST(trees_do_not_fill_in) {
     static const int sizes[][2] = {{1, 2}, {1, 128}, {1, 129}, {1, 5000}, {500, 10}, {12, 11}, {3, 400}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         const int count = sizes[i][0] * sizes[i][1], fill = fill_of(count, make_trees(sizes[i][0], sizes[i][1]));
@@ -49,8 +48,7 @@ static void trees_do_not_fill_in(void **state) {
 }
 
 /* The hub of a star must come last, and a chain from its ends or anywhere, not by every second node. */
-static void stars_and_chains_do_not_fill_in(void **state) {
-    (void)state;
+TEST(stars_and_chains_do_not_fill_in) {
     for (int count = 64; count <= 4096; count *= 4) {
         for (int i = 0; i + 1 < count; i++) edges[i] = (BlockEdge){count - 1, i};
         assert_int_equal(fill_of(count, count - 1), 0);
@@ -60,8 +58,7 @@ static void stars_and_chains_do_not_fill_in(void **state) {
 }
 
 /* A ring of n nodes needs n - 3 more edges to be chordal, in any order of elimination. */
-static void rings_fill_in_by_their_chords(void **state) {
-    (void)state;
+TEST(rings_fill_in_by_their_chords) {
     for (int count = 4; count <= 4096; count *= 2) {
         for (int i = 0; i < count; i++) edges[i] = (BlockEdge){i, (i + 1) % count};
         assert_int_equal(fill_of(count, count), count - 3);
@@ -69,8 +66,7 @@ static void rings_fill_in_by_their_chords(void **state) {
 }
 
 /* Without edges, and with all: nothing can fill in. */
-static void extremes_do_not_fill_in(void **state) {
-    (void)state;
+TEST(extremes_do_not_fill_in) {
     for (int count = 100; count <= 300; count += 100) {
         assert_int_equal(fill_of(count, 0), 0);
         int edge_count = 0;
@@ -91,8 +87,7 @@ static int make_wall(int side) {
 }
 
 /* Row by row, side^3 blocks; the best orders have about 7.75 side^2 log2(side) (George 1973). */
-static void walls_fill_in_little(void **state) {
-    (void)state;
+TEST(walls_fill_in_little) {
     for (int side = 8; side <= 128; side *= 2) {
         BlockLu lu = analysed(side * side, make_wall(side));
         int log2_of_side = 0;
@@ -104,8 +99,7 @@ static void walls_fill_in_little(void **state) {
 
 /* Bits of solutions depend on the order, so it must be the same with every version of the library. Recorded with AMD
    2.4.6 of Debian 12. */
-static void the_order_of_a_wall_is_the_same_everywhere(void **state) {
-    (void)state;
+TEST(the_order_of_a_wall_is_the_same_everywhere) {
     static const struct {
         int side;
         uint64_t hash;
@@ -118,8 +112,7 @@ static void the_order_of_a_wall_is_the_same_everywhere(void **state) {
 }
 
 /* An analysis after others, of any size, is that of a fresh start. */
-static void earlier_graphs_leave_no_trace(void **state) {
-    (void)state;
+TEST(earlier_graphs_leave_no_trace) {
     BlockLu used = {0};
     for (int side = 14; side >= 2; side -= 4) {
         const int count = side * side, edge_count = make_wall(side);
@@ -133,11 +126,4 @@ static void earlier_graphs_leave_no_trace(void **state) {
     block_lu_free(&used);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(trees_do_not_fill_in),          cmocka_unit_test(stars_and_chains_do_not_fill_in),
-        cmocka_unit_test(rings_fill_in_by_their_chords), cmocka_unit_test(extremes_do_not_fill_in),
-        cmocka_unit_test(walls_fill_in_little),          cmocka_unit_test(the_order_of_a_wall_is_the_same_everywhere),
-        cmocka_unit_test(earlier_graphs_leave_no_trace)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

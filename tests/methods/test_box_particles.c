@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-static void angles_are_those_of_the_maths_library(void **state) {
-    (void)state;
+TEST(angles_are_those_of_the_maths_library) {
     for (int i = -1000; i <= 1000; i++) {
         const double angle = 3.14159 * i / 1000, length = 0.01 + (double)(i * i);
         assert_near(plane_angle(length * cos(angle), length * sin(angle)), angle, 1e-13);
@@ -16,8 +15,7 @@ static void angles_are_those_of_the_maths_library(void **state) {
     assert_near(plane_angle(0, 0), 0, 0);
 }
 
-static void a_moved_box_is_found_again(void **state) {
-    (void)state;
+TEST(a_moved_box_is_found_again) {
     const Vec2 size = {1, 0.4f};
     for (int i = -50; i <= 50; i++) {
         Vec2 particles[BOX_PARTICLES];
@@ -32,8 +30,7 @@ static void a_moved_box_is_found_again(void **state) {
 }
 
 /* A box that is stretched along an edge keeps its pose; its particles are off by the stretch of two of three columns. */
-static void a_stretched_box_keeps_its_pose(void **state) {
-    (void)state;
+TEST(a_stretched_box_keeps_its_pose) {
     const Vec2 size = {1, 1};
     const BodyPose pose = {{0, 0}, 0};
     Vec2 particles[BOX_PARTICLES];
@@ -45,9 +42,4 @@ static void a_stretched_box_keeps_its_pose(void **state) {
     assert_near(box_particles_distance(particles, size, &found), 0.1 * sqrt(2.0 / 3), 1e-6);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(angles_are_those_of_the_maths_library),
-                                       cmocka_unit_test(a_moved_box_is_found_again),
-                                       cmocka_unit_test(a_stretched_box_keeps_its_pose)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -62,8 +62,7 @@ static void surfaces_stay_together(const ContactProblem *problem, const int32_t 
     }
 }
 
-static void an_order_has_few_colours(void **state) {
-    (void)state;
+TEST(an_order_has_few_colours) {
     static RandomProblem random;
     Colours colours = {0};
     uint32_t seed = 12;
@@ -79,8 +78,7 @@ static void an_order_has_few_colours(void **state) {
 }
 
 /* Ten boxes, one on the other: every second pair, then the others. */
-static void a_chain_has_two_colours(void **state) {
-    (void)state;
+TEST(a_chain_has_two_colours) {
     enum { LINKS = 10 };
     static RandomProblem random;
     Colours colours = {0};
@@ -100,8 +98,7 @@ static void a_chain_has_two_colours(void **state) {
 
 /* On the ground, which no impulse moves, all lie at once; on a body that moves one after the other, and there are more of
    them than colours. */
-static void a_star_has_one_colour_or_more_than_there_are(void **state) {
-    (void)state;
+TEST(a_star_has_one_colour_or_more_than_there_are) {
     static RandomProblem random;
     Colours colours = {0};
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
@@ -124,9 +121,4 @@ static void a_star_has_one_colour_or_more_than_there_are(void **state) {
     colours_free(&colours);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(an_order_has_few_colours),
-                                       cmocka_unit_test(a_chain_has_two_colours),
-                                       cmocka_unit_test(a_star_has_one_colour_or_more_than_there_are)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

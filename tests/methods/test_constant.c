@@ -2,8 +2,7 @@
 #include "pair_networks.h"
 
 /* On every target's data the constant does what a network does that says their mean. */
-static void the_constant_says_what_the_data_were_on_average(void **state) {
-    (void)state;
+TEST(the_constant_says_what_the_data_were_on_average) {
     const float twice[PAIR_CHANGES] = {2, 4, 6, 8, 10, 12};
     const struct {
         PairView view;
@@ -34,8 +33,7 @@ static void the_constant_says_what_the_data_were_on_average(void **state) {
     assert_near(v[2].linear.y, 4 * 2 * 4, 1e-5); /* normal (0, 1): 4 sweeps of the mean, twice 4 along the normal */
 }
 
-static void a_silenced_network_is_the_constant(void **state) {
-    (void)state;
+TEST(a_silenced_network_is_the_constant) {
     static const PairTarget targets[] = {TARGET_POINTS, TARGET_PAIR};
     for (int i = 0; i < 2; i++) {
         Error error = {0};
@@ -56,8 +54,4 @@ static void a_silenced_network_is_the_constant(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_constant_says_what_the_data_were_on_average),
-                                       cmocka_unit_test(a_silenced_network_is_the_constant)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

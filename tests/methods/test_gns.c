@@ -68,8 +68,7 @@ static void steps(Run *run, int first, int last) {
 static const BodyDef ground = {.fixed = true, .size = {200, 20}, .position = {0, -10}, .friction = 0.2f};
 
 /* Without the network, and with outputs that are not credible, boxes fall: y = -g t (t + dt) / 2, through everything. */
-static void boxes_fall_without_the_network(void **state) {
-    (void)state;
+TEST(boxes_fall_without_the_network) {
     static const struct {
         const char *settings;
         float strongest;
@@ -95,8 +94,7 @@ static void boxes_fall_without_the_network(void **state) {
 }
 
 /* What the network makes of boxes in the air is momentum from nothing, and is reported as that. */
-static void momentum_in_free_flight_is_an_error(void **state) {
-    (void)state;
+TEST(momentum_in_free_flight_is_an_error) {
     BodyDef bodies[] = {box_at(0, 50)};
     Run run;
     begin(&run, bodies, 1, "", write_net(0.4f, 1e6f));
@@ -109,8 +107,7 @@ static void momentum_in_free_flight_is_an_error(void **state) {
 }
 
 /* A box that the stepper left in another state, or does not know, begins with a past of constant velocity. */
-static void another_world_begins_without_a_past(void **state) {
-    (void)state;
+TEST(another_world_begins_without_a_past) {
     Error error = {0};
     const char *net = write_net(0.4f, 1e6f);
     BodyDef bodies[] = {ground, box_at(0, 0.6f), box_at(0.5f, 1.7f)};
@@ -130,8 +127,7 @@ static void another_world_begins_without_a_past(void **state) {
     end(&used);
 }
 
-static void steps_allocate_nothing(void **state) {
-    (void)state;
+TEST(steps_allocate_nothing) {
     for (int rigid = 0; rigid < 2; rigid++) {
         BodyDef bodies[] = {ground, box_at(0, 0.6f), box_at(0.5f, 1.7f)};
         Run run;
@@ -145,8 +141,7 @@ static void steps_allocate_nothing(void **state) {
 }
 
 /* Boxes of one place: too many neighbours. Counted once a step. */
-static void states_beyond_training_are_counted(void **state) {
-    (void)state;
+TEST(states_beyond_training_are_counted) {
     enum { BOXES = 12 };
     BodyDef bodies[BOXES];
     for (int i = 0; i < BOXES; i++) bodies[i] = box_at(0, 9);
@@ -161,8 +156,7 @@ static void states_beyond_training_are_counted(void **state) {
     end(&run);
 }
 
-static void other_networks_are_refused(void **state) {
-    (void)state;
+TEST(other_networks_are_refused) {
     Error error = {0};
     Method method;
     BodyDef bodies[] = {ground};
@@ -174,10 +168,4 @@ static void other_networks_are_refused(void **state) {
     assert_refused(stepper_create(&method, &scene, &error), "sain.npz: error: not a file of kind 'gns'");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_fall_without_the_network),      cmocka_unit_test(momentum_in_free_flight_is_an_error),
-        cmocka_unit_test(another_world_begins_without_a_past), cmocka_unit_test(steps_allocate_nothing),
-        cmocka_unit_test(states_beyond_training_are_counted),  cmocka_unit_test(other_networks_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -11,8 +11,7 @@ static void build(GnsGraph *graph, const ParticleHeap *heap, const GnsNet *net) 
 }
 
 /* Every pair nearer than the radius has an edge each way, and no other has one. */
-static void edges_are_those_of_all_pairs(void **state) {
-    (void)state;
+TEST(edges_are_those_of_all_pairs) {
     static ParticleHeap heap;
     GnsNet net;
     GnsGraph graph = {.nodes = 0};
@@ -41,8 +40,7 @@ static void edges_are_those_of_all_pairs(void **state) {
 }
 
 /* Boxes in one place do not make a number of edges that grows with its square; a fast particle is clamped. */
-static void what_training_never_had_is_told(void **state) {
-    (void)state;
+TEST(what_training_never_had_is_told) {
     static ParticleHeap heap;
     GnsNet net;
     GnsGraph graph = {.nodes = 0};
@@ -72,8 +70,7 @@ static void predict(const ParticleHeap *heap, const GnsNet *net, const GnsKernel
     gns_graph_free(&graph);
 }
 
-static void all_kernels_have_the_same_bits(void **state) {
-    (void)state;
+TEST(all_kernels_have_the_same_bits) {
     static ParticleHeap heap;
     static float first[HEAP_PARTICLES * GNS_OUTPUTS], other[HEAP_PARTICLES * GNS_OUTPUTS];
     const GnsKernels *list[GNS_KERNELS_MAX + 1];
@@ -94,8 +91,7 @@ static void all_kernels_have_the_same_bits(void **state) {
 }
 
 /* A graph has no order of its nodes: the same boxes in another order move the same, but for the rounding of sums. */
-static void the_order_of_bodies_does_not_count(void **state) {
-    (void)state;
+TEST(the_order_of_bodies_does_not_count) {
     static const int mixed[HEAP_BODIES] = {4, 2, 6, 0, 5, 3, 1};
     static ParticleHeap heap, other;
     static float first[HEAP_PARTICLES][GNS_OUTPUTS], second[HEAP_PARTICLES][GNS_OUTPUTS];
@@ -112,8 +108,7 @@ static void the_order_of_bodies_does_not_count(void **state) {
 }
 
 /* With M rounds, a particle hears of those at most M edges away. */
-static void news_travels_one_edge_a_round(void **state) {
-    (void)state;
+TEST(news_travels_one_edge_a_round) {
     static ParticleHeap heap, other;
     static float first[HEAP_PARTICLES * GNS_OUTPUTS], second[HEAP_PARTICLES * GNS_OUTPUTS];
     for (int rounds = 1; rounds <= 3; rounds++) {
@@ -134,10 +129,4 @@ static void news_travels_one_edge_a_round(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edges_are_those_of_all_pairs), cmocka_unit_test(what_training_never_had_is_told),
-        cmocka_unit_test(all_kernels_have_the_same_bits), cmocka_unit_test(the_order_of_bodies_does_not_count),
-        cmocka_unit_test(news_travels_one_edge_a_round)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

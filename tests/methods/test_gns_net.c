@@ -9,8 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void what_is_written_is_read_again(void **state) {
-    (void)state;
+TEST(what_is_written_is_read_again) {
     Error error = {0};
     GnsNet net, read;
     const char *path = temporary_path("net.npz");
@@ -63,8 +62,7 @@ static void refuse(const char *path, const char *text) {
     gns_net_free(&net);
 }
 
-static void hostile_files_are_refused(void **state) {
-    (void)state;
+TEST(hostile_files_are_refused) {
     Error error = {0};
     GnsNet net;
     assert_ok(gns_net_read(&net, write_file((File){"gns", 1, 16, 1, 0, 1, 0}), &error), error);
@@ -84,8 +82,4 @@ static void hostile_files_are_refused(void **state) {
     refuse("/dev/null", "/dev/null");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read_again),
-                                       cmocka_unit_test(hostile_files_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

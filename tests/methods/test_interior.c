@@ -12,14 +12,6 @@
 
 static Reference reference;
 
-/* The contact problem that the world's next step meets. The engine makes the step. */
-static const ContactProblem *next_problem(World *world) {
-    ContactSolver engine = make_engine("k=1");
-    run(world, &engine, 1);
-    free_solver(&engine);
-    return world_problem(world);
-}
-
 static double error_of(const char *settings, const ContactProblem *problem, const ReferenceVelocity *expected) {
     ContactSolution found = make_solution(problem);
     solve_with(&solver_interior, settings, problem, &found);
@@ -32,18 +24,14 @@ static double error_of(const char *settings, const ContactProblem *problem, cons
 static World *make_struck_stack(int steps) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < 10; i++)
-        add_body(world,
-                 &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.49f + 0.98f * (float)i}});
+    for (int i = 0; i < 10; i++) add_box(world, 1, 0.2f, vec2(0, 0.49f + 0.98f * (float)i));
     add_body(world, &(BodyDef){.size = {1, 1},
                                .mass = 10,
                                .friction = 0.2f,
                                .position = {0.2f, 10.3f},
                                .angle = 0.1f,
                                .velocity = {-3, -8}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, steps);
-    free_solver(&engine);
+    run_engine(world, "", steps);
     return world;
 }
 
@@ -53,15 +41,11 @@ static World *make_struck_pyramid(int steps) {
     for (int row = 0; row < 6; row++)
         for (int i = row; i < 6; i++) {
             const float x = 1.125f * ((float)i - 0.5f * (float)row);
-            add_body(
-                world,
-                &(BodyDef){.size = {1, 1}, .mass = 10, .friction = 0.2f, .position = {x, 0.49f + 0.98f * (float)row}});
+            add_box(world, 10, 0.2f, vec2(x, 0.49f + 0.98f * (float)row));
         }
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 50, .friction = 0.2f, .position = {2.6f, 6.6f}, .velocity = {1, -15}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, steps);
-    free_solver(&engine);
+    run_engine(world, "", steps);
     return world;
 }
 
@@ -84,8 +68,7 @@ static double residual_of(const ContactProblem *problem, const ContactSolution *
 }
 
 /* The error of the velocities follows `near`. */
-static void impacts_have_the_reference_solution(void **state) {
-    (void)state;
+TEST(impacts_have_the_reference_solution) {
     World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_heap(4), make_heap(9)};
     for (int i = 0; i < 4; i++) {
         Error error = {0};
@@ -101,8 +84,7 @@ static void impacts_have_the_reference_solution(void **state) {
 
 /* Friction allows several solutions here, 0.07 m/s apart, so this is about the residual alone. Shallow contacts close by
    up to 1 mm/s. */
-static void impacts_of_a_pyramid_are_solved_to_the_tolerance(void **state) {
-    (void)state;
+TEST(impacts_of_a_pyramid_are_solved_to_the_tolerance) {
     static const struct {
         const char *text;
         double most;
@@ -140,8 +122,7 @@ static void fit_masses(RandomProblem *random) {
 }
 
 /* Some random problems have no solution, or the reference does not find it; most have. */
-static void random_problems_have_the_reference_solution(void **state) {
-    (void)state;
+TEST(random_problems_have_the_reference_solution) {
     static RandomProblem random;
     uint32_t seed = 3;
     int compared = 0, agree = 0;
@@ -158,8 +139,7 @@ static void random_problems_have_the_reference_solution(void **state) {
 }
 
 /* For any problem: impulses inside the cone, velocities that are those of the impulses. */
-static void cone_and_velocities_fit(void **state) {
-    (void)state;
+TEST(cone_and_velocities_fit) {
     static RandomProblem random;
     uint32_t seed = 11;
     for (int run = 0; run < 60; run++) {
@@ -178,8 +158,7 @@ static void cone_and_velocities_fit(void **state) {
 }
 
 /* The rounding of the velocities to float is all that is lost: 2^-24 of each. */
-static void momentum_is_exact(void **state) {
-    (void)state;
+TEST(momentum_is_exact) {
     World *world = make_struck_stack(3);
     const ContactProblem *problem = next_problem(world);
     ContactProblem free = *problem;
@@ -215,8 +194,7 @@ static uint64_t bits_of_a_run(int steps) {
 }
 
 /* Made by this test; any processor and compiler must give it. */
-static void a_run_has_these_bits(void **state) {
-    (void)state;
+TEST(a_run_has_these_bits) {
     const uint64_t expected = UINT64_C(0x37fd41bc468a2c58), found = bits_of_a_run(60);
     if (found != expected) fail_msg("%016llx", (unsigned long long)found);
 }
@@ -262,8 +240,7 @@ static double log_of_estimates(const ContactProblem *problem) {
 
 /* The estimate decides when the velocities of the answer are computed. Too small it would cost time for answers that are
    refused, too large it would cost iterations. */
-static void the_estimate_is_near_the_residual(void **state) {
-    (void)state;
+TEST(the_estimate_is_near_the_residual) {
     World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_struck_pyramid(1), make_struck_pyramid(4),
                        make_heap(4)};
     double sum = 0;
@@ -274,8 +251,7 @@ static void the_estimate_is_near_the_residual(void **state) {
     assert_true(fabs(sum / (5 * 8)) < log(1.5));
 }
 
-static void kernels_have_the_bits_of_the_scalar_one(void **state) {
-    (void)state;
+TEST(kernels_have_the_bits_of_the_scalar_one) {
     static RandomProblem random;
     uint32_t seed = 21;
     for (int run = 0; run < 50; run++) {
@@ -289,8 +265,7 @@ static void kernels_have_the_bits_of_the_scalar_one(void **state) {
 }
 
 /* The same problem gives the same bits whatever the solver has solved before. */
-static void earlier_problems_leave_no_trace(void **state) {
-    (void)state;
+TEST(earlier_problems_leave_no_trace) {
     Error error = {0};
     World *pyramid = make_struck_pyramid(2), *stack = make_struck_stack(3);
     const ContactProblem *first = next_problem(pyramid), *second = next_problem(stack);
@@ -310,8 +285,7 @@ static void earlier_problems_leave_no_trace(void **state) {
     world_destroy(stack);
 }
 
-static void without_contacts_bodies_keep_their_velocities(void **state) {
-    (void)state;
+TEST(without_contacts_bodies_keep_their_velocities) {
     const ProblemBody body = {.inv_mass = 1, .inv_inertia = 6, .velocity = {1, 2}, .angular_velocity = 3};
     const ContactProblem problem = {.body_count = 1, .marked = -1, .dt = world_dt, .bodies = &body};
     ContactSolution found = make_solution(&problem);
@@ -323,8 +297,7 @@ static void without_contacts_bodies_keep_their_velocities(void **state) {
 }
 
 /* No impulse could change anything between static bodies: they are left out of the matrix and of the residual. */
-static void two_static_bodies_are_no_obstacle(void **state) {
-    (void)state;
+TEST(two_static_bodies_are_no_obstacle) {
     const ProblemBody bodies[] = {
         {.velocity = {0, 0}}, {.velocity = {0, -1}}, {.inv_mass = 1, .inv_inertia = 6, .velocity = {0, -1}}};
     ContactPoint contacts[] = {
@@ -342,12 +315,11 @@ static void two_static_bodies_are_no_obstacle(void **state) {
 }
 
 /* A million to one. */
-static void a_huge_mass_ratio_is_solved(void **state) {
-    (void)state;
+TEST(a_huge_mass_ratio_is_solved) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.495f}});
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1e6f, .friction = 0.2f, .position = {0, 1.49f}});
+    add_box(world, 1, 0.2f, vec2(0, 0.495f));
+    add_box(world, 1e6f, 0.2f, vec2(0, 1.49f));
     ContactSolver solver = make_solver(&solver_interior, "");
     run(world, &solver, 300);
     assert_near(world_bodies(world)[1].position.y, 0.49f, 0.01f);
@@ -357,8 +329,7 @@ static void a_huge_mass_ratio_is_solved(void **state) {
 }
 
 /* Sweeps solve a problem with a NaN, and say so: with their bits, whatever these are. */
-static void a_nan_ends_in_the_fallback(void **state) {
-    (void)state;
+TEST(a_nan_ends_in_the_fallback) {
     World *world = make_struck_stack(3);
     ContactProblem problem = *next_problem(world);
     ContactPoint contacts[64];
@@ -399,8 +370,7 @@ static double residual_of_jam(float jam) {
     return residual;
 }
 
-static void impulses_too_large_for_float_are_no_solution(void **state) {
-    (void)state;
+TEST(impulses_too_large_for_float_are_no_solution) {
     assert_true(residual_of_jam(1e3f) <= 1);
     assert_true(isinf(residual_of_jam(1e10f)));
 }
@@ -421,8 +391,7 @@ static World *make_boxes(int rows, bool stacks) {
 }
 
 /* 820 boxes: in a pyramid they have 1,560 - 819 loops, in stacks none. The bits are those of sweeps with momentum. */
-static void large_pyramids_are_left_to_sweeps_and_stacks_are_not(void **state) {
-    (void)state;
+TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
     for (int stacks = 0; stacks < 2; stacks++) {
         World *world = make_boxes(40, stacks);
         const ContactProblem *problem = next_problem(world);
@@ -438,35 +407,10 @@ static void large_pyramids_are_left_to_sweeps_and_stacks_are_not(void **state) {
     }
 }
 
-static void settings_out_of_range_are_refused(void **state) {
+static int free_reference(void **state) {
     (void)state;
-    static const char *const texts[] = {"near=0", "near=-1", "near=nan", "near=x"};
-    for (int i = 0; i < 4; i++) {
-        Error error = {0};
-        Settings settings;
-        assert_ok(settings_parse(&settings, texts[i], solver_interior.description.settings, "interior", &error), error);
-        assert_refused(solver_interior.create(&settings, &error), "near");
-    }
+    reference_free(&reference);
+    return 0;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(impacts_have_the_reference_solution),
-                                       cmocka_unit_test(impacts_of_a_pyramid_are_solved_to_the_tolerance),
-                                       cmocka_unit_test(random_problems_have_the_reference_solution),
-                                       cmocka_unit_test(cone_and_velocities_fit),
-                                       cmocka_unit_test(momentum_is_exact),
-                                       cmocka_unit_test(a_run_has_these_bits),
-                                       cmocka_unit_test(the_estimate_is_near_the_residual),
-                                       cmocka_unit_test(kernels_have_the_bits_of_the_scalar_one),
-                                       cmocka_unit_test(earlier_problems_leave_no_trace),
-                                       cmocka_unit_test(without_contacts_bodies_keep_their_velocities),
-                                       cmocka_unit_test(two_static_bodies_are_no_obstacle),
-                                       cmocka_unit_test(a_huge_mass_ratio_is_solved),
-                                       cmocka_unit_test(a_nan_ends_in_the_fallback),
-                                       cmocka_unit_test(impulses_too_large_for_float_are_no_solution),
-                                       cmocka_unit_test(large_pyramids_are_left_to_sweeps_and_stacks_are_not),
-                                       cmocka_unit_test(settings_out_of_range_are_refused)};
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    reference_free(&reference);
-    return failed;
-}
+RUN_TESTS(NULL, free_reference)

@@ -28,17 +28,8 @@ static World *make_struck_wall(float x, float angle, int steps) {
                                .position = {x, 0.99f * (float)COURSES + 0.8f},
                                .angle = angle,
                                .velocity = {-1.3f * x, -17}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, steps);
-    free_solver(&engine);
+    run_engine(world, "", steps);
     return world;
-}
-
-static const ContactProblem *next_problem(World *world) {
-    ContactSolver engine = make_engine("k=1");
-    run(world, &engine, 1);
-    free_solver(&engine);
-    return world_problem(world);
 }
 
 /* The largest change by one more visit of a contact, m/s. */
@@ -50,8 +41,7 @@ static double residual_of(const ContactProblem *problem, const ContactSolution *
 }
 
 /* Iterations alone leave two of five of these to sweeps, with errors of 0.02 to 0.1 m/s. */
-static void struck_walls_need_no_sweeps(void **state) {
-    (void)state;
+TEST(struck_walls_need_no_sweeps) {
     int problems = 0, by_sweeps = 0;
     for (int i = -8; i <= 8; i += 2)
         for (int k = 0; k < 5; k++) {
@@ -70,8 +60,7 @@ static void struck_walls_need_no_sweeps(void **state) {
 }
 
 /* Position correction pushes the box out of both walls, which no impulses can. */
-static void a_step_without_a_solution_falls_back(void **state) {
-    (void)state;
+TEST(a_step_without_a_solution_falls_back) {
     World *world = make_world();
     for (int i = -1; i <= 1; i += 2)
         add_body(world, &(BodyDef){.size = {1, 3}, .fixed = true, .friction = 0.5f, .position = {(float)i, 0}});
@@ -87,8 +76,7 @@ static void a_step_without_a_solution_falls_back(void **state) {
 }
 
 /* After a problem of the same size that iterations solve: a softer impact. */
-static void the_path_allocates_nothing(void **state) {
-    (void)state;
+TEST(the_path_allocates_nothing) {
     enum { BODIES_MAX = 64 };
     Error error = {0};
     World *world = make_struck_wall(-3.9f, 0.9f, 1);
@@ -114,8 +102,7 @@ static void the_path_allocates_nothing(void **state) {
 }
 
 /* The reference ends as soon as asked to. */
-static void the_path_ends_at_the_tolerance(void **state) {
-    (void)state;
+TEST(the_path_ends_at_the_tolerance) {
     Error error = {0};
     World *world = make_struck_wall(2.1f, 0.3f, 1);
     const ContactProblem *problem = next_problem(world);
@@ -130,11 +117,10 @@ static void the_path_ends_at_the_tolerance(void **state) {
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(struck_walls_need_no_sweeps), cmocka_unit_test(a_step_without_a_solution_falls_back),
-        cmocka_unit_test(the_path_allocates_nothing), cmocka_unit_test(the_path_ends_at_the_tolerance)};
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+static int free_reference(void **state) {
+    (void)state;
     reference_free(&reference);
-    return failed;
+    return 0;
 }
+
+RUN_TESTS(NULL, free_reference)

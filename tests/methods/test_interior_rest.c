@@ -4,8 +4,7 @@
 #include "reference_worlds.h"
 
 /* Twenty boxes, and 1000:1 on one: momentum with 20 sweeps loses both. */
-static void tall_and_heavy_stacks_stand(void **state) {
-    (void)state;
+TEST(tall_and_heavy_stacks_stand) {
     World *tall = make_world(), *heavy = make_world();
     add_ground(tall, 0.2f);
     for (int i = 0; i < 20; i++)
@@ -46,14 +45,12 @@ static double moved(World *world, const ContactSolver *solver, int steps) {
 
 /* After 20 s at rest a stack is still: errors do not add up from step to step. An error of the tolerance in each step
    would make 1 mm in 10 s. */
-static void stacks_at_rest_stay_in_place(void **state) {
-    (void)state;
+TEST(stacks_at_rest_stay_in_place) {
     static const int heights[] = {1, 9, 20};
     for (int k = 0; k < 3; k++) {
         World *world = make_world();
         add_ground(world, 0.2f);
-        for (int i = 0; i < heights[k]; i++)
-            add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+        for (int i = 0; i < heights[k]; i++) add_box(world, 1, 0.2f, vec2(0, 0.5f + (float)i));
         ContactSolver solver = make_solver(&solver_interior, "");
         run(world, &solver, 1200);
         assert_true(moved(world, &solver, 600) < 1e-6);
@@ -63,16 +60,11 @@ static void stacks_at_rest_stay_in_place(void **state) {
 }
 
 /* Stacks that do not touch do not depend on each other: eight of 20 stand as one does. */
-static void many_stacks_stand_as_one_does(void **state) {
-    (void)state;
+TEST(many_stacks_stand_as_one_does) {
     World *world = make_world();
     add_ground(world, 0.2f);
     for (int k = 0; k < 8; k++)
-        for (int i = 0; i < 20; i++)
-            add_body(world, &(BodyDef){.size = {1, 1},
-                                       .mass = 1,
-                                       .friction = 0.2f,
-                                       .position = {5 * (float)(k - 4), 0.5f + (float)i}});
+        for (int i = 0; i < 20; i++) add_box(world, 1, 0.2f, vec2(5 * (float)(k - 4), 0.5f + (float)i));
     ContactSolver solver = make_solver(&solver_interior, "");
     run(world, &solver, 900);
     for (int k = 0; k < 8; k++) {
@@ -86,8 +78,7 @@ static void many_stacks_stand_as_one_does(void **state) {
 
 /* Friction holds a box on a slope if and only if the slope is less than the friction; then the box is
    still, but for a micrometre per second next to the limit. */
-static void a_box_that_friction_holds_does_not_creep(void **state) {
-    (void)state;
+TEST(a_box_that_friction_holds_does_not_creep) {
     static const float slopes[] = {0.1f, 0.19f, 0.199f};
     for (int k = 0; k < 3; k++) {
         Error error = {0};
@@ -95,7 +86,7 @@ static void a_box_that_friction_holds_does_not_creep(void **state) {
         World *world = world_create(&def, &error);
         assert_ok(world != NULL, error);
         add_ground(world, 0.2f);
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}});
+        add_box(world, 1, 0.2f, vec2(0, 0.5f));
         ContactSolver solver = make_solver(&solver_interior, "");
         run(world, &solver, 120);
         assert_true(moved(world, &solver, 600) < 1e-5);
@@ -104,9 +95,4 @@ static void a_box_that_friction_holds_does_not_creep(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tall_and_heavy_stacks_stand), cmocka_unit_test(stacks_at_rest_stay_in_place),
-        cmocka_unit_test(many_stacks_stand_as_one_does), cmocka_unit_test(a_box_that_friction_holds_does_not_creep)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -28,24 +28,21 @@ static void assert_most_loops(int expected) {
     islands_free(&islands);
 }
 
-static void without_contacts_there_are_no_loops(void **state) {
-    (void)state;
+TEST(without_contacts_there_are_no_loops) {
     begin(0);
     assert_most_loops(0);
     begin(20);
     assert_most_loops(0);
 }
 
-static void the_ground_connects_nothing(void **state) {
-    (void)state;
+TEST(the_ground_connects_nothing) {
     begin(101);
     for (int i = 1; i <= 100; i++) touch(0, i); /* a row of boxes */
     for (int i = 1; i < 100; i++) touch(i, i + 1);
     assert_most_loops(0);
 }
 
-static void an_arch_has_one_loop_where_its_ends_touch(void **state) {
-    (void)state;
+TEST(an_arch_has_one_loop_where_its_ends_touch) {
     begin(31);
     for (int i = 1; i < 30; i++) touch(i, i + 1);
     assert_most_loops(0);
@@ -54,8 +51,7 @@ static void an_arch_has_one_loop_where_its_ends_touch(void **state) {
 }
 
 /* A pyramid of n rows has n (n - 1) pairs and n (n + 1) / 2 boxes. In pairs of any order. */
-static void a_pyramid_has_its_pairs_less_its_boxes(void **state) {
-    (void)state;
+TEST(a_pyramid_has_its_pairs_less_its_boxes) {
     enum { ROWS = 20, UPPER = ROWS * (ROWS - 1) / 2, BOXES = UPPER + ROWS };
     for (int step = 1; step < 14; step += 6) { /* no divisor of the number of pairs */
         begin(BOXES + 1);
@@ -70,8 +66,7 @@ static void a_pyramid_has_its_pairs_less_its_boxes(void **state) {
 }
 
 /* The island with most loops counts, not their sum; and when two grow together, both. */
-static void the_island_with_most_loops_counts(void **state) {
-    (void)state;
+TEST(the_island_with_most_loops_counts) {
     begin(81);
     for (int ring = 0; ring < 20; ring++)
         for (int i = 0; i < 4; i++) touch(1 + 4 * ring + i, 1 + 4 * ring + (i + 1) % 4);
@@ -86,10 +81,4 @@ static void the_island_with_most_loops_counts(void **state) {
     assert_most_loops(4);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_contacts_there_are_no_loops), cmocka_unit_test(the_ground_connects_nothing),
-        cmocka_unit_test(an_arch_has_one_loop_where_its_ends_touch),
-        cmocka_unit_test(a_pyramid_has_its_pairs_less_its_boxes), cmocka_unit_test(the_island_with_most_loops_counts)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -2,25 +2,7 @@
 /* Laws in closed form that the engine must obey, and what is to do better. */
 #include "worlds.h"
 
-static const ContactSolverKind *judged;
-
-static int judge_engine(void **state) {
-    (void)state;
-    judged = &solver_engine;
-    return 0;
-}
-
-static int judge_block(void **state) {
-    (void)state;
-    judged = &solver_block;
-    return 0;
-}
-
-static int judge_interior(void **state) {
-    (void)state;
-    judged = &solver_interior;
-    return 0;
-}
+static const ContactSolverKind *judged; /* the solver whose laws are tested */
 
 /* The settings of the judged solver: those given, which are numbers of sweeps, or a tight tolerance. */
 static ContactSolver make_judged(const char *sweeps) {
@@ -28,8 +10,7 @@ static ContactSolver make_judged(const char *sweeps) {
 }
 
 /* Semi-implicit Euler: after k steps v = -g k dt and y = y0 - g dt^2 k (k + 1) / 2. */
-static void a_free_box_falls_as_it_should(void **state) {
-    (void)state;
+TEST(a_free_box_falls_as_it_should) {
     World *world = make_world();
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 3, .position = {2, 50}, .velocity = {1.5f, 0}, .angular_velocity = 2});
@@ -62,8 +43,7 @@ static void sum_momentum(const ContactProblem *problem, const BodyVelocity *afte
 }
 
 /* Two boxes crash in the air, off centre, turning, rubbing: what one loses the other gains. */
-static void a_pair_impulse_keeps_momentum_and_angular_momentum(void **state) {
-    (void)state;
+TEST(a_pair_impulse_keeps_momentum_and_angular_momentum) {
     World *world = make_world();
     add_body(world, &(BodyDef){.size = {1, 2},
                                .mass = 3,
@@ -109,8 +89,7 @@ static float slide(float angle, float mu, int steps) {
 }
 
 /* It slides if and only if tan(angle) > mu, and then with a = g (sin - mu cos). */
-static void a_box_slides_if_the_slope_is_steeper_than_the_friction_angle(void **state) {
-    (void)state;
+TEST(a_box_slides_if_the_slope_is_steeper_than_the_friction_angle) {
     for (float mu = 0.2f; mu < 0.75f; mu += 0.25f) {
         float critical = atanf(mu);
         assert_true(slide(0.97f * critical, mu, 120) < 0.01f);
@@ -121,13 +100,11 @@ static void a_box_slides_if_the_slope_is_steeper_than_the_friction_angle(void **
 }
 
 /* In a resting stack the normal impulses under box i carry the weight of all above: m g dt (n - i). */
-static void a_resting_stacks_impulses_carry_its_weight(void **state) {
-    (void)state;
+TEST(a_resting_stacks_impulses_carry_its_weight) {
     enum { BOXES = 5 };
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < BOXES; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    for (int i = 0; i < BOXES; i++) add_box(world, 2, 0.2f, vec2(0, 0.5f + (float)i));
     ContactSolver solver = make_judged("k=30");
     run(world, &solver, 1200);
     const ContactProblem *problem = world_problem(world);
@@ -142,8 +119,7 @@ static void a_resting_stacks_impulses_carry_its_weight(void **state) {
 }
 
 /* Without restitution a box that lands stays down: normal impulse = m (v + g dt), so the momentum is gone. */
-static void a_landing_box_stops(void **state) {
-    (void)state;
+TEST(a_landing_box_stops) {
     World *world = make_world();
     add_ground(world, 0.2f);
     add_body(world,
@@ -158,8 +134,7 @@ static void a_landing_box_stops(void **state) {
 }
 
 /* Friction is an impulse of at most mu times the normal one: a fast box keeps sliding with v - mu (v_n + g dt). */
-static void friction_stays_in_its_cone(void **state) {
-    (void)state;
+TEST(friction_stays_in_its_cone) {
     World *world = make_world();
     add_ground(world, 0.5f);
     add_body(world,
@@ -177,11 +152,10 @@ static void friction_stays_in_its_cone(void **state) {
 }
 
 /* Each contact clamped by itself converges to less than the accumulated form; both must keep a box up. */
-static void the_form_without_accumulation_keeps_a_box_up(void **state) {
-    (void)state;
+TEST(the_form_without_accumulation_keeps_a_box_up) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}});
+    add_box(world, 1, 0.2f, vec2(0, 0.5f));
     ContactSolver engine = make_engine("accumulate=off");
     run(world, &engine, 300);
     assert_near(world_bodies(world)[1].position.y, 0.5f, 0.02f);
@@ -191,27 +165,12 @@ static void the_form_without_accumulation_keeps_a_box_up(void **state) {
     world_destroy(world);
 }
 
-static void iterations_out_of_range_are_refused(void **state) {
-    (void)state;
-    Error error = {0};
-    Settings settings;
-    assert_ok(settings_parse(&settings, "k=0", solver_engine.description.settings, "engine", &error), error);
-    assert_refused(solver_engine.create(&settings, &error), "k");
-    assert_refused(settings_parse(&settings, "sweeps=3", solver_engine.description.settings, "engine", &error),
-                   "sweeps");
-}
-
 int main(void) {
-    const struct CMUnitTest laws[] = {cmocka_unit_test(a_free_box_falls_as_it_should),
-                                      cmocka_unit_test(a_pair_impulse_keeps_momentum_and_angular_momentum),
-                                      cmocka_unit_test(a_box_slides_if_the_slope_is_steeper_than_the_friction_angle),
-                                      cmocka_unit_test(a_resting_stacks_impulses_carry_its_weight),
-                                      cmocka_unit_test(a_landing_box_stops),
-                                      cmocka_unit_test(friction_stays_in_its_cone)};
-    const struct CMUnitTest of_the_engine[] = {cmocka_unit_test(the_form_without_accumulation_keeps_a_box_up),
-                                               cmocka_unit_test(iterations_out_of_range_are_refused)};
-    return cmocka_run_group_tests_name("engine", laws, judge_engine, NULL) +
-           cmocka_run_group_tests_name("block", laws, judge_block, NULL) +
-           cmocka_run_group_tests_name("interior", laws, judge_interior, NULL) +
-           cmocka_run_group_tests(of_the_engine, NULL, NULL);
+    static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_block, &solver_interior};
+    int failed = 0;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        judged = kinds[i];
+        failed += _cmocka_run_group_tests(judged->description.name, tests_of_file, test_count, NULL, NULL);
+    }
+    return failed;
 }

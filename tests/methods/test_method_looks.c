@@ -4,8 +4,7 @@
 
 #include "methods/methods.h"
 
-static void every_method_has_a_caption_and_a_look_of_its_own(void **state) {
-    (void)state;
+TEST(every_method_has_a_caption_and_a_look_of_its_own) {
     for (int i = 0; method_kinds[i].description != NULL; i++) {
         const MethodDescription *method = method_kinds[i].description;
         if (method->caption == NULL || method->look.colour == METHOD_NO_COLOUR)
@@ -19,16 +18,11 @@ static void every_method_has_a_caption_and_a_look_of_its_own(void **state) {
 }
 
 /* Frames and figures show these together. */
-static void those_compared_most_differ_in_colour(void **state) {
-    (void)state;
+TEST(those_compared_most_differ_in_colour) {
     static const char *const names[] = {"engine", "pair-net", "momentum", "interior", "reference", "contact-net"};
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < i; k++)
             assert_int_not_equal(method_describe(names[i])->look.colour, method_describe(names[k])->look.colour);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_has_a_caption_and_a_look_of_its_own),
-                                       cmocka_unit_test(those_compared_most_differ_in_colour)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

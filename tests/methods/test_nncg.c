@@ -63,8 +63,7 @@ static int solve_plainly(const ContactProblem *problem, int count, ContactSoluti
     return begun_anew;
 }
 
-static void random_problems_have_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(random_problems_have_the_bits_of_the_plain_text) {
     static RandomProblem random;
     uint32_t seed = 17;
     const int counts[] = {1, 2, 3, 10, 25};
@@ -96,8 +95,7 @@ static float missing_weight(const ContactSolverKind *kind) {
     enum { BOXES = 10 };
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < BOXES; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    for (int i = 0; i < BOXES; i++) add_box(world, 2, 0.2f, vec2(0, 0.5f + (float)i));
     ContactSolver solver = make_solver(kind, "k=60");
     run(world, &solver, 1);
     const ContactProblem *problem = world_problem(world);
@@ -113,14 +111,9 @@ static float missing_weight(const ContactSolverKind *kind) {
     return missing;
 }
 
-static void a_stack_carries_its_weight_at_once(void **state) {
-    (void)state;
+TEST(a_stack_carries_its_weight_at_once) {
     assert_true(missing_weight(&solver_nncg) < 0.01f);
     assert_true(missing_weight(&solver_engine) > 0.1f);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(a_stack_carries_its_weight_at_once)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -24,16 +24,14 @@ static const ContactPoint contacts[3] = {
     {.a = 1, .b = 2, .normal = {0, 1}, .arm_a = {0.5f, 0.5f}, .arm_b = {0.5f, -0.5f}}};
 static const ContactProblem problem = {.body_count = 3, .contact_count = 3, .bodies = bodies, .contacts = contacts};
 
-static void inputs_are_relative_position_velocities_spins_rotations(void **state) {
-    (void)state;
+TEST(inputs_are_relative_position_velocities_spins_rotations) {
     float inputs[PAIR_INPUTS];
     const float expected[PAIR_INPUTS] = {0, 1, 3, -4, -1, -2, 5, -3, 0.25f, 0};
     pair_inputs(&problem, NULL, 2, PAIR_RELATIVE, inputs);
     for (int i = 0; i < PAIR_INPUTS; i++) assert_near(inputs[i], expected[i], 0);
 }
 
-static void views_show_what_they_are_named_for(void **state) {
-    (void)state;
+TEST(views_show_what_they_are_named_for) {
     float inputs[PAIR_INPUTS_MAX];
     const float raw[] = {1, 0.5f, 1, 1.5f, 7, 8, -1, -2, 9, -3, 0.25f, 0};
     BodyVelocity velocities[3] = {{{0, 0}, 0}, {{7, 8}, 9}, {{-1, -2}, -3}};
@@ -51,8 +49,7 @@ static void views_show_what_they_are_named_for(void **state) {
 
 /* Up with 4 and 6, right with 1 and 1 (the tangent of an upward normal points right): P = (2, 10), about the box's
    centre -0.5 * 4 + 0.5 * 1 + 0.5 * 6 + 0.5 * 1 = 2. */
-static void changes_are_those_of_the_pairs_own_impulses(void **state) {
-    (void)state;
+TEST(changes_are_those_of_the_pairs_own_impulses) {
     ContactImpulse impulses[3] = {{4, 1}, {6, 1}, {1000, 1000}};
     const ContactSolution solution = {NULL, impulses, 0, {0}};
     float changes[PAIR_CHANGES];
@@ -63,8 +60,7 @@ static void changes_are_those_of_the_pairs_own_impulses(void **state) {
 }
 
 /* Between two bodies that move: equal and opposite momentum. */
-static void changes_keep_the_pairs_momentum(void **state) {
-    (void)state;
+TEST(changes_keep_the_pairs_momentum) {
     ContactImpulse impulses[3] = {{0, 0}, {0, 0}, {8, 2}};
     const ContactSolution solution = {NULL, impulses, 0, {0}};
     float c[PAIR_CHANGES];
@@ -96,8 +92,7 @@ static const ContactProblem slanted = {
 
 /* First point: b's moves with (-1, 0.5) + (-1, 1), a's with (1, 2) + (-0.75, 1.5), so (-2.25, -2) apart.
    Second point: (-1, 0.5) + (0, -2) and (1, 2) + (-3, 0): (1, -3.5). */
-static void a_contact_is_seen_in_its_own_frame(void **state) {
-    (void)state;
+TEST(a_contact_is_seen_in_its_own_frame) {
     BodyVelocity velocities[3] = {{{1, 2}, 3}, {{-1, 0.5f}, -2}, {{0, 0}, 0}};
     ContactImpulse impulses[3] = {{4, -1}, {2, 0}, {0, 0}};
     const PairMoment now = {.velocities = velocities, .impulses = impulses};
@@ -114,8 +109,7 @@ static void a_contact_is_seen_in_its_own_frame(void **state) {
 
 /* Body 1 is pushed by the third contact, alone: by (0, -7) N s at (0.5, 0). What has been done to body 0 is (1, 0) m/s,
    2 rad/s. */
-static void neighbours_are_seen_in_the_contacts_frame(void **state) {
-    (void)state;
+TEST(neighbours_are_seen_in_the_contacts_frame) {
     BodyVelocity velocities[3] = {{{1, 2}, 3}, {{-1, 0.5f}, -2}, {{0, 0}, 0}};
     ContactImpulse impulses[3] = {{0, 0}}, alone[3] = {{0, 0}, {0, 0}, {7, 0}};
     BodyVelocity pushes[3] = {{{0, 0}, 0}, {{0, -7}, -6 * 0.5f * 7}, {{0, 7}, 0}};
@@ -126,8 +120,7 @@ static void neighbours_are_seen_in_the_contacts_frame(void **state) {
     for (int i = 0; i < 12; i++) assert_near(inputs[20 + i], expected[i], 1e-5);
 }
 
-static void changes_are_turned_to_the_contacts_frame_and_back(void **state) {
-    (void)state;
+TEST(changes_are_turned_to_the_contacts_frame_and_back) {
     const float turned[PAIR_CHANGES] = {5, 0, 7, 0, 5, 8};
     float changes[PAIR_CHANGES] = {3, 4, 7, 4, -3, 8};
     pair_to_contact_frame(&slanted_contacts[0], changes);
@@ -138,8 +131,7 @@ static void changes_are_turned_to_the_contacts_frame_and_back(void **state) {
 }
 
 /* (5 - 3, 1.5 - 0.5) and (0 - 1, 0) N s, as m/s; no second point: nothing. */
-static void point_changes_go_beyond_the_warm_start(void **state) {
-    (void)state;
+TEST(point_changes_go_beyond_the_warm_start) {
     ContactImpulse impulses[3] = {{5, 1.5f}, {0, 0}, {4, 2}};
     const float two[PAIR_POINT_CHANGES] = {3, 1.5f, -1.5f, 0}, one[PAIR_POINT_CHANGES] = {8, 4, 0, 0};
     float changes[PAIR_CHANGES];
@@ -151,8 +143,7 @@ static void point_changes_go_beyond_the_warm_start(void **state) {
 }
 
 /* Of both bodies, whoever changed them; by the contact view along normal and tangent. */
-static void net_changes_are_those_of_the_bodies(void **state) {
-    (void)state;
+TEST(net_changes_are_those_of_the_bodies) {
     BodyVelocity velocities[3] = {{{3, 6}, 3}, {{3, -2.5f}, -1}, {{0, 0}, 0}};
     const ContactSolution solution = {velocities, NULL, 0, {0}};
     const float world[PAIR_CHANGES] = {3, 4, 2, 4, -3, 1}, turned[PAIR_CHANGES] = {5, 0, 2, 0, 5, 1};
@@ -164,8 +155,7 @@ static void net_changes_are_those_of_the_bodies(void **state) {
 }
 
 /* As many names as numbers, and none where a view and a target do not go together. */
-static void outputs_have_names(void **state) {
-    (void)state;
+TEST(outputs_have_names) {
     assert_string_equal(pair_output_names(PAIR_RELATIVE, TARGET_NET, 2), "dvx dvy");
     assert_string_equal(pair_output_names(PAIR_CONTACT, TARGET_IMPULSE, 2), "dvn dvt");
     assert_string_equal(pair_output_names(PAIR_RAW, TARGET_PAIR, 6), "dvxa dvya dwa dvxb dvyb dwb");
@@ -181,16 +171,4 @@ static void outputs_have_names(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(inputs_are_relative_position_velocities_spins_rotations),
-                                       cmocka_unit_test(views_show_what_they_are_named_for),
-                                       cmocka_unit_test(changes_are_those_of_the_pairs_own_impulses),
-                                       cmocka_unit_test(changes_keep_the_pairs_momentum),
-                                       cmocka_unit_test(a_contact_is_seen_in_its_own_frame),
-                                       cmocka_unit_test(neighbours_are_seen_in_the_contacts_frame),
-                                       cmocka_unit_test(changes_are_turned_to_the_contacts_frame_and_back),
-                                       cmocka_unit_test(point_changes_go_beyond_the_warm_start),
-                                       cmocka_unit_test(net_changes_are_those_of_the_bodies),
-                                       cmocka_unit_test(outputs_have_names)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -16,8 +16,7 @@ static const ContactPoint contacts[] = {
     {.a = 1, .b = 2, .normal = {0.6f, 0.8f}, .arm_a = {0.5f, 0.25f}, .arm_b = {-0.5f, -0.25f}, .friction = 0.7f}};
 static const ContactProblem problem = {.body_count = 3, .contact_count = 3, .bodies = bodies, .contacts = contacts};
 
-static void a_context_tells_bodies_and_the_middle_of_the_points(void **state) {
-    (void)state;
+TEST(a_context_tells_bodies_and_the_middle_of_the_points) {
     static const float on_ground[PAIR_CONTEXT] = {0,     0,     0.25f, 1.5f, 0, 1,    0.2f, 1.25f, 5,
                                                   0.25f, -0.5f, 0,     0,    0, 0.5f, -1,   2};
     static const float struck[PAIR_CONTEXT] = {0.25f, 1.5f,   0.5f, 3,  0.6f, 0.8f, 0.7f, 0.5f, 0.25f,
@@ -38,8 +37,7 @@ static void check_fault(int place, float number, const char *fault) {
     assert_string_equal(pair_context_fault(context), fault);
 }
 
-static void what_no_pair_has_is_a_fault(void **state) {
-    (void)state;
+TEST(what_no_pair_has_is_a_fault) {
     check_fault(CONTEXT_INV_MASS_A, -1, "an inverse mass or inertia below 0");
     check_fault(CONTEXT_INV_INERTIA_B, -1e-6f, "an inverse mass or inertia below 0");
     check_fault(CONTEXT_INV_MASS_B, 0, "two static bodies");
@@ -48,8 +46,4 @@ static void what_no_pair_has_is_a_fault(void **state) {
     check_fault(CONTEXT_FRICTION, -0.1f, "friction below 0");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_context_tells_bodies_and_the_middle_of_the_points),
-                                       cmocka_unit_test(what_no_pair_has_is_a_fault)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

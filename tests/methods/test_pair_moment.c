@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What contacts would do next, each as if it were alone. */
+#include "worlds.h"
 #include "testing.h"
 
 #include "engine/uniform.h"
@@ -87,8 +88,7 @@ static Vec2 velocity_after(const Example *example, int i, ContactImpulse *push) 
 
 /* Without friction its push along the normal is all there is: what approaches comes to the bias, what leaves faster is
    held by nothing. */
-static void a_contact_alone_comes_to_its_bias(void **state) {
-    (void)state;
+TEST(a_contact_alone_comes_to_its_bias) {
     int held = 0, let_go = 0;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         static Example example;
@@ -117,8 +117,7 @@ static void a_contact_alone_comes_to_its_bias(void **state) {
     assert_true(held > 50 && let_go > 10);
 }
 
-static void pushes_keep_the_cone(void **state) {
-    (void)state;
+TEST(pushes_keep_the_cone) {
     int sliding = 0, sticking = 0;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         static Example example;
@@ -144,8 +143,7 @@ static void pushes_keep_the_cone(void **state) {
 }
 
 /* What other pairs would do to a pair's bodies is what all would if this pair were not there. */
-static void others_are_all_without_the_own(void **state) {
-    (void)state;
+TEST(others_are_all_without_the_own) {
     int pairs = 0;
     for (uint32_t seed = 1; seed <= 20; seed++) {
         static Example all, without;
@@ -158,9 +156,7 @@ static void others_are_all_without_the_own(void **state) {
             for (int k = 0; k < 2; k++) {
                 const BodyVelocity others = pair_moment_others(&all.moment, &all.problem, first, bodies[k]);
                 const BodyVelocity *expected = &without.moment.pushes[bodies[k]];
-                assert_near(others.linear.x, expected->linear.x, 1e-4);
-                assert_near(others.linear.y, expected->linear.y, 1e-4);
-                assert_near(others.angular, expected->angular, 1e-4);
+                assert_velocity(others, expected->linear.x, expected->linear.y, expected->angular, 1e-4);
             }
             first += pair_contact_count(&all.problem, first);
             pair_moment_free(&without.moment);
@@ -170,9 +166,4 @@ static void others_are_all_without_the_own(void **state) {
     assert_true(pairs > 100);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_contact_alone_comes_to_its_bias),
-                                       cmocka_unit_test(pushes_keep_the_cone),
-                                       cmocka_unit_test(others_are_all_without_the_own)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

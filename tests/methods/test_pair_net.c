@@ -36,37 +36,26 @@ static const char *pair_constant(int outputs, const float *values) {
 
 /* The relative velocity changes by (3, 6): P = (3, 6) / (1/2 + 1) = (2, 4), in the middle of the contacts,
    (0.125, 0.5): from A's centre, and (-0.125, -0.5) from B's. */
-static void two_outputs_act_as_one_impulse_in_the_middle(void **state) {
-    (void)state;
+TEST(two_outputs_act_as_one_impulse_in_the_middle) {
     BodyVelocity v[3];
     assert_near(solve(pair_constant(2, (const float[]){3, 6}), bodies, v), 0, 0);
-    assert_near(v[0].linear.x, 1 - 0.5 * 2, 1e-6);
-    assert_near(v[0].linear.y, 2 - 0.5 * 4, 1e-6);
-    assert_near(v[0].angular, 0.5 - 3 * (0.125 * 4 - 0.5 * 2), 1e-6);
-    assert_near(v[1].linear.x, 2, 1e-6);
-    assert_near(v[1].linear.y, -1 + 4, 1e-6);
-    assert_near(v[1].angular, 6 * (-0.125 * 4 + 0.5 * 2), 1e-6);
+    assert_velocity(v[0], 1 - 0.5 * 2, 2 - 0.5 * 4, 0.5 - 3 * (0.125 * 4 - 0.5 * 2), 1e-6);
+    assert_velocity(v[1], 2, -1 + 4, 6 * (-0.125 * 4 + 0.5 * 2), 1e-6);
     /* Momentum 2 (1, 2) + 1 (0, -1) = (2, 3), before and after. */
     assert_near(2 * v[0].linear.x + v[1].linear.x, 2, 1e-5);
     assert_near(2 * v[0].linear.y + v[1].linear.y, 3, 1e-5);
 }
 
 /* Their momentum is 2 (1, 2) + 1 (4, 5) = (6, 9). */
-static void six_outputs_are_added_as_they_are(void **state) {
-    (void)state;
+TEST(six_outputs_are_added_as_they_are) {
     BodyVelocity v[3];
     assert_near(solve(pair_constant(6, six), bodies, v), sqrt(6 * 6 + 9 * 9), 1e-5);
-    assert_near(v[0].linear.x, 2, 0);
-    assert_near(v[0].linear.y, 4, 0);
-    assert_near(v[0].angular, 3.5, 0);
-    assert_near(v[1].linear.x, 4, 0);
-    assert_near(v[1].linear.y, 4, 0);
-    assert_near(v[1].angular, 6, 0);
+    assert_velocity(v[0], 2, 4, 3.5, 0);
+    assert_velocity(v[1], 4, 4, 6, 0);
     assert_near(v[2].linear.x, 0, 0);
 }
 
-static void a_fixed_body_is_not_moved(void **state) {
-    (void)state;
+TEST(a_fixed_body_is_not_moved) {
     ProblemBody fixed[3];
     memcpy(fixed, bodies, sizeof fixed);
     fixed[0] = (ProblemBody){.position = {0, 0}, .size = {1, 1}};
@@ -81,8 +70,7 @@ static void a_fixed_body_is_not_moved(void **state) {
 }
 
 /* By a contact along (0.6, 0.8), tangent (0.8, -0.6): 5 along the normal is (3, 4), 5 along the tangent (4, -3). */
-static void outputs_by_contact_are_turned_into_the_world(void **state) {
-    (void)state;
+TEST(outputs_by_contact_are_turned_into_the_world) {
     BodyVelocity v[3];
     ContactImpulse impulses[1];
     const ContactPoint slanted = {.a = 0, .b = 1, .normal = {0.6f, 0.8f}, .position = {0.125f, 0.5f}};
@@ -90,35 +78,26 @@ static void outputs_by_contact_are_turned_into_the_world(void **state) {
         .body_count = 3, .contact_count = 1, .marked = -1, .bodies = bodies, .contacts = &slanted};
     solve_by(&solver_pair_net, constant_network(PAIR_CONTACT, TARGET_PAIR, 6, (const float[]){5, 0, 1, 0, 5, 2}), 1,
              &problem, v, impulses);
-    assert_near(v[0].linear.x, 1 + 3, 1e-6);
-    assert_near(v[0].linear.y, 2 + 4, 1e-6);
-    assert_near(v[0].angular, 0.5 + 1, 1e-6);
-    assert_near(v[1].linear.x, 0 + 4, 1e-6);
-    assert_near(v[1].linear.y, -1 - 3, 1e-6);
-    assert_near(v[1].angular, 2, 1e-6);
+    assert_velocity(v[0], 1 + 3, 2 + 4, 0.5 + 1, 1e-6);
+    assert_velocity(v[1], 0 + 4, -1 - 3, 2, 1e-6);
     /* Two outputs: the relative velocity changes by (3, 4), by the impulse (2, 8/3) through (0.125, 0.5). */
     solve_by(&solver_pair_net, constant_network(PAIR_NEIGHBOURS, TARGET_PAIR, 2, (const float[]){5, 0}), 1, &problem, v,
              impulses);
-    assert_near(v[0].linear.x, 1 - 0.5 * 2, 1e-6);
-    assert_near(v[0].linear.y, 2 - 0.5 * 8 / 3, 1e-6);
-    assert_near(v[0].angular, 0.5 - 3 * (0.125 * 8 / 3 - 0.5 * 2), 1e-6);
+    assert_velocity(v[0], 1 - 0.5 * 2, 2 - 0.5 * 8 / 3, 0.5 - 3 * (0.125 * 8 / 3 - 0.5 * 2), 1e-6);
     assert_near(v[1].linear.x, 2, 1e-6);
     assert_near(v[1].linear.y, -1 + 8 / 3.0, 1e-6);
 }
 
 /* The middle body is b of one pair, where it gets (4, 5), 6, and a of the other, where it gets (1, 2), 3. The pairs
    make 2 (1, 2) + 1 (2, 2.5) = (4, 6.5), and 1 (0.5, 1) + 4 (4, 5) = (16.5, 21). */
-static void a_net_change_is_the_mean_over_a_bodys_pairs(void **state) {
-    (void)state;
+TEST(a_net_change_is_the_mean_over_a_bodys_pairs) {
     BodyVelocity v[3];
     ContactImpulse impulses[2];
     float made =
         solve_by(&solver_pair_net, constant_network(PAIR_RELATIVE, TARGET_NET, 6, six), 1, &chain, v, impulses);
     assert_near(v[0].linear.x, 1 + 1, 1e-6);
     assert_near(v[0].angular, 3, 1e-6);
-    assert_near(v[1].linear.x, 2.5, 1e-6);
-    assert_near(v[1].linear.y, 3.5, 1e-6);
-    assert_near(v[1].angular, 4.5, 1e-6);
+    assert_velocity(v[1], 2.5, 3.5, 4.5, 1e-6);
     assert_near(v[2].linear.y, 5, 1e-6);
     assert_near(v[2].angular, 6, 1e-6);
     assert_near(made, sqrt(4 * 4 + 6.5 * 6.5) + sqrt(16.5 * 16.5 + 21 * 21), 1e-4);
@@ -132,8 +111,7 @@ static void a_net_change_is_the_mean_over_a_bodys_pairs(void **state) {
 }
 
 /* b gets a's velocity: 1 in the first pair, then what the first pair made of it in the second. */
-static void single_impulses_go_pair_by_pair_for_k_sweeps(void **state) {
-    (void)state;
+TEST(single_impulses_go_pair_by_pair_for_k_sweeps) {
     Network *network = make_pair_network(PAIR_RAW_UNTURNED, TARGET_IMPULSE, PAIR_CHANGES);
     network->weights[0][3 * 10 + 4] = 1; /* dvxb = vxa */
     const char *path = write_pair_network(network);
@@ -152,8 +130,7 @@ static void single_impulses_go_pair_by_pair_for_k_sweeps(void **state) {
 
 /* A velocity so large that the network's sum overflows, and changes that only the sum with it overflows: the pair keeps
    its velocities. */
-static void what_is_not_finite_never_reaches_a_body(void **state) {
-    (void)state;
+TEST(what_is_not_finite_never_reaches_a_body) {
     ProblemBody fast[3];
     memcpy(fast, bodies, sizeof fast);
     fast[1].velocity.x = 3e38f;
@@ -179,8 +156,7 @@ static void what_is_not_finite_never_reaches_a_body(void **state) {
 }
 
 /* A network that tells pairs, inputs and outputs apart: three pairs of one batch, each added as its own prediction. */
-static void every_pair_gets_its_own_prediction(void **state) {
-    (void)state;
+TEST(every_pair_gets_its_own_prediction) {
     Error error = {0};
     Network *network = make_pair_network(PAIR_RELATIVE, TARGET_PAIR, PAIR_CHANGES);
     for (int i = 0; i < PAIR_INPUTS * PAIR_CHANGES; i++) network->weights[0][i] = (float)(i * i % 17) / 16 - 0.4f;
@@ -211,8 +187,7 @@ static void every_pair_gets_its_own_prediction(void **state) {
 }
 
 /* A network knows how it was trained to see a pair. */
-static void a_raw_network_sees_positions(void **state) {
-    (void)state;
+TEST(a_raw_network_sees_positions) {
     Network *network = make_pair_network(PAIR_RAW, TARGET_PAIR, PAIR_CHANGES);
     /* The change of a's velocity is b's position, that of b's a's. */
     network->weights[0][0 * 12 + 2] = network->weights[0][1 * 12 + 3] = 1;
@@ -226,8 +201,7 @@ static void a_raw_network_sees_positions(void **state) {
 }
 
 /* Of view contact, after the warm start: the first input is then what that left of the approach. */
-static void a_network_by_contact_sees_the_moment_after_the_warm_start(void **state) {
-    (void)state;
+TEST(a_network_by_contact_sees_the_moment_after_the_warm_start) {
     Network *network = make_pair_network(PAIR_CONTACT, TARGET_PAIR, PAIR_CHANGES);
     network->weights[0][5 * 20 + 0] = 1; /* dwb = vn1 */
     const ContactPoint warm = {.a = 0, .b = 1, .normal = {0, 1}, .warm_normal = 4};
@@ -240,8 +214,7 @@ static void a_network_by_contact_sees_the_moment_after_the_warm_start(void **sta
     assert_near(v[1].linear.y, -1, 0);                 /* but it says changes from before the warm start */
 }
 
-static void nothing_touches_nothing_happens(void **state) {
-    (void)state;
+TEST(nothing_touches_nothing_happens) {
     const ContactProblem apart = {.body_count = 3, .marked = -1, .bodies = bodies};
     for (PairTarget target = TARGET_PAIR; target <= TARGET_IMPULSE; target++) {
         BodyVelocity v[3];
@@ -253,8 +226,7 @@ static void nothing_touches_nothing_happens(void **state) {
 }
 
 /* For who looks at the world after the step; the next begins with none. */
-static void the_world_tells_what_momentum_a_step_made(void **state) {
-    (void)state;
+TEST(the_world_tells_what_momentum_a_step_made) {
     World *world = make_world();
     for (int i = 0; i < 2; i++)
         add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .position = {0, 0.9f * (float)i}});
@@ -268,20 +240,4 @@ static void the_world_tells_what_momentum_a_step_made(void **state) {
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_outputs_act_as_one_impulse_in_the_middle),
-        cmocka_unit_test(six_outputs_are_added_as_they_are),
-        cmocka_unit_test(a_fixed_body_is_not_moved),
-        cmocka_unit_test(outputs_by_contact_are_turned_into_the_world),
-        cmocka_unit_test(a_net_change_is_the_mean_over_a_bodys_pairs),
-        cmocka_unit_test(single_impulses_go_pair_by_pair_for_k_sweeps),
-        cmocka_unit_test(what_is_not_finite_never_reaches_a_body),
-        cmocka_unit_test(every_pair_gets_its_own_prediction),
-        cmocka_unit_test(a_raw_network_sees_positions),
-        cmocka_unit_test(a_network_by_contact_sees_the_moment_after_the_warm_start),
-        cmocka_unit_test(nothing_touches_nothing_happens),
-        cmocka_unit_test(the_world_tells_what_momentum_a_step_made),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -2,8 +2,7 @@
 /* What a file may hold, and which solver takes it. */
 #include "pair_networks.h"
 
-static void texts_that_do_not_fit_each_other_are_refused(void **state) {
-    (void)state;
+TEST(texts_that_do_not_fit_each_other_are_refused) {
     Error error = {0};
     Network *network = network_create(1, (const int[]){10, 3}, &error);
     assert_ok(network != NULL, error);
@@ -35,8 +34,7 @@ static void texts_that_do_not_fit_each_other_are_refused(void **state) {
                            "the inputs neighbours, which change at every");
 }
 
-static void other_methods_networks_are_refused(void **state) {
-    (void)state;
+TEST(other_methods_networks_are_refused) {
     assert_network_refused(
         &solver_pair_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, six),
         "the network has the target points, which is for contact-net; pair-net needs the target pair, ");
@@ -52,8 +50,4 @@ static void other_methods_networks_are_refused(void **state) {
     assert_refused(solver_contact_net.create(&(Settings){0}, &error), "contact-net: error: the scene names no network");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(texts_that_do_not_fit_each_other_are_refused),
-                                       cmocka_unit_test(other_methods_networks_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,34 +1,24 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What playback plays is what was recorded. */
-#include "testing.h"
-
-#include "scenes/scenes.h"
-#include "runs/runs.h"
+#include "runs/made.h"
 
 static Trajectory *run(const char *method_text, float x, int frame) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("single");
     scene->bomb.frame = 20;
     Launch launch = launch_of(scene);
     launch.x = x;
     launch.frame = frame;
     Scene launched = launch_scene(scene, &launch);
-    Method method;
-    assert_ok(method_parse(&method, method_text, &error), error);
-    Trajectory *trajectory = simulate(&launched, &method, NULL, &error);
-    assert_ok(trajectory != NULL, error);
+    Trajectory *trajectory = run_by(&launched, method_text);
     scene_destroy(scene);
     return trajectory;
 }
 
 /* Of two launches recorded, x = -2.5 and 2.5 m, the nearer one. */
-static void the_nearest_launch_is_played(void **state) {
-    (void)state;
+TEST(the_nearest_launch_is_played) {
     Launch recorded[2];
     Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("single");
     assert_ok(launches_for_training(scene, 2, recorded, &error), error);
     scene_destroy(scene);
     for (int i = 0; i < 2; i++) {
@@ -44,21 +34,14 @@ static void the_nearest_launch_is_played(void **state) {
     }
 }
 
-static void a_scene_without_a_bomb_has_nothing_to_play(void **state) {
-    (void)state;
+TEST(a_scene_without_a_bomb_has_nothing_to_play) {
     Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("single");
     scene->bomb.present = false;
-    Method method;
-    assert_ok(method_parse(&method, "playback", &error), error);
+    Method method = method_named("playback");
     assert_refused(simulate(scene, &method, NULL, &error),
                    "playback: error: scene single has no bomb: nothing to play");
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_nearest_launch_is_played),
-                                       cmocka_unit_test(a_scene_without_a_bomb_has_nothing_to_play)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

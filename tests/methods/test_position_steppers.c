@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws that hold for soft-step and avbd, the steppers that remove overlap without giving it a velocity. */
 #include "allocations.h"
-#include "testing.h"
+#include "runs/made.h"
 
 #include "base/hash.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
@@ -31,12 +30,8 @@ static Scene scene_of(BodyDef *bodies, int count, Vec2 gravity) {
 }
 
 static Stepper *make_stepper(const Scene *scene, const char *text) {
-    Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, text, &error), error);
-    Stepper *stepper = stepper_create(&method, scene, &error);
-    assert_ok(stepper != NULL, error);
-    return stepper;
+    const Method method = method_named(text);
+    return stepper_of(scene, &method);
 }
 
 static void take_steps(Stepper *stepper, World *world, const Scene *scene, int first, int last) {
@@ -46,9 +41,7 @@ static void take_steps(Stepper *stepper, World *world, const Scene *scene, int f
 }
 
 static World *run(const Scene *scene, const char *text, int steps) {
-    Error error = {0};
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(scene);
     Stepper *stepper = make_stepper(scene, text);
     take_steps(stepper, world, scene, 1, steps);
     stepper_destroy(stepper);
@@ -62,8 +55,7 @@ static Scene stack_of_ten(BodyDef bodies[11]) {
 }
 
 /* With substeps of h, a fall is g t^2 / 2 (1 + h / t). */
-static void a_box_falls_by_its_substeps(void **state) {
-    (void)state;
+TEST(a_box_falls_by_its_substeps) {
     const float substeps[METHOD_COUNT] = {4, 1, 8, 1};
     BodyDef bodies[] = {box_at(0, 100)};
     const Scene scene = scene_of(bodies, 1, vec2(0, -10));
@@ -76,8 +68,7 @@ static void a_box_falls_by_its_substeps(void **state) {
     }
 }
 
-static void a_box_at_rest_carries_its_weight(void **state) {
-    (void)state;
+TEST(a_box_at_rest_carries_its_weight) {
     BodyDef bodies[] = {ground, box_at(0, 0.6f)};
     const Scene scene = scene_of(bodies, 2, vec2(0, -10));
     for (int m = 0; m < METHOD_COUNT; m++) {
@@ -92,8 +83,7 @@ static void a_box_at_rest_carries_its_weight(void **state) {
 }
 
 /* Overlap at rest: at most 15 mm a contact. */
-static void a_stack_of_ten_stands_for_ten_seconds(void **state) {
-    (void)state;
+TEST(a_stack_of_ten_stands_for_ten_seconds) {
     BodyDef bodies[11];
     const Scene scene = stack_of_ten(bodies);
     for (int m = 0; m < METHOD_COUNT; m++) {
@@ -109,8 +99,7 @@ static void a_stack_of_ten_stands_for_ten_seconds(void **state) {
 }
 
 /* 5 s on a slope of friction 0.2: it holds at 0.19, at 0.25 it slides with g (0.25 - 0.2) from the start. */
-static void a_slope_holds_below_its_friction(void **state) {
-    (void)state;
+TEST(a_slope_holds_below_its_friction) {
     BodyDef bodies[] = {ground, box_at(0, 0.495f)};
     for (int m = 0; m < METHOD_COUNT; m++) {
         const Scene held = scene_of(bodies, 2, vec2(1.9f, -10)), slides = scene_of(bodies, 2, vec2(2.5f, -10));
@@ -124,8 +113,7 @@ static void a_slope_holds_below_its_friction(void **state) {
 }
 
 /* A heavier box strikes a free one off its centre. avbd conserves momentum only as far as its passes converge. */
-static void a_free_collision_conserves_momentum(void **state) {
-    (void)state;
+TEST(a_free_collision_conserves_momentum) {
     const struct {
         const char *method;
         double tolerance;
@@ -145,8 +133,7 @@ static void a_free_collision_conserves_momentum(void **state) {
 }
 
 /* A box deep in the ground comes out and stops there. */
-static void overlap_gives_no_velocity(void **state) {
-    (void)state;
+TEST(overlap_gives_no_velocity) {
     BodyDef bodies[] = {ground, box_at(0, 0.2f)};
     const Scene scene = scene_of(bodies, 2, vec2(0, -10));
     for (int m = 0; m < METHOD_COUNT; m++)
@@ -161,8 +148,7 @@ static void overlap_gives_no_velocity(void **state) {
 
 /* A turned box strikes one at rest, hardly overlapping: with overlap, the arms of avbd and of the contact problem end
    in different points. */
-static void many_passes_of_avbd_meet_the_reference(void **state) {
-    (void)state;
+TEST(many_passes_of_avbd_meet_the_reference) {
     BodyDef bodies[] = {ground, box_at(0, 0.499f), box_at(0.6f, 1.6537f)};
     bodies[2].mass = 5;
     bodies[2].angle = 0.4f;
@@ -188,8 +174,7 @@ static uint64_t state_hash(const World *world) {
 }
 
 /* What a stepper keeps of one world must not reach another. */
-static void a_used_stepper_steps_as_a_new_one(void **state) {
-    (void)state;
+TEST(a_used_stepper_steps_as_a_new_one) {
     BodyDef bodies[11];
     Error error = {0};
     const Scene scene = stack_of_ten(bodies);
@@ -211,8 +196,7 @@ static void a_used_stepper_steps_as_a_new_one(void **state) {
 
 /* Worlds that the stepper has not stepped last, though it has seen their past or future: an earlier copy, and one whose
    run begins in the state that the last one ended with. */
-static void other_worlds_step_without_memory(void **state) {
-    (void)state;
+TEST(other_worlds_step_without_memory) {
     BodyDef bodies[11];
     Error error = {0};
     const Scene scene = stack_of_ten(bodies);
@@ -235,14 +219,13 @@ static void other_worlds_step_without_memory(void **state) {
         }
 }
 
-static void a_settled_stack_steps_without_allocating(void **state) {
-    (void)state;
+TEST(a_settled_stack_steps_without_allocating) {
+    static const char *const steppers[] = {"soft-step", "avbd", "substepping"};
     BodyDef bodies[11];
-    Error error = {0};
     const Scene scene = stack_of_ten(bodies);
-    for (int m = 0; m < METHOD_COUNT; m++) {
-        World *world = scene_world(&scene, &error);
-        Stepper *stepper = make_stepper(&scene, methods[m]);
+    for (int m = 0; m < 3; m++) {
+        World *world = world_of(&scene);
+        Stepper *stepper = make_stepper(&scene, steppers[m]);
         allocations = 0;
         take_steps(stepper, world, &scene, 1, 60);
         assert_true(allocations > 5);
@@ -254,35 +237,13 @@ static void a_settled_stack_steps_without_allocating(void **state) {
     }
 }
 
-static void wrong_settings_are_refused(void **state) {
-    (void)state;
-    const struct {
-        const char *text, *message;
-    } cases[] = {{"soft-step:substeps=0", "substeps"},
-                 {"soft-step:hertz=0", "hertz"},
-                 {"avbd:k=0", "k"},
-                 {"avbd:alpha=1.5", "alpha"},
-                 {"avbd:gamma=-1", "gamma"}};
-    BodyDef bodies[] = {ground};
-    const Scene scene = scene_of(bodies, 1, vec2(0, -10));
-    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-        Error error = {0};
-        Method method;
-        assert_ok(method_parse(&method, cases[c].text, &error), error);
-        assert_refused(stepper_create(&method, &scene, &error), cases[c].message);
-    }
-}
-
 /* Two seconds of the stack and its bomb. What these files gave when they were written, on x86-64 by gcc 12 at -O0 and
    -O3: a compiler that contracts or reorders an operation gives other bits. */
-static void bits_are_the_same_everywhere(void **state) {
-    (void)state;
+TEST(bits_are_the_same_everywhere) {
     const uint64_t expected[METHOD_COUNT] = {UINT64_C(0xbf8ab3dd7e02be9c), UINT64_C(0x0f4249406fc25ff1),
                                              UINT64_C(0x24b6d9b9840c8bc3), UINT64_C(0x95b193e00c1054c2)};
-    Error error = {0};
     bool same = true;
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("stack");
     for (int m = 0; m < METHOD_COUNT; m++) {
         World *world = run(scene, methods[m], 120);
         uint64_t hash = state_hash(world);
@@ -294,18 +255,4 @@ static void bits_are_the_same_everywhere(void **state) {
     assert_true(same);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_box_falls_by_its_substeps),
-                                       cmocka_unit_test(a_box_at_rest_carries_its_weight),
-                                       cmocka_unit_test(a_stack_of_ten_stands_for_ten_seconds),
-                                       cmocka_unit_test(a_slope_holds_below_its_friction),
-                                       cmocka_unit_test(a_free_collision_conserves_momentum),
-                                       cmocka_unit_test(overlap_gives_no_velocity),
-                                       cmocka_unit_test(many_passes_of_avbd_meet_the_reference),
-                                       cmocka_unit_test(a_used_stepper_steps_as_a_new_one),
-                                       cmocka_unit_test(other_worlds_step_without_memory),
-                                       cmocka_unit_test(a_settled_stack_steps_without_allocating),
-                                       cmocka_unit_test(wrong_settings_are_refused),
-                                       cmocka_unit_test(bits_are_the_same_everywhere)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

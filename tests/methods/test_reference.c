@@ -7,13 +7,11 @@
 static const double g = 10;
 
 /* Under box i of n lie the weights of all above: m g dt (n - i). All are at rest, and stay there. */
-static void a_stack_on_ground_carries_its_weight(void **state) {
-    (void)state;
+TEST(a_stack_on_ground_carries_its_weight) {
     enum { BOXES = 10 };
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < BOXES; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
+    for (int i = 0; i < BOXES; i++) add_box(world, 2, 0.2f, vec2(0, 0.5f + (float)i));
     Reference reference = {0};
     const ContactProblem *problem = solve_next(world, &reference);
     assert_int_equal(problem->contact_count, 2 * BOXES);
@@ -54,8 +52,7 @@ static OnSlope put_on_slope(float angle, float mu) {
 
 /* It sticks if and only if tan(angle) <= mu: friction is then m g dt sin(angle); else mu m g dt cos(angle), and the box
    is off at g dt (sin - mu cos). */
-static void a_box_on_a_slope_sticks_below_the_friction_angle(void **state) {
-    (void)state;
+TEST(a_box_on_a_slope_sticks_below_the_friction_angle) {
     for (float mu = 0.2f; mu < 0.75f; mu += 0.25f) {
         double dt = (double)world_dt;
         float gentle = 0.97f * atanf(mu), steep = 1.05f * atanf(mu);
@@ -71,8 +68,7 @@ static void a_box_on_a_slope_sticks_below_the_friction_angle(void **state) {
 }
 
 /* Two boxes meet head on in the air: they go on as one, with the mean of their momenta, and keep falling. */
-static void boxes_that_crash_go_on_together(void **state) {
-    (void)state;
+TEST(boxes_that_crash_go_on_together) {
     World *world = make_world();
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 3, .position = {0, 10}, .velocity = {4, 0}});
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .position = {0.995f, 10}, .velocity = {-2, 0}});
@@ -89,12 +85,11 @@ static void boxes_that_crash_go_on_together(void **state) {
 }
 
 /* 1000 kg on 1 kg on the ground: what slows the sweeps (10 of them leave half the weight) does not matter here. */
-static void a_light_box_carries_a_heavy_one(void **state) {
-    (void)state;
+TEST(a_light_box_carries_a_heavy_one) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}});
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1000, .friction = 0.2f, .position = {0, 1.5f}});
+    add_box(world, 1, 0.2f, vec2(0, 0.5f));
+    add_box(world, 1000, 0.2f, vec2(0, 1.5f));
     Reference reference = {0};
     solve_next(world, &reference);
     double dt = (double)world_dt;
@@ -107,12 +102,11 @@ static void a_light_box_carries_a_heavy_one(void **state) {
 }
 
 /* Static ground that moves at 0.1 m/s takes a box along: its friction could give it mu g dt = 0.17 m/s in the step. */
-static void ground_that_moves_takes_a_box_along(void **state) {
-    (void)state;
+TEST(ground_that_moves_takes_a_box_along) {
     World *world = make_world();
     add_body(world,
              &(BodyDef){.size = {100, 20}, .fixed = true, .friction = 1, .position = {0, -10}, .velocity = {0.1f, 0}});
-    add_body(world, &(BodyDef){.size = {1, 1}, .mass = 3, .friction = 1, .position = {0, 0.5f}});
+    add_box(world, 3, 1, vec2(0, 0.5f));
     Reference reference = {0};
     solve_next(world, &reference);
     assert_near(reference.velocities[0].x, 0.1f, 0);
@@ -124,8 +118,7 @@ static void ground_that_moves_takes_a_box_along(void **state) {
 }
 
 /* A plate that lies on more boxes than a sweep has rounds: together they carry it, and the ground them. */
-static void a_plate_lies_on_very_many_boxes(void **state) {
-    (void)state;
+TEST(a_plate_lies_on_very_many_boxes) {
     enum { BOXES = 70 };
     World *world = make_world();
     add_ground(world, 0.2f);
@@ -134,9 +127,7 @@ static void a_plate_lies_on_very_many_boxes(void **state) {
                  &(BodyDef){.size = {0.5f, 1}, .mass = 1, .friction = 0.2f, .position = {0.6f * (float)i, 0.5f}});
     add_body(world, &(BodyDef){.size = {60, 1}, .mass = 500, .friction = 0.2f, .position = {0.3f * (BOXES - 1), 1.5f}});
     Reference reference = {0};
-    ContactSolver engine = make_engine("k=1");
-    run(world, &engine, 1);
-    free_solver(&engine);
+    run_engine(world, "k=1", 1);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 4 * BOXES);
     Error error = {0};
@@ -177,9 +168,8 @@ static double fastest_spin(Reference *reference, const ContactProblem *problem) 
     solve_with(&solver_nncg, "k=3000", problem, &found);
     double fastest = 0;
     for (int i = 0; i < problem->body_count; i++) {
-        assert_near(velocities[i].linear.x, reference->velocities[i].x, 1e-4);
-        assert_near(velocities[i].linear.y, reference->velocities[i].y, 1e-4);
-        assert_near(velocities[i].angular, reference->velocities[i].spin, 1e-4);
+        assert_velocity(velocities[i], reference->velocities[i].x, reference->velocities[i].y,
+                        reference->velocities[i].spin, 1e-4);
         fastest = fmax(fastest, fabs(reference->velocities[i].spin));
     }
     return fastest;
@@ -188,8 +178,7 @@ static double fastest_spin(Reference *reference, const ContactProblem *problem) 
 /* Boxes that just touch part by a rounding error now and then, and lose contacts. The next step is then another problem:
    with all contacts the tower stands; without one of the lowest box and one between the second and the third, a box
    turns at more than 4 rad/s. */
-static void contacts_lost_by_rounding_change_the_solution(void **state) {
-    (void)state;
+TEST(contacts_lost_by_rounding_change_the_solution) {
     World *world = make_shifted_tower();
     Reference reference = {0};
     ContactSolver converged = make_solver(&solver_reference, "");
@@ -214,8 +203,7 @@ static void contacts_lost_by_rounding_change_the_solution(void **state) {
     world_destroy(world);
 }
 
-static void nothing_that_touches_is_solved_at_once(void **state) {
-    (void)state;
+TEST(nothing_that_touches_is_solved_at_once) {
     World *world = make_world();
     add_body(world, &(BodyDef){.size = {1, 1}, .mass = 2, .position = {0, 9}, .velocity = {3, 0}});
     Reference reference = {0};
@@ -227,14 +215,4 @@ static void nothing_that_touches_is_solved_at_once(void **state) {
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_stack_on_ground_carries_its_weight),
-                                       cmocka_unit_test(a_box_on_a_slope_sticks_below_the_friction_angle),
-                                       cmocka_unit_test(boxes_that_crash_go_on_together),
-                                       cmocka_unit_test(a_light_box_carries_a_heavy_one),
-                                       cmocka_unit_test(ground_that_moves_takes_a_box_along),
-                                       cmocka_unit_test(a_plate_lies_on_very_many_boxes),
-                                       cmocka_unit_test(contacts_lost_by_rounding_change_the_solution),
-                                       cmocka_unit_test(nothing_that_touches_is_solved_at_once)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

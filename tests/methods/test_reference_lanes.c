@@ -5,8 +5,7 @@
 #include "random_problem.h"
 #include "sanitized.h"
 
-static void random_problems_have_the_bits_of_scalar_code(void **state) {
-    (void)state;
+TEST(random_problems_have_the_bits_of_scalar_code) {
     static RandomProblem random;
     ReferenceKernels kernels = {.plain = {.scalar = true}};
     uint32_t seed = 3;
@@ -20,8 +19,7 @@ static void random_problems_have_the_bits_of_scalar_code(void **state) {
     reference_kernels_free(&kernels);
 }
 
-static void a_body_with_very_many_contacts_has_the_bits_of_scalar_code(void **state) {
-    (void)state;
+TEST(a_body_with_very_many_contacts_has_the_bits_of_scalar_code) {
     static RandomProblem random;
     ReferenceKernels kernels = {.plain = {.scalar = true}};
     uint32_t seed = 5;
@@ -33,10 +31,4 @@ static void a_body_with_very_many_contacts_has_the_bits_of_scalar_code(void **st
     reference_kernels_free(&kernels);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_problems_have_the_bits_of_scalar_code),
-        cmocka_unit_test(a_body_with_very_many_contacts_has_the_bits_of_scalar_code),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -59,8 +59,7 @@ static void plain_sweep(Plain *plain, const ContactProblem *problem) {
     }
 }
 
-static void many_plain_sweeps_find_the_same(void **state) {
-    (void)state;
+TEST(many_plain_sweeps_find_the_same) {
     for (int steps = 2; steps < 26; steps += 4) {
         World *world = make_heap(steps);
         Reference reference = {0};
@@ -90,15 +89,13 @@ static void assert_fixed_point(const ContactSolverKind *kind, const char *text, 
     ContactSolution solution = {velocities, impulses, 0, {0}};
     assert_ok(kind->solve(solver.state, problem, &solution, &error), error);
     for (int i = 0; i < problem->body_count; i++) {
-        assert_near(velocities[i].linear.x, reference->velocities[i].x, 2e-5);
-        assert_near(velocities[i].linear.y, reference->velocities[i].y, 2e-5);
-        assert_near(velocities[i].angular, reference->velocities[i].spin, 2e-5);
+        assert_velocity(velocities[i], reference->velocities[i].x, reference->velocities[i].y,
+                        reference->velocities[i].spin, 2e-5);
     }
     free_solver(&solver);
 }
 
-static void the_reference_is_a_fixed_point_of_every_convergent_solver(void **state) {
-    (void)state;
+TEST(the_reference_is_a_fixed_point_of_every_convergent_solver) {
     for (int steps = 2; steps < 26; steps += 4) {
         World *world = make_heap(steps);
         Reference reference = {0};
@@ -130,8 +127,7 @@ static void sweep_impulses(const ContactProblem *problem, int sweeps, ContactImp
 }
 
 /* The residual falls with the sweeps of the engine. Begun from a solution, the first linear solve finds it again. */
-static void the_residual_tells_how_far_impulses_are_off(void **state) {
-    (void)state;
+TEST(the_residual_tells_how_far_impulses_are_off) {
     World *world = make_heap(10);
     Reference reference = {0}, again = {0};
     const ContactProblem *problem = solve_next(world, &reference);
@@ -168,8 +164,7 @@ static void push_all(Plain *plain, const ContactProblem *problem, const ContactI
 }
 
 /* The residual is the largest |change of impulse| / effective mass of one more plain sweep. */
-static void the_residual_is_what_a_plain_sweep_changes(void **state) {
-    (void)state;
+TEST(the_residual_is_what_a_plain_sweep_changes) {
     World *world = make_heap(10);
     Reference reference = {0};
     const ContactProblem *problem = solve_next(world, &reference);
@@ -195,8 +190,7 @@ static void the_residual_is_what_a_plain_sweep_changes(void **state) {
 }
 
 /* Every impulse of the reference pushes, stays in the cone and leaves no contact closing faster than its bias. */
-static void the_reference_keeps_the_law_of_contact(void **state) {
-    (void)state;
+TEST(the_reference_keeps_the_law_of_contact) {
     World *world = make_heap(10);
     Reference reference = {0};
     const ContactProblem *problem = solve_next(world, &reference);
@@ -216,11 +210,4 @@ static void the_reference_keeps_the_law_of_contact(void **state) {
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_reference_keeps_the_law_of_contact),
-                                       cmocka_unit_test(many_plain_sweeps_find_the_same),
-                                       cmocka_unit_test(the_reference_is_a_fixed_point_of_every_convergent_solver),
-                                       cmocka_unit_test(the_residual_tells_how_far_impulses_are_off),
-                                       cmocka_unit_test(the_residual_is_what_a_plain_sweep_changes)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-static void a_file_keeps_every_bit(void **state) {
-    (void)state;
+TEST(a_file_keeps_every_bit) {
     Error error = {0};
     uint32_t seed = 8;
     RelationNetworks written, read;
@@ -37,8 +36,7 @@ static void refuse(const char *path, const char *reason) {
     assert_non_null(strstr(error.message, path));
 }
 
-static void other_files_are_refused(void **state) {
-    (void)state;
+TEST(other_files_are_refused) {
     Error error = {0};
     const int widths[] = {10, 10, 2};
     Network *pair = network_create(2, widths, &error);
@@ -48,8 +46,7 @@ static void other_files_are_refused(void **state) {
     network_destroy(pair);
 }
 
-static void numbers_out_of_range_are_refused(void **state) {
-    (void)state;
+TEST(numbers_out_of_range_are_refused) {
     Error error = {0};
     uint32_t seed = 8;
     RelationNetworks networks;
@@ -69,9 +66,4 @@ static void numbers_out_of_range_are_refused(void **state) {
     relation_networks_destroy(&networks);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_file_keeps_every_bit),
-                                       cmocka_unit_test(other_files_are_refused),
-                                       cmocka_unit_test(numbers_out_of_range_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

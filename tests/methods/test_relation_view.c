@@ -98,8 +98,7 @@ static void answer(const Problem *p, const RelationNetwork *network, RelationFor
     relation_answers_free(&answers);
 }
 
-static void numbers_of_bodies_do_not_matter(void **state) {
-    (void)state;
+TEST(numbers_of_bodies_do_not_matter) {
     static Problem problem, other;
     uint32_t seed = 3;
     RelationNetwork network;
@@ -122,8 +121,7 @@ static void numbers_of_bodies_do_not_matter(void **state) {
 
 /* Quarter turns of the world leave each box's frame where it was, so a box must be seen from a frame that turns with
    it. */
-static void answers_turn_with_the_scene(void **state) {
-    (void)state;
+TEST(answers_turn_with_the_scene) {
     static Problem problem;
     uint32_t seed = 4;
     const float angle = 0.4f;
@@ -148,8 +146,7 @@ static void answers_turn_with_the_scene(void **state) {
     relation_network_destroy(&network);
 }
 
-static void answers_reach_their_target(void **state) {
-    (void)state;
+TEST(answers_reach_their_target) {
     static Problem problem;
     RelationView view = {0};
     fill(&problem, 1);
@@ -171,8 +168,7 @@ static void answers_reach_their_target(void **state) {
 }
 
 /* Each moving body is shown the change of another one, and all changes are shown. */
-static void shuffling_permutes_changes(void **state) {
-    (void)state;
+TEST(shuffling_permutes_changes) {
     static Problem problem;
     RelationView view = {0};
     int same = 0, found = 0;
@@ -194,8 +190,7 @@ static void shuffling_permutes_changes(void **state) {
 }
 
 /* What touches nothing is not seen; a problem without contacts has no receivers. */
-static void an_empty_problem_is_seen(void **state) {
-    (void)state;
+TEST(an_empty_problem_is_seen) {
     static Problem problem;
     RelationView view = {0};
     RelationAnswers answers = {0};
@@ -212,10 +207,4 @@ static void an_empty_problem_is_seen(void **state) {
     relation_network_destroy(&network);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_of_bodies_do_not_matter), cmocka_unit_test(answers_turn_with_the_scene),
-        cmocka_unit_test(answers_reach_their_target), cmocka_unit_test(shuffling_permutes_changes),
-        cmocka_unit_test(an_empty_problem_is_seen)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

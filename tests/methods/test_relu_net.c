@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The network of rectifiers is the engine: visit by visit, branch by branch. On the scenes' frames:
    tests/runs/test_relu_net.c. */
+#include "consistent.h"
 #include "kernels.h"
 #include "random_problem.h"
 
@@ -31,8 +32,7 @@ static int check_visit(RandomProblem *random) {
     return branch;
 }
 
-static void a_visit_takes_the_engines_branch(void **state) {
-    (void)state;
+TEST(a_visit_takes_the_engines_branch) {
     uint32_t seed = 1;
     int met[BRANCHES] = {0};
     RandomProblem random;
@@ -44,17 +44,7 @@ static void a_visit_takes_the_engines_branch(void **state) {
     for (int branch = 0; branch < BRANCHES; branch++) assert_true(met[branch] > 100);
 }
 
-/* Momentum of all bodies, N s. */
-static void momentum_of(const ContactProblem *problem, const BodyVelocity *velocities, double sum[2]) {
-    sum[0] = sum[1] = 0;
-    for (int i = 0; i < problem->body_count; i++) {
-        sum[0] += (double)velocities[i].linear.x / (double)problem->bodies[i].inv_mass;
-        sum[1] += (double)velocities[i].linear.y / (double)problem->bodies[i].inv_mass;
-    }
-}
-
-static void momentum_is_kept(void **state) {
-    (void)state;
+TEST(momentum_is_kept) {
     uint32_t seed = 3;
     for (int run = 0; run < 50; run++) {
         RandomProblem random;
@@ -66,17 +56,13 @@ static void momentum_is_kept(void **state) {
         BodyVelocity start[BODIES_MAX];
         for (int i = 0; i < random.problem.body_count; i++)
             start[i] = (BodyVelocity){random.bodies[i].velocity, random.bodies[i].angular_velocity};
-        momentum_of(&random.problem, start, before);
+        linear_momentum(&random.problem, NULL, before);
         solve_with(&solver_relu_net, "", &random.problem, &found);
-        momentum_of(&random.problem, found.velocities, after);
+        linear_momentum(&random.problem, found.velocities, after);
         for (int i = 0; i < 2; i++) assert_near(before[i], after[i], 1e-3);
         assert_memory_not_equal(start, found.velocities, sizeof *start * (size_t)random.problem.body_count);
         free_solution(&found);
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_visit_takes_the_engines_branch),
-                                       cmocka_unit_test(momentum_is_kept)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -55,8 +55,7 @@ static void assert_residual(const ContactProblem *problem, double residual) {
     free_solution(&warm);
 }
 
-static void the_residual_is_the_root_of_the_mean_square_over_contacts(void **state) {
-    (void)state;
+TEST(the_residual_is_the_root_of_the_mean_square_over_contacts) {
     Boxes boxes;
     make_boxes(&boxes, 0, 0);
     assert_residual(&boxes.problem, 0);
@@ -68,8 +67,7 @@ static void the_residual_is_the_root_of_the_mean_square_over_contacts(void **sta
     assert_residual(&boxes.problem, 5 / sqrt(2));
 }
 
-static void what_parts_unpushed_is_no_miss(void **state) {
-    (void)state;
+TEST(what_parts_unpushed_is_no_miss) {
     Boxes boxes;
     make_boxes(&boxes, 5, -2);
     assert_residual(&boxes.problem, 2 / sqrt(2));
@@ -81,8 +79,7 @@ static void what_parts_unpushed_is_no_miss(void **state) {
 }
 
 /* A warm impulse of m v, half by each contact, stops a box. */
-static void the_residual_is_that_after_the_warm_start(void **state) {
-    (void)state;
+TEST(the_residual_is_that_after_the_warm_start) {
     Boxes boxes;
     make_boxes(&boxes, -3, 0);
     for (int k = 0; k < 2; k++) boxes.contacts[k].warm_normal = 3;
@@ -91,16 +88,14 @@ static void the_residual_is_that_after_the_warm_start(void **state) {
     assert_residual(&boxes.problem, 1 / sqrt(2));
 }
 
-static void the_residual_is_measured_from_the_bias(void **state) {
-    (void)state;
+TEST(the_residual_is_measured_from_the_bias) {
     Boxes boxes;
     make_boxes(&boxes, -3, 0);
     for (int k = 0; k < 4; k++) boxes.contacts[k].bias = 0.5f;
     assert_residual(&boxes.problem, sqrt((3.5 * 3.5 + 0.5 * 0.5) / 2));
 }
 
-static void spin_counts_at_the_arm(void **state) {
-    (void)state;
+TEST(spin_counts_at_the_arm) {
     Boxes boxes;
     make_boxes(&boxes, 0, 0);
     /* One corner goes down with half the spin, the other up. */
@@ -108,8 +103,7 @@ static void spin_counts_at_the_arm(void **state) {
     assert_residual(&boxes.problem, sqrt(4 * 4 / 4.0));
 }
 
-static void random_problems_have_the_residual_of_the_definition(void **state) {
-    (void)state;
+TEST(random_problems_have_the_residual_of_the_definition) {
     static RandomProblem random;
     uint32_t seed = 6;
     for (int run = 0; run < 50; run++) {
@@ -119,8 +113,7 @@ static void random_problems_have_the_residual_of_the_definition(void **state) {
 }
 
 /* Sweeps bring it down, and a network that is asked afterwards sees it. */
-static void sweeps_reduce_the_residual(void **state) {
-    (void)state;
+TEST(sweeps_reduce_the_residual) {
     Boxes boxes;
     Sweeps sweeps = {0};
     make_boxes(&boxes, -3, -4);
@@ -143,8 +136,7 @@ static void assert_with_friction(const ContactProblem *problem, double residual)
 
 /* Both boxes slide at 7 m/s. Without a normal impulse that is no error. With one of 1 N s, friction of 0.2 N s may brake
    each contact of 1 kg by 0.2 m/s, and more does not. */
-static void slip_counts_as_far_as_friction_can_brake_it(void **state) {
-    (void)state;
+TEST(slip_counts_as_far_as_friction_can_brake_it) {
     Boxes boxes;
     make_boxes(&boxes, 0, 0);
     assert_with_friction(&boxes.problem, 0);
@@ -163,8 +155,7 @@ static void slip_counts_as_far_as_friction_can_brake_it(void **state) {
 }
 
 /* Before any impulse, in any direction. */
-static void the_motion_is_that_of_the_bodies(void **state) {
-    (void)state;
+TEST(the_motion_is_that_of_the_bodies) {
     Boxes boxes;
     make_boxes(&boxes, -3, 5);
     for (int k = 0; k < 4; k++) {
@@ -180,17 +171,4 @@ static void the_motion_is_that_of_the_bodies(void **state) {
     assert_false(residual_motion_reaches(&boxes.problem, 0.1f));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_residual_is_the_root_of_the_mean_square_over_contacts),
-        cmocka_unit_test(what_parts_unpushed_is_no_miss),
-        cmocka_unit_test(the_residual_is_that_after_the_warm_start),
-        cmocka_unit_test(the_residual_is_measured_from_the_bias),
-        cmocka_unit_test(spin_counts_at_the_arm),
-        cmocka_unit_test(slip_counts_as_far_as_friction_can_brake_it),
-        cmocka_unit_test(the_motion_is_that_of_the_bodies),
-        cmocka_unit_test(random_problems_have_the_residual_of_the_definition),
-        cmocka_unit_test(sweeps_reduce_the_residual),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -27,21 +27,16 @@ static const ContactSolverKind *const sweepers[] = {&solver_engine, &solver_mome
 /* Four boxes in the air, which a fast and heavy one is about to hit; no ground, so momentum is kept. */
 static World *make_crash(void) {
     World *world = make_world();
-    for (int i = 0; i < 4; i++)
-        add_body(world,
-                 &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {0.1f * (float)i, (float)i}});
+    for (int i = 0; i < 4; i++) add_box(world, 1, 0.5f, vec2(0.1f * (float)i, (float)i));
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 5, .friction = 0.5f, .position = {0.6f, 3.99f}, .velocity = {-1, -5}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, 1);
-    free_solver(&engine);
+    run_engine(world, "", 1);
     assert_true(world_problem(world)->contact_count >= 6);
     return world;
 }
 
 /* The chain's impulse needs many sweeps; then all must have found the same velocities. */
-static void all_meet_the_plain_sweeps(void **state) {
-    (void)state;
+TEST(all_meet_the_plain_sweeps) {
     World *world = make_crash();
     const ContactProblem *problem = world_problem(world);
     ContactSolution plain = make_solution(problem), found = make_solution(problem);
@@ -50,29 +45,15 @@ static void all_meet_the_plain_sweeps(void **state) {
     assert_true(fabsf(found.velocities[0].linear.y - plain.velocities[0].linear.y) > 0.1f);
     for (size_t r = 0; r < COUNT(converged); r++) {
         solve_with(converged[r].kind, converged[r].text, problem, &found);
-        for (int i = 0; i < problem->body_count; i++) {
-            assert_near(found.velocities[i].linear.x, plain.velocities[i].linear.x, 5e-3);
-            assert_near(found.velocities[i].linear.y, plain.velocities[i].linear.y, 5e-3);
-            assert_near(found.velocities[i].angular, plain.velocities[i].angular, 5e-3);
-        }
+        assert_velocities(found.velocities, plain.velocities, problem->body_count, 5e-3);
     }
     free_solution(&plain);
     free_solution(&found);
     world_destroy(world);
 }
 
-static void linear_momentum(const ContactProblem *problem, const BodyVelocity *after, double sum[2]) {
-    sum[0] = sum[1] = 0;
-    for (int i = 0; i < problem->body_count; i++) {
-        Vec2 v = after != NULL ? after[i].linear : problem->bodies[i].velocity;
-        sum[0] += (double)v.x / (double)problem->bodies[i].inv_mass;
-        sum[1] += (double)v.y / (double)problem->bodies[i].inv_mass;
-    }
-}
-
 /* After any number of sweeps: the last thing done is a sweep, not an extrapolation. */
-static void cone_momentum_and_velocities_fit_after_every_sweep(void **state) {
-    (void)state;
+TEST(cone_momentum_and_velocities_fit_after_every_sweep) {
     World *world = make_crash();
     const ContactProblem *problem = world_problem(world);
     ContactSolution found = make_solution(problem);
@@ -100,15 +81,12 @@ static void cone_momentum_and_velocities_fit_after_every_sweep(void **state) {
 }
 
 /* Contacts never pull: a box that flies up from the ground keeps its velocity. */
-static void a_box_that_leaves_the_ground_is_not_held(void **state) {
-    (void)state;
+TEST(a_box_that_leaves_the_ground_is_not_held) {
     World *world = make_world();
     add_ground(world, 0.5f);
     add_body(world,
              &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {2, 3}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, 1);
-    free_solver(&engine);
+    run_engine(world, "", 1);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 2);
     ContactSolution found = make_solution(problem);
@@ -122,15 +100,11 @@ static void a_box_that_leaves_the_ground_is_not_held(void **state) {
 }
 
 /* Without the warm start it matters no more what the problem says of it. */
-static void a_cold_engine_starts_from_zero(void **state) {
-    (void)state;
+TEST(a_cold_engine_starts_from_zero) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < 5; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f + (float)i}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, 60);
-    free_solver(&engine);
+    for (int i = 0; i < 5; i++) add_box(world, 1, 0.2f, vec2(0, 0.5f + (float)i));
+    run_engine(world, "", 60);
     ContactProblem cold = *world_problem(world);
     ContactPoint contacts[16];
     assert_in_range(cold.contact_count, 1, 16);
@@ -149,8 +123,7 @@ static void a_cold_engine_starts_from_zero(void **state) {
     world_destroy(world);
 }
 
-static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(numbers_that_overflow_have_the_bits_of_the_plain_text) {
     World *world = make_crash();
     ContactProblem problem = *world_problem(world);
     ContactPoint contacts[32];
@@ -175,26 +148,4 @@ static void numbers_that_overflow_have_the_bits_of_the_plain_text(void **state) 
     world_destroy(world);
 }
 
-static void settings_out_of_range_are_refused(void **state) {
-    (void)state;
-    assert_settings_refused(&solver_momentum, "k=0", "k");
-    assert_settings_refused(&solver_over_relaxation, "k=0", "k");
-    assert_settings_refused(&solver_block, "k=0", "k");
-    assert_settings_refused(&solver_nncg, "k=0", "k");
-    assert_settings_refused(&solver_relu_net, "k=0", "k");
-    assert_settings_refused(&solver_nncg, "k=ten", "k");
-    assert_settings_refused(&solver_over_relaxation, "omega=0", "omega");
-    assert_settings_refused(&solver_over_relaxation, "omega=2", "omega");
-    assert_settings_refused(&solver_over_relaxation, "omega=nan", "omega");
-    assert_settings_refused(&solver_engine, "warm=maybe", "warm");
-}
-
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(all_meet_the_plain_sweeps),
-                                       cmocka_unit_test(cone_momentum_and_velocities_fit_after_every_sweep),
-                                       cmocka_unit_test(a_box_that_leaves_the_ground_is_not_held),
-                                       cmocka_unit_test(a_cold_engine_starts_from_zero),
-                                       cmocka_unit_test(numbers_that_overflow_have_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(settings_out_of_range_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

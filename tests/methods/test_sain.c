@@ -30,8 +30,7 @@ static bool is_finite(const ContactProblem *problem, const ContactSolution *solu
     return true;
 }
 
-static void without_its_network_it_is_the_engine(void **state) {
-    (void)state;
+TEST(without_its_network_it_is_the_engine) {
     static RandomProblem random;
     static const char *const forms[] = {"on", "off", "shuffled"};
     Error error = {0};
@@ -55,8 +54,7 @@ static void without_its_network_it_is_the_engine(void **state) {
 }
 
 /* Impulses stay those of the engine, velocities do not; without an engine there are no impulses. */
-static void a_network_corrects_velocities_only(void **state) {
-    (void)state;
+TEST(a_network_corrects_velocities_only) {
     static RandomProblem random;
     uint32_t seed = 6;
     RelationNetwork network;
@@ -84,8 +82,7 @@ static void a_network_corrects_velocities_only(void **state) {
 }
 
 /* Closed form: the sum of mass times correction. */
-static void created_momentum_is_that_of_the_corrections(void **state) {
-    (void)state;
+TEST(created_momentum_is_that_of_the_corrections) {
     static RandomProblem random;
     uint32_t seed = 11;
     RelationNetwork network;
@@ -106,8 +103,7 @@ static void created_momentum_is_that_of_the_corrections(void **state) {
     relation_network_destroy(&network);
 }
 
-static void states_beyond_training_are_left_to_the_engine(void **state) {
-    (void)state;
+TEST(states_beyond_training_are_left_to_the_engine) {
     static RandomProblem random;
     uint32_t seed = 7;
     RelationNetwork network;
@@ -131,8 +127,7 @@ static void states_beyond_training_are_left_to_the_engine(void **state) {
 }
 
 /* Weights of any size: what is not finite or beyond the limit never reaches a body. */
-static void useless_answers_are_discarded(void **state) {
-    (void)state;
+TEST(useless_answers_are_discarded) {
     static RandomProblem random;
     uint32_t seed = 9;
     RelationNetwork network;
@@ -152,19 +147,10 @@ static void useless_answers_are_discarded(void **state) {
     relation_network_destroy(&network);
 }
 
-static void settings_are_checked(void **state) {
-    (void)state;
+TEST(settings_are_checked) {
     assert_settings_refused(&solver_sain, "", "names no network");
     assert_settings_refused(&solver_sain, "network=x.npz,engine=shufled", "did you mean 'shuffled'");
     assert_settings_refused(&solver_sain, "network=/nowhere/x.npz", "/nowhere/x.npz");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(without_its_network_it_is_the_engine),
-                                       cmocka_unit_test(a_network_corrects_velocities_only),
-                                       cmocka_unit_test(created_momentum_is_that_of_the_corrections),
-                                       cmocka_unit_test(states_beyond_training_are_left_to_the_engine),
-                                       cmocka_unit_test(useless_answers_are_discarded),
-                                       cmocka_unit_test(settings_are_checked)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

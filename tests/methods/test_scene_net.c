@@ -41,8 +41,7 @@ static void assert_impulses_explain(const Known *known, double rounding) {
     }
 }
 
-static void momentum_and_cones_are_kept(void **state) {
-    (void)state;
+TEST(momentum_and_cones_are_kept) {
     static Known known;
     uint32_t seed = 3;
     int other = 0, outside = 0;
@@ -76,8 +75,7 @@ static void refuse(Known *known, const char *text) {
     free_solver(&solver);
 }
 
-static void another_scene_is_refused(void **state) {
-    (void)state;
+TEST(another_scene_is_refused) {
     static Known known;
     char text[200];
     uint32_t seed = 5;
@@ -100,8 +98,7 @@ static void another_scene_is_refused(void **state) {
     free_known(&known);
 }
 
-static void a_step_unlike_the_training_is_momentums(void **state) {
-    (void)state;
+TEST(a_step_unlike_the_training_is_momentums) {
     static Known known;
     uint32_t seed = 7;
     for (int run = 0; run < RUNS; run++) {
@@ -148,8 +145,7 @@ static bool pushes_a_body(const RandomProblem *random) {
     return pushes;
 }
 
-static void no_answer_throws_a_body_away(void **state) {
-    (void)state;
+TEST(no_answer_throws_a_body_away) {
     static const float wild[] = {NAN, INFINITY, -INFINITY, 1e30f, -1e30f, FLT_MAX, 1e12f, 1e7f};
     static Known known;
     uint32_t seed = 11;
@@ -173,8 +169,7 @@ static void no_answer_throws_a_body_away(void **state) {
 }
 
 /* A bomb between two walls, pushed by both alike: nothing is left of that, nor of its own speed, which was rounded away. */
-static void pushes_that_cancel_are_no_answer(void **state) {
-    (void)state;
+TEST(pushes_that_cancel_are_no_answer) {
     static Known known;
     static const Slot slots[] = {{0, 1, 0}, {1, 2, 1}};
     static const SlotShape shape = {3, 1, 2, 16, 16, 16, 16};
@@ -199,13 +194,4 @@ static void pushes_that_cancel_are_no_answer(void **state) {
     free_known(&known);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(momentum_and_cones_are_kept),
-        cmocka_unit_test(another_scene_is_refused),
-        cmocka_unit_test(a_step_unlike_the_training_is_momentums),
-        cmocka_unit_test(no_answer_throws_a_body_away),
-        cmocka_unit_test(pushes_that_cancel_are_no_answer),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -79,8 +79,7 @@ static int sweep_calmly(Known *known) {
     return times;
 }
 
-static void a_calm_step_takes_half_the_sweeps(void **state) {
-    (void)state;
+TEST(a_calm_step_takes_half_the_sweeps) {
     static Known known;
     uint32_t seed = 8;
     int more = 0, twice = 0;
@@ -100,8 +99,7 @@ static void a_calm_step_takes_half_the_sweeps(void **state) {
     assert_in_range(twice, 1, RUNS - 1);
 }
 
-static void a_network_that_says_nothing_changes_nothing(void **state) {
-    (void)state;
+TEST(a_network_that_says_nothing_changes_nothing) {
     static Known known;
     uint32_t seed = 9;
     int more = 0, twice = 0;
@@ -128,8 +126,7 @@ static void a_network_that_says_nothing_changes_nothing(void **state) {
 }
 
 /* The network's file has factors and outputs that must not matter. */
-static void without_its_prediction_it_is_momentum_with_the_same_stopping_rule(void **state) {
-    (void)state;
+TEST(without_its_prediction_it_is_momentum_with_the_same_stopping_rule) {
     Error error = {0};
     char text[400];
     static Known known;
@@ -157,10 +154,4 @@ static void without_its_prediction_it_is_momentum_with_the_same_stopping_rule(vo
     assert_in_range(other, RUNS - 5, RUNS);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_calm_step_takes_half_the_sweeps),
-        cmocka_unit_test(a_network_that_says_nothing_changes_nothing),
-        cmocka_unit_test(without_its_prediction_it_is_momentum_with_the_same_stopping_rule)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -51,10 +51,7 @@ static void check_list(const SceneView *view, const SlotNetwork *network, const 
     assert_int_equal(slots->slot_count, k);
 }
 
-static void what_has_a_slot_is_listed_in_the_order_of_contacts(void **state) {
-    (void)state;
-    for_all(check_list);
-}
+TEST(what_has_a_slot_is_listed_in_the_order_of_contacts) { for_all(check_list); }
 
 /* What lies within is taken as it is. */
 static void check_base(const SceneView *view, const SlotNetwork *network, const ContactProblem *problem) {
@@ -81,10 +78,7 @@ static void check_base(const SceneView *view, const SlotNetwork *network, const 
     }
 }
 
-static void the_start_is_the_nearest_within_cap_and_cone(void **state) {
-    (void)state;
-    for_all(check_base);
-}
+TEST(the_start_is_the_nearest_within_cap_and_cone) { for_all(check_base); }
 
 static void assert_body(const float numbers[SLOT_BODY_NUMBERS], const ProblemBody *body) {
     const float expected[SLOT_BODY_NUMBERS] = {body->position.x, body->position.y, body->angle,
@@ -117,10 +111,7 @@ static void check_state(const SceneView *view, const SlotNetwork *network, const
     assert_int_equal(next - view->slots.state, network->state.from);
 }
 
-static void the_state_leaves_out_the_bomb_only(void **state) {
-    (void)state;
-    for_all(check_state);
-}
+TEST(the_state_leaves_out_the_bomb_only) { for_all(check_state); }
 
 /* Features of a bomb at that angle upon a box, as seen, sorted; 0 where there are fewer. */
 static int see_features(uint32_t seen[2], const Box *box, Vec2 position, Vec2 size, float angle) {
@@ -142,8 +133,7 @@ static int see_features(uint32_t seen[2], const Box *box, Vec2 position, Vec2 si
 }
 
 /* What a turn of a quarter leaves as it looks has the same features, seen from any quarter; an oblong one by halves. */
-static void a_turned_bomb_is_seen_as_before(void **state) {
-    (void)state;
+TEST(a_turned_bomb_is_seen_as_before) {
     uint32_t seed = 11;
     int touched[2] = {0, 0};
     for (int i = 0; i < 4000; i++) {
@@ -167,8 +157,7 @@ static void a_turned_bomb_is_seen_as_before(void **state) {
 }
 
 /* Edges that no box has, as a file may say, stay what they are; so do features of others, and all without a bomb. */
-static void other_features_stay(void **state) {
-    (void)state;
+TEST(other_features_stay) {
     ProblemBody bodies[3] = {0};
     bodies[2].size = vec2(1, 1);
     bodies[2].angle = 1.6f;
@@ -198,20 +187,9 @@ static void count_cases(const SceneView *view, const SlotNetwork *network, const
     }
 }
 
-static void every_case_is_among_the_problems(void **state) {
-    (void)state;
+TEST(every_case_is_among_the_problems) {
     for_all(count_cases);
     assert_true(with_slot > 100 && without_slot > 100 && capped > 100 && outside > 100);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_has_a_slot_is_listed_in_the_order_of_contacts),
-        cmocka_unit_test(the_start_is_the_nearest_within_cap_and_cone),
-        cmocka_unit_test(the_state_leaves_out_the_bomb_only),
-        cmocka_unit_test(a_turned_bomb_is_seen_as_before),
-        cmocka_unit_test(other_features_stay),
-        cmocka_unit_test(every_case_is_among_the_problems),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

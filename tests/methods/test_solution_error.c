@@ -21,8 +21,7 @@ static SolutionError error_of(BodyVelocity first, BodyVelocity second) {
     return solution_error(&problem, velocities, reference);
 }
 
-static void the_reference_itself_has_no_error(void **state) {
-    (void)state;
+TEST(the_reference_itself_has_no_error) {
     SolutionError error = error_of((BodyVelocity){0}, (BodyVelocity){0});
     assert_true(error.rms == 0);
     assert_int_equal(error.right, 2);
@@ -30,8 +29,7 @@ static void the_reference_itself_has_no_error(void **state) {
 }
 
 /* sqrt((3^2 + 4^2 + 6^2/6 + 1^2 + 2^2) / 2) = sqrt(18) */
-static void the_rms_is_over_the_bodies_that_move(void **state) {
-    (void)state;
+TEST(the_rms_is_over_the_bodies_that_move) {
     SolutionError error = error_of((BodyVelocity){{3, -4}, 6}, (BodyVelocity){{1, 2}, 0});
     assert_near(error.rms, sqrt(18), 1e-15);
     assert_int_equal(error.right, 0);
@@ -39,8 +37,7 @@ static void the_rms_is_over_the_bodies_that_move(void **state) {
 }
 
 /* By |dv|^2 + dspin^2 / 6: 36 / 6 is less than 7, and more than 5. Static bodies do not count; what is no number does. */
-static void the_worst_body_has_the_largest_error(void **state) {
-    (void)state;
+TEST(the_worst_body_has_the_largest_error) {
     const BodyVelocity spins = {{0, 0}, 6};
     assert_int_equal(error_of(spins, (BodyVelocity){{sqrtf(7), 0}, 0}).worst, 2);
     assert_int_equal(error_of(spins, (BodyVelocity){{0, sqrtf(5)}, 0}).worst, 1);
@@ -51,8 +48,7 @@ static void the_worst_body_has_the_largest_error(void **state) {
 
 /* 5% of the 10 m/s that the first lost is 0.5 m/s; the 5% of the second are less than the 0.05 m/s that every body may
    have. Half the spin counts. */
-static void a_body_is_right_within_its_allowance(void **state) {
-    (void)state;
+TEST(a_body_is_right_within_its_allowance) {
     assert_int_equal(error_of((BodyVelocity){{0.499f, 0}, 0}, (BodyVelocity){{0, 0.0499f}, 0}).right, 2);
     assert_int_equal(error_of((BodyVelocity){{0.501f, 0}, 0}, (BodyVelocity){{0, 0.0499f}, 0}).right, 1);
     assert_int_equal(error_of((BodyVelocity){{0.499f, 0}, 0}, (BodyVelocity){{0, 0.0501f}, 0}).right, 1);
@@ -62,15 +58,13 @@ static void a_body_is_right_within_its_allowance(void **state) {
     assert_int_equal(error_of((BodyVelocity){{0.3f, 0}, 0.81f}, (BodyVelocity){{0, 0}, 0}).right, 1);
 }
 
-static void what_is_no_number_is_wrong(void **state) {
-    (void)state;
+TEST(what_is_no_number_is_wrong) {
     SolutionError error = error_of((BodyVelocity){{NAN, 0}, 0}, (BodyVelocity){0});
     assert_true(isinf(error.rms));
     assert_int_equal(error.right, 1);
 }
 
-static void nothing_that_moves_is_no_error(void **state) {
-    (void)state;
+TEST(nothing_that_moves_is_no_error) {
     const ContactProblem ground = {.body_count = 1, .marked = -1, .dt = 0.1f, .bodies = bodies};
     SolutionError error = solution_error(&ground, &(BodyVelocity){{1, 1}, 1}, reference);
     assert_true(error.rms == 0);
@@ -78,12 +72,10 @@ static void nothing_that_moves_is_no_error(void **state) {
 }
 
 /* The engine's error in a stack that has just landed falls with its sweeps, and grows with what is added to it. */
-static void more_sweeps_rank_better_and_a_perturbed_solution_worse(void **state) {
-    (void)state;
+TEST(more_sweeps_rank_better_and_a_perturbed_solution_worse) {
     World *world = make_world();
     add_ground(world, 0.2f);
-    for (int i = 0; i < 5; i++)
-        add_body(world, &(BodyDef){.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.49f + (float)i}});
+    for (int i = 0; i < 5; i++) add_box(world, 1, 0.2f, vec2(0, 0.49f + (float)i));
     ContactSolver engine = make_engine("k=3");
     run(world, &engine, 1);
     const ContactProblem *landed = world_problem(world);
@@ -113,15 +105,4 @@ static void more_sweeps_rank_better_and_a_perturbed_solution_worse(void **state)
     world_destroy(world);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_reference_itself_has_no_error),
-        cmocka_unit_test(the_rms_is_over_the_bodies_that_move),
-        cmocka_unit_test(the_worst_body_has_the_largest_error),
-        cmocka_unit_test(a_body_is_right_within_its_allowance),
-        cmocka_unit_test(what_is_no_number_is_wrong),
-        cmocka_unit_test(nothing_that_moves_is_no_error),
-        cmocka_unit_test(more_sweeps_rank_better_and_a_perturbed_solution_worse),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

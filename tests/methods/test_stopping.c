@@ -13,34 +13,23 @@ enum { KINDS = sizeof kinds / sizeof *kinds, IN_PLACE = 4 /* those whose blocks 
 static World *make_struck(float speed) {
     World *world = make_world();
     add_ground(world, 0.4f);
-    for (int i = 0; i < 12; i++)
-        add_body(world, &(BodyDef){.size = {1, 1},
-                                   .mass = 1,
-                                   .friction = 0.4f,
-                                   .position = {1.05f * (float)(i % 3), 0.5f + (float)(i / 3)}});
+    for (int i = 0; i < 12; i++) add_box(world, 1, 0.4f, vec2(1.05f * (float)(i % 3), 0.5f + (float)(i / 3)));
     add_body(
         world,
         &(BodyDef){.size = {1, 1}, .mass = 8, .friction = 0.4f, .position = {1.3f, 4.49f}, .velocity = {1, -speed}});
-    ContactSolver engine = make_engine("");
-    run(world, &engine, 1);
-    free_solver(&engine);
+    run_engine(world, "", 1);
     assert_true(world_problem(world)->contact_count >= 20);
     return world;
 }
 
-static void a_small_residual_is_as_good_as_converged(void **state) {
-    (void)state;
+TEST(a_small_residual_is_as_good_as_converged) {
     World *world = make_struck(6);
     const ContactProblem *problem = world_problem(world);
     ContactSolution converged = make_solution(problem), found = make_solution(problem);
     sequential_impulses_solve(problem, &engine_options, 100000, &converged);
     for (int kind = 0; kind < KINDS; kind++) {
         solve_with(kinds[kind], "near=1e-5,more=20000", problem, &found);
-        for (int i = 0; i < problem->body_count; i++) {
-            assert_near(found.velocities[i].linear.x, converged.velocities[i].linear.x, 5e-3);
-            assert_near(found.velocities[i].linear.y, converged.velocities[i].linear.y, 5e-3);
-            assert_near(found.velocities[i].angular, converged.velocities[i].angular, 5e-3);
-        }
+        assert_velocities(found.velocities, converged.velocities, problem->body_count, 5e-3);
     }
     free_solution(&converged);
     free_solution(&found);
@@ -68,8 +57,7 @@ static int assert_stops_there(const ContactSolverKind *kind, const ContactProble
 }
 
 /* Odd and even k, on few and many contacts: the schedules of k sweeps and of a block differ. */
-static void sweeps_stop_at_the_first_block_below_near(void **state) {
-    (void)state;
+TEST(sweeps_stop_at_the_first_block_below_near) {
     static const float near[] = {0.3f, 0.002f}; /* m/s */
     int between = 0, limit = 0;
     for (int kind = 0; kind < IN_PLACE; kind++) {
@@ -89,8 +77,7 @@ static void sweeps_stop_at_the_first_block_below_near(void **state) {
     assert_true(between > 10 && limit > 10);
 }
 
-static void random_problems_stop_there_too(void **state) {
-    (void)state;
+TEST(random_problems_stop_there_too) {
     static RandomProblem random;
     uint32_t seed = 12;
     for (int run = 0; run < 30; run++) {
@@ -101,8 +88,7 @@ static void random_problems_stop_there_too(void **state) {
 }
 
 /* A solver keeps its schedules from step to step. */
-static void one_solver_has_the_same_bits_step_after_step(void **state) {
-    (void)state;
+TEST(one_solver_has_the_same_bits_step_after_step) {
     Error error = {0};
     static RandomProblem random;
     for (int kind = 0; kind < KINDS; kind++) {
@@ -134,8 +120,7 @@ static void sweep_with_momentum(const ContactProblem *problem, int n, ContactSol
     sweeps_free(&sweeps);
 }
 
-static void momentum_continues_in_one_run(void **state) {
-    (void)state;
+TEST(momentum_continues_in_one_run) {
     World *world = make_struck(10);
     const ContactProblem *problem = world_problem(world);
     ContactSolution found = make_solution(problem), expected = make_solution(problem);
@@ -159,8 +144,7 @@ static void momentum_continues_in_one_run(void **state) {
 }
 
 /* Impulses that are clamped one by one take another way through the engine. */
-static void an_engine_that_does_not_accumulate_stops_too(void **state) {
-    (void)state;
+TEST(an_engine_that_does_not_accumulate_stops_too) {
     World *world = make_struck(10);
     const ContactProblem *problem = world_problem(world);
     ContactSolution found = make_solution(problem), expected = make_solution(problem);
@@ -175,8 +159,7 @@ static void an_engine_that_does_not_accumulate_stops_too(void **state) {
     world_destroy(world);
 }
 
-static void settings_out_of_range_are_refused(void **state) {
-    (void)state;
+TEST(settings_out_of_range_are_refused) {
     for (int kind = 0; kind < KINDS; kind++) {
         assert_settings_refused(kinds[kind], "near=-0.1", "near");
         assert_settings_refused(kinds[kind], "near=nan", "near");
@@ -187,13 +170,4 @@ static void settings_out_of_range_are_refused(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_small_residual_is_as_good_as_converged),
-                                       cmocka_unit_test(sweeps_stop_at_the_first_block_below_near),
-                                       cmocka_unit_test(random_problems_stop_there_too),
-                                       cmocka_unit_test(one_solver_has_the_same_bits_step_after_step),
-                                       cmocka_unit_test(momentum_continues_in_one_run),
-                                       cmocka_unit_test(an_engine_that_does_not_accumulate_stops_too),
-                                       cmocka_unit_test(settings_out_of_range_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -21,8 +21,7 @@ static void fill(float *numbers, int count, uint32_t *seed) {
 }
 
 /* Of a turned basis: its rows are orthonormal, so all components give all numbers back. */
-static void all_components_lose_nothing(void **state) {
-    (void)state;
+TEST(all_components_lose_nothing) {
     SubspaceNet *net = subspace_net_by_hand(0);
     uint32_t seed = 3;
     float numbers[TEST_NUMBERS];
@@ -43,8 +42,7 @@ static void all_components_lose_nothing(void **state) {
     subspace_net_destroy(net);
 }
 
-static void few_components_keep_their_share(void **state) {
-    (void)state;
+TEST(few_components_keep_their_share) {
     SubspaceNet *net = subspace_net_by_hand(0);
     const float numbers[TEST_NUMBERS] = {1, 2, 3, 4, 5, 6, 7, 8};
     Subspace subspace = begin(net, 0, true);
@@ -55,8 +53,7 @@ static void few_components_keep_their_share(void **state) {
     subspace_net_destroy(net);
 }
 
-static void the_linear_term_goes_on(void **state) {
-    (void)state;
+TEST(the_linear_term_goes_on) {
     SubspaceNet *net = subspace_net_by_hand(0);
     const float last[TEST_NUMBERS] = {0}, now[TEST_NUMBERS] = {1, -2, 0.5f, 4, 0, 0, 0.25f, 1};
     Subspace subspace = begin(net, 1, false);
@@ -89,8 +86,7 @@ static void layer(const SubspaceLayer *from, const double *in, double *out, bool
     }
 }
 
-static void the_network_is_its_equation(void **state) {
-    (void)state;
+TEST(the_network_is_its_equation) {
     SubspaceNet *net = subspace_net_by_hand(0);
     const SubspacePredictor *predictor = &net->predictors[1];
     const float last[TEST_NUMBERS] = {0.1f, 0.2f, 0.3f}, now[TEST_NUMBERS] = {0.4f, -0.1f, 0.2f};
@@ -114,8 +110,7 @@ static void the_network_is_its_equation(void **state) {
 }
 
 /* A network of zeros has the bits of its twin. */
-static void without_a_correction_both_are_one(void **state) {
-    (void)state;
+TEST(without_a_correction_both_are_one) {
     SubspaceNet *net = subspace_net_by_hand(0);
     const float last[TEST_NUMBERS] = {0.1f, 0.2f, 0.3f, 7, 11}, now[TEST_NUMBERS] = {0.4f, -0.1f, 0.2f, 7.1f, 11.3f};
     Subspace with = begin(net, 1, true), without = begin(net, 1, false);
@@ -131,8 +126,7 @@ static void without_a_correction_both_are_one(void **state) {
     subspace_net_destroy(net);
 }
 
-static void components_stay_in_their_range(void **state) {
-    (void)state;
+TEST(components_stay_in_their_range) {
     SubspaceNet *net = subspace_net_by_hand(0);
     const float last[TEST_NUMBERS] = {0}, now[TEST_NUMBERS] = {1, -1};
     net->high[0] = 2.5f;
@@ -149,8 +143,7 @@ static void components_stay_in_their_range(void **state) {
     subspace_net_destroy(net);
 }
 
-static void what_is_not_finite_stays(void **state) {
-    (void)state;
+TEST(what_is_not_finite_stays) {
     SubspaceNet *net = subspace_net_by_hand(0);
     const float last[TEST_NUMBERS] = {0}, now[TEST_NUMBERS] = {1, 2};
     SubspacePredictor *predictor = &net->predictors[1];
@@ -166,8 +159,7 @@ static void what_is_not_finite_stays(void **state) {
     subspace_net_destroy(net);
 }
 
-static void a_predictor_of_at_most_so_many_is_chosen(void **state) {
-    (void)state;
+TEST(a_predictor_of_at_most_so_many_is_chosen) {
     SubspaceNet *net = subspace_net_by_hand(0);
     assert_int_equal(subspace_net_choose(net, 2)->components, 4);
     assert_int_equal(subspace_net_choose(net, 7)->components, 4);
@@ -176,14 +168,4 @@ static void a_predictor_of_at_most_so_many_is_chosen(void **state) {
     subspace_net_destroy(net);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(all_components_lose_nothing),
-                                       cmocka_unit_test(few_components_keep_their_share),
-                                       cmocka_unit_test(the_linear_term_goes_on),
-                                       cmocka_unit_test(the_network_is_its_equation),
-                                       cmocka_unit_test(without_a_correction_both_are_one),
-                                       cmocka_unit_test(components_stay_in_their_range),
-                                       cmocka_unit_test(what_is_not_finite_stays),
-                                       cmocka_unit_test(a_predictor_of_at_most_so_many_is_chosen)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

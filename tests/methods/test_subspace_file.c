@@ -7,8 +7,7 @@
 
 #include <math.h>
 
-static void what_is_written_is_read(void **state) {
-    (void)state;
+TEST(what_is_written_is_read) {
     const char *path = temporary_path("net.npz");
     Error error = {0};
     SubspaceNet *net = subspace_net_by_hand(3);
@@ -37,8 +36,7 @@ static void refuse(const SubspaceNet *net, const char *reason) {
     assert_refused(subspace_net_read(path, &error), reason, "bad.npz");
 }
 
-static void bad_numbers_are_refused(void **state) {
-    (void)state;
+TEST(bad_numbers_are_refused) {
     SubspaceNet *net = subspace_net_by_hand(2);
     net->low[3] = 5000;
     refuse(net, "low: number 3 is 5000, above its high, 1000");
@@ -52,8 +50,7 @@ static void bad_numbers_are_refused(void **state) {
 }
 
 /* The arrays are those of the true shape; only the sizes lie. */
-static void sizes_that_do_not_fit_are_refused(void **state) {
-    (void)state;
+TEST(sizes_that_do_not_fit_are_refused) {
     SubspaceNet *net = subspace_net_by_hand(2);
     const SubspaceShape shape = net->shape;
     net->shape.hidden = 24;
@@ -68,15 +65,9 @@ static void sizes_that_do_not_fit_are_refused(void **state) {
     subspace_net_destroy(net);
 }
 
-static void another_kind_is_refused(void **state) {
-    (void)state;
+TEST(another_kind_is_refused) {
     Error error = {0};
     assert_refused(subspace_net_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error), "pair-net.npz", "subspace");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_written_is_read), cmocka_unit_test(bad_numbers_are_refused),
-        cmocka_unit_test(sizes_that_do_not_fit_are_refused), cmocka_unit_test(another_kind_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,22 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws of the method with a network made by hand: boxes go on as they move. */
-#include "testing.h"
+#include "runs/made.h"
 
 #include "methods/subspace_nets.h"
-#include "scenes/scenes.h"
-#include "runs/runs.h"
 #include "methods/steppers.h"
 
 #include <math.h>
 
 static const float dt = 1 / 60.0f;
-
-static Scene *read_scene(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
 
 /* Writes a net for the scene; returns the method with it. */
 static Method method_of(SubspaceNet *net, const Scene *scene, const char *name) {
@@ -54,9 +45,8 @@ static Watch run(const Scene *scene, const Method *method, NetworkFallbacks *fal
 }
 
 /* The box stays, the bomb flies on a straight line: gravity is missing, and counted as momentum created. */
-static void boxes_go_on_as_they_move(void **state) {
-    (void)state;
-    Scene *scene = read_scene();
+TEST(boxes_go_on_as_they_move) {
+    Scene *scene = scene_named("single");
     scene->frames = 10;
     scene->bomb.body.angular_velocity = 3;
     SubspaceNet *net = subspace_net_by_hand(0);
@@ -76,9 +66,8 @@ static void boxes_go_on_as_they_move(void **state) {
 }
 
 /* Sine and cosine go on in a straight line, so the angle does what they tell. */
-static void angles_follow_sine_and_cosine(void **state) {
-    (void)state;
-    Scene *scene = read_scene();
+TEST(angles_follow_sine_and_cosine) {
+    Scene *scene = scene_named("single");
     scene->frames = 4;
     scene->bomb.body.angle = 9; /* more than a turn */
     scene->bomb.body.angular_velocity = 1.5f;
@@ -92,22 +81,14 @@ static void angles_follow_sine_and_cosine(void **state) {
     scene_destroy(scene);
 }
 
-static World *launched_world(const Scene *scene) {
-    Error error = {0};
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
-    return world;
-}
-
 static void step_world(Stepper *stepper, World *world, const Scene *scene, int frame) {
     Error error = {0};
     assert_ok(stepper_step(stepper, world, &(Step){.scene = scene, .frame = frame}, &error), error);
 }
 
 /* The steps of one world do not change those of another: the second starts from its own poses. */
-static void another_world_starts_from_its_poses(void **state) {
-    (void)state;
-    Scene *scene = read_scene();
+TEST(another_world_starts_from_its_poses) {
+    Scene *scene = scene_named("single");
     Launch launch = launch_of(scene);
     launch.x = -2;
     const Scene other = launch_scene(scene, &launch);
@@ -116,7 +97,7 @@ static void another_world_starts_from_its_poses(void **state) {
     Error error = {0};
     Stepper *both = stepper_create(&method, scene, &error), *alone = stepper_create(&method, scene, &error);
     assert_true(both != NULL && alone != NULL);
-    World *first = launched_world(scene), *second = launched_world(&other), *expected = launched_world(&other);
+    World *first = world_of(scene), *second = world_of(&other), *expected = world_of(&other);
     for (int frame = 1; frame <= 3; frame++) step_world(both, first, scene, frame);
     for (int frame = 4; frame <= 6; frame++) step_world(both, second, &other, frame);
     for (int frame = 1; frame <= 3; frame++) step_world(alone, expected, &other, frame);
@@ -130,9 +111,8 @@ static void another_world_starts_from_its_poses(void **state) {
     scene_destroy(scene);
 }
 
-static void before_the_bomb_the_recorded_run_is_repeated(void **state) {
-    (void)state;
-    Scene *scene = read_scene();
+TEST(before_the_bomb_the_recorded_run_is_repeated) {
+    Scene *scene = scene_named("single");
     scene->bomb.frame = 5;
     scene->frames = 5;
     SubspaceNet *net = subspace_net_by_hand(3);
@@ -152,9 +132,8 @@ static void before_the_bomb_the_recorded_run_is_repeated(void **state) {
 }
 
 /* As `twinbox check` runs a scene. */
-static void without_its_bomb_a_launch_stands_still(void **state) {
-    (void)state;
-    Scene *scene = read_scene();
+TEST(without_its_bomb_a_launch_stands_still) {
+    Scene *scene = scene_named("single");
     scene->frames = 3;
     SubspaceNet *net = subspace_net_by_hand(0);
     const Method method = method_of(net, scene, "subspace");
@@ -165,9 +144,8 @@ static void without_its_bomb_a_launch_stands_still(void **state) {
     scene_destroy(scene);
 }
 
-static void what_training_did_not_see_is_counted(void **state) {
-    (void)state;
-    Scene *scene = read_scene();
+TEST(what_training_did_not_see_is_counted) {
+    Scene *scene = scene_named("single");
     scene->frames = 10;
     SubspaceNet *net = subspace_net_by_hand(0);
     Method method = method_of(net, scene, "subspace");
@@ -188,9 +166,8 @@ static void what_training_did_not_see_is_counted(void **state) {
 }
 
 /* A basis so large that poses overflow: bodies stay where they are. */
-static void poses_that_are_not_finite_are_discarded(void **state) {
-    (void)state;
-    Scene *scene = read_scene();
+TEST(poses_that_are_not_finite_are_discarded) {
+    Scene *scene = scene_named("single");
     scene->frames = 3;
     SubspaceNet *net = subspace_net_by_hand(0);
     for (int k = 4; k < TEST_NUMBERS; k++) {
@@ -211,14 +188,12 @@ static void refuse(const Method *method, const Scene *scene, const char *reason)
     assert_refused(stepper_create(method, scene, &error), reason);
 }
 
-static void what_does_not_fit_is_refused(void **state) {
-    (void)state;
-    Scene *scene = read_scene();
+TEST(what_does_not_fit_is_refused) {
+    Scene *scene = scene_named("single");
     Error error = {0};
     SubspaceNet *net = subspace_net_by_hand(0);
     Method method = method_of(net, scene, "subspace");
-    Scene *stack = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
-    assert_ok(stack != NULL, error);
+    Scene *stack = scene_named("stack");
     refuse(&method, stack, "the network is for scene single with 2 bodies that move; scene stack has 11");
     scene->bodies[1].mass = 20;
     refuse(&method, scene, "by_hand.npz: error: the network is for scene single; bodies, bomb, gravity or time");
@@ -237,14 +212,4 @@ static void what_does_not_fit_is_refused(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_go_on_as_they_move),
-                                       cmocka_unit_test(angles_follow_sine_and_cosine),
-                                       cmocka_unit_test(another_world_starts_from_its_poses),
-                                       cmocka_unit_test(before_the_bomb_the_recorded_run_is_repeated),
-                                       cmocka_unit_test(without_its_bomb_a_launch_stands_still),
-                                       cmocka_unit_test(what_training_did_not_see_is_counted),
-                                       cmocka_unit_test(poses_that_are_not_finite_are_discarded),
-                                       cmocka_unit_test(what_does_not_fit_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

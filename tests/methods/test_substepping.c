@@ -1,26 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small steps: what they must have in common with whole ones. */
-#include "testing.h"
-
-#include "runs/runs.h"
+#include "runs/made.h"
 
 static Trajectory *run(const char *scene_name, const char *method_text, int frames) {
-    Error error = {0};
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, scene_name);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(scene_name);
     if (frames > 0) scene->frames = frames;
-    Method method;
-    assert_ok(method_parse(&method, method_text, &error), error);
-    Trajectory *trajectory = simulate(scene, &method, NULL, &error);
-    assert_ok(trajectory != NULL, error);
+    Trajectory *trajectory = run_by(scene, method_text);
     scene_destroy(scene);
     return trajectory;
 }
 
-static void one_small_step_is_the_whole_step(void **state) {
-    (void)state;
+TEST(one_small_step_is_the_whole_step) {
     Trajectory *whole = run("stack", "engine:k=10", 0), *small = run("stack", "substepping:substeps=1,k=10", 0);
     for (int i = 0; i < whole->frames; i++)
         assert_true(trajectory_frame_hash(whole, i) == trajectory_frame_hash(small, i));
@@ -29,8 +19,7 @@ static void one_small_step_is_the_whole_step(void **state) {
 }
 
 /* n small steps of semi-implicit Euler: the fall is g t^2 / 2 (1 + 1 / (60 n t)). */
-static void a_box_falls_by_its_small_steps(void **state) {
-    (void)state;
+TEST(a_box_falls_by_its_small_steps) {
     Trajectory *run4 = run("single", "substepping:substeps=4", 30);
     const double t = 0.5, fall = 0.5 * 10 * t * t * (1 + 1 / (60 * 4 * t));
     assert_near(run4->position[30 * run4->bodies + 1].y, 4 - fall, 1e-4);
@@ -38,8 +27,7 @@ static void a_box_falls_by_its_small_steps(void **state) {
 }
 
 /* The impulses stored are those of a whole step: at rest m g dt. The bomb is away by then. */
-static void small_steps_carry_the_weight(void **state) {
-    (void)state;
+TEST(small_steps_carry_the_weight) {
     Trajectory *rest = run("single", "substepping:substeps=10", 300);
     double ground = 0;
     for (int64_t i = rest->contact_start[299]; i < rest->contact_start[300]; i++)
@@ -48,9 +36,4 @@ static void small_steps_carry_the_weight(void **state) {
     trajectory_destroy(rest);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_small_step_is_the_whole_step),
-                                       cmocka_unit_test(a_box_falls_by_its_small_steps),
-                                       cmocka_unit_test(small_steps_carry_the_weight)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -7,8 +7,7 @@
 
 #include <math.h>
 
-static void random_problems_have_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(random_problems_have_the_bits_of_the_plain_text) {
     static RandomProblem random;
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
     uint32_t seed = 3;
@@ -26,8 +25,7 @@ static void random_problems_have_the_bits_of_the_plain_text(void **state) {
 }
 
 /* Zeros among the factors too: they leave the sign of a zero. */
-static void random_problems_with_momentum_have_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(random_problems_with_momentum_have_the_bits_of_the_plain_text) {
     static RandomProblem random;
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
     uint32_t seed = 4;
@@ -45,8 +43,7 @@ static void random_problems_with_momentum_have_the_bits_of_the_plain_text(void *
 }
 
 /* In parts of an even number of sweeps as in one run; the first factor of a part but the first counts. */
-static void a_run_in_parts_has_the_bits_of_one(void **state) {
-    (void)state;
+TEST(a_run_in_parts_has_the_bits_of_one) {
     enum { SWEEPS = 30 };
     static RandomProblem random;
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
@@ -77,8 +74,7 @@ static void a_run_in_parts_has_the_bits_of_one(void **state) {
 }
 
 /* Of the same pairs, as solvers with more than one number of sweeps have it: the odd sweep needs its own schedule. */
-static void schedules_fit_when_the_number_of_sweeps_changes(void **state) {
-    (void)state;
+TEST(schedules_fit_when_the_number_of_sweeps_changes) {
     static RandomProblem random;
     uint32_t seed = 21;
     Sweeps sweeps[SWEEP_KERNELS] = {0};
@@ -93,8 +89,7 @@ static void schedules_fit_when_the_number_of_sweeps_changes(void **state) {
     free_kernels(sweeps);
 }
 
-static void momentum_of_factor_zero_has_the_bits_of_the_engine(void **state) {
-    (void)state;
+TEST(momentum_of_factor_zero_has_the_bits_of_the_engine) {
     static RandomProblem random;
     static const float zeros[17];
     int32_t as_given[CONTACTS_MAX];
@@ -121,8 +116,7 @@ static int find_fixed(const RandomProblem *random) {
 
 /* The same pairs again, with other numbers: the schedule of the last step is used again. Not so when a body begins to
    move. */
-static void a_kept_schedule_serves_the_same_pairs(void **state) {
-    (void)state;
+TEST(a_kept_schedule_serves_the_same_pairs) {
     static RandomProblem random;
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
     uint32_t seed = 5;
@@ -137,8 +131,7 @@ static void a_kept_schedule_serves_the_same_pairs(void **state) {
     free_kernels(sweeps);
 }
 
-static void no_contacts_leave_the_velocities(void **state) {
-    (void)state;
+TEST(no_contacts_leave_the_velocities) {
     static RandomProblem random;
     Sweeps sweeps[SWEEP_KERNELS] = {{0}};
     uint32_t seed = 9;
@@ -149,8 +142,7 @@ static void no_contacts_leave_the_velocities(void **state) {
 }
 
 /* Where numbers overflow the order of visits shows; then the engine falls back to the plain text. */
-static void what_overflows_has_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(what_overflows_has_the_bits_of_the_plain_text) {
     static RandomProblem random;
     Error error = {0};
     uint32_t seed = 11;
@@ -173,21 +165,9 @@ static void what_overflows_has_the_bits_of_the_plain_text(void **state) {
     free_solution(&fast);
 }
 
-static void one_by_one_works_everywhere(void **state) {
-    (void)state;
+TEST(one_by_one_works_everywhere) {
     assert_true(sweeps_can(SWEEP_ONE_BY_ONE));
     assert_false(sweeps_can(SWEEP_KERNELS));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(random_problems_have_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(random_problems_with_momentum_have_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(a_run_in_parts_has_the_bits_of_one),
-                                       cmocka_unit_test(schedules_fit_when_the_number_of_sweeps_changes),
-                                       cmocka_unit_test(momentum_of_factor_zero_has_the_bits_of_the_engine),
-                                       cmocka_unit_test(a_kept_schedule_serves_the_same_pairs),
-                                       cmocka_unit_test(no_contacts_leave_the_velocities),
-                                       cmocka_unit_test(what_overflows_has_the_bits_of_the_plain_text),
-                                       cmocka_unit_test(one_by_one_works_everywhere)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -4,8 +4,7 @@
 
 #include <math.h>
 
-static void entries_answer_inside_their_ball_and_for_their_contacts_only(void **state) {
-    (void)state;
+TEST(entries_answer_inside_their_ball_and_for_their_contacts_only) {
     Tabulation *memory = make_memory();
     float key[KEY] = {1, 2, 3};
     TabulationQuery query = {7 + 4, 4, key};
@@ -25,8 +24,7 @@ static void entries_answer_inside_their_ball_and_for_their_contacts_only(void **
     tabulation_destroy(memory);
 }
 
-static void the_most_central_entry_answers(void **state) {
-    (void)state;
+TEST(the_most_central_entry_answers) {
     Tabulation *memory = make_memory();
     for (int i = 0; i < 200; i++) { /* the table of sets grows, too */
         const float key[KEY] = {(float)(i / 4)};
@@ -43,8 +41,7 @@ static void the_most_central_entry_answers(void **state) {
 }
 
 /* Three entries of a linear map; the third interpolates between them. */
-static void a_linear_map_is_answered_exactly(void **state) {
-    (void)state;
+TEST(a_linear_map_is_answered_exactly) {
     Tabulation *memory = make_memory();
     const float along_x[KEY] = {1}, along_y[KEY] = {0, 1}, origin[KEY] = {0}, at[KEY] = {0.5f, -2};
     add_entry(memory, 2, along_x, 3, 1, NULL, NULL);
@@ -65,8 +62,7 @@ static void a_linear_map_is_answered_exactly(void **state) {
 
 /* The new point is on the border. Growth keeps all that was inside, a cut all that was outside; `reach` bounds all
    points. */
-static void ellipsoids_grow_and_shrink_to_a_point(void **state) {
-    (void)state;
+TEST(ellipsoids_grow_and_shrink_to_a_point) {
     uint32_t seed = 3;
     for (int run = 0; run < 50; run++) {
         Tabulation *memory = make_memory();
@@ -97,8 +93,7 @@ static void ellipsoids_grow_and_shrink_to_a_point(void **state) {
 }
 
 /* With rows of unit vectors: numbers along them are components, all others make the distance. */
-static void a_key_has_components_and_the_distance_from_their_space(void **state) {
-    (void)state;
+TEST(a_key_has_components_and_the_distance_from_their_space) {
     Tabulation *memory = make_memory();
     float key[KEY], bomb[TABULATION_NUMBERS] = {1, 2, 3, 4, 5, 6}, others[2 * TABULATION_NUMBERS] = {0};
     memory->rows[3 * COMPONENTS] = memory->rows[8 * COMPONENTS + 1] = 1;
@@ -116,8 +111,7 @@ static void a_key_has_components_and_the_distance_from_their_space(void **state)
 }
 
 /* A box of 2 m by 1 m at 60 Hz: an overlap of 1 m is pushed apart at 12 m/s. */
-static void numbers_are_in_metres_per_second(void **state) {
-    (void)state;
+TEST(numbers_are_in_metres_per_second) {
     float numbers[TABULATION_NUMBERS];
     const ProblemBody body = {
         .position = {1, -2}, .angle = 9, .size = {2, 1}, .velocity = {3, 4}, .angular_velocity = 2};
@@ -126,12 +120,4 @@ static void numbers_are_in_metres_per_second(void **state) {
     for (int i = 0; i < TABULATION_NUMBERS; i++) assert_near(numbers[i], expected[i], 1e-5);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(entries_answer_inside_their_ball_and_for_their_contacts_only),
-                                       cmocka_unit_test(the_most_central_entry_answers),
-                                       cmocka_unit_test(a_linear_map_is_answered_exactly),
-                                       cmocka_unit_test(ellipsoids_grow_and_shrink_to_a_point),
-                                       cmocka_unit_test(a_key_has_components_and_the_distance_from_their_space),
-                                       cmocka_unit_test(numbers_are_in_metres_per_second)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

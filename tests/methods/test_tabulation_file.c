@@ -18,8 +18,7 @@ static Tabulation *make_three(void) {
     return memory;
 }
 
-static void what_is_written_is_read_again(void **state) {
-    (void)state;
+TEST(what_is_written_is_read_again) {
     Error error = {0};
     Tabulation *memory = make_three();
     const char *path = temporary_path("memory.npz");
@@ -52,8 +51,7 @@ static void refuse(Tabulation *memory, const char *text) {
     tabulation_destroy(memory);
 }
 
-static void hostile_files_are_refused(void **state) {
-    (void)state;
+TEST(hostile_files_are_refused) {
     Tabulation *memory;
 #define REFUSED(change, text) \
     memory = make_three();    \
@@ -79,17 +77,11 @@ static void hostile_files_are_refused(void **state) {
 #undef REFUSED
 }
 
-static void an_empty_memory_is_not_written(void **state) {
-    (void)state;
+TEST(an_empty_memory_is_not_written) {
     Error error = {0};
     Tabulation *memory = make_memory();
     assert_refused(tabulation_write(memory, temporary_path("empty.npz"), &error), "is empty");
     tabulation_destroy(memory);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read_again),
-                                       cmocka_unit_test(hostile_files_are_refused),
-                                       cmocka_unit_test(an_empty_memory_is_not_written)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

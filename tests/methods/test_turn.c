@@ -4,8 +4,7 @@
 
 #include "nets/kinds.h"
 
-static void all_directions_have_their_angle(void **state) {
-    (void)state;
+TEST(all_directions_have_their_angle) {
     for (int i = -3000; i <= 3000; i++) {
         const double angle = i * 1e-3;
         const float length = 0.3f + 0.001f * (float)(i + 3000);
@@ -13,30 +12,22 @@ static void all_directions_have_their_angle(void **state) {
     }
 }
 
-static void whole_turns_are_those_of_before(void **state) {
-    (void)state;
+TEST(whole_turns_are_those_of_before) {
     for (int i = -400; i <= 400; i++) {
         const double before = i * 0.1, angle = before + 3 * sin(i * 0.7);
         assert_near(turn_angle((float)sin(angle), (float)cos(angle), (float)before), angle, 2e-5);
     }
 }
 
-static void a_quarter_is_exact(void **state) {
-    (void)state;
+TEST(a_quarter_is_exact) {
     assert_near(turn_angle(0, 1, 0), 0, 0);
     assert_near(turn_angle(1, 0, 0), (double)1.57079633f, 0);
     assert_near(turn_angle(-1, 0, 0), (double)-1.57079633f, 0);
 }
 
-static void what_has_no_direction_stays(void **state) {
-    (void)state;
+TEST(what_has_no_direction_stays) {
     assert_near(turn_angle(0, 0, 1.25f), 1.25, 0);
     assert_near(turn_angle(NAN, NAN, 1.25f), 1.25, 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_directions_have_their_angle), cmocka_unit_test(whole_turns_are_those_of_before),
-        cmocka_unit_test(a_quarter_is_exact), cmocka_unit_test(what_has_no_direction_stays)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

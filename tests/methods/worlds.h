@@ -8,6 +8,20 @@
 
 static const float world_dt = 1.0f / 60.0f;
 
+/* A BodyVelocity is this within the tolerance. */
+#define assert_velocity(actual_velocity, along_x, along_y, spin, tolerance) \
+    do {                                                                    \
+        assert_near((actual_velocity).linear.x, (along_x), (tolerance));    \
+        assert_near((actual_velocity).linear.y, (along_y), (tolerance));    \
+        assert_near((actual_velocity).angular, (spin), (tolerance));        \
+    } while (0)
+
+static inline void assert_velocities(const BodyVelocity *found, const BodyVelocity *expected, int count,
+                                     double tolerance) {
+    for (int i = 0; i < count; i++)
+        assert_velocity(found[i], expected[i].linear.x, expected[i].linear.y, expected[i].angular, tolerance);
+}
+
 /* A solver with these settings ("k=10"). */
 static inline ContactSolver make_solver(const ContactSolverKind *kind, const char *text) {
     Error error = {0};
@@ -52,6 +66,11 @@ static inline void add_body(World *world, const BodyDef *def) {
     assert_ok(world_add_body(world, def, &error), error);
 }
 
+/* A box of unit size at rest. */
+static inline void add_box(World *world, float mass, float friction, Vec2 position) {
+    add_body(world, &(BodyDef){.size = {1, 1}, .mass = mass, .friction = friction, .position = position});
+}
+
 /* The ground of the paper's scenes: its top at y = 0. */
 static inline void add_ground(World *world, float friction) {
     const BodyDef ground = {.size = {100, 20}, .fixed = true, .friction = friction, .position = {0, -10}};
@@ -62,4 +81,17 @@ static inline void run(World *world, const ContactSolver *solver, int steps) {
     Error error = {0};
     for (int i = 0; i < steps; i++)
         assert_ok(world_step(world, solver->kind->solve, solver->state, world_dt, &error), error);
+}
+
+/* Steps by the engine with these settings ("k=10"). */
+static inline void run_engine(World *world, const char *settings, int steps) {
+    ContactSolver engine = make_engine(settings);
+    run(world, &engine, steps);
+    free_solver(&engine);
+}
+
+/* The contact problem that the world's next step meets. The engine makes the step. */
+static inline const ContactProblem *next_problem(World *world) {
+    run_engine(world, "k=1", 1);
+    return world_problem(world);
 }

@@ -33,16 +33,14 @@ static TrajectoryDifference compared(void) {
     return d;
 }
 
-static void same_is_equal(void **state) {
-    (void)state;
+TEST(same_is_equal) {
     TrajectoryDifference d = compared();
     assert_true(d.equal);
     assert_string_equal(d.what, "");
     assert_true(d.frame == -1 && d.body == -1 && d.max_frame == -1 && d.max_body == -1 && d.max_distance == 0);
 }
 
-static void names_and_contacts_do_not_count(void **state) {
-    (void)state;
+TEST(names_and_contacts_do_not_count) {
     strcpy(b->scene, "other");
     strcpy(b->method, "momentum");
     b->scene_hash = 1;
@@ -52,8 +50,7 @@ static void names_and_contacts_do_not_count(void **state) {
     assert_true(compared().equal);
 }
 
-static void the_first_and_the_largest_are_found(void **state) {
-    (void)state;
+TEST(the_first_and_the_largest_are_found) {
     int first = 2 * EXAMPLE_BODIES + 1, last = 3 * EXAMPLE_BODIES + 2;
     b->position[first] = vec2(a->position[first].x + 3, a->position[first].y - 4);
     b->angle[first] = a->angle[first] - 0.5F;
@@ -68,8 +65,7 @@ static void the_first_and_the_largest_are_found(void **state) {
 }
 
 /* One bit in any of the six numbers, down to the sign of a zero. */
-static void one_bit_is_a_difference(void **state) {
-    (void)state;
+TEST(one_bit_is_a_difference) {
     int i = 1 * EXAMPLE_BODIES + 1;
     float *const numbers[] = {&b->position[i].x, &b->position[i].y, &b->angle[i],
                               &b->velocity[i].x, &b->velocity[i].y, &b->angular_velocity[i]};
@@ -84,8 +80,7 @@ static void one_bit_is_a_difference(void **state) {
     assert_true(compared().equal);
 }
 
-static void a_body_in_one_only(void **state) {
-    (void)state;
+TEST(a_body_in_one_only) {
     example_pose(b, 1, 2, (float[]){0, 0, 0, 0, 0, 0});
     TrajectoryDifference d = compared();
     assert_false(d.equal);
@@ -93,8 +88,7 @@ static void a_body_in_one_only(void **state) {
     assert_string_equal(d.what, "body 2 exists in frame 1 of the second only");
 }
 
-static void other_worlds_are_told_apart(void **state) {
-    (void)state;
+TEST(other_worlds_are_told_apart) {
     b->dt = 0.01F;
     TrajectoryDifference d;
     trajectory_compare(a, b, &d);
@@ -111,8 +105,7 @@ static void other_worlds_are_told_apart(void **state) {
     assert_true(!d.equal && d.frame == -1 && d.body == -1 && d.max_frame == -1);
 }
 
-static void a_shorter_run_is_compared_as_far_as_it_goes(void **state) {
-    (void)state;
+TEST(a_shorter_run_is_compared_as_far_as_it_goes) {
     b->frames = 3;
     TrajectoryDifference d;
     trajectory_compare(a, b, &d);
@@ -124,8 +117,7 @@ static void a_shorter_run_is_compared_as_far_as_it_goes(void **state) {
     assert_string_equal(d.what, "");
 }
 
-static void the_distance_of_a_frame_is_the_largest_of_its_bodies(void **state) {
-    (void)state;
+TEST(the_distance_of_a_frame_is_the_largest_of_its_bodies) {
     b->position[2 * EXAMPLE_BODIES + 1].y += 3;
     b->position[2 * EXAMPLE_BODIES + 2].y -= 4;
     assert_true(fabs(trajectory_distance(a, b, 2) - 4) < 1e-6);
@@ -142,16 +134,4 @@ static void the_distance_of_a_frame_is_the_largest_of_its_bodies(void **state) {
     assert_true(trajectory_distance(b, a, 2) == 50);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(same_is_equal, make, destroy),
-        cmocka_unit_test_setup_teardown(names_and_contacts_do_not_count, make, destroy),
-        cmocka_unit_test_setup_teardown(the_first_and_the_largest_are_found, make, destroy),
-        cmocka_unit_test_setup_teardown(one_bit_is_a_difference, make, destroy),
-        cmocka_unit_test_setup_teardown(a_body_in_one_only, make, destroy),
-        cmocka_unit_test_setup_teardown(other_worlds_are_told_apart, make, destroy),
-        cmocka_unit_test_setup_teardown(a_shorter_run_is_compared_as_far_as_it_goes, make, destroy),
-        cmocka_unit_test_setup_teardown(the_distance_of_a_frame_is_the_largest_of_its_bodies, make, destroy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS_EACH(make, destroy)

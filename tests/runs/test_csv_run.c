@@ -32,8 +32,7 @@ static bool has_note(const char *text) {
     return false;
 }
 
-static void a_small_file_is_read(void **state) {
-    (void)state;
+TEST(a_small_file_is_read) {
     Trajectory *run = read_ok(HEAD ROWS, &defaults);
     assert_true(run->frames == 2 && run->bodies == 2 && run->bomb == -1 && run->dt == 1.0F / 60);
     assert_true(run->no_velocities && run->no_contacts && run->scene_hash == 0);
@@ -47,8 +46,7 @@ static void a_small_file_is_read(void **state) {
 }
 
 /* Line ends of Windows, a byte order mark, blanks, another order of columns and rows, no last line end. */
-static void what_other_programs_write_is_read(void **state) {
-    (void)state;
+TEST(what_other_programs_write_is_read) {
     Trajectory *run = read_ok("\xef\xbb\xbf# size: 0,20,1\r\n#size:1, 1, 2\r\n# made by hand\r\n"
                               "time,angle, y ,x,body,frame,mass\r\n1.5,0.5,2,0,1,8,3\r\n1, 0, 3, 0, 1, 7, 3\r\n"
                               "1,0,-0.5,0,0,7,3\r\n1.5,0,-0.5,0,0,8,3",
@@ -59,8 +57,7 @@ static void what_other_programs_write_is_read(void **state) {
     trajectory_destroy(run);
 }
 
-static void times_of_few_digits_give_the_step(void **state) {
-    (void)state;
+TEST(times_of_few_digits_give_the_step) {
     char text[8192] = "# size: 5,1,1\ntime,frame,body,x,y,angle\n";
     for (int i = 0; i <= 100; i++) {
         size_t used = strlen(text);
@@ -72,8 +69,7 @@ static void times_of_few_digits_give_the_step(void **state) {
     trajectory_destroy(run);
 }
 
-static void angles_may_be_in_degrees(void **state) {
-    (void)state;
+TEST(angles_may_be_in_degrees) {
     const CsvRunOptions degrees = {.name = "file", .degrees = true, .dt = 0.5F};
     Trajectory *run =
         read_ok("# size: 0,1,1\nframe,body,x,y,angle,vx,vy,omega\n0,0,0,0,180,1,2,90\n1,0,0,0,-90,1,2,90\n", &degrees);
@@ -84,8 +80,7 @@ static void angles_may_be_in_degrees(void **state) {
     trajectory_destroy(run);
 }
 
-static void sizes_may_be_in_a_file(void **state) {
-    (void)state;
+TEST(sizes_may_be_in_a_file) {
     const char *sizes = temporary_path("sizes.csv");
     const char text[] = "height,body,width,static\n2,1,1,0\n1,0,20,1\n";
     const CsvRunOptions options = {.name = "file", .sizes = sizes, .dt = 1};
@@ -97,8 +92,7 @@ static void sizes_may_be_in_a_file(void **state) {
 }
 
 /* A static body needs one row; one that comes late or leaves early has rows while it is there. */
-static void rows_may_be_missing_where_that_has_a_meaning(void **state) {
-    (void)state;
+TEST(rows_may_be_missing_where_that_has_a_meaning) {
     Trajectory *run = read_ok("# dt: 1\n# size: 0,20,1\n# size: 1,1,2\n# size: 2,1,1\nframe,body,x,y,angle\n"
                               "0,0,0,-0.5,0\n0,1,0,3,0\n1,1,0,2,0\n1,2,7,7,0\n2,2,7,6,0\n",
                               &defaults);
@@ -108,8 +102,7 @@ static void rows_may_be_missing_where_that_has_a_meaning(void **state) {
     trajectory_destroy(run);
 }
 
-static void what_is_written_is_read_back(void **state) {
-    (void)state;
+TEST(what_is_written_is_read_back) {
     const char *path = temporary_path("example.csv");
     Error error = {0};
     Trajectory *t = example_trajectory();
@@ -134,8 +127,7 @@ static void what_is_written_is_read_back(void **state) {
 }
 
 /* A body that never moves need not be static, which the file states, too. */
-static void kinds_and_missing_velocities_are_read_back(void **state) {
-    (void)state;
+TEST(kinds_and_missing_velocities_are_read_back) {
     const char *path = temporary_path("example.csv");
     Error error = {0};
     Trajectory *t = read_ok(HEAD ROWS, &defaults);
@@ -193,8 +185,7 @@ static const struct {
     {"# size: 0,1,1\nframe,body,x,y,angle,vx\n", "run.csv:2: error: give all of vx, vy and omega, or none"},
 };
 
-static void what_is_no_run_is_refused_with_its_line(void **state) {
-    (void)state;
+TEST(what_is_no_run_is_refused_with_its_line) {
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
         Error error = {0};
         Trajectory *run = read_text(refused[i].text, &defaults, &error);
@@ -204,8 +195,7 @@ static void what_is_no_run_is_refused_with_its_line(void **state) {
 }
 
 /* A few rows must not become a huge run: each of 60,000 frames has one row, of one of 60,000 bodies. */
-static void few_rows_of_many_bodies_are_refused(void **state) {
-    (void)state;
+TEST(few_rows_of_many_bodies_are_refused) {
     enum { MANY = 60000 };
     const char *path = temporary_path("many.csv");
     FILE *file = fopen(path, "w");
@@ -220,8 +210,7 @@ static void few_rows_of_many_bodies_are_refused(void **state) {
                    "60000 frames of 60000 bodies take 86400000000 bytes; expected at most ");
 }
 
-static void damaged_files_are_refused_or_harmless(void **state) {
-    (void)state;
+TEST(damaged_files_are_refused_or_harmless) {
     char text[] = HEAD ROWS, damaged[sizeof text];
     uint32_t seed = 7;
     for (int round = 0; round < 3000; round++) {
@@ -238,19 +227,4 @@ static void damaged_files_are_refused_or_harmless(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_small_file_is_read),
-        cmocka_unit_test(what_other_programs_write_is_read),
-        cmocka_unit_test(times_of_few_digits_give_the_step),
-        cmocka_unit_test(angles_may_be_in_degrees),
-        cmocka_unit_test(sizes_may_be_in_a_file),
-        cmocka_unit_test(rows_may_be_missing_where_that_has_a_meaning),
-        cmocka_unit_test(what_is_written_is_read_back),
-        cmocka_unit_test(kinds_and_missing_velocities_are_read_back),
-        cmocka_unit_test(what_is_no_run_is_refused_with_its_line),
-        cmocka_unit_test(few_rows_of_many_bodies_are_refused),
-        cmocka_unit_test(damaged_files_are_refused_or_harmless),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

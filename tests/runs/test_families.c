@@ -64,8 +64,7 @@ static int runs_of(const Scene *scene) {
     return scene->body_count < 1000 ? 2 : 1;
 }
 
-static void families_stand_until_the_bomb_strikes(void **state) {
-    (void)state;
+TEST(families_stand_until_the_bomb_strikes) {
     DIR *folder = opendir(SOURCE_DIR "/scenes/families");
     int scenes = 0;
     assert_non_null(folder);
@@ -83,7 +82,4 @@ static void families_stand_until_the_bomb_strikes(void **state) {
     assert_true(scenes >= 19);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(families_stand_until_the_bomb_strikes)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trajectories in files: they come back bit by bit, and what is inconsistent is refused. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "example.h"
@@ -13,15 +13,12 @@ static void write_file(const Trajectory *t, const char *path) {
     assert_ok(trajectory_write(t, path, &error), error);
 }
 
-static void written_is_read(void **state) {
-    (void)state;
+TEST(written_is_read) {
     const char *path = temporary_path("run.npz");
     Trajectory *t = example_trajectory();
     t->iterations = 12;
     write_file(t, path);
-    Error error = {0};
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     assert_int_equal(r->iterations, 12);
     assert_string_equal(r->scene, t->scene);
     assert_string_equal(r->method, t->method);
@@ -29,9 +26,7 @@ static void written_is_read(void **state) {
     assert_memory_equal(&r->camera_center, &t->camera_center, sizeof(Vec2));
     assert_memory_equal(&r->camera_size, &t->camera_size, sizeof(Vec2));
     assert_true(r->frames == EXAMPLE_FRAMES && r->bodies == EXAMPLE_BODIES);
-    TrajectoryDifference difference;
-    trajectory_compare(t, r, &difference);
-    assert_true(difference.equal);
+    assert_same_run(t, r);
     assert_memory_equal(r->contact_start, t->contact_start, (EXAMPLE_FRAMES + 1) * sizeof *t->contact_start);
     assert_int_equal(t->contact_start[EXAMPLE_FRAMES], 2);
     assert_memory_equal(r->contacts, t->contacts, 2 * sizeof *t->contacts);
@@ -42,15 +37,13 @@ static void written_is_read(void **state) {
 }
 
 /* An empty world of one frame is one, too. */
-static void the_smallest_trajectory(void **state) {
-    (void)state;
+TEST(the_smallest_trajectory) {
     const char *path = temporary_path("small.npz");
     Error error = {0};
     Trajectory *t = trajectory_create(1, 0, &error);
     t->dt = 1;
     write_file(t, path);
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     assert_true(r->frames == 1 && r->bodies == 0 && r->scene[0] == '\0');
     assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
     trajectory_destroy(r);
@@ -76,8 +69,7 @@ static void expect_refused(const Trajectory *t, const char *reason) {
         trajectory_destroy(t);                \
     } while (0)
 
-static void bad_heads_are_refused(void **state) {
-    (void)state;
+TEST(bad_heads_are_refused) {
     REFUSE(dt, 0, "dt must be finite and greater than 0 (got 0)");
     REFUSE(dt, -1, "dt must be");
     REFUSE(dt, NAN, "dt must be");
@@ -99,8 +91,7 @@ static void bad_heads_are_refused(void **state) {
     REFUSE(verdict_body, -2, "the verdict is on body -2 of 3");
 }
 
-static void bad_poses_are_refused(void **state) {
-    (void)state;
+TEST(bad_poses_are_refused) {
     int box = 2 * EXAMPLE_BODIES + 1, bomb = 1 * EXAMPLE_BODIES + 2;
     REFUSE(position[box].x, INFINITY, "frame 2, body 1: pose and velocity are not all finite");
     REFUSE(position[box].y, NAN, "frame 2, body 1: pose");
@@ -113,15 +104,13 @@ static void bad_poses_are_refused(void **state) {
 }
 
 /* A verdict without a body, and no verdict. */
-static void a_verdict_may_be_unknown(void **state) {
-    (void)state;
+TEST(a_verdict_may_be_unknown) {
     const char *path = temporary_path("calm.npz");
     Error error = {0};
     Trajectory *t = example_trajectory();
     trajectory_judge(t, "settles", 0, -1);
     write_file(t, path);
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     assert_string_equal(r->verdict, "settles");
     assert_true(r->verdict_frame == 0 && r->verdict_body == -1);
     trajectory_destroy(r);
@@ -139,19 +128,14 @@ static void leave(Trajectory *t, int frame, int body) {
 }
 
 /* A body may come and go once; a static one stays. */
-static void a_body_is_there_over_one_interval_of_frames(void **state) {
-    (void)state;
+TEST(a_body_is_there_over_one_interval_of_frames) {
     const char *path = temporary_path("gone.npz");
-    Error error = {0};
     Trajectory *t = example_trajectory();
     leave(t, 3, 2); /* the bomb: there in frame 2 only */
     leave(t, 3, 1);
     write_file(t, path);
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
-    TrajectoryDifference difference;
-    trajectory_compare(t, r, &difference);
-    assert_true(difference.equal);
+    Trajectory *r = trajectory_of(path);
+    assert_same_run(t, r);
     assert_true(trajectory_has(r, 2, 1) && !trajectory_has(r, 3, 1));
     trajectory_destroy(r);
     trajectory_destroy(t);
@@ -167,16 +151,13 @@ static void a_body_is_there_over_one_interval_of_frames(void **state) {
 }
 
 /* Step 2 had its contacts where the box was in frame 1: it may be gone in frame 2, but not before. */
-static void contacts_are_of_the_bodies_before_the_step(void **state) {
-    (void)state;
+TEST(contacts_are_of_the_bodies_before_the_step) {
     const char *path = temporary_path("last_contact.npz");
-    Error error = {0};
     Trajectory *t = example_trajectory();
     leave(t, 2, 1);
     leave(t, 3, 1);
     write_file(t, path);
-    Trajectory *r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    Trajectory *r = trajectory_of(path);
     assert_int_equal(r->contact_start[EXAMPLE_FRAMES], 2);
     trajectory_destroy(r);
     leave(t, 1, 1);
@@ -184,8 +165,7 @@ static void contacts_are_of_the_bodies_before_the_step(void **state) {
     trajectory_destroy(t);
 }
 
-static void bad_contacts_are_refused(void **state) {
-    (void)state;
+TEST(bad_contacts_are_refused) {
     REFUSE(contacts[1].a, -1, "step 2, contact 1: bodies -1 and 1 are not an existing pair");
     REFUSE(contacts[1].a, 1, "bodies 1 and 1 are not an existing pair");
     REFUSE(contacts[1].b, 3, "bodies 0 and 3 are not an existing pair");
@@ -206,8 +186,7 @@ static void bad_contacts_are_refused(void **state) {
 }
 
 /* In step 1 the bomb is not there yet. */
-static void a_contact_of_an_absent_body_is_refused(void **state) {
-    (void)state;
+TEST(a_contact_of_an_absent_body_is_refused) {
     Error error = {0};
     Trajectory *t = trajectory_create(2, 2, &error);
     t->dt = 1;
@@ -220,8 +199,7 @@ static void a_contact_of_an_absent_body_is_refused(void **state) {
     trajectory_destroy(t);
 }
 
-static void random_damage_is_refused_or_harmless(void **state) {
-    (void)state;
+TEST(random_damage_is_refused_or_harmless) {
     const char *path = temporary_path("damaged.npz");
     Trajectory *t = example_trajectory();
     write_file(t, path);
@@ -243,9 +221,7 @@ static void random_damage_is_refused_or_harmless(void **state) {
             assert_error(refusal, ERROR_INPUT, "damaged.npz: error: ");
             continue;
         }
-        TrajectoryDifference difference;
-        trajectory_compare(t, r, &difference);
-        assert_true(difference.equal);
+        assert_same_run(t, r);
         trajectory_destroy(r);
     }
     free(data);
@@ -261,8 +237,7 @@ static char *text_of(const char *path) {
 }
 
 /* The dynamic bodies that are there, and every number exactly. */
-static void csv_gives_every_float_back(void **state) {
-    (void)state;
+TEST(csv_gives_every_float_back) {
     const char *path = temporary_path("run.csv");
     Trajectory *t = example_trajectory();
     /* With 8 digits this float and the next read the same. */
@@ -290,8 +265,7 @@ static void csv_gives_every_float_back(void **state) {
     trajectory_destroy(t);
 }
 
-static void hashes_are_those_of_the_frames(void **state) {
-    (void)state;
+TEST(hashes_are_those_of_the_frames) {
     const char *path = temporary_path("run.hashes");
     Trajectory *t = example_trajectory();
     t->fixed[1] = t->fixed[2] = 1;
@@ -312,8 +286,7 @@ static void hashes_are_those_of_the_frames(void **state) {
     trajectory_destroy(t);
 }
 
-static void failed_writes_tell(void **state) {
-    (void)state;
+TEST(failed_writes_tell) {
     bool (*const writers[])(const Trajectory *, const char *, Error *) = {trajectory_write, trajectory_write_csv,
                                                                           trajectory_write_hashes};
     Trajectory *t = example_trajectory();
@@ -325,21 +298,4 @@ static void failed_writes_tell(void **state) {
     trajectory_destroy(t);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(written_is_read),
-        cmocka_unit_test(the_smallest_trajectory),
-        cmocka_unit_test(bad_heads_are_refused),
-        cmocka_unit_test(bad_poses_are_refused),
-        cmocka_unit_test(a_verdict_may_be_unknown),
-        cmocka_unit_test(a_body_is_there_over_one_interval_of_frames),
-        cmocka_unit_test(contacts_are_of_the_bodies_before_the_step),
-        cmocka_unit_test(bad_contacts_are_refused),
-        cmocka_unit_test(a_contact_of_an_absent_body_is_refused),
-        cmocka_unit_test(random_damage_is_refused_or_harmless),
-        cmocka_unit_test(csv_gives_every_float_back),
-        cmocka_unit_test(hashes_are_those_of_the_frames),
-        cmocka_unit_test(failed_writes_tell),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

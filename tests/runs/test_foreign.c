@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs of other programs: position, angle, size and dt are enough; what is absent has a meaning; wrong names are named. */
-#include "testing.h"
+#include "made.h"
 
 #include "example.h"
 #include "python.h"
@@ -25,14 +25,11 @@ static const char *make(const char *name, const char *change) {
 }
 
 static Trajectory *read_changed(const char *name, const char *change) {
-    Error error = {0};
-    Trajectory *t = trajectory_read(make(name, change), &error);
-    assert_ok(t != NULL, error);
+    Trajectory *t = trajectory_of(make(name, change));
     return t;
 }
 
-static void four_arrays_are_enough(void **state) {
-    (void)state;
+TEST(four_arrays_are_enough) {
     Trajectory *t = read_changed("v\303\266lker.2.npz", "");
     assert_string_equal(t->scene, "v\303\266lker.2");
     assert_string_equal(t->method, "v\303\266lker.2");
@@ -46,8 +43,7 @@ static void four_arrays_are_enough(void **state) {
     trajectory_destroy(t);
 }
 
-static void what_never_moves_is_static_unless_it_is_stated(void **state) {
-    (void)state;
+TEST(what_never_moves_is_static_unless_it_is_stated) {
     Trajectory *t = read_changed("run.npz", "a['fixed'] = np.array([False, True, False])");
     assert_memory_equal(t->fixed, ((const uint8_t[]){0, 1, 0}), 3);
     trajectory_destroy(t);
@@ -59,8 +55,7 @@ static void what_never_moves_is_static_unless_it_is_stated(void **state) {
     trajectory_destroy(t);
 }
 
-static void types_and_orders_are_converted(void **state) {
-    (void)state;
+TEST(types_and_orders_are_converted) {
     Trajectory *t = read_changed("run.npz", "a['position'] = np.asfortranarray(a['position'].astype('>f8'))\n"
                                             "a.update(bomb=[1], fixed=[1., 0., 0.], camera=[[0, 1], [8, 9]],\n"
                                             "         scene_hash=7, version=np.int64(1))");
@@ -69,8 +64,7 @@ static void types_and_orders_are_converted(void **state) {
     trajectory_destroy(t);
 }
 
-static void long_and_strange_names_of_files_become_names(void **state) {
-    (void)state;
+TEST(long_and_strange_names_of_files_become_names) {
     char name[200];
     memset(name, 'x', sizeof name);
     strcpy(name + 150, ".npz");
@@ -82,8 +76,7 @@ static void long_and_strange_names_of_files_become_names(void **state) {
     trajectory_destroy(t);
 }
 
-static void a_run_without_velocities_is_written_without(void **state) {
-    (void)state;
+TEST(a_run_without_velocities_is_written_without) {
     Error error = {0};
     const char *path = temporary_path("again.npz");
     Trajectory *t = read_changed("run.npz", "");
@@ -92,8 +85,7 @@ static void a_run_without_velocities_is_written_without(void **state) {
                "f = np.load(sys.argv[1])\n"
                "assert f.files == 'version scene method scene_hash dt bomb camera size fixed position angle'.split()\n",
                path);
-    Trajectory *again = trajectory_read(path, &error);
-    assert_ok(again != NULL, error);
+    Trajectory *again = trajectory_of(path);
     assert_true(again->no_velocities && again->no_contacts);
     assert_string_equal(again->scene, "run");
     TrajectoryDifference difference;
@@ -104,8 +96,7 @@ static void a_run_without_velocities_is_written_without(void **state) {
 }
 
 /* Unknown velocities are neither equal to known ones nor different from them. */
-static void only_poses_are_compared_with_a_run_without_velocities(void **state) {
-    (void)state;
+TEST(only_poses_are_compared_with_a_run_without_velocities) {
     Trajectory *t = read_changed("run.npz", ""),
                *moving = read_changed("run.npz", "a['velocity'] = a['position'] * 0 + 1\n"
                                                  "a['angular_velocity'] = a['angle'] * 0");
@@ -131,8 +122,7 @@ static void expect_refused(const char *change, const char *reason) {
 
 #define RENAME(from, to) "a['" to "'] = a.pop('" from "')"
 
-static void wrong_names_are_suggested(void **state) {
-    (void)state;
+TEST(wrong_names_are_suggested) {
     expect_refused(RENAME("position", "positions"),
                    "unknown array 'positions': did you mean 'position'? Rename or remove it");
     expect_refused(RENAME("position", "pos"), "unknown array 'pos': did you mean 'position'?");
@@ -147,16 +137,14 @@ static void wrong_names_are_suggested(void **state) {
 }
 
 /* A near name is no mistake where the right one is there; a far one never is. */
-static void other_arrays_are_ignored(void **state) {
-    (void)state;
+TEST(other_arrays_are_ignored) {
     Trajectory *t = read_changed("run.npz", "a.update(sizes=[1], mass=[1, 2, 3], box=1, time=[0, 1], colour='red',\n"
                                             "         friction=0.5, names='a b', kind=[1, 2, 3])");
     assert_int_equal(t->bodies, 3);
     trajectory_destroy(t);
 }
 
-static void what_is_needed_is_told(void **state) {
-    (void)state;
+TEST(what_is_needed_is_told) {
     expect_refused("del a['position']", "has no array 'position'; a trajectory needs position, angle, size and dt");
     expect_refused("del a['angle']", "error: has no array 'angle'");
     expect_refused("del a['size']", "error: has no array 'size'");
@@ -174,8 +162,7 @@ static void what_is_needed_is_told(void **state) {
     expect_refused("a['version'] = 2", "trajectory of version 2; expected version 1");
 }
 
-static void values_are_checked_as_ever(void **state) {
-    (void)state;
+TEST(values_are_checked_as_ever) {
     expect_refused("a['position'][1, 1, 0] = 1e39", "array 'position': item [1, 1, 0] is 9.99");
     expect_refused("a['position'][1, 1, 0] = np.nan", "frame 1, body 1: position and angle are not all finite");
     expect_refused("a['angle'][2, 0] = np.inf", "frame 2, body 0: position and angle are not all finite");
@@ -192,18 +179,4 @@ static void values_are_checked_as_ever(void **state) {
     expect_refused("a['scene'] = 5", "array 'scene' is int64 of 0 dimensions; expected text of 0");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(four_arrays_are_enough),
-        cmocka_unit_test(what_never_moves_is_static_unless_it_is_stated),
-        cmocka_unit_test(types_and_orders_are_converted),
-        cmocka_unit_test(long_and_strange_names_of_files_become_names),
-        cmocka_unit_test(a_run_without_velocities_is_written_without),
-        cmocka_unit_test(only_poses_are_compared_with_a_run_without_velocities),
-        cmocka_unit_test(wrong_names_are_suggested),
-        cmocka_unit_test(other_arrays_are_ignored),
-        cmocka_unit_test(what_is_needed_is_told),
-        cmocka_unit_test(values_are_checked_as_ever),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -23,8 +23,7 @@ static Growth measured(int from, int end) {
     return growth;
 }
 
-static void an_exponential_has_its_rate(void **state) {
-    (void)state;
+TEST(an_exponential_has_its_rate) {
     for (double rate = -3; rate <= 3; rate += 0.75) {
         fill(1e-6, rate);
         Growth growth = measured(0, FRAMES);
@@ -37,8 +36,7 @@ static void an_exponential_has_its_rate(void **state) {
 }
 
 /* The same by two trajectories, whose floats lie far enough from each other to be fine. */
-static void trajectories_that_part_exponentially(void **state) {
-    (void)state;
+TEST(trajectories_that_part_exponentially) {
     Error error = {0};
     Trajectory *a = trajectory_create(FRAMES, 1, &error), *b = trajectory_create(FRAMES, 1, &error);
     assert_true(a != NULL && b != NULL);
@@ -53,8 +51,7 @@ static void trajectories_that_part_exponentially(void **state) {
 }
 
 /* From 1e-6 m by a factor of 2 a frame: 0.1 m is passed in frame 17, as 2^17 = 131072. */
-static void what_is_saturated_does_not_count(void **state) {
-    (void)state;
+TEST(what_is_saturated_does_not_count) {
     fill(1e-6, 60 * log(2));
     Growth growth = measured(0, FRAMES);
     assert_true(growth.saturated && growth.last == 16 && growth.end == 17 && growth.count == 17);
@@ -65,8 +62,7 @@ static void what_is_saturated_does_not_count(void **state) {
     assert_true(growth.saturated && growth.first == -1 && growth.end == 20 && growth.count == 0 && isnan(growth.rate));
 }
 
-static void zeros_and_what_is_not_known_are_left_out(void **state) {
-    (void)state;
+TEST(zeros_and_what_is_not_known_are_left_out) {
     fill(1e-6, 2);
     for (int frame = 0; frame < 30; frame++) distance[frame] = 0;
     distance[50] = 0;
@@ -76,8 +72,7 @@ static void zeros_and_what_is_not_known_are_left_out(void **state) {
     assert_near(growth.rate, 2, 1e-9);
 }
 
-static void too_few_frames_have_no_rate(void **state) {
-    (void)state;
+TEST(too_few_frames_have_no_rate) {
     fill(1e-6, 2);
     Growth growth = measured(40, 40 + GROWTH_MIN_FRAMES - 1);
     assert_true(growth.count == GROWTH_MIN_FRAMES - 1 && isnan(growth.rate) && growth.first == 40);
@@ -89,16 +84,14 @@ static void too_few_frames_have_no_rate(void **state) {
 }
 
 /* A scatter of s up and down in turns is one of s, whatever the rate. */
-static void the_scatter_is_that_of_the_logarithm(void **state) {
-    (void)state;
+TEST(the_scatter_is_that_of_the_logarithm) {
     fill(1e-6, 2);
     for (int frame = 0; frame < FRAMES; frame++) distance[frame] *= exp(frame % 2 == 0 ? 0.1 : -0.1);
     assert_near(measured(0, FRAMES).scatter, 0.1, 1e-4);
 }
 
 /* In 101 frames of 10 ms: ln 2 = 0.69 a second doubles once. */
-static void verdicts(void **state) {
-    (void)state;
+TEST(verdicts) {
     static const struct {
         double rate, shifted;
         GrowthVerdict verdict;
@@ -125,8 +118,7 @@ static void expect_table(const DistanceTable *table, const char *expected) {
     free(text);
 }
 
-static void tables(void **state) {
-    (void)state;
+TEST(tables) {
     const double of_both[] = {0, 0.125, 3e-9}, shifted[] = {1e-6, 0.25, NAN};
     expect_table(&(DistanceTable){3, 0.5, of_both, shifted},
                  "frame,time,distance,shifted_distance\n0,0,0,1e-06\n1,0.5,0.125,0.25\n2,1,3e-09,\n");
@@ -137,16 +129,4 @@ static void tables(void **state) {
     assert_error(error, ERROR_SYSTEM, "/nowhere/distance.csv");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_exponential_has_its_rate),
-        cmocka_unit_test(trajectories_that_part_exponentially),
-        cmocka_unit_test(what_is_saturated_does_not_count),
-        cmocka_unit_test(zeros_and_what_is_not_known_are_left_out),
-        cmocka_unit_test(too_few_frames_have_no_rate),
-        cmocka_unit_test(the_scatter_is_that_of_the_logarithm),
-        cmocka_unit_test(verdicts),
-        cmocka_unit_test(tables),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

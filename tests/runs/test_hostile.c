@@ -2,10 +2,9 @@
 /* Scenes from the ends of what a file may hold (scenes/scene_read.c): thin and huge boxes, feathers under a million tonnes,
    shots and spins beyond all reason, half of it inside each other. What a method makes of them may be nonsense; it may
    not be a number that is none, nor be kept where a step is refused. */
-#include "testing.h"
+#include "made.h"
 
 #include "engine/uniform.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
@@ -103,10 +102,8 @@ static void assert_finite(const World *world, const char *method, int scene, int
 /* True where a step was refused. */
 static bool run_scene(const Scene *scene, int number, const Method *method) {
     Error error = {0};
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
-    Stepper *stepper = stepper_create(method, scene, &error);
-    assert_ok(stepper != NULL, error);
+    World *world = world_of(scene);
+    Stepper *stepper = stepper_of(scene, method);
     bool ok = true;
     for (int step = 1; ok && step <= scene->frames; step++) {
         ok = simulate_step(stepper, world, &(Step){.scene = scene, .frame = step}, &error);
@@ -125,8 +122,7 @@ static bool needs_files(const Method *method, const Scene *scene) {
 }
 
 /* The reference is held to fewer scenes: it takes its time. */
-static void no_method_leaves_the_finite_numbers(void **state) {
-    (void)state;
+TEST(no_method_leaves_the_finite_numbers) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         Error error = {0};
         Method method;
@@ -146,8 +142,7 @@ static void no_method_leaves_the_finite_numbers(void **state) {
 }
 
 /* So there is something to refuse. */
-static void a_step_that_blows_up_is_refused(void **state) {
-    (void)state;
+TEST(a_step_that_blows_up_is_refused) {
     Error error = {0};
     Method method;
     Scene scene;
@@ -157,8 +152,4 @@ static void a_step_that_blows_up_is_refused(void **state) {
     assert_true(run_scene(&scene, -1, &method));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_method_leaves_the_finite_numbers),
-                                       cmocka_unit_test(a_step_that_blows_up_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -21,8 +21,7 @@ static Scene *read_scene(const char *text, const char *more) {
     return scene;
 }
 
-static void bodies_are_where_they_are_when_the_bomb_is_added(void **state) {
-    (void)state;
+TEST(bodies_are_where_they_are_when_the_bomb_is_added) {
     Scene *scene = read_scene(falling, "");
     Error error = {0};
     Launch launch = launch_of(scene);
@@ -38,8 +37,7 @@ static void bodies_are_where_they_are_when_the_bomb_is_added(void **state) {
 }
 
 /* The first launch that is refused is named by its place in the list, in whatever order their frames come. */
-static void the_launch_is_named(void **state) {
-    (void)state;
+TEST(the_launch_is_named) {
     Scene *scene = read_scene(falling, "");
     Error error = {0};
     const Launch own = launch_of(scene);
@@ -58,8 +56,7 @@ static void the_launch_is_named(void **state) {
     scene_destroy(scene);
 }
 
-static void a_scene_may_allow_it(void **state) {
-    (void)state;
+TEST(a_scene_may_allow_it) {
     Scene *scene = read_scene(falling, "overlaps: allowed\n");
     Error error = {0};
     Launch launch = launch_of(scene);
@@ -78,8 +75,7 @@ static Trajectory *run(const char *method_text, float x, Error *error) {
     return trajectory;
 }
 
-static void runs_are_refused_by_any_method(void **state) {
-    (void)state;
+TEST(runs_are_refused_by_any_method) {
     static const char *const methods[] = {"engine", "momentum", "interior"};
     for (int i = 0; i < 3; i++) {
         Error error = {0};
@@ -110,8 +106,7 @@ static void check_shipped(const char *path) {
     scene_destroy(scene);
 }
 
-static void shipped_scenes_have_room_for_their_launches(void **state) {
-    (void)state;
+TEST(shipped_scenes_have_room_for_their_launches) {
     static const char *const folders[] = {"", "families/", "stability/", "templates/"};
     for (int i = 0; i < 4; i++) {
         char pattern[512];
@@ -123,10 +118,4 @@ static void shipped_scenes_have_room_for_their_launches(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(bodies_are_where_they_are_when_the_bomb_is_added),
-                                       cmocka_unit_test(the_launch_is_named), cmocka_unit_test(a_scene_may_allow_it),
-                                       cmocka_unit_test(runs_are_refused_by_any_method),
-                                       cmocka_unit_test(shipped_scenes_have_room_for_their_launches)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NumPy reads a trajectory, and a trajectory that NumPy wrote is read. */
-#include "testing.h"
+#include "made.h"
 
 #include "example.h"
 #include "python.h"
 
-static void numpy_reads_every_member(void **state) {
-    (void)state;
+TEST(numpy_reads_every_member) {
     const char *path = temporary_path("run.npz");
     Trajectory *t = example_trajectory();
     Error error = {0};
@@ -60,13 +59,10 @@ static void numpy_reads_every_member(void **state) {
     "arrays['position'][:, 0, 1] = [7, 6, 4]\n"
 #define SAVE "np.savez_compressed(sys.argv[1], **arrays)\n"
 
-static void what_numpy_writes_is_read(void **state) {
-    (void)state;
+TEST(what_numpy_writes_is_read) {
     const char *path = temporary_path("numpy.npz");
     run_python(MAKE SAVE, path);
-    Error error = {0};
-    Trajectory *t = trajectory_read(path, &error);
-    assert_ok(t != NULL, error);
+    Trajectory *t = trajectory_of(path);
     assert_string_equal(t->scene, "falling");
     assert_string_equal(t->method, "by hand");
     assert_true(t->frames == 3 && t->bodies == 1 && t->bomb == -1 && t->dt == 0.5F && t->scene_hash == 5);
@@ -87,8 +83,7 @@ static void expect_refused(const char *change, const char *reason) {
     assert_error(error, ERROR_INPUT, reason);
 }
 
-static void what_does_not_fit_is_refused(void **state) {
-    (void)state;
+TEST(what_does_not_fit_is_refused) {
     expect_refused("arrays['version'] = np.int32(2)", "run.npz: error: trajectory of version 2; expected version 1");
     expect_refused("del arrays['angle']", "has no array 'angle'");
     expect_refused("arrays['angle'] = n((3, 2), 'f4')", "array 'angle' has shape (3, 2); expected (3, 1)");
@@ -102,11 +97,4 @@ static void what_does_not_fit_is_refused(void **state) {
     expect_refused("arrays['scene'] = '\\u00e4' * 64", "text 'scene' is");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numpy_reads_every_member),
-        cmocka_unit_test(what_numpy_writes_is_read),
-        cmocka_unit_test(what_does_not_fit_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

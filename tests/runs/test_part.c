@@ -87,8 +87,7 @@ static void expect_first(const TrajectoryParting *parting, int frame, int body, 
     assert_int_equal(parting->cause, cause);
 }
 
-static void equal_runs_do_not_part(void **state) {
-    (void)state;
+TEST(equal_runs_do_not_part) {
     b->position[at(1, BOMB)] = vec2(-NAN, NAN); /* as absent as any */
     TrajectoryParting parting = parted(0);
     expect_first(&parting, -1, -1, PART_NONE);
@@ -97,8 +96,7 @@ static void equal_runs_do_not_part(void **state) {
     assert_int_equal(parting.frames, FRAMES);
 }
 
-static void frame_0_is_the_start(void **state) {
-    (void)state;
+TEST(frame_0_is_the_start) {
     b->velocity[at(0, 2)].y += 1;
     contact(b, 1, 0)->normal_impulse = 5;
     TrajectoryParting parting = parted(0);
@@ -106,8 +104,7 @@ static void frame_0_is_the_start(void **state) {
     assert_true(parting.first.by.speed == 1 && parting.first.by.distance == 0);
 }
 
-static void other_impulses_are_the_solver(void **state) {
-    (void)state;
+TEST(other_impulses_are_the_solver) {
     b->position[at(4, 2)] = vec2(a->position[at(4, 2)].x + 3, a->position[at(4, 2)].y - 4);
     b->angle[at(4, 2)] -= 0.5F;
     b->angular_velocity[at(4, 2)] = -2;
@@ -129,8 +126,7 @@ static void other_impulses_are_the_solver(void **state) {
 }
 
 /* The least feature comes first, wherever it stands in the file. */
-static void of_equal_differences_the_first_contact_counts(void **state) {
-    (void)state;
+TEST(of_equal_differences_the_first_contact_counts) {
     b->angle[at(4, 2)] = 1;
     for (int i = 0; i < CONTACTS; i++) contact(b, 4, i)->normal_impulse = 3;
     TrajectoryParting parting = parted(0);
@@ -138,16 +134,14 @@ static void of_equal_differences_the_first_contact_counts(void **state) {
     assert_true(parting.contacts.largest_b.b == 1 && parting.contacts.largest_b.feature == 6);
 }
 
-static void contacts_in_another_order_are_the_same(void **state) {
-    (void)state;
+TEST(contacts_in_another_order_are_the_same) {
     b->angle[at(4, 2)] = 1;
     for (int i = 0; i < CONTACTS; i++) *contact(b, 4, i) = *contact(a, 4, CONTACTS - 1 - i);
     TrajectoryParting parting = parted(0);
     expect_first(&parting, 4, 2, PART_ELSEWHERE);
 }
 
-static void a_contact_of_one_run_is_collision_detection(void **state) {
-    (void)state;
+TEST(a_contact_of_one_run_is_collision_detection) {
     b->angle[at(4, 2)] = 1;
     contact(b, 4, 0)->normal_impulse = 3;
     contact(b, 4, 1)->feature = 9;
@@ -157,8 +151,7 @@ static void a_contact_of_one_run_is_collision_detection(void **state) {
     assert_true(parting.contacts.only.feature == 6 && parting.contacts.only_first_a);
 }
 
-static void a_contact_elsewhere_is_collision_detection(void **state) {
-    (void)state;
+TEST(a_contact_elsewhere_is_collision_detection) {
     b->angle[at(4, 2)] = 1;
     contact(b, 4, 1)->point.x += 1;
     TrajectoryParting parting = parted(0);
@@ -166,16 +159,14 @@ static void a_contact_elsewhere_is_collision_detection(void **state) {
     assert_int_equal(parting.contacts.moved, 1);
 }
 
-static void equal_impulses_leave_no_contact_to_blame(void **state) {
-    (void)state;
+TEST(equal_impulses_leave_no_contact_to_blame) {
     b->velocity[at(4, 1)].x = -0.0F;
     TrajectoryParting parting = parted(0);
     expect_first(&parting, 4, 1, PART_ELSEWHERE);
     assert_int_equal(parting.step, -1);
 }
 
-static void impulses_of_an_earlier_step_are_hidden(void **state) {
-    (void)state;
+TEST(impulses_of_an_earlier_step_are_hidden) {
     b->angle[at(4, 1)] = 1;
     contact(b, 2, 1)->tangent_impulse = nextafterf(-0.5F, 0);
     contact(b, 4, 1)->normal_impulse = 3;
@@ -186,8 +177,7 @@ static void impulses_of_an_earlier_step_are_hidden(void **state) {
     assert_int_equal(parting.contacts.largest_a.feature, 6);
 }
 
-static void hidden_and_never_seen(void **state) {
-    (void)state;
+TEST(hidden_and_never_seen) {
     contact(a, FRAMES - 1, 1)->normal_impulse = 0;
     contact(b, FRAMES - 1, 1)->normal_impulse = -0.0F;
     TrajectoryParting parting = parted(0);
@@ -195,8 +185,7 @@ static void hidden_and_never_seen(void **state) {
     assert_int_equal(parting.step, FRAMES - 1);
 }
 
-static void a_bomb_that_comes_otherwise_is_the_launch(void **state) {
-    (void)state;
+TEST(a_bomb_that_comes_otherwise_is_the_launch) {
     b->position[at(BOMB_FRAME, BOMB)].x += 1;
     TrajectoryParting parting = parted(0);
     expect_first(&parting, BOMB_FRAME, BOMB, PART_LAUNCH);
@@ -208,8 +197,7 @@ static void a_bomb_that_comes_otherwise_is_the_launch(void **state) {
 }
 
 /* However large the tolerance: a body that is not there is nowhere near. */
-static void a_bomb_in_one_run_only_is_the_launch(void **state) {
-    (void)state;
+TEST(a_bomb_in_one_run_only_is_the_launch) {
     put(b, BOMB_FRAME - 1, BOMB);
     TrajectoryParting parting = parted(1e9);
     expect_first(&parting, BOMB_FRAME - 1, BOMB, PART_LAUNCH);
@@ -218,8 +206,7 @@ static void a_bomb_in_one_run_only_is_the_launch(void **state) {
 }
 
 /* 1 m in frame 2, 3 m in frame 5: what is beyond is beyond, and not what is on the limit. */
-static void the_tolerance_is_of_positions(void **state) {
-    (void)state;
+TEST(the_tolerance_is_of_positions) {
     b->position[at(2, 1)].y += 1;
     b->angle[at(3, 1)] = 90;
     b->velocity[at(4, 1)].x = 90;
@@ -240,8 +227,7 @@ static void the_tolerance_is_of_positions(void **state) {
     assert_true(parting.beyond.frame == 2 && parting.beyond.body == 1);
 }
 
-static void a_shorter_run_is_compared_as_far_as_it_goes(void **state) {
-    (void)state;
+TEST(a_shorter_run_is_compared_as_far_as_it_goes) {
     b->position[at(5, 1)].x += 1;
     b->frames = 5;
     TrajectoryParting parting = parted(0);
@@ -249,23 +235,4 @@ static void a_shorter_run_is_compared_as_far_as_it_goes(void **state) {
     assert_int_equal(parting.frames, 5);
 }
 
-int main(void) {
-#define PAIR(test) cmocka_unit_test_setup_teardown(test, make, destroy)
-    const struct CMUnitTest tests[] = {
-        PAIR(equal_runs_do_not_part),
-        PAIR(frame_0_is_the_start),
-        PAIR(other_impulses_are_the_solver),
-        PAIR(of_equal_differences_the_first_contact_counts),
-        PAIR(contacts_in_another_order_are_the_same),
-        PAIR(a_contact_of_one_run_is_collision_detection),
-        PAIR(a_contact_elsewhere_is_collision_detection),
-        PAIR(equal_impulses_leave_no_contact_to_blame),
-        PAIR(impulses_of_an_earlier_step_are_hidden),
-        PAIR(hidden_and_never_seen),
-        PAIR(a_bomb_that_comes_otherwise_is_the_launch),
-        PAIR(a_bomb_in_one_run_only_is_the_launch),
-        PAIR(the_tolerance_is_of_positions),
-        PAIR(a_shorter_run_is_compared_as_far_as_it_goes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS_EACH(make, destroy)

@@ -4,8 +4,7 @@
 
 #include "runs/pieces.h"
 
-static void items_are_dealt_out_evenly(void **state) {
-    (void)state;
+TEST(items_are_dealt_out_evenly) {
     const struct {
         int items;
         double pieces;
@@ -32,7 +31,4 @@ static void items_are_dealt_out_evenly(void **state) {
     assert_int_equal(item, 10 + 7 + 5 + 100 + 1);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(items_are_dealt_out_evenly)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -90,8 +90,7 @@ static void assert_results(const Study *study) {
     }
 }
 
-static void a_whole_study_does_every_piece_once_and_leaves_nothing(void **state) {
-    (void)state;
+TEST(a_whole_study_does_every_piece_once_and_leaves_nothing) {
     Error error = {0};
     const char *folder = folder_of("whole");
     Study study = new_study();
@@ -103,8 +102,7 @@ static void a_whole_study_does_every_piece_once_and_leaves_nothing(void **state)
     assert_int_equal(access(study.pieces.folder, F_OK), -1);
 }
 
-static void shards_share_the_pieces_and_are_merged(void **state) {
-    (void)state;
+TEST(shards_share_the_pieces_and_are_merged) {
     Error error = {0};
     const char *folder = folder_of("shards");
     int done[COUNT] = {0};
@@ -140,8 +138,7 @@ static bool stop_after(void *context, double done, double total) {
     return done < *(const double *)context;
 }
 
-static void a_stopped_shard_continues(void **state) {
-    (void)state;
+TEST(a_stopped_shard_continues) {
     Error error = {0};
     const char *folder = folder_of("stopped");
     int done[COUNT] = {0};
@@ -158,8 +155,7 @@ static void a_stopped_shard_continues(void **state) {
     for (int i = 0; i < COUNT; i++) assert_true(done[i] <= 2 && (done[i] > 0) == (shard_of(i, COUNT, 2) == 1));
 }
 
-static void a_piece_waits_for_those_that_it_needs(void **state) {
-    (void)state;
+TEST(a_piece_waits_for_those_that_it_needs) {
     Error error = {0};
     const char *folder = folder_of("waiting");
     const int needed = 2, shard = shard_of(needed, COUNT, 2), other = 3 - shard;
@@ -179,8 +175,7 @@ static void a_piece_waits_for_those_that_it_needs(void **state) {
     assert_ok(run_study(&merge, folder, -1, 1, 1, NULL, &error), error);
 }
 
-static void what_differs_is_refused(void **state) {
-    (void)state;
+TEST(what_differs_is_refused) {
     Error error = {0};
     const char *folder = folder_of("differs");
     Study study = new_study();
@@ -216,8 +211,7 @@ static void measure_elsewhere(const Study *study, int64_t piece) {
     free(results);
 }
 
-static void times_of_two_processors_are_not_mixed(void **state) {
-    (void)state;
+TEST(times_of_two_processors_are_not_mixed) {
     Error error = {0};
     const char *folder = folder_of("processors");
     for (int shard = 1; shard <= 2; shard++) {
@@ -232,12 +226,4 @@ static void times_of_two_processors_are_not_mixed(void **state) {
     assert_true(merge.pieces.cpus_differ);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_whole_study_does_every_piece_once_and_leaves_nothing),
-                                       cmocka_unit_test(shards_share_the_pieces_and_are_merged),
-                                       cmocka_unit_test(a_stopped_shard_continues),
-                                       cmocka_unit_test(a_piece_waits_for_those_that_it_needs),
-                                       cmocka_unit_test(what_differs_is_refused),
-                                       cmocka_unit_test(times_of_two_processors_are_not_mixed)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

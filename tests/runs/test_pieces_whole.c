@@ -70,8 +70,7 @@ static void change(const Files *files, int piece, const char *text) {
         assert_ok(file_write(path, text, strlen(text), &error), error);
 }
 
-static void a_piece_whose_file_is_gone_or_altered_is_missing_and_done_again(void **state) {
-    (void)state;
+TEST(a_piece_whose_file_is_gone_or_altered_is_missing_and_done_again) {
     Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("files"));
@@ -102,8 +101,7 @@ static void a_piece_whose_file_is_gone_or_altered_is_missing_and_done_again(void
     }
 }
 
-static void a_piece_is_found_with_its_processor(void **state) {
-    (void)state;
+TEST(a_piece_is_found_with_its_processor) {
     Error error = {0};
     char folder[300], cpu[CPU_NAME_SIZE], own[CPU_NAME_SIZE];
     snprintf(folder, sizeof folder, "%s", temporary_path("found"));
@@ -126,9 +124,4 @@ static void a_piece_is_found_with_its_processor(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_piece_whose_file_is_gone_or_altered_is_missing_and_done_again),
-        cmocka_unit_test(a_piece_is_found_with_its_processor)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run that is written while it is made gives the files of a run that is recorded in memory and written then. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "pictures/folders.h"
-#include "runs/runs.h"
 
 static Scene *read_scene(const char *name, int frames) {
-    char path[512];
-    snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s.yaml", name);
-    Error error = {0};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(name);
     scene->frames = frames;
     return scene;
 }
@@ -28,15 +23,13 @@ static void record_to(const Scene *scene, const Method *method, const RecorderOu
 }
 
 /* Runs of one part, of many parts, of which the last is full or not, with a bomb that comes and a body that goes. */
-static void files_are_those_of_a_run_in_memory(void **state) {
-    (void)state;
+TEST(files_are_those_of_a_run_in_memory) {
     static const struct {
         const char *scene;
         int frames;
     } runs[] = {{"stack", 1}, {"stack", 90}, {"single", 300}, {"pyramid", 900}, {"stability/top_removed", 4000}};
     Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     for (size_t i = 0; i < 2 * sizeof runs / sizeof *runs; i++) {
         const bool no_contacts = i % 2 == 1;
         Scene *scene = read_scene(runs[i / 2].scene, runs[i / 2].frames);
@@ -61,15 +54,13 @@ static void files_are_those_of_a_run_in_memory(void **state) {
 }
 
 /* What libzip 1.7.3 and zlib 1.2.13 wrote. */
-static void golden_files_have_the_same_bytes(void **state) {
-    (void)state;
+TEST(golden_files_have_the_same_bytes) {
     static const char *const names[] = {"stack-engine", "pyramid-pair-net", "pyramid_settled-engine"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char golden[512];
         snprintf(golden, sizeof golden, SOURCE_DIR "/golden/trajectories/%s.npz", names[i]);
         Error error = {0};
-        Trajectory *run = trajectory_read(golden, &error);
-        assert_ok(run != NULL, error);
+        Trajectory *run = trajectory_of(golden);
         const char *again = temporary_path("again.npz");
         assert_ok(trajectory_write(run, again, &error), error);
         assert_same_file(again, golden);
@@ -82,11 +73,9 @@ static bool fail_late(void *context, int frame, const World *world, Error *error
     return frame < 800 || error_input(error, "observer", "enough");
 }
 
-static void a_run_that_fails_leaves_no_file(void **state) {
-    (void)state;
+TEST(a_run_that_fails_leaves_no_file) {
     Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     Scene *scene = read_scene("pyramid", 900);
     const char *path = temporary_path("failed.npz");
     const RecorderOutput output = {path, TRAJECTORY_NPZ};
@@ -100,22 +89,12 @@ static void a_run_that_fails_leaves_no_file(void **state) {
     scene_destroy(scene);
 }
 
-static void too_long_runs_are_refused_before_the_first_step(void **state) {
-    (void)state;
+TEST(too_long_runs_are_refused_before_the_first_step) {
     Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     Scene *scene = read_scene("pyramid", SIMULATE_MAX_STATES / 60);
     assert_refused(recorder_create_to(scene, &method, NULL, 0, false, &error), "are too many to record");
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(files_are_those_of_a_run_in_memory),
-        cmocka_unit_test(golden_files_have_the_same_bytes),
-        cmocka_unit_test(a_run_that_fails_leaves_no_file),
-        cmocka_unit_test(too_long_runs_are_refused_before_the_first_step),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,22 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The bits of Box2D-Lite: golden/grid_hash.csv and golden/run_hash.csv hold the hashes of its own runs, with sine
    and cosine as the double function rounded to float (commit 227b71b; g++ 12.2). */
-#include "testing.h"
+#include "made.h"
 #include "sanitized.h"
 
 #include "base/hash.h"
-#include "runs/runs.h"
 
 enum { SCENES = 3 };
-
-static Trajectory *run_engine(const Scene *scene) {
-    Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
-    Trajectory *run = simulate(scene, &method, NULL, &error);
-    assert_ok(run != NULL, error);
-    return run;
-}
 
 static Scene *read_scene(const char *name) {
     char path[512];
@@ -38,8 +28,7 @@ static FILE *open_golden(const char *name, const char *header) {
     return file;
 }
 
-static void every_launch_has_the_bits_of_box2d_lite(void **state) {
-    (void)state;
+TEST(every_launch_has_the_bits_of_box2d_lite) {
     FILE *file = open_golden("grid_hash.csv", "scene,bomb_x,hash_f60,hash_f120,hash_f300\n");
     char line[256], name[32], x[16];
     unsigned long long hashes[3];
@@ -53,7 +42,7 @@ static void every_launch_has_the_bits_of_box2d_lite(void **state) {
         scene->frames = 300;
         scene->bomb.frame = 0;
         scene->bomb.body.position.x = strtof(x, NULL);
-        Trajectory *run = run_engine(scene);
+        Trajectory *run = run_by(scene, "engine");
         for (int i = 0; i < 3; i++)
             if (trajectory_frame_hash(run, frames[i]) != hashes[i])
                 fail_msg("%s, bomb at x = %s: another state in frame %d or before", name, x, frames[i]);
@@ -74,8 +63,7 @@ static uint64_t run_hash(const Trajectory *run) {
     return hash;
 }
 
-static void every_frame_of_the_long_runs_has_the_bits_of_box2d_lite(void **state) {
-    (void)state;
+TEST(every_frame_of_the_long_runs_has_the_bits_of_box2d_lite) {
     FILE *file = open_golden("run_hash.csv", "name,scene,bomb_x,bomb_frame,frames,hash\n");
     char line[256], name[64], scene_name[32], x[16];
     unsigned long long hash;
@@ -88,7 +76,7 @@ static void every_frame_of_the_long_runs_has_the_bits_of_box2d_lite(void **state
         scene->bomb.present = bomb_frame >= 0; /* -1: a run without a bomb */
         scene->bomb.frame = bomb_frame;
         scene->bomb.body.position.x = strtof(x, NULL);
-        Trajectory *run = run_engine(scene);
+        Trajectory *run = run_by(scene, "engine");
         if (run_hash(run) != hash) fail_msg("%s: another state than Box2D-Lite's in some frame", name);
         trajectory_destroy(run);
         scene_destroy(scene);
@@ -97,17 +85,15 @@ static void every_frame_of_the_long_runs_has_the_bits_of_box2d_lite(void **state
     assert_int_equal(runs, 25);
 }
 
-static void two_runs_give_the_same_bits(void **state) {
-    (void)state;
+TEST(two_runs_give_the_same_bits) {
     Scene *scene = read_scene("pyramid_settled");
     scene->frames = 240;
-    Trajectory *a = run_engine(scene), *b = run_engine(scene);
+    Trajectory *a = run_by(scene, "engine"), *b = run_by(scene, "engine");
+    assert_same_run(a, b);
     TrajectoryDifference difference;
-    trajectory_compare(a, b, &difference);
-    assert_true(difference.equal);
     scene->bomb.body.position.x += 0.001f;
     trajectory_destroy(b);
-    b = run_engine(scene);
+    b = run_by(scene, "engine");
     trajectory_compare(a, b, &difference);
     assert_false(difference.equal);
     assert_int_equal(difference.frame, 180);
@@ -117,9 +103,4 @@ static void two_runs_give_the_same_bits(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_launch_has_the_bits_of_box2d_lite),
-                                       cmocka_unit_test(every_frame_of_the_long_runs_has_the_bits_of_box2d_lite),
-                                       cmocka_unit_test(two_runs_give_the_same_bits)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

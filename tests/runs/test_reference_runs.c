@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reference converges in every step of the scenes: struck, falling and at rest. */
-#include "testing.h"
+#include "made.h"
 #include "sanitized.h"
 
 #include "methods/reference.h"
-#include "runs/runs.h"
 
 typedef struct Steps {
     Reference reference;
@@ -22,15 +21,11 @@ static bool converge(void *context, int frame, const World *world, Error *error)
 }
 
 static void run_scene(const char *name, const char *method_name, float bomb_x, Steps *steps) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(name);
     scene->bomb.body.position.x = bomb_x;
     if (scene->frames > 260) scene->frames = 260;
-    Method method;
-    assert_ok(method_parse(&method, method_name, &error), error);
+    Method method = method_named(method_name);
     assert_ok(simulate_observed(scene, &method, &(StepObserver){converge, steps}, &error), error);
     scene_destroy(scene);
 }
@@ -47,18 +42,8 @@ static void every_step_converges(const char *method) {
     reference_free(&steps.reference);
 }
 
-static void every_step_of_the_engine_converges(void **state) {
-    (void)state;
-    every_step_converges("engine");
-}
+TEST(every_step_of_the_engine_converges) { every_step_converges("engine"); }
 
-static void every_step_in_closed_loop_converges(void **state) {
-    (void)state;
-    every_step_converges("reference");
-}
+TEST(every_step_in_closed_loop_converges) { every_step_converges("reference"); }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_step_of_the_engine_converges),
-                                       cmocka_unit_test(every_step_in_closed_loop_converges)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

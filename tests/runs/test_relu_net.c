@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The network of rectifiers gives what the engine does, frame by frame of the scenes. */
-#include "testing.h"
+#include "made.h"
 
-#include "runs/runs.h"
 #include "methods/kernels.h"
+#include "methods/worlds.h"
 
 enum { ROUNDINGS = 50 }; /* that ten sweeps gather; a branch taken wrongly makes thousands */
 
@@ -31,12 +31,7 @@ static bool agrees(void *context, int frame, const World *world, Error *error) {
     const double rounding = rounding_of(problem);
     ContactSolution found = make_solution(problem);
     assert_ok(net->kind->solve(net->state, problem, &found, error), *error);
-    for (int i = 0; i < problem->body_count; i++) {
-        const BodyVelocity is = found.velocities[i], expected = engine->velocities[i];
-        assert_near(is.linear.x, expected.linear.x, ROUNDINGS * rounding);
-        assert_near(is.linear.y, expected.linear.y, ROUNDINGS * rounding);
-        assert_near(is.angular, expected.angular, ROUNDINGS * rounding);
-    }
+    assert_velocities(found.velocities, engine->velocities, problem->body_count, ROUNDINGS * rounding);
     for (int i = 0; i < problem->contact_count; i++)
         assert_same_impulse(&problem->contacts[i], found.impulses[i], engine->impulses[i], rounding);
     free_solution(&found);
@@ -44,13 +39,10 @@ static bool agrees(void *context, int frame, const World *world, Error *error) {
 }
 
 static void run_scene(const char *name, int sweeps) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
     Method engine, net;
     ContactSolver solver;
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(name);
     scene->iterations = sweeps;
     assert_ok(method_parse(&engine, "engine", &error) && method_parse(&net, "relu-net", &error), error);
     assert_ok(method_create_solver(&net, scene, &solver, &error), error);
@@ -59,8 +51,7 @@ static void run_scene(const char *name, int sweeps) {
     scene_destroy(scene);
 }
 
-static void every_frame_is_the_engines(void **state) {
-    (void)state;
+TEST(every_frame_is_the_engines) {
     lower_ends = released = 0;
     run_scene("single", 10);
     run_scene("stack", 13);
@@ -69,7 +60,4 @@ static void every_frame_is_the_engines(void **state) {
     assert_true(lower_ends > 1000 && released > 1000);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_frame_is_the_engines)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -3,8 +3,7 @@
 
 #include "runs/internal.h"
 
-static void every_piece_has_one_shard_and_shards_are_equally_large(void **state) {
-    (void)state;
+TEST(every_piece_has_one_shard_and_shards_are_equally_large) {
     enum { MOST = 300 };
     for (int64_t pieces = 1; pieces < MOST; pieces += 7)
         for (int shards = 1; shards < 40; shards += 3) {
@@ -23,8 +22,7 @@ static void every_piece_has_one_shard_and_shards_are_equally_large(void **state)
 }
 
 /* The last column of a map of ten columns is the slowest; no shard may have all of them. */
-static void a_regular_pattern_is_spread(void **state) {
-    (void)state;
+TEST(a_regular_pattern_is_spread) {
     const int64_t pieces = 400;
     int slow[10] = {0};
     for (int64_t i = 9; i < pieces; i += 10) slow[shard_of(i, pieces, 10) - 1]++;
@@ -32,8 +30,7 @@ static void a_regular_pattern_is_spread(void **state) {
 }
 
 /* Few shards keep together what shares work; many divide it. Times stay together in any case. */
-static void pieces_that_share_work_are_divided_by_many_shards(void **state) {
-    (void)state;
+TEST(pieces_that_share_work_are_divided_by_many_shards) {
     enum { FIRST = 40, COUNT = 20, PIECES = 400 };
     for (int shards = 1; shards <= 2 * PIECES_NEAR_SHARDS; shards++) {
         int others = 0;
@@ -46,15 +43,13 @@ static void pieces_that_share_work_are_divided_by_many_shards(void **state) {
     }
 }
 
-static void large_studies_do_not_overflow(void **state) {
-    (void)state;
+TEST(large_studies_do_not_overflow) {
     const int64_t pieces = PIECES_MAX;
     assert_in_range(shard_of(pieces - 1, pieces, SHARDS_MAX), 1, SHARDS_MAX);
     assert_int_equal(shard_of(0, pieces, SHARDS_MAX), 1);
 }
 
-static void a_share_is_read_or_refused(void **state) {
-    (void)state;
+TEST(a_share_is_read_or_refused) {
     Error error = {0};
     Shard shard;
     assert_ok(shard_parse(&shard, "3/16", &error), error);
@@ -102,8 +97,7 @@ static bool request(ShardRequest *request, const char *const values[10], const c
     return shard_request(request, option, error);
 }
 
-static void the_environment_says_which_share(void **state) {
-    (void)state;
+TEST(the_environment_says_which_share) {
     static const struct {
         const char *values[10];
         const char *option;
@@ -131,8 +125,7 @@ static void the_environment_says_which_share(void **state) {
     }
 }
 
-static void an_environment_that_contradicts_itself_is_refused(void **state) {
-    (void)state;
+TEST(an_environment_that_contradicts_itself_is_refused) {
     static const struct {
         const char *values[10], *message;
     } rows[] = {{{"x"}, "SLURM_ARRAY_TASK_ID: error: 'x' in the environment"},
@@ -151,8 +144,7 @@ static void an_environment_that_contradicts_itself_is_refused(void **state) {
     }
 }
 
-static void a_list_of_shards_is_what_sbatch_takes(void **state) {
-    (void)state;
+TEST(a_list_of_shards_is_what_sbatch_takes) {
     static const struct {
         const char *shards, *list;
         JobArray array;
@@ -172,14 +164,4 @@ static void a_list_of_shards_is_what_sbatch_takes(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_piece_has_one_shard_and_shards_are_equally_large),
-                                       cmocka_unit_test(a_regular_pattern_is_spread),
-                                       cmocka_unit_test(pieces_that_share_work_are_divided_by_many_shards),
-                                       cmocka_unit_test(large_studies_do_not_overflow),
-                                       cmocka_unit_test(a_share_is_read_or_refused),
-                                       cmocka_unit_test(the_environment_says_which_share),
-                                       cmocka_unit_test(an_environment_that_contradicts_itself_is_refused),
-                                       cmocka_unit_test(a_list_of_shards_is_what_sbatch_takes)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

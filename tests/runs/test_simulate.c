@@ -1,29 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "made.h"
 
-#include "runs/runs.h"
-
-static Scene *read_single(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
-
-static Trajectory *run(const Scene *scene, const char *method_text) {
-    Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, method_text, &error), error);
-    Trajectory *trajectory = simulate(scene, &method, NULL, &error);
-    assert_ok(trajectory != NULL, error);
-    return trajectory;
-}
-
-static void a_trajectory_says_what_it_is(void **state) {
-    (void)state;
-    Scene *scene = read_single();
+TEST(a_trajectory_says_what_it_is) {
+    Scene *scene = scene_named("single");
     scene->frames = 60;
-    Trajectory *trajectory = run(scene, "engine:k=3");
+    Trajectory *trajectory = run_by(scene, "engine:k=3");
     assert_string_equal(trajectory->scene, "single");
     assert_string_equal(trajectory->method, "engine:k=3");
     assert_true(trajectory->scene_hash == scene_hash(scene));
@@ -44,12 +25,11 @@ static void a_trajectory_says_what_it_is(void **state) {
 }
 
 /* Put in after step 10, so it is in frame 10 and has not moved there yet. */
-static void the_bomb_comes_after_the_step_it_is_told_to(void **state) {
-    (void)state;
-    Scene *scene = read_single();
+TEST(the_bomb_comes_after_the_step_it_is_told_to) {
+    Scene *scene = scene_named("single");
     scene->frames = 20;
     scene->bomb.frame = 10;
-    Trajectory *trajectory = run(scene, "engine");
+    Trajectory *trajectory = run_by(scene, "engine");
     assert_false(trajectory_has(trajectory, 9, 2));
     assert_true(trajectory_has(trajectory, 10, 2));
     assert_near(trajectory->position[10 * 3 + 2].y, 15, 0);
@@ -57,7 +37,7 @@ static void the_bomb_comes_after_the_step_it_is_told_to(void **state) {
     trajectory_destroy(trajectory);
     /* One that comes after the end is not in the run at all. */
     scene->frames = 9;
-    trajectory = run(scene, "engine");
+    trajectory = run_by(scene, "engine");
     assert_int_equal(trajectory->bodies, 2);
     assert_int_equal(trajectory->bomb, -1);
     trajectory_destroy(trajectory);
@@ -65,9 +45,7 @@ static void the_bomb_comes_after_the_step_it_is_told_to(void **state) {
 }
 
 static Scene *read_top_removed(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/stability/top_removed.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("stability/top_removed");
     assert_int_equal(scene->last_body_until, 600);
     scene->last_body_until = 30;
     scene->frames = 60;
@@ -75,11 +53,10 @@ static Scene *read_top_removed(void) {
 }
 
 /* Taken out after step 30, so it is not in frame 30, though step 30 had its contacts; a file tells the same. */
-static void the_last_body_goes_after_the_step_it_is_told_to(void **state) {
-    (void)state;
+TEST(the_last_body_goes_after_the_step_it_is_told_to) {
     Error error = {0};
     Scene *scene = read_top_removed();
-    Trajectory *trajectory = run(scene, "engine");
+    Trajectory *trajectory = run_by(scene, "engine");
     assert_int_equal(trajectory->bodies, 12);
     for (int frame = 0; frame <= 60; frame++) assert_int_equal(trajectory_has(trajectory, frame, 11), frame < 30);
     for (int step = 1; step <= 60; step++) {
@@ -90,25 +67,21 @@ static void the_last_body_goes_after_the_step_it_is_told_to(void **state) {
     }
     const char *path = temporary_path("gone.npz");
     assert_ok(trajectory_write(trajectory, path, &error), error);
-    Trajectory *read = trajectory_read(path, &error);
-    assert_ok(read != NULL, error);
-    TrajectoryDifference difference;
-    trajectory_compare(trajectory, read, &difference);
-    assert_true(difference.equal);
+    Trajectory *read = trajectory_of(path);
+    assert_same_run(trajectory, read);
     trajectory_destroy(read);
     trajectory_destroy(trajectory);
     scene_destroy(scene);
 }
 
 /* One that stands aside changes no bit of the others, neither while it is there nor when it goes. */
-static void a_body_that_touches_none_of_the_others_changes_none(void **state) {
-    (void)state;
+TEST(a_body_that_touches_none_of_the_others_changes_none) {
     Scene *scene = read_top_removed();
     scene->bodies[11].position = vec2(30, 0.5f);
-    Trajectory *with = run(scene, "engine");
+    Trajectory *with = run_by(scene, "engine");
     scene->body_count = 11;
     scene->last_body_until = 0;
-    Trajectory *without = run(scene, "engine");
+    Trajectory *without = run_by(scene, "engine");
     assert_true(trajectory_has(with, 29, 11) && !trajectory_has(with, 30, 11));
     for (int frame = 0; frame <= 60; frame++) {
         assert_memory_equal(&with->position[frame * 12], &without->position[frame * 11], 11 * sizeof(Vec2));
@@ -129,9 +102,8 @@ static bool count_step(void *context, int frame, const World *world, Error *erro
     return frame < 7 || error_input(error, "observer", "enough");
 }
 
-static void an_observer_sees_every_step_and_may_end_the_run(void **state) {
-    (void)state;
-    Scene *scene = read_single();
+TEST(an_observer_sees_every_step_and_may_end_the_run) {
+    Scene *scene = scene_named("single");
     Error error = {0};
     Method method;
     int steps = 0;
@@ -147,12 +119,10 @@ static bool stop(void *context, double done, double total) {
     return done < 5;
 }
 
-static void a_run_that_cannot_go_on_says_why(void **state) {
-    (void)state;
-    Scene *scene = read_single();
+TEST(a_run_that_cannot_go_on_says_why) {
+    Scene *scene = scene_named("single");
     Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     assert_null(simulate(scene, &method, &(Progress){stop, NULL}, &error));
     assert_error(error, ERROR_INTERRUPTED, "single: error: stopped after step 5 of 300");
 
@@ -170,8 +140,7 @@ static void a_run_that_cannot_go_on_says_why(void **state) {
     scene_destroy(scene);
 }
 
-static void methods_are_found_by_name(void **state) {
-    (void)state;
+TEST(methods_are_found_by_name) {
     Error error = {0};
     Method method;
     int count = 0;
@@ -189,13 +158,4 @@ static void methods_are_found_by_name(void **state) {
     assert_refused(method_parse(&method, text, &error), "at most");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_trajectory_says_what_it_is),
-                                       cmocka_unit_test(the_bomb_comes_after_the_step_it_is_told_to),
-                                       cmocka_unit_test(the_last_body_goes_after_the_step_it_is_told_to),
-                                       cmocka_unit_test(a_body_that_touches_none_of_the_others_changes_none),
-                                       cmocka_unit_test(an_observer_sees_every_step_and_may_end_the_run),
-                                       cmocka_unit_test(a_run_that_cannot_go_on_says_why),
-                                       cmocka_unit_test(methods_are_found_by_name)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

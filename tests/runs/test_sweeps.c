@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The fast sweeps have the bits of the plain text, frame by frame of the scenes. */
-#include "testing.h"
+#include "made.h"
 #include "sanitized.h"
 
-#include "runs/runs.h"
 #include "methods/kernels.h"
 #include "methods/reference_kernels.h"
 
@@ -25,14 +24,10 @@ static bool agree(void *context, int frame, const World *world, Error *error) {
 }
 
 static void run_scene(const char *name, float bomb_x) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(name);
     scene->bomb.body.position.x = bomb_x;
-    Method method;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Method method = method_named("engine");
     KernelChoice kernels = {.reference = {.plain = {.scalar = true}}};
     assert_ok(simulate_observed(scene, &method, &(StepObserver){agree, &kernels}, &error), error);
     free_kernels(kernels.engine);
@@ -41,14 +36,10 @@ static void run_scene(const char *name, float bomb_x) {
     scene_destroy(scene);
 }
 
-static void every_frame_has_the_bits_of_the_plain_text(void **state) {
-    (void)state;
+TEST(every_frame_has_the_bits_of_the_plain_text) {
     const char *const names[] = {"single", "stack", "pyramid", "pyramid_settled"};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 5; k += sampled(3)) run_scene(names[i], -5 + 2.35f * (float)k);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_frame_has_the_bits_of_the_plain_text)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

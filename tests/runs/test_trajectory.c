@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-static void a_new_trajectory_is_empty(void **state) {
-    (void)state;
+TEST(a_new_trajectory_is_empty) {
     Error error = {0};
     Trajectory *t = trajectory_create(3, 2, &error);
     assert_ok(t != NULL, error);
@@ -21,8 +20,7 @@ static void a_new_trajectory_is_empty(void **state) {
     trajectory_destroy(t);
 }
 
-static void too_large_a_trajectory_is_refused(void **state) {
-    (void)state;
+TEST(too_large_a_trajectory_is_refused) {
     static const int cases[][2] = {{INT32_MAX, INT32_MAX}, {1000001, 10000}, {INT32_MAX, 1}, {1, INT32_MAX}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         Error error = {0};
@@ -30,8 +28,7 @@ static void too_large_a_trajectory_is_refused(void **state) {
     }
 }
 
-static void a_body_is_there_where_its_position_is_finite(void **state) {
-    (void)state;
+TEST(a_body_is_there_where_its_position_is_finite) {
     Trajectory *t = example_trajectory();
     assert_false(trajectory_has(t, 1, 2));
     assert_true(trajectory_has(t, 2, 2));
@@ -41,8 +38,7 @@ static void a_body_is_there_where_its_position_is_finite(void **state) {
 }
 
 /* Steps with 2, 0, 1, 0, ... contacts: every step finds its own. */
-static void contacts_are_found_by_step(void **state) {
-    (void)state;
+TEST(contacts_are_found_by_step) {
     enum { FRAMES = 50 };
     Error error = {0};
     Trajectory *t = trajectory_create(FRAMES, 2, &error);
@@ -76,8 +72,7 @@ static uint64_t hash_by_hand(const float *numbers, int count) {
     return hash;
 }
 
-static void the_hash_is_fnv_of_dynamic_bodies_that_are_there(void **state) {
-    (void)state;
+TEST(the_hash_is_fnv_of_dynamic_bodies_that_are_there) {
     Trajectory *t = example_trajectory();
     float without[] = {0.1F, 0.25F, -0.0F, 1, -0.5F, 3e-30F};
     float with[] = {0.1F * 2, 0.25F, -0.0F, 2, -0.5F, 3e-30F, -3, 15, 1.5F, 7.5F, -22.5F, -1};
@@ -89,8 +84,7 @@ static void the_hash_is_fnv_of_dynamic_bodies_that_are_there(void **state) {
 }
 
 /* In every third of 8 frames, what frame 4 saw is there in frame 6, the last but one; frame 7 is beyond. */
-static void a_verdict_keeps_its_place(void **state) {
-    (void)state;
+TEST(a_verdict_keeps_its_place) {
     Error error = {0};
     const int kept[8] = {0, 1, 1, 1, 2, 2, 2, -1};
     Trajectory *t = trajectory_create(8, 2, &error);
@@ -113,8 +107,7 @@ static void a_verdict_keeps_its_place(void **state) {
 }
 
 /* Cut between characters. */
-static void a_long_verdict_is_cut(void **state) {
-    (void)state;
+TEST(a_long_verdict_is_cut) {
     char words[2 * TRAJECTORY_VERDICT_SIZE + 1] = "";
     for (int i = 0; i < TRAJECTORY_VERDICT_SIZE; i++) strcat(words, "\xc3\xa4");
     Trajectory *t = example_trajectory();
@@ -124,8 +117,7 @@ static void a_long_verdict_is_cut(void **state) {
 }
 
 /* Of 8 frames every third: 0, 3 and 6, each with its own state and the contacts of its own step. */
-static void every_third_frame_is_the_same_frame(void **state) {
-    (void)state;
+TEST(every_third_frame_is_the_same_frame) {
     Error error = {0};
     Trajectory *t = trajectory_create(8, 2, &error);
     strcpy(t->method, "engine");
@@ -159,16 +151,4 @@ static void every_third_frame_is_the_same_frame(void **state) {
     trajectory_destroy(all);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_new_trajectory_is_empty),
-        cmocka_unit_test(too_large_a_trajectory_is_refused),
-        cmocka_unit_test(a_body_is_there_where_its_position_is_finite),
-        cmocka_unit_test(contacts_are_found_by_step),
-        cmocka_unit_test(the_hash_is_fnv_of_dynamic_bodies_that_are_there),
-        cmocka_unit_test(every_third_frame_is_the_same_frame),
-        cmocka_unit_test(a_verdict_keeps_its_place),
-        cmocka_unit_test(a_long_verdict_is_cut),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

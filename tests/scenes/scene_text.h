@@ -8,6 +8,11 @@
 /* The first four lines of a scene, and a ground: bodies begin in line 5, their list in line 6. */
 #define BASE "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 300\n"
 #define GROUND "bodies:\n  - {static: true, size: [100, 20], position: [0, -10]}\n"
+/* What a message about an unknown key lists. */
+#define SCENE_KEYS                                                                                                 \
+    "gravity, dt, iterations, warm_starting, accumulate_impulses, position_correction, frames, overlaps, camera, " \
+    "bodies, "                                                                                                     \
+    "bomb, networks, parameters"
 /* A single body is a line of its own: line 6. */
 #define BODY(keys) BASE "bodies:\n  - {" keys "}\n"
 

@@ -30,8 +30,7 @@ static void assert_launch(Launch found, Launch expected) {
                 found.mass == expected.mass && found.frame == expected.frame);
 }
 
-static void launched_scene_has_the_bomb_of_the_launch(void **state) {
-    (void)state;
+TEST(launched_scene_has_the_bomb_of_the_launch) {
     Scene *scene = aiming_scene();
     assert_launch(launch_of(scene), (Launch){1, 0.5f, 2, 50, 9});
     const Launch launch = {-4, 0.25f, -3, 70, 12};
@@ -51,8 +50,7 @@ static void launched_scene_has_the_bomb_of_the_launch(void **state) {
     scene_destroy(scene);
 }
 
-static void columns_come_in_any_order_and_number(void **state) {
-    (void)state;
+TEST(columns_come_in_any_order_and_number) {
     static const struct {
         const char *text;
         Launch first, second;
@@ -76,8 +74,7 @@ static void columns_come_in_any_order_and_number(void **state) {
     scene_destroy(scene);
 }
 
-static void broken_launches_are_refused_with_their_place(void **state) {
-    (void)state;
+TEST(broken_launches_are_refused_with_their_place) {
 #define CASE(text, message) \
     { text, sizeof(text) - 1, "launches.csv:" message }
     static const struct {
@@ -105,8 +102,7 @@ static void broken_launches_are_refused_with_their_place(void **state) {
     }
 }
 
-static void ten_thousand_launches_are_the_most(void **state) {
-    (void)state;
+TEST(ten_thousand_launches_are_the_most) {
     static char text[2 + 2 * 10001] = "x\n";
     for (int i = 0; i < 10001; i++) memcpy(text + 2 + 2 * i, "1\n", 2);
     Error error = {0};
@@ -128,8 +124,7 @@ static void expect_misfit(const char *scene_text, const char *launches, const ch
     scene_destroy(scene);
 }
 
-static void launches_that_a_scene_cannot_run_are_refused(void **state) {
-    (void)state;
+TEST(launches_that_a_scene_cannot_run_are_refused) {
     expect_misfit(BASE GROUND BOMB "}\n", "x,frame\n1,300\n1,301\n",
                   "launches.csv:3:3: error: the bomb would come in frame 301, after the last of scene (frames: 300)");
     expect_misfit(BASE GROUND BOMB ", velocity: {times_position: -1.5}}\n", "x\n6000\n6700\n",
@@ -142,8 +137,7 @@ static void get_launches(const Scene *scene, bool scoring, int count, Launch *ou
     assert_ok((scoring ? launches_for_scoring : launches_for_training)(scene, count, out, &error), error);
 }
 
-static void scoring_never_meets_training(void **state) {
-    (void)state;
+TEST(scoring_never_meets_training) {
     Scene *scene = good_scene(BASE GROUND FAMILY "}\n");
     static const FloatRange grid = {-5, 0.05, 201}, midpoints = {-4.975, 0.05, 200};
     static Launch training[201], scoring[200];
@@ -161,8 +155,7 @@ static void scoring_never_meets_training(void **state) {
     scene_destroy(scene);
 }
 
-static void few_launches_are_spread_evenly(void **state) {
-    (void)state;
+TEST(few_launches_are_spread_evenly) {
     Scene *scene = good_scene(BASE GROUND FAMILY "}\n");
     Launch out[4];
     get_launches(scene, true, 4, out);
@@ -189,8 +182,7 @@ static double discrepancy(const float *values, int count, double from, double to
     return most;
 }
 
-static void every_number_of_a_family_is_spread_over_its_span(void **state) {
-    (void)state;
+TEST(every_number_of_a_family_is_spread_over_its_span) {
     enum { COUNT = 64 };
     Scene *scene = good_scene(BASE GROUND "bomb: {x: 3, y: 15, size: [1, 1], frame: 9, mass: {from: 50, to: 200},\n"
                                           "  rotation: {from: -1.5, to: 1.5, value: 0}, spin: {from: 10, to: 20}}\n");
@@ -217,8 +209,7 @@ static void every_number_of_a_family_is_spread_over_its_span(void **state) {
     scene_destroy(scene);
 }
 
-static void a_bomb_without_a_family_cannot_be_spread(void **state) {
-    (void)state;
+TEST(a_bomb_without_a_family_cannot_be_spread) {
     Scene *scene = aiming_scene();
     Launch out;
     Error error = {0};
@@ -226,17 +217,4 @@ static void a_bomb_without_a_family_cannot_be_spread(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(launched_scene_has_the_bomb_of_the_launch),
-        cmocka_unit_test(columns_come_in_any_order_and_number),
-        cmocka_unit_test(broken_launches_are_refused_with_their_place),
-        cmocka_unit_test(ten_thousand_launches_are_the_most),
-        cmocka_unit_test(launches_that_a_scene_cannot_run_are_refused),
-        cmocka_unit_test(scoring_never_meets_training),
-        cmocka_unit_test(few_launches_are_spread_evenly),
-        cmocka_unit_test(every_number_of_a_family_is_spread_over_its_span),
-        cmocka_unit_test(a_bomb_without_a_family_cannot_be_spread),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

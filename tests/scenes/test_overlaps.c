@@ -36,18 +36,11 @@ static const Refused bombs[] = {
     {BASE GROUND "bomb: {x: 0, y: 0.2, frame: 3, " BOMB "}\n", NULL},
 };
 
-static void overlapping_bodies_are_refused(void **state) {
-    (void)state;
-    CHECK_TABLE(overlaps);
-}
+TEST(overlapping_bodies_are_refused) { CHECK_TABLE(overlaps); }
 
-static void bombs_inside_bodies_are_refused(void **state) {
-    (void)state;
-    CHECK_TABLE(bombs);
-}
+TEST(bombs_inside_bodies_are_refused) { CHECK_TABLE(bombs); }
 
-static void settings_are_checked_too(void **state) {
-    (void)state;
+TEST(settings_are_checked_too) {
     Error error = {0};
     static const char text[] =
         BASE GROUND STACK("5", "$spacing") "parameters:\n  spacing: {value: 1, from: 0.5, to: 2}\n";
@@ -60,15 +53,13 @@ static void settings_are_checked_too(void **state) {
 }
 
 /* 10,000 boxes in one place: the first pair suffices, so that memory does not grow with the pairs. */
-static void ten_thousand_in_one_place_are_refused(void **state) {
-    (void)state;
+TEST(ten_thousand_in_one_place_are_refused) {
     expect_refused(
         BASE "bodies:\n  - {pattern: row, count: 10000, spacing: [0, 0], size: [1, 1], mass: 1, position: [0, 0]}\n",
         "6:5: error: body 1 starts 1 m inside body 0 (line 6)" ADVICE);
 }
 
-static void the_hash_of_a_scene_does_not_depend_on_it(void **state) {
-    (void)state;
+TEST(the_hash_of_a_scene_does_not_depend_on_it) {
     Scene *refused = good_scene(TWO(AT("0"), AT("1"))),
           *allowed = good_scene(TWO(AT("0"), AT("1")) "overlaps: allowed\n");
     assert_true(scene_hash(refused) == scene_hash(allowed));
@@ -78,10 +69,4 @@ static void the_hash_of_a_scene_does_not_depend_on_it(void **state) {
     scene_destroy(allowed);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(overlapping_bodies_are_refused), cmocka_unit_test(bombs_inside_bodies_are_refused),
-        cmocka_unit_test(settings_are_checked_too), cmocka_unit_test(ten_thousand_in_one_place_are_refused),
-        cmocka_unit_test(the_hash_of_a_scene_does_not_depend_on_it)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

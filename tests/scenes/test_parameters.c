@@ -27,8 +27,7 @@ static void expect_mass(const char *chain, float expected) {
 }
 
 /* From left to right in double, rounded once: 0.1 is the double 0.1 and no float. */
-static void chains_are_computed_from_left_to_right(void **state) {
-    (void)state;
+TEST(chains_are_computed_from_left_to_right) {
     expect_mass("$height", 10);
     expect_mass("$ratio", (float)0.1);
     expect_mass("2*$height", 20);
@@ -46,8 +45,7 @@ static void chains_are_computed_from_left_to_right(void **state) {
 }
 
 /* The same bits whether the numbers are written or named, and as before there were names: division in float32. */
-static void a_fraction_keeps_its_bits(void **state) {
-    (void)state;
+TEST(a_fraction_keeps_its_bits) {
     static const char written[] = "gravity: [0, -10]\ndt: 1/%d\niterations: 1\nframes: 60\n" GROUND;
     static const char named[] = "gravity: [0, -10]\ndt: 1/$rate\niterations: 1\nframes: 60*$rate\n" GROUND
                                 "parameters: {rate: {value: %d, from: 1, to: 480, whole: on}}\n";
@@ -65,8 +63,7 @@ static void a_fraction_keeps_its_bits(void **state) {
 }
 
 /* Parameters may stand before or behind the numbers that are made of them; the physics is that of the numbers. */
-static void a_scene_with_parameters_is_the_scene_of_their_values(void **state) {
-    (void)state;
+TEST(a_scene_with_parameters_is_the_scene_of_their_values) {
     static const char parameters[] = "parameters:\n" HEIGHT;
     static const char scene[] = BASE GROUND
         "  - {pattern: stack, count: $height, spacing: [0, 1], mass: 1, size: [1, 1], position: [0, 0.05*$height]}\n"
@@ -95,8 +92,7 @@ static Scene *read_with(const char *text, const SceneSetting *settings, int coun
     return scene_read_with(write_scene(text, strlen(text)), settings, count, error);
 }
 
-static void settings_take_the_place_of_values(void **state) {
-    (void)state;
+TEST(settings_take_the_place_of_values) {
     const SceneSetting settings[] = {{"ratio", 0.5}, {"height", 40}};
     static const double masses[] = {1, 5, 20};
     for (int count = 0; count <= 2; count++) {
@@ -110,8 +106,7 @@ static void settings_take_the_place_of_values(void **state) {
     }
 }
 
-static void bad_settings_are_refused(void **state) {
-    (void)state;
+TEST(bad_settings_are_refused) {
     static const struct {
         SceneSetting settings[2];
         int count;
@@ -247,20 +242,8 @@ static const Refused parameters[] = {
      "8:33: error: a scene must have at most 4 parameters"},
 };
 
-static void bad_chains_are_refused(void **state) { (void)state, CHECK_TABLE(chains); }
-static void whole_numbers_are_checked_on_the_result(void **state) { (void)state, CHECK_TABLE(whole_numbers); }
-static void bad_parameters_are_refused(void **state) { (void)state, CHECK_TABLE(parameters); }
+TEST(bad_chains_are_refused) { CHECK_TABLE(chains); }
+TEST(whole_numbers_are_checked_on_the_result) { CHECK_TABLE(whole_numbers); }
+TEST(bad_parameters_are_refused) { CHECK_TABLE(parameters); }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chains_are_computed_from_left_to_right),
-        cmocka_unit_test(a_fraction_keeps_its_bits),
-        cmocka_unit_test(a_scene_with_parameters_is_the_scene_of_their_values),
-        cmocka_unit_test(settings_take_the_place_of_values),
-        cmocka_unit_test(bad_settings_are_refused),
-        cmocka_unit_test(bad_chains_are_refused),
-        cmocka_unit_test(whole_numbers_are_checked_on_the_result),
-        cmocka_unit_test(bad_parameters_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

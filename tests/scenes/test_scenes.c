@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scenes in scenes/, body by body in closed form; every key of the format; hash and world of a scene. */
 #include "scene_text.h"
+#include "runs/made.h"
 
 static Scene *shipped(const char *name) {
     char path[512];
@@ -56,8 +57,7 @@ static void assert_common(const Scene *scene, int body_count, int frames, int bo
     assert_same_body(&found, &bomb);
 }
 
-static void single_is_a_box_of_200_kg(void **state) {
-    (void)state;
+TEST(single_is_a_box_of_200_kg) {
     Scene *scene = shipped("single");
     assert_common(scene, 2, 300, 0, 6);
     const BodyDef box = unit_box(200, 0, 4);
@@ -65,8 +65,7 @@ static void single_is_a_box_of_200_kg(void **state) {
     scene_destroy(scene);
 }
 
-static void stack_is_ten_boxes_5_cm_apart(void **state) {
-    (void)state;
+TEST(stack_is_ten_boxes_5_cm_apart) {
     Scene *scene = shipped("stack");
     assert_common(scene, 11, 300, 0, 6);
     for (int i = 0; i < 10; i++) {
@@ -93,8 +92,7 @@ static void assert_pyramid(const Scene *scene) {
     assert_int_equal(body, 67);
 }
 
-static void pyramid_has_66_boxes_in_11_rows(void **state) {
-    (void)state;
+TEST(pyramid_has_66_boxes_in_11_rows) {
     Scene *falling = shipped("pyramid"), *settled = shipped("pyramid_settled");
     assert_common(falling, 67, 300, 0, 4);
     assert_common(settled, 67, 480, 180, 4);
@@ -104,16 +102,14 @@ static void pyramid_has_66_boxes_in_11_rows(void **state) {
     scene_destroy(settled);
 }
 
-static void scenes_name_the_network_beside_them(void **state) {
-    (void)state;
+TEST(scenes_name_the_network_beside_them) {
     Scene *scene = shipped("single");
     assert_string_equal(scene_network(scene, "pair-net"), SOURCE_DIR "/scenes/networks/pair-net.npz");
     assert_null(scene_network(scene, "pair"));
     scene_destroy(scene);
 }
 
-static void every_key_reaches_its_member(void **state) {
-    (void)state;
+TEST(every_key_reaches_its_member) {
     Scene *scene =
         good_scene("networks: {b-2: /absolute.npz}\n"
                    "bomb: {rotation: 0.5, spin: -2, velocity: [3, 4], friction: 0, mass: 7, size: [2, 3],\n"
@@ -149,8 +145,7 @@ static void every_key_reaches_its_member(void **state) {
     scene_destroy(scene);
 }
 
-static void keys_left_out_have_defaults(void **state) {
-    (void)state;
+TEST(keys_left_out_have_defaults) {
     Scene *scene = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
     const BodyDef body = {.size = {6, 7}, .mass = 5, .friction = 0.2f, .position = {3, 4}};
     assert_same_body(&scene->bodies[0], &body);
@@ -161,8 +156,7 @@ static void keys_left_out_have_defaults(void **state) {
     scene_destroy(scene);
 }
 
-static void rows_go_by_their_spacing(void **state) {
-    (void)state;
+TEST(rows_go_by_their_spacing) {
     Scene *scene =
         good_scene(BASE GROUND "  - {pattern: row, count: 100, spacing: [0.3, -0.1], mass: 1, size: [1, 1],\n"
                                "     position: [0.7, 2], angle: 0.5, velocity: [1, 2], spin: 3}\n"
@@ -178,8 +172,7 @@ static void rows_go_by_their_spacing(void **state) {
     scene_destroy(scene);
 }
 
-static void line_ends_and_byte_order_mark_do_not_matter(void **state) {
-    (void)state;
+TEST(line_ends_and_byte_order_mark_do_not_matter) {
     Scene *unix_ends = good_scene(BODY("mass: 5, size: [6, 7], position: [3, 4]"));
     Scene *dos_ends = good_scene("\xef\xbb\xbfgravity: [0, -10]\r\ndt: 1/60\r\niterations: 10\r\nframes: 300\r\n"
                                  "bodies:\r\n  - mass: 5\r\n    size: [6, 7]\r\n    position: [3, 4]\r\n");
@@ -248,8 +241,7 @@ static uint64_t hash_of(const char *base, const char *body, const char *bomb) {
     return hash_text(text);
 }
 
-static void hash_changes_with_every_physical_value(void **state) {
-    (void)state;
+TEST(hash_changes_with_every_physical_value) {
     uint64_t hashes[COUNT(variants) + COUNT(bodies) + COUNT(bombs)];
     size_t count = 0;
     for (size_t i = 0; i < COUNT(variants); i++) hashes[count++] = hash_of(variants[i], bodies[0], NULL);
@@ -260,8 +252,7 @@ static void hash_changes_with_every_physical_value(void **state) {
             if (hashes[i] == hashes[j]) fail_msg("scenes %zu and %zu have the same hash", j, i);
 }
 
-static void hash_keeps_with_all_else(void **state) {
-    (void)state;
+TEST(hash_keeps_with_all_else) {
     uint64_t hash = hash_of(BASE, bodies[0], bombs[0]);
     assert_int_equal(hash, hash_text("# comment\nframes: 200 # not physics\niterations: +10\ndt: 1/60\n"
                                      "gravity: [0.0,\n  -1e1]\ncamera: {center: [1, 1], size: [2, 2]}\n"
@@ -278,12 +269,9 @@ static void hash_keeps_with_all_else(void **state) {
                      hash_of(BASE, bodies[0], "{x: 2, y: 4, size: [1, 1], mass: 1, velocity: {times_position: -1.5}}"));
 }
 
-static void world_has_the_bodies_in_order_and_the_bomb_last(void **state) {
-    (void)state;
-    Error error = {.kind = ERROR_NONE};
+TEST(world_has_the_bodies_in_order_and_the_bomb_last) {
     Scene *scene = shipped("pyramid");
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(scene);
     assert_int_equal(world_body_count(world), 68);
     for (int i = 0; i < 67; i++) assert_same_vector(world_bodies(world)[i].position, scene->bodies[i].position);
     assert_same_vector(world_bodies(world)[67].position, vec2(scene->bomb.body.position.x, 15));
@@ -292,12 +280,10 @@ static void world_has_the_bodies_in_order_and_the_bomb_last(void **state) {
     scene_destroy(scene);
 }
 
-static void world_has_no_bomb_before_its_frame(void **state) {
-    (void)state;
+TEST(world_has_no_bomb_before_its_frame) {
     Error error = {.kind = ERROR_NONE};
     Scene *scene = shipped("pyramid_settled");
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(scene);
     assert_int_equal(world_body_count(world), 67);
     scene->bomb.body.position.x = -4;
     assert_ok(scene_add_bomb(scene, world, &error), error);
@@ -307,20 +293,4 @@ static void world_has_no_bomb_before_its_frame(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(single_is_a_box_of_200_kg),
-        cmocka_unit_test(stack_is_ten_boxes_5_cm_apart),
-        cmocka_unit_test(pyramid_has_66_boxes_in_11_rows),
-        cmocka_unit_test(scenes_name_the_network_beside_them),
-        cmocka_unit_test(every_key_reaches_its_member),
-        cmocka_unit_test(keys_left_out_have_defaults),
-        cmocka_unit_test(rows_go_by_their_spacing),
-        cmocka_unit_test(line_ends_and_byte_order_mark_do_not_matter),
-        cmocka_unit_test(hash_changes_with_every_physical_value),
-        cmocka_unit_test(hash_keeps_with_all_else),
-        cmocka_unit_test(world_has_the_bodies_in_order_and_the_bomb_last),
-        cmocka_unit_test(world_has_no_bomb_before_its_frame),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -67,8 +67,7 @@ static void check_ends(const char *path) {
     scene_destroy(scene);
 }
 
-static void every_scene_begins_at_rest_at_all_ends(void **state) {
-    (void)state;
+TEST(every_scene_begins_at_rest_at_all_ends) {
     glob_t found;
     assert_int_equal(glob(SOURCE_DIR "/scenes/stability/*.yaml", 0, NULL, &found), 0);
     assert_true(found.gl_pathc >= LEAST_SCENES);
@@ -77,8 +76,7 @@ static void every_scene_begins_at_rest_at_all_ends(void **state) {
 }
 
 /* A network of a scene knows it by its bodies and bomb. */
-static void beyond_training_is_the_stack_itself(void **state) {
-    (void)state;
+TEST(beyond_training_is_the_stack_itself) {
     Scene *stack = read_with(SOURCE_DIR "/scenes/stack.yaml", NULL, 0);
     Scene *beyond = read_with(SOURCE_DIR "/scenes/stability/beyond_training.yaml", NULL, 0);
     assert_int_equal(scene_hash(beyond), scene_hash(stack));
@@ -94,8 +92,4 @@ static void beyond_training_is_the_stack_itself(void **state) {
     scene_destroy(beyond);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_scene_begins_at_rest_at_all_ends),
-                                       cmocka_unit_test(beyond_training_is_the_stack_itself)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

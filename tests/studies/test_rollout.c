@@ -131,14 +131,12 @@ static void frozen_steps_of_the_engine_are_its_own(void **state) {
 }
 
 /* Keeps every body in place, with velocity 0. */
-static bool stand_still(void *state, World *world, const Step *step, Error *error) {
-    ContactProblem problem;
-    ContactSolution *solution;
+static bool stand_still(void *state, BegunStep *begun, Error *error) {
     (void)state;
-    if (!world_begin_step(world, step->scene->dt, &problem, &solution, error)) return false;
-    for (int i = 0; i < problem.body_count; i++) solution->velocities[i] = (BodyVelocity){0};
-    for (int i = 0; i < problem.contact_count; i++) solution->impulses[i] = (ContactImpulse){0};
-    return world_end_step(world, error);
+    (void)error;
+    for (int i = 0; i < begun->problem->body_count; i++) begun->solution->velocities[i] = (BodyVelocity){0};
+    for (int i = 0; i < begun->problem->contact_count; i++) begun->solution->impulses[i] = (ContactImpulse){0};
+    return true;
 }
 
 static void *create_nothing(const Settings *settings, const Scene *scene, Error *error) {
@@ -153,7 +151,7 @@ static void destroy_nothing(void *state) { (void)state; }
 
 /* A method that has come to rest where a box overlaps the ground. */
 static Stepper *make_still_stepper(const Scene *scene, bool no_push_out) {
-    static SteppingKind stepping = {.create = create_nothing, .step = stand_still, .destroy = destroy_nothing};
+    static SteppingKind stepping = {.create = create_nothing, .solve = stand_still, .destroy = destroy_nothing};
     static MethodKind kind = {&stepping.description, NULL, &stepping};
     const Method method = {.text = "still", .kind = &kind};
     Error error = {0};

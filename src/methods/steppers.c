@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What all steppers share: the frame of a step, the memory of the last one, and the momentum of free flight. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool stepping_step(const SteppingKind *kind, void *state, World *world, const Step *step, Error *error) {
+    ContactProblem problem;
+    BegunStep begun = {world, step, &problem, NULL, NULL};
+    if (!world_begin_step(world, step->scene->dt, &problem, &begun.solution, error)) return false;
+    step_solving_begins(step);
+    const bool solved = kind->solve(state, &begun, error);
+    step_solving_ends(step);
+    if (!solved) return false;
+    if (kind->measure != NULL) kind->measure(state, &begun);
+    if (!(begun.poses != NULL ? world_end_step_at(world, begun.poses, error) : world_end_step(world, error)))
+        return false;
+    if (kind->keep != NULL) kind->keep(state, world);
+    return true;
+}
+
+void step_memory_free(StepMemory *memory) {
+    free(memory->bodies);
+    free(memory->contacts);
+    free(memory->known);
+    free(memory->before);
+    *memory = (StepMemory){0};
+}
+
+static bool reserve(StepMemory *memory, size_t bodies, size_t contacts) {
+    return array_reserve((void **)&memory->bodies, &memory->body_capacity, bodies, sizeof *memory->bodies) &&
+           array_reserve((void **)&memory->contacts, &memory->contact_capacity, contacts, sizeof *memory->contacts) &&
+           array_reserve((void **)&memory->known, &memory->known_capacity, bodies, sizeof *memory->known) &&
+           array_reserve((void **)&memory->before, &memory->before_capacity, contacts, sizeof *memory->before);
+}
+
+/* A body has no padding: eleven floats. */
+static bool same_body(const Body *x, const Body *y) { return memcmp(x, y, sizeof *x) == 0; }
+
+static bool earlier(const KeptContact *kept, const ContactPoint *contact) {
+    return kept->a < contact->a || (kept->a == contact->a && kept->b < contact->b);
+}
+
+/* Both lists rise by (a, b). */
+static void match_contacts(StepMemory *memory, const ContactProblem *problem) {
+    for (int i = 0, first = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        memory->before[i] = -1;
+        if (!memory->known[contact->a] || !memory->known[contact->b]) continue;
+        while (first < memory->contact_count && earlier(&memory->contacts[first], contact)) first++;
+        for (int j = first; j < memory->contact_count; j++) {
+            const KeptContact *kept = &memory->contacts[j];
+            if (kept->a != contact->a || kept->b != contact->b) break;
+            if (kept->feature == contact->feature) memory->before[i] = j;
+        }
+    }
+}
+
+bool step_memory_match(StepMemory *memory, const World *world, const Step *step) {
+    const ContactProblem *problem = world_problem(world);
+    const Body *bodies = world_bodies(world);
+    if (step->frame == 1) memory->body_count = memory->contact_count = 0;
+    if (!step->scene->warm_starting) memory->contact_count = 0;
+    if (!reserve(memory, (size_t)problem->body_count, (size_t)problem->contact_count)) return false;
+    for (int i = 0; i < problem->body_count; i++)
+        memory->known[i] = i < memory->body_count && same_body(&bodies[i], &memory->bodies[i]);
+    match_contacts(memory, problem);
+    return true;
+}
+
+void step_memory_keep(StepMemory *memory, const World *world) {
+    const ContactProblem *problem = world_problem(world);
+    memory->body_count = problem->body_count;
+    memory->contact_count = problem->contact_count;
+    if (problem->body_count > 0)
+        memcpy(memory->bodies, world_bodies(world), (size_t)problem->body_count * sizeof *memory->bodies);
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        memory->contacts[i] = (KeptContact){contact->a, contact->b, contact->feature};
+    }
+}
+
+float free_flight_momentum(const ContactProblem *problem, const ContactSolution *solution, bool *touched) {
+    float sum = 0;
+    memset(touched, 0, (size_t)problem->body_count * sizeof *touched);
+    for (int i = 0; i < problem->contact_count; i++)
+        touched[problem->contacts[i].a] = touched[problem->contacts[i].b] = true;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        if (touched[i] || body->inv_mass == 0) continue;
+        const Vec2 change = vec2_sub(solution->velocities[i].linear, body->velocity);
+        sum += sqrtf(vec2_dot(change, change)) / body->inv_mass;
+    }
+    return sum;
+}
