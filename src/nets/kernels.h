@@ -77,9 +77,9 @@ typedef struct PackedRows {
     float *units;    /* [count] */
 } PackedRows;
 
-/* All numbers and units 0. False when memory is short; free it in any case. */
-bool packed_rows_make(PackedRows *packed, int count, int width);
-void packed_rows_free(PackedRows *packed);
+/* In a block of packed_rows_bytes() that is aligned for floats and begins with the units; the block may be NULL. */
+PackedRows packed_rows_in(void *block, int count, int width);
+size_t packed_rows_bytes(int count, int width);
 
 /* Rounds rows[count, width] of finite numbers to the nearest steps. */
 void packed_rows_fill(PackedRows *packed, const float *rows);

@@ -126,9 +126,9 @@ typedef struct SubspacePredictor {
 /* The sizes of a file; everything else follows from them. */
 typedef struct SubspaceShape {
     int bodies;        /* that move, with the bomb, which is the last */
-    int components;    /* of the basis: those of the largest predictor */
     int hidden;        /* width of the hidden layers, a multiple of ROW_LANES */
     int frames_before; /* steps before the bomb appears */
+    int components;    /* of the basis: those of the largest predictor */
     int predictor_count;
     int predictors[SUBSPACE_PREDICTORS_MAX]; /* components of each, rising */
 } SubspaceShape;
@@ -283,9 +283,10 @@ typedef struct SlotNetwork {
     char scene[SLOT_TEXT_SIZE];     /* the scene of the training */
     char command[SLOT_TEXT_SIZE];   /* the command that made it */
     int32_t *pair_slots;            /* [body_count * body_count + 1] first slot of pair (a, b) or of a later pair */
-    float *parameters;              /* the trained parameters: layers, rows, biases; in one block */
+    float *parameters;              /* the trained parameters, one after the other: layers, rows, biases */
     size_t parameter_count;
     const RowKernels *kernels; /* for inference; the fastest */
+    void *block;               /* all arrays */
 } SlotNetwork;
 
 /* Sizes of its inputs. */
