@@ -38,7 +38,7 @@ typedef struct Trainer {
 } Trainer;
 
 static float draw(uint64_t *state, const SceneSpan *span, const SceneSpan *otherwise) {
-    const double share = (double)(split_mix(state) >> 11) / 9007199254740992.0; /* 2^53 */
+    const double share = random_unit(state);
     return scene_span_at(scene_span_varies(span) ? span : otherwise, share);
 }
 

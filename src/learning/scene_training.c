@@ -169,13 +169,8 @@ typedef struct Trainer {
     Progress progress; /* of the stage */
 } Trainer;
 
-static void next_stage(Trainer *trainer, double share) {
-    trainer->stage.begin += trainer->stage.share;
-    trainer->stage.share = share;
-}
-
 static bool take(Trainer *trainer, SceneSet set, SlotSamples *samples, double share, Error *error) {
-    next_stage(trainer, share);
+    progress_next_stage(&trainer->stage, share);
     return scene_recording_take(&trainer->recording, set, samples, &trainer->progress, error);
 }
 
@@ -212,7 +207,7 @@ static bool first_round(Trainer *trainer, Error *error) {
 
 static bool next_round(Trainer *trainer, double share, Error *error) {
     const int had = trainer->samples.count;
-    next_stage(trainer, share);
+    progress_next_stage(&trainer->stage, share);
     return scene_recording_next(&trainer->recording, trainer->network, &trainer->samples, &trainer->progress, error) &&
            slot_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
 }
@@ -233,7 +228,7 @@ static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
                          .rate = round == 0 ? first_rate : first_rate / 2,
                          .learn_factors = training->momentum,
                          .seed = training->seed + (uint64_t)round};
-    next_stage(trainer, share);
+    progress_next_stage(&trainer->stage, share);
     if (!slot_fit(trainer->network, &trainer->samples, &fit, &trainer->progress, error)) return false;
     find_bounds(trainer->network, &trainer->samples);
     return score(trainer, round, error);

@@ -37,7 +37,7 @@ static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *pr
 static void same_bits_for_any_number_of_threads(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Scores scores[2];
     SlotNetwork *networks[2];
     const int threads = omp_get_max_threads();
@@ -69,7 +69,7 @@ typedef struct Stop {
     int calls_after; /* the stop */
 } Stop;
 
-static bool stop_at(void *context, double done, double total) {
+static bool stop_share(void *context, double done, double total) {
     Stop *stop = context;
     assert_true(done >= stop->last && done <= total * (1 + 1e-9));
     stop->calls_after += stop->last >= stop->at * total;
@@ -80,13 +80,13 @@ static bool stop_at(void *context, double done, double total) {
 /* Stopped in the first fit, in the labels after it, in the second fit. */
 static void a_stopped_training_keeps_the_rounds_so_far(void **state) {
     (void)state;
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     static const double at[] = {0.27, 0.67, 0.87};
     for (int i = 0; i < 3; i++) {
         Error error = {0};
         Scores scores;
         Stop stop = {.at = at[i]};
-        SlotNetwork *network = train(scene, &scores, &(Progress){stop_at, &stop}, &error);
+        SlotNetwork *network = train(scene, &scores, &(Progress){stop_share, &stop}, &error);
         assert_ok(network != NULL, error);
         assert_int_equal(error.kind, ERROR_NONE);
         assert_int_equal(stop.calls_after, 0);
@@ -100,10 +100,10 @@ static void a_stopped_training_keeps_the_rounds_so_far(void **state) {
 static void a_training_stopped_before_the_first_network_fails(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Scores scores;
     Stop stop = {.at = 0.1};
-    assert_null(train(scene, &scores, &(Progress){stop_at, &stop}, &error));
+    assert_null(train(scene, &scores, &(Progress){stop_share, &stop}, &error));
     assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
     scene_destroy(scene);
 }
@@ -112,7 +112,7 @@ static void a_training_stopped_before_the_first_network_fails(void **state) {
 static void the_network_is_for_its_scene(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Scores scores;
     SlotNetwork *network = train(scene, &scores, NULL, &error);
     assert_ok(network != NULL, error);
@@ -127,7 +127,7 @@ static void the_network_is_for_its_scene(void **state) {
 static void a_scene_without_a_bomb_is_refused(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Scores scores;
     scene->bomb.present = false;
     assert_refused(train(scene, &scores, NULL, &error), "stack: error: has no bomb to launch");

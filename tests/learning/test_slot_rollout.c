@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which steps of a scene's launches become samples. */
 #include "impacts.h"
+#include "equal_problems.h"
 
 #include "methods/residuals.h"
 
@@ -8,20 +9,12 @@
 
 enum { LAUNCHES = 6 };
 
-static void assert_same_problem(const ContactProblem *a, const ContactProblem *b) {
-    assert_int_equal(a->body_count, b->body_count);
-    assert_int_equal(a->contact_count, b->contact_count);
-    assert_int_equal(a->marked, b->marked);
-    assert_memory_equal(a->bodies, b->bodies, (size_t)a->body_count * sizeof *a->bodies);
-    assert_memory_equal(a->contacts, b->contacts, (size_t)a->contact_count * sizeof *a->contacts);
-}
-
 static void assert_same_samples(const SlotSamples *a, const SlotSamples *b) {
     assert_int_equal(a->count, b->count);
     for (int i = 0; i < a->count; i++) {
         assert_int_equal(a->items[i].launch, b->items[i].launch);
         assert_int_equal(a->items[i].since, b->items[i].since);
-        assert_same_problem(&a->items[i].problem, &b->items[i].problem);
+        assert_equal_problems(&a->items[i].problem, &b->items[i].problem);
     }
 }
 
@@ -63,7 +56,7 @@ static void samples_are_appended(void **state) {
     record_impacts(&twice, 2, 0);
     assert_int_equal(once.count, count);
     assert_int_equal(twice.count, 2 * count);
-    for (int i = 0; i < count; i++) assert_same_problem(&twice.items[i].problem, &twice.items[count + i].problem);
+    for (int i = 0; i < count; i++) assert_equal_problems(&twice.items[i].problem, &twice.items[count + i].problem);
     slot_samples_free(&once);
     slot_samples_free(&twice);
 }
@@ -94,7 +87,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
         if (since >= 0 || (problem->marked >= 0 && bomb_touches(problem))) since++;
         if (since < 0 || residual_of(problem) < (double)impact_gate) continue;
         assert_int_equal(samples[found].since, since);
-        assert_same_problem(&samples[found++].problem, problem);
+        assert_equal_problems(&samples[found++].problem, problem);
     }
     world_destroy(world);
     return found;
@@ -105,7 +98,7 @@ static void samples_are_the_steps_with_a_large_residual(void **state) {
     Error error = {0};
     SlotSamples samples = {0};
     ContactSolver solver;
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Launch launches[LAUNCHES];
     record_impacts(&samples, LAUNCHES, 0);
     throw_over_grid(scene, LAUNCHES, launches);
@@ -130,7 +123,7 @@ static bool no_solver(void *context, ContactSolver *solver, Error *error) {
 static void a_solver_that_cannot_be_made_is_an_error(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Launch launch = launch_of(scene);
     SlotSamples samples = {0};
     const SlotRollout rollout = {
