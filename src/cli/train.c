@@ -245,14 +245,15 @@ static bool run(const TrainRequest *request, Error *error) {
     return ok;
 }
 
-const TrainKind train_pair_net = {"pair-net",
-                                  "DATA.npz",
-                                  "a network of pairs of bodies, from a dataset. Prints its mean squared error as the "
-                                  "paper's Table 1 does, beside that "
-                                  "of always predicting the mean",
-                                  "network",
-                                  pair_net_options,
-                                  run};
+const TrainKind train_pair_net = {
+    .name = "pair-net",
+    .input = "DATA.npz",
+    .summary =
+        "a network of pairs of bodies, from a dataset. Prints its mean squared error as the paper's Table 1 does, "
+        "beside that of always predicting the mean",
+    .file_kind = "network",
+    .options = pair_net_options,
+    .train = run};
 
 #define TRAIN_KIND_ENTRY(name) &train_##name,
 const TrainKind *const train_kinds[] = {TRAIN_KINDS(TRAIN_KIND_ENTRY) NULL};
@@ -349,6 +350,21 @@ static bool make_request(const Options *options, TrainRequest *request, Error *e
     return true;
 }
 
+/* Gives a kind that keeps its state on disk the name of it, and the command that continues. */
+static bool train_kind(TrainRequest *request, Error *error) {
+    const TrainKind *kind = request->kind;
+    char state[4096], command[TRAIN_COMMAND_SIZE];
+    if (kind->result == NULL) return kind->train(request, error);
+    if (path_is_standard(request->output))
+        return error_input(error, "-o", "%s keeps its state beside the %s; give the %s a name", kind->name,
+                           kind->result, kind->result);
+    if (!file_path(state, sizeof state, error, "%s.part", request->output)) return false;
+    train_describe(request, command, kind->command_size);
+    request->state = state;
+    request->command = command;
+    return kind->train(request, error);
+}
+
 bool command_train(int argc, char **argv, Error *error) {
     Options options = {.kind = train_kinds[0]->name};
     HelpTexts texts = {.usage = ""};
@@ -371,6 +387,6 @@ bool command_train(int argc, char **argv, Error *error) {
     if (train_is_shard(&request)) return request.kind->train(&request, error);
     FileReservation reservation;
     if (!file_reserve(&reservation, request.output, error)) return false;
-    const bool done = request.kind->train(&request, error);
+    const bool done = train_kind(&request, error);
     return file_release(&reservation, error) && done;
 }
