@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Examples of gns: frames of recorded launches, with noise, and the accelerations that correct it. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of gns: the loss of a batch on all threads, first weights and units, steps and scores. */
 #include "learning/gns_training.h"
 
 #include "base/base.h"
@@ -26,9 +27,6 @@ void gns_fit_free(GnsFit *fit) {
         free(fit->workers[i].slopes);
     }
     free(fit->workers);
-    free(fit->transposed);
-    free(fit->gradients);
-    free(fit->losses);
     free(fit->mean_gradient);
     *fit = (GnsFit){.examples = NULL};
 }
@@ -37,13 +35,12 @@ bool gns_fit_begin(GnsFit *fit, const GnsExamples *examples, GnsNet *net, int ba
     const size_t count = (size_t)net->layout.parameters;
     *fit = (GnsFit){.examples = examples, .net = net, .batch = batch, .threads = omp_get_max_threads()};
     fit->workers = calloc((size_t)fit->threads, sizeof *fit->workers);
-    fit->transposed = calloc(count, sizeof *fit->transposed);
-    fit->gradients = calloc(count * (size_t)batch, sizeof *fit->gradients);
-    fit->losses = calloc((size_t)batch, sizeof *fit->losses);
-    fit->mean_gradient = calloc(count, sizeof *fit->mean_gradient);
-    if (fit->workers == NULL || fit->transposed == NULL || fit->gradients == NULL || fit->losses == NULL ||
-        fit->mean_gradient == NULL)
-        return error_memory(error, "gns");
+    fit->mean_gradient =
+        calloc(1, (count + (size_t)batch) * sizeof(double) + count * (1 + (size_t)batch) * sizeof(float));
+    if (fit->workers == NULL || fit->mean_gradient == NULL) return error_memory(error, "gns");
+    fit->losses = fit->mean_gradient + count;
+    fit->transposed = (float *)(fit->losses + batch);
+    fit->gradients = fit->transposed + count;
     for (int i = 0; i < fit->threads; i++) fit->workers[i].pass.tape = true;
     return true;
 }

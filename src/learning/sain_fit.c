@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of sain: the loss and its gradient, normalisation and ranges, steps, held-out errors. */
 #include "base/base.h"
 #include "learning/learning.h"
 #include "learning/sain_training.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of sain: samples, recorded problems, and the rounds of each form. */
 #include "learning/sain_training.h"
 
 #include "base/base.h"
@@ -23,22 +24,14 @@ void relation_samples_free(RelationSamples *samples) {
 
 /* The engine of sain, and what it fills. */
 typedef struct Engine {
-    void *state;
+    ContactSolver solver;
     ContactSolution solution;
     size_t velocity_capacity, impulse_capacity;
     RelationView view;
 } Engine;
 
-static bool relation_samples_begin(Engine *engine, Error *error) {
-    Settings settings;
-    if (!settings_parse(&settings, RELATION_ENGINE_SETTINGS, solver_engine.description.settings, "sain", error))
-        return false;
-    engine->state = solver_engine.create(&settings, error);
-    return engine->state != NULL;
-}
-
 static void end(Engine *engine) {
-    if (engine->state != NULL) solver_engine.destroy(engine->state);
+    if (engine->solver.state != NULL) solver_engine.destroy(engine->solver.state);
     free(engine->solution.velocities);
     free(engine->solution.impulses);
     relation_view_free(&engine->view);
@@ -50,7 +43,7 @@ static bool look(Engine *engine, const ContactProblem *problem, RelationForm for
                           sizeof *solution->velocities) &&
             array_reserve((void **)&solution->impulses, &engine->impulse_capacity, (size_t)problem->contact_count + 1,
                           sizeof *solution->impulses) &&
-            solver_engine.solve(engine->state, problem, solution, error) &&
+            solver_engine.solve(engine->solver.state, problem, solution, error) &&
             relation_view_make(&engine->view, problem, solution->velocities, form)) ||
            error_memory(error, "sain");
 }
@@ -77,7 +70,7 @@ static void add_body(RelationSamples *samples, const RelationView *view, int b, 
 
 bool relation_samples_add(RelationSamples *samples, const ImpactProblems *problems, bool impacts_only, Error *error) {
     Engine engine = {0};
-    bool ok = relation_samples_begin(&engine, error);
+    bool ok = solver_with(&engine.solver, &solver_engine, RELATION_ENGINE_SETTINGS, error);
     for (size_t p = 0; ok && p < problems->count; p++) {
         const ImpactProblem *item = &problems->items[p];
         if (impacts_only && !item->impact) continue;
@@ -151,7 +144,7 @@ static bool piece(void *context, int i, Error *error) {
 
 /* Appends to the problems in the order of launches and frames, for any number of threads. Omits problems whose
    reference does not converge. A launch ends 60 frames after its impact, or if its state becomes NaN or infinite. */
-static bool relation_record(const RelationRecording *recording, ImpactProblems *problems, const Progress *progress,
+static bool record_problems(const RelationRecording *recording, ImpactProblems *problems, const Progress *progress,
                             Error *error) {
     Runs runs = {recording, calloc((size_t)recording->count + 1, sizeof *runs.of)};
     if (runs.of == NULL) return error_memory(error, "recording");
@@ -166,19 +159,11 @@ static bool relation_record(const RelationRecording *recording, ImpactProblems *
     return ok;
 }
 
-static bool make_by_name(const ContactSolverKind *kind, const char *text, ContactSolver *solver, Error *error) {
-    Settings settings;
-    if (!settings_parse(&settings, text, kind->description.settings, kind->description.name, error)) return false;
-    void *state = kind->create(&settings, error);
-    if (state != NULL) *solver = (ContactSolver){kind, state};
-    return state != NULL;
-}
-
 static bool make_solver(void *context, int i, ContactSolver *solver, Error *error) {
     const RelationDriver *driver = ((const RelationLaunches *)context)->driver;
     if (driver != NULL) return sain_make(solver, driver->network, driver->form, error);
-    return i % 2 == 0 ? make_by_name(&solver_engine, RELATION_ENGINE_SETTINGS, solver, error)
-                      : make_by_name(&solver_momentum, "k=50", solver, error);
+    return i % 2 == 0 ? solver_with(solver, &solver_engine, RELATION_ENGINE_SETTINGS, error)
+                      : solver_with(solver, &solver_momentum, "k=50", error);
 }
 
 /* Launches rise along the family: a round takes every so manieth, so that each covers the family. */
@@ -192,7 +177,7 @@ static bool record_scene(const RelationLaunches *from, const Scene *scene, Impac
     for (int i = 0; ok && i < from->launches; i++) launches[i] = launches[i * from->rounds + from->round];
     RelationLaunches context = *from;
     const RelationRecording recording = {scene, launches, from->launches, make_solver, &context};
-    ok = ok && relation_record(&recording, problems, progress, error);
+    ok = ok && record_problems(&recording, problems, progress, error);
     free(launches);
     return ok;
 }
@@ -329,7 +314,7 @@ static bool record_first(Trainer *trainer, Error *error) {
            relation_launches_record(&others, &trainer->held_out, &trainer->fit.progress, error);
 }
 
-static bool relation_training_begin(Trainer *trainer, Error *error) {
+static bool begin(Trainer *trainer, Error *error) {
     Fit *fit = &trainer->fit;
     bool found;
     for (int f = 0; f < RELATION_FORMS; f++)
@@ -355,7 +340,7 @@ static bool restore_form(Trainer *trainer, int form, Error *error) {
 
 static bool run(Trainer *trainer, Error *error) {
     const int rounds = trainer->training->rounds, stages = RELATION_FORMS * rounds;
-    if (!relation_training_begin(trainer, error)) return false;
+    if (!begin(trainer, error)) return false;
     for (int form = 0; form < stage_form(trainer); form++)
         if (!restore_form(trainer, form, error)) return false;
     const double share = 0.95 / (stages - trainer->fit.stage);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fits a predictor of subspace: its linear term, its scales, and slopes through windows of predictions. */
 #include "base/base.h"
 #include "learning/subspace_training.h"
 #include "nets/kinds.h"

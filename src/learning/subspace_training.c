@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of subspace: errors of predictors, recording, components, and a fit for each number of components. */
 #include "learning/subspace_training.h"
 
 #include "base/base.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loops that this CPU can run, and rows rounded to bytes. */
 #include "nets/kernels.h"
 
 #include <math.h>

@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-const FloatBounds float_any = {-FLT_MAX, FLT_MAX, "finite"};
-const FloatBounds float_positive = {FLT_TRUE_MIN, FLT_MAX, "finite and greater than 0"};
-const FloatBounds float_not_negative = {0, FLT_MAX, "finite and not negative"};
-const FloatBounds float_momentum = {0, 2, "from 0 to 2"};
+const FloatBounds float_any = {-FLT_MAX, FLT_MAX, "it must be finite"};
+const FloatBounds float_positive = {FLT_TRUE_MIN, FLT_MAX, "it must be finite and greater than 0"};
+const FloatBounds float_not_negative = {0, FLT_MAX, "it must be finite and not negative"};
+const FloatBounds float_momentum = {0, 2, "it must be from 0 to 2"};
 
-static NpzArray array_of(const NetField *field) {
+NpzArray net_field_array(const NetField *field) {
     return (NpzArray){field->name, field->type, field->rank, {field->shape[0], field->shape[1]}, field->data};
 }
 
@@ -23,7 +23,7 @@ bool net_file_write(const NetFileKind *kind, const void *net, const char *path, 
     NpzArray arrays[2 + NET_FIELDS_MAX] = {{.name = "version", .type = NPZ_INT32, .data = &kind->version},
                                            {.name = "kind", .type = NPZ_TEXT, .data = kind->name}};
     const int count = kind->list((void *)net, fields); /* only a reader writes to what the fields point to */
-    for (int i = 0; i < count; i++) arrays[2 + i] = array_of(&fields[i]);
+    for (int i = 0; i < count; i++) arrays[2 + i] = net_field_array(&fields[i]);
     return npz_write(path, arrays, 2 + (size_t)count, error);
 }
 
@@ -32,8 +32,8 @@ static bool check_numbers(const NpzFile *file, const NetField *field, const void
     const double *doubles = numbers;
     for (size_t i = 0; field->type == NPZ_FLOAT32 && i < count; i++)
         if (!(floats[i] >= field->range->least && floats[i] <= field->range->most))
-            return error_input(error, npz_path(file), "%s: number %zu is %g; it must be %s", field->name, i,
-                               (double)floats[i], field->range->words);
+            return error_input(error, npz_path(file), "%s: number %zu is %g; %s", field->name, i, (double)floats[i],
+                               field->range->words);
     for (size_t i = 0; field->type == NPZ_FLOAT64 && i < count; i++)
         if (!isfinite(doubles[i]))
             return error_input(error, npz_path(file), "%s: number %zu is NaN or infinite", field->name, i);
@@ -56,7 +56,7 @@ static bool read_field(NpzFile *file, const NetField *field, Error *error) {
 
 static bool expect(const NpzFile *file, const NetField *fields, int count, Error *error) {
     for (int i = 0; i < count; i++) {
-        const NpzArray array = array_of(&fields[i]);
+        const NpzArray array = net_field_array(&fields[i]);
         if (!npz_expect(file, &array, 1, error)) return false;
     }
     return true;

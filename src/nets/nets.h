@@ -95,7 +95,7 @@ static inline double relu(double x) { return x < 0.0 ? 0.0 : x; }
 /* The range of float32 numbers, which must be finite. */
 typedef struct FloatBounds {
     float least, most;
-    const char *words; /* "must be ..." */
+    const char *words; /* "it must be ..." */
 } FloatBounds;
 
 extern const FloatBounds float_any, float_positive, float_not_negative, float_momentum;
@@ -128,6 +128,9 @@ bool net_file_write(const NetFileKind *kind, const void *net, const char *path, 
 /* ERROR_INPUT, naming the file, if it is damaged, of another kind or version, or has a field of another shape or range. */
 bool net_file_read(const NetFileKind *kind, void *net, const char *path, Error *error);
 
+/* The field in the file. */
+NpzArray net_field_array(const NetField *field);
+
 /* Reads fields, after a look at all their shapes; an error names the file, the field and the number. */
 bool net_fields_read(NpzFile *file, const NetField *fields, int count, Error *error);
 
@@ -138,7 +141,7 @@ bool net_file_integer(NpzFile *file, const char *name, int *number, Error *error
 /* Fully connected networks: layers, normalisation, files, and inference with the same bits on every machine.
 
    Numbers are float32. A layer's sums run over the inputs in rising order, without BLAS and without fused multiply-add;
-   activations are those of activation.h. */
+   activations are those above. */
 
 enum { NETWORK_VERSION = 3, NETWORK_MAX_LAYERS = 8, NETWORK_MAX_WIDTH = 4096, NETWORK_TEXT_SIZE = 512 };
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Slot networks: memory, slots, inference, files. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "nets/kernels.h"

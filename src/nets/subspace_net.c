@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Subspace networks: memory, files, and steps in the subspace. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "nets/kernels.h"

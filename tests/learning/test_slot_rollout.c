@@ -31,34 +31,25 @@ static void same_bits_for_any_number_of_threads(void **state) {
     for (int i = 0; i < 2; i++) slot_samples_free(&samples[i]);
 }
 
-static void samples_are_ordered_by_launch_and_step(void **state) {
+static void samples_are_appended_in_the_order_of_launch_and_step(void **state) {
     (void)state;
     SlotSamples samples = {0};
+    record_impacts(&samples, LAUNCHES, 0);
+    const int count = samples.count;
     record_impacts(&samples, LAUNCHES, 100);
-    assert_true(samples.count > 2 * LAUNCHES);
+    assert_true(count > 2 * LAUNCHES);
+    assert_int_equal(samples.count, 2 * count);
     for (int i = 0; i < samples.count; i++) {
         const SlotSample *sample = &samples.items[i];
-        assert_in_range(sample->launch, 100, 100 + LAUNCHES - 1);
+        const int first = i < count ? 0 : 100;
+        assert_in_range(sample->launch, first, first + LAUNCHES - 1);
         assert_in_range(sample->since, 0, IMPACT_STEPS - 1);
+        if (i < count) assert_equal_problems(&sample->problem, &samples.items[count + i].problem);
         if (i == 0) continue;
         assert_true(sample[-1].launch < sample->launch ||
                     (sample[-1].launch == sample->launch && sample[-1].since < sample->since));
     }
     slot_samples_free(&samples);
-}
-
-static void samples_are_appended(void **state) {
-    (void)state;
-    SlotSamples once = {0}, twice = {0};
-    record_impacts(&once, 2, 0);
-    record_impacts(&twice, 2, 0);
-    const int count = twice.count;
-    record_impacts(&twice, 2, 0);
-    assert_int_equal(once.count, count);
-    assert_int_equal(twice.count, 2 * count);
-    for (int i = 0; i < count; i++) assert_equal_problems(&twice.items[i].problem, &twice.items[count + i].problem);
-    slot_samples_free(&once);
-    slot_samples_free(&twice);
 }
 
 static bool bomb_touches(const ContactProblem *problem) {
@@ -136,8 +127,7 @@ static void a_solver_that_cannot_be_made_is_an_error(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_bits_for_any_number_of_threads),
-        cmocka_unit_test(samples_are_ordered_by_launch_and_step),
-        cmocka_unit_test(samples_are_appended),
+        cmocka_unit_test(samples_are_appended_in_the_order_of_launch_and_step),
         cmocka_unit_test(samples_are_the_steps_with_a_large_residual),
         cmocka_unit_test(a_solver_that_cannot_be_made_is_an_error),
     };

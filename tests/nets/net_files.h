@@ -16,7 +16,7 @@ typedef struct NetArrays {
 } NetArrays;
 
 static inline bool take_array(NpzFile *file, NpzArray *array) {
-    static const NpzType types[] = {NPZ_FLOAT32, NPZ_INT32, NPZ_UINT32, NPZ_INT64, NPZ_UINT64, NPZ_FLOAT64};
+    static const NpzType types[] = {NPZ_FLOAT32, NPZ_INT32, NPZ_UINT32, NPZ_UINT8, NPZ_INT64, NPZ_UINT64, NPZ_FLOAT64};
     Error error = {0};
     for (size_t t = 0; t < sizeof types / sizeof *types; t++)
         for (int rank = 0; rank <= 2; rank++) {
@@ -134,7 +134,7 @@ static inline void assert_file_is_checked(NetReader *read, const char *path, con
             assert_array_is_checked(read, &arrays, array);
     }
     snprintf(text, sizeof text, "not a file of kind '%s'", kind);
-    refuse_file(read, write_text(&arrays, "kind", "dataset"), text);
+    refuse_file(read, write_text(&arrays, "kind", "other"), text);
     refuse_file(read, write_with(&arrays, (NpzArray){.name = "kind"}), text);
     for (int32_t other = version - 1; other <= version + 1; other += 2) {
         snprintf(text, sizeof text, "%s of version %d; expected version %d", kind, other, version);
