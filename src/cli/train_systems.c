@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The kinds of twinbox train that learn from launches of scenes: sain, hybrid, gns, subspace and scene-net. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
@@ -186,10 +187,7 @@ static bool hybrid_run(const TrainRequest *request, Error *error) {
     if (!train_read(request, &given, error)) return false;
     given.training.limit = (size_t)(given.limit * MEBIBYTE);
     report.launches = given.training.launches;
-    Scene *scene = scene_read(request->input, error);
-    const bool ok = scene != NULL && learn(scene, &given.training, request->output, error);
-    scene_destroy(scene);
-    return ok;
+    return learn(request->scene, &given.training, request->output, error);
 }
 
 const TrainKind train_hybrid = {
@@ -201,6 +199,7 @@ const TrainKind train_hybrid = {
     .file_kind = "hybrid",
     .options = hybrid_options,
     .train = hybrid_run,
+    .reads_scene = true,
     .result = "memory",
     .command_size = TABULATION_TEXT_SIZE};
 
@@ -327,7 +326,7 @@ static void subspace_print_score(void *context, const SubspaceScore *score, doub
     fflush(stdout);
 }
 
-static bool subspace_train_and_store(const Scene *scene, const TrainRequest *request, Error *error) {
+static bool subspace_run(const TrainRequest *request, Error *error) {
     SubspaceTraining training = {.batches = EPOCH_BATCHES,
                                  .command = request->command,
                                  .state_path = request->state,
@@ -338,19 +337,12 @@ static bool subspace_train_and_store(const Scene *scene, const TrainRequest *req
     printf("held-out launches: distance from the recorded run, m (RMS over bodies and frames), and the median of the\n"
            "frames until a body is 0.1 m away\n"
            "components      loss  floor          linear term    with network\n");
-    SubspaceNet *net = subspace_train(scene, &training, progress_bar_begin("training"), error);
+    SubspaceNet *net = subspace_train(request->scene, &training, progress_bar_begin("training"), error);
     progress_bar_end();
     const bool ok =
         net != NULL && subspace_net_write(net, request->output, error) && file_remove(request->state, error);
     if (ok) printf("%d bodies -> %s\n", net->shape.bodies, request->output);
     subspace_net_destroy(net);
-    return ok;
-}
-
-static bool subspace_run(const TrainRequest *request, Error *error) {
-    Scene *scene = scene_read(request->input, error);
-    const bool ok = scene != NULL && subspace_train_and_store(scene, request, error);
-    scene_destroy(scene);
     return ok;
 }
 
@@ -363,6 +355,7 @@ const TrainKind train_subspace = {.name = "subspace",
                                   .file_kind = SUBSPACE_KIND,
                                   .options = subspace_options,
                                   .train = subspace_run,
+                                  .reads_scene = true,
                                   .result = "network",
                                   .command_size = SUBSPACE_TEXT_SIZE};
 
@@ -508,10 +501,7 @@ static bool scene_net_run(const TrainRequest *request, Error *error) {
     if (width % ROW_LANES != 0) return error_input(error, "--width", "%d is not a multiple of %d", width, ROW_LANES);
     if (given.smallest != (given.within >= 0))
         return error_input(error, "--smallest", "goes with --within E, and that with it");
-    Scene *scene = scene_read(request->input, error);
-    bool ok = scene != NULL && record_or_train(scene, request, &given, error);
-    scene_destroy(scene);
-    return ok;
+    return record_or_train(request->scene, request, &given, error);
 }
 
 const TrainKind train_scene_net = {
@@ -521,4 +511,5 @@ const TrainKind train_scene_net = {
                "and the held-out launches, beside that of 20 sweeps with momentum",
     .file_kind = "scene-net",
     .options = scene_net_options,
-    .train = scene_net_run};
+    .train = scene_net_run,
+    .reads_scene = true};
