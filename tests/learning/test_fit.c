@@ -138,6 +138,7 @@ static void interruptions_leave_no_trace(void **state) {
         remove(path);
         int runs = 1, steps = 0;
         for (int left = every;; left = every > 1 ? every : 2, runs++) {
+            assert_in_range(runs, 1, 20);
             const Progress progress = {stop_at, &left};
             error = (Error){0};
             const bool done = train(&parts, path, "train", &progress, &error);

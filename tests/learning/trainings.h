@@ -27,6 +27,7 @@ typedef bool Train(void *context, const char *path, const Progress *progress, Er
 /* Trains until it is done, each time stopped some reports later than the last; returns how often it was interrupted. */
 static inline int train_in_parts(Train *train, void *context, const char *path, int reports, int more) {
     for (int interrupted = 0;; interrupted++, reports += more) {
+        assert_in_range(interrupted, 0, 50); /* or it never ends */
         int left = reports;
         Error error = {0};
         if (train(context, path, &(Progress){stop_at, &left}, &error)) return interrupted;
