@@ -157,6 +157,17 @@ static inline uint64_t split_mix(uint64_t *state) {
     return z ^ (z >> 31);
 }
 
+/* In [0, 1), in [-1, 1), and below a count. */
+static inline double random_unit(uint64_t *state) { return (double)(split_mix(state) >> 11) * 0x1p-53; }
+static inline double random_signed(uint64_t *state) { return (double)(split_mix(state) >> 11) * 0x1p-52 - 1; }
+static inline int random_below(uint64_t *state, int count) { return (int)(split_mix(state) % (uint64_t)count); }
+
+/* Fills weights[count] with numbers in [-bound, bound); returns what follows them. */
+static inline double *weights_uniform(double *weights, int count, double bound, uint64_t *state) {
+    for (int i = 0; i < count; i++) *weights++ = bound * random_signed(state);
+    return weights;
+}
+
 /* The settings of a method, as on the command line: `name:key=value,key=value`. */
 
 enum { SETTINGS_MAX = 16, SETTING_KEY_SIZE = 32, SETTING_VALUE_SIZE = 512 };

@@ -49,6 +49,12 @@ static inline bool progress_stage(void *context, double done, double total) {
     return !stage->stopped;
 }
 
+/* The next stage begins where this one ends. */
+static inline void progress_next_stage(ProgressStage *stage, double share) {
+    stage->begin += stage->share;
+    stage->share = share;
+}
+
 /* Runs many independent pieces of work on all threads (OpenMP). */
 
 typedef struct ParallelWork {

@@ -185,6 +185,8 @@ typedef struct TrainRequest {
     const char *input, *output;
     const char *values[OPTIONS_MAX]; /* texts of the kind's options; NULL: neither given nor a standard; "": a flag */
     PiecesRun run;                   /* of kinds with TRAIN_SHARD; of others zero */
+    const struct Scene *scene;       /* of kinds that read one */
+    const char *state, *command;     /* of kinds with a state: its file, and the command, cut to what they keep of it */
 } TrainRequest;
 
 typedef struct TrainKind {
@@ -192,6 +194,9 @@ typedef struct TrainKind {
     const char *file_kind;              /* of the file that is written (npz_check_kind) */
     const Option *options;              /* in the order of a command; those not given have the value `standard` */
     bool (*train)(const TrainRequest *request, Error *error);
+    bool reads_scene;    /* input is a scene, which the request then has */
+    const char *result;  /* what the state on disk is kept beside, "network"; NULL: the kind keeps none */
+    size_t command_size; /* of the command in its state and result */
 } TrainKind;
 
 /* The row of the option of kinds that use train_pieces(). No kind reads its value, and no network stores it. */

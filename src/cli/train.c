@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox train: requests, the kind pair-net, and the command, which has the options of all kinds. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
@@ -8,6 +9,7 @@
 #include "learning/pair_training.h"
 #include "nets/nets.h"
 #include "runs/pieces.h"
+#include "scenes/scenes.h"
 
 #include <assert.h>
 #include <stdio.h>
@@ -35,23 +37,18 @@ void train_set(TrainRequest *request, const char *option, const char *value) {
     request->values[i] = value;
 }
 
-static void append(char *command, size_t size, const char *before, const char *text) {
-    const size_t used = strlen(command);
-    snprintf(command + used, size - used, "%s%s", before, text);
-}
-
 void train_describe(const TrainRequest *request, char *command, size_t size) {
     snprintf(command, size, "twinbox train");
-    if (request->kind != train_kinds[0]) append(command, size, " --kind ", request->kind->name);
-    if (request->input != NULL) append(command, size, " ", request->input);
-    append(command, size, " -o ", request->output);
+    if (request->kind != train_kinds[0]) text_add(command, size, " --kind %s", request->kind->name);
+    if (request->input != NULL) text_add(command, size, " %s", request->input);
+    text_add(command, size, " -o %s", request->output);
     for (int i = 0; request->kind->options[i].name != NULL; i++) {
         const Option *option = &request->kind->options[i];
         if (request->values[i] == NULL) continue;
-        append(command, size, " ", option->name);
+        text_add(command, size, " %s", option->name);
         /* A value that begins with '-' would be taken for an option. */
         const bool negative = option->standard != NULL && option->standard[0] == '-';
-        if (option->value != NULL) append(command, size, negative ? "=" : " ", request->values[i]);
+        if (option->value != NULL) text_add(command, size, "%s%s", negative ? "=" : " ", request->values[i]);
     }
 }
 
@@ -245,14 +242,15 @@ static bool run(const TrainRequest *request, Error *error) {
     return ok;
 }
 
-const TrainKind train_pair_net = {"pair-net",
-                                  "DATA.npz",
-                                  "a network of pairs of bodies, from a dataset. Prints its mean squared error as the "
-                                  "paper's Table 1 does, beside that "
-                                  "of always predicting the mean",
-                                  "network",
-                                  pair_net_options,
-                                  run};
+const TrainKind train_pair_net = {
+    .name = "pair-net",
+    .input = "DATA.npz",
+    .summary =
+        "a network of pairs of bodies, from a dataset. Prints its mean squared error as the paper's Table 1 does, "
+        "beside that of always predicting the mean",
+    .file_kind = "network",
+    .options = pair_net_options,
+    .train = run};
 
 #define TRAIN_KIND_ENTRY(name) &train_##name,
 const TrainKind *const train_kinds[] = {TRAIN_KINDS(TRAIN_KIND_ENTRY) NULL};
@@ -295,10 +293,8 @@ static NameList name_kinds(const char *option) {
 
 static void add_kind(Options *options, HelpTexts *texts, int k) {
     const TrainKind *kind = train_kinds[k];
-    const size_t used = strlen(texts->usage);
-    snprintf(texts->usage + used, sizeof texts->usage - used, "%s%s%s%s", k == 0 ? "" : "\n--kind ",
-             k == 0 ? "" : kind->name, k == 0 || kind->input == NULL ? "" : " ",
-             kind->input != NULL ? kind->input : "");
+    text_add(texts->usage, sizeof texts->usage, "%s%s%s%s", k == 0 ? "" : "\n--kind ", k == 0 ? "" : kind->name,
+             k == 0 || kind->input == NULL ? "" : " ", kind->input != NULL ? kind->input : "");
     snprintf(texts->headings[k], TEXT_SIZE, "%s%s: %s.", kind->name, k == 0 ? " (default)" : "", kind->summary);
     add_row(options, (Option){.help = texts->headings[k]});
     for (const Option *option = kind->options; option->name != NULL; option++) {
@@ -349,6 +345,31 @@ static bool make_request(const Options *options, TrainRequest *request, Error *e
     return true;
 }
 
+/* Reads the scene of a kind that learns from one. */
+static bool train_on_scene(TrainRequest *request, Error *error) {
+    if (!request->kind->reads_scene) return request->kind->train(request, error);
+    Scene *scene = scene_read(request->input, error);
+    request->scene = scene;
+    const bool ok = scene != NULL && request->kind->train(request, error);
+    scene_destroy(scene);
+    return ok;
+}
+
+/* Gives a kind that keeps its state on disk the name of it, and the command that continues. */
+static bool train_kind(TrainRequest *request, Error *error) {
+    const TrainKind *kind = request->kind;
+    char state[4096], command[TRAIN_COMMAND_SIZE];
+    if (kind->result == NULL) return train_on_scene(request, error);
+    if (path_is_standard(request->output))
+        return error_input(error, "-o", "%s keeps its state beside the %s; give the %s a name", kind->name,
+                           kind->result, kind->result);
+    if (!file_path(state, sizeof state, error, "%s.part", request->output)) return false;
+    train_describe(request, command, kind->command_size);
+    request->state = state;
+    request->command = command;
+    return train_on_scene(request, error);
+}
+
 bool command_train(int argc, char **argv, Error *error) {
     Options options = {.kind = train_kinds[0]->name};
     HelpTexts texts = {.usage = ""};
@@ -368,9 +389,9 @@ bool command_train(int argc, char **argv, Error *error) {
     char command[TRAIN_COMMAND_SIZE];
     train_describe(&request, command, sizeof command);
     note_verbose("with all options: %s", command);
-    if (train_is_shard(&request)) return request.kind->train(&request, error);
+    if (train_is_shard(&request)) return train_on_scene(&request, error);
     FileReservation reservation;
     if (!file_reserve(&reservation, request.output, error)) return false;
-    const bool done = request.kind->train(&request, error);
+    const bool done = train_kind(&request, error);
     return file_release(&reservation, error) && done;
 }

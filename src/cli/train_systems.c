@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The kinds of twinbox train that learn from launches of scenes: sain, hybrid, gns, subspace and scene-net. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
@@ -21,26 +22,26 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { TRAIN_SAIN_PATH_SIZE = 4096, LIST_SIZE = 2048, STEPS_SAVED = 100 };
+enum { SAIN_LIST_SIZE = 2048, STEPS_SAVED = 100 };
 
-typedef struct TrainSainOptions {
+typedef struct SainOptions {
     RelationTraining training;
     const char *more;
-} TrainSainOptions;
+} SainOptions;
 
-static const Option train_sain_options[] = {
-    {"--with", 0, "SCENE,...", "Further scenes to train on, separated by commas", OPTION_TEXT(TrainSainOptions, more)},
-    {"--launches", 0, "N", "Launches of each scene and round",
-     OPTION_INT(TrainSainOptions, training.launches, 1, 10000), .standard = "40"},
+static const Option sain_options[] = {
+    {"--with", 0, "SCENE,...", "Further scenes to train on, separated by commas", OPTION_TEXT(SainOptions, more)},
+    {"--launches", 0, "N", "Launches of each scene and round", OPTION_INT(SainOptions, training.launches, 1, 10000),
+     .standard = "40"},
     {"--rounds", 0, "N", "Rounds; the engine runs the launches of the first, sain those of the others",
-     OPTION_INT(TrainSainOptions, training.rounds, 1, RELATION_ROUNDS_MAX), .standard = "2"},
-    {"--steps", 0, "N", "Steps of the optimiser in each round",
-     OPTION_INT(TrainSainOptions, training.steps, 1, 1000000), .standard = "2000"},
+     OPTION_INT(SainOptions, training.rounds, 1, RELATION_ROUNDS_MAX), .standard = "2"},
+    {"--steps", 0, "N", "Steps of the optimiser in each round", OPTION_INT(SainOptions, training.steps, 1, 1000000),
+     .standard = "2000"},
     {"--seed", 0, "N", "Seed of the initial weights and of the samples of each step",
-     OPTION_SEED(TrainSainOptions, training.seed), .standard = "1"},
+     OPTION_SEED(SainOptions, training.seed), .standard = "1"},
     {0}};
 
-static void train_sain_print_score(void *context, const RelationScore *score) {
+static void sain_print_score(void *context, const RelationScore *score) {
     (void)context;
     progress_bar_clear();
     printf("%-8s  %5d  %8zu  %7zu  %7.4f  %8.4f  %7.4f  %8.4f\n", relation_form_names[score->form], score->round,
@@ -50,11 +51,11 @@ static void train_sain_print_score(void *context, const RelationScore *score) {
 }
 
 /* Reads the scene of the command line and those of the list. */
-static bool train_sain_read_scenes(const char *first, const char *more, Scene *scenes[RELATION_SCENES_MAX], int *count,
-                                   Error *error) {
-    char list[LIST_SIZE], *rest = list;
+static bool sain_read_scenes(const char *first, const char *more, Scene *scenes[RELATION_SCENES_MAX], int *count,
+                             Error *error) {
+    char list[SAIN_LIST_SIZE], *rest = list;
     if (snprintf(list, sizeof list, "%s", more != NULL ? more : "") >= (int)sizeof list)
-        return error_input(error, "--with", "the list has more than %d characters", LIST_SIZE - 1);
+        return error_input(error, "--with", "the list has more than %d characters", SAIN_LIST_SIZE - 1);
     for (const char *path = first; path != NULL; path = strtok_r(rest, ",", &rest)) {
         if (*count == RELATION_SCENES_MAX)
             return error_input(error, "--with", "more than %d scenes", RELATION_SCENES_MAX);
@@ -65,19 +66,16 @@ static bool train_sain_read_scenes(const char *first, const char *more, Scene *s
     return true;
 }
 
-static bool train_sain_train_and_store(const TrainRequest *request, RelationTraining *training, Error *error) {
+static bool sain_train(const TrainRequest *request, RelationTraining *training, Error *error) {
     RelationNetworks networks;
-    char command[RELATION_COMMAND_SIZE], state[TRAIN_SAIN_PATH_SIZE];
-    if (!file_path(state, sizeof state, error, "%s.part", request->output)) return false;
-    train_describe(request, command, sizeof command);
-    training->command = command;
-    training->state_path = state;
+    training->command = request->command;
+    training->state_path = request->state;
     printf("held-out impacts, velocity error in m/s\n"
            "engine    round  problems   bodies     loss      sain   engine  constant\n");
     bool ok = relation_training_run(training, &networks, progress_bar_begin("training"), error);
     progress_bar_end();
-    snprintf(networks.command, sizeof networks.command, "%s", command);
-    ok = ok && relation_networks_write(&networks, request->output, error) && file_remove(state, error);
+    snprintf(networks.command, sizeof networks.command, "%s", request->command);
+    ok = ok && relation_networks_write(&networks, request->output, error) && file_remove(request->state, error);
     if (ok)
         printf("%d networks of %d weights -> %s\n", (int)RELATION_FORMS, relation_weight_count(&networks.forms[0]),
                request->output);
@@ -85,48 +83,48 @@ static bool train_sain_train_and_store(const TrainRequest *request, RelationTrai
     return ok;
 }
 
-static bool train_sain_run(const TrainRequest *request, Error *error) {
-    TrainSainOptions given = {
-        .training = {.batch = RELATION_PARTS * BLOCK_ROWS, .saved = STEPS_SAVED, .on_score = train_sain_print_score}};
+static bool sain_run(const TrainRequest *request, Error *error) {
+    SainOptions given = {
+        .training = {.batch = RELATION_PARTS * BLOCK_ROWS, .saved = STEPS_SAVED, .on_score = sain_print_score}};
     Scene *scenes[RELATION_SCENES_MAX] = {NULL};
-    if (path_is_standard(request->output))
-        return error_input(error, "-o", "sain keeps its state beside the network; give the network a name");
     if (!train_read(request, &given, error)) return false;
     RelationTraining *training = &given.training;
     training->scenes = scenes;
-    const bool ok = train_sain_read_scenes(request->input, given.more, scenes, &training->scene_count, error) &&
-                    train_sain_train_and_store(request, training, error);
+    const bool ok = sain_read_scenes(request->input, given.more, scenes, &training->scene_count, error) &&
+                    sain_train(request, training, error);
     for (int i = 0; i < RELATION_SCENES_MAX; i++) scene_destroy(scenes[i]);
     return ok;
 }
 
 const TrainKind train_sain = {
-    "sain",
-    "SCENE",
-    "the networks of sain, on launches of one or more scenes: with the engine, without it, and "
-    "with its output shuffled. Prints held-out errors after each round. An interrupted "
-    "training is resumed by the same command; its state is in NET.npz.part",
-    "sain",
-    train_sain_options,
-    train_sain_run};
+    .name = "sain",
+    .input = "SCENE",
+    .summary = "the networks of sain, on launches of one or more scenes: with the engine, without it, and "
+               "with its output shuffled. Prints held-out errors after each round. An interrupted "
+               "training is resumed by the same command; its state is in NET.npz.part",
+    .file_kind = "sain",
+    .options = sain_options,
+    .train = sain_run,
+    .result = "network",
+    .command_size = RELATION_COMMAND_SIZE};
 
-enum { TRAIN_HYBRID_PATH_SIZE = 4096, MEBIBYTE = 1 << 20, REPORTS = 20 };
+enum { MEBIBYTE = 1 << 20, REPORTS = 20 };
 
-typedef struct TrainHybridOptions {
+typedef struct HybridOptions {
     TabulationTraining training;
     double limit; /* MiB */
-} TrainHybridOptions;
+} HybridOptions;
 
-static const Option train_hybrid_options[] = {
+static const Option hybrid_options[] = {
     {"--launches", 0, "N", "Launches, one after the other",
-     OPTION_INT(TrainHybridOptions, training.launches, 1, TABULATION_LAUNCHES_MAX), .standard = "1000"},
+     OPTION_INT(HybridOptions, training.launches, 1, TABULATION_LAUNCHES_MAX), .standard = "1000"},
     {"--steps", 0, "N", "Steps of each launch, from the bomb's first touch",
-     OPTION_INT(TrainHybridOptions, training.steps, 1, 100000), .standard = "66"},
+     OPTION_INT(HybridOptions, training.steps, 1, 100000), .standard = "66"},
     {"--tolerance", 0, "E", "RMS error of the velocities that answers may have, m/s",
-     OPTION_FLOAT(TrainHybridOptions, training.tolerance, 1e-6, 1000), .standard = "0.1"},
+     OPTION_FLOAT(HybridOptions, training.tolerance, 1e-6, 1000), .standard = "0.1"},
     {"--limit", 0, "MB", "Most MiB of the memory; when it is full, entries still grow",
-     OPTION_DOUBLE(TrainHybridOptions, limit, 0.001, 65536), .standard = "64"},
-    {"--seed", 0, "N", "Seed of the launches", OPTION_SEED(TrainHybridOptions, training.seed), .standard = "1"},
+     OPTION_DOUBLE(HybridOptions, limit, 0.001, 65536), .standard = "64"},
+    {"--seed", 0, "N", "Seed of the launches", OPTION_SEED(HybridOptions, training.seed), .standard = "1"},
     {0}};
 
 /* Sums over the launches since the last report. */
@@ -178,68 +176,63 @@ static bool learn(const Scene *scene, const TabulationTraining *training, const 
     return ok;
 }
 
-static bool train_hybrid_run(const TrainRequest *request, Error *error) {
+static bool hybrid_run(const TrainRequest *request, Error *error) {
     Report report = {0};
-    TrainHybridOptions given = {.training = {.turned_from = -1,
-                                             .components = TABULATION_STANDARD_COMPONENTS,
-                                             .on_launch = add_launch,
-                                             .context = &report}};
-    char command[TABULATION_TEXT_SIZE], state[TRAIN_HYBRID_PATH_SIZE];
-    if (path_is_standard(request->output))
-        return error_input(error, "-o", "hybrid keeps its state beside the memory; give the memory a name");
-    if (!train_read(request, &given, error) || !file_path(state, sizeof state, error, "%s.part", request->output))
-        return false;
-    train_describe(request, command, sizeof command);
-    given.training.command = command;
-    given.training.state_path = state;
+    HybridOptions given = {.training = {.turned_from = -1,
+                                        .components = TABULATION_STANDARD_COMPONENTS,
+                                        .on_launch = add_launch,
+                                        .context = &report,
+                                        .command = request->command,
+                                        .state_path = request->state}};
+    if (!train_read(request, &given, error)) return false;
     given.training.limit = (size_t)(given.limit * MEBIBYTE);
     report.launches = given.training.launches;
-    Scene *scene = scene_read(request->input, error);
-    const bool ok = scene != NULL && learn(scene, &given.training, request->output, error);
-    scene_destroy(scene);
-    return ok;
+    return learn(request->scene, &given.training, request->output, error);
 }
 
-const TrainKind train_hybrid = {"hybrid",
-                                "SCENE",
-                                "the memory of hybrid for a scene, launch after launch. Prints how many steps with an "
-                                "impact it answered, and what it learned from the others. An interrupted training is "
-                                "resumed by the same command; its state is in NET.npz.part",
-                                "hybrid",
-                                train_hybrid_options,
-                                train_hybrid_run};
+const TrainKind train_hybrid = {
+    .name = "hybrid",
+    .input = "SCENE",
+    .summary = "the memory of hybrid for a scene, launch after launch. Prints how many steps with an "
+               "impact it answered, and what it learned from the others. An interrupted training is "
+               "resumed by the same command; its state is in NET.npz.part",
+    .file_kind = "hybrid",
+    .options = hybrid_options,
+    .train = hybrid_run,
+    .reads_scene = true,
+    .result = "memory",
+    .command_size = TABULATION_TEXT_SIZE};
 
-enum { TRAIN_GNS_PATH_SIZE = 4096 };
+enum { GNS_LIST_SIZE = 4096 };
 
-typedef struct TrainGnsOptions {
+typedef struct GnsOptions {
     GnsTraining training;
     const char *scenes;
-} TrainGnsOptions;
+} GnsOptions;
 
-static const Option train_gns_options[] = {
-    {"--scenes", 0, "A,B", "Scenes whose launches are recorded", OPTION_TEXT(TrainGnsOptions, scenes),
+static const Option gns_options[] = {
+    {"--scenes", 0, "A,B", "Scenes whose launches are recorded", OPTION_TEXT(GnsOptions, scenes),
      .standard = "single,stack,pyramid,pyramid_settled"},
     {"--launches", 0, "N", "Launches recorded of each scene",
-     OPTION_INT(TrainGnsOptions, training.launches, 1, LAUNCHES_MAX), .standard = "24"},
+     OPTION_INT(GnsOptions, training.launches, 1, LAUNCHES_MAX), .standard = "24"},
     {"--width", 0, "N", "Hidden units of each layer: a multiple of 16",
-     OPTION_INT(TrainGnsOptions, training.width, GNS_WIDTH_STEP, GNS_MAX_WIDTH), .standard = "16"},
-    {"--rounds", 0, "M", "Rounds of message passing", OPTION_INT(TrainGnsOptions, training.rounds, 1, GNS_MAX_ROUNDS),
+     OPTION_INT(GnsOptions, training.width, GNS_WIDTH_STEP, GNS_MAX_WIDTH), .standard = "16"},
+    {"--rounds", 0, "M", "Rounds of message passing", OPTION_INT(GnsOptions, training.rounds, 1, GNS_MAX_ROUNDS),
      .standard = "5"},
     {"--radius", 0, "R", "Particles nearer than R m exchange messages",
-     OPTION_FLOAT(TrainGnsOptions, training.radius, 0.01, 100), .standard = "0.6"},
+     OPTION_FLOAT(GnsOptions, training.radius, 0.01, 100), .standard = "0.6"},
     {"--noise", 0, "S", "Standard deviation of the noise on velocities, m/s",
-     OPTION_FLOAT(TrainGnsOptions, training.noise, 0, 10), .standard = "0.1"},
-    {"--steps", 0, "N", "Gradient steps", OPTION_INT(TrainGnsOptions, training.steps, 1, 100000000),
-     .standard = "20000"},
-    {"--batch", 0, "N", "Examples of a gradient step", OPTION_INT(TrainGnsOptions, training.batch, 1, 1024),
+     OPTION_FLOAT(GnsOptions, training.noise, 0, 10), .standard = "0.1"},
+    {"--steps", 0, "N", "Gradient steps", OPTION_INT(GnsOptions, training.steps, 1, 100000000), .standard = "20000"},
+    {"--batch", 0, "N", "Examples of a gradient step", OPTION_INT(GnsOptions, training.batch, 1, 1024),
      .standard = "8"},
-    {"--rate", 0, "R", "Rate of the first step; it falls to 0", OPTION_DOUBLE(TrainGnsOptions, training.rate, 1e-9, 1),
+    {"--rate", 0, "R", "Rate of the first step; it falls to 0", OPTION_DOUBLE(GnsOptions, training.rate, 1e-9, 1),
      .standard = "0.005"},
-    {"--seed", 0, "N", "Seed of the examples and of the initial weights", OPTION_SEED(TrainGnsOptions, training.seed),
+    {"--seed", 0, "N", "Seed of the examples and of the initial weights", OPTION_SEED(GnsOptions, training.seed),
      .standard = "1"},
     {0}};
 
-static void train_gns_print_score(void *context, const GnsScore *score) {
+static void gns_print_score(void *context, const GnsScore *score) {
     (void)context;
     progress_bar_clear();
     printf("%7d  %9.5f  %9.5f\n", score->steps, score->loss, score->held_out);
@@ -256,8 +249,8 @@ static void print_times(const GnsTraining *training) {
 }
 
 /* Reads the scenes of a list; their number in *count. */
-static bool train_gns_read_scenes(const char *list, Scene *scenes[GNS_MAX_SCENES], int *count, Error *error) {
-    char names[TRAIN_GNS_PATH_SIZE];
+static bool gns_read_scenes(const char *list, Scene *scenes[GNS_MAX_SCENES], int *count, Error *error) {
+    char names[GNS_LIST_SIZE];
     *count = 0;
     if (strlen(list) >= sizeof names) return error_input(error, "--scenes", "the list is too long");
     strcpy(names, list);
@@ -271,61 +264,51 @@ static bool train_gns_read_scenes(const char *list, Scene *scenes[GNS_MAX_SCENES
     return *count > 0 || error_input(error, "--scenes", "no scene is given");
 }
 
-static bool train_gns_store(const GnsNet *net, const TrainRequest *request, const char *state,
-                            const GnsTraining *training, Error *error) {
-    if (!gns_net_write(net, request->output, error) || !file_remove(state, error)) return false;
-    print_times(training);
-    printf("%d parameters -> %s\n", net->layout.parameters, request->output);
-    return true;
-}
-
-static bool train_gns_train(const TrainRequest *request, TrainGnsOptions *given, Error *error) {
+static bool gns_train(const TrainRequest *request, GnsOptions *given, Error *error) {
     GnsTraining *training = &given->training;
     Scene *scenes[GNS_MAX_SCENES];
     GnsNet net;
-    char command[GNS_COMMAND_SIZE], state[TRAIN_GNS_PATH_SIZE];
-    if (!file_path(state, sizeof state, error, "%s.part", request->output)) return false;
-    if (!train_gns_read_scenes(given->scenes, scenes, &training->scene_count, error)) {
+    if (!gns_read_scenes(given->scenes, scenes, &training->scene_count, error)) {
         for (int i = 0; i < training->scene_count; i++) scene_destroy(scenes[i]);
         return false;
     }
-    train_describe(request, command, sizeof command);
-    training->command = command;
-    training->state_path = state;
     training->scenes = scenes;
-    training->on_score = train_gns_print_score;
     printf("mean squared error of accelerations, in units of their deviation\n  steps       loss   held out\n");
     bool ok = gns_training_run(training, &net, progress_bar_begin("training"), error);
     progress_bar_end();
-    snprintf(net.command, sizeof net.command, "%s", command);
-    ok = ok && train_gns_store(&net, request, state, training, error);
+    snprintf(net.command, sizeof net.command, "%s", request->command);
+    ok = ok && gns_net_write(&net, request->output, error) && file_remove(request->state, error);
+    if (ok) {
+        print_times(training);
+        printf("%d parameters -> %s\n", net.layout.parameters, request->output);
+    }
     gns_net_free(&net);
     return ok;
 }
 
-static bool train_gns_run(const TrainRequest *request, Error *error) {
-    TrainGnsOptions given = {.scenes = NULL};
-    if (path_is_standard(request->output))
-        return error_input(error, "-o", "gns keeps its state beside the network; give the network a name");
+static bool gns_run(const TrainRequest *request, Error *error) {
+    GnsOptions given = {
+        .training = {.command = request->command, .state_path = request->state, .on_score = gns_print_score}};
     if (!train_read(request, &given, error)) return false;
     if (given.training.width % GNS_WIDTH_STEP != 0)
         return error_input(error, "--width", "%d is not a multiple of %d", given.training.width, GNS_WIDTH_STEP);
-    return train_gns_train(request, &given, error);
+    return gns_train(request, &given, error);
 }
 
 const TrainKind train_gns = {
-    "gns",
-    NULL,
-    "the graph network of gns, on steps of recorded launches. Prints its error during the "
-    "training, and at the end what a step costs. An interrupted training is resumed by the same "
-    "command; its state is in NET.npz.part",
-    "gns",
-    train_gns_options,
-    train_gns_run};
+    .name = "gns",
+    .summary = "the graph network of gns, on steps of recorded launches. Prints its error during the "
+               "training, and at the end what a step costs. An interrupted training is resumed by the same "
+               "command; its state is in NET.npz.part",
+    .file_kind = "gns",
+    .options = gns_options,
+    .train = gns_run,
+    .result = "network",
+    .command_size = GNS_COMMAND_SIZE};
 
-enum { TRAIN_SUBSPACE_PATH_SIZE = 4096, EPOCH_BATCHES = 20 }; /* a second or so: what an interruption may lose */
+enum { EPOCH_BATCHES = 20 }; /* a second or so: what an interruption may lose */
 
-static const Option train_subspace_options[] = {
+static const Option subspace_options[] = {
     {"--launches", 0, "N", "Launches to learn from", OPTION_INT(SubspaceTraining, launches, 1, LAUNCHES_MAX),
      .standard = "201"},
     {"--epochs", 0, "N", "Epochs for each number of components, of 20 batches of 256 windows",
@@ -335,7 +318,7 @@ static const Option train_subspace_options[] = {
     {"--seed", 0, "N", "Seed of windows and initial weights", OPTION_SEED(SubspaceTraining, seed), .standard = "1"},
     {0}};
 
-static void train_subspace_print_score(void *context, const SubspaceScore *score, double loss) {
+static void subspace_print_score(void *context, const SubspaceScore *score, double loss) {
     (void)context;
     progress_bar_clear();
     printf("%10d  %8.4f  %8.4f %4.0f  %8.4f %4.0f  %8.4f %4.0f\n", score->components, loss, score->floor.rms,
@@ -343,73 +326,67 @@ static void train_subspace_print_score(void *context, const SubspaceScore *score
     fflush(stdout);
 }
 
-static bool train_subspace_train_and_store(const Scene *scene, const TrainRequest *request, Error *error) {
-    SubspaceTraining training = {.batches = EPOCH_BATCHES, .on_score = train_subspace_print_score};
-    char command[SUBSPACE_TEXT_SIZE], state[TRAIN_SUBSPACE_PATH_SIZE];
-    if (path_is_standard(request->output))
-        return error_input(error, "-o", "subspace keeps its state beside the network; give the network a name");
-    if (!train_read(request, &training, error) || !file_path(state, sizeof state, error, "%s.part", request->output))
-        return false;
+static bool subspace_run(const TrainRequest *request, Error *error) {
+    SubspaceTraining training = {.batches = EPOCH_BATCHES,
+                                 .command = request->command,
+                                 .state_path = request->state,
+                                 .on_score = subspace_print_score};
+    if (!train_read(request, &training, error)) return false;
     if (training.hidden % ROW_LANES != 0)
         return error_input(error, "--width", "must be a multiple of %d (got %d)", ROW_LANES, training.hidden);
-    train_describe(request, command, sizeof command);
-    training.command = command;
-    training.state_path = state;
     printf("held-out launches: distance from the recorded run, m (RMS over bodies and frames), and the median of the\n"
            "frames until a body is 0.1 m away\n"
            "components      loss  floor          linear term    with network\n");
-    SubspaceNet *net = subspace_train(scene, &training, progress_bar_begin("training"), error);
+    SubspaceNet *net = subspace_train(request->scene, &training, progress_bar_begin("training"), error);
     progress_bar_end();
-    const bool ok = net != NULL && subspace_net_write(net, request->output, error) && file_remove(state, error);
+    const bool ok =
+        net != NULL && subspace_net_write(net, request->output, error) && file_remove(request->state, error);
     if (ok) printf("%d bodies -> %s\n", net->shape.bodies, request->output);
     subspace_net_destroy(net);
     return ok;
 }
 
-static bool train_subspace_run(const TrainRequest *request, Error *error) {
-    Scene *scene = scene_read(request->input, error);
-    const bool ok = scene != NULL && train_subspace_train_and_store(scene, request, error);
-    scene_destroy(scene);
-    return ok;
-}
+const TrainKind train_subspace = {.name = "subspace",
+                                  .input = "SCENE",
+                                  .summary =
+                                      "the networks of subspace for a scene, with 8, 32 and 128 principal components. "
+                                      "Prints held-out errors of each. An interrupted training is resumed by the same "
+                                      "command; its state is in NET.npz.part",
+                                  .file_kind = SUBSPACE_KIND,
+                                  .options = subspace_options,
+                                  .train = subspace_run,
+                                  .reads_scene = true,
+                                  .result = "network",
+                                  .command_size = SUBSPACE_TEXT_SIZE};
 
-const TrainKind train_subspace = {"subspace",
-                                  "SCENE",
-                                  "the networks of subspace for a scene, with 8, 32 and 128 principal components. "
-                                  "Prints held-out errors of each. An interrupted training is resumed by the same "
-                                  "command; its state is in NET.npz.part",
-                                  SUBSPACE_KIND,
-                                  train_subspace_options,
-                                  train_subspace_run};
-
-typedef struct TrainSceneNetOptions {
+typedef struct SceneNetOptions {
     SceneTraining training;
     SceneNetVerdict verdict;
     bool smallest;
     double within; /* m/s; negative: not given */
-} TrainSceneNetOptions;
+} SceneNetOptions;
 
 static OptionRead read_momentum;
 
-static const Option train_scene_net_options[] = {
+static const Option scene_net_options[] = {
     {"--launches", 0, "N", "Launches of each round; half of them rotated and spinning",
-     OPTION_INT(TrainSceneNetOptions, training.launches, 10, 100000), .standard = "3000"},
+     OPTION_INT(SceneNetOptions, training.launches, 10, 100000), .standard = "3000"},
     {"--rounds", 0, "N", "Rounds; the first runs the launches without the network, the others with it",
-     OPTION_INT(TrainSceneNetOptions, training.rounds, 1, 100), .standard = "3"},
+     OPTION_INT(SceneNetOptions, training.rounds, 1, 100), .standard = "3"},
     {"--iterations", 0, "N", "Epochs of the first round; the others have half as many",
-     OPTION_INT(TrainSceneNetOptions, training.epochs, 1, 100000), .standard = "40"},
+     OPTION_INT(SceneNetOptions, training.epochs, 1, 100000), .standard = "40"},
     {"--width", 0, "N", "Width of both hidden layers, a multiple of 16",
-     OPTION_INT(TrainSceneNetOptions, training.widths.hidden, ROW_LANES, SLOT_WIDTH_MAX), .standard = "64"},
+     OPTION_INT(SceneNetOptions, training.widths.hidden, ROW_LANES, SLOT_WIDTH_MAX), .standard = "64"},
     {"--sweeps", 0, "K", "Sweeps that follow the network",
-     OPTION_INT(TrainSceneNetOptions, training.sweeps, 1, SLOT_SWEEPS_MAX), .standard = "14"},
+     OPTION_INT(SceneNetOptions, training.sweeps, 1, SLOT_SWEEPS_MAX), .standard = "14"},
     {"--momentum", 0, "on|off", "Whether the sweeps after the network have learned momentum factors",
-     OPTION_READ(read_momentum, TrainSceneNetOptions, training.momentum), .standard = "on"},
-    {"--seed", 0, "N", "Seed of the initial weights and of the launches",
-     OPTION_SEED(TrainSceneNetOptions, training.seed), .standard = "1"},
+     OPTION_READ(read_momentum, SceneNetOptions, training.momentum), .standard = "on"},
+    {"--seed", 0, "N", "Seed of the initial weights and of the launches", OPTION_SEED(SceneNetOptions, training.seed),
+     .standard = "1"},
     {"--smallest", 0, NULL, "Train the smallest width whose held-out error is at most that of --within",
-     OPTION_FLAG(TrainSceneNetOptions, smallest)},
+     OPTION_FLAG(SceneNetOptions, smallest)},
     {"--within", 0, "E", "Held-out error to reach, m/s; only with --smallest",
-     OPTION_DOUBLE(TrainSceneNetOptions, within, 0, 1000)},
+     OPTION_DOUBLE(SceneNetOptions, within, 0, 1000)},
     {TRAIN_SHARD},
     {0}};
 
@@ -419,7 +396,7 @@ static bool read_momentum(const Option *option, const char *text, void *value, E
 }
 
 /* Context: the last score. */
-static void train_scene_net_print_score(void *context, const SceneNetScore *score) {
+static void scene_net_print_score(void *context, const SceneNetScore *score) {
     *(SceneNetScore *)context = *score;
     progress_bar_clear();
     printf("%5d  %7d  %8.4f  %8.4f  %11.4f\n", score->round, score->samples, score->train, score->held_out,
@@ -428,7 +405,7 @@ static void train_scene_net_print_score(void *context, const SceneNetScore *scor
 }
 
 /* The stored command trains the width that was found. */
-static bool train_scene_net_store(SlotNetwork *network, const TrainRequest *request, int width, Error *error) {
+static bool scene_net_store(SlotNetwork *network, const TrainRequest *request, int width, Error *error) {
     TrainRequest found = *request;
     char text[16];
     snprintf(text, sizeof text, "%d", width);
@@ -459,8 +436,7 @@ static void print_verdict(const SceneNetVerdict *verdict) {
            compare(verdict->network, verdict->at_equal_time), compare(verdict->network, verdict->at_20));
 }
 
-static SlotNetwork *train_scene_net_train(const Scene *scene, SceneTraining *training, SceneNetScore *score,
-                                          Error *error) {
+static SlotNetwork *scene_net_train(const Scene *scene, SceneTraining *training, SceneNetScore *score, Error *error) {
     *score = (SceneNetScore){0};
     training->context = score;
     printf("%d wide; mean velocity error, m/s\nround  samples     train  held out  momentum 20\n",
@@ -476,7 +452,7 @@ static SlotNetwork *train_smallest(const Scene *scene, SceneTraining *training, 
     SceneNetScore score = {0};
     for (size_t i = 0; i < sizeof widths / sizeof widths[0]; i++) {
         training->widths.hidden = widths[i];
-        SlotNetwork *network = train_scene_net_train(scene, training, &score, error);
+        SlotNetwork *network = scene_net_train(scene, training, &score, error);
         if (network == NULL) return NULL;
         const bool none = score.momentum <= within;
         if (none) printf("no network is needed: momentum with 20 sweeps is within %g m/s\n", within);
@@ -489,36 +465,35 @@ static SlotNetwork *train_smallest(const Scene *scene, SceneTraining *training, 
     return NULL;
 }
 
-static bool train_scene_net_train_and_store(const Scene *scene, const TrainRequest *request,
-                                            TrainSceneNetOptions *given, Error *error) {
+static bool scene_net_train_and_store(const Scene *scene, const TrainRequest *request, SceneNetOptions *given,
+                                      Error *error) {
     SceneTraining *training = &given->training;
     SceneNetScore score;
     SlotNetwork *network = given->smallest ? train_smallest(scene, training, given->within, error)
-                                           : train_scene_net_train(scene, training, &score, error);
-    bool ok = network != NULL ? train_scene_net_store(network, request, training->widths.hidden, error)
-                              : error->kind == ERROR_NONE;
+                                           : scene_net_train(scene, training, &score, error);
+    bool ok =
+        network != NULL ? scene_net_store(network, request, training->widths.hidden, error) : error->kind == ERROR_NONE;
     if (ok && network != NULL) print_verdict(&given->verdict);
     slot_network_destroy(network);
     return ok;
 }
 
 /* A shard records and does not train; every width that a merge trains reads the same records. */
-static bool record_or_train(const Scene *scene, const TrainRequest *request, TrainSceneNetOptions *given,
-                            Error *error) {
+static bool record_or_train(const Scene *scene, const TrainRequest *request, SceneNetOptions *given, Error *error) {
     SceneRecording recording;
     Pieces pieces = {0};
     bool ok = scene_recording_begin(&recording, scene, &given->training, error) &&
               train_pieces(request, &recording.plan, &pieces, error);
     if (ok && pieces.mode == PIECES_MERGE) given->training.recorded = &pieces;
-    if (ok && pieces.mode != PIECES_SHARD) ok = train_scene_net_train_and_store(scene, request, given, error);
+    if (ok && pieces.mode != PIECES_SHARD) ok = scene_net_train_and_store(scene, request, given, error);
     pieces_close(&pieces);
     scene_recording_end(&recording);
     return ok;
 }
 
-static bool train_scene_net_run(const TrainRequest *request, Error *error) {
-    TrainSceneNetOptions given = {
-        .training = {.widths = {.state = 16, .present = 32, .warm = 16}, .on_score = train_scene_net_print_score},
+static bool scene_net_run(const TrainRequest *request, Error *error) {
+    SceneNetOptions given = {
+        .training = {.widths = {.state = 16, .present = 32, .warm = 16}, .on_score = scene_net_print_score},
         .within = -1};
     if (!train_read(request, &given, error)) return false;
     given.training.verdict = &given.verdict;
@@ -526,17 +501,15 @@ static bool train_scene_net_run(const TrainRequest *request, Error *error) {
     if (width % ROW_LANES != 0) return error_input(error, "--width", "%d is not a multiple of %d", width, ROW_LANES);
     if (given.smallest != (given.within >= 0))
         return error_input(error, "--smallest", "goes with --within E, and that with it");
-    Scene *scene = scene_read(request->input, error);
-    bool ok = scene != NULL && record_or_train(scene, request, &given, error);
-    scene_destroy(scene);
-    return ok;
+    return record_or_train(request->scene, request, &given, error);
 }
 
 const TrainKind train_scene_net = {
-    "scene-net",
-    "SCENE",
-    "a network for the impacts of a scene. Prints its mean velocity error after each round, on the training and the "
-    "held-out launches, beside that of 20 sweeps with momentum",
-    "scene-net",
-    train_scene_net_options,
-    train_scene_net_run};
+    .name = "scene-net",
+    .input = "SCENE",
+    .summary = "a network for the impacts of a scene. Prints its mean velocity error after each round, on the training "
+               "and the held-out launches, beside that of 20 sweeps with momentum",
+    .file_kind = "scene-net",
+    .options = scene_net_options,
+    .train = scene_net_run,
+    .reads_scene = true};

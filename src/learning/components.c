@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Principal components of poses: eigenvectors by Jacobi rotations, the rows of recorded launches, the basis of a subspace. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "learning/dataset.h"
@@ -152,9 +153,10 @@ bool pose_rows_make(PoseRows *rows, const Scene *scene, const LaunchRuns *runs, 
     for (int body = 0; body < runs->bodies; body++) moving += moves(scene, body);
     *rows = (PoseRows){
         .launches = runs->count, .states = runs->frames - scene->bomb.frame + 1, .numbers = SUBSPACE_POSE * moving};
-    rows->rows = malloc((size_t)rows->launches * (size_t)rows->states * (size_t)rows->numbers * sizeof *rows->rows);
-    rows->launch = malloc((size_t)rows->launches * SUBSPACE_LAUNCH * sizeof *rows->launch);
-    if (rows->rows == NULL || rows->launch == NULL) return error_memory(error, "subspace");
+    const size_t count = (size_t)rows->states * (size_t)rows->numbers;
+    rows->rows = malloc((size_t)rows->launches * (count + SUBSPACE_LAUNCH) * sizeof *rows->rows);
+    if (rows->rows == NULL) return error_memory(error, "subspace");
+    rows->launch = rows->rows + (size_t)rows->launches * count;
 #pragma omp parallel for schedule(static)
     for (int launch = 0; launch < rows->launches; launch++) fill_launch(rows, scene, runs, launch);
     return true;
@@ -162,7 +164,6 @@ bool pose_rows_make(PoseRows *rows, const Scene *scene, const LaunchRuns *runs, 
 
 void pose_rows_free(PoseRows *rows) {
     free(rows->rows);
-    free(rows->launch);
     *rows = (PoseRows){0};
 }
 

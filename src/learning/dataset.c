@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Datasets: the rows of a launch, subsets, and the launches that are drawn. */
 #include "learning/dataset.h"
 
 #include "base/base.h"
@@ -133,50 +134,26 @@ bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRo
     return ok;
 }
 
-/* Copies items of `size` bytes; NULL stays NULL. */
-static bool copy(void **to, const void *from, size_t count, size_t size) {
-    if (from == NULL) return true;
-    *to = malloc((count + 1) * size);
-    if (*to != NULL) memcpy(*to, from, count * size);
-    return *to != NULL;
-}
-
-static bool copy_launches(Dataset *to, const Dataset *from) {
-    const size_t count = (size_t)from->launches;
-    return copy((void **)&to->launch_scene, from->launch_scene, count, sizeof *to->launch_scene) &&
-           copy((void **)&to->launch_x, from->launch_x, count, sizeof *to->launch_x) &&
-           copy((void **)&to->launch_rotation, from->launch_rotation, count, sizeof *to->launch_rotation) &&
-           copy((void **)&to->launch_spin, from->launch_spin, count, sizeof *to->launch_spin) &&
-           copy((void **)&to->launch_test, from->launch_test, count, sizeof *to->launch_test);
-}
-
 static bool is_kept(const Dataset *dataset, const bool *keep, int64_t row) {
     return dataset_is_test(dataset, row) || keep[dataset->launch[row]];
 }
 
 /* Copies the kept rows of an array with `size` bytes per row. */
-static bool copy_rows(void **to, const void *from, const Dataset *dataset, const bool *keep, int64_t kept,
-                      size_t size) {
-    if (from == NULL) return true;
-    char *at = *to = malloc((size_t)kept * size);
-    if (at == NULL) return false;
+static void copy_rows(void *to, const void *from, const Dataset *dataset, const bool *keep, size_t size) {
+    char *at = to;
     for (int64_t row = 0; row < dataset->rows; row++) {
         if (!is_kept(dataset, keep, row)) continue;
         memcpy(at, (const char *)from + (size_t)row * size, size);
         at += size;
     }
-    return true;
 }
 
-static bool copy_all_rows(Dataset *to, const Dataset *from, const bool *keep) {
-    const int64_t kept = to->rows;
-    const size_t inputs = (size_t)dataset_inputs(from), changes = (size_t)pair_change_count(from->target);
-    return copy_rows((void **)&to->inputs, from->inputs, from, keep, kept, inputs * sizeof *to->inputs) &&
-           copy_rows((void **)&to->changes, from->changes, from, keep, kept, changes * sizeof *to->changes) &&
-           copy_rows((void **)&to->context, from->context, from, keep, kept, PAIR_CONTEXT * sizeof *to->context) &&
-           copy_rows((void **)&to->launch, from->launch, from, keep, kept, sizeof *to->launch) &&
-           copy_rows((void **)&to->frame, from->frame, from, keep, kept, sizeof *to->frame) &&
-           copy_rows((void **)&to->bodies, from->bodies, from, keep, kept, 2 * sizeof *to->bodies);
+static void copy_all_rows(Dataset *to, const Dataset *from, const bool *keep) {
+    DatasetArrays arrays, others;
+    const int count = dataset_arrays(to, to->context != NULL, &arrays);
+    dataset_arrays(from, from->context != NULL, &others);
+    for (int i = DATASET_FIRST_ROWS; i < count; i++)
+        copy_rows((void *)arrays.list[i].data, others.list[i].data, from, keep, dataset_row_size(&others.list[i]));
 }
 
 Dataset *dataset_subset(const Dataset *dataset, const bool *keep, Error *error) {
@@ -189,14 +166,13 @@ Dataset *dataset_subset(const Dataset *dataset, const bool *keep, Error *error) 
     Dataset *subset = malloc(sizeof *subset);
     if (subset == NULL) return error_memory(error, "dataset"), NULL;
     *subset = *dataset;
-    subset->rows = kept;
-    subset->inputs = subset->changes = subset->context = NULL;
-    subset->launch = subset->frame = subset->bodies = subset->launch_scene = NULL;
-    subset->launch_x = subset->launch_rotation = subset->launch_spin = NULL;
-    subset->launch_test = NULL;
-    if (copy_launches(subset, dataset) && copy_all_rows(subset, dataset, keep)) return subset;
-    dataset_destroy(subset);
-    return error_memory(error, "dataset"), NULL;
+    subset->row_block = subset->launch_block = NULL;
+    if (!dataset_make_launches(subset, dataset->launches) || !dataset_make_rows(subset, kept, dataset->context != NULL))
+        return error_memory(error, "dataset"), dataset_destroy(subset), NULL;
+    memcpy(subset->launch_block, dataset->launch_block,
+           (size_t)(dataset->launch_test + dataset->launches - (uint8_t *)dataset->launch_block));
+    copy_all_rows(subset, dataset, keep);
+    return subset;
 }
 
 /* Writes the indices of training launches with rows to order[launches]; returns their number. */
@@ -208,8 +184,7 @@ static int list_launches(const Dataset *dataset, bool *has_rows, int *order) {
     return count;
 }
 
-static bool dataset_subset_draw(const Dataset *dataset, int count, uint64_t seed, bool *keep, int *order,
-                                Error *error) {
+static bool draw_kept(const Dataset *dataset, int count, uint64_t seed, bool *keep, int *order, Error *error) {
     const int launches = list_launches(dataset, keep, order);
     if (count < 1 || count > launches)
         return error_input(error, "dataset", "%d training launches requested; expected 1 to %d", count, launches);
@@ -230,7 +205,7 @@ Dataset *dataset_draw_subset(const Dataset *dataset, int count, uint64_t seed, E
     Dataset *subset = NULL;
     if (keep == NULL || order == NULL)
         error_memory(error, "dataset");
-    else if (dataset_subset_draw(dataset, count, seed, keep, order, error))
+    else if (draw_kept(dataset, count, seed, keep, order, error))
         subset = dataset_subset(dataset, keep, error);
     free(order);
     free(keep);
@@ -240,9 +215,7 @@ Dataset *dataset_draw_subset(const Dataset *dataset, int count, uint64_t seed, E
 /* The paper's random launches (3.3). */
 static const double random_x = 15, random_rotation = 1.5, random_spin = 20;
 
-static float dataset_launches_draw(const gsl_rng *generator, double limit) {
-    return (float)gsl_ran_flat(generator, -limit, limit);
-}
+static float draw(const gsl_rng *generator, double limit) { return (float)gsl_ran_flat(generator, -limit, limit); }
 
 static void put_launch(Dataset *dataset, int i, const Launch *launch) {
     dataset->launch_x[i] = launch->x;
@@ -262,9 +235,9 @@ static void draw_launches(const DatasetOptions *options, const Scene *scene, con
         if (k < options->bomb_x.count) {
             out[k].x = range_value(&options->bomb_x, k);
         } else {
-            out[k].x = dataset_launches_draw(generator, random_x);
-            out[k].rotation = dataset_launches_draw(generator, random_rotation);
-            out[k].spin = dataset_launches_draw(generator, random_spin);
+            out[k].x = draw(generator, random_x);
+            out[k].rotation = draw(generator, random_rotation);
+            out[k].spin = draw(generator, random_spin);
         }
     }
 }
@@ -341,18 +314,11 @@ Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes
     dataset->target = options->target;
     dataset->labels = options->labels;
     dataset->scene_count = options->scene_count;
-    dataset->launches = options->scene_count * dataset_launches_each(options);
-    size_t launches = (size_t)dataset->launches;
-    dataset->launch_scene = malloc(launches * sizeof *dataset->launch_scene);
-    dataset->launch_x = malloc(launches * sizeof *dataset->launch_x);
-    dataset->launch_rotation = malloc(launches * sizeof *dataset->launch_rotation);
-    dataset->launch_spin = malloc(launches * sizeof *dataset->launch_spin);
-    dataset->launch_test = calloc(launches, sizeof *dataset->launch_test);
     for (int i = 0; i < options->scene_count; i++) strcpy(dataset->scenes[i], scenes[i]->name);
-    bool ok = dataset->launch_scene != NULL && dataset->launch_x != NULL && dataset->launch_rotation != NULL &&
-              dataset->launch_spin != NULL && dataset->launch_test != NULL;
-    if (!ok) error_memory(error, "dataset");
-    if (ok && fill(dataset, options, scenes, error)) return dataset;
+    if ((dataset_make_launches(dataset, options->scene_count * dataset_launches_each(options)) ||
+         error_memory(error, "dataset")) &&
+        fill(dataset, options, scenes, error))
+        return dataset;
     dataset_destroy(dataset);
     return NULL;
 }

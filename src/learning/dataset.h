@@ -7,6 +7,7 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
+#include "nets/nets.h"
 #include "runs/pieces.h"
 #include "scenes/scenes.h"
 
@@ -62,6 +63,7 @@ typedef struct Dataset {
     uint8_t *launch_test; /* [launches] 1: held out for the test score (80/20, drawn with the seed) */
     int scene_count;
     char scenes[DATASET_MAX_SCENES][DATASET_NAME_SIZE];
+    void *row_block, *launch_block; /* the arrays of rows, and of launches */
 } Dataset;
 
 /* Number of inputs. */
@@ -95,6 +97,10 @@ typedef struct DatasetOptions {
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error);
 void dataset_destroy(Dataset *dataset);
 
+/* Arrays for so many launches, zero, and for so many rows, not zeroed; view and target are set. False when memory is short. */
+bool dataset_make_launches(Dataset *dataset, int launches);
+bool dataset_make_rows(Dataset *dataset, int64_t rows, bool context);
+
 bool dataset_write(const Dataset *dataset, const char *path, Error *error);
 Dataset *dataset_read(const char *path, Error *error);
 
@@ -126,8 +132,6 @@ typedef struct DatasetRecording {
 
 /* ERROR_INPUT if there are no rows. */
 bool dataset_check_rows(int64_t rows, Error *error);
-
-void dataset_free_rows(Dataset *dataset);
 
 /* The launches of a dataset. */
 
@@ -163,12 +167,18 @@ enum {
 
 typedef struct DatasetArrays {
     NpzArray list[DATASET_ARRAYS]; /* the last is the context */
+    NetField fields[NET_FIELDS_MAX];
     char scenes[DATASET_SCENES_SIZE];
 } DatasetArrays;
 
 /* The arrays in the order of the file; they point to the dataset and to *arrays. Of a dataset without rows, the arrays of
    rows have no data: rows can be appended (base/npz.h). Returns their number, which is one less without context. */
 int dataset_arrays(const Dataset *dataset, bool context, DatasetArrays *arrays);
+
+/* Bytes of a row in an array of rows, which all have numbers of 4 bytes. */
+static inline size_t dataset_row_size(const NpzArray *array) {
+    return sizeof(float) * (array->rank == 2 ? (size_t)array->shape[1] : 1);
+}
 
 /* A dataset file in pieces (runs/pieces.h): the rows of some launches each. */
 

@@ -1,39 +1,52 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dataset files: .npz with version, kind ("dataset"), scenes (text, one name per line), view, target, labels (words),
-   launch_scene, launch_x, launch_rotation, launch_spin, launch_test [launches], inputs [rows, 10, 12, 20 or 32],
-   changes [rows, 6 or 4], launch, frame [rows], bodies [rows, 2]; and, if recorded, context [rows, 17]. */
+/* Files of datasets: kind "dataset"; scenes are names in lines, and context is there if it was recorded. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "learning/dataset.h"
 #include "methods/pair.h"
+#include "nets/nets.h"
 #include "scenes/scenes.h"
 
+#include <float.h>
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define KIND "dataset"
-
 const char *const dataset_label_names[DATASET_LABELS + 1] = {"engine", "reference"};
 
-void dataset_free_rows(Dataset *dataset) {
-    free(dataset->inputs);
-    free(dataset->changes);
-    free(dataset->context);
-    free(dataset->launch);
-    free(dataset->frame);
-    free(dataset->bodies);
+bool dataset_make_launches(Dataset *dataset, int launches) {
+    const size_t count = (size_t)launches;
+    dataset->launches = launches;
+    dataset->launch_block = calloc(count, sizeof(int32_t) + 3 * sizeof(float) + 1);
+    if (dataset->launch_block == NULL) return false;
+    dataset->launch_scene = dataset->launch_block;
+    dataset->launch_x = (float *)(dataset->launch_scene + count);
+    dataset->launch_rotation = dataset->launch_x + count;
+    dataset->launch_spin = dataset->launch_rotation + count;
+    dataset->launch_test = (uint8_t *)(dataset->launch_spin + count);
+    return true;
+}
+
+bool dataset_make_rows(Dataset *dataset, int64_t rows, bool context) {
+    const size_t count = (size_t)rows, inputs = (size_t)dataset_inputs(dataset),
+                 changes = (size_t)pair_change_count(dataset->target), contexts = context ? PAIR_CONTEXT : 0;
+    dataset->rows = rows;
+    dataset->row_block = malloc((count + 1) * ((inputs + changes + contexts) * sizeof(float) + 4 * sizeof(int32_t)));
+    if (dataset->row_block == NULL) return false;
+    dataset->inputs = dataset->row_block;
+    dataset->changes = dataset->inputs + count * inputs;
+    float *after = dataset->changes + count * changes;
+    dataset->context = context ? after : NULL;
+    dataset->launch = (int32_t *)(after + count * contexts);
+    dataset->frame = dataset->launch + count;
+    dataset->bodies = dataset->frame + count;
+    return true;
 }
 
 void dataset_destroy(Dataset *dataset) {
     if (dataset == NULL) return;
-    dataset_free_rows(dataset);
-    free(dataset->launch_scene);
-    free(dataset->launch_x);
-    free(dataset->launch_rotation);
-    free(dataset->launch_spin);
-    free(dataset->launch_test);
+    free(dataset->row_block);
+    free(dataset->launch_block);
     free(dataset);
 }
 
@@ -45,50 +58,41 @@ static void join_scenes(const Dataset *dataset, char text[DATASET_SCENES_SIZE]) 
     }
 }
 
-enum { ARRAYS = DATASET_ARRAYS - DATASET_WORDS };
+typedef struct DatasetFile {
+    Dataset *dataset;
+    bool context;
+    char *scenes; /* of a writer */
+} DatasetFile;
 
-/* One list for writing and reading; the last may be missing. */
-static void list_arrays(const Dataset *dataset, NpzArray list[ARRAYS]) {
-    const int64_t rows = dataset->rows, launches = dataset->launches;
-    const NpzArray all[ARRAYS] = {
-        {"launch_scene", NPZ_INT32, 1, {launches}, dataset->launch_scene},
-        {"launch_x", NPZ_FLOAT32, 1, {launches}, dataset->launch_x},
-        {"launch_rotation", NPZ_FLOAT32, 1, {launches}, dataset->launch_rotation},
-        {"launch_spin", NPZ_FLOAT32, 1, {launches}, dataset->launch_spin},
-        {"launch_test", NPZ_UINT8, 1, {launches}, dataset->launch_test},
-        {"inputs", NPZ_FLOAT32, 2, {rows, dataset_inputs(dataset)}, dataset->inputs},
-        {"changes", NPZ_FLOAT32, 2, {rows, pair_change_count(dataset->target)}, dataset->changes},
-        {"launch", NPZ_INT32, 1, {rows}, dataset->launch},
-        {"frame", NPZ_INT32, 1, {rows}, dataset->frame},
-        {"bodies", NPZ_INT32, 2, {rows, 2}, dataset->bodies},
-        {"context", NPZ_FLOAT32, 2, {rows, PAIR_CONTEXT}, dataset->context},
-    };
-    memcpy(list, all, sizeof all);
+static const FloatBounds finite = {-FLT_MAX, FLT_MAX, "all must be finite"};
+
+static int list_fields(void *of, NetField *fields) {
+    const DatasetFile *file = of;
+    const Dataset *dataset = file->dataset;
+    const int64_t rows = dataset->rows, launches = dataset->launches, inputs = dataset_inputs(dataset),
+                  changes = pair_change_count(dataset->target);
+    const NetField all[] = {
+        {"view", NPZ_TEXT, 0, {0}, .data = (char *)pair_views[dataset->view].name, .known = true},
+        {"target", NPZ_TEXT, 0, {0}, .data = (char *)pair_target_names[dataset->target], .known = true},
+        {"labels", NPZ_TEXT, 0, {0}, .data = (char *)dataset_label_names[dataset->labels], .known = true},
+        {"scenes", NPZ_TEXT, 0, {0}, .data = file->scenes, .known = true},
+        {"launch_scene", NPZ_INT32, 1, {launches}, .data = dataset->launch_scene},
+        {"launch_x", NPZ_FLOAT32, 1, {launches}, .data = dataset->launch_x, .range = &finite},
+        {"launch_rotation", NPZ_FLOAT32, 1, {launches}, .data = dataset->launch_rotation, .range = &finite},
+        {"launch_spin", NPZ_FLOAT32, 1, {launches}, .data = dataset->launch_spin, .range = &finite},
+        {"launch_test", NPZ_UINT8, 1, {launches}, .data = dataset->launch_test},
+        {"inputs", NPZ_FLOAT32, 2, {rows, inputs}, .data = dataset->inputs, .range = &finite},
+        {"changes", NPZ_FLOAT32, 2, {rows, changes}, .data = dataset->changes, .range = &finite},
+        {"launch", NPZ_INT32, 1, {rows}, .data = dataset->launch},
+        {"frame", NPZ_INT32, 1, {rows}, .data = dataset->frame},
+        {"bodies", NPZ_INT32, 2, {rows, 2}, .data = dataset->bodies},
+        {"context", NPZ_FLOAT32, 2, {rows, PAIR_CONTEXT}, .data = dataset->context, .range = &finite}};
+    memcpy(fields, all, sizeof all);
+    return (int)(sizeof all / sizeof *all) - !file->context;
 }
 
-int dataset_arrays(const Dataset *dataset, bool context, DatasetArrays *arrays) {
-    static const int32_t version = DATASET_VERSION;
-    join_scenes(dataset, arrays->scenes);
-    const NpzArray words[DATASET_WORDS] = {
-        {"version", NPZ_INT32, 0, {0}, &version},
-        {"kind", NPZ_TEXT, 0, {0}, KIND},
-        {"view", NPZ_TEXT, 0, {0}, pair_views[dataset->view].name},
-        {"target", NPZ_TEXT, 0, {0}, pair_target_names[dataset->target]},
-        {"labels", NPZ_TEXT, 0, {0}, dataset_label_names[dataset->labels]},
-        {"scenes", NPZ_TEXT, 0, {0}, arrays->scenes},
-    };
-    memcpy(arrays->list, words, sizeof words);
-    list_arrays(dataset, arrays->list + DATASET_WORDS);
-    return DATASET_ARRAYS - !context;
-}
-
-bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
-    DatasetArrays arrays;
-    const int count = dataset_arrays(dataset, dataset->context != NULL, &arrays);
-    return npz_write(path, arrays.list, (size_t)count, error);
-}
-
-static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
+static bool read_scenes(NpzFile *file, Dataset *dataset, Error *error) {
+    const char *path = npz_path(file);
     char text[DATASET_SCENES_SIZE], *line = text;
     if (!npz_read_text(file, "scenes", text, sizeof text, error)) return false;
     while (line != NULL) {
@@ -107,22 +111,21 @@ static bool read_scenes(NpzFile *file, const char *path, Dataset *dataset, Error
 }
 
 /* The index of a stored word in a list. */
-static bool read_word(NpzFile *file, const char *path, const char *name, const char *const *words, int count,
-                      int *place, Error *error) {
+static bool read_word(NpzFile *file, const char *name, const char *const *words, int count, int *place, Error *error) {
     char text[32];
     if (!npz_read_text(file, name, text, sizeof text, error)) return false;
     for (*place = 0; *place < count; ++*place)
         if (strcmp(words[*place], text) == 0) return true;
-    return error_input(error, path, "%s: a word that is not known", name);
+    return error_input(error, npz_path(file), "%s: a word that is not known", name);
 }
 
-static bool read_words(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
+static bool read_words(NpzFile *file, Dataset *dataset, Error *error) {
     const char *views[PAIR_VIEWS];
     int view, target, labels;
     for (int v = 0; v < PAIR_VIEWS; v++) views[v] = pair_views[v].name;
-    if (!read_word(file, path, "view", views, PAIR_VIEWS, &view, error) ||
-        !read_word(file, path, "target", pair_target_names, PAIR_TARGETS, &target, error) ||
-        !read_word(file, path, "labels", dataset_label_names, DATASET_LABELS, &labels, error))
+    if (!read_word(file, "view", views, PAIR_VIEWS, &view, error) ||
+        !read_word(file, "target", pair_target_names, PAIR_TARGETS, &target, error) ||
+        !read_word(file, "labels", dataset_label_names, DATASET_LABELS, &labels, error))
         return false;
     dataset->view = (PairView)view;
     dataset->target = (PairTarget)target;
@@ -130,43 +133,28 @@ static bool read_words(NpzFile *file, const char *path, Dataset *dataset, Error 
     return true;
 }
 
-static void *take(NpzFile *file, const NpzArray *array, Error *error) {
-    return npz_read(file, array->name, array->type, array->rank, array->shape, error);
-}
-
-static bool read_arrays(NpzFile *file, const char *path, Dataset *dataset, Error *error) {
+static bool read_sizes(void *of, NpzFile *npz, Error *error) {
+    DatasetFile *file = of;
+    Dataset *dataset = file->dataset;
     int64_t launches, shape[2];
-    if (!npz_shape(file, "launch_x", NPZ_FLOAT32, 1, &launches, error)) return false;
-    if (!npz_shape(file, "inputs", NPZ_FLOAT32, 2, shape, error)) return false;
-    const int64_t rows = shape[0];
-    if (launches < 1 || launches > INT_MAX || rows < 1)
-        return error_input(error, path, "%lld launches and %lld rows; expected at least one of each",
-                           (long long)launches, (long long)rows);
+    if (!read_scenes(npz, dataset, error) || !read_words(npz, dataset, error) ||
+        !npz_shape(npz, "launch_x", NPZ_FLOAT32, 1, &launches, error) ||
+        !npz_shape(npz, "inputs", NPZ_FLOAT32, 2, shape, error))
+        return false;
+    if (launches < 1 || launches > INT_MAX || shape[0] < 1)
+        return error_input(error, npz_path(npz), "%lld launches and %lld rows; expected at least one of each",
+                           (long long)launches, (long long)shape[0]);
     dataset->launches = (int)launches;
-    dataset->rows = rows;
-    NpzArray list[ARRAYS], *next = list;
-    const bool has_context = npz_has(file, "context");
-    list_arrays(dataset, list);
-    return npz_expect(file, list, has_context ? ARRAYS : ARRAYS - 1, error) &&
-           (dataset->launch_scene = take(file, next++, error)) != NULL &&
-           (dataset->launch_x = take(file, next++, error)) != NULL &&
-           (dataset->launch_rotation = take(file, next++, error)) != NULL &&
-           (dataset->launch_spin = take(file, next++, error)) != NULL &&
-           (dataset->launch_test = take(file, next++, error)) != NULL &&
-           (dataset->inputs = take(file, next++, error)) != NULL &&
-           (dataset->changes = take(file, next++, error)) != NULL &&
-           (dataset->launch = take(file, next++, error)) != NULL &&
-           (dataset->frame = take(file, next++, error)) != NULL &&
-           (dataset->bodies = take(file, next++, error)) != NULL &&
-           (!has_context || (dataset->context = take(file, next, error)) != NULL);
+    dataset->rows = shape[0];
+    file->context = npz_has(npz, "context");
+    return true;
 }
 
-static bool check_finite(const float *numbers, int64_t count, const char *name, const char *path, Error *error) {
-    for (int64_t i = 0; i < count; i++)
-        if (!isfinite(numbers[i]))
-            return error_input(error, path, "%s: number %lld is %g; all must be finite", name, (long long)i,
-                               (double)numbers[i]);
-    return true;
+static bool create(void *of, Error *error) {
+    const DatasetFile *file = of;
+    return (dataset_make_launches(file->dataset, file->dataset->launches) &&
+            dataset_make_rows(file->dataset, file->dataset->rows, file->context)) ||
+           error_memory(error, "dataset");
 }
 
 /* Every number in [0, limit). */
@@ -181,7 +169,6 @@ static bool check_indices(const int32_t *numbers, int64_t count, int32_t limit, 
 
 static bool check_context(const Dataset *dataset, const char *path, Error *error) {
     if (dataset->context == NULL) return true;
-    if (!check_finite(dataset->context, dataset->rows * PAIR_CONTEXT, "context", path, error)) return false;
     for (int64_t r = 0; r < dataset->rows; r++) {
         const char *fault = pair_context_fault(dataset->context + r * PAIR_CONTEXT);
         if (fault != NULL) return error_input(error, path, "context: row %lld has %s", (long long)r, fault);
@@ -201,31 +188,38 @@ static bool check_split(const Dataset *dataset, const char *path, Error *error) 
                        (long long)(dataset->rows - test_rows), (long long)test_rows);
 }
 
-static bool check_contents(const Dataset *dataset, const char *path, Error *error) {
-    const int64_t rows = dataset->rows, launches = dataset->launches;
-    return check_indices(dataset->launch_scene, launches, dataset->scene_count, "launch_scene", path, error) &&
-           check_finite(dataset->launch_x, launches, "launch_x", path, error) &&
-           check_finite(dataset->launch_rotation, launches, "launch_rotation", path, error) &&
-           check_finite(dataset->launch_spin, launches, "launch_spin", path, error) &&
-           check_finite(dataset->inputs, rows * dataset_inputs(dataset), "inputs", path, error) &&
-           check_finite(dataset->changes, rows * pair_change_count(dataset->target), "changes", path, error) &&
+static bool check_contents(void *of, const char *path, Error *error) {
+    const Dataset *dataset = ((DatasetFile *)of)->dataset;
+    const int64_t rows = dataset->rows;
+    return check_indices(dataset->launch_scene, dataset->launches, dataset->scene_count, "launch_scene", path, error) &&
            check_indices(dataset->launch, rows, dataset->launches, "launch", path, error) &&
            check_indices(dataset->frame, rows, INT32_MAX, "frame", path, error) &&
            check_indices(dataset->bodies, rows * 2, INT32_MAX, "bodies", path, error) &&
            check_context(dataset, path, error) && check_split(dataset, path, error);
 }
 
+static const NetFileKind kind = {"dataset", DATASET_VERSION, list_fields, read_sizes, create, check_contents};
+
+int dataset_arrays(const Dataset *dataset, bool context, DatasetArrays *arrays) {
+    DatasetFile file = {(Dataset *)dataset, context, arrays->scenes};
+    join_scenes(dataset, arrays->scenes);
+    const int count = list_fields(&file, arrays->fields);
+    arrays->list[0] = (NpzArray){"version", NPZ_INT32, 0, {0}, &kind.version};
+    arrays->list[1] = (NpzArray){"kind", NPZ_TEXT, 0, {0}, kind.name};
+    for (int i = 0; i < count; i++) arrays->list[2 + i] = net_field_array(&arrays->fields[i]);
+    return 2 + count;
+}
+
+bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
+    DatasetArrays arrays;
+    const int count = dataset_arrays(dataset, dataset->context != NULL, &arrays);
+    return npz_write(path, arrays.list, (size_t)count, error);
+}
+
 Dataset *dataset_read(const char *path, Error *error) {
-    NpzFile *file = npz_open(path, error);
-    if (file == NULL) return NULL;
-    Dataset *dataset = calloc(1, sizeof *dataset);
-    if (dataset == NULL) error_memory(error, path);
-    if (dataset != NULL && !(npz_check_kind(file, KIND, DATASET_VERSION, error) &&
-                             read_scenes(file, path, dataset, error) && read_words(file, path, dataset, error) &&
-                             read_arrays(file, path, dataset, error) && check_contents(dataset, path, error))) {
-        dataset_destroy(dataset);
-        dataset = NULL;
-    }
-    npz_close(file);
-    return dataset;
+    DatasetFile file = {.dataset = calloc(1, sizeof *file.dataset)};
+    if (file.dataset == NULL) return error_memory(error, path), NULL;
+    if (net_file_read(&kind, &file, path, error)) return file.dataset;
+    dataset_destroy(file.dataset);
+    return NULL;
 }

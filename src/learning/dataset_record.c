@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Recording of many launches: datasets in memory, datasets in pieces, and poses. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
@@ -67,26 +68,17 @@ static bool gather(const Runs *runs, Dataset *dataset, Error *error) {
         launches[i].start = rows;
         rows += launches[i].count;
     }
-    dataset->inputs = malloc((rows + 1) * (size_t)dataset_inputs(dataset) * sizeof *dataset->inputs);
-    dataset->changes = malloc((rows + 1) * (size_t)pair_change_count(dataset->target) * sizeof *dataset->changes);
-    if (context) dataset->context = malloc((rows + 1) * PAIR_CONTEXT * sizeof *dataset->context);
-    dataset->launch = malloc((rows + 1) * sizeof *dataset->launch);
-    dataset->frame = malloc((rows + 1) * sizeof *dataset->frame);
-    dataset->bodies = malloc((rows + 1) * 2 * sizeof *dataset->bodies);
-    if (dataset->inputs == NULL || dataset->changes == NULL || dataset->launch == NULL || dataset->frame == NULL ||
-        dataset->bodies == NULL || (context && dataset->context == NULL))
-        return error_memory(error, "dataset");
-    dataset->rows = (int64_t)rows;
-    /* In parallel: most of the time is page faults at the first write. */
+    if (!dataset_make_rows(dataset, (int64_t)rows, context)) return error_memory(error, "dataset");
+        /* In parallel: most of the time is page faults at the first write. */
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < runs->count; i++) place_rows(dataset, &launches[i], runs->first + i, launches[i].start);
     return true;
 }
 
 /* Records launches first .. end - 1 into the arrays of rows of *part, which must have none: a copy of recording->dataset, or
-   that dataset itself. dataset_free_rows() frees them, also after a failure. */
-static bool dataset_record_launches(const DatasetRecording *recording, int first, int end, Dataset *part,
-                                    const Progress *progress, Error *error) {
+   that dataset itself. */
+static bool record_launches(const DatasetRecording *recording, int first, int end, Dataset *part,
+                            const Progress *progress, Error *error) {
     const int count = end - first;
     const Runs runs = {recording, calloc((size_t)count, sizeof *runs.launches), first, count};
     if (runs.launches == NULL) return error_memory(error, "dataset");
@@ -125,9 +117,9 @@ static bool check_target(const DatasetOptions *options, Error *error) {
                        pair_target_names[options->target]);
 }
 
-/* Checks the options, reads the scenes and makes the launches. Errors as dataset_record(). dataset_recording_end(), also after
+/* Checks the options, reads the scenes and makes the launches. Errors as dataset_record(). end_recording(), also after
    a failure. */
-static bool dataset_recording_begin(DatasetRecording *recording, const DatasetOptions *options, Error *error) {
+static bool begin_recording(DatasetRecording *recording, const DatasetOptions *options, Error *error) {
     *recording = (DatasetRecording){.options = options};
     if (!check_counts(options, error) || !check_target(options, error)) return false;
     for (int i = 0; i < options->scene_count; i++) {
@@ -139,7 +131,7 @@ static bool dataset_recording_begin(DatasetRecording *recording, const DatasetOp
     return recording->dataset != NULL;
 }
 
-static void dataset_recording_end(DatasetRecording *recording) {
+static void end_recording(DatasetRecording *recording) {
     dataset_destroy(recording->dataset);
     for (int i = 0; i < DATASET_MAX_SCENES; i++) scene_destroy(recording->scenes[i]);
     *recording = (DatasetRecording){.options = NULL};
@@ -148,13 +140,13 @@ static void dataset_recording_end(DatasetRecording *recording) {
 Dataset *dataset_record(const DatasetOptions *options, const Progress *progress, Error *error) {
     DatasetRecording recording;
     Dataset *dataset = NULL;
-    if (dataset_recording_begin(&recording, options, error) &&
-        dataset_record_launches(&recording, 0, recording.dataset->launches, recording.dataset, progress, error) &&
+    if (begin_recording(&recording, options, error) &&
+        record_launches(&recording, 0, recording.dataset->launches, recording.dataset, progress, error) &&
         dataset_check_rows(recording.dataset->rows, error)) {
         dataset = recording.dataset;
         recording.dataset = NULL;
     }
-    dataset_recording_end(&recording);
+    end_recording(&recording);
     return dataset;
 }
 
@@ -167,11 +159,6 @@ static const double pairs_of_body = 1.5;
 /* s: of recording a row, roughly. */
 static const double row_seconds = 2e-6;
 
-/* All arrays of rows have numbers of 4 bytes. */
-static size_t row_size(const NpzArray *array) {
-    return sizeof(float) * (array->rank == 2 ? (size_t)array->shape[1] : 1);
-}
-
 static int row_arrays(const DatasetPieces *pieces) { return DATASET_ROW_ARRAYS - !pieces->recording.options->context; }
 
 /* Bytes of a row in all its arrays. */
@@ -179,7 +166,7 @@ static size_t whole_row_size(const DatasetPieces *pieces) {
     DatasetArrays arrays;
     size_t size = 0;
     dataset_arrays(pieces->recording.dataset, true, &arrays);
-    for (int i = 0; i < row_arrays(pieces); i++) size += row_size(&arrays.list[DATASET_FIRST_ROWS + i]);
+    for (int i = 0; i < row_arrays(pieces); i++) size += dataset_row_size(&arrays.list[DATASET_FIRST_ROWS + i]);
     return size;
 }
 
@@ -203,19 +190,19 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
     DatasetArrays arrays;
     int64_t first, end;
     piece_ranges_find(&pieces->launches, piece, &first, &end);
-    const bool ok = dataset_record_launches(&pieces->recording, (int)first, (int)end, &part, progress, error);
+    const bool ok = record_launches(&pieces->recording, (int)first, (int)end, &part, progress, error);
     dataset_arrays(&part, true, &arrays);
     for (int i = 0; ok && i < row_arrays(pieces); i++) {
         const NpzArray *array = &arrays.list[DATASET_FIRST_ROWS + i];
-        stream_put(results, array->data, row_size(array), (size_t)part.rows);
+        stream_put(results, array->data, dataset_row_size(array), (size_t)part.rows);
     }
-    dataset_free_rows(&part);
+    free(part.row_block);
     return ok;
 }
 
 bool dataset_pieces_make(DatasetPieces *pieces, const DatasetOptions *options, Error *error) {
     *pieces = (DatasetPieces){.plan = {.describe = describe, .work = work, .context = pieces}};
-    if (!dataset_recording_begin(&pieces->recording, options, error)) return false;
+    if (!begin_recording(&pieces->recording, options, error)) return false;
     const int each = pieces->recording.dataset->launches / options->scene_count;
     for (int s = 0; s < options->scene_count; s++) {
         const double rows = estimated_rows(options, pieces->recording.scenes[s]) * each;
@@ -225,7 +212,7 @@ bool dataset_pieces_make(DatasetPieces *pieces, const DatasetOptions *options, E
     return true;
 }
 
-void dataset_pieces_free(DatasetPieces *pieces) { dataset_recording_end(&pieces->recording); }
+void dataset_pieces_free(DatasetPieces *pieces) { end_recording(&pieces->recording); }
 
 bool dataset_pieces_key(const DatasetPieces *pieces, StudyKey *key, Error *error) {
     const DatasetOptions *options = pieces->recording.options;
@@ -281,7 +268,7 @@ static bool add_piece(const DatasetPieces *pieces, const Pieces *done, int64_t p
     dataset_arrays(pieces->recording.dataset, true, &arrays);
     for (int i = DATASET_FIRST_ROWS; ok && i < DATASET_FIRST_ROWS + row_arrays(pieces); i++) {
         ok = npz_stream_append(stream, i, results + at, rows, error);
-        at += row_size(&arrays.list[i]) * (size_t)rows;
+        at += dataset_row_size(&arrays.list[i]) * (size_t)rows;
     }
     if (ok) *all_rows += rows;
     free(results);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Examples of gns: frames of recorded launches, with noise, and the accelerations that correct it. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
@@ -105,15 +106,12 @@ static bool reserve(GnsExample *example, int bodies) {
            array_reserve((void **)&example->counts, &example->count_capacity, (size_t)bodies, sizeof *example->counts);
 }
 
-/* 0 to 1 */
-static double uniform(uint64_t *random) { return (double)(split_mix(random) >> 11) * 0x1p-53; }
-
-static int below(uint64_t *random, int count) { return (int)(uniform(random) * count); }
+static int below(uint64_t *random, int count) { return (int)(random_unit(random) * count); }
 
 /* Nearly normal, of deviation 1: four uniform numbers, each of variance 1/12. */
 static float normal(uint64_t *random) {
     double sum = -2;
-    for (int i = 0; i < 4; i++) sum += uniform(random);
+    for (int i = 0; i < 4; i++) sum += random_unit(random);
     return (float)(sum * 0x1.bb67ae8584caap0); /* sqrt(3) */
 }
 
@@ -244,7 +242,7 @@ static int choose_frame(const GnsRuns *runs, int launch, int *tries, uint64_t *r
 
 /* 0 to 1, mostly small. */
 static float often_small(uint64_t *random) {
-    const double x = uniform(random);
+    const double x = random_unit(random);
     return (float)(x * x);
 }
 
@@ -259,9 +257,9 @@ static void fill_flight(GnsExample *example, int launch, float noise, uint64_t *
     const float x = either_sign(random) * flight_speed * often_small(random);
     const float y = either_sign(random) * flight_speed * often_small(random);
     const float spin = either_sign(random) * flight_spin * often_small(random);
-    const float height = flight_low + flight_height * (float)uniform(random);
+    const float height = flight_low + flight_height * (float)random_unit(random);
     const bool falls = below(random, 2) == 0;
-    BodyPose poses[GNS_HISTORY + 2] = {{{x, height}, (float)(6.3 * uniform(random))}};
+    BodyPose poses[GNS_HISTORY + 2] = {{{x, height}, (float)(6.3 * random_unit(random))}};
     Vec2 velocity = vec2(x, y);
     for (int k = 1; k <= GNS_HISTORY + 1; k++) {
         if (falls || k > GNS_HISTORY) velocity = vec2_add(velocity, vec2_scale(dt, runs->scene->gravity));

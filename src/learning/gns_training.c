@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of gns: the loss of a batch on all threads, first weights and units, steps and scores. */
 #include "learning/gns_training.h"
 
 #include "base/base.h"
@@ -26,9 +27,6 @@ void gns_fit_free(GnsFit *fit) {
         free(fit->workers[i].slopes);
     }
     free(fit->workers);
-    free(fit->transposed);
-    free(fit->gradients);
-    free(fit->losses);
     free(fit->mean_gradient);
     *fit = (GnsFit){.examples = NULL};
 }
@@ -37,13 +35,12 @@ bool gns_fit_begin(GnsFit *fit, const GnsExamples *examples, GnsNet *net, int ba
     const size_t count = (size_t)net->layout.parameters;
     *fit = (GnsFit){.examples = examples, .net = net, .batch = batch, .threads = omp_get_max_threads()};
     fit->workers = calloc((size_t)fit->threads, sizeof *fit->workers);
-    fit->transposed = calloc(count, sizeof *fit->transposed);
-    fit->gradients = calloc(count * (size_t)batch, sizeof *fit->gradients);
-    fit->losses = calloc((size_t)batch, sizeof *fit->losses);
-    fit->mean_gradient = calloc(count, sizeof *fit->mean_gradient);
-    if (fit->workers == NULL || fit->transposed == NULL || fit->gradients == NULL || fit->losses == NULL ||
-        fit->mean_gradient == NULL)
-        return error_memory(error, "gns");
+    fit->mean_gradient =
+        calloc(1, (count + (size_t)batch) * sizeof(double) + count * (1 + (size_t)batch) * sizeof(float));
+    if (fit->workers == NULL || fit->mean_gradient == NULL) return error_memory(error, "gns");
+    fit->losses = fit->mean_gradient + count;
+    fit->transposed = (float *)(fit->losses + batch);
+    fit->gradients = fit->transposed + count;
     for (int i = 0; i < fit->threads; i++) fit->workers[i].pass.tape = true;
     return true;
 }
@@ -136,25 +133,21 @@ enum {
 /* Trajectories come from nearly converged steps, as those of playback. */
 const char gns_teacher[] = "momentum:k=30";
 
-static const double slope_max = 1; /* of a batch's gradient: one strange example must not throw the weights far */
+static const double slope_max = 1; /* of a batch */
 static const double record_share = 0.1;
 
 typedef struct Trainer {
     GnsTraining *training;
     GnsNet *net;
     GnsExamples examples, held_out; /* held_out: the same runs, other examples */
-    GnsFit fit;
-    FitState state;
-    ProgressStage stage;
-    Progress progress; /* of the stage */
-    double loss;       /* sum of this epoch */
+    GnsFit batches;
+    Fit fit;
+    double scoring; /* s */
 } Trainer;
 
 /* Uniform, with the variance 1 / inputs, so that a layer keeps the size of its numbers. Biases 0, gains 1. */
 static void first_layer(double *weights, const GnsMlp *mlp, int layer, int inputs, int outputs, uint64_t *random) {
-    const double most = sqrt(3.0 / inputs);
-    for (int i = 0; i < inputs * outputs; i++)
-        weights[mlp->weights[layer] + i] = most * (2 * ((double)(split_mix(random) >> 11) * 0x1p-53) - 1);
+    weights_uniform(weights + mlp->weights[layer], inputs * outputs, sqrt(3.0 / inputs), random);
 }
 
 static void first_mlp(double *weights, const GnsMlp *mlp, uint64_t *random) {
@@ -211,11 +204,6 @@ static bool find_scales(const GnsExamples *examples, float radius, GnsScales *sc
     return true;
 }
 
-static void next_stage(Trainer *trainer, double share) {
-    trainer->stage.begin += trainer->stage.share;
-    trainer->stage.share = share;
-}
-
 static bool record(Trainer *trainer, Error *error) {
     const GnsTraining *training = trainer->training;
     Method method;
@@ -225,45 +213,36 @@ static bool record(Trainer *trainer, Error *error) {
             scene_destroy(training->scenes[i]);
             continue;
         }
-        next_stage(trainer, record_share / training->scene_count);
-        ok = gns_examples_add(&trainer->examples, training->scenes[i], &method, training->launches, &trainer->progress,
-                              error);
+        progress_next_stage(&trainer->fit.share, record_share / training->scene_count);
+        ok = gns_examples_add(&trainer->examples, training->scenes[i], &method, training->launches,
+                              &trainer->fit.progress, error);
     }
     return ok;
 }
 
 static void use_weights(Trainer *trainer) {
-    for (int64_t i = 0; i < trainer->state.adam.count; i++)
-        trainer->net->parameters[i] = (float)trainer->state.adam.weights[i];
+    const Adam *adam = &trainer->fit.adam;
+    for (int64_t i = 0; i < adam->count; i++) trainer->net->parameters[i] = (float)adam->weights[i];
 }
 
-/* Zero where it is NaN or infinite. */
-static void limit(double *slopes, int64_t count) {
-    double sum = 0;
-    for (int64_t i = 0; i < count; i++) sum += slopes[i] * slopes[i];
-    const double length = sqrt(sum), by = !isfinite(length) ? 0 : length > slope_max ? slope_max / length : 1;
-    for (int64_t i = 0; i < count; i++) slopes[i] = by > 0 ? slopes[i] * by : 0;
-}
-
-static bool step(Trainer *trainer, Error *error) {
+static bool step(void *context, Adam *adam, double *loss, Error *error) {
+    Trainer *trainer = context;
     const GnsTraining *training = trainer->training;
-    Adam *adam = &trainer->state.adam;
-    double loss;
-    const uint64_t first = (uint64_t)adam->steps * (uint64_t)training->batch;
-    if (!gns_fit_batch(&trainer->fit, first, &loss, error)) return false;
-    trainer->loss += loss;
-    limit(trainer->fit.mean_gradient, adam->count);
-    adam_step(adam, trainer->fit.mean_gradient,
-              training->rate * (double)(training->steps - adam->steps) / training->steps);
+    double *slopes = trainer->batches.mean_gradient, batch_loss;
+    if (!gns_fit_batch(&trainer->batches, (uint64_t)adam->steps * (uint64_t)training->batch, &batch_loss, error))
+        return false;
+    *loss += batch_loss;
+    slopes_limit(slopes, adam->count, slope_max);
+    adam_step(adam, slopes, training->rate * (double)(training->steps - adam->steps) / training->steps);
     use_weights(trainer);
     return true;
 }
 
 static bool score(Trainer *trainer, double loss, Error *error) {
-    GnsScore result = {.steps = (int)trainer->state.adam.steps, .loss = loss};
+    GnsScore result = {.steps = (int)trainer->fit.adam.steps, .loss = loss};
     for (int i = 0; i < HELD_OUT_BATCHES; i++) {
         double held_out = 0;
-        if (!gns_fit_loss(&trainer->fit, &trainer->held_out, (uint64_t)i * (uint64_t)trainer->training->batch,
+        if (!gns_fit_loss(&trainer->batches, &trainer->held_out, (uint64_t)i * (uint64_t)trainer->training->batch,
                           &held_out, error))
             return false;
         result.held_out += held_out / HELD_OUT_BATCHES;
@@ -272,27 +251,25 @@ static bool score(Trainer *trainer, double loss, Error *error) {
     return true;
 }
 
-/* Until the steps are done, or a stop is requested. */
-static bool fit(Trainer *trainer, Error *error) {
-    GnsTraining *training = trainer->training;
-    Adam *adam = &trainer->state.adam;
+static bool score_some(void *context, double loss, int64_t steps, Error *error) {
+    Trainer *trainer = context;
+    const int64_t now = trainer->fit.adam.steps, all = trainer->training->steps;
+    if (now * SCORES / all == (now - steps) * SCORES / all) return true;
     const double begin = clock_seconds();
-    const int64_t before = adam->steps;
-    double scoring = 0;
-    while (adam->steps < training->steps && progress_report(&trainer->progress, (double)adam->steps, training->steps)) {
-        const int64_t from = adam->steps;
-        trainer->loss = 0;
-        while (adam->steps < training->steps && adam->steps < from + EPOCH)
-            if (!step(trainer, error)) return false;
-        trainer->state.epoch++;
-        if (!fit_state_write(&trainer->state, training->state_path, error)) return false;
-        if (adam->steps * SCORES / training->steps == from * SCORES / training->steps) continue;
-        const double scored = clock_seconds();
-        if (!score(trainer, trainer->loss / (double)(adam->steps - from), error)) return false;
-        scoring += clock_seconds() - scored;
-    }
-    if (adam->steps > before)
-        training->seconds_a_step = (clock_seconds() - begin - scoring) / (double)(adam->steps - before);
+    if (!score(trainer, loss / (double)steps, error)) return false;
+    trainer->scoring += clock_seconds() - begin;
+    return true;
+}
+
+static bool run_steps(Trainer *trainer, Error *error) {
+    GnsTraining *training = trainer->training;
+    const FitSteps steps = {training->steps, EPOCH, step, score_some, trainer};
+    const double begin = clock_seconds();
+    const int64_t before = trainer->fit.adam.steps;
+    double loss;
+    if (!fit_run(&trainer->fit, 0, trainer->fit.adam.count, &steps, &loss, error)) return false;
+    if (training->steps > before)
+        training->seconds_a_step = (clock_seconds() - begin - trainer->scoring) / (double)(training->steps - before);
     return true;
 }
 
@@ -314,17 +291,14 @@ bool gns_training_time_pass(const GnsNet *net, const GnsRuns *runs, double *seco
     return ok || error_memory(error, "gns");
 }
 
-/* The state is written first: an output folder that cannot be written to is refused before any work. */
 static bool begin(Trainer *trainer, Error *error) {
     const GnsTraining *training = trainer->training;
+    const GnsLayout *layout = &trainer->net->layout;
     bool found;
-    trainer->state.command = training->command;
-    if (!adam_create(&trainer->state.adam, trainer->net->layout.parameters, ADAM_SQUARE_DECAY, error) ||
-        !fit_state_read(&trainer->state, training->state_path, &found, error))
-        return false;
+    if (!fit_begin(&trainer->fit, layout->parameters, &found, error)) return false;
     if (found) return true;
-    first_weights(trainer->state.adam.weights, &trainer->net->layout, training->seed);
-    return fit_state_write(&trainer->state, training->state_path, error);
+    first_weights(trainer->fit.adam.weights, layout, training->seed);
+    return fit_write(&trainer->fit, error);
 }
 
 static void destroy_scenes(const GnsTraining *training) {
@@ -343,12 +317,12 @@ static bool run(Trainer *trainer, Error *error) {
     if (!record(trainer, error)) return false;
     trainer->held_out = trainer->examples;
     trainer->held_out.seed = ~trainer->examples.seed;
-    next_stage(trainer, 1 - record_share);
+    progress_next_stage(&trainer->fit.share, 1 - record_share);
     if (!find_scales(&trainer->examples, training->radius, &trainer->net->scales, error) ||
-        !gns_fit_begin(&trainer->fit, &trainer->examples, trainer->net, training->batch, error))
+        !gns_fit_begin(&trainer->batches, &trainer->examples, trainer->net, training->batch, error))
         return false;
     use_weights(trainer);
-    return fit(trainer, error) &&
+    return run_steps(trainer, error) &&
            gns_training_time_pass(trainer->net, &trainer->examples.scenes[trainer->examples.count - 1],
                                   &trainer->training->seconds_a_pass, &trainer->training->pass_boxes, error);
 }
@@ -362,14 +336,11 @@ bool gns_training_run(GnsTraining *training, GnsNet *net, const Progress *progre
     }
     trainer->training = training;
     trainer->net = net;
-    trainer->stage.whole = progress;
-    trainer->progress = (Progress){progress_stage, &trainer->stage};
-    bool ok = run(trainer, error);
-    if (ok && trainer->stage.stopped)
-        ok = error_interrupted(error, training->state_path, "stopped; the same command continues");
-    gns_fit_free(&trainer->fit);
+    fit_init(&trainer->fit, training->command, training->state_path, progress);
+    const bool ok = run(trainer, error);
+    gns_fit_free(&trainer->batches);
     gns_examples_free(&trainer->examples);
-    adam_free(&trainer->state.adam);
+    fit_free(&trainer->fit);
     free(trainer);
     return ok;
 }

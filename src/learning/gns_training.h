@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 /* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix of
-   gns_net.h's.
+   nets/kinds.h's.
 
    Noise: a random walk of each particle's velocities, with the standard deviation `noise` in the newest; positions move by
    its sum. The target is the acceleration from the noisy velocity to the true next one, less a tenth of what would undo the
@@ -68,8 +68,8 @@ bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t
 /* All boxes of a frame, without noise and targets: for times of a step. */
 bool gns_example_frame(GnsExample *example, const GnsRuns *runs, int launch, int frame);
 
-/* Trains the network of gns on single steps of recorded launches (gns_examples.h) by Adam with a falling rate. Source:
-   gns_net.h. */
+/* Trains the network of gns on single steps of recorded launches by Adam with a falling rate. Source: see
+   nets/kinds.h. */
 
 #define GNS_PAPER_STEPS 20e6 /* gradient steps of the paper, appendix B */
 #define GNS_PAPER_BATCH 2    /* examples in each */
@@ -155,7 +155,7 @@ typedef struct GnsFit {
     float *transposed;     /* [parameters] */
     float *gradients;      /* [batch, parameters] */
     double *losses;        /* [batch] */
-    double *mean_gradient; /* [parameters] of the batch */
+    double *mean_gradient; /* [parameters] of the batch; the block of these arrays */
 } GnsFit;
 
 /* False when memory is short; free it in any case. */

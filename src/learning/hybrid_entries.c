@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the memory of hybrid learns from a step, and the runs whose steps it learns. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
@@ -38,7 +39,7 @@ float velocity_error(const ContactProblem *problem, const BodyVelocity *a, const
 }
 
 /* An entry in the making. */
-typedef struct Fit {
+typedef struct NewEntry {
     int count; /* neighbours */
     int32_t near[TABULATION_NEAR];
     float from[TABULATION_NEAR][TABULATION_KEY_MAX]; /* x_j - x0 */
@@ -46,9 +47,9 @@ typedef struct Fit {
     float weights[TABULATION_NEAR * TABULATION_KEY_MAX];
     double images[TABULATION_NEAR][TABULATION_NEAR]; /* products of the velocity changes that P_j - P0 make */
     float metric[TABULATION_KEY_MAX * (TABULATION_KEY_MAX + 1) / 2];
-} Fit;
+} NewEntry;
 
-static void insert_neighbour(Fit *fit, const Tabulation *memory, int entry, const float *key) {
+static void insert_neighbour(NewEntry *fit, const Tabulation *memory, int entry, const float *key) {
     const float *other = memory->keys + (size_t)entry * (size_t)memory->key_size;
     float from[TABULATION_KEY_MAX], distance = 0;
     for (int i = 0; i < memory->key_size; i++) {
@@ -68,7 +69,7 @@ static void insert_neighbour(Fit *fit, const Tabulation *memory, int entry, cons
 }
 
 /* Within 2 step_max: between them both ellipsoids can reach. */
-static void find_neighbours(Fit *fit, const Tabulation *memory, const TabulationQuery *query) {
+static void find_neighbours(NewEntry *fit, const Tabulation *memory, const TabulationQuery *query) {
     fit->count = 0;
     int count;
     const int32_t *entries = tabulation_about(memory, query, 2 * step_max, &count);
@@ -92,7 +93,7 @@ static void invert(double matrix[TABULATION_NEAR][TABULATION_NEAR], int count) {
 }
 
 /* Rows of (D^T D + ridge)^-1 D^T, with the neighbours' x_j - x0 as columns of D. */
-static void fit_weights(Fit *fit, int key_size) {
+static void fit_weights(NewEntry *fit, int key_size) {
     double normal[TABULATION_NEAR][TABULATION_NEAR], trace = 0;
     for (int n = 0; n < fit->count; n++)
         for (int m = 0; m < fit->count; m++) {
@@ -120,7 +121,7 @@ static void push_difference(const Tabulation *memory, int entry, const SolvedSte
     }
 }
 
-static bool find_images(Fit *fit, const Tabulation *memory, const SolvedStep *step) {
+static bool find_images(NewEntry *fit, const Tabulation *memory, const SolvedStep *step) {
     const size_t bodies = (size_t)step->problem->body_count;
     BodyVelocity *changes = calloc(TABULATION_NEAR * bodies, sizeof *changes);
     if (changes == NULL) return false;
@@ -143,7 +144,7 @@ static bool find_images(Fit *fit, const Tabulation *memory, const SolvedStep *st
 /* M = A^T A / tolerance^2 + 1 / tolerance^2, A here of velocities: inside the ellipsoid the linear term is at most the
    tolerance, as in Pope (1997), and in directions that A does not know bodies are taken to follow the state one to
    one. */
-static void make_metric(Fit *fit, const Tabulation *memory) {
+static void make_metric(NewEntry *fit, const Tabulation *memory) {
     const int size = memory->key_size;
     const double unit = 1 / ((double)memory->tolerance * (double)memory->tolerance);
     float *metric = fit->metric;
@@ -158,7 +159,7 @@ static void make_metric(Fit *fit, const Tabulation *memory) {
 }
 
 static bool add(Tabulation *memory, const SolvedStep *step, Error *error) {
-    Fit fit;
+    NewEntry fit;
     find_neighbours(&fit, memory, &step->query);
     for (int n = fit.count; n < TABULATION_NEAR; n++) fit.near[n] = -1;
     fit_weights(&fit, memory->key_size);
@@ -306,33 +307,12 @@ static bool see(void *context, const HybridStep *step, Error *error) {
     return true;
 }
 
-/* *finite: false if the new state is NaN or infinite. */
-static bool take_step(const Scene *scene, const ContactSolver *solver, World *world, ContactProblem *problem,
-                      bool *finite, Error *error) {
-    ContactSolution *solution;
-    if (!world_begin_step(world, scene->dt, problem, &solution, error) ||
-        !solver->kind->solve(solver->state, problem, solution, error))
-        return false;
-    Error failure = {0};
-    *finite = world_end_step(world, &failure);
-    if (*finite || failure.kind == ERROR_INPUT) return true;
-    *error = failure;
-    return false;
-}
-
 static bool run_prefix(LaunchSteps *runs, Error *error) {
-    Scene quiet = *runs->scene;
-    quiet.bomb.present = false;
     ContactSolver solver;
     if (!hybrid_make(&solver, NULL, NULL, error)) return false;
-    bool ok = (runs->prefix = scene_world(&quiet, error)) != NULL, finite = true;
-    for (int frame = 1; ok && frame <= runs->scene->bomb.frame; frame++) {
-        ContactProblem problem;
-        ok = take_step(runs->scene, &solver, runs->prefix, &problem, &finite, error) &&
-             (finite || error_input(error, quiet.name, "a body's state is NaN or infinite before the bomb is added"));
-    }
+    runs->prefix = launch_prefix(runs->scene, &solver, error);
     solver.kind->destroy(solver.state);
-    return ok;
+    return runs->prefix != NULL;
 }
 
 LaunchSteps *launch_steps_create(const Scene *scene, Error *error) {
@@ -366,7 +346,7 @@ bool launch_steps_run(LaunchSteps *runs, const Launch *launch, const Tabulation 
     bool ok = true, finite = true;
     for (int frame = launched.bomb.frame + 1; ok && finite && frame <= launched.frames; frame++) {
         ContactProblem problem;
-        ok = take_step(runs->scene, &solver, runs->world, &problem, &finite, error);
+        ok = launch_step(runs->scene, &solver, runs->world, &problem, &finite, error);
         asked->steps++;
         if (ok && phase_next(&tracker, &problem, frame) == PHASE_AFTER) break;
     }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of hybrid, launch after launch, and a network that learns from the same steps. */
 #include "learning/hybrid_training.h"
 
 #include "base/base.h"
@@ -38,7 +39,7 @@ typedef struct Trainer {
 } Trainer;
 
 static float draw(uint64_t *state, const SceneSpan *span, const SceneSpan *otherwise) {
-    const double share = (double)(split_mix(state) >> 11) / 9007199254740992.0; /* 2^53 */
+    const double share = random_unit(state);
     return scene_span_at(scene_span_varies(span) ? span : otherwise, share);
 }
 
@@ -172,7 +173,7 @@ static bool store(const Trainer *trainer, Error *error) {
     return tabulation_write(memory, trainer->training->state_path, error);
 }
 
-static bool tabulation_training_train(Trainer *trainer, const Progress *progress, Error *error) {
+static bool train(Trainer *trainer, const Progress *progress, Error *error) {
     const int launches = trainer->training->launches;
     if (!launches_check(trainer->scene, trainer->launches, launches, error) || !resume(trainer, error)) return false;
     trainer->runs = launch_steps_create(trainer->scene, error);
@@ -198,7 +199,7 @@ Tabulation *tabulation_training_run(const Scene *scene, const TabulationTraining
     bool ok = trainer.launches != NULL || error_memory(error, "hybrid");
     if (ok) {
         draw_launches(&trainer);
-        ok = tabulation_training_train(&trainer, progress, error);
+        ok = train(&trainer, progress, error);
     }
     launch_steps_destroy(trainer.runs);
     if (trainer.interior.kind != NULL) trainer.interior.kind->destroy(trainer.interior.state);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What all trainings share: Adam and the state of a training on disk. */
+/* What all trainings share: Adam, and a training's state on disk, progress and interruption. */
 #pragma once
 #include "base/base.h"
+#include "base/machine.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -54,20 +55,46 @@ double adam_cosine(double done);
 /* One step; slopes[count] are d loss / d weights. */
 void adam_step(Adam *adam, const double *slopes, double rate);
 
-/* The state of a training on disk: the same command continues an interrupted training, with the same result. What follows
-   from command and weights, such as recorded launches, is not stored. */
+/* Shortens slopes that are longer than `most`: one strange batch must not throw the weights far. False, and all are 0, if
+   one is NaN or infinite. */
+bool slopes_limit(double *slopes, int64_t count, double most);
+
+/* A training that survives an interruption: the same command continues from its state on disk, with the same result. What
+   follows from command and weights, such as recorded launches, is not stored. */
 
 enum { FIT_COMMAND_SIZE = 512 };
 
-typedef struct FitState {
+typedef struct Fit {
     const char *command;  /* of the training, at most FIT_COMMAND_SIZE - 1 bytes; another one does not continue it */
-    int32_t stage, epoch; /* to do next; the training says what they count, from 0 */
-    Adam adam;
-} FitState;
+    const char *path;     /* of the state */
+    int32_t stage, epoch; /* of the training, from 0; how often the stage was written */
+    Adam adam;            /* of all weights; its steps are those of the stage */
+    ProgressStage share;  /* of the progress: that of the present work */
+    Progress progress;    /* of that work */
+} Fit;
 
-/* Writes the state, atomically. */
-bool fit_state_write(const FitState *state, const char *path, Error *error);
+/* Nothing is read yet; the share of the progress is 0 until progress_next_stage(). The fit stays where it is. */
+void fit_init(Fit *fit, const char *command, const char *path, const Progress *progress);
 
-/* Reads the state; `command` and adam.count must be set. *found: whether there is one of this command; if not, the state is
-   not changed. ERROR_INPUT, with the file, if it is damaged or of another number of weights: the user can delete it. */
-bool fit_state_read(FitState *state, const char *path, bool *found, Error *error);
+/* Weights 0. Continues with the state of the command if there is one: *found. ERROR_INPUT, with the file, if it is damaged
+   or of another number of weights: the user can delete it. Free it in any case. */
+bool fit_begin(Fit *fit, int64_t weights, bool *found, Error *error);
+void fit_free(Fit *fit);
+
+/* Writes the state, atomically. A training writes it before any work: an output folder that cannot be written to is refused. */
+bool fit_write(const Fit *fit, Error *error);
+
+/* Begins a stage: no steps, and no moments, as its loss is another. */
+void fit_stage(Fit *fit, int stage);
+
+/* The steps of a stage. */
+typedef struct FitSteps {
+    int64_t count, written; /* in all; from one state on disk to the next */
+    bool (*step)(void *context, Adam *adam, double *loss, Error *error);
+    bool (*on_written)(void *context, double loss, int64_t steps, Error *error); /* sum and number of losses; or NULL */
+    void *context;
+} FitSteps;
+
+/* Does what is left of the steps, on weights [at, at + count) of the fit. *loss: the sum since the last state but one, 0
+   without a step. ERROR_INTERRUPTED if progress requests a stop: the state stays. */
+bool fit_run(Fit *fit, int64_t at, int64_t count, const FitSteps *steps, double *loss, Error *error);

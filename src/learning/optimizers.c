@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Adam (learning/learning.h) on full batches, so the gradient has no noise; the rate decays to 0 by half a cosine. Converges
-   slowly in narrow valleys of the loss; lm does not. */
+/* The optimisers of pair networks: adam, gd, lm with its Gauss-Newton products, bfgs. */
 #include "base/base.h"
 #include "learning/learning.h"
 #include "learning/pair_training_internal.h"
@@ -13,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Adam (learning/learning.h) on full batches, so the gradient has no noise; the rate decays to 0 by half a cosine. Converges
+   slowly in narrow valleys of the loss; lm does not. */
 static const double first_rate = 0.05;
 
 static bool adam_minimize(Trainer *trainer, double *parameters, Error *error) {
@@ -68,7 +69,7 @@ const Optimizer optimizer_gd = {"gd", "gradient descent with a fixed rate", gd_m
    J^T J from J for 10-10-2, a seventh for 10-8-8-6. Two cores, 10^6 rows of 10-10-2: 0.8 s; OpenBLAS's dsyrk on blocks
    of J: 2.2 s. */
 
-/* As in loss.c, but each chunk holds a matrix. */
+/* As for the loss (pair_laws.c), but each chunk holds a matrix. */
 enum { MAX_CHUNKS = 32, MAX_MATRIX_NUMBERS = 1 << 24 };
 
 typedef struct Chunk {
@@ -94,12 +95,13 @@ static bool create_chunk(const GaussNewton *work, Chunk *chunk, Error *error) {
     const Network *shape = work->shape;
     size_t outputs = (size_t)shape->widths[shape->layers], widest = (size_t)network_scratch_width(shape) + 1;
     chunk->block = network_block_create(shape, error);
-    chunk->deltas = calloc(outputs * (size_t)work->units * BLOCK_ROWS, sizeof(double));
-    chunk->products = calloc(widest * widest * BLOCK_ROWS, sizeof(double));
-    chunk->jtu = calloc(work->parameters, sizeof(double));
-    chunk->jtj = calloc(work->parameters * work->parameters, sizeof(double));
-    return chunk->block != NULL && chunk->deltas != NULL && chunk->products != NULL && chunk->jtu != NULL &&
-           chunk->jtj != NULL;
+    const size_t deltas = outputs * (size_t)work->units * BLOCK_ROWS, products = widest * widest * BLOCK_ROWS;
+    chunk->deltas = calloc(deltas + products + work->parameters * (1 + work->parameters), sizeof(double));
+    if (chunk->block == NULL || chunk->deltas == NULL) return false;
+    chunk->products = chunk->deltas + deltas;
+    chunk->jtu = chunk->products + products;
+    chunk->jtj = chunk->jtu + work->parameters;
+    return true;
 }
 
 GaussNewton *gauss_newton_create(const Network *shape, Error *error) {
@@ -126,9 +128,6 @@ void gauss_newton_destroy(GaussNewton *work) {
     for (int c = 0; c < work->chunk_count; c++) {
         network_block_destroy(work->chunks[c].block);
         free(work->chunks[c].deltas);
-        free(work->chunks[c].products);
-        free(work->chunks[c].jtu);
-        free(work->chunks[c].jtj);
     }
     free(work);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dataset rows -> normalised blocks. */
+/* Training of pair networks: rows in normalised blocks, option words, first weights, visits of the optimiser, scores. */
 #include "learning/pair_training.h"
 
 #include "base/base.h"
@@ -99,10 +99,9 @@ Samples *samples_create(const Dataset *dataset, const Network *network, bool tes
     for (int64_t row = 0; row < dataset->rows; row++) samples->rows += dataset_is_test(dataset, row) == test;
     samples->blocks = (samples->rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
     size_t padded = (size_t)samples->blocks * BLOCK_ROWS;
-    samples->x = calloc(padded * (size_t)samples->inputs, sizeof *samples->x);
-    samples->y = calloc(padded * (size_t)samples->outputs, sizeof *samples->y);
-    if (samples->x == NULL || samples->y == NULL)
-        return error_memory(error, "training"), samples_destroy(samples), NULL;
+    samples->x = calloc(padded * (size_t)(samples->inputs + samples->outputs) + 1, sizeof *samples->x);
+    if (samples->x == NULL) return error_memory(error, "training"), free(samples), NULL;
+    samples->y = samples->x + padded * (size_t)samples->inputs;
     int64_t to = 0;
     for (int64_t row = 0; row < dataset->rows; row++)
         if (dataset_is_test(dataset, row) == test) store_row(samples, to++, dataset, row, network);
@@ -112,7 +111,6 @@ Samples *samples_create(const Dataset *dataset, const Network *network, bool tes
 void samples_destroy(Samples *samples) {
     if (samples == NULL) return;
     free(samples->x);
-    free(samples->y);
     free(samples);
 }
 
@@ -159,7 +157,7 @@ static bool loss_kind_parse(LossKind *kind, const TrainingOptions *options, Erro
     return true;
 }
 
-/* NULL words take the defaults of training.h. ERROR_INPUT: an unknown word, or output targets outside the range of the
+/* NULL words take the defaults of TrainingOptions. ERROR_INPUT: an unknown word, or output targets outside the range of the
    output activation. */
 static bool network_config_parse(NetworkConfig *config, const TrainingOptions *options, Error *error) {
     bool two = options->widths[options->layers] == 2;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of sain: the loss and its gradient, normalisation and ranges, steps, held-out errors. */
 #include "base/base.h"
 #include "learning/learning.h"
 #include "learning/sain_training.h"
@@ -258,8 +259,7 @@ void relation_set_ranges(RelationNetwork *network, const RelationSamples *sample
 /* Uniform in +-sqrt(3 / inputs): sums of the standard deviation 1. */
 static double *fill_layer(double *weight, const Network *network, int l, double size, uint64_t *state) {
     const int inputs = network->widths[l], units = network->widths[l + 1];
-    const double most = size * sqrt(3.0 / inputs);
-    for (int i = 0; i < units * inputs; i++) *weight++ = most * ((double)(split_mix(state) >> 11) * 0x1p-52 - 1);
+    weight = weights_uniform(weight, units * inputs, size * sqrt(3.0 / inputs), state);
     for (int i = 0; i < units; i++) *weight++ = 0;
     return weight;
 }
@@ -298,7 +298,7 @@ static void draw(RelationFit *fit, uint64_t seed, int64_t number) {
     uint64_t state = seed + (uint64_t)number * UINT64_C(0x9e3779b97f4a7c15);
     split_mix(&state);
     for (int i = 0; i < fit->batch; i++)
-        fit->items[i % RELATION_PARTS][i / RELATION_PARTS] = (int)(split_mix(&state) % (uint64_t)fit->samples->count);
+        fit->items[i % RELATION_PARTS][i / RELATION_PARTS] = random_below(&state, (int)fit->samples->count);
 }
 
 bool relation_fit_step(RelationFit *fit, Adam *adam, uint64_t seed, int64_t number, double rate, double *loss,

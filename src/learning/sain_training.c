@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of sain: samples, recorded problems, and the rounds of each form. */
 #include "learning/sain_training.h"
 
 #include "base/base.h"
@@ -23,22 +24,14 @@ void relation_samples_free(RelationSamples *samples) {
 
 /* The engine of sain, and what it fills. */
 typedef struct Engine {
-    void *state;
+    ContactSolver solver;
     ContactSolution solution;
     size_t velocity_capacity, impulse_capacity;
     RelationView view;
 } Engine;
 
-static bool relation_samples_begin(Engine *engine, Error *error) {
-    Settings settings;
-    if (!settings_parse(&settings, RELATION_ENGINE_SETTINGS, solver_engine.description.settings, "sain", error))
-        return false;
-    engine->state = solver_engine.create(&settings, error);
-    return engine->state != NULL;
-}
-
 static void end(Engine *engine) {
-    if (engine->state != NULL) solver_engine.destroy(engine->state);
+    if (engine->solver.state != NULL) solver_engine.destroy(engine->solver.state);
     free(engine->solution.velocities);
     free(engine->solution.impulses);
     relation_view_free(&engine->view);
@@ -50,7 +43,7 @@ static bool look(Engine *engine, const ContactProblem *problem, RelationForm for
                           sizeof *solution->velocities) &&
             array_reserve((void **)&solution->impulses, &engine->impulse_capacity, (size_t)problem->contact_count + 1,
                           sizeof *solution->impulses) &&
-            solver_engine.solve(engine->state, problem, solution, error) &&
+            solver_engine.solve(engine->solver.state, problem, solution, error) &&
             relation_view_make(&engine->view, problem, solution->velocities, form)) ||
            error_memory(error, "sain");
 }
@@ -77,7 +70,7 @@ static void add_body(RelationSamples *samples, const RelationView *view, int b, 
 
 bool relation_samples_add(RelationSamples *samples, const ImpactProblems *problems, bool impacts_only, Error *error) {
     Engine engine = {0};
-    bool ok = relation_samples_begin(&engine, error);
+    bool ok = solver_with(&engine.solver, &solver_engine, RELATION_ENGINE_SETTINGS, error);
     for (size_t p = 0; ok && p < problems->count; p++) {
         const ImpactProblem *item = &problems->items[p];
         if (impacts_only && !item->impact) continue;
@@ -151,7 +144,7 @@ static bool piece(void *context, int i, Error *error) {
 
 /* Appends to the problems in the order of launches and frames, for any number of threads. Omits problems whose
    reference does not converge. A launch ends 60 frames after its impact, or if its state becomes NaN or infinite. */
-static bool relation_record(const RelationRecording *recording, ImpactProblems *problems, const Progress *progress,
+static bool record_problems(const RelationRecording *recording, ImpactProblems *problems, const Progress *progress,
                             Error *error) {
     Runs runs = {recording, calloc((size_t)recording->count + 1, sizeof *runs.of)};
     if (runs.of == NULL) return error_memory(error, "recording");
@@ -166,19 +159,11 @@ static bool relation_record(const RelationRecording *recording, ImpactProblems *
     return ok;
 }
 
-static bool make_by_name(const ContactSolverKind *kind, const char *text, ContactSolver *solver, Error *error) {
-    Settings settings;
-    if (!settings_parse(&settings, text, kind->description.settings, kind->description.name, error)) return false;
-    void *state = kind->create(&settings, error);
-    if (state != NULL) *solver = (ContactSolver){kind, state};
-    return state != NULL;
-}
-
 static bool make_solver(void *context, int i, ContactSolver *solver, Error *error) {
     const RelationDriver *driver = ((const RelationLaunches *)context)->driver;
     if (driver != NULL) return sain_make(solver, driver->network, driver->form, error);
-    return i % 2 == 0 ? make_by_name(&solver_engine, RELATION_ENGINE_SETTINGS, solver, error)
-                      : make_by_name(&solver_momentum, "k=50", solver, error);
+    return i % 2 == 0 ? solver_with(solver, &solver_engine, RELATION_ENGINE_SETTINGS, error)
+                      : solver_with(solver, &solver_momentum, "k=50", error);
 }
 
 /* Launches rise along the family: a round takes every so manieth, so that each covers the family. */
@@ -192,7 +177,7 @@ static bool record_scene(const RelationLaunches *from, const Scene *scene, Impac
     for (int i = 0; ok && i < from->launches; i++) launches[i] = launches[i * from->rounds + from->round];
     RelationLaunches context = *from;
     const RelationRecording recording = {scene, launches, from->launches, make_solver, &context};
-    ok = ok && relation_record(&recording, problems, progress, error);
+    ok = ok && record_problems(&recording, problems, progress, error);
     free(launches);
     return ok;
 }
@@ -213,33 +198,19 @@ typedef struct Trainer {
     const RelationTraining *training;
     RelationNetworks *networks;
     int weights; /* of a form */
-    FitState state;
+    Fit fit;
     ImpactProblems first, held_out; /* of the first round */
     RelationSamples samples, held_out_samples;
-    RelationFit fit;
-    ProgressStage stage;
-    Progress progress; /* of the stage */
+    RelationFit batches;
 } Trainer;
 
 static size_t set_at(const Trainer *trainer, int form, int set) {
     return ((size_t)form * SETS + (size_t)set) * (size_t)trainer->weights;
 }
 
-static int stage_form(const Trainer *trainer) { return trainer->state.stage / trainer->training->rounds; }
+static int stage_form(const Trainer *trainer) { return trainer->fit.stage / trainer->training->rounds; }
 
-static int stage_round(const Trainer *trainer) { return trainer->state.stage % trainer->training->rounds; }
-
-/* Adam over the weights in training. */
-static Adam active(const Trainer *trainer, int64_t steps) {
-    const Adam *all = &trainer->state.adam;
-    const size_t at = set_at(trainer, stage_form(trainer), 0);
-    return adam_over(all->weights + at, all->mean + at, all->square + at, trainer->weights, steps, all->square_decay);
-}
-
-static void next_stage(Trainer *trainer, double share) {
-    trainer->stage.begin += trainer->stage.share;
-    trainer->stage.share = share;
-}
+static int stage_round(const Trainer *trainer) { return trainer->fit.stage % trainer->training->rounds; }
 
 /* Ranges and normalisation follow from the samples; the driver's weights from the state. */
 static bool record_round(Trainer *trainer, int form, int round, Error *error) {
@@ -254,11 +225,11 @@ static bool record_round(Trainer *trainer, int form, int round, Error *error) {
             return false;
         relation_normalise(network, &trainer->samples);
     } else {
-        relation_set_weights(network, trainer->state.adam.weights + set_at(trainer, form, round));
+        relation_set_weights(network, trainer->fit.adam.weights + set_at(trainer, form, round));
         const RelationDriver driver = {network, (RelationForm)form};
         const RelationLaunches launches = {
             training->scenes, training->scene_count, training->launches, training->rounds, round, false, &driver};
-        const bool ok = relation_launches_record(&launches, &problems, &trainer->progress, error) &&
+        const bool ok = relation_launches_record(&launches, &problems, &trainer->fit.progress, error) &&
                         relation_samples_add(&trainer->samples, &problems, false, error);
         impact_problems_free(&problems);
         if (!ok) return false;
@@ -273,7 +244,7 @@ static bool report(Trainer *trainer, double loss, Error *error) {
     RelationScore score = {
         (RelationForm)form, stage_round(trainer), trainer->samples.problems, trainer->samples.count, loss, {0, 0, 0}};
     if (training->on_score == NULL) return true;
-    if (!relation_fit_errors(&trainer->fit, trainer->state.adam.weights + set_at(trainer, form, 0),
+    if (!relation_fit_errors(&trainer->batches, trainer->fit.adam.weights + set_at(trainer, form, 0),
                              &trainer->held_out_samples, &score.held_out, error))
         return false;
     training->on_score(training->context, &score);
@@ -281,50 +252,48 @@ static bool report(Trainer *trainer, double loss, Error *error) {
 }
 
 /* The rate falls from the first to 0 in equal steps; each round begins with half that of the round before. */
+static bool step(void *context, Adam *adam, double *loss, Error *error) {
+    Trainer *trainer = context;
+    const RelationTraining *training = trainer->training;
+    const uint64_t seed = training->seed + (uint64_t)(trainer->fit.stage + 1) * 1000003;
+    const double rate = first_rate / (1 << stage_round(trainer)) * (1 - (double)adam->steps / training->steps);
+    double batch_loss;
+    if (!relation_fit_step(&trainer->batches, adam, seed, adam->steps, rate, &batch_loss, error)) return false;
+    *loss += batch_loss;
+    return true;
+}
+
 static bool fit_round(Trainer *trainer, Error *error) {
     const RelationTraining *training = trainer->training;
-    const uint64_t seed = training->seed + (uint64_t)(trainer->state.stage + 1) * 1000003;
-    const double rate = first_rate / (1 << stage_round(trainer));
-    Adam adam = active(trainer, trainer->state.adam.steps);
-    double loss = 0, sum = 0;
-    for (int step = (int)adam.steps; step < training->steps; step++) {
-        if (!relation_fit_step(&trainer->fit, &adam, seed, step, rate * (1 - (double)step / training->steps), &loss,
-                               error))
-            return false;
-        sum += loss;
-        if ((step + 1) % training->saved != 0 && step + 1 < training->steps) continue;
-        trainer->state.adam.steps = adam.steps;
-        if (!fit_state_write(&trainer->state, training->state_path, error)) return false;
-        if (!progress_report(&trainer->progress, step + 1, training->steps)) return true;
-        loss = sum / training->saved;
-        sum = 0;
-    }
-    return report(trainer, loss, error);
+    const FitSteps steps = {training->steps, training->saved, step, NULL, trainer};
+    const int64_t at = (int64_t)set_at(trainer, stage_form(trainer), 0);
+    double loss;
+    return fit_run(&trainer->fit, at, trainer->weights, &steps, &loss, error) &&
+           report(trainer, loss / training->saved, error);
 }
 
 static bool run_stage(Trainer *trainer, Error *error) {
     const int form = stage_form(trainer);
     RelationNetwork *network = &trainer->networks->forms[form];
     if (trainer->samples.count == 0) return error_input(error, "sain", "no box is touched: more launches needed");
-    if (!relation_fit_begin(&trainer->fit, network, &trainer->samples, trainer->training->batch, error)) return false;
+    if (!relation_fit_begin(&trainer->batches, network, &trainer->samples, trainer->training->batch, error))
+        return false;
     const bool ok = fit_round(trainer, error);
-    relation_fit_free(&trainer->fit);
-    relation_set_weights(network, trainer->state.adam.weights + set_at(trainer, form, 0));
+    relation_fit_free(&trainer->batches);
+    relation_set_weights(network, trainer->fit.adam.weights + set_at(trainer, form, 0));
     return ok;
 }
 
-/* What drives the round is what was trained before it. Moments start with the round: its samples are others. */
+/* What drives the round is what was trained before it. */
 static bool begin_stage(Trainer *trainer, int stage, Error *error) {
-    Adam *all = &trainer->state.adam;
-    trainer->state.stage = stage;
+    fit_stage(&trainer->fit, stage);
     const int form = stage_form(trainer), round = stage_round(trainer);
-    double *weights = all->weights + set_at(trainer, form, 0);
+    double *sets = trainer->fit.adam.weights, *weights = sets + set_at(trainer, form, 0);
     if (round > 0)
-        memcpy(all->weights + set_at(trainer, form, round), weights, (size_t)trainer->weights * sizeof *weights);
+        memcpy(sets + set_at(trainer, form, round), weights, (size_t)trainer->weights * sizeof *weights);
     else
         relation_first_weights(&trainer->networks->forms[form], trainer->training->seed, weights);
-    adam_restart(all);
-    return fit_state_write(&trainer->state, trainer->training->state_path, error);
+    return fit_write(&trainer->fit, error);
 }
 
 /* The samples of the rounds of a form up to this one, and the form's network as it was. */
@@ -341,67 +310,63 @@ static bool record_first(Trainer *trainer, Error *error) {
     const RelationLaunches
         first = {training->scenes, training->scene_count, training->launches, training->rounds, 0, false, NULL},
         others = {training->scenes, training->scene_count, training->launches / 4 + 1, 1, 0, true, NULL};
-    return relation_launches_record(&first, &trainer->first, &trainer->progress, error) &&
-           relation_launches_record(&others, &trainer->held_out, &trainer->progress, error);
+    return relation_launches_record(&first, &trainer->first, &trainer->fit.progress, error) &&
+           relation_launches_record(&others, &trainer->held_out, &trainer->fit.progress, error);
 }
 
-/* The state is written first: an output folder that cannot be written to is refused before any work. */
-static bool relation_training_begin(Trainer *trainer, Error *error) {
+static bool begin(Trainer *trainer, Error *error) {
+    Fit *fit = &trainer->fit;
     bool found;
     for (int f = 0; f < RELATION_FORMS; f++)
         if (!relation_network_create(&trainer->networks->forms[f], error)) return false;
     trainer->weights = relation_weight_count(&trainer->networks->forms[0]);
-    trainer->state.command = trainer->training->command;
-    if (!adam_create(&trainer->state.adam, (int64_t)set_at(trainer, RELATION_FORMS, 0), ADAM_SQUARE_DECAY, error) ||
-        !fit_state_read(&trainer->state, trainer->training->state_path, &found, error) ||
+    if (!fit_begin(fit, (int64_t)set_at(trainer, RELATION_FORMS, 0), &found, error) ||
         (!found && !begin_stage(trainer, 0, error)))
         return false;
     const int stages = RELATION_FORMS * trainer->training->rounds;
-    if (trainer->state.stage >= stages || trainer->state.adam.steps > trainer->training->steps)
-        return error_input(error, trainer->training->state_path, "stage %d, step %lld is not one of this training",
-                           (int)trainer->state.stage, (long long)trainer->state.adam.steps);
-    trainer->stage.share = 0.05;
+    if (fit->stage >= stages || fit->adam.steps > trainer->training->steps)
+        return error_input(error, fit->path, "stage %d, step %lld is not one of this training", (int)fit->stage,
+                           (long long)fit->adam.steps);
+    progress_next_stage(&fit->share, 0.05);
     return record_first(trainer, error);
 }
 
 /* A form whose training is over before this run: its network follows from samples and weights. */
 static bool restore_form(Trainer *trainer, int form, Error *error) {
     if (!gather(trainer, form, trainer->training->rounds - 1, error)) return false;
-    relation_set_weights(&trainer->networks->forms[form], trainer->state.adam.weights + set_at(trainer, form, 0));
+    relation_set_weights(&trainer->networks->forms[form], trainer->fit.adam.weights + set_at(trainer, form, 0));
     return true;
 }
 
 static bool run(Trainer *trainer, Error *error) {
     const int rounds = trainer->training->rounds, stages = RELATION_FORMS * rounds;
-    if (!relation_training_begin(trainer, error)) return false;
+    if (!begin(trainer, error)) return false;
     for (int form = 0; form < stage_form(trainer); form++)
         if (!restore_form(trainer, form, error)) return false;
-    const double share = 0.95 / (stages - trainer->state.stage);
+    const double share = 0.95 / (stages - trainer->fit.stage);
     bool gathered = false;
     for (;;) {
-        next_stage(trainer, 0.2 * share);
+        progress_next_stage(&trainer->fit.share, 0.2 * share);
         if (stage_round(trainer) == 0 || !gathered) {
             if (!gather(trainer, stage_form(trainer), stage_round(trainer), error)) return false;
         } else if (!record_round(trainer, stage_form(trainer), stage_round(trainer), error)) {
             return false;
         }
         gathered = true;
-        next_stage(trainer, 0.8 * share);
+        progress_next_stage(&trainer->fit.share, 0.8 * share);
         if (!run_stage(trainer, error)) return false;
-        if (trainer->stage.stopped || trainer->state.stage + 1 == stages) return true;
-        if (!begin_stage(trainer, trainer->state.stage + 1, error)) return false;
+        if (trainer->fit.stage + 1 == stages) return true;
+        if (!begin_stage(trainer, trainer->fit.stage + 1, error)) return false;
     }
 }
 
 bool relation_training_run(const RelationTraining *training, RelationNetworks *networks, const Progress *progress,
                            Error *error) {
-    Trainer trainer = {.training = training, .networks = networks, .stage = {.whole = progress}};
-    trainer.progress = (Progress){progress_stage, &trainer.stage};
+    Trainer trainer = {.training = training, .networks = networks};
+    fit_init(&trainer.fit, training->command, training->state_path, progress);
     *networks = (RelationNetworks){0};
-    bool ok = run(&trainer, error);
-    if (ok && trainer.stage.stopped)
-        ok = error_interrupted(error, training->state_path, "stopped; the same command continues");
-    adam_free(&trainer.state.adam);
+    const bool ok = run(&trainer, error);
+    fit_free(&trainer.fit);
     relation_samples_free(&trainer.samples);
     relation_samples_free(&trainer.held_out_samples);
     impact_problems_free(&trainer.first);

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What scene-net and sain learn from: problems with their references, and the launches of scene-net's rounds, run or read
+   from pieces. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
@@ -17,14 +19,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void free_item(ImpactProblem *item) {
-    free((void *)item->problem.bodies);
-    free((void *)item->problem.contacts);
-    free(item->reference);
-}
-
 void impact_problems_free(ImpactProblems *problems) {
-    for (size_t i = 0; i < problems->count; i++) free_item(&problems->items[i]);
+    for (size_t i = 0; i < problems->count; i++) {
+        problem_copy_free(&problems->items[i].problem);
+        free(problems->items[i].reference);
+    }
     free(problems->items);
     *problems = (ImpactProblems){0};
 }
@@ -33,17 +32,11 @@ bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem
                          bool impact) {
     if (!array_reserve((void **)&problems->items, &problems->capacity, problems->count + 1, sizeof *problems->items))
         return false;
-    size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    ProblemBody *body_copy = malloc((bodies + 1) * sizeof *body_copy);
-    ContactPoint *contact_copy = malloc((contacts + 1) * sizeof *contact_copy);
-    ImpactProblem item = {*problem, malloc((bodies + 1) * sizeof *item.reference), impact};
-    item.problem.bodies = body_copy;
-    item.problem.contacts = contact_copy;
-    problems->items[problems->count++] = item;
-    if (body_copy == NULL || contact_copy == NULL || item.reference == NULL) return false;
-    memcpy(body_copy, problem->bodies, bodies * sizeof *body_copy);
-    memcpy(contact_copy, problem->contacts, contacts * sizeof *contact_copy);
-    memcpy(item.reference, reference, bodies * sizeof *reference);
+    const size_t bodies = (size_t)problem->body_count;
+    ImpactProblem *item = &problems->items[problems->count++];
+    *item = (ImpactProblem){.reference = malloc((bodies + 1) * sizeof *item->reference), .impact = impact};
+    if (!problem_copy(&item->problem, problem) || item->reference == NULL) return false;
+    memcpy(item->reference, reference, bodies * sizeof *reference);
     return true;
 }
 
@@ -97,6 +90,14 @@ static Launch *round_launches(const SceneRecording *recording) {
     return recording->launches + first_of(recording, SCENE_BY_MOMENTUM);
 }
 
+bool solver_with(ContactSolver *solver, const ContactSolverKind *kind, const char *text, Error *error) {
+    Settings settings;
+    if (!settings_parse(&settings, text, kind->description.settings, kind->description.name, error)) return false;
+    void *state = kind->create(&settings, error);
+    if (state != NULL) *solver = (ContactSolver){kind, state};
+    return state != NULL;
+}
+
 typedef struct Driver {
     SceneSet set;
     const SlotNetwork *network; /* or NULL: that of the set */
@@ -105,15 +106,8 @@ typedef struct Driver {
 static bool make_driver(void *context, ContactSolver *solver, Error *error) {
     const Driver *driver = context;
     if (driver->network != NULL) return scene_net_make(solver, driver->network, rollout_near, error);
-    Settings settings;
-    const bool momentum = driver->set != SCENE_BY_REFERENCE;
-    const ContactSolverKind *kind = momentum ? &solver_momentum : &solver_reference;
-    if (!settings_parse(&settings, momentum ? "k=20" : "", kind->description.settings, kind->description.name, error))
-        return false;
-    void *state = kind->create(&settings, error);
-    if (state == NULL) return false;
-    *solver = (ContactSolver){kind, state};
-    return true;
+    return driver->set != SCENE_BY_REFERENCE ? solver_with(solver, &solver_momentum, "k=20", error)
+                                             : solver_with(solver, &solver_reference, "", error);
 }
 
 /* Runs launches first to end - 1 and labels their samples. */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of scene-net: rounds of recording and fitting, scores, and the verdict against momentum at equal time. */
 #include "learning/scene_training.h"
 
 #include "base/base.h"
@@ -52,20 +53,16 @@ static bool solve_all(ContactSolver *solver, const SlotSamples *samples, Contact
 
 static bool make_momentum(ContactSolver *solver, int sweeps, Error *error) {
     char text[16];
-    Settings settings;
     snprintf(text, sizeof text, "k=%d", sweeps);
-    const MethodDescription *description = &solver_momentum.description;
-    if (!settings_parse(&settings, text, description->settings, description->name, error)) return false;
-    *solver = (ContactSolver){&solver_momentum, solver_momentum.create(&settings, error)};
-    return solver->state != NULL;
+    return solver_with(solver, &solver_momentum, text, error);
 }
 
 static void destroy(ContactSolver *solver) {
     if (solver->state != NULL) solver->kind->destroy(solver->state);
 }
 
-static bool scene_net_verdict_momentum_error(const SlotSamples *samples, int sweeps, ContactSolution *solution,
-                                             double *mean, Error *error) {
+static bool momentum_error(const SlotSamples *samples, int sweeps, ContactSolution *solution, double *mean,
+                           Error *error) {
     ContactSolver solver = {.state = NULL};
     double unused = INFINITY;
     const bool ok =
@@ -91,8 +88,8 @@ static bool measure(ContactSolver rivals[3], const SlotSamples *samples, Contact
     verdict->network = mean[0];
     verdict->microseconds = 1e6 * seconds[0] / samples->count;
     verdict->sweeps = sweeps_of(seconds[0], seconds[1], seconds[2]);
-    return scene_net_verdict_momentum_error(samples, verdict->sweeps, solution, &verdict->at_equal_time, error) &&
-           scene_net_verdict_momentum_error(samples, 20, solution, &verdict->at_20, error);
+    return momentum_error(samples, verdict->sweeps, solution, &verdict->at_equal_time, error) &&
+           momentum_error(samples, 20, solution, &verdict->at_20, error);
 }
 
 /* Solves the samples by the method scene-net and by momentum, in turns, and keeps the shortest time of each. The errors
@@ -112,8 +109,6 @@ static bool scene_net_verdict(const SlotNetwork *network, const SlotSamples *hel
     return ok;
 }
 
-enum { MOMENTUM_SWEEPS = 20 };
-
 /* Mean error of the network and its sweeps. */
 static bool network_error(const SlotNetwork *network, const SlotSamples *samples, double *result, Error *error) {
     double *errors = malloc(((size_t)samples->count + 1) * sizeof *errors), sum = 0;
@@ -125,36 +120,18 @@ static bool network_error(const SlotNetwork *network, const SlotSamples *samples
     return ok;
 }
 
-/* Mean error of momentum with warm start. */
-static bool scene_net_score_momentum_error(const SlotSamples *samples, double *result, Error *error) {
-    float factors[MOMENTUM_SWEEPS];
-    for (int s = 0; s < MOMENTUM_SWEEPS; s++) factors[s] = momentum_factor_tuned(s, MOMENTUM_SWEEPS);
-    Momentum momentum = {0};
-    double sum = 0;
-    bool ok = true;
-    for (int i = 0; ok && i < samples->count; i++) {
-        const ContactProblem *problem = &samples->items[i].problem;
-        ContactSolution solution = {
-            .velocities = malloc(((size_t)problem->body_count + 1) * sizeof *solution.velocities),
-            .impulses = malloc(((size_t)problem->contact_count + 1) * sizeof *solution.impulses)};
-        ok = (solution.velocities != NULL && solution.impulses != NULL) || error_memory(error, "scene-net");
-        ok = ok && momentum_solve(&momentum, problem, factors, MOMENTUM_SWEEPS, &solution, error);
-        if (ok) sum += solution_error(problem, solution.velocities, samples->items[i].reference).rms;
-        free(solution.velocities);
-        free(solution.impulses);
-    }
-    momentum_free(&momentum);
-    *result = samples->count > 0 ? sum / samples->count : NAN;
-    return ok;
-}
-
 /* Fills all except `round`; NaN for an empty set. Both sets have the network's inputs (slot_samples_compute_inputs). */
 static bool scene_net_score(const SlotNetwork *network, const SlotSamples *samples, const SlotSamples *held_out,
                             SceneNetScore *score, Error *error) {
+    ContactSolution solution;
     score->samples = samples->count;
-    return network_error(network, samples, &score->train, error) &&
-           network_error(network, held_out, &score->held_out, error) &&
-           scene_net_score_momentum_error(held_out, &score->momentum, error);
+    const bool ok = make_solution(&solution, held_out, error) &&
+                    network_error(network, samples, &score->train, error) &&
+                    network_error(network, held_out, &score->held_out, error) &&
+                    momentum_error(held_out, 20, &solution, &score->momentum, error);
+    free(solution.velocities);
+    free(solution.impulses);
+    return ok;
 }
 
 static const double impulse_weight = 0.02, first_rate = 3e-3;
@@ -169,13 +146,8 @@ typedef struct Trainer {
     Progress progress; /* of the stage */
 } Trainer;
 
-static void next_stage(Trainer *trainer, double share) {
-    trainer->stage.begin += trainer->stage.share;
-    trainer->stage.share = share;
-}
-
 static bool take(Trainer *trainer, SceneSet set, SlotSamples *samples, double share, Error *error) {
-    next_stage(trainer, share);
+    progress_next_stage(&trainer->stage, share);
     return scene_recording_take(&trainer->recording, set, samples, &trainer->progress, error);
 }
 
@@ -212,7 +184,7 @@ static bool first_round(Trainer *trainer, Error *error) {
 
 static bool next_round(Trainer *trainer, double share, Error *error) {
     const int had = trainer->samples.count;
-    next_stage(trainer, share);
+    progress_next_stage(&trainer->stage, share);
     return scene_recording_next(&trainer->recording, trainer->network, &trainer->samples, &trainer->progress, error) &&
            slot_samples_compute_inputs(&trainer->samples, had, trainer->network, error);
 }
@@ -233,7 +205,7 @@ static bool fit_round(Trainer *trainer, int round, double share, Error *error) {
                          .rate = round == 0 ? first_rate : first_rate / 2,
                          .learn_factors = training->momentum,
                          .seed = training->seed + (uint64_t)round};
-    next_stage(trainer, share);
+    progress_next_stage(&trainer->stage, share);
     if (!slot_fit(trainer->network, &trainer->samples, &fit, &trainer->progress, error)) return false;
     find_bounds(trainer->network, &trainer->samples);
     return score(trainer, round, error);

@@ -78,6 +78,13 @@ bool unrolled_run(Unrolled *unrolled, const UnrolledProblem *problem, const doub
 void unrolled_back(Unrolled *unrolled, const UnrolledProblem *problem, const double *by_velocity, double *by_start,
                    double *by_factors);
 
+/* A copy with bodies and contacts of its own, in one block. False when memory is short; free it in any case. */
+bool problem_copy(ContactProblem *copy, const ContactProblem *problem);
+void problem_copy_free(ContactProblem *copy);
+
+/* A solver with the settings of the text, "k=20"; the caller destroys its state. */
+bool solver_with(ContactSolver *solver, const ContactSolverKind *kind, const char *text, Error *error);
+
 /* Training samples of a slot network: contact problems of impacts with their converged solutions. */
 
 typedef struct SlotSample {
@@ -169,7 +176,7 @@ typedef struct SceneTraining {
     void (*on_score)(void *context, const SceneNetScore *score);
     void *context;
     SceneNetVerdict *verdict; /* on the network that is returned; or NULL */
-    const Pieces *recorded;   /* what the first round runs is read from these (scene_recording.h); or NULL */
+    const Pieces *recorded;   /* what the first round runs is read from these; or NULL */
 } SceneTraining;
 
 /* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN

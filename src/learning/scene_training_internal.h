@@ -34,7 +34,7 @@ enum { DIRECTIONS_BLOCK = 16 }; /* directions per pass over the rows: small enou
 typedef struct SparseCovariance {
     const SparseRows *rows;
     size_t columns, width; /* width: number of directions, a multiple of DIRECTIONS_BLOCK */
-    double *mean;          /* [columns] */
+    double *mean;          /* [columns], and the block of all arrays */
     bool *constant;        /* [columns] same value in every row */
     double *centre;        /* [width] mean^T Q */
     double *parts;         /* [parts, columns + 1, width] partial sums of A^T (...); last row: sums of (...) */
@@ -72,7 +72,7 @@ bool principal_fit(const SparseRows *rows, uint64_t seed, Projection *projection
        loss = impulse_weight * mean over present slots of smooth L1((impulse - reference impulse) / scale)
             + velocity_weight * sqrt(e^2 + 0.01^2)
 
-   e is the RMS velocity error (solution_error.h) after the sweeps, differentiated through them
+   e is the RMS velocity error (methods/reference.h) after the sweeps, differentiated through them
    (learning/scene_training.h): the quantity to minimise. The impulse loss brings the impulses into a range from which
    the sweeps can converge. */
 
@@ -103,6 +103,15 @@ typedef struct SlotScore {
 bool slot_loss(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sample, const SlotTask *task,
                float *gradient, double *by_factors, SlotScore *score);
 
+/* Steps of launches. */
+
+/* One step; `problem` is its contact problem. *finite: false if the new state is NaN or infinite. */
+bool launch_step(const Scene *scene, const ContactSolver *solver, World *world, ContactProblem *problem, bool *finite,
+                 Error *error);
+
+/* The world of the scene just before the bomb is added, which all launches share. */
+World *launch_prefix(const Scene *scene, const ContactSolver *solver, Error *error);
+
 /* Runs launches of a scene with a given solver and records the contact problems of their impacts: the steps after the
    bomb's first touch in which the residual of the warm start reaches the gate (methods/solvers.h). */
 
@@ -128,7 +137,7 @@ bool slot_rollout(const SlotRollout *rollout, SlotSamples *samples, const Progre
    Gradients Through Stochastic Neurons for Conditional Computation" (2013), 4. */
 
 typedef struct SlotFit {
-    double impulse_weight; /* of the impulse loss (slot_loss.h) */
+    double impulse_weight; /* of the impulse loss */
     int impulse_epochs;    /* initial epochs with the impulse loss only */
     int epochs;            /* in total */
     double rate;           /* initial learning rate */

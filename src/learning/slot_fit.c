@@ -1,12 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A visit of one contact, with Jacobian rows J, inverse masses W and coupling c = J_t W J_n^T:
-
-       forward                                            backward, x* the derivative of the loss by x, w* = W v*
-       Pn' = max(Pn - m_n (J_n v - bias), 0)              Pt'* += J_t w*,  Pn'* += J_n w*
-       Pt' = clamp(Pt - m_t (J_t v + c dPn), +-mu Pn')    Pt'* into m_t J_t v, c dPn, Pt or into mu Pn'
-       v'  = v + W (J_n^T dPn + J_t^T dPt)                w*  += W (J_n^T (J_n v)* + J_t^T (J_t v)*)
-
-   w* behaves like a velocity, so both passes share velocity_along() and push(). */
+/* Fits a slot network: sweeps that are unrolled and differentiated, the loss of a sample, mini-batches. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
@@ -24,6 +17,15 @@
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* A visit of one contact, with Jacobian rows J, inverse masses W and coupling c = J_t W J_n^T:
+
+       forward                                            backward, x* the derivative of the loss by x, w* = W v*
+       Pn' = max(Pn - m_n (J_n v - bias), 0)              Pt'* += J_t w*,  Pn'* += J_n w*
+       Pt' = clamp(Pt - m_t (J_t v + c dPn), +-mu Pn')    Pt'* into m_t J_t v, c dPn, Pt or into mu Pn'
+       v'  = v + W (J_n^T dPn + J_t^T dPt)                w*  += W (J_n^T (J_n v)* + J_t^T (J_t v)*)
+
+   w* behaves like a velocity, so both passes share velocity_along() and push(). */
 
 /* The piece that the clamps took: 3 if the normal impulse is above 0, plus 0, 1 or 2 for a tangent impulse at the lower
    limit of the cone, inside, or at the upper limit. With a limit of 0 there is no inside. */
@@ -309,7 +311,7 @@ static double impulse_loss(const SlotNetwork *network, const SlotSample *sample,
     return sum;
 }
 
-/* The squared error summed over the dynamic bodies, weighted as in solution_error.h, and half its derivative. */
+/* The squared error summed over the dynamic bodies, weighted as by solution_error(), and half its derivative. */
 static double velocity_error(const SlotSample *sample, const double *velocities, double *by_velocity, int *counted) {
     double sum = 0;
     *counted = 0;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Samples of scene-net: copies of problems, labels, inputs, bytes; and the launches that they are from. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
@@ -18,9 +19,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+bool problem_copy(ContactProblem *copy, const ContactProblem *problem) {
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    ProblemBody *block = malloc(bodies * sizeof *problem->bodies + contacts * sizeof *problem->contacts + 1);
+    *copy = *problem;
+    copy->bodies = block;
+    copy->contacts = block != NULL ? (ContactPoint *)(block + bodies) : NULL;
+    if (block == NULL) return false;
+    memcpy(block, problem->bodies, bodies * sizeof *problem->bodies);
+    if (contacts > 0) memcpy(block + bodies, problem->contacts, contacts * sizeof *problem->contacts);
+    return true;
+}
+
+void problem_copy_free(ContactProblem *copy) { free((void *)copy->bodies); }
+
 static void free_sample(SlotSample *sample) {
-    free((void *)sample->problem.bodies);
-    free((void *)sample->problem.contacts);
+    problem_copy_free(&sample->problem);
     free(sample->reference);
     free(sample->goal);
     unrolled_problem_free(&sample->unrolled);
@@ -41,18 +55,9 @@ static bool reserve(SlotSamples *samples, int count) {
 
 bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int launch, int since) {
     if (!reserve(samples, 1)) return false;
-    const size_t bodies = (size_t)problem->body_count * sizeof(ProblemBody);
-    const size_t contacts = (size_t)problem->contact_count * sizeof(ContactPoint);
-    ProblemBody *body_copy = malloc(bodies + 1);
-    ContactPoint *contact_copy = malloc(contacts + 1);
     SlotSample *sample = &samples->items[samples->count++];
-    *sample = (SlotSample){.problem = *problem, .launch = launch, .since = since};
-    sample->problem.bodies = body_copy;
-    sample->problem.contacts = contact_copy;
-    if (body_copy == NULL || contact_copy == NULL) return false;
-    memcpy(body_copy, problem->bodies, bodies);
-    if (contacts > 0) memcpy(contact_copy, problem->contacts, contacts);
-    return true;
+    *sample = (SlotSample){.launch = launch, .since = since};
+    return problem_copy(&sample->problem, problem);
 }
 
 bool slot_samples_move(SlotSamples *samples, SlotSamples *from) {
@@ -168,11 +173,10 @@ typedef struct Runs {
     SlotSamples *samples;   /* [launches] */
 } Runs;
 
-/* One step; `problem` is its contact problem. *finite: false if the new state is NaN or infinite. */
-static bool step(const SlotRollout *rollout, const ContactSolver *solver, World *world, ContactProblem *problem,
-                 bool *finite, Error *error) {
+bool launch_step(const Scene *scene, const ContactSolver *solver, World *world, ContactProblem *problem, bool *finite,
+                 Error *error) {
     ContactSolution *solution;
-    if (!world_begin_step(world, rollout->scene->dt, problem, &solution, error) ||
+    if (!world_begin_step(world, scene->dt, problem, &solution, error) ||
         !solver->kind->solve(solver->state, problem, solution, error))
         return false;
     Error failure = {0};
@@ -180,6 +184,21 @@ static bool step(const SlotRollout *rollout, const ContactSolver *solver, World 
     if (*finite || failure.kind == ERROR_INPUT) return true;
     *error = failure;
     return false;
+}
+
+World *launch_prefix(const Scene *scene, const ContactSolver *solver, Error *error) {
+    Scene quiet = *scene;
+    quiet.bomb.present = false;
+    World *world = scene_world(&quiet, error);
+    bool ok = world != NULL, finite = true;
+    for (int frame = 1; ok && frame <= scene->bomb.frame; frame++) {
+        ContactProblem problem;
+        ok = launch_step(scene, solver, world, &problem, &finite, error) &&
+             (finite || error_input(error, quiet.name, "a body's state is NaN or infinite before the bomb is added"));
+    }
+    if (ok) return world;
+    world_destroy(world);
+    return NULL;
 }
 
 static bool run_launch(void *context, int i, Error *error) {
@@ -193,7 +212,7 @@ static bool run_launch(void *context, int i, Error *error) {
     bool finite = true;
     for (int frame = launched.bomb.frame + 1; finite && frame <= launched.frames; frame++) {
         ContactProblem problem;
-        if (!step(rollout, &runs->solvers[thread], world, &problem, &finite, error)) return false;
+        if (!launch_step(rollout->scene, &runs->solvers[thread], world, &problem, &finite, error)) return false;
         const Phase phase = phase_next(&tracker, &problem, frame);
         if (phase == PHASE_AFTER) return true;
         if (phase != PHASE_IMPACT) continue;
@@ -204,20 +223,6 @@ static bool run_launch(void *context, int i, Error *error) {
             return error_memory(error, "samples");
     }
     return true;
-}
-
-/* Runs the scene without its bomb up to the bomb's frame. */
-static bool run_prefix(Runs *runs, Error *error) {
-    Scene quiet = *runs->rollout->scene;
-    quiet.bomb.present = false;
-    runs->prefix = scene_world(&quiet, error);
-    bool ok = runs->prefix != NULL, finite = true;
-    for (int frame = 1; ok && frame <= runs->rollout->scene->bomb.frame; frame++) {
-        ContactProblem problem;
-        ok = step(runs->rollout, &runs->solvers[0], runs->prefix, &problem, &finite, error) &&
-             (finite || error_input(error, quiet.name, "a body's state is NaN or infinite before the bomb is added"));
-    }
-    return ok;
 }
 
 static bool begin(Runs *runs, int threads, Error *error) {
@@ -233,7 +238,8 @@ static bool begin(Runs *runs, int threads, Error *error) {
         if (runs->worlds[i] == NULL || !runs->rollout->make_solver(runs->rollout->context, &runs->solvers[i], error))
             return false;
     }
-    return run_prefix(runs, error);
+    runs->prefix = launch_prefix(runs->rollout->scene, &runs->solvers[0], error);
+    return runs->prefix != NULL;
 }
 
 static void end(Runs *runs, int threads) {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Fits a predictor of subspace: its linear term, its scales, and slopes through windows of predictions. */
 #include "base/base.h"
 #include "learning/subspace_training.h"
 #include "nets/kinds.h"
@@ -174,9 +175,6 @@ void window_fit_destroy(WindowFit *fit) {
 const Network *window_fit_shape(const WindowFit *fit) { return fit->shape; }
 const WindowScales *window_fit_scales(const WindowFit *fit) { return &fit->scales; }
 
-/* -1 to 1 */
-static double random_unit(uint64_t *random) { return (double)(split_mix(random) >> 11) * 0x1p-52 - 1; }
-
 static double *plane(const WindowFit *fit, double *states, int t, int k) {
     return states + ((size_t)t * (size_t)fit->data->count + (size_t)k) * BLOCK_ROWS;
 }
@@ -188,16 +186,16 @@ static void choose_windows(const WindowFit *fit, Part *part, uint64_t seed) {
     uint64_t random = seed;
     double *launches = part->blocks[0]->values[0] + 2 * (size_t)data->count * BLOCK_ROWS;
     for (int r = 0; r < BLOCK_ROWS; r++) {
-        const int launch = (int)(split_mix(&random) % (uint64_t)data->rows->launches);
-        const double share = (random_unit(&random) + 1) / 2;
+        const int launch = random_below(&random, data->rows->launches);
+        const double share = random_unit(&random);
         const int start = (int)(share * share * starts) % starts;
         for (int t = 0; t < WINDOW_FRAMES + 2; t++) {
             const float *state = window_state(data, launch, start + t);
             for (int k = 0; k < data->count; k++) plane(fit, part->targets, t, k)[r] = (double)state[k];
         }
         for (int k = 0; k < data->count; k++) {
-            const double shift = fit->scales.noise[k] * random_unit(&random);
-            const double change = fit->scales.change_noise[k] * random_unit(&random);
+            const double shift = fit->scales.noise[k] * random_signed(&random);
+            const double change = fit->scales.change_noise[k] * random_signed(&random);
             plane(fit, part->states, 0, k)[r] = plane(fit, part->targets, 0, k)[r] + shift;
             plane(fit, part->states, 1, k)[r] = plane(fit, part->targets, 1, k)[r] + shift + change;
         }
@@ -332,7 +330,7 @@ void window_fit_begin(const WindowFit *fit, uint64_t seed, double *parameters) {
         const int from = fit->shape->widths[l], to = fit->shape->widths[l + 1];
         /* Uniform with the variance 1 / from (LeCun 1998); a tenth of that for the outputs. */
         const double bound = (l == 2 ? 0.1 : 1) * sqrt(3.0 / from);
-        for (int i = 0; i < from * to; i++) *parameters++ = bound * random_unit(&random);
+        parameters = weights_uniform(parameters, from * to, bound, &random);
         for (int i = 0; i < to; i++) *parameters++ = 0;
     }
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Training of subspace: errors of predictors, recording, components, and a fit for each number of components. */
 #include "learning/subspace_training.h"
 
 #include "base/base.h"
@@ -111,7 +112,7 @@ static const int sizes[SUBSPACE_PREDICTORS_MAX] = {8, 32, SUBSPACE_COMPONENTS_MA
 
 static const double first_rate = 1e-2;
 
-/* Slopes longer than this are shortened to it: a window through an impact may have any slope. */
+/* A window through an impact may have any slope. */
 static const double longest_slopes = 1;
 
 /* Shares of the progress. */
@@ -127,10 +128,8 @@ typedef struct Trainer {
     WindowData data[SUBSPACE_PREDICTORS_MAX];
     WindowFit *fits[SUBSPACE_PREDICTORS_MAX];
     int64_t first[SUBSPACE_PREDICTORS_MAX + 1]; /* of the predictors' weights */
-    FitState state;                             /* stage: predictor; its Adam has the weights of all */
+    Fit fit;                                    /* stage: predictor; its Adam has the weights of all */
     double *slopes;
-    ProgressStage stage;
-    Progress progress;
 } Trainer;
 
 bool subspace_record(PoseRows *rows, const Scene *scene, const char *method, const Launch *launches, int count,
@@ -149,7 +148,7 @@ static bool record(Trainer *trainer, PoseRows *rows, bool scoring, int count, Er
     Launch *launches = malloc((size_t)count * sizeof *launches);
     bool ok = launches != NULL || error_memory(error, "subspace");
     ok = ok && (scoring ? launches_for_scoring : launches_for_training)(trainer->scene, count, launches, error) &&
-         subspace_record(rows, trainer->scene, SUBSPACE_OFFLINE, launches, count, &trainer->progress, error);
+         subspace_record(rows, trainer->scene, SUBSPACE_OFFLINE, launches, count, &trainer->fit.progress, error);
     free(launches);
     return ok;
 }
@@ -231,29 +230,19 @@ static bool make_fits(Trainer *trainer, Error *error) {
     return true;
 }
 
-/* The state is written first: an output folder that cannot be written to is refused before any training. */
-static bool begin_state(Trainer *trainer, Error *error) {
+static bool begin_fit(Trainer *trainer, Error *error) {
     const SubspaceTraining *training = trainer->training;
     const int count = trainer->net->shape.predictor_count;
+    Fit *fit = &trainer->fit;
     bool found;
-    trainer->state.command = training->command;
     trainer->slopes = malloc((size_t)trainer->first[count] * sizeof *trainer->slopes);
     if (trainer->slopes == NULL) return error_memory(error, "subspace");
-    if (!adam_create(&trainer->state.adam, trainer->first[count], ADAM_SQUARE_DECAY, error) ||
-        !fit_state_read(&trainer->state, training->state_path, &found, error))
-        return false;
+    if (!fit_begin(fit, trainer->first[count], &found, error)) return false;
+    fit->adam.steps = (int64_t)fit->epoch * training->batches;
     if (found) return true;
     for (int i = 0; i < count; i++)
-        window_fit_begin(trainer->fits[i], training->seed + (uint64_t)i,
-                         trainer->state.adam.weights + trainer->first[i]);
-    return fit_state_write(&trainer->state, training->state_path, error);
-}
-
-static void shorten(double *slopes, int64_t count) {
-    double squares = 0;
-    for (int64_t i = 0; i < count; i++) squares += slopes[i] * slopes[i];
-    const double length = sqrt(squares), by = length > longest_slopes ? longest_slopes / length : 1;
-    for (int64_t i = 0; i < count; i++) slopes[i] *= by;
+        window_fit_begin(trainer->fits[i], training->seed + (uint64_t)i, fit->adam.weights + trainer->first[i]);
+    return fit_write(fit, error);
 }
 
 /* The rate falls to 0 by the square of what is left. */
@@ -262,23 +251,15 @@ static double rate_at(const SubspaceTraining *training, int64_t steps) {
     return first_rate * left * left;
 }
 
-static bool fit_epoch(Trainer *trainer, double *loss, Error *error) {
-    FitState *state = &trainer->state;
-    const int i = state->stage;
-    const int64_t first = trainer->first[i], count = trainer->first[i + 1] - first;
-    const int batches = trainer->training->batches;
-    const uint64_t begun = (uint64_t)state->epoch * (uint64_t)batches;
-    Adam adam = adam_over(state->adam.weights + first, state->adam.mean + first, state->adam.square + first, count,
-                          (int64_t)begun, ADAM_SQUARE_DECAY);
-    *loss = 0;
-    for (int batch = 0; batch < batches; batch++) {
-        const uint64_t seed = (trainer->training->seed << 32) + ((uint64_t)i << 24) + begun + (uint64_t)batch;
-        *loss += window_fit_slopes(trainer->fits[i], adam.weights, seed, trainer->slopes) / batches;
-        shorten(trainer->slopes, count);
-        adam_step(&adam, trainer->slopes, rate_at(trainer->training, adam.steps));
-    }
-    if (!isfinite(*loss)) return error_input(error, "subspace", "training diverged in epoch %d", state->epoch + 1);
-    state->epoch++;
+static bool step(void *context, Adam *adam, double *loss, Error *error) {
+    Trainer *trainer = context;
+    const SubspaceTraining *training = trainer->training;
+    const int i = trainer->fit.stage;
+    const uint64_t seed = (training->seed << 32) + ((uint64_t)i << 24) + (uint64_t)adam->steps;
+    *loss += window_fit_slopes(trainer->fits[i], adam->weights, seed, trainer->slopes) / training->batches;
+    if (!slopes_limit(trainer->slopes, adam->count, longest_slopes) || !isfinite(*loss))
+        return error_input(error, "subspace", "training diverged in epoch %d", trainer->fit.epoch + 1);
+    adam_step(adam, trainer->slopes, rate_at(training, adam->steps));
     return true;
 }
 
@@ -286,7 +267,7 @@ static bool score(Trainer *trainer, int i, double loss, Error *error) {
     SubspacePredictor *predictor = &trainer->net->predictors[i];
     SubspaceScore result;
     window_scales_store(&trainer->data[i], window_fit_scales(trainer->fits[i]),
-                        trainer->state.adam.weights + trainer->first[i], predictor);
+                        trainer->fit.adam.weights + trainer->first[i], predictor);
     if (trainer->training->on_score == NULL) return true;
     if (!subspace_score(trainer->net, predictor, &trainer->held_out, &result, error)) return false;
     trainer->training->on_score(trainer->training->context, &result, loss);
@@ -294,43 +275,33 @@ static bool score(Trainer *trainer, int i, double loss, Error *error) {
 }
 
 /* The time of an epoch grows with the weights. */
-static double done(const Trainer *trainer) {
-    const int i = trainer->state.stage;
-    const double share = (double)trainer->state.epoch / trainer->training->epochs;
-    return ((double)trainer->first[i] + share * (double)(trainer->first[i + 1] - trainer->first[i])) /
-           (double)trainer->first[trainer->net->shape.predictor_count];
-}
-
 static bool fit_networks(Trainer *trainer, Error *error) {
-    FitState *state = &trainer->state;
-    double loss = 0;
-    for (int i = 0; i < state->stage; i++)
-        if (!score(trainer, i, loss, error)) return false;
-    while (state->stage < trainer->net->shape.predictor_count) {
-        while (state->epoch < trainer->training->epochs) {
-            if (!progress_report(&trainer->progress, done(trainer), 1))
-                return error_interrupted(error, trainer->training->state_path, "stopped; the same command continues");
-            if (!fit_epoch(trainer, &loss, error) || !fit_state_write(state, trainer->training->state_path, error))
-                return false;
-        }
-        if (!score(trainer, state->stage, loss, error)) return false;
-        state->stage++;
-        state->epoch = 0;
+    const SubspaceTraining *training = trainer->training;
+    const FitSteps steps = {(int64_t)training->epochs * training->batches, training->batches, step, NULL, trainer};
+    const int begun = trainer->fit.stage, count = trainer->net->shape.predictor_count;
+    const double all = 1 - trainer->fit.share.begin - trainer->fit.share.share;
+    for (int i = 0; i < count; i++) {
+        const int64_t first = trainer->first[i], weights = trainer->first[i + 1] - first;
+        double loss = 0;
+        progress_next_stage(&trainer->fit.share, all * (double)weights / (double)trainer->first[count]);
+        if (i > begun) fit_stage(&trainer->fit, i);
+        if ((i >= begun && !fit_run(&trainer->fit, first, weights, &steps, &loss, error)) ||
+            !score(trainer, i, loss, error))
+            return false;
     }
     return true;
 }
 
 static bool run(Trainer *trainer, Error *error) {
     const SubspaceTraining *training = trainer->training;
-    trainer->stage.share = recording_share;
+    progress_next_stage(&trainer->fit.share, recording_share);
     if (!record(trainer, &trainer->rows, false, training->launches, error)) return false;
     if (trainer->rows.states < WINDOW_FRAMES + 3)
         return error_input(error, trainer->scene->name, "%d frames with the bomb; training needs %d",
                            trainer->rows.states - 1, WINDOW_FRAMES + 2);
-    trainer->stage = (ProgressStage){trainer->stage.whole, recording_share, recording_share / 10, false};
+    progress_next_stage(&trainer->fit.share, recording_share / 10);
     if (!record(trainer, &trainer->held_out, true, SUBSPACE_HELD_OUT, error)) return false;
-    trainer->stage = (ProgressStage){trainer->stage.whole, 1.1 * recording_share, 1 - 1.1 * recording_share, false};
-    return fit_components(trainer, error) && make_fits(trainer, error) && begin_state(trainer, error) &&
+    return fit_components(trainer, error) && make_fits(trainer, error) && begin_fit(trainer, error) &&
            fit_networks(trainer, error);
 }
 
@@ -339,7 +310,7 @@ static void trainer_free(Trainer *trainer) {
     pose_rows_free(&trainer->held_out);
     free(trainer->components);
     free(trainer->slopes);
-    adam_free(&trainer->state.adam);
+    fit_free(&trainer->fit);
     for (int i = 0; i < SUBSPACE_PREDICTORS_MAX; i++) window_fit_destroy(trainer->fits[i]);
     subspace_net_destroy(trainer->net);
     free(trainer);
@@ -354,8 +325,7 @@ SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training
     }
     trainer->scene = scene;
     trainer->training = training;
-    trainer->stage.whole = progress;
-    trainer->progress = (Progress){progress_stage, &trainer->stage};
+    fit_init(&trainer->fit, training->command, training->state_path, progress);
     SubspaceNet *net = NULL;
     if (run(trainer, error)) {
         net = trainer->net;

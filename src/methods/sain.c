@@ -125,72 +125,51 @@ bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, R
     return true;
 }
 
-/* Files of sain: .npz with version, kind ("sain"), command, and as float32 for each form F = on, off, shuffled:
-   F_pair_weights and F_body_weights, weights and biases of the relation and the object network, each as one vector
-   (nets/nets.h); offsets and scales of their inputs, F_pair_offset, F_pair_scale, F_body_offset, F_body_scale;
-   ranges, F_pair_low, F_pair_high, F_body_low, F_body_high; F_limit. */
+/* Files of sain: kind "sain", with F_... for each form F = on, off, shuffled. Weights and biases of a network are one
+   vector. */
 
-#define KIND "sain"
-
-enum { FORM_ARRAYS = 11, ARRAYS = RELATION_FORMS * FORM_ARRAYS };
-
-/* One list for writing and reading. */
-static void list_form(RelationNetwork *network, const char *form, FileFloats list[FORM_ARRAYS]) {
-    Network *relation = network->relation, *object = network->object;
-    const FileFloats all[FORM_ARRAYS] = {
-        {"pair_weights", 1, {network_parameter_count(relation)}, relation->weights[0], &float_any},
-        {"pair_offset", 1, {RELATION_PAIR_INPUTS}, relation->input.offset, &float_any},
-        {"pair_scale", 1, {RELATION_PAIR_INPUTS}, relation->input.scale, &float_positive},
-        {"body_weights", 1, {network_parameter_count(object)}, object->weights[0], &float_any},
-        {"body_offset", 1, {RELATION_OBJECT_INPUTS}, object->input.offset, &float_any},
-        {"body_scale", 1, {RELATION_OBJECT_INPUTS}, object->input.scale, &float_positive},
-        {"pair_low", 1, {RELATION_PAIR_INPUTS}, network->pair_low, &float_any},
-        {"pair_high", 1, {RELATION_PAIR_INPUTS}, network->pair_high, &float_any},
-        {"body_low", 1, {RELATION_BODY_INPUTS}, network->body_low, &float_any},
-        {"body_high", 1, {RELATION_BODY_INPUTS}, network->body_high, &float_any},
-        {"limit", 1, {RELATION_OUTPUTS}, network->limit, &float_not_negative},
-    };
-    for (int i = 0; i < FORM_ARRAYS; i++) {
-        list[i] = all[i];
-        snprintf(list[i].name, sizeof list[i].name, "%.8s_%.12s", form, all[i].name);
+static int list_fields(void *of, NetField *fields) {
+    RelationNetworks *networks = of;
+    NetField *at = fields;
+    *at++ = (NetField){"command", NPZ_TEXT, 0, {sizeof networks->command}, .data = networks->command};
+    for (int f = 0; f < RELATION_FORMS; f++) {
+        RelationNetwork *network = &networks->forms[f];
+        const Network *pair = network->relation, *body = network->object;
+        const struct {
+            const char *name;
+            int count;
+            float *data;
+            const FloatBounds *range;
+        } floats[] = {{"pair_weights", network_parameter_count(pair), pair->weights[0], &float_any},
+                      {"pair_offset", RELATION_PAIR_INPUTS, pair->input.offset, &float_any},
+                      {"pair_scale", RELATION_PAIR_INPUTS, pair->input.scale, &float_positive},
+                      {"body_weights", network_parameter_count(body), body->weights[0], &float_any},
+                      {"body_offset", RELATION_OBJECT_INPUTS, body->input.offset, &float_any},
+                      {"body_scale", RELATION_OBJECT_INPUTS, body->input.scale, &float_positive},
+                      {"pair_low", RELATION_PAIR_INPUTS, network->pair_low, &float_any},
+                      {"pair_high", RELATION_PAIR_INPUTS, network->pair_high, &float_any},
+                      {"body_low", RELATION_BODY_INPUTS, network->body_low, &float_any},
+                      {"body_high", RELATION_BODY_INPUTS, network->body_high, &float_any},
+                      {"limit", RELATION_OUTPUTS, network->limit, &float_not_negative}};
+        for (size_t i = 0; i < sizeof floats / sizeof *floats; i++, at++) {
+            *at = (NetField){"", NPZ_FLOAT32, 1, {floats[i].count}, .data = floats[i].data, .range = floats[i].range};
+            snprintf(at->name, sizeof at->name, "%s_%s", relation_form_names[f], floats[i].name);
+        }
     }
+    return (int)(at - fields);
 }
 
-static void list_floats(RelationNetworks *networks, FileFloats list[ARRAYS]) {
-    for (int f = 0; f < RELATION_FORMS; f++)
-        list_form(&networks->forms[f], relation_form_names[f], list + f * FORM_ARRAYS);
-}
+static const NetFileKind kind = {"sain", RELATION_VERSION, list_fields, NULL, NULL, NULL};
 
 bool relation_networks_write(const RelationNetworks *networks, const char *path, Error *error) {
-    const int32_t version = RELATION_VERSION;
-    RelationNetworks copy = *networks; /* the list has pointers that are not const */
-    FileFloats list[ARRAYS];
-    list_floats(&copy, list);
-    NpzArray arrays[3 + ARRAYS] = {{.name = "version", .type = NPZ_INT32, .data = &version},
-                                   {.name = "kind", .type = NPZ_TEXT, .data = KIND},
-                                   {.name = "command", .type = NPZ_TEXT, .data = networks->command}};
-    for (int i = 0; i < ARRAYS; i++) arrays[3 + i] = file_floats_array(&list[i]);
-    return npz_write(path, arrays, 3 + ARRAYS, error);
-}
-
-static bool create_forms(RelationNetworks *networks, Error *error) {
-    for (int f = 0; f < RELATION_FORMS; f++)
-        if (!relation_network_create(&networks->forms[f], error)) return false;
-    return true;
+    return net_file_write(&kind, networks, path, error);
 }
 
 bool relation_networks_read(RelationNetworks *networks, const char *path, Error *error) {
     *networks = (RelationNetworks){0};
-    NpzFile *file = npz_open(path, error);
-    if (file == NULL) return false;
-    FileFloats list[ARRAYS];
-    bool ok = npz_check_kind(file, KIND, RELATION_VERSION, error) && create_forms(networks, error);
-    if (ok) {
-        list_floats(networks, list);
-        ok = file_floats_read(file, list, ARRAYS, error) &&
-             npz_read_text(file, "command", networks->command, sizeof networks->command, error);
-    }
-    npz_close(file);
+    bool ok = true;
+    for (int f = 0; ok && f < RELATION_FORMS; f++) ok = relation_network_create(&networks->forms[f], error);
+    ok = ok && net_file_read(&kind, networks, path, error);
     if (!ok) relation_networks_destroy(networks);
     return ok;
 }

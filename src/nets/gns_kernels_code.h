@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The code of gns_kernels.h; included once by each gns_kernels_*.c, which defines ROWS_AT_ONCE: as many rows as have their
+/* The code of GnsKernels (kernels.h); included once by each gns_kernels_*.c, which defines ROWS_AT_ONCE: as many rows as have their
    sums in registers. Every sum runs over its items in rising order. */
 #include "nets/kernels.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files: .npz with version, kind ("gns"), command, shape[2] (width, rounds) as int32, and as float32 scales[5] and
-   parameters [layout.parameters]. */
+/* Networks of gns: where the parameters of each perceptron are, and files of kind "gns". */
 #include "base/base.h"
 #include "base/npz.h"
 #include "nets/kinds.h"
@@ -8,10 +7,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-
-#define KIND "gns"
-
-enum { ARRAYS = 2, SHAPE = 2 };
 
 static int take(int *next, int count) {
     const int at = *next;
@@ -50,7 +45,7 @@ GnsLayout gns_layout(int width, int rounds) {
 bool gns_net_create(GnsNet *net, int width, int rounds, Error *error) {
     *net = (GnsNet){.layout = gns_layout(width, rounds)};
     net->parameters = calloc((size_t)net->layout.parameters, sizeof *net->parameters);
-    return net->parameters != NULL || error_memory(error, KIND);
+    return net->parameters != NULL || error_memory(error, "gns");
 }
 
 void gns_net_free(GnsNet *net) {
@@ -58,66 +53,47 @@ void gns_net_free(GnsNet *net) {
     net->parameters = NULL;
 }
 
-/* One list for writing and reading. */
-static void list_floats(GnsNet *net, float scales[5], FileFloats list[ARRAYS]) {
-    list[0] = (FileFloats){"scales", 1, {5}, scales, &float_positive};
-    list[1] = (FileFloats){"parameters", 1, {net->layout.parameters}, net->parameters, &float_any};
+static int list_fields(void *of, NetField *fields) {
+    GnsNet *net = of;
+    const NetField all[] = {
+        {"command", NPZ_TEXT, 0, {sizeof net->command}, .data = net->command},
+        {"shape", NPZ_INT32, 1, {2}, .data = &net->layout, .known = true}, /* width, rounds */
+        {"scales",
+         NPZ_FLOAT32,
+         1,
+         {sizeof net->scales / sizeof(float)},
+         .data = &net->scales,
+         .range = &float_positive},
+        {"parameters", NPZ_FLOAT32, 1, {net->layout.parameters}, .data = net->parameters, .range = &float_any}};
+    memcpy(fields, all, sizeof all);
+    return sizeof all / sizeof *all;
 }
+
+static bool read_sizes(void *of, NpzFile *file, Error *error) {
+    int32_t shape[2];
+    if (net_file_integers(file, "shape", 2, 2, shape, error) == 0) return false;
+    const int width = shape[0], rounds = shape[1];
+    if (width < GNS_WIDTH_STEP || width > GNS_MAX_WIDTH || width % GNS_WIDTH_STEP != 0)
+        return error_input(error, npz_path(file), "the width is %d; expected a multiple of %d up to %d", width,
+                           GNS_WIDTH_STEP, GNS_MAX_WIDTH);
+    if (rounds < 1 || rounds > GNS_MAX_ROUNDS)
+        return error_input(error, npz_path(file), "there are %d rounds; expected 1 to %d", rounds, GNS_MAX_ROUNDS);
+    ((GnsNet *)of)->layout = gns_layout(width, rounds);
+    return true;
+}
+
+static bool create(void *of, Error *error) {
+    GnsNet *net = of;
+    return gns_net_create(net, net->layout.width, net->layout.rounds, error);
+}
+
+static const NetFileKind kind = {"gns", GNS_VERSION, list_fields, read_sizes, create, NULL};
 
 bool gns_net_write(const GnsNet *net, const char *path, Error *error) {
-    const int32_t version = GNS_VERSION, shape[SHAPE] = {net->layout.width, net->layout.rounds};
-    float scales[5] = {net->scales.radius, net->scales.velocity, net->scales.acceleration, net->scales.fastest,
-                       net->scales.strongest};
-    GnsNet copy = *net;
-    FileFloats list[ARRAYS];
-    list_floats(&copy, scales, list);
-    NpzArray arrays[4 + ARRAYS] = {{.name = "version", .type = NPZ_INT32, .data = &version},
-                                   {.name = "kind", .type = NPZ_TEXT, .data = KIND},
-                                   {.name = "command", .type = NPZ_TEXT, .data = net->command},
-                                   {.name = "shape", .type = NPZ_INT32, .rank = 1, .shape = {SHAPE}, .data = shape}};
-    for (int i = 0; i < ARRAYS; i++) arrays[4 + i] = file_floats_array(&list[i]);
-    return npz_write(path, arrays, 4 + ARRAYS, error);
-}
-
-static bool read_shape(NpzFile *file, int *width, int *rounds, Error *error) {
-    const int64_t count = SHAPE;
-    int32_t *shape = npz_read(file, "shape", NPZ_INT32, 1, &count, error);
-    if (shape == NULL) return false;
-    *width = shape[0];
-    *rounds = shape[1];
-    free(shape);
-    if (*width < GNS_WIDTH_STEP || *width > GNS_MAX_WIDTH || *width % GNS_WIDTH_STEP != 0)
-        return error_input(error, npz_path(file), "the width is %d; expected a multiple of %d up to %d", *width,
-                           GNS_WIDTH_STEP, GNS_MAX_WIDTH);
-    if (*rounds < 1 || *rounds > GNS_MAX_ROUNDS)
-        return error_input(error, npz_path(file), "there are %d rounds; expected 1 to %d", *rounds, GNS_MAX_ROUNDS);
-    return true;
-}
-
-static bool read_all(NpzFile *file, GnsNet *net, Error *error) {
-    int width, rounds;
-    float scales[5];
-    FileFloats list[ARRAYS];
-    char command[GNS_COMMAND_SIZE];
-    if (!npz_check_kind(file, KIND, GNS_VERSION, error) ||
-        !npz_read_text(file, "command", command, sizeof command, error) || !read_shape(file, &width, &rounds, error))
-        return false;
-    GnsNet shape = {.layout = gns_layout(width, rounds)};
-    list_floats(&shape, scales, list);
-    /* Before memory is taken: a file can claim any shape. */
-    if (!file_floats_expect(file, list, ARRAYS, error) || !gns_net_create(net, width, rounds, error)) return false;
-    list_floats(net, scales, list);
-    if (!file_floats_read(file, list, ARRAYS, error)) return false;
-    net->scales = (GnsScales){scales[0], scales[1], scales[2], scales[3], scales[4]};
-    memcpy(net->command, command, sizeof command);
-    return true;
+    return net_file_write(&kind, net, path, error);
 }
 
 bool gns_net_read(GnsNet *net, const char *path, Error *error) {
     *net = (GnsNet){.parameters = NULL};
-    NpzFile *file = npz_open(path, error);
-    if (file == NULL) return false;
-    const bool ok = read_all(file, net, error);
-    npz_close(file);
-    return ok;
+    return net_file_read(&kind, net, path, error);
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The loops that this CPU can run, and rows rounded to bytes. */
 #include "nets/kernels.h"
 
 #include <math.h>
 #include <stddef.h>
-#include <stdlib.h>
 
 void row_kernels_list(const RowKernels *list[ROW_KERNELS_MAX + 1]) {
     int count = 0;
@@ -26,16 +26,10 @@ enum { STEPS = INT8_MAX };
 static const float nothing =
     1e-30f; /* a row with no larger number becomes 0, because the reciprocal of its unit is infinite */
 
-bool packed_rows_make(PackedRows *packed, int count, int width) {
-    *packed =
-        (PackedRows){count, width, calloc((size_t)count * (size_t)width, 1), calloc((size_t)count, sizeof(float))};
-    return packed->numbers != NULL && packed->units != NULL;
-}
+size_t packed_rows_bytes(int count, int width) { return (size_t)count * ((size_t)width + sizeof(float)); }
 
-void packed_rows_free(PackedRows *packed) {
-    free(packed->numbers);
-    free(packed->units);
-    *packed = (PackedRows){0};
+PackedRows packed_rows_in(void *block, int count, int width) {
+    return (PackedRows){count, width, block != NULL ? (int8_t *)((float *)block + count) : NULL, block};
 }
 
 static float largest(const float *row, int width) {

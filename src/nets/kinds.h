@@ -22,7 +22,7 @@
 enum {
     GNS_VERSION = 1,
     GNS_HISTORY = 5,      /* past velocities of a particle (paper) */
-    GNS_NODE_INPUTS = 14, /* gns_graph.h */
+    GNS_NODE_INPUTS = 14, /* methods/gns_graph.c */
     GNS_EDGE_INPUTS = 5,
     GNS_OUTPUTS = 2,
     GNS_WIDTH_STEP = 16,
@@ -126,9 +126,9 @@ typedef struct SubspacePredictor {
 /* The sizes of a file; everything else follows from them. */
 typedef struct SubspaceShape {
     int bodies;        /* that move, with the bomb, which is the last */
-    int components;    /* of the basis: those of the largest predictor */
     int hidden;        /* width of the hidden layers, a multiple of ROW_LANES */
     int frames_before; /* steps before the bomb appears */
+    int components;    /* of the basis: those of the largest predictor */
     int predictor_count;
     int predictors[SUBSPACE_PREDICTORS_MAX]; /* components of each, rising */
 } SubspaceShape;
@@ -190,7 +190,7 @@ static inline float turn_angle(float sine, float cosine, float before) {
     return angle + 6.28318531f * turns;
 }
 
-/* A state in the subspace, and its step (subspace_net.h has the equations). */
+/* A state in the subspace, and its step. */
 
 typedef struct Subspace {
     const SubspaceNet *net; /* outlives it */
@@ -230,8 +230,8 @@ void subspace_reconstruct(Subspace *subspace);
        h1 = tanh(W1 x + b1),   h2 = tanh(W2 h1 + b2)
        (dPn, dPt) of slot s = scale[s] (W3 h2 + b3)[s]
 
-   Only the rows of present slots are read. Inference uses rows rounded to bytes (packed_rows.h); training and files use
-   the float rows. Sums run in a fixed order (row_kernels.h), for the same bits on every machine. */
+   Only the rows of present slots are read. Inference uses rows rounded to bytes (PackedRows); training and files use
+   the float rows. Sums run in a fixed order (RowKernels), for the same bits on every machine. */
 
 enum {
     SLOT_NETWORK_VERSION = 2,
@@ -283,9 +283,10 @@ typedef struct SlotNetwork {
     char scene[SLOT_TEXT_SIZE];     /* the scene of the training */
     char command[SLOT_TEXT_SIZE];   /* the command that made it */
     int32_t *pair_slots;            /* [body_count * body_count + 1] first slot of pair (a, b) or of a later pair */
-    float *parameters;              /* the trained parameters: layers, rows, biases; in one block */
+    float *parameters;              /* the trained parameters, one after the other: layers, rows, biases */
     size_t parameter_count;
     const RowKernels *kernels; /* for inference; the fastest */
+    void *block;               /* all arrays */
 } SlotNetwork;
 
 /* Sizes of its inputs. */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Networks of layers: the block of a training, memory, inference in a fixed order of sums, files. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "nets/kernels.h"
 #include "nets/nets.h"
 
-#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,45 +49,6 @@ void network_add_gradient(const NetworkBlock *block, double *gradient) {
 
 double network_block_dot(const double *a, const double *b) { return kernels_best()->dot(a, b); }
 
-const FloatBounds float_any = {-FLT_MAX, FLT_MAX, "finite"};
-const FloatBounds float_positive = {FLT_TRUE_MIN, FLT_MAX, "finite and greater than 0"};
-const FloatBounds float_not_negative = {0, FLT_MAX, "finite and not negative"};
-const FloatBounds float_momentum = {0, 2, "from 0 to 2"};
-
-NpzArray file_floats_array(const FileFloats *floats) {
-    return (NpzArray){floats->name, NPZ_FLOAT32, floats->rank, {floats->shape[0], floats->shape[1]}, floats->numbers};
-}
-
-static bool read(NpzFile *file, const FileFloats *floats, Error *error) {
-    float *numbers = npz_read(file, floats->name, NPZ_FLOAT32, floats->rank, floats->shape, error);
-    if (numbers == NULL) return false;
-    size_t size = 1, i = 0;
-    for (int r = 0; r < floats->rank; r++) size *= (size_t)floats->shape[r];
-    while (i < size && numbers[i] >= floats->range->least && numbers[i] <= floats->range->most) i++;
-    if (i == size)
-        memcpy(floats->numbers, numbers, size * sizeof *numbers);
-    else
-        error_input(error, npz_path(file), "%s: number %zu is %g; it must be %s", floats->name, i, (double)numbers[i],
-                    floats->range->words);
-    free(numbers);
-    return i == size;
-}
-
-bool file_floats_expect(const NpzFile *file, const FileFloats *list, int count, Error *error) {
-    for (int i = 0; i < count; i++) {
-        const NpzArray array = file_floats_array(&list[i]);
-        if (!npz_expect(file, &array, 1, error)) return false;
-    }
-    return true;
-}
-
-bool file_floats_read(NpzFile *file, const FileFloats *list, int count, Error *error) {
-    if (!file_floats_expect(file, list, count, error)) return false;
-    for (int i = 0; i < count; i++)
-        if (!read(file, &list[i], error)) return false;
-    return true;
-}
-
 /* Networks in memory, and inference with a fixed order of summation. */
 
 static bool check_widths(int layers, const int *widths, Error *error) {
@@ -120,17 +81,23 @@ static void place_arrays(Network *network, float *block) {
     network->output_mean = block + 2 * outputs;
 }
 
+/* The widths are set. */
+static bool allocate(Network *network, Error *error) {
+    float *block = calloc(number_count(network), sizeof *block);
+    if (block == NULL) return error_memory(error, "network");
+    place_arrays(network, block);
+    for (int i = 0; i < network->widths[0]; i++) network->input.scale[i] = 1;
+    for (int i = 0; i < network->widths[network->layers]; i++) network->output.scale[i] = 1;
+    return true;
+}
+
 Network *network_create(int layers, const int *widths, Error *error) {
     if (!check_widths(layers, widths, error)) return NULL;
     Network *network = calloc(1, sizeof *network);
     if (network == NULL) return error_memory(error, "network"), NULL;
     network->layers = layers;
     memcpy(network->widths, widths, (size_t)(layers + 1) * sizeof *widths);
-    float *block = calloc(number_count(network), sizeof *block);
-    if (block == NULL) return error_memory(error, "network"), free(network), NULL;
-    place_arrays(network, block);
-    for (int i = 0; i < widths[0]; i++) network->input.scale[i] = 1;
-    for (int i = 0; i < widths[layers]; i++) network->output.scale[i] = 1;
+    if (!allocate(network, error)) return free(network), NULL;
     return network;
 }
 
@@ -209,13 +176,15 @@ void network_predict_batch(const Network *network, const float *inputs, float *s
     }
 }
 
-/* Network files: .npz with version, kind ("network"), widths[layers + 1], activations (words), weights_L and
-   biases_L for every layer, input_offset, input_scale, output_offset, output_scale, output_mean, inputs, outputs,
-   target, command. */
+/* Network files: kind "network", with activations (words), weights_L and biases_L of every layer. */
 
-#define KIND "network"
+enum { ACTIVATIONS_SIZE = 256 };
 
-enum { ACTIVATIONS_SIZE = 256, MAX_FLOATS = 5 + 2 * NETWORK_MAX_LAYERS, MAX_ARRAYS = 8 + MAX_FLOATS };
+/* A network, and its activations in words: "sigmoid linear". */
+typedef struct NetworkFile {
+    Network *network;
+    char activations[ACTIVATIONS_SIZE];
+} NetworkFile;
 
 static const char *const activation_names[] = {[ACTIVATION_LINEAR] = "linear",
                                                [ACTIVATION_SIGMOID] = "sigmoid",
@@ -224,74 +193,51 @@ static const char *const activation_names[] = {[ACTIVATION_LINEAR] = "linear",
 
 enum { ACTIVATION_COUNT = sizeof activation_names / sizeof activation_names[0] };
 
-/* One list for writing and reading. */
-static int list_floats(const Network *network, FileFloats list[MAX_FLOATS]) {
-    int count = 0, inputs = network->widths[0], outputs = network->widths[network->layers];
-    for (int l = 0; l < network->layers; l++) {
-        int rows = network->widths[l + 1], columns = network->widths[l];
-        list[count] = (FileFloats){"", 2, {rows, columns}, network->weights[l], &float_any};
-        snprintf(list[count++].name, sizeof list->name, "weights_%d", l);
-        list[count] = (FileFloats){"", 1, {rows}, network->biases[l], &float_any};
-        snprintf(list[count++].name, sizeof list->name, "biases_%d", l);
-    }
-    list[count++] = (FileFloats){"input_offset", 1, {inputs}, network->input.offset, &float_any};
-    list[count++] = (FileFloats){"input_scale", 1, {inputs}, network->input.scale, &float_positive};
-    list[count++] = (FileFloats){"output_offset", 1, {outputs}, network->output.offset, &float_any};
-    list[count++] = (FileFloats){"output_scale", 1, {outputs}, network->output.scale, &float_positive};
-    list[count++] = (FileFloats){"output_mean", 1, {outputs}, network->output_mean, &float_any};
-    return count;
+/* A vector if there are no columns. */
+static NetField layer_field(const char *name, int layer, int rows, int columns, float *data) {
+    NetField field = {"", NPZ_FLOAT32, columns > 0 ? 2 : 1, {rows, columns}, .data = data, .range = &float_any};
+    snprintf(field.name, sizeof field.name, "%s_%d", name, layer);
+    return field;
 }
 
-/* "sigmoid linear" */
-static void write_activations(const Network *network, char text[ACTIVATIONS_SIZE]) {
-    text[0] = '\0';
-    for (int l = 0; l < network->layers; l++) {
-        if (l > 0) strcat(text, " ");
-        strcat(text, activation_names[network->activations[l]]);
+static int list_fields(void *of, NetField *fields) {
+    NetworkFile *file = of;
+    Network *network = file->network;
+    const int layers = network->layers, inputs = network->widths[0], outputs = network->widths[layers];
+    const NetField
+        first[] = {{"inputs", NPZ_TEXT, 0, {sizeof network->inputs}, .data = network->inputs},
+                   {"outputs", NPZ_TEXT, 0, {sizeof network->outputs}, .data = network->outputs},
+                   {"target", NPZ_TEXT, 0, {sizeof network->target}, .data = network->target},
+                   {"command", NPZ_TEXT, 0, {sizeof network->command}, .data = network->command},
+                   {"widths", NPZ_INT32, 1, {layers + 1}, .data = network->widths, .known = true},
+                   {"activations", NPZ_TEXT, 0, {sizeof file->activations}, .data = file->activations}},
+        last[] = {{"input_offset", NPZ_FLOAT32, 1, {inputs}, .data = network->input.offset, .range = &float_any},
+                  {"input_scale", NPZ_FLOAT32, 1, {inputs}, .data = network->input.scale, .range = &float_positive},
+                  {"output_offset", NPZ_FLOAT32, 1, {outputs}, .data = network->output.offset, .range = &float_any},
+                  {"output_scale", NPZ_FLOAT32, 1, {outputs}, .data = network->output.scale, .range = &float_positive},
+                  {"output_mean", NPZ_FLOAT32, 1, {outputs}, .data = network->output_mean, .range = &float_any}};
+    NetField *at = fields + sizeof first / sizeof *first;
+    memcpy(fields, first, sizeof first);
+    for (int l = 0; l < layers; l++) {
+        *at++ = layer_field("weights", l, network->widths[l + 1], network->widths[l], network->weights[l]);
+        *at++ = layer_field("biases", l, network->widths[l + 1], 0, network->biases[l]);
     }
+    memcpy(at, last, sizeof last);
+    return (int)(at - fields) + (int)(sizeof last / sizeof *last);
 }
 
-bool network_write(const Network *network, const char *path, Error *error) {
-    const int32_t version = NETWORK_VERSION;
-    int32_t widths[NETWORK_MAX_LAYERS + 1];
-    for (int l = 0; l <= network->layers; l++) widths[l] = network->widths[l];
-    char activations[ACTIVATIONS_SIZE];
-    write_activations(network, activations);
-    NpzArray arrays[MAX_ARRAYS] = {
-        {.name = "version", .type = NPZ_INT32, .data = &version},
-        {.name = "kind", .type = NPZ_TEXT, .data = KIND},
-        {.name = "inputs", .type = NPZ_TEXT, .data = network->inputs},
-        {.name = "outputs", .type = NPZ_TEXT, .data = network->outputs},
-        {.name = "target", .type = NPZ_TEXT, .data = network->target},
-        {.name = "command", .type = NPZ_TEXT, .data = network->command},
-        {.name = "widths", .type = NPZ_INT32, .rank = 1, .shape = {network->layers + 1}, .data = widths},
-        {.name = "activations", .type = NPZ_TEXT, .data = activations},
-    };
-    size_t count = 8;
-    FileFloats floats[MAX_FLOATS];
-    const int float_count = list_floats(network, floats);
-    for (int f = 0; f < float_count; f++) arrays[count++] = file_floats_array(&floats[f]);
-    return npz_write(path, arrays, count, error);
+static bool read_widths(void *of, NpzFile *file, Error *error) {
+    Network *network = ((NetworkFile *)of)->network;
+    const int count = net_file_integers(file, "widths", 2, NETWORK_MAX_LAYERS + 1, network->widths, error);
+    for (int l = 0; l < count; l++)
+        if (network->widths[l] < 1 || network->widths[l] > NETWORK_MAX_WIDTH)
+            return error_input(error, npz_path(file), "widths[%d] is %d; expected 1 to %d", l, network->widths[l],
+                               NETWORK_MAX_WIDTH);
+    network->layers = count - 1;
+    return count > 0;
 }
 
-/* Returns the number of layers and fills widths, or 0 with error set. */
-static int read_widths(NpzFile *file, const char *path, int widths[NETWORK_MAX_LAYERS + 1], Error *error) {
-    int64_t count;
-    if (!npz_shape(file, "widths", NPZ_INT32, 1, &count, error)) return 0;
-    if (count < 2 || count > NETWORK_MAX_LAYERS + 1)
-        return error_input(error, path, "widths has %lld numbers; expected 2 to %d", (long long)count,
-                           NETWORK_MAX_LAYERS + 1);
-    int32_t *stored = npz_read(file, "widths", NPZ_INT32, 1, &count, error);
-    if (stored == NULL) return 0;
-    int bad = -1;
-    for (int l = (int)count - 1; l >= 0; l--) {
-        widths[l] = stored[l];
-        if (widths[l] < 1 || widths[l] > NETWORK_MAX_WIDTH) bad = l;
-    }
-    free(stored);
-    if (bad < 0) return (int)count - 1;
-    return error_input(error, path, "widths[%d] is %d; expected 1 to %d", bad, widths[bad], NETWORK_MAX_WIDTH);
-}
+static bool create(void *of, Error *error) { return allocate(((NetworkFile *)of)->network, error); }
 
 static bool parse_activation(const char *word, Activation *activation) {
     for (int a = 0; a < ACTIVATION_COUNT; a++) {
@@ -302,49 +248,33 @@ static bool parse_activation(const char *word, Activation *activation) {
     return false;
 }
 
-static bool read_activations(NpzFile *file, const char *path, Network *network, Error *error) {
-    char text[ACTIVATIONS_SIZE], *rest = text;
-    if (!npz_read_text(file, "activations", text, sizeof text, error)) return false;
+static bool parse_activations(void *of, const char *path, Error *error) {
+    NetworkFile *file = of;
+    Network *network = file->network;
+    char *rest = file->activations;
     int count = 0;
     for (char *word; (word = strtok_r(rest, " ", &rest)) != NULL; count++) {
         if (count == network->layers) return error_input(error, path, "more activations than its %d layers", count);
         if (!parse_activation(word, &network->activations[count]))
             return error_input(error, path, "activation %d is unknown; known: linear, sigmoid, tanh, relu", count);
     }
-    if (count == network->layers) return true;
-    return error_input(error, path, "%d activations for %d layers", count, network->layers);
+    return count == network->layers || error_input(error, path, "%d activations for %d layers", count, network->layers);
 }
 
-/* Before memory is taken for what only the widths tell. */
-static bool expect_contents(const NpzFile *file, int layers, const int *widths, Error *error) {
-    Network sizes = {.layers = layers};
-    FileFloats floats[MAX_FLOATS];
-    memcpy(sizes.widths, widths, (size_t)(layers + 1) * sizeof *widths);
-    return file_floats_expect(file, floats, list_floats(&sizes, floats), error);
-}
+static const NetFileKind kind = {"network", NETWORK_VERSION, list_fields, read_widths, create, parse_activations};
 
-static bool read_contents(NpzFile *file, const char *path, Network *network, Error *error) {
-    if (!read_activations(file, path, network, error)) return false;
-    FileFloats floats[MAX_FLOATS];
-    const int count = list_floats(network, floats);
-    return file_floats_read(file, floats, count, error) &&
-           npz_read_text(file, "inputs", network->inputs, sizeof network->inputs, error) &&
-           npz_read_text(file, "outputs", network->outputs, sizeof network->outputs, error) &&
-           npz_read_text(file, "target", network->target, sizeof network->target, error) &&
-           npz_read_text(file, "command", network->command, sizeof network->command, error);
+bool network_write(const Network *network, const char *path, Error *error) {
+    NetworkFile file = {(Network *)network, ""};
+    for (int l = 0; l < network->layers; l++)
+        text_add(file.activations, sizeof file.activations, "%s%s", l > 0 ? " " : "",
+                 activation_names[network->activations[l]]);
+    return net_file_write(&kind, &file, path, error);
 }
 
 Network *network_read(const char *path, Error *error) {
-    NpzFile *file = npz_open(path, error);
-    if (file == NULL) return NULL;
-    int widths[NETWORK_MAX_LAYERS + 1];
-    Network *network = NULL;
-    int layers = npz_check_kind(file, KIND, NETWORK_VERSION, error) ? read_widths(file, path, widths, error) : 0;
-    if (layers > 0 && expect_contents(file, layers, widths, error)) network = network_create(layers, widths, error);
-    if (network != NULL && !read_contents(file, path, network, error)) {
-        network_destroy(network);
-        network = NULL;
-    }
-    npz_close(file);
-    return network;
+    NetworkFile file = {calloc(1, sizeof *file.network), ""};
+    if (file.network == NULL) return error_memory(error, path), NULL;
+    if (net_file_read(&kind, &file, path, error)) return file.network;
+    network_destroy(file.network);
+    return NULL;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Slot networks: memory, slots, inference, files. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "nets/kernels.h"
@@ -7,35 +8,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-
-void slot_network_destroy(SlotNetwork *network) {
-    if (network == NULL) return;
-    Projection *const projections[] = {&network->bomb_state, &network->state, &network->present, &network->warm};
-    for (int i = 0; i < 4; i++) {
-        free(projections[i]->rows);
-        free(projections[i]->centre);
-        packed_rows_free(&projections[i]->packed);
-    }
-    packed_rows_free(&network->first.packed);
-    packed_rows_free(&network->second.packed);
-    packed_rows_free(&network->packed);
-    free(network->slots);
-    free(network->scale);
-    free(network->cap);
-    free(network->low);
-    free(network->high);
-    free(network->pair_slots);
-    free(network->parameters);
-    free(network);
-}
-
-static bool make_projection(Projection *projection, int from, int to) {
-    projection->from = from;
-    projection->to = to;
-    projection->rows = calloc((size_t)from * (size_t)to, sizeof(float));
-    projection->centre = calloc((size_t)to, sizeof(float));
-    return packed_rows_make(&projection->packed, from, to) && projection->rows != NULL && projection->centre != NULL;
-}
 
 static bool widths_are_whole(int width) { return width > 0 && width <= SLOT_WIDTH_MAX && width % ROW_LANES == 0; }
 
@@ -62,25 +34,54 @@ static bool slot_shape_check(const SlotShape *shape, const Slot *slots, const ch
     return true;
 }
 
-/* Layers, rows and biases in one block. */
-static bool make_parameters(SlotNetwork *network, const SlotShape *shape) {
-    const size_t inputs = (size_t)ROW_LANES + (size_t)shape->state + (size_t)shape->present + (size_t)shape->warm;
-    const size_t hidden = (size_t)shape->hidden, outputs = 2 * (size_t)shape->slot_count;
-    network->parameter_count = (inputs + 1) * hidden + (hidden + 1) * hidden + (hidden + 1) * outputs;
-    float *at = network->parameters = calloc(network->parameter_count, sizeof *at);
-    if (at == NULL) return false;
-    network->first = (SlotLayer){.from = (int)inputs, .to = (int)hidden, .rows = at, .biases = at + inputs * hidden};
-    at += (inputs + 1) * hidden;
-    network->second = (SlotLayer){.from = (int)hidden, .to = (int)hidden, .rows = at, .biases = at + hidden * hidden};
-    at += (hidden + 1) * hidden;
-    network->low = calloc(inputs, sizeof *network->low);
-    network->high = calloc(inputs, sizeof *network->high);
-    network->rows = at;
-    network->biases = at + outputs * hidden;
-    return packed_rows_make(&network->first.packed, (int)inputs, (int)hidden) &&
-           packed_rows_make(&network->second.packed, (int)hidden, (int)hidden) &&
-           packed_rows_make(&network->packed, (int)outputs, (int)hidden) && network->low != NULL &&
-           network->high != NULL;
+/* Takes an array from the block, from a line of the cache on; before there is a block, only counts the bytes. */
+static void *take(const SlotNetwork *network, size_t *used, size_t bytes) {
+    char *at = network->block != NULL ? (char *)network->block + *used : NULL;
+    *used += (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    return at;
+}
+
+static PackedRows take_packed(const SlotNetwork *network, size_t *used, int count, int width) {
+    return packed_rows_in(take(network, used, packed_rows_bytes(count, width)), count, width);
+}
+
+static void take_projection(const SlotNetwork *network, size_t *used, Projection *projection) {
+    const size_t from = (size_t)projection->from, to = (size_t)projection->to;
+    projection->rows = take(network, used, from * to * sizeof(float));
+    projection->centre = take(network, used, to * sizeof(float));
+    projection->packed = take_packed(network, used, projection->from, projection->to);
+}
+
+static float *place_layer(SlotLayer *layer, float *at) {
+    layer->rows = at;
+    layer->biases = at != NULL ? at + layer->from * layer->to : NULL;
+    return at != NULL ? layer->biases + layer->to : NULL;
+}
+
+/* Places all arrays; returns the bytes that they take. */
+static size_t lay_out(SlotNetwork *network) {
+    const int inputs = network->first.from, hidden = network->second.to, outputs = 2 * network->slot_count;
+    const size_t slots = (size_t)network->slot_count, bodies = (size_t)network->body_count;
+    size_t used = 0;
+    network->parameter_count =
+        (size_t)(inputs + 1) * (size_t)hidden + (size_t)(hidden + 1) * (size_t)(hidden + outputs);
+    network->parameters = take(network, &used, network->parameter_count * sizeof(float));
+    network->rows = place_layer(&network->second, place_layer(&network->first, network->parameters));
+    network->biases = network->rows != NULL ? network->rows + outputs * hidden : NULL;
+    network->first.packed = take_packed(network, &used, inputs, hidden);
+    network->second.packed = take_packed(network, &used, hidden, hidden);
+    network->packed = take_packed(network, &used, outputs, hidden);
+    take_projection(network, &used, &network->bomb_state);
+    take_projection(network, &used, &network->state);
+    take_projection(network, &used, &network->present);
+    take_projection(network, &used, &network->warm);
+    network->low = take(network, &used, (size_t)inputs * sizeof(float));
+    network->high = take(network, &used, (size_t)inputs * sizeof(float));
+    network->scale = take(network, &used, slots * sizeof(float));
+    network->cap = take(network, &used, slots * sizeof(float));
+    network->slots = take(network, &used, slots * sizeof(Slot));
+    network->pair_slots = take(network, &used, (bodies * bodies + 1) * sizeof(int32_t));
+    return used;
 }
 
 /* The first slot of each pair. */
@@ -94,34 +95,43 @@ static void index_pairs(SlotNetwork *network) {
     }
 }
 
+/* A network of the shape's sizes without arrays. */
+static SlotNetwork sizes_of(const SlotShape *shape) {
+    const int slots = shape->slot_count, inputs = ROW_LANES + shape->state + shape->present + shape->warm;
+    return (SlotNetwork){.body_count = shape->body_count,
+                         .bomb = shape->bomb,
+                         .slot_count = slots,
+                         .bomb_state = {.from = SLOT_BODY_NUMBERS, .to = ROW_LANES},
+                         .state = {.from = SLOT_BODY_NUMBERS * (shape->body_count - 1), .to = shape->state},
+                         .present = {.from = slots, .to = shape->present},
+                         .warm = {.from = 2 * slots, .to = shape->warm},
+                         .first = {.from = inputs, .to = shape->hidden},
+                         .second = {.from = shape->hidden, .to = shape->hidden},
+                         .kernels = row_kernels_best()};
+}
+
+static bool allocate(SlotNetwork *network, const Slot *slots, Error *error) {
+    network->block = calloc(1, lay_out(network));
+    if (network->block == NULL) return error_memory(error, "slot network");
+    lay_out(network);
+    memcpy(network->slots, slots, (size_t)network->slot_count * sizeof *slots);
+    index_pairs(network);
+    return true;
+}
+
 SlotNetwork *slot_network_create(const SlotShape *shape, const Slot *slots, Error *error) {
     if (!slot_shape_check(shape, slots, "slot network", error)) return NULL;
-    SlotNetwork *network = calloc(1, sizeof *network);
-    const size_t count = (size_t)shape->slot_count, bodies = (size_t)shape->body_count;
-    bool ok = network != NULL;
-    if (ok) {
-        network->kernels = row_kernels_best();
-        network->body_count = shape->body_count;
-        network->bomb = shape->bomb;
-        network->slot_count = shape->slot_count;
-        network->slots = malloc(count * sizeof *slots);
-        network->scale = calloc(count, sizeof *network->scale);
-        network->cap = calloc(count, sizeof *network->cap);
-        network->pair_slots = malloc((bodies * bodies + 1) * sizeof *network->pair_slots);
-        ok = network->slots != NULL && network->scale != NULL && network->cap != NULL && network->pair_slots != NULL &&
-             make_projection(&network->bomb_state, SLOT_BODY_NUMBERS, ROW_LANES) &&
-             make_projection(&network->state, SLOT_BODY_NUMBERS * (shape->body_count - 1), shape->state) &&
-             make_projection(&network->present, shape->slot_count, shape->present) &&
-             make_projection(&network->warm, 2 * shape->slot_count, shape->warm) && make_parameters(network, shape);
-    }
-    if (ok) {
-        memcpy(network->slots, slots, count * sizeof *slots);
-        index_pairs(network);
-        return network;
-    }
-    slot_network_destroy(network);
-    error_memory(error, "slot network");
-    return NULL;
+    SlotNetwork *network = malloc(sizeof *network);
+    if (network == NULL) return error_memory(error, "slot network"), NULL;
+    *network = sizes_of(shape);
+    if (!allocate(network, slots, error)) return free(network), NULL;
+    return network;
+}
+
+void slot_network_destroy(SlotNetwork *network) {
+    if (network == NULL) return;
+    free(network->block);
+    free(network);
 }
 
 int slot_network_find(const SlotNetwork *network, int a, int b, uint32_t feature) {
@@ -175,93 +185,57 @@ void slot_network_predict(const SlotNetwork *network, const float *inputs, const
         }
 }
 
-/* Slot network files: .npz with version, kind ("scene-net"), scene, command, body_count, bomb, sweeps, slot_a, slot_b,
-   slot_feature [slots], and as float32, with the shapes of slot_network.h: P_rows and P_centre of the projections P =
-   bomb_state, state, present, warm; L_rows and L_biases of the layers L = first, second, last; scale, cap, low,
-   high, gate, bomb_inv_mass, factors[sweeps]. */
+/* Slot network files: kind "scene-net". */
 
-#define KIND "scene-net"
+typedef struct SlotFile {
+    SlotNetwork *network;
+    Slot *slots;      /* of a reader, before the network has them */
+    int32_t *columns; /* of a writer: a of all slots, then b, then feature */
+} SlotFile;
 
-enum { HEAD_ARRAYS = 10, FLOAT_ARRAYS = 21 };
-
-/* One list for writing and reading. */
-static void list_floats(SlotNetwork *network, FileFloats list[FLOAT_ARRAYS]) {
+static int list_fields(void *of, NetField *fields) {
+    const SlotFile *file = of;
+    SlotNetwork *network = file->network;
     const Projection *bomb = &network->bomb_state, *state = &network->state, *present = &network->present,
                      *warm = &network->warm;
     const SlotLayer *first = &network->first, *second = &network->second;
     const int slots = network->slot_count;
-    const FileFloats all[FLOAT_ARRAYS] = {
-        {"bomb_state_rows", 2, {bomb->from, bomb->to}, bomb->rows, &float_any},
-        {"bomb_state_centre", 1, {bomb->to}, bomb->centre, &float_any},
-        {"state_rows", 2, {state->from, state->to}, state->rows, &float_any},
-        {"state_centre", 1, {state->to}, state->centre, &float_any},
-        {"present_rows", 2, {present->from, present->to}, present->rows, &float_any},
-        {"present_centre", 1, {present->to}, present->centre, &float_any},
-        {"warm_rows", 2, {warm->from, warm->to}, warm->rows, &float_any},
-        {"warm_centre", 1, {warm->to}, warm->centre, &float_any},
-        {"first_rows", 2, {first->from, first->to}, first->rows, &float_any},
-        {"first_biases", 1, {first->to}, first->biases, &float_any},
-        {"second_rows", 2, {second->from, second->to}, second->rows, &float_any},
-        {"second_biases", 1, {second->to}, second->biases, &float_any},
-        {"last_rows", 2, {2 * slots, second->to}, network->rows, &float_any},
-        {"last_biases", 1, {2 * slots}, network->biases, &float_any},
-        {"scale", 1, {slots}, network->scale, &float_not_negative},
-        {"cap", 1, {slots}, network->cap, &float_not_negative},
-        {"low", 1, {first->from}, network->low, &float_any},
-        {"high", 1, {first->from}, network->high, &float_any},
-        {"gate", 0, {0}, &network->gate, &float_not_negative},
-        {"bomb_inv_mass", 0, {0}, &network->bomb_inv_mass, &float_not_negative},
-        {"factors", 1, {network->sweeps}, network->factors, &float_momentum},
-    };
-    memcpy(list, all, sizeof all);
+    int32_t *columns = file->columns;
+    const NetField all[] = {
+        {"scene", NPZ_TEXT, 0, {sizeof network->scene}, .data = network->scene, .shown = true},
+        {"command", NPZ_TEXT, 0, {sizeof network->command}, .data = network->command},
+        {"body_count", NPZ_INT32, 0, {0}, .data = &network->body_count, .known = true},
+        {"bomb", NPZ_INT32, 0, {0}, .data = &network->bomb, .known = true},
+        {"sweeps", NPZ_INT32, 0, {0}, .data = &network->sweeps, .known = true},
+        {"slot_a", NPZ_INT32, 1, {slots}, .data = columns, .known = true},
+        {"slot_b", NPZ_INT32, 1, {slots}, .data = columns != NULL ? columns + slots : NULL, .known = true},
+        {"slot_feature", NPZ_UINT32, 1, {slots}, .data = columns != NULL ? columns + 2 * slots : NULL, .known = true},
+        {"bomb_state_rows", NPZ_FLOAT32, 2, {bomb->from, bomb->to}, .data = bomb->rows, .range = &float_any},
+        {"bomb_state_centre", NPZ_FLOAT32, 1, {bomb->to}, .data = bomb->centre, .range = &float_any},
+        {"state_rows", NPZ_FLOAT32, 2, {state->from, state->to}, .data = state->rows, .range = &float_any},
+        {"state_centre", NPZ_FLOAT32, 1, {state->to}, .data = state->centre, .range = &float_any},
+        {"present_rows", NPZ_FLOAT32, 2, {present->from, present->to}, .data = present->rows, .range = &float_any},
+        {"present_centre", NPZ_FLOAT32, 1, {present->to}, .data = present->centre, .range = &float_any},
+        {"warm_rows", NPZ_FLOAT32, 2, {warm->from, warm->to}, .data = warm->rows, .range = &float_any},
+        {"warm_centre", NPZ_FLOAT32, 1, {warm->to}, .data = warm->centre, .range = &float_any},
+        {"first_rows", NPZ_FLOAT32, 2, {first->from, first->to}, .data = first->rows, .range = &float_any},
+        {"first_biases", NPZ_FLOAT32, 1, {first->to}, .data = first->biases, .range = &float_any},
+        {"second_rows", NPZ_FLOAT32, 2, {second->from, second->to}, .data = second->rows, .range = &float_any},
+        {"second_biases", NPZ_FLOAT32, 1, {second->to}, .data = second->biases, .range = &float_any},
+        {"last_rows", NPZ_FLOAT32, 2, {2 * slots, second->to}, .data = network->rows, .range = &float_any},
+        {"last_biases", NPZ_FLOAT32, 1, {2 * slots}, .data = network->biases, .range = &float_any},
+        {"scale", NPZ_FLOAT32, 1, {slots}, .data = network->scale, .range = &float_not_negative},
+        {"cap", NPZ_FLOAT32, 1, {slots}, .data = network->cap, .range = &float_not_negative},
+        {"low", NPZ_FLOAT32, 1, {first->from}, .data = network->low, .range = &float_any},
+        {"high", NPZ_FLOAT32, 1, {first->from}, .data = network->high, .range = &float_any},
+        {"gate", NPZ_FLOAT32, 0, {0}, .data = &network->gate, .range = &float_not_negative},
+        {"bomb_inv_mass", NPZ_FLOAT32, 0, {0}, .data = &network->bomb_inv_mass, .range = &float_not_negative},
+        {"factors", NPZ_FLOAT32, 1, {network->sweeps}, .data = network->factors, .range = &float_momentum}};
+    memcpy(fields, all, sizeof all);
+    return sizeof all / sizeof *all;
 }
 
-/* a of all slots, then b, then feature; NULL when memory is short. */
-static int32_t *slot_columns(const SlotNetwork *network) {
-    const int count = network->slot_count;
-    int32_t *columns = malloc(3 * (size_t)count * sizeof *columns);
-    for (int i = 0; columns != NULL && i < count; i++) {
-        columns[i] = network->slots[i].a;
-        columns[count + i] = network->slots[i].b;
-        memcpy(&columns[2 * count + i], &network->slots[i].feature, sizeof *columns);
-    }
-    return columns;
-}
-
-bool slot_network_write(const SlotNetwork *network, const char *path, Error *error) {
-    const int32_t version = SLOT_NETWORK_VERSION, body_count = network->body_count, bomb = network->bomb,
-                  sweeps = network->sweeps, count = network->slot_count;
-    int32_t *slots = slot_columns(network);
-    if (slots == NULL) return error_memory(error, path);
-    NpzArray arrays[HEAD_ARRAYS + FLOAT_ARRAYS] = {
-        {.name = "version", .type = NPZ_INT32, .data = &version},
-        {.name = "kind", .type = NPZ_TEXT, .data = KIND},
-        {.name = "scene", .type = NPZ_TEXT, .data = network->scene},
-        {.name = "command", .type = NPZ_TEXT, .data = network->command},
-        {.name = "body_count", .type = NPZ_INT32, .data = &body_count},
-        {.name = "bomb", .type = NPZ_INT32, .data = &bomb},
-        {.name = "sweeps", .type = NPZ_INT32, .data = &sweeps},
-        {.name = "slot_a", .type = NPZ_INT32, .rank = 1, .shape = {count}, .data = slots},
-        {.name = "slot_b", .type = NPZ_INT32, .rank = 1, .shape = {count}, .data = slots + count},
-        {.name = "slot_feature", .type = NPZ_UINT32, .rank = 1, .shape = {count}, .data = slots + 2 * count},
-    };
-    SlotNetwork copy = *network; /* the list has pointers that are not const */
-    FileFloats floats[FLOAT_ARRAYS];
-    list_floats(&copy, floats);
-    for (int i = 0; i < FLOAT_ARRAYS; i++) arrays[HEAD_ARRAYS + i] = file_floats_array(&floats[i]);
-    bool ok = npz_write(path, arrays, HEAD_ARRAYS + FLOAT_ARRAYS, error);
-    free(slots);
-    return ok;
-}
-
-static bool read_int(NpzFile *file, const char *name, int *number, Error *error) {
-    int32_t stored;
-    if (!npz_read_scalar(file, name, NPZ_INT32, &stored, sizeof stored, error)) return false;
-    *number = stored;
-    return true;
-}
-
-/* The number of columns of a matrix that must have this many rows. Memory is allocated only for what the file holds. */
+/* The number of columns of a matrix that must have this many rows. */
 static bool read_width(NpzFile *file, const char *name, int64_t rows, int *width, Error *error) {
     int64_t shape[2];
     if (!npz_shape(file, name, NPZ_FLOAT32, 2, shape, error)) return false;
@@ -274,8 +248,8 @@ static bool read_width(NpzFile *file, const char *name, int64_t rows, int *width
 
 static bool read_shape(NpzFile *file, SlotShape *shape, Error *error) {
     int64_t slots;
-    if (!read_int(file, "body_count", &shape->body_count, error) || !read_int(file, "bomb", &shape->bomb, error) ||
-        !npz_shape(file, "slot_a", NPZ_INT32, 1, &slots, error))
+    if (!net_file_integer(file, "body_count", &shape->body_count, error) ||
+        !net_file_integer(file, "bomb", &shape->bomb, error) || !npz_shape(file, "slot_a", NPZ_INT32, 1, &slots, error))
         return false;
     if (slots > SLOTS_MAX)
         return error_input(error, npz_path(file), "%lld slots; expected 1 to %d", (long long)slots, SLOTS_MAX);
@@ -300,52 +274,53 @@ static Slot *read_slots(NpzFile *file, int64_t count, Error *error) {
     return slots;
 }
 
-static bool read_contents(NpzFile *file, SlotNetwork *network, Error *error) {
-    if (!npz_read_name(file, "scene", network->scene, sizeof network->scene, error) ||
-        !npz_read_text(file, "command", network->command, sizeof network->command, error) ||
-        !read_int(file, "sweeps", &network->sweeps, error))
-        return false;
-    if (network->sweeps < 0 || network->sweeps > SLOT_SWEEPS_MAX)
-        return error_input(error, npz_path(file), "sweeps is %d; expected 0 to %d", network->sweeps, SLOT_SWEEPS_MAX);
-    FileFloats floats[FLOAT_ARRAYS];
-    list_floats(network, floats);
-    if (!file_floats_read(file, floats, FLOAT_ARRAYS, error)) return false;
-    slot_network_pack(network);
+static bool read_sizes(void *of, NpzFile *file, Error *error) {
+    SlotFile *slot_file = of;
+    SlotShape shape = {0};
+    int sweeps;
+    if (!read_shape(file, &shape, error) || !net_file_integer(file, "sweeps", &sweeps, error)) return false;
+    if (sweeps < 0 || sweeps > SLOT_SWEEPS_MAX)
+        return error_input(error, npz_path(file), "sweeps is %d; expected 0 to %d", sweeps, SLOT_SWEEPS_MAX);
+    slot_file->slots = read_slots(file, shape.slot_count, error);
+    if (slot_file->slots == NULL || !slot_shape_check(&shape, slot_file->slots, npz_path(file), error)) return false;
+    *slot_file->network = sizes_of(&shape);
+    slot_file->network->sweeps = sweeps;
     return true;
 }
 
-/* All but the factors, before memory is taken for what only the widths tell. */
-static bool expect_contents(const NpzFile *file, const SlotShape *shape, Error *error) {
-    const int slots = shape->slot_count, inputs = ROW_LANES + shape->state + shape->present + shape->warm;
-    SlotNetwork sizes = {.slot_count = slots,
-                         .bomb_state = {.from = SLOT_BODY_NUMBERS, .to = ROW_LANES},
-                         .state = {.from = SLOT_BODY_NUMBERS * (shape->body_count - 1), .to = shape->state},
-                         .present = {.from = slots, .to = shape->present},
-                         .warm = {.from = 2 * slots, .to = shape->warm},
-                         .first = {.from = inputs, .to = shape->hidden},
-                         .second = {.from = shape->hidden, .to = shape->hidden}};
-    FileFloats floats[FLOAT_ARRAYS];
-    list_floats(&sizes, floats);
-    return file_floats_expect(file, floats, FLOAT_ARRAYS - 1, error);
+static bool create(void *of, Error *error) {
+    const SlotFile *file = of;
+    return allocate(file->network, file->slots, error);
 }
 
-static SlotNetwork *read_network(NpzFile *file, Error *error) {
-    SlotShape shape = {0};
-    if (!npz_check_kind(file, KIND, SLOT_NETWORK_VERSION, error) || !read_shape(file, &shape, error)) return NULL;
-    Slot *slots = read_slots(file, shape.slot_count, error);
-    SlotNetwork *network = NULL;
-    if (slots != NULL && slot_shape_check(&shape, slots, npz_path(file), error) && expect_contents(file, &shape, error))
-        network = slot_network_create(&shape, slots, error);
-    free(slots);
-    if (network == NULL || read_contents(file, network, error)) return network;
-    slot_network_destroy(network);
-    return NULL;
+static bool pack(void *of, const char *path, Error *error) {
+    (void)path, (void)error;
+    slot_network_pack(((SlotFile *)of)->network);
+    return true;
+}
+
+static const NetFileKind kind = {"scene-net", SLOT_NETWORK_VERSION, list_fields, read_sizes, create, pack};
+
+bool slot_network_write(const SlotNetwork *network, const char *path, Error *error) {
+    const size_t count = (size_t)network->slot_count;
+    SlotFile file = {(SlotNetwork *)network, NULL, malloc(3 * count * sizeof *file.columns)};
+    if (file.columns == NULL) return error_memory(error, path);
+    for (size_t i = 0; i < count; i++) {
+        file.columns[i] = network->slots[i].a;
+        file.columns[count + i] = network->slots[i].b;
+        memcpy(&file.columns[2 * count + i], &network->slots[i].feature, sizeof *file.columns);
+    }
+    const bool ok = net_file_write(&kind, &file, path, error);
+    free(file.columns);
+    return ok;
 }
 
 SlotNetwork *slot_network_read(const char *path, Error *error) {
-    NpzFile *file = npz_open(path, error);
-    if (file == NULL) return NULL;
-    SlotNetwork *network = read_network(file, error);
-    npz_close(file);
-    return network;
+    SlotFile file = {calloc(1, sizeof *file.network), NULL, NULL};
+    if (file.network == NULL) return error_memory(error, path), NULL;
+    const bool ok = net_file_read(&kind, &file, path, error);
+    free(file.slots);
+    if (ok) return file.network;
+    slot_network_destroy(file.network);
+    return NULL;
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Subspace networks: memory, files, and steps in the subspace. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "nets/kernels.h"
@@ -61,25 +62,20 @@ static size_t lay_out(SubspaceNet *net) {
     return used;
 }
 
-SubspaceNet *subspace_net_create(const SubspaceShape *shape, Error *error) {
-    SubspaceNet *net = calloc(1, sizeof *net);
-    if (net != NULL) {
-        net->shape = *shape;
-        net->block = calloc(lay_out(net), sizeof *net->block);
-        if (net->block != NULL) {
-            lay_out(net);
-            return net;
-        }
-    }
-    free(net);
-    error_memory(error, "subspace");
-    return NULL;
+/* The shape is set. */
+static bool allocate(void *of, Error *error) {
+    SubspaceNet *net = of;
+    net->block = calloc(lay_out(net), sizeof *net->block);
+    if (net->block == NULL) return error_memory(error, "subspace");
+    lay_out(net);
+    return true;
 }
 
-/* The sizes of all arrays, which stay NULL: for a look at a file before memory is taken. */
-static SubspaceNet subspace_net_sizes(const SubspaceShape *shape) {
-    SubspaceNet net = {.shape = *shape};
-    lay_out(&net);
+SubspaceNet *subspace_net_create(const SubspaceShape *shape, Error *error) {
+    SubspaceNet *net = calloc(1, sizeof *net);
+    if (net == NULL) return error_memory(error, "subspace"), NULL;
+    net->shape = *shape;
+    if (!allocate(net, error)) return free(net), NULL;
     return net;
 }
 
@@ -96,21 +92,16 @@ const SubspacePredictor *subspace_net_choose(const SubspaceNet *net, int compone
     return &net->predictors[chosen];
 }
 
-/* Subspace files: .npz with version, kind ("subspace"), scene, command, physics, sizes (bodies, hidden, frames_before),
-   predictors (components of each), and as float32, with the shapes of subspace_net.h: rest, basis, low, high, before,
-   and of predictor i linear_i, first_rows_i, first_biases_i, second_..., last_.... */
+/* Subspace files: kind SUBSPACE_KIND; predictor i has linear_i, first_rows_i, first_biases_i, second_..., last_.... */
 
-enum {
-    SIZES = 3,
-    HEAD_ARRAYS = 7,
-    SHARED = 5,
-    PER_PREDICTOR = 7,
-    FLOATS_MAX = SHARED + PER_PREDICTOR * SUBSPACE_PREDICTORS_MAX
-};
+enum { SIZES = 3 }; /* bodies, hidden, frames_before */
 
-static FileFloats *put(FileFloats *at, const char *name, int predictor, int rows, int width, float *numbers) {
-    *at = (FileFloats){
-        .rank = rows > 0 ? 2 : 1, .shape = {rows > 0 ? rows : width, width}, .numbers = numbers, .range = &float_any};
+static NetField *put(NetField *at, const char *name, int predictor, int rows, int width, float *numbers) {
+    *at = (NetField){.type = NPZ_FLOAT32,
+                     .rank = rows > 0 ? 2 : 1,
+                     .shape = {rows > 0 ? rows : width, width},
+                     .data = numbers,
+                     .range = &float_any};
     if (predictor < 0)
         snprintf(at->name, sizeof at->name, "%s", name);
     else
@@ -118,22 +109,29 @@ static FileFloats *put(FileFloats *at, const char *name, int predictor, int rows
     return at + 1;
 }
 
-static FileFloats *put_layer(FileFloats *at, const char *rows, const char *biases, int predictor,
-                             const SubspaceLayer *layer) {
+static NetField *put_layer(NetField *at, const char *rows, const char *biases, int predictor,
+                           const SubspaceLayer *layer) {
     at = put(at, rows, predictor, layer->from, layer->lanes, layer->rows);
     return put(at, biases, predictor, 0, layer->lanes, layer->biases);
 }
 
-/* One list for writing and reading; returns its length. */
-static int list_floats(const SubspaceNet *net, FileFloats list[FLOATS_MAX]) {
-    const SubspaceShape *shape = &net->shape;
+static int list_fields(void *of, NetField *fields) {
+    SubspaceNet *net = of;
+    SubspaceShape *shape = &net->shape;
     const int lanes = subspace_lanes(SUBSPACE_POSE * shape->bodies);
-    FileFloats *at = list;
+    const NetField first[] = {
+        {"scene", NPZ_TEXT, 0, {sizeof net->scene}, .data = net->scene, .shown = true},
+        {"command", NPZ_TEXT, 0, {sizeof net->command}, .data = net->command},
+        {"physics", NPZ_UINT64, 0, {0}, .data = &net->physics},
+        {"sizes", NPZ_INT32, 1, {SIZES}, .data = shape, .known = true},
+        {"predictors", NPZ_INT32, 1, {shape->predictor_count}, .data = shape->predictors, .known = true}};
+    NetField *at = fields + sizeof first / sizeof *first;
+    memcpy(fields, first, sizeof first);
     at = put(at, "rest", -1, 0, lanes, net->rest);
     at = put(at, "basis", -1, shape->components, lanes, net->basis);
     at = put(at, "low", -1, 0, shape->components, net->low);
     at = put(at, "high", -1, 0, shape->components, net->high);
-    at = put(at, "before", -1, 0, 3 * shape->frames_before * (shape->bodies - 1), net->before);
+    at = put(at, "before", -1, 0, POSE * shape->frames_before * (shape->bodies - 1), net->before);
     for (int i = 0; i < shape->predictor_count; i++) {
         const SubspacePredictor *predictor = &net->predictors[i];
         at = put(at, "linear", i, 2, predictor->last.lanes, predictor->linear);
@@ -141,53 +139,27 @@ static int list_floats(const SubspaceNet *net, FileFloats list[FLOATS_MAX]) {
         at = put_layer(at, "second_rows", "second_biases", i, &predictor->second);
         at = put_layer(at, "last_rows", "last_biases", i, &predictor->last);
     }
-    return (int)(at - list);
+    return (int)(at - fields);
 }
 
-bool subspace_net_write(const SubspaceNet *net, const char *path, Error *error) {
-    const SubspaceShape *shape = &net->shape;
-    const int32_t version = SUBSPACE_VERSION, sizes[SIZES] = {shape->bodies, shape->hidden, shape->frames_before};
-    int32_t predictors[SUBSPACE_PREDICTORS_MAX];
-    for (int i = 0; i < shape->predictor_count; i++) predictors[i] = shape->predictors[i];
-    NpzArray arrays[HEAD_ARRAYS + FLOATS_MAX] = {
-        {.name = "version", .type = NPZ_INT32, .data = &version},
-        {.name = "kind", .type = NPZ_TEXT, .data = SUBSPACE_KIND},
-        {.name = "scene", .type = NPZ_TEXT, .data = net->scene},
-        {.name = "command", .type = NPZ_TEXT, .data = net->command},
-        {.name = "physics", .type = NPZ_UINT64, .data = &net->physics},
-        {.name = "sizes", .type = NPZ_INT32, .rank = 1, .shape = {SIZES}, .data = sizes},
-        {.name = "predictors", .type = NPZ_INT32, .rank = 1, .shape = {shape->predictor_count}, .data = predictors}};
-    FileFloats floats[FLOATS_MAX];
-    const int count = list_floats(net, floats);
-    for (int i = 0; i < count; i++) arrays[HEAD_ARRAYS + i] = file_floats_array(&floats[i]);
-    return npz_write(path, arrays, HEAD_ARRAYS + (size_t)count, error);
-}
-
-static bool read_predictors(NpzFile *file, SubspaceShape *shape, Error *error) {
-    int64_t count;
-    if (!npz_shape(file, "predictors", NPZ_INT32, 1, &count, error)) return false;
-    if (count < 1 || count > SUBSPACE_PREDICTORS_MAX)
-        return error_input(error, npz_path(file), "predictors has %lld numbers; expected 1 to %d", (long long)count,
-                           SUBSPACE_PREDICTORS_MAX);
-    int32_t *predictors = npz_read(file, "predictors", NPZ_INT32, 1, &count, error);
-    if (predictors == NULL) return false;
-    shape->predictor_count = (int)count;
-    for (int i = 0; i < shape->predictor_count; i++) shape->components = shape->predictors[i] = predictors[i];
-    free(predictors);
+static bool read_sizes(void *of, NpzFile *file, Error *error) {
+    SubspaceNet *net = of;
+    SubspaceShape *shape = &net->shape;
+    int32_t sizes[SIZES];
+    if (net_file_integers(file, "sizes", SIZES, SIZES, sizes, error) == 0) return false;
+    *shape = (SubspaceShape){.bodies = sizes[0], .hidden = sizes[1], .frames_before = sizes[2]};
+    shape->predictor_count =
+        net_file_integers(file, "predictors", 1, SUBSPACE_PREDICTORS_MAX, shape->predictors, error);
+    if (shape->predictor_count == 0) return false;
+    shape->components = shape->predictors[shape->predictor_count - 1];
+    if (!subspace_shape_check(shape, npz_path(file), error)) return false;
+    lay_out(net); /* the sizes of all arrays */
     return true;
 }
 
-static bool read_shape(NpzFile *file, SubspaceShape *shape, Error *error) {
-    const int64_t count = SIZES;
-    int32_t *sizes = npz_read(file, "sizes", NPZ_INT32, 1, &count, error);
-    if (sizes == NULL) return false;
-    *shape = (SubspaceShape){.bodies = sizes[0], .hidden = sizes[1], .frames_before = sizes[2]};
-    free(sizes);
-    return read_predictors(file, shape, error);
-}
-
 /* Clamping needs low <= high. */
-static bool check_ranges(const SubspaceNet *net, const char *path, Error *error) {
+static bool check_ranges(void *of, const char *path, Error *error) {
+    const SubspaceNet *net = of;
     for (int k = 0; k < net->shape.components; k++)
         if (net->low[k] > net->high[k])
             return error_input(error, path, "low: number %d is %g, above its high, %g", k, (double)net->low[k],
@@ -195,38 +167,18 @@ static bool check_ranges(const SubspaceNet *net, const char *path, Error *error)
     return true;
 }
 
-static bool read_contents(NpzFile *file, SubspaceNet *net, Error *error) {
-    FileFloats floats[FLOATS_MAX];
-    const int count = list_floats(net, floats);
-    return file_floats_read(file, floats, count, error) && check_ranges(net, npz_path(file), error) &&
-           npz_read_scalar(file, "physics", NPZ_UINT64, &net->physics, sizeof net->physics, error) &&
-           npz_read_name(file, "scene", net->scene, sizeof net->scene, error) &&
-           npz_read_text(file, "command", net->command, sizeof net->command, error);
-}
+static const NetFileKind kind = {SUBSPACE_KIND, SUBSPACE_VERSION, list_fields, read_sizes, allocate, check_ranges};
 
-static bool expect_contents(const NpzFile *file, const SubspaceShape *shape, Error *error) {
-    const SubspaceNet sizes = subspace_net_sizes(shape);
-    FileFloats floats[FLOATS_MAX];
-    return file_floats_expect(file, floats, list_floats(&sizes, floats), error);
-}
-
-static SubspaceNet *read_net(NpzFile *file, Error *error) {
-    SubspaceShape shape;
-    if (!npz_check_kind(file, SUBSPACE_KIND, SUBSPACE_VERSION, error) || !read_shape(file, &shape, error) ||
-        !subspace_shape_check(&shape, npz_path(file), error) || !expect_contents(file, &shape, error))
-        return NULL;
-    SubspaceNet *net = subspace_net_create(&shape, error);
-    if (net == NULL || read_contents(file, net, error)) return net;
-    subspace_net_destroy(net);
-    return NULL;
+bool subspace_net_write(const SubspaceNet *net, const char *path, Error *error) {
+    return net_file_write(&kind, net, path, error);
 }
 
 SubspaceNet *subspace_net_read(const char *path, Error *error) {
-    NpzFile *file = npz_open(path, error);
-    if (file == NULL) return NULL;
-    SubspaceNet *net = read_net(file, error);
-    npz_close(file);
-    return net;
+    SubspaceNet *net = calloc(1, sizeof *net);
+    if (net == NULL) return error_memory(error, path), NULL;
+    if (net_file_read(&kind, net, path, error)) return net;
+    subspace_net_destroy(net);
+    return NULL;
 }
 
 bool subspace_make(Subspace *subspace, const SubspaceNet *net, const SubspacePredictor *predictor, bool corrects,

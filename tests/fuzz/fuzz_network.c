@@ -72,15 +72,15 @@ static void read_gns_net(const char *path) {
 }
 
 static void read_fit(const char *path) {
-    enum { WEIGHTS = 3 };
-    double numbers[3][WEIGHTS] = {{0}};
-    FitState state = {.command = "train", .adam = adam_over(numbers[0], numbers[1], numbers[2], WEIGHTS, 0, 0.999)};
+    Fit fit;
     Error error = {0};
     bool found;
+    fit_init(&fit, "train", path, NULL);
     fuzz_begin();
-    const bool ok = fit_state_read(&state, path, &found, &error);
+    const bool ok = fit_begin(&fit, 3, &found, &error);
     fuzz_end(ok, &error, path);
-    if (ok && found) check_weights(numbers[0], 3 * WEIGHTS);
+    if (ok && found) check_weights(fit.adam.weights, 3 * 3);
+    fit_free(&fit);
 }
 
 /* Each entry answers its own key with finite impulses. */

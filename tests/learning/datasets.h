@@ -19,13 +19,9 @@ static inline float next_number(uint32_t *sequence) {
 static inline Dataset *make_dataset(int rows) {
     Dataset *dataset = calloc(1, sizeof *dataset);
     assert_non_null(dataset);
-    dataset->rows = rows;
-    dataset->inputs = calloc((size_t)rows * PAIR_INPUTS, sizeof(float));
-    dataset->changes = calloc((size_t)rows * PAIR_CHANGES, sizeof(float));
-    dataset->launch = calloc((size_t)rows, sizeof(int32_t));
-    dataset->launches = 5;
-    dataset->launch_test = calloc(5, 1);
-    assert_true(dataset->inputs && dataset->changes && dataset->launch && dataset->launch_test);
+    assert_true(dataset_make_launches(dataset, 5) && dataset_make_rows(dataset, rows, true));
+    memset(dataset->changes, 0, (size_t)rows * PAIR_CHANGES * sizeof *dataset->changes);
+    dataset->context = NULL;
     dataset->launch_test[4] = 1;
     uint32_t sequence = 3;
     for (int r = 0; r < rows; r++) dataset->launch[r] = r % 5;
@@ -67,8 +63,7 @@ static inline void draw_context(uint32_t *sequence, int row, float context[PAIR_
    within the friction cone; changes of spin are random. */
 static inline Dataset *make_pushed_dataset(int rows) {
     Dataset *dataset = make_dataset(rows);
-    dataset->context = calloc((size_t)rows * PAIR_CONTEXT, sizeof(float));
-    assert_non_null(dataset->context);
+    dataset->context = dataset->changes + rows * PAIR_CHANGES; /* which make_dataset() leaves */
     uint32_t sequence = 17;
     for (int r = 0; r < rows; r++) {
         float *context = dataset->context + r * PAIR_CONTEXT, *change = dataset->changes + r * PAIR_CHANGES;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Impacts of the stack as training samples for slot networks. */
 #pragma once
-#include "testing.h"
+#include "trainings.h"
 
 #include "methods/methods.h"
 #include "learning/scene_training_internal.h"
@@ -11,13 +11,6 @@ enum { IMPACT_STEPS = 8 };
 
 static const float impact_gate = 2; /* m/s */
 static const SlotWidths small_widths = {16, 16, 16, 32};
-
-static inline Scene *read_stack(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
 
 static inline bool make_momentum(void *context, ContactSolver *solver, Error *error) {
     (void)context;
@@ -36,7 +29,7 @@ static inline void throw_over_grid(const Scene *scene, int count, Launch *launch
 
 static inline void record_impacts(SlotSamples *samples, int launches, int first) {
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Launch table[200];
     assert_in_range(launches, 1, 200);
     throw_over_grid(scene, launches, table);

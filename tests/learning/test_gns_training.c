@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small complete trainings of gns: the same bits for any number of threads and however often they are interrupted. */
-#include "testing.h"
+#include "trainings.h"
 
 #include "learning/gns_training.h"
 
 #include <math.h>
 #include <omp.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 static Scene *small_scene(void) {
     Error error = {0};
@@ -27,7 +24,8 @@ static Scene *small_scene(void) {
 }
 
 /* Trains on the small scene; the caller frees the net. */
-static bool train(const char *state_path, GnsNet *net, const Progress *progress, Error *error) {
+static bool train(void *context, const char *path, const Progress *progress, Error *error) {
+    GnsNet *net = context;
     Scene *scenes[] = {small_scene()};
     GnsTraining training = {.width = 16,
                             .rounds = 2,
@@ -41,19 +39,10 @@ static bool train(const char *state_path, GnsNet *net, const Progress *progress,
                             .scenes = scenes,
                             .scene_count = 1,
                             .command = "small",
-                            .state_path = state_path};
-    return gns_training_run(&training, net, progress, error);
-}
-
-static void assert_same_net(const GnsNet *a, const GnsNet *b) {
-    assert_memory_equal(&a->scales, &b->scales, sizeof a->scales);
-    assert_memory_equal(a->parameters, b->parameters, (size_t)a->layout.parameters * sizeof *a->parameters);
-}
-
-/* Stops at the given report. */
-static bool stop_at(void *context, double done, double total) {
-    (void)done, (void)total;
-    return --*(int *)context > 0;
+                            .state_path = path};
+    const bool ok = gns_training_run(&training, net, progress, error);
+    if (!ok) gns_net_free(net);
+    return ok;
 }
 
 static void same_bits_for_any_threads_and_interruptions(void **state) {
@@ -61,25 +50,13 @@ static void same_bits_for_any_threads_and_interruptions(void **state) {
     Error error = {0};
     GnsNet whole, parts;
     const int threads = omp_get_max_threads();
-    const char *path = temporary_path("whole.part");
     omp_set_num_threads(1);
-    assert_ok(train(path, &whole, NULL, &error), error);
+    assert_ok(train(&whole, temporary_path("whole.part"), NULL, &error), error);
     omp_set_num_threads(3);
-    path = temporary_path("parts.part");
-    for (int reports = 3, stops = 0;; reports++, stops++) {
-        int left = reports;
-        Error failure = {0};
-        const Progress progress = {stop_at, &left};
-        if (train(path, &parts, &progress, &failure)) {
-            assert_in_range(stops, 1, 3);
-            break;
-        }
-        assert_int_equal(failure.kind, ERROR_INTERRUPTED);
-        assert_int_equal(access(path, F_OK), 0);
-        gns_net_free(&parts);
-    }
+    assert_in_range(train_in_parts(train, &parts, temporary_path("parts.part"), 3, 1), 1, 3);
     omp_set_num_threads(threads);
-    assert_same_net(&whole, &parts);
+    assert_memory_equal(&whole.scales, &parts.scales, sizeof whole.scales);
+    assert_memory_equal(whole.parameters, parts.parameters, (size_t)whole.layout.parameters * sizeof(float));
     gns_net_free(&whole);
     gns_net_free(&parts);
 }

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "trainings.h"
 
 #include "learning/dataset.h"
 #include "runs/runs.h"
 
 #include <math.h>
-
-#define STACK SOURCE_DIR "/scenes/stack.yaml"
 
 /* Frames before the bomb have none. */
 static void poses_are_those_of_single_runs(void **state) {
@@ -16,8 +14,7 @@ static void poses_are_those_of_single_runs(void **state) {
     Method method;
     Launch launches[LAUNCHES];
     LaunchRuns runs;
-    Scene *scene = scene_read(STACK, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = shipped_scene("stack");
     scene->frames = 60;
     assert_ok(method_parse(&method, "engine", &error) && launches_for_training(scene, LAUNCHES, launches, &error),
               error);
@@ -48,8 +45,8 @@ static void too_many_are_refused(void **state) {
     Error error = {0};
     Method method;
     LaunchRuns runs;
-    Scene *scene = scene_read(STACK, &error);
-    assert_ok(scene != NULL && method_parse(&method, "engine", &error), error);
+    Scene *scene = shipped_scene("stack");
+    assert_ok(method_parse(&method, "engine", &error), error);
     const Launch own = launch_of(scene);
     scene->frames = 1000000;
     assert_refused(launch_runs_record(&runs, scene, &method, &own, 1000, NULL, &error), "at most 1024 MiB are allowed");

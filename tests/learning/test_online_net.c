@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The network that learns beside the memory. */
-#include "testing.h"
+#include "trainings.h"
 
 #include "learning/hybrid_training.h"
 
@@ -11,8 +11,7 @@ static void a_step_that_comes_back_is_learned(void **state) {
     (void)state;
     Error error = {0};
     AskedSteps asked = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = shipped_scene("single");
     LaunchSteps *runs = launch_steps_create(scene, &error);
     assert_ok(runs != NULL, error);
     OnlineNet *net = online_net_create(1, &error);

@@ -18,20 +18,30 @@ typedef struct Table {
     float *value;
 } Table;
 
-static Table make_table(int rows, int columns) {
-    const size_t all = (size_t)rows * (size_t)columns;
-    Table table = {.begin = calloc((size_t)rows + 1, sizeof(int64_t)),
-                   .column = calloc(all, sizeof(int32_t)),
-                   .value = calloc(all, sizeof(float))};
-    assert_true(table.begin && table.column && table.value);
-    table.sparse = (SparseRows){0, columns, table.begin, table.column, table.value};
-    return table;
+/* Memory of all tests, which free_all() frees. */
+static void *kept[512];
+static int kept_count;
+
+static void *keep(size_t count, size_t size) {
+    assert_in_range(kept_count, 0, 511);
+    void *block = kept[kept_count++] = calloc(count, size);
+    assert_non_null(block);
+    return block;
 }
 
-static void free_table(Table *table) {
-    free(table->begin);
-    free(table->column);
-    free(table->value);
+static int free_all(void **state) {
+    (void)state;
+    while (kept_count > 0) free(kept[--kept_count]);
+    return 0;
+}
+
+static Table make_table(int rows, int columns) {
+    const size_t all = (size_t)rows * (size_t)columns;
+    Table table = {.begin = keep((size_t)rows + 1, sizeof(int64_t)),
+                   .column = keep(all, sizeof(int32_t)),
+                   .value = keep(all, sizeof(float))};
+    table.sparse = (SparseRows){0, columns, table.begin, table.column, table.value};
+    return table;
 }
 
 /* sparse: omits the zeros. */
@@ -48,17 +58,11 @@ static void add_row(Table *table, const float *numbers, bool sparse) {
 static Projection make_projection(int from, int to) {
     Projection projection = {.from = from,
                              .to = to,
-                             .rows = malloc((size_t)(from * to) * sizeof(float)),
-                             .centre = malloc((size_t)to * sizeof(float))};
-    assert_true(projection.rows && projection.centre);
+                             .rows = keep((size_t)(from * to), sizeof(float)),
+                             .centre = keep((size_t)to, sizeof(float))};
     for (int i = 0; i < from * to; i++) projection.rows[i] = NAN;
     for (int c = 0; c < to; c++) projection.centre[c] = NAN;
     return projection;
-}
-
-static void free_projection(Projection *projection) {
-    free(projection->rows);
-    free(projection->centre);
 }
 
 static Projection fit(const Table *table, int to, uint64_t seed) {
@@ -141,7 +145,7 @@ static gsl_vector *eigenvalues(const Table *table) {
 static Table make_random(int rows, int columns, double falloff, bool sparse) {
     Table table = make_table(rows, columns);
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
-    float *numbers = malloc((size_t)columns * sizeof *numbers);
+    float *numbers = keep((size_t)columns, sizeof *numbers);
     for (int i = 0; i < rows; i++) {
         double last = gsl_ran_gaussian(generator, 1);
         for (int j = 0; j < columns; j++) {
@@ -152,7 +156,6 @@ static Table make_random(int rows, int columns, double falloff, bool sparse) {
         }
         add_row(&table, numbers, sparse);
     }
-    free(numbers);
     gsl_rng_free(generator);
     return table;
 }
@@ -170,8 +173,6 @@ static void directions_of_known_variance_are_found(void **state) {
     for (int i = 0; i < 4; i++) assert_near(projection.rows[i], expected[i], 1e-6);
     assert_near(projection.centre[0], 7 * 0.3 - 0.4, 1e-6);
     assert_near(projection.centre[1], 7 * 1.6 + 1.2, 1e-5);
-    free_projection(&projection);
-    free_table(&table);
 }
 
 static void components_are_white_and_the_strongest(void **state) {
@@ -184,10 +185,8 @@ static void components_are_white_and_the_strongest(void **state) {
         assert_white(&table, &projection, counts[i], 1e-5);
         for (int c = 0; c < counts[i]; c++)
             assert_near(variance(&projection, c) / gsl_vector_get(all, (size_t)c), 1, 1e-5);
-        free_projection(&projection);
     }
     gsl_vector_free(all);
-    free_table(&table);
 }
 
 static void a_flat_spectrum_is_nearly_captured(void **state) {
@@ -202,9 +201,7 @@ static void a_flat_spectrum_is_nearly_captured(void **state) {
     }
     assert_white(&table, &projection, 8, 1e-5);
     assert_near(captured / most, 0.95, 0.05 + 1e-6);
-    free_projection(&projection);
     gsl_vector_free(all);
-    free_table(&table);
 }
 
 /* Integers, so that nothing is rounded: twelve columns depend on three hidden numbers. */
@@ -228,11 +225,7 @@ static void components_beyond_the_rank_are_0(void **state) {
     for (int i = 0; i < 3; i++) {
         Projection projection = fit(tables[i], 16, 1);
         assert_white(tables[i], &projection, ranks[i], 1e-5);
-        free_projection(&projection);
     }
-    free_table(&table);
-    free_table(&few);
-    free_table(&narrow);
 }
 
 /* Two independent columns, one with a deviation (and its square as variance) that is `weak` times the other's. */
@@ -244,8 +237,6 @@ static void components_too_weak_for_float_are_0(void **state) {
         for (int i = 0; i < 4; i++) add_row(&table, (float[]){i % 2 == 0 ? 1 : -1, i < 2 ? weak[2 - rank] : 0}, true);
         Projection projection = fit(&table, 2, 1);
         assert_white(&table, &projection, rank, 1e-5);
-        free_projection(&projection);
-        free_table(&table);
     }
 }
 
@@ -258,8 +249,6 @@ static void a_large_mean_costs_no_digits(void **state) {
     Projection projection = fit(&table, 2, 1);
     const double expected[] = {2, 0, 0, 4};
     for (int i = 0; i < 4; i++) assert_near(projection.rows[i], expected[i], 1e-6);
-    free_projection(&projection);
-    free_table(&table);
 }
 
 /* Rounding must not be taken for variance. */
@@ -273,8 +262,6 @@ static void equal_rows_have_no_components(void **state) {
     }
     Projection projection = fit(&table, 3, 1);
     assert_white(&table, &projection, 0, 0);
-    free_projection(&projection);
-    free_table(&table);
 }
 
 static void constant_columns_contribute_nothing(void **state) {
@@ -288,12 +275,8 @@ static void constant_columns_contribute_nothing(void **state) {
     for (int i = 0; i < 9; i++) assert_true(projection.rows[i] == 0 || i == 3);
     assert_near(projection.rows[3], 2.5, 1e-6); /* 1 in every fifth row: variance 1/5 - 1/25 */
     assert_white(&table, &projection, 1, 1e-5);
-    free_projection(&projection);
     projection = fit(&faint, 3, 1);
     assert_white(&faint, &projection, 0, 0);
-    free_projection(&projection);
-    free_table(&table);
-    free_table(&faint);
 }
 
 static void same_seed_same_bits(void **state) {
@@ -309,12 +292,6 @@ static void same_seed_same_bits(void **state) {
     assert_true(same(&first, &threaded));
     assert_true(same(&first, &with_zeros));
     assert_false(same(&first, &other));
-    free_projection(&first);
-    free_projection(&threaded);
-    free_projection(&with_zeros);
-    free_projection(&other);
-    free_table(&sparse);
-    free_table(&dense);
 }
 
 /* In double, where the order of sums would show. */
@@ -335,7 +312,6 @@ static void sums_do_not_depend_on_threads(void **state) {
     }
     omp_set_num_threads(threads);
     assert_memory_equal(images[0], images[1], sizeof images[0]);
-    free_table(&table);
 }
 
 static void the_largest_number_is_positive(void **state) {
@@ -350,8 +326,6 @@ static void the_largest_number_is_positive(void **state) {
         }
         assert_true(high >= -low);
     }
-    free_projection(&projection);
-    free_table(&table);
 }
 
 static void refuse(const SparseRows *rows, int from, const char *text) {
@@ -359,7 +333,6 @@ static void refuse(const SparseRows *rows, int from, const char *text) {
     Projection projection = make_projection(from, 2);
     assert_refused(principal_fit(rows, 1, &projection, &error), text);
     for (int i = 0; i < 2 * from; i++) assert_true(isnan(projection.rows[i]));
-    free_projection(&projection);
 }
 
 static void invalid_rows_are_refused(void **state) {
@@ -391,5 +364,5 @@ int main(void) {
         cmocka_unit_test(the_largest_number_is_positive),
         cmocka_unit_test(invalid_rows_are_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, free_all);
 }

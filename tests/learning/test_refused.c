@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "datasets.h"
 
+#include "learning/pair_training_internal.h"
+
 #include <float.h>
 
 static void refuse(const Dataset *dataset, TrainingOptions options, const char *text) {
@@ -10,28 +12,28 @@ static void refuse(const Dataset *dataset, TrainingOptions options, const char *
 
 static void invalid_options_are_refused(void **state) {
     (void)state;
+    static const struct {
+        const char *optimizer;
+        int iterations, layers, widths[3];
+        const char *text;
+    } cases[] = {
+        {"magic", 1, 2, {10, 4, 2}, "'magic' is not an optimizer; known: adam, bfgs, gd, lm"},
+        {"adam", -1, 2, {10, 4, 2}, "iterations: error: must be 0 or more (got -1)"},
+        {"adam", 1, 2, {9, 4, 2}, "the first width must be 10, the inputs of a pair (got 9)"},
+        {"adam", 1, 2, {10, 4, 3}, "the last width must be 2 (relative velocity) or 6 (both bodies) (got 3)"},
+        {"adam", 1, 2, {10, 0, 2}, "width 0"},
+        {"adam", 1, 0, {10, 4, 2}, "weight layers (got 0)"},
+        {"lm", 1, 2, {10, 20, 2}, "as many target values as weights (got 160 and 262)"}, /* 80 rows of 2 */
+        {"lm", 1, 2, {10, 200, 2}, "at most 2000 weights (got 2602)"},
+    };
     Dataset *dataset = make_taught_dataset(100);
-    TrainingOptions options = small("magic", 1);
-    refuse(dataset, options, "'magic' is not an optimizer; known: adam, bfgs, gd, lm");
-    options = small("adam", -1);
-    refuse(dataset, options, "iterations: error: must be 0 or more (got -1)");
-    options = small("adam", 1);
-    options.widths[0] = 9;
-    refuse(dataset, options, "the first width must be 10, the inputs of a pair (got 9)");
-    options = small("adam", 1);
-    options.widths[2] = 3;
-    refuse(dataset, options, "the last width must be 2 (relative velocity) or 6 (both bodies) (got 3)");
-    options = small("adam", 1);
-    options.widths[1] = 0;
-    refuse(dataset, options, "width 0");
-    options = small("adam", 1);
-    options.layers = 0;
-    refuse(dataset, options, "weight layers (got 0)");
-    options = small("lm", 1);
-    options.widths[1] = 20; /* 262 parameters, 80 rows of 2 */
-    refuse(dataset, options, "as many target values as weights (got 160 and 262)");
-    options.widths[1] = 200;
-    refuse(dataset, options, "at most 2000 weights (got 2602)");
+    TrainingOptions options;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        options = small(cases[i].optimizer, cases[i].iterations);
+        options.layers = cases[i].layers;
+        memcpy(options.widths, cases[i].widths, sizeof cases[i].widths);
+        refuse(dataset, options, cases[i].text);
+    }
     Error error = {0};
     Network *start = network_create(2, (const int[]){PAIR_INPUTS, 5, 2}, &error);
     assert_ok(start != NULL, error);
@@ -54,60 +56,51 @@ static void infinite_loss_is_an_error(void **state) {
     (void)state;
     Dataset *dataset = make_taught_dataset(100);
     dataset->changes[0] = -FLT_MAX, dataset->changes[3] = FLT_MAX;
-    refuse(dataset, small("adam", 3), "iteration 0");
-    refuse(dataset, small("bfgs", 3), "iteration 0");
-    refuse(dataset, small("gd", 3), "iteration 0");
-    refuse(dataset, small("lm", 3), "iteration 0");
+    for (int i = 0; optimizers[i] != NULL; i++) refuse(dataset, small(optimizers[i]->name, 3), "iteration 0");
     dataset_destroy(dataset);
 }
 
-static void invalid_network_config_is_refused(void **state) {
+/* Words, the weight of a law, and the outputs. */
+static void options_that_contradict_each_other_are_refused(void **state) {
     (void)state;
-    Dataset *dataset = make_taught_dataset(100);
-    TrainingOptions options = small("adam", 1);
-    options.hidden = "linear";
-    refuse(dataset, options, "hidden: error: 'linear' is not a valid value; known: sigmoid, tanh, relu");
-    options = small("adam", 1);
-    options.output_activation = "tanh";
-    refuse(dataset, options, "output activation: error: 'tanh' is not a valid value; known: sigmoid, linear");
-    options = small("adam", 1);
-    options.scale = "none";
-    refuse(dataset, options, "scale: error: 'none' is not a valid value; known: minmax, standard");
-    options.scale = "standard";
-    refuse(dataset, options, "scale: error: standard needs linear outputs");
-    options.widths[2] = PAIR_CHANGES;
-    options.output_activation = "sigmoid";
-    refuse(dataset, options, "scale: error: standard needs linear outputs");
-    dataset_destroy(dataset);
-}
-
-static void invalid_losses_are_refused(void **state) {
-    (void)state;
+    static const struct {
+        const char *optimizer, *hidden, *activation, *scale, *loss;
+        double cone;
+        int outputs;
+        const char *text;
+    } cases[] = {
+        {"adam", "linear", NULL, NULL, NULL, 0, 2,
+         "hidden: error: 'linear' is not a valid value; known: sigmoid, tanh, relu"},
+        {"adam", NULL, "tanh", NULL, NULL, 0, 2,
+         "output activation: error: 'tanh' is not a valid value; known: sigmoid, linear"},
+        {"adam", NULL, NULL, "none", NULL, 0, 2, "scale: error: 'none' is not a valid value; known: minmax, standard"},
+        {"adam", NULL, NULL, "standard", NULL, 0, 2, "scale: error: standard needs linear outputs"},
+        {"adam", NULL, "sigmoid", "standard", NULL, 0, 6, "scale: error: standard needs linear outputs"},
+        {"adam", NULL, NULL, NULL, "l1", 0, 2, "loss: error: 'l1' is not a valid value; known: mse, smooth-l1"},
+        {"lm", NULL, NULL, NULL, "smooth-l1", 0, 2, "lm: error: needs loss mse and no laws"},
+        {"lm", NULL, NULL, NULL, NULL, 1, 6, "lm: error: needs loss mse and no laws"},
+        {"adam", NULL, NULL, NULL, NULL, 1, 2, "laws: error: need a network with 6 outputs, such as 10-8-8-6 (got 2)"},
+        {"adam", NULL, NULL, NULL, NULL, -1, 6, "laws: error: the weight of cone must be 0 or more (got -1)"},
+        {"adam", NULL, NULL, NULL, NULL, NAN, 6, "the weight of cone must be 0 or more (got nan)"},
+        {"adam", NULL, NULL, NULL, NULL, INFINITY, 6, "the weight of cone must be 0 or more (got inf)"},
+    };
     Dataset *dataset = make_pushed_dataset(100);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        TrainingOptions options = small(cases[i].optimizer, 1);
+        options.hidden = cases[i].hidden;
+        options.output_activation = cases[i].activation;
+        options.scale = cases[i].scale;
+        options.loss = cases[i].loss;
+        options.laws.of[LAW_CONE] = cases[i].cone;
+        options.widths[2] = cases[i].outputs;
+        refuse(dataset, options, cases[i].text);
+    }
     TrainingOptions options = small("adam", 1);
-    options.loss = "l1";
-    refuse(dataset, options, "loss: error: 'l1' is not a valid value; known: mse, smooth-l1");
-    options = small("lm", 1);
-    options.loss = "smooth-l1";
-    refuse(dataset, options, "lm: error: needs loss mse and no laws");
-    options = small("adam", 1);
-    options.laws.of[LAW_CONE] = 1;
-    refuse(dataset, options, "laws: error: need a network with 6 outputs, such as 10-8-8-6 (got 2)");
     options.widths[2] = PAIR_CHANGES;
-    options.optimizer = "lm";
-    refuse(dataset, options, "lm: error: needs loss mse and no laws");
-    options.optimizer = "adam";
-    options.laws.of[LAW_CONE] = -1;
-    refuse(dataset, options, "laws: error: the weight of cone must be 0 or more (got -1)");
-    options.laws.of[LAW_CONE] = NAN;
-    refuse(dataset, options, "the weight of cone must be 0 or more (got nan)");
-    options.laws.of[LAW_CONE] = INFINITY;
-    refuse(dataset, options, "the weight of cone must be 0 or more (got inf)");
     options.laws.of[LAW_CONE] = 1;
     dataset->target = TARGET_NET;
     refuse(dataset, options, "laws: error: need a dataset with target pair in world axes (got target net");
     dataset->target = TARGET_PAIR;
-    free(dataset->context);
     dataset->context = NULL;
     refuse(dataset, options, "laws: error: the dataset has no context; record it again with --context");
     options.laws.of[LAW_CONE] = 0;
@@ -174,8 +167,7 @@ static void divergence_names_its_iteration(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(invalid_options_are_refused),
-        cmocka_unit_test(invalid_network_config_is_refused),
-        cmocka_unit_test(invalid_losses_are_refused),
+        cmocka_unit_test(options_that_contradict_each_other_are_refused),
         cmocka_unit_test(options_that_contradict_the_start_network_are_refused),
         cmocka_unit_test(divergence_names_its_iteration),
         cmocka_unit_test(infinite_loss_is_an_error),

@@ -20,8 +20,6 @@ typedef struct Any {
     int weight_count;
 } Any;
 
-static double any_number(uint64_t *state) { return (double)(split_mix(state) >> 11) * 0x1p-52 - 1; }
-
 static void fill(Any *any) {
     Error error = {0};
     uint64_t state = 5;
@@ -30,12 +28,12 @@ static void fill(Any *any) {
         RelationSample *sample = &any->items[i];
         sample->first = (int)any->samples.row_count;
         sample->rows = 1 + i % 5;
-        sample->scale = (float)(1.5 + any_number(&state));
-        for (int k = 0; k < RELATION_BODY_INPUTS; k++) sample->body[k] = (float)any_number(&state);
-        for (int k = 0; k < RELATION_OUTPUTS; k++) sample->target[k] = (float)any_number(&state);
+        sample->scale = (float)(1.5 + random_signed(&state));
+        for (int k = 0; k < RELATION_BODY_INPUTS; k++) sample->body[k] = (float)random_signed(&state);
+        for (int k = 0; k < RELATION_OUTPUTS; k++) sample->target[k] = (float)random_signed(&state);
         for (int r = 0; r < sample->rows; r++)
             for (int k = 0; k < RELATION_PAIR_INPUTS; k++)
-                any->rows[any->samples.row_count + (size_t)r].numbers[k] = (float)any_number(&state);
+                any->rows[any->samples.row_count + (size_t)r].numbers[k] = (float)random_signed(&state);
         any->samples.row_count += (size_t)sample->rows;
         any->order[i] = SAMPLES - 1 - i;
     }
@@ -47,7 +45,7 @@ static void fill(Any *any) {
     any->weights = calloc((size_t)any->weight_count, sizeof *any->weights);
     assert_non_null(any->weights);
     relation_first_weights(&any->network, 3, any->weights);
-    for (int i = 0; i < any->weight_count; i++) any->weights[i] += 0.1 * any_number(&state);
+    for (int i = 0; i < any->weight_count; i++) any->weights[i] += 0.1 * random_signed(&state);
 }
 
 static void clear(Any *any) {

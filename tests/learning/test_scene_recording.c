@@ -28,7 +28,7 @@ static void assert_equal_samples(const SlotSamples *samples, const SlotSamples *
 static void shards_record_what_the_training_runs(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     SceneRecording recording;
     Pieces pieces;
     SceneTraining reading = training;

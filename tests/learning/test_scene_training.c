@@ -34,10 +34,10 @@ static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *pr
     return scene_training_run(scene, &training, progress, error);
 }
 
-static void same_bits_for_any_number_of_threads(void **state) {
+static void the_network_is_for_its_scene_and_the_same_for_any_threads(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Scores scores[2];
     SlotNetwork *networks[2];
     const int threads = omp_get_max_threads();
@@ -59,6 +59,11 @@ static void same_bits_for_any_number_of_threads(void **state) {
         assert_true(one->momentum == scores[0].items[0].momentum && one->momentum > 0);
     }
     assert_true(scores[0].items[1].samples > scores[0].items[0].samples);
+    assert_string_equal(networks[0]->scene, "stack");
+    assert_int_equal(networks[0]->sweeps, SWEEPS);
+    assert_near(networks[0]->bomb_inv_mass, 1 / 50.0, 1e-9);
+    for (int i = 0; i < slot_network_inputs(networks[0]); i++) /* the range of the samples, with a margin */
+        assert_true(networks[0]->low[i] < networks[0]->high[i]);
     for (int i = 0; i < 2; i++) slot_network_destroy(networks[i]);
     scene_destroy(scene);
 }
@@ -69,7 +74,7 @@ typedef struct Stop {
     int calls_after; /* the stop */
 } Stop;
 
-static bool stop_at(void *context, double done, double total) {
+static bool stop_share(void *context, double done, double total) {
     Stop *stop = context;
     assert_true(done >= stop->last && done <= total * (1 + 1e-9));
     stop->calls_after += stop->last >= stop->at * total;
@@ -80,13 +85,13 @@ static bool stop_at(void *context, double done, double total) {
 /* Stopped in the first fit, in the labels after it, in the second fit. */
 static void a_stopped_training_keeps_the_rounds_so_far(void **state) {
     (void)state;
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     static const double at[] = {0.27, 0.67, 0.87};
     for (int i = 0; i < 3; i++) {
         Error error = {0};
         Scores scores;
         Stop stop = {.at = at[i]};
-        SlotNetwork *network = train(scene, &scores, &(Progress){stop_at, &stop}, &error);
+        SlotNetwork *network = train(scene, &scores, &(Progress){stop_share, &stop}, &error);
         assert_ok(network != NULL, error);
         assert_int_equal(error.kind, ERROR_NONE);
         assert_int_equal(stop.calls_after, 0);
@@ -100,34 +105,18 @@ static void a_stopped_training_keeps_the_rounds_so_far(void **state) {
 static void a_training_stopped_before_the_first_network_fails(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Scores scores;
     Stop stop = {.at = 0.1};
-    assert_null(train(scene, &scores, &(Progress){stop_at, &stop}, &error));
+    assert_null(train(scene, &scores, &(Progress){stop_share, &stop}, &error));
     assert_error(error, ERROR_INTERRUPTED, "labels: error: stopped after");
-    scene_destroy(scene);
-}
-
-/* The bounds are the range of the training samples with a margin. */
-static void the_network_is_for_its_scene(void **state) {
-    (void)state;
-    Error error = {0};
-    Scene *scene = read_stack();
-    Scores scores;
-    SlotNetwork *network = train(scene, &scores, NULL, &error);
-    assert_ok(network != NULL, error);
-    assert_string_equal(network->scene, "stack");
-    assert_int_equal(network->sweeps, SWEEPS);
-    assert_near(network->bomb_inv_mass, 1 / 50.0, 1e-9);
-    for (int i = 0; i < slot_network_inputs(network); i++) assert_true(network->low[i] < network->high[i]);
-    slot_network_destroy(network);
     scene_destroy(scene);
 }
 
 static void a_scene_without_a_bomb_is_refused(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_stack();
+    Scene *scene = shipped_scene("stack");
     Scores scores;
     scene->bomb.present = false;
     assert_refused(train(scene, &scores, NULL, &error), "stack: error: has no bomb to launch");
@@ -136,10 +125,9 @@ static void a_scene_without_a_bomb_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bits_for_any_number_of_threads),
+        cmocka_unit_test(the_network_is_for_its_scene_and_the_same_for_any_threads),
         cmocka_unit_test(a_stopped_training_keeps_the_rounds_so_far),
         cmocka_unit_test(a_training_stopped_before_the_first_network_fails),
-        cmocka_unit_test(the_network_is_for_its_scene),
         cmocka_unit_test(a_scene_without_a_bomb_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,8 +2,6 @@
 /* Fits to a few impacts of the stack. */
 #include "impacts.h"
 
-#include "learning/scene_training_internal.h"
-
 #include <math.h>
 #include <omp.h>
 
@@ -28,9 +26,18 @@ static void end(SlotSamples *samples, SlotNetwork *network) {
     slot_samples_free(samples);
 }
 
-static void fit_to(SlotNetwork *network, const SlotSamples *samples, const SlotFit *fit) {
+static SlotFit fit_of(int impulse_epochs, int epochs, double rate, bool factors) {
+    return (SlotFit){.impulse_weight = 0.1,
+                     .impulse_epochs = impulse_epochs,
+                     .epochs = epochs,
+                     .rate = rate,
+                     .learn_factors = factors,
+                     .seed = 1};
+}
+
+static void fit_to(SlotNetwork *network, const SlotSamples *samples, SlotFit fit) {
     Error error = {0};
-    assert_ok(slot_fit(network, samples, fit, NULL, &error), error);
+    assert_ok(slot_fit(network, samples, &fit, NULL, &error), error);
 }
 
 static double mean_error(const SlotNetwork *network, const SlotSamples *samples) {
@@ -41,24 +48,12 @@ static double mean_error(const SlotNetwork *network, const SlotSamples *samples)
     return sum / samples->count;
 }
 
-static bool is_finite(const SlotNetwork *network) {
-    bool finite = true;
-    for (size_t p = 0; p < network->parameter_count; p++) finite &= isfinite(network->parameters[p]) != 0;
-    return finite;
-}
-
 static void a_few_samples_are_learned(void **state) {
     (void)state;
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     const double before = mean_error(network, &samples);
-    fit_to(network, &samples,
-           &(SlotFit){.impulse_weight = 0.1,
-                      .impulse_epochs = 60,
-                      .epochs = 200,
-                      .rate = 0.02,
-                      .learn_factors = true,
-                      .seed = 1});
+    fit_to(network, &samples, fit_of(60, 200, 0.02, true));
     const double after = mean_error(network, &samples);
 
     assert_true(after < before / 3);
@@ -78,18 +73,11 @@ static void factors_change_only_if_learned(void **state) {
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     for (int s = 1; s < SWEEPS; s++) network->factors[s] = 0.5f;
-    fit_to(network, &samples,
-           &(SlotFit){.impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 3, .rate = 0.01, .seed = 1});
+    fit_to(network, &samples, fit_of(0, 3, 0.01, false));
     for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] == 0.5f);
-    fit_to(
-        network, &samples,
-        &(SlotFit){
-            .impulse_weight = 0.1, .impulse_epochs = 3, .epochs = 3, .rate = 0.01, .learn_factors = true, .seed = 1});
+    fit_to(network, &samples, fit_of(3, 3, 0.01, true));
     for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] == 0.5f);
-    fit_to(
-        network, &samples,
-        &(SlotFit){
-            .impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 3, .rate = 0.01, .learn_factors = true, .seed = 1});
+    fit_to(network, &samples, fit_of(0, 3, 0.01, true));
     for (int s = 1; s < SWEEPS; s++) assert_true(network->factors[s] != 0.5f);
     end(&samples, network);
 }
@@ -102,8 +90,7 @@ static void the_first_step_has_the_size_of_the_rate(void **state) {
     float *before = malloc(network->parameter_count * sizeof *before);
     assert_non_null(before);
     memcpy(before, network->parameters, network->parameter_count * sizeof *before);
-    fit_to(network, &samples,
-           &(SlotFit){.impulse_weight = 1, .impulse_epochs = 0, .epochs = 1, .rate = 0.01, .seed = 1});
+    fit_to(network, &samples, fit_of(0, 1, 0.01, false));
     int moved = 0;
     for (size_t p = 0; p < network->parameter_count; p++) {
         const double step = fabs((double)(network->parameters[p] - before[p]));
@@ -125,13 +112,7 @@ static void same_bits_for_any_number_of_threads(void **state) {
         omp_set_num_threads(1 + i);
         networks[i] = begin_with(&samples[i], 24);
         assert_true(samples[i].count > 130);
-        fit_to(networks[i], &samples[i],
-               &(SlotFit){.impulse_weight = 0.1,
-                          .impulse_epochs = 2,
-                          .epochs = 5,
-                          .rate = 0.01,
-                          .learn_factors = true,
-                          .seed = 5});
+        fit_to(networks[i], &samples[i], fit_of(2, 5, 0.01, true));
     }
     omp_set_num_threads(threads);
     assert_memory_equal(networks[0]->parameters, networks[1]->parameters, networks[0]->parameter_count * sizeof(float));
@@ -144,7 +125,7 @@ static void a_loss_of_nan_is_an_error_naming_the_epoch(void **state) {
     Error error = {0};
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
-    const SlotFit fit = {.impulse_weight = 0.1, .impulse_epochs = 2, .epochs = 9, .rate = 0.01, .seed = 1};
+    const SlotFit fit = fit_of(2, 9, 0.01, false);
     /* The velocity loss starts in the third epoch. */
     samples.items[7].reference[3].x = NAN;
     assert_refused(slot_fit(network, &samples, &fit, NULL, &error), "diverged in epoch 3");
@@ -170,11 +151,10 @@ static void a_stopped_fit_keeps_its_parameters(void **state) {
     int epochs = 0;
     const Progress progress = {stop_after_three, &epochs};
     const double before = mean_error(network, &samples);
-    const SlotFit fit = {
-        .impulse_weight = 0.1, .impulse_epochs = 0, .epochs = 90, .rate = 4e-3, .learn_factors = true, .seed = 1};
+    const SlotFit fit = fit_of(0, 90, 4e-3, true);
     assert_ok(slot_fit(network, &samples, &fit, &progress, &error), error);
     assert_int_equal(epochs, 3);
-    assert_true(is_finite(network));
+    for (size_t p = 0; p < network->parameter_count; p++) assert_true(isfinite(network->parameters[p]));
     assert_true(mean_error(network, &samples) < before);
     assert_true(network->factors[1] > 0 || network->factors[2] > 0);
     end(&samples, network);

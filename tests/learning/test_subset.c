@@ -9,19 +9,7 @@ enum { LAUNCHES = 20, ROWS = 400 };
 static Dataset *make_dataset(bool context) {
     Dataset *dataset = calloc(1, sizeof *dataset);
     assert_non_null(dataset);
-    dataset->rows = ROWS;
-    dataset->launches = LAUNCHES;
-    dataset->inputs = calloc(ROWS * PAIR_INPUTS, sizeof(float));
-    dataset->changes = calloc(ROWS * PAIR_CHANGES, sizeof(float));
-    dataset->context = context ? calloc(ROWS * PAIR_CONTEXT, sizeof(float)) : NULL;
-    dataset->launch = calloc(ROWS, sizeof(int32_t));
-    dataset->frame = calloc(ROWS, sizeof(int32_t));
-    dataset->bodies = calloc(ROWS * 2, sizeof(int32_t));
-    dataset->launch_scene = calloc(LAUNCHES, sizeof(int32_t));
-    dataset->launch_x = calloc(LAUNCHES, sizeof(float));
-    dataset->launch_rotation = calloc(LAUNCHES, sizeof(float));
-    dataset->launch_spin = calloc(LAUNCHES, sizeof(float));
-    dataset->launch_test = calloc(LAUNCHES, 1);
+    assert_true(dataset_make_launches(dataset, LAUNCHES) && dataset_make_rows(dataset, ROWS, context));
     for (int r = 0; r < ROWS; r++) {
         dataset->launch[r] = 7 * r % 19;
         dataset->frame[r] = r;

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small complete learnings on the single box, and the method with what they learned. */
-#include "testing.h"
+#include "trainings.h"
 
-#include "scenes/scenes.h"
 #include "runs/runs.h"
 #include "learning/hybrid_training.h"
 
 #include <math.h>
 
 enum { LAUNCHES = 120 };
-
-static const char *const single = SOURCE_DIR "/scenes/single.yaml";
 
 typedef struct Counts {
     int launches, asked, answered, late, late_answered, grown, added, full, checked;
@@ -49,13 +46,6 @@ static TabulationTraining training_of(Counts *counts) {
                                 .context = counts};
 }
 
-static Scene *read_single(void) {
-    Error error = {0};
-    Scene *scene = scene_read(single, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
-
 static Tabulation *learn(const Scene *scene, const TabulationTraining *training, const Progress *progress) {
     Error error = {0};
     Tabulation *memory = tabulation_training_run(scene, training, progress, &error);
@@ -75,7 +65,7 @@ static void assert_same_memory(const Tabulation *a, const Tabulation *b) {
 
 static void familiar_impacts_are_answered_within_the_tolerance(void **state) {
     (void)state;
-    Scene *scene = read_single();
+    Scene *scene = shipped_scene("single");
     Counts counts;
     const TabulationTraining training = training_of(&counts);
     Tabulation *memory = learn(scene, &training, NULL);
@@ -93,7 +83,7 @@ static void familiar_impacts_are_answered_within_the_tolerance(void **state) {
 /* Each ends where the memory has no room for one more entry. */
 static void the_limit_holds_and_is_reported(void **state) {
     (void)state;
-    Scene *scene = read_single();
+    Scene *scene = shipped_scene("single");
     Counts counts;
     TabulationTraining training = training_of(&counts);
     training.limit = 40000;
@@ -105,21 +95,16 @@ static void the_limit_holds_and_is_reported(void **state) {
     scene_destroy(scene);
 }
 
-static bool stop_at(void *context, double done, double total) {
-    (void)total;
-    return done < *(const double *)context;
-}
-
 static void an_interrupted_learning_is_continued_with_the_same_bits(void **state) {
     (void)state;
-    Scene *scene = read_single();
+    Scene *scene = shipped_scene("single");
     Counts counts;
     TabulationTraining training = training_of(&counts);
     Tabulation *whole = learn(scene, &training, NULL);
     training.state_path = temporary_path("state.npz");
     counts.launches = 0;
-    double at = 77;
-    const Progress progress = {stop_at, &at};
+    int left = 77;
+    const Progress progress = {stop_at, &left};
     Tabulation *part = learn(scene, &training, &progress);
     assert_int_equal(part->launches, 77);
     counts.launches = 77;
@@ -157,7 +142,7 @@ static void assert_same_run(Trajectory *a, Trajectory *b) {
 static void the_method_without_its_memory_is_its_twin(void **state) {
     (void)state;
     Error error = {0};
-    Scene *scene = read_single();
+    Scene *scene = shipped_scene("single");
     Counts counts;
     const TabulationTraining training = training_of(&counts);
     Tabulation *memory = learn(scene, &training, NULL);

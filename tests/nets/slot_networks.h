@@ -46,8 +46,3 @@ static const Slot five_slots[] = {{0, 2, 7}, {0, 2, 9},          {0, 4, 0}, {1, 
                                   {1, 2, 5}, {1, 2, UINT32_MAX}, {2, 3, 1}, {2, 4, 7}};
 enum { FIVE_SLOTS = sizeof five_slots / sizeof five_slots[0] };
 static const SlotShape five_shape = {5, 3, FIVE_SLOTS, 16, 32, 48, 64};
-
-static inline void assert_slot_network_refused(const char *path, const char *text) {
-    Error error = {0};
-    assert_refused(slot_network_read(path, &error), text, path);
-}

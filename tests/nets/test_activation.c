@@ -120,54 +120,19 @@ static void tanh_is_odd(void **state) {
     }
 }
 
-/* What this file gave when it was written, on x86-64 by gcc 12 and clang 14 at -O0 to -O3: a compiler or processor
-   that contracts, reorders or widens an operation gives other bits. */
+/* What these functions gave when the test was written, on x86-64 by gcc 12 and clang 14 at -O0 to -O3: a compiler or
+   processor that contracts, reorders or widens an operation gives other bits, of the small terms in one value of many. */
 static void bits_are_the_same_everywhere(void **state) {
-    (void)state;
-    const struct {
-        float x, sigmoid, tanh;
-    } floats[] = {
-        {0.100000001f, 0x1.0cca12p-1f, 0x1.983d7ap-4f}, {-0.300000012f, 0x1.b3c558p-2f, -0x1.2a4ddcp-2f},
-        {0.699999988f, 0x1.561cb4p-1f, 0x1.356fb2p-1f}, {-1.89999998f, 0x1.0a765p-3f, -0x1.e997f4p-1f},
-        {3.29999995f, 0x1.edc99ep-1f, 0x1.fe9bep-1f},   {-7.69999981f, 0x1.da9bep-12f, -0x1.fffff2p-1f},
-        {15.1000004f, 0x1.fffff8p-1f, 0x1p+0f},         {-41, 0x1.cd480cp-60f, -0x1p+0f},
-        {-80.5f, 0x1.d1a206p-117f, -0x1p+0f},           {-87.9000015f, 0x1.237328p-127f, -0x1p+0f},
-    };
-    for (size_t i = 0; i < sizeof floats / sizeof floats[0]; i++) {
-        assert_true(sigmoid_float(floats[i].x) == floats[i].sigmoid);
-        assert_true(tanh_float(floats[i].x) == floats[i].tanh);
-    }
-    const struct {
-        double x, sigmoid, tanh;
-    } doubles[] = {
-        {0.10000000000000001, 0x1.0cca12729afb8p-1, 0x1.983d7795f413bp-4},
-        {-0.29999999999999999, 0x1.b3c5574372aebp-2, -0x1.2a4dda7d914f9p-2},
-        {0.69999999999999996, 0x1.561cb52a19476p-1, 0x1.356fb17af2e91p-1},
-        {-1.8999999999999999, 0x1.0a764fd2927e7p-3, -0x1.e997f4c3bcd48p-1},
-        {3.2999999999999998, 0x1.edc99cf2c9d4dp-1, 0x1.fe9bdf44f7c03p-1},
-        {-7.7000000000000002, 0x1.da9bda5715addp-12, -0x1.fffff23d39f08p-1},
-        {15.1, 0x1.fffff6b6606b2p-1, 0x1.ffffffffffa9cp-1},
-        {-41, 0x1.cd480a1b7482p-60, -0x1p+0},
-        {-300.5, 0x1.629f5b5352a54p-434, -0x1p+0},
-    };
-    for (size_t i = 0; i < sizeof doubles / sizeof doubles[0]; i++) {
-        assert_true(sigmoid(doubles[i].x) == doubles[i].sigmoid);
-        assert_true(tangent(doubles[i].x) == doubles[i].tanh);
-    }
-}
-
-/* The last bits of the small terms show in one value of many. */
-static void many_bits_are_the_same_everywhere(void **state) {
     (void)state;
     uint64_t hash = FNV1A64_START;
     for (uint32_t bits = 0x30000000; from_bits(bits) < 90; bits += 1009) {
         float x = from_bits(bits);
-        const float floats[] = {sigmoid_float(x), sigmoid_float(-x), tanh_float(x)};
-        const double doubles[] = {sigmoid((double)x), sigmoid(-(double)x), tangent((double)x)};
+        const float floats[] = {sigmoid_float(x), sigmoid_float(-x), tanh_float(x), tanh_float(-x)};
+        const double doubles[] = {sigmoid((double)x), sigmoid(-(double)x), sigmoid(-7 * (double)x), tangent((double)x)};
         hash = hash_fnv1a64(hash, floats, sizeof floats);
         hash = hash_fnv1a64(hash, doubles, sizeof doubles);
     }
-    if (hash != UINT64_C(0x2fcf31d30316d167)) fail_msg("hash of all values: %016llx", (unsigned long long)hash);
+    if (hash != UINT64_C(0x56d302c2ba7cf664)) fail_msg("hash of all values: %016llx", (unsigned long long)hash);
 }
 
 static void relu_keeps_nan_and_the_sign_of_zero(void **state) {
@@ -190,7 +155,6 @@ int main(void) {
         cmocka_unit_test(tanh_is_odd),
         cmocka_unit_test(relu_keeps_nan_and_the_sign_of_zero),
         cmocka_unit_test(bits_are_the_same_everywhere),
-        cmocka_unit_test(many_bits_are_the_same_everywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

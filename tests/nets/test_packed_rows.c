@@ -19,15 +19,22 @@ static void fill_rows(float *rows, uint32_t *seed) {
         for (int k = 0; k < WIDTH; k++) rows[i * WIDTH + k] = ldexpf(uniform(seed, -1, 1), 4 * (i - COUNT / 2));
 }
 
+/* The caller frees its units, which begin the block. */
+static PackedRows pack(const float *rows, int count, int width) {
+    void *block = malloc(packed_rows_bytes(count, width));
+    assert_non_null(block);
+    PackedRows packed = packed_rows_in(block, count, width);
+    packed_rows_fill(&packed, rows);
+    return packed;
+}
+
 /* Of the row's largest number, which stays itself. */
 static void a_number_moves_by_half_a_step_at_most(void **state) {
     (void)state;
     static float rows[COUNT * WIDTH];
     uint32_t seed = 1;
-    PackedRows packed;
-    assert_true(packed_rows_make(&packed, COUNT, WIDTH));
     fill_rows(rows, &seed);
-    packed_rows_fill(&packed, rows);
+    const PackedRows packed = pack(rows, COUNT, WIDTH);
     for (int i = 0; i < COUNT; i++) {
         float most = 0, farthest = 0;
         for (int k = 0; k < WIDTH; k++) {
@@ -38,37 +45,33 @@ static void a_number_moves_by_half_a_step_at_most(void **state) {
         assert_true(farthest <= packed.units[i] * 0.5001f);
         assert_true(farthest > packed.units[i] * 0.25f); /* else nothing would have been rounded */
     }
-    packed_rows_free(&packed);
+    free(packed.units);
 }
 
 static void what_is_packed_already_stays(void **state) {
     (void)state;
     static float rows[COUNT * WIDTH];
     uint32_t seed = 2;
-    PackedRows first, second;
-    assert_true(packed_rows_make(&first, COUNT, WIDTH) && packed_rows_make(&second, COUNT, WIDTH));
     fill_rows(rows, &seed);
-    packed_rows_fill(&first, rows);
+    const PackedRows first = pack(rows, COUNT, WIDTH);
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < WIDTH; k++) rows[i * WIDTH + k] = unpacked(&first, i, k);
-    packed_rows_fill(&second, rows);
+    const PackedRows second = pack(rows, COUNT, WIDTH);
     assert_memory_equal(first.numbers, second.numbers, COUNT * WIDTH);
-    packed_rows_free(&first);
-    packed_rows_free(&second);
+    free(first.units);
+    free(second.units);
 }
 
 /* Nothing at all, next to nothing, and the largest there is. */
 static void the_ends_of_the_range_are_met(void **state) {
     (void)state;
     const float rows[4 * 2] = {0, -0.0f, FLT_TRUE_MIN, -FLT_MIN, FLT_MAX, -FLT_MAX, 1, 127};
-    PackedRows packed;
-    assert_true(packed_rows_make(&packed, 4, 2));
-    packed_rows_fill(&packed, rows);
+    const PackedRows packed = pack(rows, 4, 2);
     const int8_t expected[4 * 2] = {0, 0, 0, 0, 127, -127, 1, 127};
     assert_memory_equal(packed.numbers, expected, sizeof expected);
     assert_true(packed.units[0] == 0 && packed.units[1] == 0 && packed.units[2] == FLT_MAX / 127);
     assert_true(packed.units[3] == 1);
-    packed_rows_free(&packed);
+    free(packed.units);
 }
 
 int main(void) {
