@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What every file may need, in the order of base.h; settings and numbers from text are in parse.c. */
 #include "base/base.h"
 
 #include <errno.h>
@@ -10,135 +11,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-size_t utf8_decode(const char *text, size_t size, uint32_t *character) {
-    static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
-    if (size == 0) return 0;
-    unsigned char lead = (unsigned char)text[0];
-    size_t length = lead < 0x80 ? 1 : lead < 0xc0 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf8 ? 4 : 0;
-    if (length == 0 || length > size) return 0;
-    uint32_t c = length == 1 ? lead : lead & (0x7fu >> length);
-    for (size_t i = 1; i < length; i++) {
-        if (((unsigned char)text[i] & 0xc0) != 0x80) return 0;
-        c = c << 6 | ((unsigned char)text[i] & 0x3fu);
-    }
-    if (c < smallest[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff)) return 0;
-    *character = c;
-    return length;
-}
-
-uint32_t utf8_next(const char **text) {
-    uint32_t character;
-    size_t length = utf8_decode(*text, strnlen(*text, 4), &character);
-    *text += length > 0 ? length : 1;
-    return length > 0 ? character : 0xfffd;
-}
-
-size_t utf8_cut(const char *text, size_t limit) {
-    const char *end = text;
-    for (const char *next = text; *next != '\0'; end = next) {
-        utf8_next(&next);
-        if ((size_t)(next - text) > limit) break;
-    }
-    return (size_t)(end - text);
-}
-
-size_t utf8_encode(char *out, uint32_t character) {
-    static const uint32_t above[] = {0x80, 0x800, 0x10000};
-    static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};
-    size_t length = 1;
-    while (length < 4 && character >= above[length - 1]) length++;
-    for (size_t i = length; i-- > 1; character >>= 6) out[i] = (char)(0x80 | (character & 0x3f));
-    out[0] = (char)(leads[length - 1] | character);
-    return length;
-}
-
-/* A character as it is shown. */
-typedef struct Shown {
-    char text[8];
-    size_t length, read; /* bytes, of the text that is shown and of the original */
-} Shown;
-
-static bool is_control(uint32_t c) { return c < 0x20 || (c >= 0x7f && c < 0xa0); }
-
-unsigned control_in_text(const char *text) {
-    while (*text != '\0') {
-        const uint32_t c = utf8_next(&text);
-        if (is_control(c)) return c;
-    }
-    return 0;
-}
-
-/* C1 controls, direction marks, ends of lines and paragraphs, and directional overrides (Unicode 15, chapter 23). */
-static bool is_obeyed(uint32_t c) {
-    return is_control(c) || c == 0x61c || c == 0x200e || c == 0x200f || (c >= 0x2028 && c <= 0x202e) ||
-           (c >= 0x2066 && c <= 0x2069);
-}
-
-static Shown show(const char *text, VisibleLines lines) {
-    uint32_t c = 0;
-    const unsigned byte = (unsigned char)text[0];
-    const size_t read = utf8_decode(text, strnlen(text, 4), &c);
-    Shown shown = {.read = read > 0 ? read : 1};
-    if (read == 1 && (c == '\n' || c == '\t') && lines == VISIBLE_LINES)
-        shown.text[0] = (char)c;
-    else if (read == 1 && c == '\n')
-        strcpy(shown.text, "\\n");
-    else if (read == 0 || c < 0x20 || c == 0x7f)
-        snprintf(shown.text, sizeof shown.text, "\\x%02x", byte);
-    else if (is_obeyed(c))
-        snprintf(shown.text, sizeof shown.text, "\\u%04x", (unsigned)(uint16_t)c);
-    else
-        memcpy(shown.text, text, read);
-    shown.length = strlen(shown.text);
-    return shown;
-}
-
-/* Shows text from *at while it is at most `most` bytes; moves *at behind it. */
-static size_t put(char *out, const char **at, size_t most, VisibleLines lines) {
-    size_t length = 0;
-    while (**at != '\0') {
-        const Shown shown = show(*at, lines);
-        if (length + shown.length > most) break;
-        if (out != NULL) memcpy(out + length, shown.text, shown.length);
-        length += shown.length;
-        *at += shown.read;
-    }
-    return length;
-}
-
-size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines) {
-    static const char gap[] = "...";
-    const char *at = text;
-    size_t left = put(NULL, &at, SIZE_MAX, lines), length = 0;
-    at = text;
-    if (left >= size) {
-        const size_t half = (size - sizeof gap) / 2;
-        length = put(out, &at, half, lines);
-        for (left -= length; left > half; at += show(at, lines).read) left -= show(at, lines).length;
-        memcpy(out + length, gap, sizeof gap - 1);
-        length += sizeof gap - 1;
-    }
-    length += put(out + length, &at, SIZE_MAX, lines);
-    out[length] = '\0';
-    return length;
-}
-
-/* Messages contain text of others: names of files, keys, values. Here, in one place, it is made visible. */
-
 #undef error_input
 #undef error_incomplete
 #undef error_system
 #undef error_interrupted
 #undef error_memory
 
+/* Messages contain text of others: names of files, keys, values. Here, in one place, it is made visible. */
+
 /* A path can be longer than a message: what is wrong must still be in it. */
 enum { WHERE_SIZE = 1024, RAW_SIZE = 8192 };
 
-static void append(Error *error, const char *format, va_list arguments) PRINTF_LIKE(2, 0);
-
 /* Only a format with lines (an excerpt of a file, the output of a program) gets lines from its arguments: a name must not
    look like a message of its own. */
-static void append(Error *error, const char *format, va_list arguments) {
+PRINTF_LIKE(2, 0) static void append(Error *error, const char *format, va_list arguments) {
     char raw[RAW_SIZE];
     const size_t used = strlen(error->message), room = sizeof error->message - used;
     if (room <= 16) return; /* what visible_text() needs */
@@ -148,9 +34,7 @@ static void append(Error *error, const char *format, va_list arguments) {
     visible_text(error->message + used, room, raw, strchr(format, '\n') != NULL ? VISIBLE_LINES : VISIBLE_ONE_LINE);
 }
 
-static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments)
-    PRINTF_LIKE(4, 0);
-
+PRINTF_LIKE(4, 0)
 static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
     if (error->kind != ERROR_NONE) return false;
     error->kind = kind;
@@ -234,6 +118,77 @@ void text_add(char *text, size_t size, const char *format, ...) {
     va_end(arguments);
 }
 
+/* A character as it is shown. */
+typedef struct Shown {
+    char text[8];
+    size_t length, read; /* bytes, of the text that is shown and of the original */
+} Shown;
+
+static bool is_control(uint32_t c) { return c < 0x20 || (c >= 0x7f && c < 0xa0); }
+
+/* C1 controls, direction marks, ends of lines and paragraphs, and directional overrides (Unicode 15, chapter 23). */
+static bool is_obeyed(uint32_t c) {
+    return is_control(c) || c == 0x61c || c == 0x200e || c == 0x200f || (c >= 0x2028 && c <= 0x202e) ||
+           (c >= 0x2066 && c <= 0x2069);
+}
+
+static Shown show(const char *text, VisibleLines lines) {
+    uint32_t c = 0;
+    const unsigned byte = (unsigned char)text[0];
+    const size_t read = utf8_decode(text, strnlen(text, 4), &c);
+    Shown shown = {.read = read > 0 ? read : 1};
+    if (read == 1 && (c == '\n' || c == '\t') && lines == VISIBLE_LINES)
+        shown.text[0] = (char)c;
+    else if (read == 1 && c == '\n')
+        strcpy(shown.text, "\\n");
+    else if (read == 0 || c < 0x20 || c == 0x7f)
+        snprintf(shown.text, sizeof shown.text, "\\x%02x", byte);
+    else if (is_obeyed(c))
+        snprintf(shown.text, sizeof shown.text, "\\u%04x", (unsigned)(uint16_t)c);
+    else
+        memcpy(shown.text, text, read);
+    shown.length = strlen(shown.text);
+    return shown;
+}
+
+/* Shows text from *at while it is at most `most` bytes; moves *at behind it. */
+static size_t put(char *out, const char **at, size_t most, VisibleLines lines) {
+    size_t length = 0;
+    while (**at != '\0') {
+        const Shown shown = show(*at, lines);
+        if (length + shown.length > most) break;
+        if (out != NULL) memcpy(out + length, shown.text, shown.length);
+        length += shown.length;
+        *at += shown.read;
+    }
+    return length;
+}
+
+size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines) {
+    static const char gap[] = "...";
+    const char *at = text;
+    size_t left = put(NULL, &at, SIZE_MAX, lines), length = 0;
+    at = text;
+    if (left >= size) {
+        const size_t half = (size - sizeof gap) / 2;
+        length = put(out, &at, half, lines);
+        for (left -= length; left > half; at += show(at, lines).read) left -= show(at, lines).length;
+        memcpy(out + length, gap, sizeof gap - 1);
+        length += sizeof gap - 1;
+    }
+    length += put(out + length, &at, SIZE_MAX, lines);
+    out[length] = '\0';
+    return length;
+}
+
+unsigned control_in_text(const char *text) {
+    while (*text != '\0') {
+        const uint32_t c = utf8_next(&text);
+        if (is_control(c)) return c;
+    }
+    return 0;
+}
+
 enum { WORD_SIZE = 32 };
 
 static size_t smaller(size_t a, size_t b) { return a < b ? a : b; }
@@ -303,6 +258,48 @@ bool error_unknown(Error *error, const char *where, const char *name, const char
         return error_input(error, where, "'%.64s' is not %s; did you mean '%s'?", name, what, nearest);
     return error_input(error, where, "'%.64s' is not %s; known: %s", name, what,
                        known->used > 0 ? known->text : "none");
+}
+
+size_t utf8_decode(const char *text, size_t size, uint32_t *character) {
+    static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
+    if (size == 0) return 0;
+    unsigned char lead = (unsigned char)text[0];
+    size_t length = lead < 0x80 ? 1 : lead < 0xc0 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf8 ? 4 : 0;
+    if (length == 0 || length > size) return 0;
+    uint32_t c = length == 1 ? lead : lead & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if (((unsigned char)text[i] & 0xc0) != 0x80) return 0;
+        c = c << 6 | ((unsigned char)text[i] & 0x3fu);
+    }
+    if (c < smallest[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff)) return 0;
+    *character = c;
+    return length;
+}
+
+uint32_t utf8_next(const char **text) {
+    uint32_t character;
+    size_t length = utf8_decode(*text, strnlen(*text, 4), &character);
+    *text += length > 0 ? length : 1;
+    return length > 0 ? character : 0xfffd;
+}
+
+size_t utf8_cut(const char *text, size_t limit) {
+    const char *end = text;
+    for (const char *next = text; *next != '\0'; end = next) {
+        utf8_next(&next);
+        if ((size_t)(next - text) > limit) break;
+    }
+    return (size_t)(end - text);
+}
+
+size_t utf8_encode(char *out, uint32_t character) {
+    static const uint32_t above[] = {0x80, 0x800, 0x10000};
+    static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};
+    size_t length = 1;
+    while (length < 4 && character >= above[length - 1]) length++;
+    for (size_t i = length; i-- > 1; character >>= 6) out[i] = (char)(0x80 | (character & 0x3f));
+    out[0] = (char)(leads[length - 1] | character);
+    return length;
 }
 
 bool array_grow(void **items, size_t *capacity, size_t wanted, size_t item_size) {
