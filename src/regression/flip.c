@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* FLIP of a part of two pictures. */
+/* FLIP: colours, filters, tiles around differences, and their mean and percentile. */
 #include "regression/flip.h"
 
 #include "base/base.h"
@@ -124,7 +124,7 @@ float flip_amplify(float color, float feature) {
 
 #define PI 3.14159265358979323846
 
-static int flip_filter_at_most(double radius) { return radius < FLIP_RADIUS_MAX ? (int)radius : FLIP_RADIUS_MAX; }
+static int radius_of(double radius) { return radius < FLIP_RADIUS_MAX ? (int)radius : FLIP_RADIUS_MAX; }
 
 /* The constants of equation 3: weights and widths of up to two Gaussians. */
 static const struct {
@@ -134,7 +134,7 @@ static const struct {
 void flip_make_blur(FlipBlur *blur, FlipChannel channel, double pixels_per_degree) {
     double volume[2] = {0, 0};
     /* One radius for all channels: three standard deviations of the widest Gaussian. */
-    int radius = flip_filter_at_most(ceil(3 * sqrt(0.04 / (2 * PI * PI)) * pixels_per_degree));
+    int radius = radius_of(ceil(3 * sqrt(0.04 / (2 * PI * PI)) * pixels_per_degree));
     blur->count = sensitivity[channel].weight[1] > 0 ? 2 : 1;
     for (int i = 0; i < blur->count; i++) {
         FlipKernel *kernel = &blur->kernels[i];
@@ -160,7 +160,7 @@ void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
     enum { LARGEST = 2 * FLIP_RADIUS_MAX + 1 };
     double deviation = 0.5 * 0.082 * pixels_per_degree; /* 0.082 degrees: the feature width at the eye's peak
                                                            contrast sensitivity */
-    int radius = flip_filter_at_most(ceil(3 * deviation));
+    int radius = radius_of(ceil(3 * deviation));
     double across[LARGEST] = {0}, edge[LARGEST] = {0}, point[LARGEST] = {0};
     for (int k = -radius; k <= radius; k++) {
         double gaussian = exp(-k * k / (2 * deviation * deviation));
@@ -209,7 +209,7 @@ struct FlipTile {
     Converted converted[CONVERTED];
 };
 
-static void flip_make_model(FlipModel *model, double pixels_per_degree) {
+static void make_model(FlipModel *model, double pixels_per_degree) {
     for (int c = 0; c < FLIP_CHANNELS; c++) flip_make_blur(&model->blurs[c], (FlipChannel)c, pixels_per_degree);
     flip_make_features(&model->features, pixels_per_degree);
     model->reach = model->blurs[0].kernels[0].radius;
@@ -218,7 +218,7 @@ static void flip_make_model(FlipModel *model, double pixels_per_degree) {
     flip_make_linear(model->linear_of);
 }
 
-static FlipTile *flip_tile_create(const FlipModel *model, Error *error) {
+static FlipTile *tile_create(const FlipModel *model, Error *error) {
     FlipTile *tile = calloc(1, sizeof *tile);
     size_t stride = FLIP_TILE_WIDTH + 2 * (size_t)model->reach, tall = FLIP_TILE_HEIGHT + 2 * (size_t)model->reach;
     size_t large = stride * tall, small = stride * FLIP_TILE_HEIGHT;
@@ -239,7 +239,7 @@ static FlipTile *flip_tile_create(const FlipModel *model, Error *error) {
     return tile;
 }
 
-static void flip_tile_destroy(FlipTile *tile) {
+static void tile_destroy(FlipTile *tile) {
     if (tile != NULL) free(tile->memory);
     free(tile);
 }
@@ -369,8 +369,7 @@ static void keep_largest(FlipTile *tile, FlipArea area, float *values, size_t st
 /* values[y - area.top][x] = FLIP of pixel x, y of the area, which has at most the size of a tile, where it is larger
    than the value already there. Rows of `values` are `stride` apart. Beyond the pictures' edges, their outermost
    pixels continue. Where a pixel that counts is not opaque, the larger value on white and on black. */
-static void flip_tile_compute(FlipTile *tile, const Image *const pictures[2], FlipArea area, float *values,
-                              size_t stride) {
+static void tile_compute(FlipTile *tile, const Image *const pictures[2], FlipArea area, float *values, size_t stride) {
     int blocks = (area.right - area.left + FLIP_BLOCK - 1) / FLIP_BLOCK;
     const Frame frame = {area.left, area.top, blocks * FLIP_BLOCK, area.bottom - area.top};
     tile->clear = 0;
@@ -395,23 +394,22 @@ typedef struct Flip {
     double sum;
 } Flip;
 
-static bool flip_create(Flip *flip, const Image *expected, const Image *actual, double pixels_per_degree,
-                        Error *error) {
+static bool create(Flip *flip, const Image *expected, const Image *actual, double pixels_per_degree, Error *error) {
     static const int most = 1 << 22; /* values of a band, unless one row has more */
     *flip = (Flip){.pictures = {expected, actual}, .width = expected->width, .height = expected->height};
-    flip_make_model(&flip->model, pixels_per_degree);
+    make_model(&flip->model, pixels_per_degree);
     flip->band = most / flip->width < 1 ? 1 : most / flip->width;
     if (flip->band > FLIP_TILE_HEIGHT) flip->band = FLIP_TILE_HEIGHT;
     size_t pixels = (size_t)flip->width * (size_t)flip->height;
     flip->values = malloc((size_t)flip->width * (size_t)flip->band * sizeof *flip->values);
     if (flip->values == NULL) return error_memory(error, "FLIP");
-    flip->tile = flip_tile_create(&flip->model, error);
+    flip->tile = tile_create(&flip->model, error);
     return flip->tile != NULL && largest_create(&flip->largest, pixels / 100 + 1, error);
 }
 
-static void flip_free(Flip *flip) {
+static void destroy(Flip *flip) {
     largest_free(&flip->largest);
-    flip_tile_destroy(flip->tile);
+    tile_destroy(flip->tile);
     free(flip->values);
 }
 
@@ -451,7 +449,7 @@ static void fill_band(const Flip *flip, int top, int bottom) {
     for (int left = 0; left < flip->width; left += FLIP_TILE_WIDTH) {
         FlipArea area = find_reached(flip, (FlipArea){left, top, at_most(left + FLIP_TILE_WIDTH, flip->width), bottom});
         if (area.bottom > 0)
-            flip_tile_compute(flip->tile, flip->pictures, area, flip->values + (size_t)(area.top - top) * width, width);
+            tile_compute(flip->tile, flip->pictures, area, flip->values + (size_t)(area.top - top) * width, width);
     }
 }
 
@@ -468,7 +466,7 @@ static bool take_row(Flip *flip, const float *values, const FlipSink *sink, Erro
 bool flip_compare(const Image *expected, const Image *actual, double pixels_per_degree, const FlipSink *sink,
                   FlipSummary *result, Error *error) {
     Flip flip;
-    bool ok = flip_create(&flip, expected, actual, pixels_per_degree, error);
+    bool ok = create(&flip, expected, actual, pixels_per_degree, error);
     for (int top = 0; ok && top < flip.height; top += flip.band) {
         int bottom = at_most(top + flip.band, flip.height);
         fill_band(&flip, top, bottom);
@@ -479,6 +477,6 @@ bool flip_compare(const Image *expected, const Image *actual, double pixels_per_
         result->mean = flip.sum / ((double)flip.width * (double)flip.height);
         result->p99 = (double)largest_least(&flip.largest);
     }
-    flip_free(&flip);
+    destroy(&flip);
     return ok;
 }
