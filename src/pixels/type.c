@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Characters and the glyphs that draw them, the check of texts, and the font as files. */
 #include "pixels/type.h"
 
 #include "base/base.h"
