@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The runs of a picture, what they cost, their notes, and the drawing of frames and videos. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"

@@ -28,10 +28,7 @@ static bool run_path(const Regression *regression, RegressionSide side, const ch
     return file_path(path, PATH_MAX, error, "%s/%s", regression->sequences[side]->folder, name);
 }
 
-static bool is_run(const char *name) {
-    size_t length = strlen(name);
-    return length >= 5 && strcmp(name + length - 4, ".npz") == 0 && name_is_text(name);
-}
+static bool is_run(const char *name) { return file_name_ends_with(name, ".npz") && name_is_text(name); }
 
 /* Adds a file of the expected folder if the actual folder has it, too. */
 static bool add_run(Regression *regression, const char *name, Error *error) {
