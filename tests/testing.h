@@ -16,6 +16,27 @@
 #include <string.h>
 #include <unistd.h>
 
+/* The tests of the file, in its order. TEST() adds to them before main() begins. */
+enum { TESTS_MAX = 64 };
+static struct CMUnitTest tests_of_file[TESTS_MAX] __attribute__((unused));
+static size_t test_count __attribute__((unused));
+
+/* TEST(name) { ... } is a test. TEST_WITH() is one with what cmocka calls before and after it, or NULL; both and the test get
+   the same `state`. */
+#define TEST(name) TEST_WITH(name, NULL, NULL)
+#define TEST_WITH(name, before, after)                                                           \
+    static void name(void **state);                                                              \
+    __attribute__((constructor)) static void add_##name(void) {                                  \
+        if (test_count == TESTS_MAX) abort();                                                    \
+        tests_of_file[test_count++] = (struct CMUnitTest){#name, name, (before), (after), NULL}; \
+    }                                                                                            \
+    static void name(void **state __attribute__((unused)))
+
+/* Runs them; `before` and `after` all of them together, or NULL. Returns how many failed. */
+static inline int run_all_tests(CMFixtureFunction before, CMFixtureFunction after) {
+    return _cmocka_run_group_tests("tests", tests_of_file, test_count, before, after);
+}
+
 /* Fails with the error's own words where `condition` is false. */
 #define assert_ok(condition, error)                        \
     do {                                                   \

@@ -23,8 +23,7 @@ static void assert_content(const char *path, const char *expected) {
     free(text);
 }
 
-static void a_new_file_is_written(void **state) {
-    (void)state;
+TEST(a_new_file_is_written) {
     Error error = {0};
     const char *path = temporary_path("new");
     assert_ok(file_create(path, "text", 4, &error), error);
@@ -33,8 +32,7 @@ static void a_new_file_is_written(void **state) {
     assert_int_equal(remove(path), 0);
 }
 
-static void a_file_that_exists_is_kept(void **state) {
-    (void)state;
+TEST(a_file_that_exists_is_kept) {
     const char *path = write_bytes(temporary_path("old"), "mine", 4), *link = temporary_path("link");
     assert_int_equal(symlink("nothing", link), 0);
     const char *const taken[] = {path, link, temporary_path(".")};
@@ -46,16 +44,10 @@ static void a_file_that_exists_is_kept(void **state) {
     assert_int_equal(entries(), 2);
 }
 
-static void a_missing_folder_is_an_error(void **state) {
-    (void)state;
+TEST(a_missing_folder_is_an_error) {
     Error error = {0};
     assert_false(file_create(temporary_path("missing/new"), "text", 4, &error));
     assert_error(error, ERROR_SYSTEM, "missing/new: error: cannot write: No such file or directory");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_new_file_is_written),
-                                       cmocka_unit_test(a_file_that_exists_is_kept),
-                                       cmocka_unit_test(a_missing_folder_is_an_error)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

@@ -55,8 +55,7 @@ static int read_and_compare(const char *path) {
     return done;
 }
 
-static void written_is_read(void **state) {
-    (void)state;
+TEST(written_is_read) {
     const char *path = temporary_path("written.npz");
     write_arrays(path);
     assert_int_equal(read_and_compare(path), 1);
@@ -79,8 +78,7 @@ static char *file_bytes(const char *path, size_t *size) {
 }
 
 /* Whatever the time zone: a zip holds local time. */
-static void same_arrays_same_bytes(void **state) {
-    (void)state;
+TEST(same_arrays_same_bytes) {
     static const char *const zones[] = {"UTC0", "XXX-14", "XXX+12", "EST5EDT,M3.2.0,M11.1.0", "XXX3:30YYY,J1/0,J2/0"};
     const char *first = temporary_path("first.npz"), *second = temporary_path("second.npz");
     write_arrays(first);
@@ -99,8 +97,7 @@ static void same_arrays_same_bytes(void **state) {
     free(data);
 }
 
-static void mismatches_name_found_and_wanted(void **state) {
-    (void)state;
+TEST(mismatches_name_found_and_wanted) {
     const char *path = temporary_path("mismatch.npz");
     write_arrays(path);
     NpzFile *file = open_file(path);
@@ -122,8 +119,7 @@ static void mismatches_name_found_and_wanted(void **state) {
     npz_close(file);
 }
 
-static void bad_texts_are_not_written(void **state) {
-    (void)state;
+TEST(bad_texts_are_not_written) {
     static const char *const texts[] = {
         "\xff", "\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
@@ -135,8 +131,7 @@ static void bad_texts_are_not_written(void **state) {
     }
 }
 
-static void truncated_files_are_refused(void **state) {
-    (void)state;
+TEST(truncated_files_are_refused) {
     const char *path = temporary_path("truncated.npz");
     write_arrays(path);
     size_t size;
@@ -151,8 +146,7 @@ static void truncated_files_are_refused(void **state) {
 static uint32_t random_next(uint32_t *seed) { return *seed = *seed * 1664525 + 1013904223; }
 
 /* Whatever is changed, what is read is what was written. */
-static void flipped_bytes_are_refused_or_harmless(void **state) {
-    (void)state;
+TEST(flipped_bytes_are_refused_or_harmless) {
     const char *path = temporary_path("flipped.npz");
     write_arrays(path);
     size_t size;
@@ -171,8 +165,7 @@ static void flipped_bytes_are_refused_or_harmless(void **state) {
     free(data);
 }
 
-static void failed_writes_tell(void **state) {
-    (void)state;
+TEST(failed_writes_tell) {
     Error error = {0};
     assert_false(npz_write(temporary_path("nowhere/x.npz"), arrays, ARRAYS, &error));
     assert_error(error, ERROR_SYSTEM, "nowhere/x.npz: error: cannot write: ");
@@ -191,8 +184,7 @@ static bool is_table(const char *kind, int32_t version, Error *error) {
     return is;
 }
 
-static void kind_and_version_are_checked(void **state) {
-    (void)state;
+TEST(kind_and_version_are_checked) {
     Error error;
     assert_true(is_table("table", 3, &error));
     assert_refused(is_table("chair", 3, &error), "kind.npz: error: not a file of kind 'table'");
@@ -201,8 +193,7 @@ static void kind_and_version_are_checked(void **state) {
     assert_refused(is_table("table", 4, &error), "kind.npz: error: table of version 4; expected version 3");
 }
 
-static void scalars_and_names_are_read(void **state) {
-    (void)state;
+TEST(scalars_and_names_are_read) {
     const NpzArray fields[] = {{"hash", NPZ_UINT64, 0, {0}, &hash},
                                {"good", NPZ_TEXT, 0, {0}, "z\xc3\xa4h"},
                                {"bad", NPZ_TEXT, 0, {0}, "z\33[2J"},
@@ -224,17 +215,4 @@ static void scalars_and_names_are_read(void **state) {
     npz_close(file);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(written_is_read),
-        cmocka_unit_test(same_arrays_same_bytes),
-        cmocka_unit_test(mismatches_name_found_and_wanted),
-        cmocka_unit_test(bad_texts_are_not_written),
-        cmocka_unit_test(truncated_files_are_refused),
-        cmocka_unit_test(flipped_bytes_are_refused_or_harmless),
-        cmocka_unit_test(failed_writes_tell),
-        cmocka_unit_test(kind_and_version_are_checked),
-        cmocka_unit_test(scalars_and_names_are_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

@@ -54,8 +54,7 @@ static void append_in_pieces(NpzStream *stream, int array, const void *data, siz
     }
 }
 
-static void rows_give_the_bytes_of_the_whole(void **state) {
-    (void)state;
+TEST(rows_give_the_bytes_of_the_whole) {
     const NpzArray whole[] = {
         {"noise", NPZ_FLOAT32, 2, {ROWS, 2}, noise},    {"zeros", NPZ_INT32, 2, {ROWS, 2}, zeros},
         {"small", NPZ_FLOAT32, 1, {SMALL}, noise},      {"none", NPZ_INT64, 1, {0}, noise},
@@ -95,8 +94,7 @@ static void rows_give_the_bytes_of_the_whole(void **state) {
     npz_close(file);
 }
 
-static void blocks_are_deflated_where_that_pays(void **state) {
-    (void)state;
+TEST(blocks_are_deflated_where_that_pays) {
     const char *path = temporary_path("blocks.npz");
     const size_t half = ROWS * sizeof *noise;
     const NpzArray arrays[] = {{"both", NPZ_FLOAT32, 1, {2 * ROWS}, noise},
@@ -119,8 +117,7 @@ static int count_entries(const char *folder) {
     return count;
 }
 
-static void an_unfinished_stream_leaves_nothing(void **state) {
-    (void)state;
+TEST(an_unfinished_stream_leaves_nothing) {
     char folder[256];
     snprintf(folder, sizeof folder, "%s", temporary_path("unfinished"));
     assert_int_equal(mkdir(folder, 0777), 0);
@@ -139,8 +136,7 @@ static void an_unfinished_stream_leaves_nothing(void **state) {
 }
 
 /* A full disk, as the limit of a file's size shows it. */
-static void a_full_disk_is_told(void **state) {
-    (void)state;
+TEST(a_full_disk_is_told) {
     struct rlimit limit;
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
@@ -156,12 +152,4 @@ static void a_full_disk_is_told(void **state) {
     assert_int_not_equal(access(path, F_OK), 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_give_the_bytes_of_the_whole),
-        cmocka_unit_test(blocks_are_deflated_where_that_pays),
-        cmocka_unit_test(an_unfinished_stream_leaves_nothing),
-        cmocka_unit_test(a_full_disk_is_told),
-    };
-    return cmocka_run_group_tests(tests, make_numbers, free_numbers);
-}
+int main(void) { return run_all_tests(make_numbers, free_numbers); }

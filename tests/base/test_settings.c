@@ -14,8 +14,7 @@ static Settings parsed(const char *text) {
     return settings;
 }
 
-static void values_are_found_by_key(void **state) {
-    (void)state;
+TEST(values_are_found_by_key) {
     Settings settings = parsed("network=a=b.npz,iterations=12,warm=off");
     assert_int_equal(settings.count, 3);
     assert_string_equal(settings_get(&settings, "network"), "a=b.npz");
@@ -29,8 +28,7 @@ static void values_are_found_by_key(void **state) {
     assert_false(warm);
 }
 
-static void missing_keys_leave_the_value(void **state) {
-    (void)state;
+TEST(missing_keys_leave_the_value) {
     Settings settings = parsed("");
     int iterations = 5;
     bool warm = true;
@@ -41,8 +39,7 @@ static void missing_keys_leave_the_value(void **state) {
     assert_true(warm);
 }
 
-static void a_number_is_read_in_its_range(void **state) {
-    (void)state;
+TEST(a_number_is_read_in_its_range) {
     Settings settings = parsed("iterations=1.25");
     float value = 0;
     Error error = {0};
@@ -54,8 +51,7 @@ static void a_number_is_read_in_its_range(void **state) {
                    "iterations: error: must be a number from 0 to 1 (got '1.25')");
 }
 
-static void defaults_do_not_replace(void **state) {
-    (void)state;
+TEST(defaults_do_not_replace) {
     Settings settings = parsed("warm=on");
     assert_true(settings_default(&settings, "warm", "off"));
     assert_true(settings_default(&settings, "network", "n.npz"));
@@ -74,8 +70,7 @@ static void refuse(const char *text, const SettingSpec *table, const char *reaso
     assert_error(error, ERROR_INPUT, "--method: error: ");
 }
 
-static void bad_settings_are_refused(void **state) {
-    (void)state;
+TEST(bad_settings_are_refused) {
     refuse("iterations", known, "'iterations' is not key=value");
     refuse("iterations=", known, "'iterations=' is not key=value");
     refuse("=3", known, "not key=value");
@@ -96,8 +91,7 @@ static void bad_settings_are_refused(void **state) {
     refuse(text, known, "too long");
 }
 
-static void too_many_settings_are_refused(void **state) {
-    (void)state;
+TEST(too_many_settings_are_refused) {
     char keys[SETTINGS_MAX + 1][2], text[8 * (SETTINGS_MAX + 1)] = "";
     SettingSpec table[SETTINGS_MAX + 2] = {0};
     for (int i = 0; i <= SETTINGS_MAX; i++) {
@@ -109,8 +103,7 @@ static void too_many_settings_are_refused(void **state) {
     refuse(text, table, "more than 16 settings");
 }
 
-static void bad_values_are_refused(void **state) {
-    (void)state;
+TEST(bad_values_are_refused) {
     Settings settings = parsed("iterations=0,warm=yes");
     int iterations = 5;
     bool warm = true;
@@ -123,12 +116,4 @@ static void bad_values_are_refused(void **state) {
     assert_true(warm);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_are_found_by_key),       cmocka_unit_test(missing_keys_leave_the_value),
-        cmocka_unit_test(a_number_is_read_in_its_range), cmocka_unit_test(defaults_do_not_replace),
-        cmocka_unit_test(bad_settings_are_refused),      cmocka_unit_test(bad_values_are_refused),
-        cmocka_unit_test(too_many_settings_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

@@ -143,7 +143,7 @@ static int kill_at_each_call(Write *write_file) {
     return kills;
 }
 
-static void a_kill_leaves_nothing(void **state) {
+TEST(a_kill_leaves_nothing) {
     static Write *const writes[] = {replace_file, create_file, publish_draft};
     (void)state;
     for (int names = 0; names < 2; names++)
@@ -181,8 +181,7 @@ static int let_other_write(void) {
     return status;
 }
 
-static void files_in_use_stay(void **state) {
-    (void)state;
+TEST(files_in_use_stay) {
     for (int names = 0; names < 2; names++) {
         make_folder();
         all_have_names = names == 1;
@@ -198,8 +197,7 @@ static void files_in_use_stay(void **state) {
     all_have_names = false;
 }
 
-static void only_such_names_are_removed(void **state) {
-    (void)state;
+TEST(only_such_names_are_removed) {
     make_folder();
     write_bytes(below(".twinbox-0123456789abcdef.tmp"), "x", 1);      /* a reservation */
     write_bytes(below(".twinbox-00000000-99999999-0-0.tmp"), "x", 1); /* another machine's */
@@ -212,8 +210,7 @@ static void only_such_names_are_removed(void **state) {
     assert_int_not_equal(access(below(".twinbox-0123456789abcdef.tmp"), F_OK), 0);
 }
 
-static void drafts_for_pipes_are_in_the_folder_for_temporary_files(void **state) {
-    (void)state;
+TEST(drafts_for_pipes_are_in_the_folder_for_temporary_files) {
     make_folder();
     assert_int_equal(setenv("TMPDIR", folder, 1), 0);
     Error error = {0};
@@ -230,12 +227,4 @@ static void drafts_for_pipes_are_in_the_folder_for_temporary_files(void **state)
     unsetenv("TMPDIR");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_kill_leaves_nothing),
-        cmocka_unit_test(files_in_use_stay),
-        cmocka_unit_test(only_such_names_are_removed),
-        cmocka_unit_test(drafts_for_pipes_are_in_the_folder_for_temporary_files),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

@@ -145,8 +145,7 @@ static pid_t ended_process(void) {
     return child;
 }
 
-static void living_processes_keep_their_files(void **state) {
-    (void)state;
+TEST(living_processes_keep_their_files) {
     const pid_t ended = ended_process();
     make_folder("living");
     for (Locks locks = REAL_LOCKS; locks <= NO_LOCKS; locks++) {
@@ -157,15 +156,13 @@ static void living_processes_keep_their_files(void **state) {
 }
 
 /* Two processes with one name of a machine, one number and one time: the second finds the first name taken. */
-static void a_name_is_used_once(void **state) {
-    (void)state;
+TEST(a_name_is_used_once) {
     const pid_t ended = ended_process();
     make_folder("once");
     expect_both((Node){REAL_LOCKS, 1, ended}, (Node){REAL_LOCKS, 1, ended});
 }
 
-static void a_machine_removes_what_its_killed_processes_left(void **state) {
-    (void)state;
+TEST(a_machine_removes_what_its_killed_processes_left) {
     make_folder("killed");
     for (Locks locks = REAL_LOCKS; locks <= NO_LOCKS; locks++) {
         assert_true(WIFSIGNALED(wait_for(start((Node){locks, 1, 0}, "lost", true, false))));
@@ -176,9 +173,4 @@ static void a_machine_removes_what_its_killed_processes_left(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(living_processes_keep_their_files),
-                                       cmocka_unit_test(a_name_is_used_once),
-                                       cmocka_unit_test(a_machine_removes_what_its_killed_processes_left)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

@@ -46,8 +46,7 @@ static MomentPlan plan_for(double rate, RenderOptions options) {
 /* Simulated time, in frames. */
 static double time_of(Moment moment) { return moment.frame + moment_fraction(moment); }
 
-static void pictures_are_shown_at_their_time(void **state) {
-    (void)state;
+TEST(pictures_are_shown_at_their_time) {
     for (int r = 0; r < RUN_RATES; r++)
         for (int f = 0; f < FILM_RATES; f++) {
             const double fps = film_rates[f], length = (FRAMES - 1) / run_rates[r];
@@ -67,8 +66,7 @@ static void pictures_are_shown_at_their_time(void **state) {
 }
 
 /* A film of the run's rate, or of a whole fraction of it, shows stored frames only. */
-static void frames_are_picked_where_they_fit(void **state) {
-    (void)state;
+TEST(frames_are_picked_where_they_fit) {
     for (int every = 1; every <= 4; every++) {
         MomentPlan plan = plan_for(120, (RenderOptions){.fps = 120.0 / every});
         for (int p = 0; p < moments_last(&plan); p++) {
@@ -84,8 +82,7 @@ static void frames_are_picked_where_they_fit(void **state) {
 }
 
 /* 0.15 s before the impact to 0.6 s after it are slower, at any rate of the film. */
-static void slow_motion_is_as_slow_at_every_rate(void **state) {
-    (void)state;
+TEST(slow_motion_is_as_slow_at_every_rate) {
     for (int f = 1; f < FILM_RATES; f++)
         for (int slow = 2; slow <= 5; slow++) {
             const double fps = film_rates[f];
@@ -104,8 +101,7 @@ static void slow_motion_is_as_slow_at_every_rate(void **state) {
 }
 
 /* Twice as slow at half the rate shows every frame: no pose is interpolated, although it is slow motion. */
-static void slow_motion_interpolates_only_where_it_must(void **state) {
-    (void)state;
+TEST(slow_motion_interpolates_only_where_it_must) {
     MomentPlan plan = plan_for(120, (RenderOptions){.fps = 60, .slow = 2});
     for (int p = 0; p < moments_last(&plan); p++) {
         Moment moment = moments_at(&plan, p);
@@ -115,8 +111,7 @@ static void slow_motion_interpolates_only_where_it_must(void **state) {
     assert_int_equal(moments_at(&plan, moments_last(&plan) / 2).parts, 2);
 }
 
-static void cards_and_hold_last_as_long_at_every_rate(void **state) {
-    (void)state;
+TEST(cards_and_hold_last_as_long_at_every_rate) {
     for (int f = 0; f < FILM_RATES; f++) {
         const double fps = film_rates[f];
         MomentPlan plan = plan_for(60, (RenderOptions){.fps = fps, .hold = 3, .title_card = true, .end_card = true});
@@ -126,8 +121,7 @@ static void cards_and_hold_last_as_long_at_every_rate(void **state) {
     }
 }
 
-static void a_duration_is_that_of_the_whole_film(void **state) {
-    (void)state;
+TEST(a_duration_is_that_of_the_whole_film) {
     static const double durations[] = {0.5, 1, 2, 7.5, 30};
     for (int d = 0; d < 5; d++)
         for (int f = 1; f < FILM_RATES; f++)
@@ -155,8 +149,7 @@ static void a_duration_is_that_of_the_whole_film(void **state) {
 }
 
 /* File names begin with the first frame. */
-static void a_range_plays_in_real_time(void **state) {
-    (void)state;
+TEST(a_range_plays_in_real_time) {
     MomentPlan plan;
     Error error = {0};
     assert_ok(plan_range(&plan, 60, 30, 41, (RenderOptions){.fps = 30}, &error), error);
@@ -167,8 +160,7 @@ static void a_range_plays_in_real_time(void **state) {
     assert_int_equal(moments_last(&plan), 50);
 }
 
-static void what_makes_no_sense_is_refused(void **state) {
-    (void)state;
+TEST(what_makes_no_sense_is_refused) {
     const struct {
         double rate;
         int first, last;
@@ -209,16 +201,4 @@ static void what_makes_no_sense_is_refused(void **state) {
                    "too many pictures for one sequence");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures_are_shown_at_their_time),
-        cmocka_unit_test(frames_are_picked_where_they_fit),
-        cmocka_unit_test(slow_motion_is_as_slow_at_every_rate),
-        cmocka_unit_test(slow_motion_interpolates_only_where_it_must),
-        cmocka_unit_test(cards_and_hold_last_as_long_at_every_rate),
-        cmocka_unit_test(a_duration_is_that_of_the_whole_film),
-        cmocka_unit_test(a_range_plays_in_real_time),
-        cmocka_unit_test(what_makes_no_sense_is_refused),
-    };
-    return cmocka_run_group_tests(tests, make, destroy);
-}
+int main(void) { return run_all_tests(make, destroy); }

@@ -122,8 +122,7 @@ static void check_picture(const json_t *item, int index) {
     free(data);
 }
 
-static void a_manifest_tells_of_every_picture(void **state) {
-    (void)state;
+TEST(a_manifest_tells_of_every_picture) {
     json_error_t failure;
     json_t *manifest = json_load_file(manifest_of(whole), JSON_REJECT_DUPLICATES, &failure);
     if (manifest == NULL) fail_msg("manifest.json:%d:%d: %s", failure.line, failure.column, failure.text);
@@ -191,8 +190,7 @@ static void check_view(const char *directory, bool moving) {
     json_decref(manifest);
 }
 
-static void the_view_leads_to_the_bodies(void **state) {
-    (void)state;
+TEST(the_view_leads_to_the_bodies) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("moving"));
     options.look.camera = LOOK_BOMB;
@@ -207,8 +205,7 @@ static void the_view_leads_to_the_bodies(void **state) {
     free(result.hashes);
 }
 
-static void the_view_names_the_files_of_the_runs(void **state) {
-    (void)state;
+TEST(the_view_names_the_files_of_the_runs) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("named"));
     options.look.show = LOOK_GHOSTS;
@@ -222,16 +219,14 @@ static void the_view_names_the_files_of_the_runs(void **state) {
     json_decref(manifest);
 }
 
-static void a_manifest_names_no_place(void **state) {
-    (void)state;
+TEST(a_manifest_names_no_place) {
     size_t size;
     char *text = read_whole(manifest_of(whole), &size);
     assert_null(strstr(text, temporary_folder));
     free(text);
 }
 
-static void nothing_is_drawn_twice(void **state) {
-    (void)state;
+TEST(nothing_is_drawn_twice) {
     char why[256];
     assert_int_equal(resume(copied("again"), why), PICTURES);
     assert_string_equal(why, "");
@@ -244,8 +239,7 @@ static void overwrite(const char *path, const char *data, size_t size) {
     assert_ok(file_write_soon(path, data, size, &error), error);
 }
 
-static void what_is_missing_or_damaged_is_drawn_again(void **state) {
-    (void)state;
+TEST(what_is_missing_or_damaged_is_drawn_again) {
     size_t size, other_size;
     const char *directory = copied("damaged");
     char *data = read_whole(frame_path(directory, 4), &size),
@@ -277,8 +271,7 @@ static bool stop(void *context, double done, double total) {
     return done < how->at;
 }
 
-static void a_stopped_sequence_goes_on(void **state) {
-    (void)state;
+TEST(a_stopped_sequence_goes_on) {
     for (int at = 1; at < PICTURES; at += 30) {
         Error error = {0};
         RenderOptions options = options_for(temporary_path("stopped"));
@@ -289,8 +282,7 @@ static void a_stopped_sequence_goes_on(void **state) {
     }
 }
 
-static void a_killed_sequence_goes_on(void **state) {
-    (void)state;
+TEST(a_killed_sequence_goes_on) {
     RenderOptions options = options_for(temporary_path("killed"));
     for (int at = 1; at < PICTURES; at += 30) {
         int status;
@@ -307,8 +299,7 @@ static void a_killed_sequence_goes_on(void **state) {
 }
 
 /* A power failure cuts a write: the last line may be partial, and so may pictures. */
-static void every_cut_of_the_journal_is_survived(void **state) {
-    (void)state;
+TEST(every_cut_of_the_journal_is_survived) {
     Error error = {0};
     char journal[600];
     RenderOptions options = options_for(temporary_path("cut"));
@@ -328,8 +319,7 @@ static void every_cut_of_the_journal_is_survived(void **state) {
 }
 
 /* Pictures of another sequence are not kept. */
-static void another_sequence_is_redrawn(void **state) {
-    (void)state;
+TEST(another_sequence_is_redrawn) {
     static const struct {
         RenderOptions options;
         const char *why;
@@ -358,8 +348,7 @@ static void another_sequence_is_redrawn(void **state) {
 }
 
 /* One different bit of a run makes it another run, even if no picture shows it. */
-static void another_run_is_redrawn(void **state) {
-    (void)state;
+TEST(another_run_is_redrawn) {
     const char *directory = copied("run");
     char why[256];
     runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 1e-9F;
@@ -384,8 +373,7 @@ static char *replaced(const char *text, const char *from, const char *to) {
 }
 
 /* Whatever a manifest contains, the pictures become correct. */
-static void a_manifest_is_not_trusted(void **state) {
-    (void)state;
+TEST(a_manifest_is_not_trusted) {
     static const char *const changes[][2] = {
         {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_000004.png\""},
         {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_999999999999999999999.png\""},
@@ -415,8 +403,7 @@ static void a_manifest_is_not_trusted(void **state) {
 }
 
 /* Files of other programs are not touched. */
-static void files_that_are_not_manifests_stay(void **state) {
-    (void)state;
+TEST(files_that_are_not_manifests_stay) {
     static const char foreign[] = "{\"name\": \"my own\"}";
     Error error = {0};
     RenderOptions options = options_for(copied("foreign"));
@@ -443,21 +430,4 @@ static void files_that_are_not_manifests_stay(void **state) {
     assert_int_equal(count_files(options.directory, ".png"), PICTURES);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_manifest_tells_of_every_picture),
-        cmocka_unit_test(the_view_leads_to_the_bodies),
-        cmocka_unit_test(the_view_names_the_files_of_the_runs),
-        cmocka_unit_test(a_manifest_names_no_place),
-        cmocka_unit_test(nothing_is_drawn_twice),
-        cmocka_unit_test(what_is_missing_or_damaged_is_drawn_again),
-        cmocka_unit_test(a_stopped_sequence_goes_on),
-        cmocka_unit_test(a_killed_sequence_goes_on),
-        cmocka_unit_test(every_cut_of_the_journal_is_survived),
-        cmocka_unit_test(another_sequence_is_redrawn),
-        cmocka_unit_test(another_run_is_redrawn),
-        cmocka_unit_test(a_manifest_is_not_trusted),
-        cmocka_unit_test(files_that_are_not_manifests_stay),
-    };
-    return cmocka_run_group_tests(tests, make, destroy);
-}
+int main(void) { return run_all_tests(make, destroy); }

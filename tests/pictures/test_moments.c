@@ -46,8 +46,7 @@ static MomentPlan plan_for(RenderOptions options) {
     return plan;
 }
 
-static void the_impact_is_the_bombs_first_touch_of_a_box(void **state) {
-    (void)state;
+TEST(the_impact_is_the_bombs_first_touch_of_a_box) {
     assert_int_equal(trajectory_impact(run), IMPACT);
     Trajectory *quiet = struck(FRAMES, 0);
     assert_int_equal(trajectory_impact(quiet), -1);
@@ -59,8 +58,7 @@ static void the_impact_is_the_bombs_first_touch_of_a_box(void **state) {
     run->bomb = BOMB_BODY;
 }
 
-static void without_options_a_picture_is_a_frame(void **state) {
-    (void)state;
+TEST(without_options_a_picture_is_a_frame) {
     for (int slow = 0; slow <= 1; slow++) {
         MomentPlan plan = plan_for((RenderOptions){.slow = slow});
         assert_int_equal(moments_last(&plan) + 1, FRAMES);
@@ -74,8 +72,7 @@ static void without_options_a_picture_is_a_frame(void **state) {
 /* Simulated time, in frames. */
 static double time_of(Moment moment) { return moment.frame + moment_fraction(moment); }
 
-static void slow_motion_adds_parts_around_the_impact(void **state) {
-    (void)state;
+TEST(slow_motion_adds_parts_around_the_impact) {
     for (int slow = 2; slow <= RENDER_SLOW_MAX; slow++) {
         MomentPlan plan = plan_for((RenderOptions){.slow = slow});
         int count = moments_last(&plan) + 1, stored = 0;
@@ -97,8 +94,7 @@ static void slow_motion_adds_parts_around_the_impact(void **state) {
     }
 }
 
-static void slow_motion_ends_where_the_run_does(void **state) {
-    (void)state;
+TEST(slow_motion_ends_where_the_run_does) {
     static const struct {
         int frames, impact, between;
     } cases[] = {{FRAMES, 2, 2 + AFTER}, {FRAMES, FRAMES - 1, BEFORE}, {10, 4, 9}, {FRAMES, 0, 0}};
@@ -114,8 +110,7 @@ static void slow_motion_ends_where_the_run_does(void **state) {
     }
 }
 
-static void the_first_impact_of_all_panels_counts(void **state) {
-    (void)state;
+TEST(the_first_impact_of_all_panels_counts) {
     Trajectory *later = struck(FRAMES + 5, IMPACT + 30);
     MomentPlan plan;
     Error error = {0};
@@ -129,8 +124,7 @@ static void assert_same_moment(Moment a, Moment b) {
     assert_true(a.kind == b.kind && a.frame == b.frame && moment_fraction(a) == moment_fraction(b) && a.slow == b.slow);
 }
 
-static void cards_and_hold_stand_around_the_run(void **state) {
-    (void)state;
+TEST(cards_and_hold_stand_around_the_run) {
     enum { CARD = 120, HOLD = 90 }; /* 2 s and 1.5 s at 60 Hz */
     MomentPlan plan = plan_for((RenderOptions){.slow = 3, .hold = 1.5, .title_card = true, .end_card = true});
     MomentPlan bare = plan_for((RenderOptions){.slow = 3});
@@ -154,8 +148,7 @@ static void cards_and_hold_stand_around_the_run(void **state) {
 }
 
 /* A range of frames has its own cards and hold around the run's moments; its indices begin with the first frame. */
-static void a_range_of_frames_is_a_complete_sequence(void **state) {
-    (void)state;
+TEST(a_range_of_frames_is_a_complete_sequence) {
     MomentPlan bare = plan_for((RenderOptions){.slow = 5});
     RenderOptions options = {.slow = 5, .hold = 0.5, .title_card = true, .end_card = true};
     const Trajectory *panels[] = {run};
@@ -177,8 +170,7 @@ static void a_range_of_frames_is_a_complete_sequence(void **state) {
         }
 }
 
-static void what_is_out_of_range_is_refused(void **state) {
-    (void)state;
+TEST(what_is_out_of_range_is_refused) {
     static const struct {
         RenderOptions options;
         const char *text;
@@ -203,16 +195,4 @@ static void what_is_out_of_range_is_refused(void **state) {
     run->dt = 1.0F / 60;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_impact_is_the_bombs_first_touch_of_a_box),
-        cmocka_unit_test(without_options_a_picture_is_a_frame),
-        cmocka_unit_test(slow_motion_adds_parts_around_the_impact),
-        cmocka_unit_test(slow_motion_ends_where_the_run_does),
-        cmocka_unit_test(the_first_impact_of_all_panels_counts),
-        cmocka_unit_test(cards_and_hold_stand_around_the_run),
-        cmocka_unit_test(a_range_of_frames_is_a_complete_sequence),
-        cmocka_unit_test(what_is_out_of_range_is_refused),
-    };
-    return cmocka_run_group_tests(tests, make, destroy);
-}
+int main(void) { return run_all_tests(make, destroy); }

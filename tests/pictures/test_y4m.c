@@ -41,8 +41,7 @@ static void convert(const uint32_t *pixels, int count, uint8_t *planes) {
 }
 
 /* ITU-R BT.709-6, item 3.2 to 3.5. */
-static void every_value_is_the_nearest(void **state) {
-    (void)state;
+TEST(every_value_is_the_nearest) {
     enum { COUNT = 16 * 52 };
     uint32_t pixels[COUNT];
     uint8_t planes[3 * COUNT];
@@ -59,8 +58,7 @@ static void every_value_is_the_nearest(void **state) {
     }
 }
 
-static void grey_has_no_colour_and_white_is_235(void **state) {
-    (void)state;
+TEST(grey_has_no_colour_and_white_is_235) {
     uint32_t greys[256];
     uint8_t planes[3 * 256];
     for (uint32_t i = 0; i < 256; i++) greys[i] = i * 0x010101;
@@ -73,16 +71,14 @@ static void grey_has_no_colour_and_white_is_235(void **state) {
 }
 
 /* Red, green and blue, known from test charts. */
-static void primaries_are_those_of_bt709(void **state) {
-    (void)state;
+TEST(primaries_are_those_of_bt709) {
     uint8_t planes[9];
     convert((const uint32_t[]){0xFF0000, 0x00FF00, 0x0000FF}, 3, planes);
     assert_memory_equal(planes, ((const uint8_t[]){63, 173, 32, 102, 42, 240, 240, 26, 118}), 9);
 }
 
 /* A picture of 2 x 3 pixels, blue at (1, 1). */
-static void planes_follow_each_other_in_rows(void **state) {
-    (void)state;
+TEST(planes_follow_each_other_in_rows) {
     size_t size;
     char *stream = stream_of((const uint32_t[]){0, 0, 0, 0x0000FF, 0, 0}, 2, 3, 60, &size);
     assert_memory_equal(
@@ -91,8 +87,7 @@ static void planes_follow_each_other_in_rows(void **state) {
     free(stream);
 }
 
-static void the_header_has_the_rate_as_a_fraction(void **state) {
-    (void)state;
+TEST(the_header_has_the_rate_as_a_fraction) {
     static const struct {
         double rate;
         const char *text;
@@ -108,13 +103,4 @@ static void the_header_has_the_rate_as_a_fraction(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_value_is_the_nearest),
-        cmocka_unit_test(grey_has_no_colour_and_white_is_235),
-        cmocka_unit_test(primaries_are_those_of_bt709),
-        cmocka_unit_test(planes_follow_each_other_in_rows),
-        cmocka_unit_test(the_header_has_the_rate_as_a_fraction),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

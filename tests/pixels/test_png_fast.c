@@ -166,16 +166,14 @@ static bool check_file(const File *file) {
 
 static File good, bad;
 
-static void what_it_is_for_is_accepted(void **state) {
-    (void)state;
+TEST(what_it_is_for_is_accepted) {
     for (int i = 0; i < 4000; i++) {
         make_file(&good, &kinds[i % KINDS], true);
         assert_int_equal(check_file(&good), i % KINDS < SHALLOW);
     }
 }
 
-static void what_is_unusual_is_decoded_as_by_libpng(void **state) {
-    (void)state;
+TEST(what_is_unusual_is_decoded_as_by_libpng) {
     int accepted = 0;
     for (int i = 0; i < 4000; i++) {
         make_file(&good, &kinds[i % SHALLOW], false);
@@ -185,8 +183,7 @@ static void what_is_unusual_is_decoded_as_by_libpng(void **state) {
 }
 
 /* The second half of the picture repeats the first, 2 KiB behind it; the header claims a window of 256 bytes. */
-static void a_window_that_is_too_small_is_left_to_libpng(void **state) {
-    (void)state;
+TEST(a_window_that_is_too_small_is_left_to_libpng) {
     enum { WIDTH = 32, HEIGHT = 32, BYTES = 1 + 4 * WIDTH };
     uint8_t rows[HEIGHT][BYTES], packed[2 * sizeof rows], header[13] = {[3] = WIDTH, [7] = HEIGHT, [8] = 8, [9] = 6};
     for (int y = 0; y < HEIGHT; y++)
@@ -277,8 +274,7 @@ static void damage(void) {
     if (how >= 9) change_chunk(bad.bytes + at[how < 11 ? 0 : i]);
 }
 
-static void damaged_files_are_decoded_only_if_libpng_does(void **state) {
-    (void)state;
+TEST(damaged_files_are_decoded_only_if_libpng_does) {
     int accepted = 0;
     for (int i = 0; i < 40000; i++) {
         if (i % 4 == 0) make_file(&good, &kinds[draw(SHALLOW)], i % 8 == 0);
@@ -288,8 +284,7 @@ static void damaged_files_are_decoded_only_if_libpng_does(void **state) {
     assert_true(accepted > 1000 && accepted < 20000); /* else the damage tests nothing */
 }
 
-static void noise_is_refused(void **state) {
-    (void)state;
+TEST(noise_is_refused) {
     for (int i = 0; i < 20000; i++) {
         bad.size = draw(200);
         for (size_t k = 0; k < bad.size; k++) bad.bytes[k] = (uint8_t)draw(256);
@@ -299,8 +294,7 @@ static void noise_is_refused(void **state) {
 }
 
 /* The pixels of both, and one picture only if all are equal. */
-static void pairs_are_as_two_pictures(void **state) {
-    (void)state;
+TEST(pairs_are_as_two_pictures) {
     int same = 0, pairs = 0;
     for (int i = 0; i < 6000; i++) {
         uint32_t start = seed;
@@ -324,14 +318,4 @@ static void pairs_are_as_two_pictures(void **state) {
     assert_true(same > 1000 && pairs - same > 1000);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_it_is_for_is_accepted),
-        cmocka_unit_test(what_is_unusual_is_decoded_as_by_libpng),
-        cmocka_unit_test(a_window_that_is_too_small_is_left_to_libpng),
-        cmocka_unit_test(damaged_files_are_decoded_only_if_libpng_does),
-        cmocka_unit_test(noise_is_refused),
-        cmocka_unit_test(pairs_are_as_two_pictures),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

@@ -15,8 +15,7 @@ static const char *store(const char *text) {
     return path;
 }
 
-static void failures_are_read_in_any_order_of_members(void **state) {
-    (void)state;
+TEST(failures_are_read_in_any_order_of_members) {
     Error error = {0};
     ApprovalList list;
     const char *text = "{\"trajectories\": [], \"frames\": [\n"
@@ -38,8 +37,7 @@ static void failures_are_read_in_any_order_of_members(void **state) {
     approval_free(&list);
 }
 
-static void invalid_results_are_refused_with_their_place(void **state) {
-    (void)state;
+TEST(invalid_results_are_refused_with_their_place) {
     static const struct {
         const char *text, *why;
     } cases[] = {
@@ -73,8 +71,7 @@ static void invalid_results_are_refused_with_their_place(void **state) {
 }
 
 /* One of thousands, each with its own name, so that the table of names has grown many times. */
-static void a_file_that_is_named_twice_is_refused(void **state) {
-    (void)state;
+TEST(a_file_that_is_named_twice_is_refused) {
     enum { COUNT = 3000, SIZE = 120 };
     for (int twice = 0; twice <= 1; twice++) {
         Error error = {0};
@@ -95,11 +92,4 @@ static void a_file_that_is_named_twice_is_refused(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(failures_are_read_in_any_order_of_members),
-        cmocka_unit_test(invalid_results_are_refused_with_their_place),
-        cmocka_unit_test(a_file_that_is_named_twice_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

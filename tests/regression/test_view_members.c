@@ -18,8 +18,7 @@ static bool read_after(int members, FrameView *view, Error *error) {
     return view_read(view, path, error);
 }
 
-static void members_before_the_view_are_limited(void **state) {
-    (void)state;
+TEST(members_before_the_view_are_limited) {
     FrameView view;
     Error error = {0};
     assert_ok(read_after(31, &view, &error), error);
@@ -27,7 +26,4 @@ static void members_before_the_view_are_limited(void **state) {
     assert_refused(read_after(32, &view, &error), "manifest.json:32:18: error: 'view' expected");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(members_before_the_view_are_limited)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }

@@ -19,16 +19,14 @@ static bool read_named(const char *name, FrameView *view, Error *error) {
     return view_read(view, path, error);
 }
 
-static void names_of_runs_are_read(void **state) {
-    (void)state;
+TEST(names_of_runs_are_read) {
     FrameView view;
     Error error = {0};
     assert_ok(read_named("sk\xc3\xa4l-engine.npz", &view, &error), error);
     assert_string_equal(view.panels[0].run, "sk\xc3\xa4l-engine.npz");
 }
 
-static void names_that_command_are_refused(void **state) {
-    (void)state;
+TEST(names_that_command_are_refused) {
     static const char *const names[] = {"a\\u001b[31m.npz", "a\\n::error::b.npz", "a\\u009b.npz",
                                         "a\x7f.npz",        "../a.npz",           ".a.npz"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -38,8 +36,4 @@ static void names_that_command_are_refused(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(names_of_runs_are_read),
-                                       cmocka_unit_test(names_that_command_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+int main(void) { return run_all_tests(NULL, NULL); }
