@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "base/file.h"
+#include "files.h"
 #include "base/csv.h"
 
 #include <math.h>
@@ -44,12 +44,7 @@ static const CsvColumn later[] = {
 };
 static const CsvLayout grown = CSV_LAYOUT("rows", later, Row, .max_rows = 3, .header = CSV_EXACT);
 
-static const char *write_file(const char *text) {
-    Error error = {0};
-    const char *path = temporary_path("rows.csv");
-    assert_ok(file_write_soon(path, text, strlen(text), &error), error);
-    return path;
-}
+static const char *write_file(const char *text) { return write_bytes(temporary_path("rows.csv"), text, strlen(text)); }
 
 static CsvTable read_good(const CsvLayout *layout, const char *text) {
     Error error = {0};
@@ -171,15 +166,6 @@ TEST(errors_point_at_a_field) {
     csv_table_free(&table);
 }
 
-static void expect_text(const char *path, const char *expected) {
-    Error error = {0};
-    size_t size;
-    char *text = file_read(path, 10000, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, expected);
-    free(text);
-}
-
 static const Row written[] = {{"k=20,b=\"c\"", "x [m]", GREEN, -5, 0.1f, 1234567.8912, -0.12345678},
                               {"", "", RED, 0, -3, 0, NAN}};
 
@@ -187,7 +173,7 @@ TEST(written_tables_are_read_back) {
     Error error = {0};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &exact, written, 2, &error), error);
-    expect_text(path, HEADER "\"k=20,b=\"\"c\"\"\",\"x [m]\",green,-5,0.1,1234567.89,-0.123457\n,\"\",red,0,-3,0,\n");
+    assert_file(path, HEADER "\"k=20,b=\"\"c\"\"\",\"x [m]\",green,-5,0.1,1234567.89,-0.123457\n,\"\",red,0,-3,0,\n");
     CsvTable table;
     assert_ok(csv_table_read(&table, path, &exact, &error), error);
     const Row *rows = table.rows;

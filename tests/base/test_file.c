@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "folder_entries.h"
+#include "files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -17,16 +17,6 @@
 static void write_file(const char *path, const char *text) {
     Error error = {0};
     assert_ok(file_write(path, text, strlen(text), &error), error);
-}
-
-static void expect_file(const char *path, const char *text) {
-    Error error = {0};
-    size_t size = 0;
-    char *data = file_read(path, 1000, &size, &error);
-    assert_ok(data != NULL, error);
-    assert_int_equal(size, strlen(text));
-    assert_string_equal(data, text);
-    free(data);
 }
 
 static const char *fresh_folder(const char *name) {
@@ -46,12 +36,12 @@ static void expect_write_error(const char *path, const char *reason) {
 TEST(written_is_read) {
     const char *folder = fresh_folder("written"), *path = temporary_path("written/file");
     write_file(path, "first");
-    expect_file(path, "first");
+    assert_file(path, "first");
     write_file(path, "");
-    expect_file(path, "");
+    assert_file(path, "");
     write_file(path, "second");
-    expect_file(path, "second");
-    assert_int_equal(count_entries(folder), 1);
+    assert_file(path, "second");
+    assert_int_equal(count_files(folder, ""), 1);
 }
 
 TEST(new_files_follow_the_umask) {
@@ -69,8 +59,8 @@ TEST(names_without_folder_are_in_this_one) {
     assert_true(here >= 0);
     assert_int_equal(chdir(fresh_folder("here")), 0);
     write_file("plain", "text");
-    expect_file("plain", "text");
-    assert_int_equal(count_entries("."), 1);
+    assert_file("plain", "text");
+    assert_int_equal(count_files(".", ""), 1);
     assert_int_equal(fchdir(here), 0);
     close(here);
 }
@@ -81,7 +71,7 @@ TEST(links_are_followed) {
     write_file(target, "old");
     assert_int_equal(symlink("target", link), 0);
     write_file(link, "new");
-    expect_file(target, "new");
+    assert_file(target, "new");
     struct stat status;
     assert_int_equal(lstat(link, &status), 0);
     assert_true(S_ISLNK(status.st_mode));
@@ -150,7 +140,7 @@ TEST(standard_output_is_written_into) {
     close(saved);
     assert_ok(done, error);
     assert_true(before && after);
-    expect_file(path, "before text after");
+    assert_file(path, "before text after");
 }
 
 TEST(failed_writes_leave_nothing) {
@@ -167,7 +157,7 @@ TEST(failed_writes_leave_nothing) {
     sprintf(joined, "%s%s", path, longest);
     expect_write_error(joined, strerror(ENAMETOOLONG));
     free(joined);
-    assert_int_equal(count_entries(folder), 0);
+    assert_int_equal(count_files(folder, ""), 0);
 }
 
 /* A file that may not grow stands for a full disk. */
@@ -185,8 +175,8 @@ TEST(a_full_disk_keeps_the_old_file) {
     setrlimit(RLIMIT_FSIZE, &previous);
     assert_false(done);
     assert_error(error, ERROR_SYSTEM, strerror(EFBIG));
-    expect_file(path, "old");
-    assert_int_equal(count_entries(folder), 1);
+    assert_file(path, "old");
+    assert_int_equal(count_files(folder, ""), 1);
 }
 
 static void expect_read_error(const char *path, size_t limit, const char *reason) {
@@ -231,16 +221,12 @@ TEST(folders_end_with_their_slash) {
 
 TEST(many_files_wait_for_the_disk_once) {
     Error error = {0};
-    size_t size;
     const char *path = temporary_path("soon");
     assert_ok(file_write_soon(path, "old and long", 12, &error), error);
     assert_ok(file_write_soon(path, "new", 3, &error), error);
     assert_ok(file_sync(path, &error), error);
     assert_ok(file_sync(temporary_folder, &error), error);
-    char *data = file_read(path, 100, &size, &error);
-    assert_ok(data != NULL, error);
-    assert_string_equal(data, "new");
-    free(data);
+    assert_file(path, "new");
     assert_false(file_write_soon(temporary_path("no/such/folder"), "new", 3, &error));
     assert_error(error, ERROR_SYSTEM, "no/such/folder");
 }

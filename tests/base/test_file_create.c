@@ -2,33 +2,14 @@
 /* New files: whole, and never over one that exists. */
 #include "testing.h"
 
-#include "base/file.h"
-
-#include <dirent.h>
-
-static int entries(void) {
-    DIR *folder = opendir(temporary_folder);
-    int count = 0;
-    while (readdir(folder) != NULL) count++;
-    closedir(folder);
-    return count - 2; /* without . and .. */
-}
-
-static void assert_content(const char *path, const char *expected) {
-    Error error = {0};
-    size_t size;
-    char *text = file_read(path, 100, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, expected);
-    free(text);
-}
+#include "files.h"
 
 TEST(a_new_file_is_written) {
     Error error = {0};
     const char *path = temporary_path("new");
     assert_ok(file_create(path, "text", 4, &error), error);
-    assert_content(path, "text");
-    assert_int_equal(entries(), 1);
+    assert_file(path, "text");
+    assert_int_equal(count_files(temporary_folder, ""), 1);
     assert_int_equal(remove(path), 0);
 }
 
@@ -40,8 +21,8 @@ TEST(a_file_that_exists_is_kept) {
         Error error = {0};
         assert_refused(file_create(taken[i], "text", 4, &error), "exists already, and is not overwritten");
     }
-    assert_content(path, "mine");
-    assert_int_equal(entries(), 2);
+    assert_file(path, "mine");
+    assert_int_equal(count_files(temporary_folder, ""), 2);
 }
 
 TEST(a_missing_folder_is_an_error) {

@@ -2,16 +2,12 @@
 /* What the reader adds to jansson: places, limits, and walking containers without reading beyond the file. */
 #include "testing.h"
 
-#include "base/file.h"
 #include "base/json.h"
 
 enum { MAX_SIZE = 1 << 20 };
 
 static const char *store(const char *text, size_t size) {
-    Error error = {0};
-    const char *path = temporary_path("values.json");
-    assert_ok(file_write(path, text, size, &error), error);
-    return path;
+    return write_bytes(temporary_path("values.json"), text, size);
 }
 
 static JsonReader open_text(const char *text, size_t size) {

@@ -3,7 +3,7 @@
    (test_npz_hostile.c: files made for harm). test_numpy.c compares with NumPy. */
 #include "testing.h"
 
-#include "base/file.h"
+#include "files.h"
 #include "base/npz.h"
 
 #include <time.h>
@@ -70,25 +70,18 @@ TEST(written_is_read) {
     npz_close(file);
 }
 
-static char *file_bytes(const char *path, size_t *size) {
-    Error error = {0};
-    char *data = file_read(path, 1 << 20, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
-}
-
 /* Whatever the time zone: a zip holds local time. */
 TEST(same_arrays_same_bytes) {
     static const char *const zones[] = {"UTC0", "XXX-14", "XXX+12", "EST5EDT,M3.2.0,M11.1.0", "XXX3:30YYY,J1/0,J2/0"};
     const char *first = temporary_path("first.npz"), *second = temporary_path("second.npz");
     write_arrays(first);
     size_t size, other_size;
-    char *data = file_bytes(first, &size);
+    char *data = read_whole(first, &size);
     for (size_t i = 0; i < sizeof zones / sizeof zones[0]; i++) {
         setenv("TZ", zones[i], 1);
         tzset();
         write_arrays(second);
-        char *other = file_bytes(second, &other_size);
+        char *other = read_whole(second, &other_size);
         if (other_size != size || memcmp(data, other, size) != 0) fail_msg("other bytes in zone %s", zones[i]);
         free(other);
     }
@@ -135,7 +128,7 @@ TEST(truncated_files_are_refused) {
     const char *path = temporary_path("truncated.npz");
     write_arrays(path);
     size_t size;
-    char *data = file_bytes(path, &size);
+    char *data = read_whole(path, &size);
     for (size_t length = 0; length < size; length++) {
         write_bytes(path, data, length);
         if (read_and_compare(path) != 0) fail_msg("cut off at %zu, and read", length);
@@ -150,7 +143,7 @@ TEST(flipped_bytes_are_refused_or_harmless) {
     const char *path = temporary_path("flipped.npz");
     write_arrays(path);
     size_t size;
-    char *data = file_bytes(path, &size), *damaged = malloc(size);
+    char *data = read_whole(path, &size), *damaged = malloc(size);
     uint32_t seed = 1;
     int refused = 0;
     for (int round = 0; round < 4000; round++) {

@@ -2,7 +2,7 @@
 /* Files that are no .npz, or one made for harm: refused with the reason, before they cost time or memory. */
 #include "testing.h"
 
-#include "base/file.h"
+#include "files.h"
 #include "base/npz.h"
 
 #include <zip.h>
@@ -12,13 +12,6 @@ static NpzFile *open_file(const char *path) {
     NpzFile *file = npz_open(path, &error);
     assert_ok(file != NULL, error);
     return file;
-}
-
-static char *file_bytes(const char *path, size_t *size) {
-    Error error = {0};
-    char *data = file_read(path, 1 << 20, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
 }
 
 /* A zip of one member with these bytes. */
@@ -145,7 +138,7 @@ TEST(a_name_twice_is_refused) {
     Error error = {0};
     assert_ok(npz_write(path, twins, 2, &error), error);
     size_t size;
-    char *data = file_bytes(path, &size);
+    char *data = read_whole(path, &size);
     find_header(data, size, "PK\1\2")[46 + 4] = '1';
     find_header(data, size, "PK\3\4")[30 + 4] = '1';
     write_bytes(path, data, size);
@@ -180,7 +173,7 @@ TEST(small_files_cannot_hold_much) {
     Error error = {0};
     assert_ok(npz_write(path, &array, 1, &error), error);
     size_t size;
-    char *data = file_bytes(path, &size);
+    char *data = read_whole(path, &size);
     set_little_endian(find_header(data, size, "PK\1\2") + 24, 1U << 30);
     write_bytes(path, data, size);
     free(data);

@@ -5,9 +5,8 @@
 
 #include "base/file.h"
 #include "base/npz.h"
-#include "pictures/folders.h"
+#include "files.h"
 
-#include <dirent.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -106,17 +105,6 @@ TEST(blocks_are_deflated_where_that_pays) {
     assert_in_range(file_size(path), 1, half / 50);
 }
 
-/* Hidden ones, too. */
-static int count_entries(const char *folder) {
-    int count = 0;
-    DIR *directory = opendir(folder);
-    assert_non_null(directory);
-    for (struct dirent *entry = readdir(directory); entry != NULL; entry = readdir(directory))
-        count += entry->d_name[0] != '.' || strlen(entry->d_name) > 2;
-    closedir(directory);
-    return count;
-}
-
 TEST(an_unfinished_stream_leaves_nothing) {
     char folder[256];
     snprintf(folder, sizeof folder, "%s", temporary_path("unfinished"));
@@ -128,9 +116,9 @@ TEST(an_unfinished_stream_leaves_nothing) {
     assert_ok(stream != NULL, error);
     const int array = npz_stream_add(stream, &(NpzArray){"noise", NPZ_UINT32, 1, {0}, NULL}, &error);
     assert_ok(npz_stream_append(stream, array, noise, 2 * ROWS, &error), error);
-    assert_int_equal(count_entries(folder), 0); /* so a program that is killed leaves nothing either */
+    assert_int_equal(count_files(folder, ""), 0); /* so a program that is killed leaves nothing either */
     npz_stream_destroy(stream);
-    assert_int_equal(count_entries(folder), 0);
+    assert_int_equal(count_files(folder, ""), 0);
     assert_null(npz_stream_create(temporary_path("nowhere/run.npz"), 1, &error));
     assert_error(error, ERROR_SYSTEM, "nowhere/run.npz: error: cannot write: ");
 }

@@ -5,7 +5,7 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "folder_entries.h"
+#include "files.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -76,15 +76,6 @@ static const char *below(const char *name) {
     return path;
 }
 
-static void expect_file(const char *path, const char *text) {
-    Error error = {0};
-    size_t size;
-    char *found = file_read(path, 100, &size, &error);
-    assert_ok(found != NULL, error);
-    assert_string_equal(found, text);
-    free(found);
-}
-
 static bool replace_file(const char *path, const char *text, Error *error) {
     return file_write(path, text, strlen(text), error);
 }
@@ -133,12 +124,12 @@ static int kill_at_each_call(Write *write_file) {
         assert_int_equal(write_in_child(replace_file, "old", NO_CALL), 0);
         const int status = write_in_child(write_file, "new", call);
         kills += WIFSIGNALED(status);
-        if (WIFSIGNALED(status)) expect_file(below("file"), "old");
+        if (WIFSIGNALED(status)) assert_file(below("file"), "old");
         unlink(below("file-created"));
         assert_int_equal(write_in_child(write_file, "new", NO_CALL), 0);
-        expect_file(below("file"), "new");
+        assert_file(below("file"), "new");
         unlink(below("file-created"));
-        assert_int_equal(count_entries(folder), 1);
+        assert_int_equal(count_files(folder, ""), 1);
     }
     return kills;
 }
@@ -191,8 +182,8 @@ TEST(files_in_use_stay) {
         Error error = {0};
         assert_ok(file_write(below("file"), "new", 3, &error), error);
         assert_null(before_rename);
-        expect_file(below("file"), "new");
-        assert_int_equal(count_entries(folder), 2);
+        assert_file(below("file"), "new");
+        assert_int_equal(count_files(folder, ""), 2);
     }
     all_have_names = false;
 }
@@ -206,7 +197,7 @@ TEST(only_such_names_are_removed) {
     assert_int_equal(mkdir(below(".twinbox-folder.tmp"), 0777), 0);
     assert_int_equal(symlink("file", below(".twinbox-link.tmp")), 0);
     assert_int_equal(write_in_child(replace_file, "new", NO_CALL), 0);
-    assert_int_equal(count_entries(folder), 6);
+    assert_int_equal(count_files(folder, ""), 6);
     assert_int_not_equal(access(below(".twinbox-0123456789abcdef.tmp"), F_OK), 0);
 }
 

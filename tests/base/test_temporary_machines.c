@@ -6,7 +6,7 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "folder_entries.h"
+#include "files.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -112,27 +112,18 @@ static void write_whole(Node where, const char *name) {
     assert_int_equal(wait_for(start(where, name, false, false)), 0);
 }
 
-static void expect_file(const char *name) {
-    Error error = {0};
-    size_t size;
-    char *found = file_read(below(name), 100, &size, &error);
-    assert_ok(found != NULL, error);
-    assert_string_equal(found, name);
-    free(found);
-}
-
 /* One process is about to name its file while another writes one. */
 static void expect_both(Node first, Node second) {
     const pid_t writing = start(first, "first", false, true);
     assert_true(WIFSTOPPED(wait_for(writing)));
-    assert_int_equal(count_entries(folder), 1);
+    assert_int_equal(count_files(folder, ""), 1);
     write_whole(second, "second");
-    assert_int_equal(count_entries(folder), 2);
+    assert_int_equal(count_files(folder, ""), 2);
     kill(writing, SIGCONT);
     assert_int_equal(wait_for(writing), 0);
-    expect_file("first");
-    expect_file("second");
-    assert_int_equal(count_entries(folder), 2);
+    assert_file(below("first"), "first");
+    assert_file(below("second"), "second");
+    assert_int_equal(count_files(folder, ""), 2);
     assert_int_equal(remove(below("first")), 0);
     assert_int_equal(remove(below("second")), 0);
 }
@@ -167,9 +158,9 @@ TEST(a_machine_removes_what_its_killed_processes_left) {
     for (Locks locks = REAL_LOCKS; locks <= NO_LOCKS; locks++) {
         assert_true(WIFSIGNALED(wait_for(start((Node){locks, 1, 0}, "lost", true, false))));
         write_whole((Node){locks, 2, 0}, "file");
-        assert_int_equal(count_entries(folder), 2);
+        assert_int_equal(count_files(folder, ""), 2);
         write_whole((Node){locks, 1, 0}, "file");
-        assert_int_equal(count_entries(folder), 1);
+        assert_int_equal(count_files(folder, ""), 1);
     }
 }
 

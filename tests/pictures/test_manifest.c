@@ -4,7 +4,7 @@
 #include "testing.h"
 
 #include "base/hash.h"
-#include "folders.h"
+#include "files.h"
 #include "mesa.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
@@ -234,25 +234,20 @@ TEST(nothing_is_drawn_twice) {
     assert_non_null(strstr(why, "fresh/manifest.json: error: cannot open"));
 }
 
-static void overwrite(const char *path, const char *data, size_t size) {
-    Error error = {0};
-    assert_ok(file_write_soon(path, data, size, &error), error);
-}
-
 TEST(what_is_missing_or_damaged_is_drawn_again) {
     size_t size, other_size;
     const char *directory = copied("damaged");
     char *data = read_whole(frame_path(directory, 4), &size),
          *other = read_whole(frame_path(directory, 5), &other_size);
     assert_int_equal(unlink(frame_path(directory, 0)), 0);
-    overwrite(frame_path(directory, 1), data, size / 2);    /* truncated */
-    overwrite(frame_path(directory, 2), data, 0);           /* empty */
-    overwrite(frame_path(directory, 4), other, other_size); /* exchanged */
-    overwrite(frame_path(directory, 5), data, size);
+    write_bytes(frame_path(directory, 1), data, size / 2);    /* truncated */
+    write_bytes(frame_path(directory, 2), data, 0);           /* empty */
+    write_bytes(frame_path(directory, 4), other, other_size); /* exchanged */
+    write_bytes(frame_path(directory, 5), data, size);
     data[size / 2] ^= 1;
-    overwrite(frame_path(directory, 7), data, size); /* one bit changed */
+    write_bytes(frame_path(directory, 7), data, size); /* one bit changed */
     other = realloc(other, other_size + 1);
-    overwrite(frame_path(directory, PICTURES - 1), other, other_size + 1); /* one byte appended */
+    write_bytes(frame_path(directory, PICTURES - 1), other, other_size + 1); /* one byte appended */
     assert_int_equal(unlink(frame_path(directory, 9)), 0);
     free(data);
     free(other);
@@ -312,7 +307,7 @@ TEST(every_cut_of_the_journal_is_survived) {
                            size - 1, size};
     for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
         assert_int_equal(unlink(manifest_of(options.directory)), i == 0 ? -1 : 0);
-        overwrite(journal, text, cuts[i]);
+        write_bytes(journal, text, cuts[i]);
         resume(options.directory, NULL);
     }
     free(text);
@@ -390,13 +385,13 @@ TEST(a_manifest_is_not_trusted) {
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         char *changed = replaced(text, changes[i][0], changes[i][1]);
         bool ours = strncmp(changed, text, 12) == 0;
-        overwrite(manifest_of(directory), changed, strlen(changed));
+        write_bytes(manifest_of(directory), changed, strlen(changed));
         free(changed);
         if (ours) assert_true(resume(directory, NULL) < PICTURES);
     }
     char *large = calloc(1, 1 << 20);
     memcpy(large, text, size);
-    overwrite(manifest_of(directory), large, 1 << 20);
+    write_bytes(manifest_of(directory), large, 1 << 20);
     assert_int_equal(resume(directory, NULL), 0);
     free(large);
     free(text);
@@ -409,7 +404,7 @@ TEST(files_that_are_not_manifests_stay) {
     RenderOptions options = options_for(copied("foreign"));
     for (int again = 0; again < 2; again++) {
         options.resume = again == 1;
-        overwrite(manifest_of(options.directory), foreign, sizeof foreign - 1);
+        write_bytes(manifest_of(options.directory), foreign, sizeof foreign - 1);
         assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error),
                        "foreign/manifest.json: error: is not a manifest of twinbox");
         size_t size;
@@ -424,7 +419,7 @@ TEST(files_that_are_not_manifests_stay) {
     assert_int_equal(mkfifo(manifest_of(options.directory), 0600), 0);
     assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(unlink(manifest_of(options.directory)), 0);
-    overwrite(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
+    write_bytes(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
     assert_int_equal(symlink("../elsewhere.json", manifest_of(options.directory)), 0);
     assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(count_files(options.directory, ".png"), PICTURES);

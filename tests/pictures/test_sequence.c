@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "pixels/built_contexts.h"
-#include "folders.h"
+#include "files.h"
 #include "mesa.h"
 #include "pictures/render.h"
 #include "runs.h"

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE /* RTLD_NEXT */
 #include "testing.h"
 
-#include "folders.h"
+#include "files.h"
 #include "mesa.h"
 #include "pictures/render.h"
 #include "runs.h"

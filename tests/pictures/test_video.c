@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "base/machine.h"
-#include "folders.h"
+#include "files.h"
 #include "mesa.h"
 #include "pictures/render.h"
 #include "runs.h"
@@ -154,11 +154,6 @@ TEST(any_file_name_works) {
     assert_int_equal(count_files(directory, ""), 4);
 }
 
-static void overwrite(const char *path, const char *data, size_t size) {
-    Error error = {0};
-    assert_ok(file_write_soon(path, data, size, &error), error);
-}
-
 TEST(a_damaged_frame_makes_no_video) {
     size_t size, other_size;
     const char *path = temporary_path("kept.mp4"), *frame = frame_path(folder, 4);
@@ -169,11 +164,11 @@ TEST(a_damaged_frame_makes_no_video) {
         static const char *const texts[] = {"cannot open", "unexpected end of file", "differ from those drawn",
                                             "frame 4 is 8x8, but the first is 96x64"};
         VideoOptions options = options_for(path);
-        overwrite(path, "old", 3);
+        write_bytes(path, "old", 3);
         error = (Error){0};
         if (i == 0) assert_int_equal(unlink(frame), 0);
-        if (i == 1) overwrite(frame, data, size - 20);
-        if (i == 2) overwrite(frame, other, other_size);
+        if (i == 1) write_bytes(frame, data, size - 20);
+        if (i == 2) write_bytes(frame, other, other_size);
         if (i == 3) assert_ok(image_write_png(small, frame, NULL, 0, &error), error);
         assert_refused(video_encode(&options, NULL, &error), texts[i]);
         size_t old_size;
@@ -182,7 +177,7 @@ TEST(a_damaged_frame_makes_no_video) {
         free(old);
         assert_nothing_left(temporary_folder);
     }
-    overwrite(frame, data, size);
+    write_bytes(frame, data, size);
     image_destroy(small);
     free(other);
     free(data);
@@ -195,7 +190,7 @@ static void pretend(const char *name, const char *script) {
     Error error = {0};
     assert_ok(file_make_directory(directory, &error), error);
     snprintf(path, sizeof path, "%s/%s", directory, name);
-    overwrite(path, script, strlen(script));
+    write_bytes(path, script, strlen(script));
     assert_int_equal(chmod(path, 0700), 0);
     snprintf(path, sizeof path, "%s:/usr/bin:/bin", directory);
     assert_int_equal(setenv("PATH", path, 1), 0);

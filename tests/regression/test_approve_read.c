@@ -1,19 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "base/file.h"
 #include "regression/internal.h"
 
 #define HEAD "{\"format\": \"twinbox compare 1\", \"expected\": \"old\", \"actual\": \"new\""
 #define FILE_1 "{\"name\": \"1.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
 #define FILE_0 "{\"name\": \"0.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
 
-static const char *store(const char *text) {
-    Error error = {0};
-    const char *path = temporary_path("results.json");
-    assert_ok(file_write(path, text, strlen(text), &error), error);
-    return path;
-}
+static const char *store(const char *text) { return write_bytes(temporary_path("results.json"), text, strlen(text)); }
 
 TEST(failures_are_read_in_any_order_of_members) {
     Error error = {0};

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "pictures/folders.h"
+#include "files.h"
 #include "runs/runs.h"
 
 static Scene *read_scene(const char *name, int frames) {
