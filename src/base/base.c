@@ -35,46 +35,26 @@ PRINTF_LIKE(2, 0) static void append(Error *error, const char *format, va_list a
 }
 
 PRINTF_LIKE(4, 0)
-static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
-    if (error->kind != ERROR_NONE) return false;
+static void set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
+    if (error->kind != ERROR_NONE) return;
     error->kind = kind;
     const size_t length = visible_text(error->message, WHERE_SIZE, where, VISIBLE_ONE_LINE);
     strcpy(error->message + length, ": error: ");
     append(error, format, arguments);
-    return false;
 }
 
-bool error_input(Error *error, const char *where, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(error, ERROR_INPUT, where, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
-bool error_system(Error *error, const char *where, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(error, ERROR_SYSTEM, where, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
-bool error_interrupted(Error *error, const char *where, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(error, ERROR_INTERRUPTED, where, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
-bool error_incomplete(Error *error, const char *where, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(error, ERROR_INCOMPLETE, where, format, arguments);
-    va_end(arguments);
-    return false;
-}
+#define SETTER(name, kind)                                                \
+    bool name(Error *error, const char *where, const char *format, ...) { \
+        va_list arguments;                                                \
+        va_start(arguments, format);                                      \
+        set(error, kind, where, format, arguments);                       \
+        va_end(arguments);                                                \
+        return false;                                                     \
+    }
+SETTER(error_input, ERROR_INPUT)
+SETTER(error_system, ERROR_SYSTEM)
+SETTER(error_interrupted, ERROR_INTERRUPTED)
+SETTER(error_incomplete, ERROR_INCOMPLETE)
 
 bool error_memory(Error *error, const char *where) { return error_system(error, where, "out of memory"); }
 

@@ -97,17 +97,15 @@ bool parallel_for(const ParallelWork *work, int count, const char *what, const P
                : false;
 }
 
-double clock_seconds(void) {
+static double read_clock(clockid_t clock) {
     struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
+    clock_gettime(clock, &time);
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-double clock_thread_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
+double clock_seconds(void) { return read_clock(CLOCK_MONOTONIC); }
+
+double clock_thread_seconds(void) { return read_clock(CLOCK_THREAD_CPUTIME_ID); }
 
 struct Background {
     pthread_t thread;

@@ -245,35 +245,28 @@ enum { FILE_FROM_END = 16 + 2, PIXELS_FROM_END = FILE_FROM_END + 16 + 17 };
 /* The start of every manifest. */
 static const char signature[] = "{\n  \"twinbox\": \"";
 
-static char *join(const char *directory, const char *name) {
-    size_t size = strlen(directory) + strlen(name) + 2;
-    char *path = malloc(size);
-    if (path != NULL) snprintf(path, size, "%s/%s", directory, name);
-    return path;
-}
-
 bool manifest_open(Manifest *manifest, const Picture *picture, const RenderOptions *options, const MomentPlan *plan,
                    int first, int last, Error *error) {
-    size_t size, count = (size_t)(last - first) + 1;
+    static const char name[] = "manifest.json", ending[] = ".part";
+    const size_t count = (size_t)(last - first) + 1, room = strlen(options->directory) + sizeof name + sizeof ending;
+    size_t size;
     *manifest =
         (Manifest){.picture = picture, .options = options, .plan = plan, .first = first, .last = last, .out = -1};
-    manifest->path = join(options->directory, "manifest.json");
-    manifest->journal = join(options->directory, "manifest.json.part");
+    manifest->hashes = calloc(1, count * (sizeof *manifest->hashes + sizeof *manifest->known) + 2 * room);
+    if (manifest->hashes == NULL) return error_memory(error, options->directory);
+    manifest->known = (bool *)(manifest->hashes + count);
+    manifest->path = (char *)(manifest->known + count);
+    manifest->journal = manifest->path + room;
+    snprintf(manifest->path, room, "%s/%s", options->directory, name);
+    snprintf(manifest->journal, room, "%s%s", manifest->path, ending);
     manifest->head = file_print(print_head, manifest, &size);
-    manifest->hashes = calloc(count, sizeof *manifest->hashes);
-    manifest->known = calloc(count, sizeof *manifest->known);
-    return (manifest->path != NULL && manifest->journal != NULL && manifest->head != NULL && manifest->hashes != NULL &&
-            manifest->known != NULL) ||
-           error_memory(error, options->directory);
+    return manifest->head != NULL || error_memory(error, options->directory);
 }
 
 void manifest_close(Manifest *manifest) {
     if (manifest->out >= 0) close(manifest->out);
-    free(manifest->path);
-    free(manifest->journal);
     free(manifest->head);
     free(manifest->hashes);
-    free(manifest->known);
 }
 
 /* The number after "frame_", or -1. */

@@ -44,10 +44,10 @@ typedef struct Manifest {
     const RenderOptions *options;
     const MomentPlan *plan;
     int first, last;       /* pictures, inclusive */
-    char *path, *journal;  /* paths of manifest.json and of its journal */
     char *head;            /* its text before the first picture */
-    PictureHashes *hashes; /* [last - first + 1] */
+    PictureHashes *hashes; /* [last - first + 1], and in the same block: */
     bool *known;           /* [last - first + 1], whether the hashes are set */
+    char *path, *journal;  /* paths of manifest.json and of its journal */
     bool valid;            /* manifest.json is of these pictures */
     int out;               /* the journal; -1: none */
 } Manifest;

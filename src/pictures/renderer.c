@@ -50,17 +50,12 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) 
     add(texts, "Software", "twinbox");
 }
 
-/* A picture, a context and a canvas. */
-struct Renderer {
-    Picture picture;
-    bool owns_picture;
+/* A context and what is drawn in it. */
+typedef struct Painter {
     Context context;
     GlFunctions gl;
     Canvas *canvas;
-    Drawing drawing, before; /* of this frame and of the previous one */
-    bool in_sync;            /* the canvas and the caller's image show `drawing` */
-    bool *changed;           /* [height] */
-};
+} Painter;
 
 static void trace(const Context *context) {
     enum { RENDERER = 0x1F01 /* GL_RENDERER */ };
@@ -71,15 +66,35 @@ static void trace(const Context *context) {
     trace_line("OpenGL by %s: %s", context->kind->name, name != NULL ? (const char *)name : "no name");
 }
 
+/* painter_close() also after a failure. */
+static bool painter_open(Painter *painter, ContextChoice choice, int width, int height, bool traced, Error *error) {
+    Context *context = &painter->context;
+    if (!context_create(context, choice, error) || !gl_load(&painter->gl, context->kind->find, context->state, error))
+        return false;
+    if (traced) trace(context);
+    painter->canvas = canvas_create(&painter->gl, width, height, error);
+    return painter->canvas != NULL;
+}
+
+static void painter_close(Painter *painter) {
+    if (painter->canvas != NULL && context_make_current(&painter->context, &(Error){0}))
+        canvas_destroy(painter->canvas);
+    if (painter->context.kind != NULL) context_destroy(&painter->context);
+}
+
+struct Renderer {
+    Picture picture;
+    bool owns_picture;
+    Painter painter;
+    Drawing drawing, before; /* of this frame and of the previous one */
+    bool in_sync;            /* the canvas and the caller's image show `drawing` */
+    bool *changed;           /* [height] */
+};
+
 static bool set_up(Renderer *renderer, const RenderOptions *options, Error *error) {
     renderer->changed = calloc((size_t)options->height, sizeof *renderer->changed);
     if (renderer->changed == NULL) return error_memory(error, "render");
-    if (!context_create(&renderer->context, options->context, error)) return false;
-    const Context *context = &renderer->context;
-    if (!gl_load(&renderer->gl, context->kind->find, context->state, error)) return false;
-    trace(context);
-    renderer->canvas = canvas_create(&renderer->gl, options->width, options->height, error);
-    return renderer->canvas != NULL;
+    return painter_open(&renderer->painter, options->context, options->width, options->height, true, error);
 }
 
 Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error) {
@@ -109,8 +124,9 @@ Renderer *renderer_create(const Trajectory *const *panels, int panel_count, cons
 
 /* `changed` NULL: paint everything. */
 static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
-    return context_make_current(&renderer->context, error) &&
-           canvas_paint(renderer->canvas, &renderer->drawing, renderer->picture.theme->page, changed, image, error);
+    return context_make_current(&renderer->painter.context, error) &&
+           canvas_paint(renderer->painter.canvas, &renderer->drawing, renderer->picture.theme->page, changed, image,
+                        error);
 }
 
 static bool compose(Renderer *renderer, Moment moment, Error *error) {
@@ -144,10 +160,7 @@ bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const b
 
 void renderer_destroy(Renderer *renderer) {
     if (renderer == NULL) return;
-    Error ignored = {0};
-    if (renderer->canvas != NULL && context_make_current(&renderer->context, &ignored))
-        canvas_destroy(renderer->canvas);
-    if (renderer->context.kind != NULL) context_destroy(&renderer->context);
+    painter_close(&renderer->painter);
     drawing_free(&renderer->drawing);
     drawing_free(&renderer->before);
     free(renderer->changed);
@@ -158,9 +171,7 @@ void renderer_destroy(Renderer *renderer) {
 /* Bodies on a transparent background. Frames are opaque: drawing on black and on white gives alpha from the difference. */
 
 struct Still {
-    Context context;
-    GlFunctions gl;
-    Canvas *canvas;
+    Painter painter;
     Drawing drawing;
     Image *on_white;
 };
@@ -169,12 +180,8 @@ static bool still_set_up(Still *still, int width, int height, Error *error) {
     if (width < 1 || height < 1 || width > RENDER_SIDE_MAX || height > RENDER_SIDE_MAX)
         return error_input(error, "render", "each side of the picture must be 1 to %d pixels (got %d x %d)",
                            RENDER_SIDE_MAX, width, height);
-    if ((still->on_white = image_create(width, height, error)) == NULL ||
-        !context_create(&still->context, CONTEXT_AUTO, error) ||
-        !gl_load(&still->gl, still->context.kind->find, still->context.state, error))
-        return false;
-    still->canvas = canvas_create(&still->gl, width, height, error);
-    return still->canvas != NULL;
+    return (still->on_white = image_create(width, height, error)) != NULL &&
+           painter_open(&still->painter, CONTEXT_AUTO, width, height, false, error);
 }
 
 Still *still_create(int width, int height, Error *error) {
@@ -190,8 +197,7 @@ Still *still_create(int width, int height, Error *error) {
 
 void still_destroy(Still *still) {
     if (still == NULL) return;
-    if (still->canvas != NULL && context_make_current(&still->context, &(Error){0})) canvas_destroy(still->canvas);
-    if (still->context.kind != NULL) context_destroy(&still->context);
+    painter_close(&still->painter);
     drawing_free(&still->drawing);
     image_destroy(still->on_white);
     free(still);
@@ -230,9 +236,9 @@ bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error)
     Drawing *drawing = &still->drawing;
     drawing_clear(drawing);
     draw_bodies(&picture, shot, drawing);
-    if (!context_make_current(&still->context, error) ||
-        !canvas_paint(still->canvas, drawing, 0x000000, NULL, image, error) ||
-        !canvas_paint(still->canvas, drawing, 0xFFFFFF, NULL, still->on_white, error))
+    if (!context_make_current(&still->painter.context, error) ||
+        !canvas_paint(still->painter.canvas, drawing, 0x000000, NULL, image, error) ||
+        !canvas_paint(still->painter.canvas, drawing, 0xFFFFFF, NULL, still->on_white, error))
         return false;
     for (size_t i = 0; i < 4 * (size_t)image->width * (size_t)image->height; i += 4)
         take_alpha(image->pixels + i, still->on_white->pixels + i);

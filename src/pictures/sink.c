@@ -17,9 +17,9 @@ static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 typedef struct PngSink {
     const char *directory;
     PngEncoder *encoder;
-    char *path; /* buffer for any frame's path */
-    size_t path_size;
     int first, end; /* frames first <= index < end were written here; others in the folder are older */
+    size_t path_size;
+    char path[]; /* [path_size], for any frame's path */
 } PngSink;
 
 void sink_frame_name(char name[SINK_NAME_SIZE], int index) { snprintf(name, SINK_NAME_SIZE, "frame_%06d.png", index); }
@@ -74,23 +74,18 @@ static bool close_png(void *context, Error *error) {
     }
     ok = ok && (sink->end == 0 || file_sync(sink->directory, error));
     png_encoder_destroy(sink->encoder);
-    free(sink->path);
     free(sink);
     return ok;
 }
 
 bool sink_open_png(FrameSink *sink, const char *directory, int width, int height, PngEffort effort, Error *error) {
     size_t path_size = strlen(directory) + 1 + SINK_NAME_SIZE;
-    PngSink *png = calloc(1, sizeof *png);
-    char *path = malloc(path_size);
-    PngEncoder *encoder = png_encoder_create(width, height, effort, error);
-    if (png != NULL && path != NULL && encoder != NULL) {
-        *png = (PngSink){.directory = directory, .encoder = encoder, .path = path, .path_size = path_size};
-        *sink = (FrameSink){write_png, close_png, png};
-        return true;
-    }
-    png_encoder_destroy(encoder);
-    free(path);
+    PngSink *png = calloc(1, sizeof *png + path_size);
+    if (png == NULL) return error_memory(error, directory);
+    *png = (PngSink){.directory = directory, .path_size = path_size};
+    png->encoder = png_encoder_create(width, height, effort, error);
+    *sink = (FrameSink){write_png, close_png, png};
+    if (png->encoder != NULL) return true;
     free(png);
-    return error_memory(error, directory);
+    return false;
 }

@@ -140,17 +140,14 @@ Font font_pick(FontFace face, double pixels) {
     return font;
 }
 
+static int compare_code(const void *code, const void *glyph) {
+    const unsigned wanted = *(const unsigned *)code, found = ((const FontGlyph *)glyph)->code;
+    return (wanted > found) - (wanted < found);
+}
+
 /* NULL if the atlas lacks the character. */
 static const FontGlyph *find_in_atlas(const Font *font, unsigned code) {
-    int low = 0, high = FONT_GLYPHS;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (font->glyphs[middle].code < code)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < FONT_GLYPHS && font->glyphs[low].code == code ? &font->glyphs[low] : NULL;
+    return bsearch(&code, font->glyphs, FONT_GLYPHS, sizeof *font->glyphs, compare_code);
 }
 
 /* The next character of a text. `outline` is NULL if the bitmap is in the atlas. */

@@ -140,11 +140,11 @@ enum { IHDR_SIZE = 13, DEPTH = 8 };
 
 struct IndexedPng {
     int width;
-    uint8_t *row; /* [1 + width]: PNG's mark of an unfiltered row, 0, and the pixels */
     z_stream stream;
     uint8_t *file;
     size_t size, capacity;
     uint8_t part[IDAT_PART]; /* of the compressed pixels */
+    uint8_t row[];           /* [1 + width]: PNG's mark of an unfiltered row, 0, and the pixels */
 };
 
 static void put_number(uint8_t *to, uint32_t value) {
@@ -177,15 +177,13 @@ static bool put_start(IndexedPng *png, int height, const Palette *palette, Error
 
 IndexedPng *indexed_png_create(int width, int height, const Palette *palette, Error *error) {
     enum { LEVEL = 3 }; /* from 4 on, time doubles for a tenth of the bytes */
-    IndexedPng *png = calloc(1, sizeof *png);
-    uint8_t *row = calloc((size_t)width + 1, 1);
-    if (png == NULL || row == NULL || deflateInit(&png->stream, LEVEL) != Z_OK) {
+    IndexedPng *png = calloc(1, sizeof *png + (size_t)width + 1);
+    if (png == NULL || deflateInit(&png->stream, LEVEL) != Z_OK) {
         free(png);
-        free(row);
         error_memory(error, "image");
         return NULL;
     }
-    png->width = width, png->row = row;
+    png->width = width;
     png->stream.next_out = png->part, png->stream.avail_out = IDAT_PART;
     if (put_start(png, height, palette, error)) return png;
     indexed_png_destroy(png);
@@ -195,7 +193,6 @@ IndexedPng *indexed_png_create(int width, int height, const Palette *palette, Er
 void indexed_png_destroy(IndexedPng *png) {
     if (png == NULL) return;
     deflateEnd(&png->stream);
-    free(png->row);
     free(png->file);
     free(png);
 }

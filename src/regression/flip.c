@@ -205,8 +205,8 @@ struct FlipTile {
     float *planes[2][PLANES];
     uint8_t *row;        /* RGBA */
     unsigned char clear; /* not 0 if a loaded pixel is not opaque */
-    float *memory;
     Converted converted[CONVERTED];
+    float memory[]; /* of all the arrays */
 };
 
 static void make_model(FlipModel *model, double pixels_per_degree) {
@@ -219,17 +219,16 @@ static void make_model(FlipModel *model, double pixels_per_degree) {
 }
 
 static FlipTile *tile_create(const FlipModel *model, Error *error) {
-    FlipTile *tile = calloc(1, sizeof *tile);
     size_t stride = FLIP_TILE_WIDTH + 2 * (size_t)model->reach, tall = FLIP_TILE_HEIGHT + 2 * (size_t)model->reach;
     size_t large = stride * tall, small = stride * FLIP_TILE_HEIGHT;
     enum { LARGE = FLIP_CHANNELS + 1, SMALL = 1 + 2 * PLANES };
-    float *next = tile == NULL ? NULL : malloc((LARGE * large + SMALL * small) * sizeof *next + 4 * stride);
-    if (next == NULL) {
-        free(tile);
+    FlipTile *tile = malloc(sizeof *tile + (LARGE * large + SMALL * small) * sizeof *tile->memory + 4 * stride);
+    if (tile == NULL) {
         error_memory(error, "FLIP");
         return NULL;
     }
-    tile->model = model, tile->stride = stride, tile->memory = next;
+    float *next = tile->memory;
+    tile->model = model, tile->stride = stride, tile->clear = 0;
     for (int i = 0; i < CONVERTED; i++) tile->converted[i].from.x = NAN; /* equals no colour */
     for (int c = 0; c < FLIP_CHANNELS; c++, next += large) tile->channels[c] = next;
     tile->along = next, next += large;
@@ -237,11 +236,6 @@ static FlipTile *tile_create(const FlipModel *model, Error *error) {
     for (int i = 0; i < 2 * PLANES; i++, next += small) tile->planes[i / PLANES][i % PLANES] = next;
     tile->row = (uint8_t *)next;
     return tile;
-}
-
-static void tile_destroy(FlipTile *tile) {
-    if (tile != NULL) free(tile->memory);
-    free(tile);
 }
 
 /* The area in blocks of the filters, and around it what they reach. */
@@ -468,7 +462,7 @@ static bool create(Flip *flip, const Image *expected, const Image *actual, doubl
 
 static void destroy(Flip *flip) {
     largest_free(&flip->largest);
-    tile_destroy(flip->tile);
+    free(flip->tile);
     free(flip->values);
 }
 
