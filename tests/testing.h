@@ -16,30 +16,23 @@
 #include <string.h>
 #include <unistd.h>
 
-/* TEST(law) { ... } is a test; `state` is cmocka's. RUN_TESTS(begin, end) at the end of a file runs all of the file, between
-   calls of two functions or NULL; RUN_TESTS_EACH calls the two around each test. */
+/* TEST(law) { ... } is a test, in the order of the file; `state` is cmocka's. TEST_WITH() has what cmocka calls before and
+   after it. RUN_TESTS(before, after) ends the file: the two, or NULL, are called once, before and after all. */
 enum { TESTS_MAX = 64 }; /* of a file */
-
 static struct CMUnitTest tests_of_file[TESTS_MAX] __attribute__((unused));
 static size_t test_count __attribute__((unused));
 
-#define TEST(law)                                                               \
-    static void law(void **state);                                              \
-    __attribute__((constructor)) static void add_##law(void) {                  \
-        if (test_count == TESTS_MAX) abort();                                   \
-        tests_of_file[test_count++] = (struct CMUnitTest)cmocka_unit_test(law); \
-    }                                                                           \
+#define TEST(law) TEST_WITH(law, NULL, NULL)
+#define TEST_WITH(law, before, after)                                                         \
+    static void law(void **state);                                                            \
+    __attribute__((constructor)) static void add_##law(void) {                                \
+        if (test_count == TESTS_MAX) abort();                                                 \
+        tests_of_file[test_count++] = (struct CMUnitTest){#law, law, (before), (after), NULL}; \
+    }                                                                                         \
     static void law(__attribute__((unused)) void **state)
 
-#define RUN_TESTS(begin, end) \
-    int main(void) { return _cmocka_run_group_tests("tests", tests_of_file, test_count, begin, end); }
-
-#define RUN_TESTS_EACH(begin, end)                                                         \
-    int main(void) {                                                                       \
-        for (size_t i = 0; i < test_count; i++)                                            \
-            tests_of_file[i].setup_func = (begin), tests_of_file[i].teardown_func = (end); \
-        return _cmocka_run_group_tests("tests", tests_of_file, test_count, NULL, NULL);    \
-    }
+#define RUN_TESTS(before, after) \
+    int main(void) { return _cmocka_run_group_tests("tests", tests_of_file, test_count, before, after); }
 
 /* Fails with the error's own words where `condition` is false. */
 #define assert_ok(condition, error)                        \

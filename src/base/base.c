@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What every file may need, in the order of base.h; settings and numbers from text are in parse.c. */
 #include "base/base.h"
 
 #include <errno.h>
@@ -10,46 +11,91 @@
 #include <stdlib.h>
 #include <string.h>
 
-size_t utf8_decode(const char *text, size_t size, uint32_t *character) {
-    static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
-    if (size == 0) return 0;
-    unsigned char lead = (unsigned char)text[0];
-    size_t length = lead < 0x80 ? 1 : lead < 0xc0 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf8 ? 4 : 0;
-    if (length == 0 || length > size) return 0;
-    uint32_t c = length == 1 ? lead : lead & (0x7fu >> length);
-    for (size_t i = 1; i < length; i++) {
-        if (((unsigned char)text[i] & 0xc0) != 0x80) return 0;
-        c = c << 6 | ((unsigned char)text[i] & 0x3fu);
+#undef error_input
+#undef error_incomplete
+#undef error_system
+#undef error_interrupted
+#undef error_memory
+
+/* Messages contain text of others: names of files, keys, values. Here, in one place, it is made visible. */
+
+/* A path can be longer than a message: what is wrong must still be in it. */
+enum { WHERE_SIZE = 1024, RAW_SIZE = 8192 };
+
+/* Only a format with lines (an excerpt of a file, the output of a program) gets lines from its arguments: a name must not
+   look like a message of its own. */
+PRINTF_LIKE(2, 0) static void append(Error *error, const char *format, va_list arguments) {
+    char raw[RAW_SIZE];
+    const size_t used = strlen(error->message), room = sizeof error->message - used;
+    if (room <= 16) return; /* what visible_text() needs */
+    vsnprintf(raw, sizeof raw, format, arguments);
+    for (size_t end = strlen(raw); end > 0 && (raw[end - 1] == '\n' || raw[end - 1] == '\r'); end--)
+        raw[end - 1] = '\0';
+    visible_text(error->message + used, room, raw, strchr(format, '\n') != NULL ? VISIBLE_LINES : VISIBLE_ONE_LINE);
+}
+
+PRINTF_LIKE(4, 0)
+static void set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
+    if (error->kind != ERROR_NONE) return;
+    error->kind = kind;
+    const size_t length = visible_text(error->message, WHERE_SIZE, where, VISIBLE_ONE_LINE);
+    strcpy(error->message + length, ": error: ");
+    append(error, format, arguments);
+}
+
+#define SETTER(name, kind)                                                \
+    bool name(Error *error, const char *where, const char *format, ...) { \
+        va_list arguments;                                                \
+        va_start(arguments, format);                                      \
+        set(error, kind, where, format, arguments);                       \
+        va_end(arguments);                                                \
+        return false;                                                     \
     }
-    if (c < smallest[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff)) return 0;
-    *character = c;
-    return length;
+SETTER(error_input, ERROR_INPUT)
+SETTER(error_system, ERROR_SYSTEM)
+SETTER(error_interrupted, ERROR_INTERRUPTED)
+SETTER(error_incomplete, ERROR_INCOMPLETE)
+
+bool error_memory(Error *error, const char *where) { return error_system(error, where, "out of memory"); }
+
+void error_add(Error *error, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    append(error, format, arguments);
+    va_end(arguments);
 }
 
-uint32_t utf8_next(const char **text) {
-    uint32_t character;
-    size_t length = utf8_decode(*text, strnlen(*text, 4), &character);
-    *text += length > 0 ? length : 1;
-    return length > 0 ? character : 0xfffd;
+bool cause_is_system(int cause) {
+    static const int causes[] = {ENOMEM, EMFILE, ENFILE, EIO, EAGAIN, EINTR, ENOBUFS, ESTALE, ETIMEDOUT};
+    for (size_t i = 0; i < sizeof causes / sizeof *causes; i++)
+        if (cause == causes[i]) return true;
+    return false;
 }
 
-size_t utf8_cut(const char *text, size_t limit) {
-    const char *end = text;
-    for (const char *next = text; *next != '\0'; end = next) {
-        utf8_next(&next);
-        if ((size_t)(next - text) > limit) break;
-    }
-    return (size_t)(end - text);
+bool cause_error(int cause, const char *path, Error *error) {
+    return cause == ENOMEM ? error_memory(error, path) : error_system(error, path, "cannot read: %s", strerror(cause));
 }
 
-size_t utf8_encode(char *out, uint32_t character) {
-    static const uint32_t above[] = {0x80, 0x800, 0x10000};
-    static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};
-    size_t length = 1;
-    while (length < 4 && character >= above[length - 1]) length++;
-    for (size_t i = length; i-- > 1; character >>= 6) out[i] = (char)(0x80 | (character & 0x3f));
-    out[0] = (char)(leads[length - 1] | character);
-    return length;
+static TraceListener *heard_by;
+
+void trace_listen(TraceListener *listener) { heard_by = listener; }
+
+void trace_line(const char *format, ...) {
+    char line[1001];
+    va_list arguments;
+    if (heard_by == NULL) return;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    heard_by(line);
+}
+
+void text_add(char *text, size_t size, const char *format, ...) {
+    size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
 }
 
 /* A character as it is shown. */
@@ -59,14 +105,6 @@ typedef struct Shown {
 } Shown;
 
 static bool is_control(uint32_t c) { return c < 0x20 || (c >= 0x7f && c < 0xa0); }
-
-unsigned control_in_text(const char *text) {
-    while (*text != '\0') {
-        const uint32_t c = utf8_next(&text);
-        if (is_control(c)) return c;
-    }
-    return 0;
-}
 
 /* C1 controls, direction marks, ends of lines and paragraphs, and directional overrides (Unicode 15, chapter 23). */
 static bool is_obeyed(uint32_t c) {
@@ -123,115 +161,12 @@ size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines
     return length;
 }
 
-/* Messages contain text of others: names of files, keys, values. Here, in one place, it is made visible. */
-
-#undef error_input
-#undef error_incomplete
-#undef error_system
-#undef error_interrupted
-#undef error_memory
-
-/* A path can be longer than a message: what is wrong must still be in it. */
-enum { WHERE_SIZE = 1024, RAW_SIZE = 8192 };
-
-static void append(Error *error, const char *format, va_list arguments) PRINTF_LIKE(2, 0);
-
-/* Only a format with lines (an excerpt of a file, the output of a program) gets lines from its arguments: a name must not
-   look like a message of its own. */
-static void append(Error *error, const char *format, va_list arguments) {
-    char raw[RAW_SIZE];
-    const size_t used = strlen(error->message), room = sizeof error->message - used;
-    if (room <= 16) return; /* what visible_text() needs */
-    vsnprintf(raw, sizeof raw, format, arguments);
-    for (size_t end = strlen(raw); end > 0 && (raw[end - 1] == '\n' || raw[end - 1] == '\r'); end--)
-        raw[end - 1] = '\0';
-    visible_text(error->message + used, room, raw, strchr(format, '\n') != NULL ? VISIBLE_LINES : VISIBLE_ONE_LINE);
-}
-
-static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments)
-    PRINTF_LIKE(4, 0);
-
-static bool set(Error *error, ErrorKind kind, const char *where, const char *format, va_list arguments) {
-    if (error->kind != ERROR_NONE) return false;
-    error->kind = kind;
-    const size_t length = visible_text(error->message, WHERE_SIZE, where, VISIBLE_ONE_LINE);
-    strcpy(error->message + length, ": error: ");
-    append(error, format, arguments);
-    return false;
-}
-
-bool error_input(Error *error, const char *where, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(error, ERROR_INPUT, where, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
-bool error_system(Error *error, const char *where, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(error, ERROR_SYSTEM, where, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
-bool error_interrupted(Error *error, const char *where, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(error, ERROR_INTERRUPTED, where, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
-bool error_incomplete(Error *error, const char *where, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(error, ERROR_INCOMPLETE, where, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
-bool error_memory(Error *error, const char *where) { return error_system(error, where, "out of memory"); }
-
-void error_add(Error *error, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    append(error, format, arguments);
-    va_end(arguments);
-}
-
-bool cause_is_system(int cause) {
-    static const int causes[] = {ENOMEM, EMFILE, ENFILE, EIO, EAGAIN, EINTR, ENOBUFS, ESTALE, ETIMEDOUT};
-    for (size_t i = 0; i < sizeof causes / sizeof *causes; i++)
-        if (cause == causes[i]) return true;
-    return false;
-}
-
-bool cause_error(int cause, const char *path, Error *error) {
-    return cause == ENOMEM ? error_memory(error, path) : error_system(error, path, "cannot read: %s", strerror(cause));
-}
-
-static TraceListener *heard_by;
-
-void trace_listen(TraceListener *listener) { heard_by = listener; }
-
-void trace_line(const char *format, ...) {
-    char line[1001];
-    va_list arguments;
-    if (heard_by == NULL) return;
-    va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    heard_by(line);
-}
-
-void text_add(char *text, size_t size, const char *format, ...) {
-    size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, size - used, format, arguments);
-    va_end(arguments);
+unsigned control_in_text(const char *text) {
+    while (*text != '\0') {
+        const uint32_t c = utf8_next(&text);
+        if (is_control(c)) return c;
+    }
+    return 0;
 }
 
 enum { WORD_SIZE = 32 };
@@ -303,6 +238,48 @@ bool error_unknown(Error *error, const char *where, const char *name, const char
         return error_input(error, where, "'%.64s' is not %s; did you mean '%s'?", name, what, nearest);
     return error_input(error, where, "'%.64s' is not %s; known: %s", name, what,
                        known->used > 0 ? known->text : "none");
+}
+
+size_t utf8_decode(const char *text, size_t size, uint32_t *character) {
+    static const uint32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
+    if (size == 0) return 0;
+    unsigned char lead = (unsigned char)text[0];
+    size_t length = lead < 0x80 ? 1 : lead < 0xc0 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf8 ? 4 : 0;
+    if (length == 0 || length > size) return 0;
+    uint32_t c = length == 1 ? lead : lead & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if (((unsigned char)text[i] & 0xc0) != 0x80) return 0;
+        c = c << 6 | ((unsigned char)text[i] & 0x3fu);
+    }
+    if (c < smallest[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff)) return 0;
+    *character = c;
+    return length;
+}
+
+uint32_t utf8_next(const char **text) {
+    uint32_t character;
+    size_t length = utf8_decode(*text, strnlen(*text, 4), &character);
+    *text += length > 0 ? length : 1;
+    return length > 0 ? character : 0xfffd;
+}
+
+size_t utf8_cut(const char *text, size_t limit) {
+    const char *end = text;
+    for (const char *next = text; *next != '\0'; end = next) {
+        utf8_next(&next);
+        if ((size_t)(next - text) > limit) break;
+    }
+    return (size_t)(end - text);
+}
+
+size_t utf8_encode(char *out, uint32_t character) {
+    static const uint32_t above[] = {0x80, 0x800, 0x10000};
+    static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};
+    size_t length = 1;
+    while (length < 4 && character >= above[length - 1]) length++;
+    for (size_t i = length; i-- > 1; character >>= 6) out[i] = (char)(0x80 | (character & 0x3f));
+    out[0] = (char)(leads[length - 1] | character);
+    return length;
 }
 
 bool array_grow(void **items, size_t *capacity, size_t wanted, size_t item_size) {

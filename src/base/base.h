@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What every file may need: errors, text, arrays, hashes, numbers and settings from text. No files, no threads. */
+/* What every file may need: errors, text, arrays, numbers and settings from text. No files, no threads. */
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -59,6 +59,27 @@ static inline bool error_false(bool set) {
 #define error_memory(...) error_false(error_memory(__VA_ARGS__))
 #endif
 
+/* Libraries that read a file report a lack of memory or of descriptors as damage of the file. What they leave in errno
+   tells the truth, if it was 0 before. */
+
+/* Whether this errno says that the machine failed (memory, descriptors, disk), not the file. */
+bool cause_is_system(int cause);
+
+/* Sets a system error: "path: error: out of memory", "path: error: cannot read: Input/output error". Returns false. */
+bool cause_error(int cause, const char *path, Error *error);
+
+/* What a program does on its way to a result: files read and written, programs started, the OpenGL context. The library
+   never prints: cli/ listens if the user wants to know (-v). */
+
+/* Gets one line without its end; called from several threads at once, and in forked processes. */
+typedef void TraceListener(const char *line);
+
+/* Call it before threads begin; NULL ends it, which is the start, too. */
+void trace_listen(TraceListener *listener);
+
+/* Does nothing unless somebody listens. What is longer than 1,000 bytes is cut. */
+void trace_line(const char *format, ...) PRINTF_LIKE(1, 2);
+
 /* Text that grows in a fixed array. */
 
 /* Appends as printf does; what does not fit is cut off. */
@@ -79,14 +100,12 @@ size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines
 /* The first control character in the text (C0, DEL, C1 of Unicode, which includes ends of lines); 0 without one. */
 unsigned control_in_text(const char *text);
 
-/* Suggestions for mistyped words. Own code: no library in use has an edit distance. */
+/* Suggestions for mistyped words, and lists of names. Own code: no library in use has an edit distance. */
 
 /* The nearest of the words by edit distance, or NULL if none is near. Words of more than 31 bytes are never near. */
 const char *nearest_word(const char *word, const char *const *words, int count);
 
-/* Lists of names for messages. */
-
-/* "a, b, c"; begin with {0}. */
+/* "a, b, c", for messages; begin with {0}. */
 typedef struct NameList {
     size_t used;
     char text[1536];
@@ -98,6 +117,8 @@ void name_list_add(NameList *list, const char *name);
 /* The error for a name that a table lacks: "'fo' is not a method; did you mean 'foo'?" or, if no known name is near,
    "'x' is not a method; known: foo, bar", where `what` is "a method". */
 bool error_unknown(Error *error, const char *where, const char *name, const char *what, const NameList *known);
+
+/* UTF-8. */
 
 /* The character that text of `size` bytes begins with (Unicode 15, table 3-7): its length in bytes, or 0 if it is not
    well-formed. */
@@ -224,27 +245,6 @@ bool settings_read(const Settings *settings, const SettingSpec *known, void *val
    message when memory is short. */
 void *settings_make(const Settings *settings, const SettingSpec *known, const void *standard, size_t size,
                     const char *what, Error *error);
-
-/* Libraries that read a file report a lack of memory or of descriptors as damage of the file. What they leave in errno
-   tells the truth, if it was 0 before. */
-
-/* Whether this errno says that the machine failed (memory, descriptors, disk), not the file. */
-bool cause_is_system(int cause);
-
-/* Sets a system error: "path: error: out of memory", "path: error: cannot read: Input/output error". Returns false. */
-bool cause_error(int cause, const char *path, Error *error);
-
-/* What a program does on its way to a result: files read and written, programs started, the OpenGL context. The library
-   never prints: cli/ listens if the user wants to know (-v). */
-
-/* Gets one line without its end; called from several threads at once, and in forked processes. */
-typedef void TraceListener(const char *line);
-
-/* Call it before threads begin; NULL ends it, which is the start, too. */
-void trace_listen(TraceListener *listener);
-
-/* Does nothing unless somebody listens. What is longer than 1,000 bytes is cut. */
-void trace_line(const char *format, ...) PRINTF_LIKE(1, 2);
 
 /* Numbers from text, for scene files and options. The whole text must be a number: no locale, no surrounding space, no
    NaN, no infinity. */

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* CSV files (RFC 4180): a header line, then rows with the same number of fields. Fields are separated by commas. A field
-   in double quotes may contain commas and doubled quotes. Typed rows: base/csv.h. */
+/* CSV files (RFC 4180), as lines of fields (Csv) and as rows of structs (CsvTable). */
 #pragma once
 #include "base/base.h"
 
 #include <stddef.h>
 #include <stdio.h>
+
+/* A header line, then rows with the same number of fields. Fields are separated by commas. A field in double quotes may
+   contain commas and doubled quotes. */
 
 typedef struct CsvField {
     const char *text; /* without its quotes */
@@ -40,7 +42,7 @@ CsvShown csv_show(const char *text);
 /* Writes a field, in quotes if it needs them or `quoted` is set. */
 void csv_put(FILE *file, const char *text, bool quoted);
 
-/* Rows of structs, read from and written to CSV files (base/csv.h). The module that writes a file declares its layout
+/* Rows of structs, read from and written to CSV files. The module that writes a file declares its layout
    once, as a constant beside the row's struct; writers and readers share it:
 
      typedef struct RateRow {
@@ -143,15 +145,3 @@ int csv_word(const char *const *words, const char *word);
 /* Bytes of the text's first character if it is a letter, a digit, the space, one of -_.,:=+/()*[] or not in ASCII: what
    names consist of. Otherwise, or if it is not UTF-8, 0. */
 size_t csv_plain_length(const char *text);
-
-/* Part of csv_table: one field of a row. */
-
-typedef struct CsvCell {
-    const Csv *csv;
-    int row, field; /* of csv */
-    const CsvColumn *column;
-} CsvCell;
-
-/* Reads the field into its member of the row's struct. False with an error at the field if it is not of its column's kind
-   or range. */
-bool csv_cell_read(const CsvCell *cell, void *row, Error *error);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rows of structs and the lines of CSV files that hold them. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -102,13 +103,6 @@ bool csv_table_write(const char *path, const CsvLayout *layout, const void *rows
 /* Far more than any row of numbers and names takes. */
 enum { ROW_MAX_SIZE = 1200 };
 
-/* A file that is being read. */
-typedef struct Reading {
-    CsvTable *table;
-    const CsvLayout *layout;
-    Error *error;
-} Reading;
-
 size_t csv_plain_length(const char *text) {
     static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:=+/()*[]";
     enum { AFTER_CONTROLS = 0xA1 };
@@ -123,9 +117,100 @@ int csv_word(const char *const *words, const char *word) {
     return words[i] != NULL ? i : -1;
 }
 
+/* A field of a row that is being read. */
+typedef struct CsvCell {
+    const Csv *csv;
+    int row, field; /* of csv */
+    const CsvColumn *column;
+} CsvCell;
+
+static const char *cell_text(const CsvCell *cell) { return csv_text(cell->csv, cell->row, cell->field); }
+
+/* "NAME: 'FIELD' what". */
+static bool refuse_cell(const CsvCell *cell, Error *error, const char *what) {
+    const char *text = cell_text(cell), *name = cell->column->name;
+    if (text[0] == '\0') return csv_error(cell->csv, cell->row, cell->field, error, "%s: the field is empty", name);
+    return csv_error(cell->csv, cell->row, cell->field, error, "%s: '%s' %s", name, csv_show(text).text, what);
+}
+
+static bool read_text(const CsvCell *cell, const char **member, Error *error) {
+    const char *text = cell_text(cell);
+    const bool name = cell->column->kind == CSV_NAME;
+    const size_t most = name ? CSV_NAME_SIZE - 1 : (size_t)cell->column->maximum;
+    char what[64];
+    snprintf(what, sizeof what, "is longer than %zu bytes", most);
+    if (strlen(text) > most) return refuse_cell(cell, error, what);
+    for (const char *c = text; name && *c != '\0'; c += csv_plain_length(c))
+        if (csv_plain_length(c) == 0)
+            return refuse_cell(cell, error, "may only have letters, digits, spaces and -_.,:=+/()*[]");
+    *member = text;
+    return true;
+}
+
+static bool read_word(const CsvCell *cell, int *member, Error *error) {
+    const char *const *words = cell->column->words;
+    NameList known = {0};
+    char what[256];
+    *member = csv_word(words, cell_text(cell));
+    if (*member >= 0) return true;
+    for (int i = 0; words[i] != NULL; i++) name_list_add(&known, words[i]);
+    snprintf(what, sizeof what, "is not one of %.200s", known.text);
+    return refuse_cell(cell, error, what);
+}
+
+static bool is_in_range(const CsvCell *cell, double value, Error *error) {
+    const double minimum = cell->column->minimum, maximum = cell->column->maximum;
+    char what[64];
+    if (value >= minimum && value <= maximum) return true;
+    snprintf(what, sizeof what, "is %s than %g", value < minimum ? "less" : "greater",
+             value < minimum ? minimum : maximum);
+    return refuse_cell(cell, error, what);
+}
+
+static bool read_integer(const CsvCell *cell, int *member, Error *error) {
+    int64_t value;
+    if (!parse_int(cell_text(cell), INT64_MIN, INT64_MAX, &value))
+        return refuse_cell(cell, error, "is not a whole number");
+    *member = (int)value;
+    return is_in_range(cell, (double)value, error);
+}
+
+static bool read_float(const CsvCell *cell, float *member, Error *error) {
+    return parse_float(cell_text(cell), member) ? is_in_range(cell, (double)*member, error)
+                                                : refuse_cell(cell, error, "is not a number");
+}
+
+static bool read_number(const CsvCell *cell, double *member, Error *error) {
+    const char *text = cell_text(cell);
+    *member = NAN;
+    if (text[0] == '\0' && cell->column->kind == CSV_OPTIONAL) return true;
+    return parse_double(text, member) ? is_in_range(cell, *member, error) : refuse_cell(cell, error, "is not a number");
+}
+
+/* Reads the field into its member of the row's struct. False with an error at the field if it is not of its column's kind
+   or range. */
+static bool read_cell(const CsvCell *cell, void *row, Error *error) {
+    void *member = (char *)row + cell->column->offset;
+    switch (cell->column->kind) {
+    case CSV_TEXT:
+    case CSV_NAME: return read_text(cell, member, error);
+    case CSV_WORD: return read_word(cell, member, error);
+    case CSV_INTEGER: return read_integer(cell, member, error);
+    case CSV_FLOAT: return read_float(cell, member, error);
+    default: return read_number(cell, member, error);
+    }
+}
+
+/* A file that is being read. */
+typedef struct Reading {
+    CsvTable *table;
+    const CsvLayout *layout;
+    Error *error;
+} Reading;
+
 static bool read_field(const CsvCell *cell, void *row, Error *error) {
     static const char *const empty = "";
-    if (cell->field >= 0) return csv_cell_read(cell, row, error);
+    if (cell->field >= 0) return read_cell(cell, row, error);
     if (cell->column->optional && cell->column->kind == CSV_TEXT)
         memcpy((char *)row + cell->column->offset, &empty, sizeof empty);
     return true;

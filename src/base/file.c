@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Reads files, standard input and folders; paths; and what is printed on standard output while a file is written to it. */
 #include "base/file.h"
 
 #include "base/base.h"
@@ -8,7 +9,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <locale.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,39 +16,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size) {
-    char *text = NULL;
-    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    FILE *out = c != (locale_t)0 ? memory_stream(&text, size) : NULL;
-    bool done = out != NULL;
-    if (done) {
-        locale_t previous = uselocale(c);
-        print(out, context);
-        uselocale(previous);
-        done = ferror(out) == 0;
-        done = fclose(out) == 0 && done;
-    }
-    if (c != (locale_t)0) freelocale(c);
-    if (done) return text;
-    free(text);
-    return NULL;
-}
-
-bool file_write_text(const char *path, void (*print)(FILE *out, const void *context), const void *context,
-                     Error *error) {
-    size_t size;
-    char *text = file_print(print, context, &size);
-    bool done = text != NULL ? file_write(path, text, size, error) : error_memory(error, path);
-    free(text);
-    return done;
-}
-
-bool lfs_pointer_refuse(const void *data, size_t size, const char *path, Error *error) {
-    static const char start[] = "version https://git-lfs.github.com/spec/";
-    if (size < sizeof start || memcmp(data, start, sizeof start - 1) != 0) return true;
-    return error_input(error, path, "a Git LFS pointer, not the file itself; run: git lfs pull");
-}
 
 static int copy_of_input = -1, reserved_output = -1;
 
@@ -107,8 +74,6 @@ bool standard_output_reserve(Error *error) {
 bool standard_output_is_reserved(void) { return reserved_output >= 0; }
 
 int standard_output(void) { return reserved_output >= 0 ? reserved_output : STDOUT_FILENO; }
-
-/* Whole files in. */
 
 bool file_open_error(const char *path, Error *error) {
     int cause = errno;
@@ -183,32 +148,7 @@ char *file_read_at(int folder, const char *name, const char *path, size_t limit,
 }
 
 char *file_read_input(size_t limit, size_t *size, Error *error) {
-    static const char name[] = "standard input";
-    char *data = NULL;
-    size_t capacity = 0;
-    ssize_t count = 1;
-    *size = 0;
-    while (count > 0 && *size <= limit) {
-        void *items = data;
-        bool room = array_reserve(&items, &capacity, *size + (1 << 16) + 1, 1);
-        data = items;
-        if (!room) {
-            error_memory(error, name);
-            free(data);
-            return NULL;
-        }
-        do count = read(STDIN_FILENO, data + *size, 1 << 16);
-        while (count < 0 && errno == EINTR);
-        if (count > 0) *size += (size_t)count;
-    }
-    bool ok = count == 0 || (count < 0 ? error_system(error, name, "cannot read: %s", strerror(errno))
-                                       : error_input(error, name, "larger than %zu bytes", limit));
-    if (ok) {
-        data[*size] = '\0';
-        return data;
-    }
-    free(data);
-    return NULL;
+    return read_all(STDIN_FILENO, "standard input", limit, 1 << 16, size, error);
 }
 
 ssize_t file_read_all(int file, void *data, size_t size) {
@@ -384,4 +324,10 @@ void folder_list_free(FolderList *list) {
     for (size_t i = 0; i < list->count; i++) free(list->names[i]);
     free(list->names);
     *list = (FolderList){.count = 0};
+}
+
+bool lfs_pointer_refuse(const void *data, size_t size, const char *path, Error *error) {
+    static const char start[] = "version https://git-lfs.github.com/spec/";
+    if (size < sizeof start || memcmp(data, start, sizeof start - 1) != 0) return true;
+    return error_input(error, path, "a Git LFS pointer, not the file itself; run: git lfs pull");
 }

@@ -9,31 +9,7 @@
 #include <stdio.h>
 #include <sys/types.h>
 
-/* open_memstream(), but memory that runs out sets the stream's error flag: the C library's own stream then drops what does
-   not fit, and ferror() and fclose() report success. What cannot be written is dropped from there to the end.
-
-   Returns NULL when memory is short. After fclose(), *text is a malloc'ed string of *size characters, for the caller to
-   free, even if writing failed; fflush() makes both current, too. */
-FILE *memory_stream(char **text, size_t *size);
-
-/* fwrite() of an array that may be empty, and then NULL. */
-static inline void stream_put(FILE *stream, const void *items, size_t size, size_t count) {
-    if (count > 0) fwrite(items, size, count, stream);
-}
-
-/* Folders that only one process at a time writes into. */
-
-/* Makes the folder where missing, and reserves it until this process ends: by an advisory lock on the folder itself, so that
-   no file is left when the process is killed. Calls after the first have no effect. Waits shortly for the children of a
-   process that has ended. ERROR_SYSTEM names the process that has the folder. Where the file system has no locks, nothing
-   is reserved. */
-bool folder_reserve(const char *folder, Error *error);
-
-/* Reading and writing whole files. The path "-" is standard input or output (base/file.h). */
-
-/* Sets an error from errno after a file could not be opened: ERROR_INPUT, unless the system lacks memory or file
-   descriptors, or the disk fails. Returns false. */
-bool file_open_error(const char *path, Error *error);
+/* Reading and writing whole files. */
 
 /* Reads a regular file of at most `limit` bytes into a malloc'ed block with a NUL behind its last byte (not counted in
    *size). NULL with error set if the file is missing, not regular, too large or unreadable. */
@@ -45,27 +21,27 @@ char *file_read_input(size_t limit, size_t *size, Error *error);
 /* Replaces a file atomically: writes a temporary file in the same folder, fsyncs, renames. */
 bool file_write(const char *path, const void *data, size_t size, Error *error);
 
-/* Writes a new file, whole or not at all. ERROR_INPUT if there is one of that name. */
-bool file_create(const char *path, const void *data, size_t size, Error *error);
-
-/* file_read() and file_write() for a file `name` of the open directory `folder`, without following links:
-   file_read_at() refuses one, file_write_at() replaces it. `path` is used in messages. */
-char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error);
-bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error);
-
-/* Returns the output of `print` as a malloc'ed string, with the C locale's decimal point; NULL when memory is short. */
-char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size);
-
 /* Writes the output of `print` to a file: file_print(), then file_write(). */
 bool file_write_text(const char *path, void (*print)(FILE *out, const void *context), const void *context,
                      Error *error);
+
+/* Writes a new file, whole or not at all. ERROR_INPUT if there is one of that name. */
+bool file_create(const char *path, const void *data, size_t size, Error *error);
 
 /* file_write() without fsync, for one of many files: atomic if the program ends, but safe from a power cut only after
    file_sync(). An fsync per file takes longer than rendering a small frame. */
 bool file_write_soon(const char *path, const void *data, size_t size, Error *error);
 
+/* Waits until a file, or the entries of a directory, are on the disk. */
+bool file_sync(const char *path, Error *error);
+
 /* Writes behind what is in the file; creates it if it is missing. */
 bool file_append(const char *path, const void *data, size_t size, Error *error);
+
+/* file_read() and file_write() for a file `name` of the open directory `folder`, without following links:
+   file_read_at() refuses one, file_write_at() replaces it. `path` is used in messages. */
+char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error);
+bool file_write_at(int folder, const char *name, const char *path, const void *data, size_t size, Error *error);
 
 /* A file that is written piece by piece: a draft without a name, in the folder of `path`, open for reading and writing.
    The caller closes it. A program that is killed leaves nothing of it. -1 with error set. */
@@ -80,17 +56,24 @@ bool file_draft_publish(int draft, const char *path, Error *error);
 bool file_write_all(int file, const void *data, size_t size);
 ssize_t file_read_all(int file, void *data, size_t size);
 
+/* Copies an open file from its beginning to where the file `to` stands. False with errno set. */
+bool file_copy(int to, int from);
+
+/* Sets an error from errno after a file could not be opened: ERROR_INPUT, unless the system lacks memory or file
+   descriptors, or the disk fails. Returns false. */
+bool file_open_error(const char *path, Error *error);
+
+/* Sets ERROR_INPUT and returns false if this is the content of a pointer that Git LFS leaves in place of a file that was not
+   downloaded: text of about 130 bytes. */
+bool lfs_pointer_refuse(const void *data, size_t size, const char *path, Error *error);
+
+/* Names of files and folders. */
+
 /* Removes a file, if there is one. */
 bool file_remove(const char *path, Error *error);
 
 /* Whether there is a file or folder of that name; false with error set if the system cannot tell. */
 bool file_find(const char *path, bool *there, Error *error);
-
-/* Copies an open file from its beginning to where the file `to` stands. False with errno set. */
-bool file_copy(int to, int from);
-
-/* Waits until a file, or the entries of a directory, are on the disk. */
-bool file_sync(const char *path, Error *error);
 
 /* Creates the directory and its parents where missing. */
 bool file_make_directory(const char *path, Error *error);
@@ -107,12 +90,22 @@ bool file_name_ends_with(const char *name, const char *ending);
 /* Replaces characters that do not belong in a file name by '_'. */
 void file_name_clean(char *name);
 
-/* Advisory locks on open files and folders, for two processes that would write the same. */
+/* Text that is printed into memory. */
 
-/* Locks until all copies of the open file are closed. Waits shortly for the children of a process that has ended.
-   ERROR_SYSTEM names the process that has the lock: "another process (NUMBER) `what`". True where the file system has no
-   locks. */
-bool lock_take(int file, const char *path, const char *what, Error *error);
+/* Returns the output of `print` as a malloc'ed string, with the C locale's decimal point; NULL when memory is short. */
+char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size);
+
+/* open_memstream(), but memory that runs out sets the stream's error flag: the C library's own stream then drops what does
+   not fit, and ferror() and fclose() report success. What cannot be written is dropped from there to the end.
+
+   Returns NULL when memory is short. After fclose(), *text is a malloc'ed string of *size characters, for the caller to
+   free, even if writing failed; fflush() makes both current, too. */
+FILE *memory_stream(char **text, size_t *size);
+
+/* fwrite() of an array that may be empty, and then NULL. */
+static inline void stream_put(FILE *stream, const void *items, size_t size, size_t count) {
+    if (count > 0) fwrite(items, size, count, stream);
+}
 
 /* The files below a folder. */
 
@@ -188,11 +181,7 @@ void temporary_sweep(int at, const char *path);
 /* The folder for temporary files: TMPDIR, or /tmp. */
 const char *temporary_files_folder(void);
 
-/* "MACHINE-PID-", with which names of temporary files and folders begin. Two machines, two starts of one, and two
-   containers of one have different names. */
-enum { TEMPORARY_OWNER = 48 };
-
-/* Files that only one process at a time makes, which takes long. */
+/* Files, which take long to make, and folders that only one process at a time writes. */
 
 typedef struct FileReservation {
     TemporaryFile lock; /* beside the file; what a killed process left is removed as other temporary files are */
@@ -203,7 +192,8 @@ typedef struct FileReservation {
 bool file_reserve(FileReservation *reservation, const char *path, Error *error);
 bool file_release(FileReservation *reservation, Error *error);
 
-/* Pointers that Git LFS leaves in place of files that were not downloaded: text of about 130 bytes. */
-
-/* Sets ERROR_INPUT and returns false if this is the content of a pointer. */
-bool lfs_pointer_refuse(const void *data, size_t size, const char *path, Error *error);
+/* Makes the folder where missing, and reserves it until this process ends: by an advisory lock on the folder itself, so that
+   no file is left when the process is killed. Calls after the first have no effect. Waits shortly for the children of a
+   process that has ended. ERROR_SYSTEM names the process that has the folder. Where the file system has no locks, nothing
+   is reserved. */
+bool folder_reserve(const char *folder, Error *error);

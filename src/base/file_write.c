@@ -1,114 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes whole files: beside the name, then fsync and rename, or as a draft that is written piece by piece. */
 #include "base/base.h"
 #include "base/file.h"
-#include "base/hash.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-/* OpenMP calls exit() when it gets no memory or no thread. */
-static TemporaryFile *held;
-
-static void remove_held(void) {
-    if (held != NULL) temporary_remove_name(held);
-}
-
-/* False if the process that had the file removed its name while this one waited. */
-static bool has_name(const TemporaryFile *lock) {
-    struct stat opened, named;
-    return fstat(lock->file, &opened) == 0 && stat(lock->name, &named) == 0 && opened.st_dev == named.st_dev &&
-           opened.st_ino == named.st_ino;
-}
-
-static bool take(TemporaryFile *lock, const char *path, Error *error) {
-    do {
-        if (lock->file >= 0) close(lock->file);
-        lock->file = open(lock->name, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-        if (lock->file < 0) return error_system(error, path, "cannot be locked: %s", strerror(errno));
-        if (!lock_take(lock->file, path, "is making this file", error)) return false;
-    } while (!has_name(lock));
-    return true;
-}
-
-bool file_reserve(FileReservation *reservation, const char *path, Error *error) {
-    TemporaryFile *lock = &reservation->lock;
-    const size_t folder = file_folder_length(path);
-    struct stat status;
-    *lock = (TemporaryFile){.at = AT_FDCWD, .file = -1};
-    if (path_is_standard(path) || (stat(path, &status) == 0 && !S_ISREG(status.st_mode))) return true;
-    if (!file_path(lock->name, sizeof lock->name, error, "%.*s.twinbox-%016" PRIx64 ".tmp", (int)folder, path,
-                   hash_xxh3(path + folder, strlen(path + folder))))
-        return false;
-    if (!take(lock, path, error)) {
-        if (lock->file >= 0) close(lock->file);
-        return false;
-    }
-    if (held == NULL) atexit(remove_held);
-    held = lock;
-    return true;
-}
-
-bool file_release(FileReservation *reservation, Error *error) {
-    char name[PATH_MAX];
-    held = NULL;
-    strcpy(name, reservation->lock.name);
-    const bool done = temporary_remove_name(&reservation->lock) ||
-                      error_system(error, name, "cannot be removed: %s", strerror(errno));
-    temporary_close(&reservation->lock);
-    return done;
-}
-
-/* A command writes into two folders at most. */
-enum { FOLDERS = 8 };
-
-/* The reserved folders. Their files stay open. */
-static struct {
-    struct stat status[FOLDERS];
-    int files[FOLDERS], count;
-} reserved;
-
-static bool is_reserved(const struct stat *folder) {
-    for (int i = 0; i < reserved.count && i < FOLDERS; i++)
-        if (reserved.status[i].st_dev == folder->st_dev && reserved.status[i].st_ino == folder->st_ino) return true;
-    return false;
-}
-
-/* Of more, the oldest is given back. */
-static void keep(int file, const struct stat *folder) {
-    const int place = reserved.count++ % FOLDERS;
-    if (reserved.count > FOLDERS) close(reserved.files[place]);
-    reserved.files[place] = file;
-    reserved.status[place] = *folder;
-}
-
-bool folder_reserve(const char *folder, Error *error) {
-    struct stat status;
-    if (!file_make_directory(folder, error)) return false;
-    const int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    /* A folder that cannot be read may be one that can be written into. */
-    if (file < 0 && errno == EACCES) return true;
-    if (file < 0 || fstat(file, &status) != 0) {
-        error_system(error, folder, "cannot be opened: %s", strerror(errno));
-        if (file >= 0) close(file);
-        return false;
-    }
-    const bool known = is_reserved(&status),
-               done = known || lock_take(file, folder, "is writing into this folder", error);
-    if (done && !known)
-        keep(file, &status);
-    else
-        close(file);
-    return done;
-}
-
-/* Whole files out. */
 
 /* What a file is to hold: a block of memory, or all of an open file. */
 typedef struct Contents {
@@ -250,6 +152,15 @@ bool file_append(const char *path, const void *data, size_t size, Error *error) 
 
 bool file_write(const char *path, const void *data, size_t size, Error *error) {
     return finish(put(path, &(Contents){data, size, -1}, true), path, size, error);
+}
+
+bool file_write_text(const char *path, void (*print)(FILE *out, const void *context), const void *context,
+                     Error *error) {
+    size_t size;
+    char *text = file_print(print, context, &size);
+    bool done = text != NULL ? file_write(path, text, size, error) : error_memory(error, path);
+    free(text);
+    return done;
 }
 
 bool file_create(const char *path, const void *data, size_t size, Error *error) {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/hash.h"
 
-#include <xxh_x86dispatch.h>
-#include <xxhash.h>
-
 /* The same values with the widest vectors of the processor, in half the time. */
 #ifdef TWINBOX_AVX
+#include <xxh_x86dispatch.h>
 #else
+#include <xxhash.h>
 #endif
 
 uint64_t hash_fnv1a64(uint64_t hash, const void *data, size_t size) {

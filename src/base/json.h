@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads a JSON file (RFC 8259) that others may have written, one value at a time, with jansson. The caller walks the
-   outer containers; jansson parses each value inside them.
+/* JSON (RFC 8259): a reader of files that others may have written, and a writer of streams.
+
+   The reader takes one value at a time, with jansson. The caller walks the outer containers; jansson parses each value
+   inside them.
 
    Parsed at once, a file of {} takes 77 times its size in memory. Value by value it takes its size and a fixed block,
    and each value has a line and a column, which jansson does not store.
@@ -50,9 +52,7 @@ bool json_read_end(JsonReader *reader, Error *error);
 /* Sets an input error "path:line:column: error: text" at the last value. Returns false. */
 bool json_read_error(const JsonReader *reader, Error *error, const char *format, ...) PRINTF_LIKE(3, 4);
 
-/* Writes JSON (RFC 8259) as a stream, UTF-8 only.
-
-   jansson, which reads JSON here (base/json.h), cannot write these files: it puts either everything or nothing on
+/* The writer, UTF-8 only. jansson cannot write these files: it puts either everything or nothing on
    lines of its own, where a line is a record here (manifest.json grows by a line for each picture, and what a killed
    program left is compared line by line); it prints 0.1 with 17 digits; and it does not escape '<', which would end the
    script that results.json is part of in report.html. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The header of one .npy array. */
+/* One .npy array: its header, written and parsed, and the conversion of its numbers. */
 #include "base/base.h"
 #include "base/npz.h"
 
@@ -49,9 +49,7 @@ bool npy_measure(NpyHead *head) {
     return head->data_size <= NPZ_MAX_BYTES;
 }
 
-static size_t append(char *text, size_t used, const char *format, ...) PRINTF_LIKE(3, 4);
-
-static size_t append(char *text, size_t used, const char *format, ...) {
+PRINTF_LIKE(3, 4) static size_t append(char *text, size_t used, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     int length = vsnprintf(text + used, NPY_HEAD_MAX - used, format, arguments);
@@ -76,9 +74,7 @@ void npy_write_head(NpyHead *head, char text[NPY_HEAD_MAX]) {
     text[MAGIC_SIZE + 3] = (char)(length >> 8);
 }
 
-static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) PRINTF_LIKE(2, 3);
-
-static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) {
+PRINTF_LIKE(2, 3) static bool refuse(char reason[NPY_REASON_SIZE], const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(reason, NPY_REASON_SIZE, format, arguments);
@@ -294,8 +290,8 @@ static size_t fortran_index(const NpyHead *head, size_t i) {
 }
 
 /* "item [3, 0] is 1e+300, which is not a float32" */
-static bool npy_convert_refuse(const NpyHead *head, size_t i, const Number *number, NpzType type,
-                               char reason[NPY_REASON_SIZE]) {
+static bool refuse_number(const NpyHead *head, size_t i, const Number *number, NpzType type,
+                          char reason[NPY_REASON_SIZE]) {
     int64_t index[NPZ_MAX_RANK] = {0};
     for (int k = head->rank - 1; k >= 0; k--) {
         index[k] = (int64_t)(i % (size_t)head->shape[k]);
@@ -316,8 +312,7 @@ bool npy_convert(const NpyHead *head, const void *data, NpzType type, void *conv
     for (size_t i = 0; i < count; i++) {
         size_t at = reordered ? fortran_index(head, i) : i;
         Number number = load(head->type, (const char *)data + at * from);
-        if (!store(type, &number, (char *)converted + i * to))
-            return npy_convert_refuse(head, i, &number, type, reason);
+        if (!store(type, &number, (char *)converted + i * to)) return refuse_number(head, i, &number, type, reason);
     }
     return true;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An open .npz file. */
+/* Reads .npz: opens and checks an archive, then inflates and converts its arrays. */
 #include "base/npz.h"
 
 #include "base/base.h"
@@ -35,8 +35,6 @@ struct NpzFile {
     StoredArray arrays[NPZ_MAX_ARRAYS]; /* in the order of the archive */
 };
 
-/* Opening .npz: the file and its directory are checked before any data is inflated. */
-
 /* Deflate cannot exceed this ratio, so a member that claims more is invalid. */
 enum { DEFLATE_BEST_RATIO = 1032 };
 
@@ -51,14 +49,14 @@ static int system_cause(const zip_error_t *cause) {
 }
 
 /* Sets the error for a failure of libzip at this array, and returns false. */
-static bool npz_failed(const NpzFile *file, const char *name, zip_error_t *cause, Error *error) {
+static bool refuse_damaged(const NpzFile *file, const char *name, zip_error_t *cause, Error *error) {
     const int system = system_cause(cause);
     if (system != 0) return cause_error(system, file->path, error);
     return error_input(error, file->path, "array '%s' is damaged: %s", name, zip_error_strerror(cause));
 }
 
 /* NULL if no array has this name. */
-static const StoredArray *npz_find(const NpzFile *file, const char *name) {
+static const StoredArray *find(const NpzFile *file, const char *name) {
     for (zip_uint64_t i = 0; i < file->count; i++)
         if (strcmp(file->arrays[i].name, name) == 0) return &file->arrays[i];
     return NULL;
@@ -72,7 +70,7 @@ static bool take_name(NpzFile *file, const char *member, char name[NPZ_NAME_SIZE
     if (!plain || strcmp(member + length - 4, ".npy") != 0)
         return error_input(error, file->path, "holds a member that is not a named .npy array");
     memcpy(name, member, length - 4);
-    if (npz_find(file, name) != NULL) return error_input(error, file->path, "holds array '%s' twice", name);
+    if (find(file, name) != NULL) return error_input(error, file->path, "holds array '%s' twice", name);
     return true;
 }
 
@@ -91,12 +89,12 @@ static bool check_member(const NpzFile *file, const StoredArray *array, const zi
 static bool read_head(NpzFile *file, zip_uint64_t index, StoredArray *array, uint64_t declared, Error *error) {
     errno = 0;
     zip_file_t *member = zip_fopen_index(file->archive, index, 0);
-    if (member == NULL) return npz_failed(file, array->name, zip_get_error(file->archive), error);
+    if (member == NULL) return refuse_damaged(file, array->name, zip_get_error(file->archive), error);
     char text[NPY_HEAD_MAX], reason[NPY_REASON_SIZE];
     zip_int64_t size = zip_fread(member, text, sizeof text);
     bool done;
     if (size < 0)
-        done = npz_failed(file, array->name, zip_file_get_error(member), error);
+        done = refuse_damaged(file, array->name, zip_file_get_error(member), error);
     else if (!npy_parse_head(&array->head, text, (size_t)size, reason))
         done = error_input(error, file->path, "'%s' is %s", array->name, reason);
     else if (array->head.head_size + array->head.data_size != declared)
@@ -118,7 +116,7 @@ static bool read_directory(NpzFile *file, Error *error) {
         zip_stat_t status;
         errno = 0;
         if (zip_stat_index(file->archive, file->count, 0, &status) != 0)
-            return npz_failed(file, "?", zip_get_error(file->archive), error);
+            return refuse_damaged(file, "?", zip_get_error(file->archive), error);
         if (!take_name(file, status.name, array->name, error) || !check_member(file, array, &status, error) ||
             !read_head(file, file->count, array, status.size, error))
             return false;
@@ -142,6 +140,53 @@ static bool check_budget(NpzFile *file, Error *error) {
                        "its arrays take %" PRIu64 " bytes; expected at most %" PRIu64
                        " (%d MiB and %d times the size of the file); store them with less compression",
                        total, file->budget, (int)(NPZ_ALWAYS >> 20), (int)NPZ_RATIO);
+}
+
+/* Before any data is inflated, the file and its directory are checked. libzip reads every directory that the last 64 KiB
+   point to, with all entries; a malicious file costs it minutes and gigabytes (tests/base/test_npz_hostile.c). */
+
+/* The end record (its size, and the longest comment that may follow it), and the locator before it in a zip64. */
+enum { END_SIZE = 22, COMMENT_MAX = 65535, LOCATOR_SIZE = 20, TAIL_MAX = LOCATOR_SIZE + END_SIZE + COMMENT_MAX };
+
+/* Twice the size of 256 entries with names of 64 bytes. */
+enum { DIRECTORY_MAX = 65536 };
+
+/* Compressed data looks like an end record once in 65,000 files; more of them are an attack. */
+enum { ENDS_MAX = 3 };
+
+static uint32_t little_endian(const unsigned char *bytes) {
+    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
+
+static bool check_tail(const unsigned char *tail, size_t length, uint64_t size, const char *path, Error *error) {
+    int ends = 0;
+    for (size_t i = 0; i + END_SIZE <= length; i++) {
+        if (memcmp(tail + i, "PK\5\6", 4) != 0) continue;
+        uint64_t directory = little_endian(tail + i + 12), position = size - length + i;
+        bool zip64 = i >= LOCATOR_SIZE && memcmp(tail + i - LOCATOR_SIZE, "PK\6\7", 4) == 0;
+        /* libzip refuses a directory that begins before the file. */
+        if (zip64 || (directory > DIRECTORY_MAX && directory <= position) || ++ends > ENDS_MAX)
+            return error_input(error, path, "not .npz: its directory is too large");
+    }
+    return ends > 0 || error_input(error, path, "not .npz, or cut off");
+}
+
+/* Whether the open file ends with the directory of one small zip. */
+static bool check_directory(int descriptor, uint64_t size, const char *path, Error *error) {
+    size_t length = size < TAIL_MAX ? (size_t)size : TAIL_MAX, used = 0;
+    unsigned char *tail = malloc(TAIL_MAX);
+    if (tail == NULL) return error_memory(error, path);
+    bool done = true;
+    while (done && used < length) {
+        ssize_t got = pread(descriptor, tail + used, length - used, (off_t)(size - length + used));
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) done = error_system(error, path, "cannot read: %s", strerror(errno));
+        if (got == 0) done = error_input(error, path, "not .npz, or cut off");
+        if (got > 0) used += (size_t)got;
+    }
+    done = done && check_tail(tail, length, size, path, error);
+    free(tail);
+    return done;
 }
 
 static bool refuse_pointer(int descriptor, const char *path, Error *error) {
@@ -172,7 +217,7 @@ static int open_checked(const char *path, uint64_t *size, Error *error) {
         done = error_input(error, path, "larger than 2 GiB");
     else
         done = refuse_pointer(descriptor, path, error) &&
-               zip_directory_check(descriptor, (uint64_t)status.st_size, path, error);
+               check_directory(descriptor, (uint64_t)status.st_size, path, error);
     if (done) trace_line("read %s, %jd bytes", path, (intmax_t)status.st_size);
     *size = done ? (uint64_t)status.st_size : 0;
     if (done) return descriptor;
@@ -216,8 +261,6 @@ void npz_close(NpzFile *file) {
     free(file);
 }
 
-/* Reading the arrays of .npz. */
-
 void npz_convert(NpzFile *file) { file->converts = true; }
 
 const char *npz_name(const NpzFile *file, size_t index) {
@@ -226,7 +269,7 @@ const char *npz_name(const NpzFile *file, size_t index) {
 
 const char *npz_path(const NpzFile *file) { return file->path; }
 
-bool npz_has(const NpzFile *file, const char *name) { return npz_find(file, name) != NULL; }
+bool npz_has(const NpzFile *file, const char *name) { return find(file, name) != NULL; }
 
 static bool is_stored_as(const NpyHead *head, NpzType type, int rank) {
     return head->type == type && head->rank == rank && !head->big_endian && !(head->fortran && rank > 1);
@@ -239,7 +282,7 @@ static bool is_convertible(const NpyHead *head, NpzType type, int rank) {
 }
 
 static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType type, int rank, Error *error) {
-    const StoredArray *array = npz_find(file, name);
+    const StoredArray *array = find(file, name);
     if (array == NULL) {
         error_input(error, file->path, "has no array '%s'", name);
         return NULL;
@@ -275,7 +318,7 @@ static bool inflate_data(NpzFile *file, const StoredArray *array, zip_file_t *me
     zip_int64_t after = size < 0 ? -1 : zip_fread(member, &more, 1);
     if ((uint64_t)size == array->head.data_size && after == 0) return true;
     if (after < 0)
-        npz_failed(file, array->name, zip_file_get_error(member), error);
+        refuse_damaged(file, array->name, zip_file_get_error(member), error);
     else
         error_input(error, file->path, "array '%s' is damaged: %s", array->name, after > 0 ? "too long" : "cut off");
     return false;
@@ -303,7 +346,7 @@ static void *read_data(NpzFile *file, const StoredArray *array, Error *error) {
     if (member != NULL)
         zip_fclose(member);
     else
-        npz_failed(file, array->name, zip_get_error(file->archive), error);
+        refuse_damaged(file, array->name, zip_get_error(file->archive), error);
     if (done && array->head.big_endian) npy_swap(&array->head, data);
     if (done) return data;
     free(data);
@@ -388,13 +431,11 @@ bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Err
     return done || error_input(error, file->path, "text '%s' is damaged, or longer than %zu bytes", name, size - 1);
 }
 
-/* What all readers of .npz files share. */
-
 bool npz_read_name(NpzFile *file, const char *name, char *text, size_t size, Error *error) {
     if (!npz_read_text(file, name, text, size, error)) return false;
     for (const char *c = text; *c != '\0'; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            return error_input(error, npz_path(file), "the name of the %s holds control characters", name);
+            return error_input(error, file->path, "the name of the %s holds control characters", name);
     return true;
 }
 
@@ -409,8 +450,8 @@ bool npz_check_kind(NpzFile *file, const char *kind, int32_t version, Error *err
     char found[64];
     int32_t stored;
     if (!npz_has(file, "kind") || !npz_read_text(file, "kind", found, sizeof found, error) || strcmp(found, kind) != 0)
-        return error_input(error, npz_path(file), "not a file of kind '%s'", kind);
+        return error_input(error, file->path, "not a file of kind '%s'", kind);
     if (!npz_read_scalar(file, "version", NPZ_INT32, &stored, sizeof stored, error)) return false;
     return stored == version ||
-           error_input(error, npz_path(file), "%s of version %d; expected version %d", kind, (int)stored, (int)version);
+           error_input(error, file->path, "%s of version %d; expected version %d", kind, (int)stored, (int)version);
 }

@@ -92,8 +92,33 @@ bool npz_read_scalar(NpzFile *file, const char *name, NpzType type, void *value,
 /* Checks that the text `kind` and the int32 `version` have these values. */
 bool npz_check_kind(NpzFile *file, const char *kind, int32_t version, Error *error);
 
-/* The header of one .npy array (NumPy format specification). npz_write.c writes it before the data of each member,
-   npz.c parses it. */
+/* Writes .npz whose arrays grow by rows while the program works, in bounded memory: of an array at most NPZ_LARGE bytes
+   are kept, the rest is in unnamed files beside the output. npz_write() is the same with all arrays given at once, and
+   gives the same bytes. */
+
+/* From this size on, an array is packed while it grows. */
+enum { NPZ_LARGE = 1 << 20 };
+
+typedef struct NpzStream NpzStream;
+
+/* A stream of at most `most` arrays. NULL with error set if no file can be written at `path`. */
+NpzStream *npz_stream_create(const char *path, int most, Error *error);
+
+/* Discards what npz_stream_finish() has not written. */
+void npz_stream_destroy(NpzStream *stream);
+
+/* Adds an array and returns its number, from 0. Its data must last until the stream is finished, or is NULL: then
+   rows are appended, which shape[0] must not count. -1 with error set. */
+int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error);
+
+/* Appends rows to an array that was added without data. */
+bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t count, Error *error);
+
+/* Writes the file, atomically. */
+bool npz_stream_finish(NpzStream *stream, Error *error);
+
+/* Inside this room (npy.c): the header of one .npy array (NumPy format specification), which npz_write.c writes before the
+   data of each member and npz.c parses. */
 
 /* Enough for the longest header of four dimensions; a longer one is refused. */
 enum { NPY_HEAD_MAX = 512, NPY_REASON_SIZE = 128 };
@@ -132,34 +157,3 @@ void npy_swap(const NpyHead *head, void *data);
 /* Converts data (native byte order, not text) to `type` in C order, in converted[npy_count()]. False with a reason if a
    value does not fit. */
 bool npy_convert(const NpyHead *head, const void *data, NpzType type, void *converted, char reason[NPY_REASON_SIZE]);
-
-/* Checks a zip's directory before libzip reads it. libzip reads every directory that the last 64 KiB point to, with all
-   entries; a malicious file costs it minutes and gigabytes (tests/base/test_npz_hostile.c). */
-
-/* False with error set unless the open file ends with the directory of one small zip. */
-bool zip_directory_check(int descriptor, uint64_t size, const char *path, Error *error);
-
-/* Writes .npz whose arrays grow by rows while the program works, in bounded memory: of an array at most NPZ_LARGE bytes
-   are kept, the rest is in unnamed files beside the output. npz_write() is the same with all arrays given at once, and
-   gives the same bytes. */
-
-/* From this size on, an array is packed while it grows (base/npz_write.c). */
-enum { NPZ_LARGE = 1 << 20 };
-
-typedef struct NpzStream NpzStream;
-
-/* A stream of at most `most` arrays. NULL with error set if no file can be written at `path`. */
-NpzStream *npz_stream_create(const char *path, int most, Error *error);
-
-/* Discards what npz_stream_finish() has not written. */
-void npz_stream_destroy(NpzStream *stream);
-
-/* Adds an array and returns its number, from 0. Its data must last until the stream is finished, or is NULL: then
-   rows are appended, which shape[0] must not count. -1 with error set. */
-int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error);
-
-/* Appends rows to an array that was added without data. */
-bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t count, Error *error);
-
-/* Writes the file, atomically. */
-bool npz_stream_finish(NpzStream *stream, Error *error);

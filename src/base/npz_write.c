@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The data of one array on its way into a file: checksum and deflate. A small array is one deflate stream. A large one
-   is deflated block by block, and only blocks that shrink to a quarter: deflate takes a second per 30 MB to save an
-   eighth of velocities, but a tenth of that where a world rests. */
+/* Writes .npz: the data of an array is packed, packed arrays become members of a zip, and a stream of arrays that grow is
+   both. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"
@@ -17,39 +16,23 @@
 #include <unistd.h>
 #include <zlib.h>
 
-/* Four deflate blocks that are stored. */
-enum { NPZ_STORED_MAX = 65535, NPZ_BLOCK_SIZE = 4 * NPZ_STORED_MAX };
+/* The data of one array on its way into a file: checksum and deflate. A small array is one deflate stream. A large one
+   is deflated block by block, and only blocks that shrink to a quarter: deflate takes a second per 30 MB to save an
+   eighth of velocities, but a tenth of that where a world rests. */
 
-typedef struct NpzPack {
+/* A block of a large array: four deflate blocks that are stored. */
+enum { STORED_MAX = 65535, BLOCK_SIZE = 4 * STORED_MAX };
+
+typedef struct Pack {
     int file;         /* a draft (base/file.h) */
     const char *path; /* for messages */
     bool begun;
     z_stream deflating;
     uint32_t crc;          /* of the data before deflate */
     uint64_t size, packed; /* bytes of the data so far, and bytes written */
-    unsigned char *block;  /* [block_used] of a large array, [NPZ_BLOCK_SIZE] */
+    unsigned char *block;  /* [block_used] of a large array, [BLOCK_SIZE] */
     size_t block_used;
-} NpzPack;
-
-/* Writes a zip piece by piece into a draft. libzip takes a member's data only when it closes the archive, in one thread;
-   and which bytes it writes depends on its version. The same members give the same bytes here: time stamps are fixed. */
-
-enum { ZIP_NAME_SIZE = 72 };
-
-typedef struct ZipMember {
-    char name[ZIP_NAME_SIZE];
-    uint32_t crc;
-    uint32_t offset;       /* in the file */
-    uint64_t packed, size; /* bytes in the file, bytes of the data */
-} ZipMember;
-
-typedef struct ZipWriter {
-    int draft;          /* base/file.h */
-    const char *path;   /* for messages */
-    uint64_t used;      /* bytes written */
-    ZipMember *members; /* [count] */
-    size_t count, capacity;
-} ZipWriter;
+} Pack;
 
 /* zlib's default for small arrays; level 9 made a file of positions no smaller. For large ones the fastest. */
 enum { SMALL_LEVEL = 6, LARGE_LEVEL = 1 };
@@ -60,28 +43,28 @@ enum { RAW_WINDOW = -MAX_WBITS };
 /* The start of a block, which tells whether the rest is worth deflating: if it shrinks to a quarter. */
 enum { SAMPLE_SIZE = 1 << 14, SHRINKS_TO = 4 };
 
-static bool npz_pack_begin(NpzPack *pack, bool large, int file, const char *path, Error *error) {
-    *pack = (NpzPack){.file = file, .path = path, .crc = libdeflate_crc32(0, NULL, 0)};
-    if (large && (pack->block = malloc(NPZ_BLOCK_SIZE)) == NULL) return error_memory(error, path);
+static bool pack_begin(Pack *pack, bool large, int file, const char *path, Error *error) {
+    *pack = (Pack){.file = file, .path = path, .crc = libdeflate_crc32(0, NULL, 0)};
+    if (large && (pack->block = malloc(BLOCK_SIZE)) == NULL) return error_memory(error, path);
     pack->begun = deflateInit2(&pack->deflating, large ? LARGE_LEVEL : SMALL_LEVEL, Z_DEFLATED, RAW_WINDOW,
                                MAX_MEM_LEVEL, Z_DEFAULT_STRATEGY) == Z_OK;
     return pack->begun || error_memory(error, path);
 }
 
-static bool put_bytes(NpzPack *pack, const void *data, size_t size, Error *error) {
+static bool put_bytes(Pack *pack, const void *data, size_t size, Error *error) {
     pack->packed += size;
     return file_draft_write(pack->file, pack->path, data, size, error);
 }
 
 /* Deflates as much as the output takes and returns its size. */
-static size_t deflate_some(NpzPack *pack, int flush, unsigned char *out, size_t room) {
+static size_t deflate_some(Pack *pack, int flush, unsigned char *out, size_t room) {
     pack->deflating.next_out = out;
     pack->deflating.avail_out = (unsigned)room;
     deflate(&pack->deflating, flush);
     return room - pack->deflating.avail_out;
 }
 
-static bool deflate_all(NpzPack *pack, const void *data, size_t size, int flush, Error *error) {
+static bool deflate_all(Pack *pack, const void *data, size_t size, int flush, Error *error) {
     unsigned char out[1 << 15];
     pack->deflating.next_in = (unsigned char *)data;
     pack->deflating.avail_in = (unsigned)size;
@@ -92,8 +75,8 @@ static bool deflate_all(NpzPack *pack, const void *data, size_t size, int flush,
     return true;
 }
 
-/* Puts bytes that are not counted in crc and size, as a deflate block that is stored: at most NPZ_STORED_MAX. */
-static bool npz_pack_put_stored(NpzPack *pack, const void *data, size_t size, Error *error) {
+/* Puts bytes that are not counted in crc and size, as a deflate block that is stored: at most STORED_MAX. */
+static bool pack_put_stored(Pack *pack, const void *data, size_t size, Error *error) {
     const unsigned char head[] = {0, (unsigned char)(size & 0xff), (unsigned char)(size >> 8),
                                   (unsigned char)(~size & 0xff), (unsigned char)(~size >> 8 & 0xff)};
     return put_bytes(pack, head, sizeof head, error) && put_bytes(pack, data, size, error);
@@ -102,7 +85,7 @@ static bool npz_pack_put_stored(NpzPack *pack, const void *data, size_t size, Er
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
 /* A full flush ends the sample at a whole byte, and nothing after it refers back: it may be dropped. */
-static bool put_block(NpzPack *pack, Error *error) {
+static bool put_block(Pack *pack, Error *error) {
     unsigned char out[2 * SAMPLE_SIZE];
     const size_t size = pack->block_used, sample = least(size, SAMPLE_SIZE);
     pack->block_used = 0;
@@ -113,43 +96,60 @@ static bool put_block(NpzPack *pack, Error *error) {
         return put_bytes(pack, out, used, error) &&
                (size == sample || deflate_all(pack, pack->block + sample, size - sample, Z_FULL_FLUSH, error));
     bool done = true;
-    for (size_t at = 0; done && at < size; at += NPZ_STORED_MAX)
-        done = npz_pack_put_stored(pack, pack->block + at, least(size - at, NPZ_STORED_MAX), error);
+    for (size_t at = 0; done && at < size; at += STORED_MAX)
+        done = pack_put_stored(pack, pack->block + at, least(size - at, STORED_MAX), error);
     return done;
 }
 
-static bool put_large(NpzPack *pack, const unsigned char *data, size_t size, Error *error) {
+static bool put_large(Pack *pack, const unsigned char *data, size_t size, Error *error) {
     for (size_t at = 0, piece; at < size; at += piece) {
-        piece = least(size - at, NPZ_BLOCK_SIZE - pack->block_used);
+        piece = least(size - at, BLOCK_SIZE - pack->block_used);
         memcpy(pack->block + pack->block_used, data + at, piece);
         pack->block_used += piece;
-        if (pack->block_used == NPZ_BLOCK_SIZE && !put_block(pack, error)) return false;
+        if (pack->block_used == BLOCK_SIZE && !put_block(pack, error)) return false;
     }
     return true;
 }
 
-static bool npz_pack_put(NpzPack *pack, const void *data, size_t size, Error *error) {
+static bool pack_put(Pack *pack, const void *data, size_t size, Error *error) {
     if (size == 0) return true;
     pack->crc = libdeflate_crc32(pack->crc, data, size); /* ten times as fast as zlib's */
     pack->size += size;
     return pack->block != NULL ? put_large(pack, data, size, error) : deflate_all(pack, data, size, Z_NO_FLUSH, error);
 }
 
-static bool npz_pack_end(NpzPack *pack, Error *error) {
+static bool pack_end(Pack *pack, Error *error) {
     static const unsigned char last[] = {3, 0}; /* an empty block that says that it is the last */
     if (pack->block == NULL) return deflate_all(pack, NULL, 0, Z_FINISH, error);
     return (pack->block_used == 0 || put_block(pack, error)) && put_bytes(pack, last, sizeof last, error);
 }
 
 /* Frees what a pack that was begun, or is all zero, holds. */
-static void npz_pack_free(NpzPack *pack) {
+static void pack_free(Pack *pack) {
     if (pack->begun) deflateEnd(&pack->deflating);
     free(pack->block);
     pack->block = NULL;
     pack->begun = false;
 }
 
-/* The format: PKWARE, APPNOTE.TXT, sections 4.3.7 to 4.3.16. */
+/* Writes a zip piece by piece into a draft. libzip takes a member's data only when it closes the archive, in one thread;
+   and which bytes it writes depends on its version. The same members give the same bytes here: time stamps are fixed. The
+   format: PKWARE, APPNOTE.TXT, sections 4.3.7 to 4.3.16. */
+
+enum { NAME_SIZE = 72 };
+
+typedef struct Member {
+    char name[NAME_SIZE]; /* with .npy */
+    uint32_t crc;
+    uint32_t offset;       /* in the file */
+    uint64_t packed, size; /* bytes in the file, bytes of the data */
+} Member;
+
+typedef struct Zip {
+    int draft;        /* base/file.h */
+    const char *path; /* for messages */
+    uint64_t used;    /* bytes written */
+} Zip;
 
 /* Noon of 1980-01-01. */
 enum { DOS_TIME = 12 << 11, DOS_DATE = 1 << 5 | 1 };
@@ -158,10 +158,7 @@ enum { DOS_TIME = 12 << 11, DOS_DATE = 1 << 5 | 1 };
 enum { MADE_BY = 3 << 8 | 63, NEEDS_DEFLATE = 20 };
 static const uint32_t ATTRIBUTES = 0100666U << 16;
 
-enum { LOCAL_SIZE = 30, ENTRY_SIZE = 46, ZIP_WRITE_END_SIZE = 22, METHOD_DEFLATE = 8 };
-
-/* Readers accept no larger file. */
-static const uint64_t MOST = UINT64_C(1) << 31;
+enum { LOCAL_SIZE = 30, ENTRY_SIZE = 46, END_SIZE = 22, METHOD_DEFLATE = 8 };
 
 typedef struct Record {
     unsigned char bytes[ENTRY_SIZE];
@@ -179,7 +176,7 @@ static void put32(Record *record, uint32_t value) {
 }
 
 /* What a member's local header and its entry in the directory share. */
-static void put_common(Record *record, const ZipMember *member) {
+static void put_common(Record *record, const Member *member) {
     put16(record, NEEDS_DEFLATE);
     put16(record, 0); /* flags */
     put16(record, METHOD_DEFLATE);
@@ -192,7 +189,7 @@ static void put_common(Record *record, const ZipMember *member) {
     put16(record, 0); /* extra field */
 }
 
-static Record local_header(const ZipMember *member) {
+static Record local_header(const Member *member) {
     Record record = {.used = 0};
     put32(&record, 0x04034b50);
     put_common(&record, member);
@@ -200,7 +197,7 @@ static Record local_header(const ZipMember *member) {
     return record;
 }
 
-static Record directory_entry(const ZipMember *member) {
+static Record directory_entry(const Member *member) {
     Record record = {.used = 0};
     put32(&record, 0x02014b50);
     put16(&record, MADE_BY);
@@ -214,33 +211,20 @@ static Record directory_entry(const ZipMember *member) {
     return record;
 }
 
-static bool add_size(ZipWriter *zip, uint64_t size, Error *error) {
-    if (size > MOST || zip->used + size > MOST)
+static bool add_size(Zip *zip, uint64_t size, Error *error) {
+    if (size > NPZ_MAX_BYTES || zip->used + size > NPZ_MAX_BYTES) /* readers accept no larger file */
         return error_input(error, zip->path, "cannot write: its arrays are larger than 2 GiB together");
     zip->used += size;
     return true;
 }
 
-static bool put(ZipWriter *zip, const void *data, size_t size, Error *error) {
+static bool put(Zip *zip, const void *data, size_t size, Error *error) {
     return add_size(zip, size, error) && file_draft_write(zip->draft, zip->path, data, size, error);
 }
 
-static void zip_writer_free(ZipWriter *zip) {
-    free(zip->members);
-    zip->members = NULL;
-}
-
 /* Begins a member, which is deflated. Its bytes, as they shall be in the file, are then written to the draft. */
-static bool zip_begin(ZipWriter *zip, const char *name, Error *error) {
-    void *members = zip->members;
-    if (!array_reserve(&members, &zip->capacity, zip->count + 1, sizeof *zip->members))
-        return error_memory(error, zip->path);
-    zip->members = members;
-    ZipMember *member = &zip->members[zip->count++];
-    *member = (ZipMember){.offset = (uint32_t)zip->used};
-    int length = snprintf(member->name, sizeof member->name, "%s", name);
-    assert(length > 0 && length < ZIP_NAME_SIZE);
-    (void)length;
+static bool zip_begin(Zip *zip, Member *member, Error *error) {
+    member->offset = (uint32_t)zip->used;
     Record header = local_header(member);
     return put(zip, header.bytes, header.used, error) && put(zip, member->name, strlen(member->name), error);
 }
@@ -258,8 +242,7 @@ static bool overwrite(int file, const unsigned char *data, size_t size, off_t at
 }
 
 /* Ends it: checksum and size of its data before compression, and number of bytes written. */
-static bool zip_end(ZipWriter *zip, uint32_t crc, uint64_t size, uint64_t packed, Error *error) {
-    ZipMember *member = &zip->members[zip->count - 1];
+static bool zip_end(Zip *zip, Member *member, uint32_t crc, uint64_t size, uint64_t packed, Error *error) {
     if (!add_size(zip, packed, error)) return false;
     member->packed = packed;
     member->crc = crc;
@@ -269,93 +252,41 @@ static bool zip_end(ZipWriter *zip, uint32_t crc, uint64_t size, uint64_t packed
            error_system(error, zip->path, "cannot write: %s", strerror(errno));
 }
 
-/* Writes the directory, after the last member. */
-static bool zip_finish(ZipWriter *zip, Error *error) {
-    uint64_t start = zip->used;
-    for (size_t i = 0; i < zip->count; i++) {
-        Record entry = directory_entry(&zip->members[i]);
-        if (!put(zip, entry.bytes, entry.used, error) ||
-            !put(zip, zip->members[i].name, strlen(zip->members[i].name), error))
-            return false;
-    }
+/* After the last member: the entry of each in the directory, then the end of the directory that began at `start`. */
+static bool zip_list(Zip *zip, const Member *member, Error *error) {
+    Record entry = directory_entry(member);
+    return put(zip, entry.bytes, entry.used, error) && put(zip, member->name, strlen(member->name), error);
+}
+
+static bool zip_finish(Zip *zip, int count, uint64_t start, Error *error) {
     Record end = {.used = 0};
     put32(&end, 0x06054b50);
     put16(&end, 0); /* this disk */
     put16(&end, 0); /* disk of the directory */
-    put16(&end, (uint32_t)zip->count);
-    put16(&end, (uint32_t)zip->count);
+    put16(&end, (uint32_t)count);
+    put16(&end, (uint32_t)count);
     put32(&end, (uint32_t)(zip->used - start));
     put32(&end, (uint32_t)start);
     put16(&end, 0); /* comment */
-    assert(end.used == ZIP_WRITE_END_SIZE);
+    assert(end.used == END_SIZE);
     return put(zip, end.bytes, end.used, error);
 }
 
-/* Checks a zip's directory before libzip reads it. */
-
-/* The end record (its size, and the longest comment that may follow it), and the locator before it in a zip64. */
-enum {
-    ZIP_DIRECTORY_END_SIZE = 22,
-    COMMENT_MAX = 65535,
-    LOCATOR_SIZE = 20,
-    TAIL_MAX = LOCATOR_SIZE + ZIP_DIRECTORY_END_SIZE + COMMENT_MAX
-};
-
-/* Twice the size of 256 entries with names of 64 bytes. */
-enum { DIRECTORY_MAX = 65536 };
-
-/* Compressed data looks like an end record once in 65,000 files; more of them are an attack. */
-enum { ENDS_MAX = 3 };
-
-static uint32_t little_endian(const unsigned char *bytes) {
-    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-}
-
-static bool check_tail(const unsigned char *tail, size_t length, uint64_t size, const char *path, Error *error) {
-    int ends = 0;
-    for (size_t i = 0; i + ZIP_DIRECTORY_END_SIZE <= length; i++) {
-        if (memcmp(tail + i, "PK\5\6", 4) != 0) continue;
-        uint64_t directory = little_endian(tail + i + 12), position = size - length + i;
-        bool zip64 = i >= LOCATOR_SIZE && memcmp(tail + i - LOCATOR_SIZE, "PK\6\7", 4) == 0;
-        /* libzip refuses a directory that begins before the file. */
-        if (zip64 || (directory > DIRECTORY_MAX && directory <= position) || ++ends > ENDS_MAX)
-            return error_input(error, path, "not .npz: its directory is too large");
-    }
-    return ends > 0 || error_input(error, path, "not .npz, or cut off");
-}
-
-bool zip_directory_check(int descriptor, uint64_t size, const char *path, Error *error) {
-    size_t length = size < TAIL_MAX ? (size_t)size : TAIL_MAX, used = 0;
-    unsigned char *tail = malloc(TAIL_MAX);
-    if (tail == NULL) return error_memory(error, path);
-    bool done = true;
-    while (done && used < length) {
-        ssize_t got = pread(descriptor, tail + used, length - used, (off_t)(size - length + used));
-        if (got < 0 && errno == EINTR) continue;
-        if (got < 0) done = error_system(error, path, "cannot read: %s", strerror(errno));
-        if (got == 0) done = error_input(error, path, "not .npz, or cut off");
-        if (got > 0) used += (size_t)got;
-    }
-    done = done && check_tail(tail, length, size, path, error);
-    free(tail);
-    return done;
-}
-
+/* An array of the stream. */
 typedef struct Column {
-    char name[ZIP_NAME_SIZE]; /* with .npy */
-    NpyHead head;             /* shape[0]: rows so far */
-    uint64_t row_size;        /* bytes */
-    const void *data;         /* all of it, or NULL: */
-    void *kept;               /* [used] the rows, until they are large */
+    Member member;
+    NpyHead head;      /* shape[0]: rows so far */
+    uint64_t row_size; /* bytes */
+    const void *data;  /* all of it, or NULL: */
+    void *kept;        /* [used] the rows, until they are large */
     size_t used, capacity;
     int spill;            /* then this file; -1: none */
-    NpzPack pack;         /* into it */
+    Pack pack;            /* into it */
     uint32_t *characters; /* of a text, in UTF-32 */
 } Column;
 
 struct NpzStream {
-    char *path;
-    ZipWriter zip;
+    Zip zip; /* its path is behind the columns */
     int count, most;
     Column columns[]; /* [most] */
 };
@@ -363,21 +294,20 @@ struct NpzStream {
 static void column_free(Column *column) {
     free(column->kept);
     free(column->characters);
-    npz_pack_free(&column->pack);
+    pack_free(&column->pack);
     if (column->spill >= 0) close(column->spill);
     column->kept = column->characters = NULL;
     column->spill = -1;
 }
 
 NpzStream *npz_stream_create(const char *path, int most, Error *error) {
-    NpzStream *stream = calloc(1, sizeof *stream + (size_t)most * sizeof *stream->columns);
-    if (stream == NULL || (stream->path = strdup(path)) == NULL) {
-        free(stream);
+    NpzStream *stream = calloc(1, sizeof *stream + (size_t)most * sizeof *stream->columns + strlen(path) + 1);
+    if (stream == NULL) {
         error_memory(error, path);
         return NULL;
     }
     stream->most = most;
-    stream->zip.path = stream->path;
+    stream->zip.path = strcpy((char *)&stream->columns[most], path);
     stream->zip.draft = file_draft(path, error);
     if (stream->zip.draft >= 0) return stream;
     npz_stream_destroy(stream);
@@ -388,8 +318,6 @@ void npz_stream_destroy(NpzStream *stream) {
     if (stream == NULL) return;
     for (int i = 0; i < stream->count; i++) column_free(&stream->columns[i]);
     if (stream->zip.draft >= 0) close(stream->zip.draft);
-    zip_writer_free(&stream->zip);
-    free(stream->path);
     free(stream);
 }
 
@@ -410,8 +338,8 @@ static bool decode_text(Column *column, const NpzArray *array, const char *path,
 }
 
 static bool measure(NpzStream *stream, Column *column, Error *error) {
-    return npy_measure(&column->head) || error_input(error, stream->path, "cannot store '%.*s': larger than 2 GiB",
-                                                     (int)strlen(column->name) - 4, column->name);
+    return npy_measure(&column->head) || error_input(error, stream->zip.path, "cannot store '%.*s': larger than 2 GiB",
+                                                     (int)strlen(column->member.name) - 4, column->member.name);
 }
 
 int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error) {
@@ -419,11 +347,11 @@ int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error) {
     assert(array->rank <= NPZ_MAX_RANK && (array->type != NPZ_TEXT || array->rank == 0));
     Column *column = &stream->columns[stream->count++];
     *column = (Column){.head = {.type = array->type, .rank = array->rank}, .data = array->data, .spill = -1};
-    int length = snprintf(column->name, sizeof column->name, "%s.npy", array->name);
-    assert(length > 0 && length < ZIP_NAME_SIZE);
+    int length = snprintf(column->member.name, sizeof column->member.name, "%s.npy", array->name);
+    assert(length > 0 && length < NAME_SIZE);
     (void)length;
     memcpy(column->head.shape, array->shape, sizeof array->shape);
-    if (array->type == NPZ_TEXT && !decode_text(column, array, stream->path, error)) return -1;
+    if (array->type == NPZ_TEXT && !decode_text(column, array, stream->zip.path, error)) return -1;
     if (array->data == NULL && array->rank > 0) {
         column->head.shape[0] = 1;
         if (!measure(stream, column, error)) return -1;
@@ -435,9 +363,9 @@ int npz_stream_add(NpzStream *stream, const NpzArray *array, Error *error) {
 
 /* What was kept and all that follows goes into a file. */
 static bool spill(NpzStream *stream, Column *column, Error *error) {
-    column->spill = file_draft(stream->path, error);
-    if (column->spill < 0 || !npz_pack_begin(&column->pack, true, column->spill, stream->path, error) ||
-        !npz_pack_put(&column->pack, column->kept, column->used, error))
+    column->spill = file_draft(stream->zip.path, error);
+    if (column->spill < 0 || !pack_begin(&column->pack, true, column->spill, stream->zip.path, error) ||
+        !pack_put(&column->pack, column->kept, column->used, error))
         return false;
     free(column->kept);
     column->kept = NULL;
@@ -452,9 +380,9 @@ bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t c
     if (!measure(stream, column, error)) return false;
     if (size == 0) return true;
     if (column->spill < 0 && column->used + size >= NPZ_LARGE && !spill(stream, column, error)) return false;
-    if (column->spill >= 0) return npz_pack_put(&column->pack, rows, size, error);
+    if (column->spill >= 0) return pack_put(&column->pack, rows, size, error);
     if (!array_reserve(&column->kept, &column->capacity, column->used + size, 1) || column->kept == NULL)
-        return error_memory(error, stream->path);
+        return error_memory(error, stream->zip.path);
     memcpy((char *)column->kept + column->used, rows, size);
     column->used += size;
     return true;
@@ -462,41 +390,40 @@ bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t c
 
 /* Deflates header and data together. */
 static bool write_small(NpzStream *stream, Column *column, const char *head, Error *error) {
-    NpzPack *pack = &column->pack;
+    Pack *pack = &column->pack;
     const void *data = column->data != NULL ? column->data : column->kept;
-    return zip_begin(&stream->zip, column->name, error) &&
-           npz_pack_begin(pack, false, stream->zip.draft, stream->path, error) &&
-           npz_pack_put(pack, head, column->head.head_size, error) &&
-           npz_pack_put(pack, data, column->head.data_size, error) && npz_pack_end(pack, error) &&
-           zip_end(&stream->zip, pack->crc, pack->size, pack->packed, error);
+    return zip_begin(&stream->zip, &column->member, error) &&
+           pack_begin(pack, false, stream->zip.draft, stream->zip.path, error) &&
+           pack_put(pack, head, column->head.head_size, error) && pack_put(pack, data, column->head.data_size, error) &&
+           pack_end(pack, error) && zip_end(&stream->zip, &column->member, pack->crc, pack->size, pack->packed, error);
 }
 
 static bool copy_spilled(NpzStream *stream, const Column *column, Error *error) {
     return file_copy(stream->zip.draft, column->spill) ||
-           error_system(error, stream->path, "cannot write: %s", strerror(errno));
+           error_system(error, stream->zip.path, "cannot write: %s", strerror(errno));
 }
 
 /* The header is a block of its own: of rows that were appended, it is known last. */
 static bool write_large(NpzStream *stream, Column *column, const char *head, Error *error) {
-    NpzPack whole = {0}, *pack = &whole;
+    Pack whole = {0}, *pack = &whole;
     const bool spilled = column->spill >= 0;
     const size_t head_size = column->head.head_size;
-    bool done = zip_begin(&stream->zip, column->name, error) &&
-                npz_pack_begin(&whole, true, stream->zip.draft, stream->path, error) &&
-                npz_pack_put_stored(&whole, head, head_size, error);
+    bool done = zip_begin(&stream->zip, &column->member, error) &&
+                pack_begin(&whole, true, stream->zip.draft, stream->zip.path, error) &&
+                pack_put_stored(&whole, head, head_size, error);
     if (done && spilled) {
         pack = &column->pack;
-        done = npz_pack_end(pack, error) && copy_spilled(stream, column, error);
+        done = pack_end(pack, error) && copy_spilled(stream, column, error);
         pack->packed += whole.packed;
     } else if (done) {
-        done = npz_pack_put(pack, column->data, column->head.data_size, error) && npz_pack_end(pack, error);
+        done = pack_put(pack, column->data, column->head.data_size, error) && pack_end(pack, error);
     }
     if (done) {
         const uint32_t head_crc = libdeflate_crc32(0, head, head_size);
-        done = zip_end(&stream->zip, (uint32_t)crc32_combine(head_crc, pack->crc, (off_t)pack->size),
+        done = zip_end(&stream->zip, &column->member, (uint32_t)crc32_combine(head_crc, pack->crc, (off_t)pack->size),
                        head_size + pack->size, pack->packed, error);
     }
-    npz_pack_free(&whole);
+    pack_free(&whole);
     return done;
 }
 
@@ -511,7 +438,11 @@ static bool write_column(NpzStream *stream, Column *column, Error *error) {
 bool npz_stream_finish(NpzStream *stream, Error *error) {
     for (int i = 0; i < stream->count; i++)
         if (!write_column(stream, &stream->columns[i], error)) return false;
-    return zip_finish(&stream->zip, error) && file_draft_publish(stream->zip.draft, stream->path, error);
+    const uint64_t start = stream->zip.used;
+    for (int i = 0; i < stream->count; i++)
+        if (!zip_list(&stream->zip, &stream->columns[i].member, error)) return false;
+    return zip_finish(&stream->zip, stream->count, start, error) &&
+           file_draft_publish(stream->zip.draft, stream->zip.path, error);
 }
 
 bool npz_write(const char *path, const NpzArray *arrays, size_t count, Error *error) {

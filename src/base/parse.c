@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Numbers from text. */
+/* Numbers from text, and the settings of a method. */
 #include "base/base.h"
 
 #include <errno.h>
@@ -7,7 +7,6 @@
 #include <locale.h>
 #include <math.h>
 #include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,8 +36,7 @@ static const char *decimal_end(const char *text) {
     return end;
 }
 
-/* strtof and strtod use the decimal point of the thread's locale, so the C locale is set meanwhile.
- */
+/* strtof and strtod use the decimal point of the thread's locale, so the C locale is set meanwhile. */
 static locale_t enter_c_locale(void) {
     locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     return c == (locale_t)0 ? c : uselocale(c);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE
+/* Text that is printed into memory. */
 #include "base/file.h"
 
+#include <locale.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,4 +67,22 @@ FILE *memory_stream(char **text, size_t *size) {
     *size = 0;
     *stream = (MemoryStream){.text = text, .size = size, .capacity = FIRST};
     return file;
+}
+
+char *file_print(void (*print)(FILE *out, const void *context), const void *context, size_t *size) {
+    char *text = NULL;
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    FILE *out = c != (locale_t)0 ? memory_stream(&text, size) : NULL;
+    bool done = out != NULL;
+    if (done) {
+        locale_t previous = uselocale(c);
+        print(out, context);
+        uselocale(previous);
+        done = ferror(out) == 0;
+        done = fclose(out) == 0 && done;
+    }
+    if (c != (locale_t)0) freelocale(c);
+    if (done) return text;
+    free(text);
+    return NULL;
 }

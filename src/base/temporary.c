@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whose a temporary file is. Several machines may share a folder, and their process ids and clocks may be equal; locks may
-   hold on one machine only, or nowhere. So the machine is in the name, and only there can a process be looked up. */
+/* Temporary files, the removal of those that killed processes left, and reservations of files and folders. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -21,6 +20,13 @@
 #include <sys/utsname.h>
 #include <time.h>
 #include <unistd.h>
+
+/* Whose a temporary file is. Several machines may share a folder, and their process ids and clocks may be equal; locks may
+   hold on one machine only, or nowhere. So the machine is in the name, and only there can a process be looked up. Two
+   machines, two starts of one, and two containers of one have different names. */
+
+/* "MACHINE-PID-", with which names of temporary files begin. */
+enum { OWNER_SIZE = 48 };
 
 static char machine[9];
 
@@ -45,17 +51,17 @@ static void identify(void) {
     snprintf(machine, sizeof machine, "%08" PRIx32, (uint32_t)hash_xxh3(&known, sizeof known));
 }
 
-static void temporary_owner(char owner[TEMPORARY_OWNER]) {
+static void print_owner(char owner[OWNER_SIZE]) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, identify);
-    snprintf(owner, TEMPORARY_OWNER, "%s-%ld-", machine, (long)getpid());
+    snprintf(owner, OWNER_SIZE, "%s-%ld-", machine, (long)getpid());
 }
 
 /* Whether the name begins with an owner on this machine whose process has ended. */
-static bool temporary_owner_ended(const char *name) {
-    char own[TEMPORARY_OWNER], *end;
+static bool owner_has_ended(const char *name) {
+    char own[OWNER_SIZE], *end;
     /* MACHINE- has as many characters as the array that holds MACHINE. */
-    temporary_owner(own);
+    print_owner(own);
     if (strncmp(name, own, sizeof machine) != 0) return false;
     const long process = strtol(name + sizeof machine, &end, 10);
     return *end == '-' && process > 0 && process == (pid_t)process && kill((pid_t)process, 0) != 0 && errno == ESRCH;
@@ -70,9 +76,9 @@ const char *temporary_files_folder(void) {
 
 static bool print_name(TemporaryFile *temporary, const char *path, unsigned attempt) {
     struct timespec now;
-    char owner[TEMPORARY_OWNER];
+    char owner[OWNER_SIZE];
     clock_gettime(CLOCK_REALTIME, &now);
-    temporary_owner(owner);
+    print_owner(owner);
     const int length = snprintf(temporary->name, sizeof temporary->name, "%.*s.twinbox-%s%lx-%u.tmp",
                                 (int)file_folder_length(path), path, owner, (unsigned long)now.tv_nsec, attempt);
     if (length >= 0 && (size_t)length < sizeof temporary->name) return true;
@@ -82,7 +88,7 @@ static bool print_name(TemporaryFile *temporary, const char *path, unsigned atte
 
 /* Takes the lock that files in use have, without waiting. False if another process has it, or if the file has lost its
    name to a process that found it unlocked. True where the file system has no locks. */
-static bool temporary_lock(int file) {
+static bool lock_as_in_use(int file) {
     struct stat status;
     if (flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
     return fstat(file, &status) != 0 || status.st_nlink > 0;
@@ -92,7 +98,7 @@ static bool temporary_lock(int file) {
 static bool open_named(TemporaryFile *temporary, const char *path) {
     for (unsigned attempt = 0; attempt <= ATTEMPTS && print_name(temporary, path, attempt); attempt++) {
         temporary->file = openat(temporary->at, temporary->name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (temporary->file >= 0 && temporary_lock(temporary->file)) return true;
+        if (temporary->file >= 0 && lock_as_in_use(temporary->file)) return true;
         if (temporary->file < 0 && errno != EEXIST) break;
         if (temporary->file >= 0) temporary_close(temporary);
     }
@@ -180,7 +186,7 @@ void temporary_close(TemporaryFile *temporary) {
     errno = cause;
 }
 
-/* Temporary files of killed processes of this machine, and reservations (file_reserve.h) that nobody has locked. */
+/* Temporary files of killed processes of this machine, and reservations that nobody has locked. */
 
 enum { REMEMBERED = 16 };
 
@@ -217,7 +223,7 @@ static void remove_dead(int folder, const char *name, bool (*lock)(int)) {
     close(file);
 }
 
-static bool is_locked_now(int file) { return flock(file, LOCK_EX | LOCK_NB) == 0; }
+static bool lock_now(int file) { return flock(file, LOCK_EX | LOCK_NB) == 0; }
 
 /* Reservations have no owner in their names. A temporary file may be in use by children of a process that has ended. */
 static void visit(int folder, const char *name) {
@@ -225,9 +231,9 @@ static void visit(int folder, const char *name) {
     const char *owner = name + sizeof start - 1;
     if (strncmp(name, start, sizeof start - 1) != 0 || !file_name_ends_with(name, ".tmp")) return;
     if (strchr(owner, '-') == NULL)
-        remove_dead(folder, name, is_locked_now);
-    else if (temporary_owner_ended(owner))
-        remove_dead(folder, name, temporary_lock);
+        remove_dead(folder, name, lock_now);
+    else if (owner_has_ended(owner))
+        remove_dead(folder, name, lock_as_in_use);
 }
 
 void temporary_sweep(int at, const char *path) {
@@ -245,6 +251,8 @@ void temporary_sweep(int at, const char *path) {
     for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) visit(folder, entry->d_name);
     closedir(entries);
 }
+
+/* Reservations: files and folders that only one process at a time writes. */
 
 /* The process that has locked a file: flock() itself does not tell. 0: unknown, or it has ended. */
 static long find_holder(const struct stat *file) {
@@ -271,8 +279,10 @@ static bool refuse(const char *path, const char *what, long holder, Error *error
     return error_system(error, path, "%s %s; wait until it ends, or choose another name", name, what);
 }
 
-/* The drawing processes of a render that was killed end after their frame, which must not replace one drawn later. */
-bool lock_take(int file, const char *path, const char *what, Error *error) {
+/* Locks an open file or folder until all copies of it are closed. ERROR_SYSTEM names the process that has the lock: "another
+   process (NUMBER) `what`". True where the file system has no locks. Waits shortly for the children of a process that has
+   ended: the drawing processes of a render that was killed end after their frame, which must not replace one drawn later. */
+static bool take_lock(int file, const char *path, const char *what, Error *error) {
     struct stat status;
     static const double patience = 0.2, patience_with_children = 30; /* s */
     const double begun = clock_seconds();
@@ -286,4 +296,98 @@ bool lock_take(int file, const char *path, const char *what, Error *error) {
         nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
     }
     return true;
+}
+
+/* OpenMP calls exit() when it gets no memory or no thread. */
+static TemporaryFile *held;
+
+static void remove_held(void) {
+    if (held != NULL) temporary_remove_name(held);
+}
+
+/* False if the process that had the file removed its name while this one waited. */
+static bool has_name(const TemporaryFile *lock) {
+    struct stat opened, named;
+    return fstat(lock->file, &opened) == 0 && stat(lock->name, &named) == 0 && same_file(&opened, &named);
+}
+
+static bool take_file(TemporaryFile *lock, const char *path, Error *error) {
+    do {
+        if (lock->file >= 0) close(lock->file);
+        lock->file = open(lock->name, O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (lock->file < 0) return error_system(error, path, "cannot be locked: %s", strerror(errno));
+        if (!take_lock(lock->file, path, "is making this file", error)) return false;
+    } while (!has_name(lock));
+    return true;
+}
+
+bool file_reserve(FileReservation *reservation, const char *path, Error *error) {
+    TemporaryFile *lock = &reservation->lock;
+    const size_t folder = file_folder_length(path);
+    struct stat status;
+    *lock = (TemporaryFile){.at = AT_FDCWD, .file = -1};
+    if (path_is_standard(path) || (stat(path, &status) == 0 && !S_ISREG(status.st_mode))) return true;
+    if (!file_path(lock->name, sizeof lock->name, error, "%.*s.twinbox-%016" PRIx64 ".tmp", (int)folder, path,
+                   hash_xxh3(path + folder, strlen(path + folder))))
+        return false;
+    if (!take_file(lock, path, error)) {
+        if (lock->file >= 0) close(lock->file);
+        return false;
+    }
+    if (held == NULL) atexit(remove_held);
+    held = lock;
+    return true;
+}
+
+bool file_release(FileReservation *reservation, Error *error) {
+    char name[PATH_MAX];
+    held = NULL;
+    strcpy(name, reservation->lock.name);
+    const bool done = temporary_remove_name(&reservation->lock) ||
+                      error_system(error, name, "cannot be removed: %s", strerror(errno));
+    temporary_close(&reservation->lock);
+    return done;
+}
+
+/* A command writes into two folders at most. */
+enum { FOLDERS = 8 };
+
+/* The reserved folders. Their files stay open. */
+static struct {
+    struct stat status[FOLDERS];
+    int files[FOLDERS], count;
+} reserved;
+
+static bool is_reserved(const struct stat *folder) {
+    for (int i = 0; i < reserved.count && i < FOLDERS; i++)
+        if (same_file(&reserved.status[i], folder)) return true;
+    return false;
+}
+
+/* Of more, the oldest is given back. */
+static void keep(int file, const struct stat *folder) {
+    const int place = reserved.count++ % FOLDERS;
+    if (reserved.count > FOLDERS) close(reserved.files[place]);
+    reserved.files[place] = file;
+    reserved.status[place] = *folder;
+}
+
+bool folder_reserve(const char *folder, Error *error) {
+    struct stat status;
+    if (!file_make_directory(folder, error)) return false;
+    const int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    /* A folder that cannot be read may be one that can be written into. */
+    if (file < 0 && errno == EACCES) return true;
+    if (file < 0 || fstat(file, &status) != 0) {
+        error_system(error, folder, "cannot be opened: %s", strerror(errno));
+        if (file >= 0) close(file);
+        return false;
+    }
+    const bool known = is_reserved(&status),
+               done = known || take_lock(file, folder, "is writing into this folder", error);
+    if (done && !known)
+        keep(file, &status);
+    else
+        close(file);
+    return done;
 }

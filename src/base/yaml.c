@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is wrong with the syntax of a YAML file, for those who write scenes, not parsers. */
+/* Reads YAML files with libyaml: their text, which is checked first and shown in messages, then their tree, then mappings by
+   tables of keys. */
 #include "base/yaml.h"
 
 #include "base/base.h"
@@ -168,7 +169,10 @@ static bool check_text(const Source *source, Error *error) {
     return true;
 }
 
-static void source_free(Source *source);
+static void source_free(Source *source) {
+    free(source->text);
+    source->text = NULL;
+}
 
 /* Reads a file of UTF-8 text: no control characters but tab and line end, no YAML directive (a line that begins with '%').
    A byte order mark is dropped. On failure there is nothing to free. */
@@ -186,14 +190,10 @@ static bool source_read(Source *source, const char *path, Error *error) {
     return false;
 }
 
-static void source_free(Source *source) {
-    free(source->text);
-    source->text = NULL;
-}
-
+/* What is wrong with the syntax, for those who write scenes, not parsers. */
 static const struct {
     const char *problem, *words;
-} table[] = {
+} syntax_problems[] = {
     {"could not find expected ':'", "a key needs a ':' and a blank behind it"},
     {"did not find expected '-' indicator", "expected '- ' for the next item; check the indentation"},
     {"did not find expected ',' or ']'", "expected ',' or ']'"},
@@ -211,8 +211,8 @@ static const struct {
 static const char *syntax_words(const char *problem, char at) {
     if (strcmp(problem, "found character that cannot start any token") == 0)
         return at == '\t' ? "a tab must not indent; use blanks" : "a text cannot begin with this character; use quotes";
-    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
-        if (strcmp(problem, table[i].problem) == 0) return table[i].words;
+    for (size_t i = 0; i < sizeof syntax_problems / sizeof *syntax_problems; i++)
+        if (strcmp(problem, syntax_problems[i].problem) == 0) return syntax_problems[i].words;
     return problem;
 }
 
@@ -329,7 +329,7 @@ static bool take_event(Builder *builder, const yaml_event_t *event, Error *error
     }
 }
 
-/* A text without end, or a key without colon, is shown where it begins. source.c has refused what libyaml's reader would. */
+/* A text without end, or a key without colon, is shown where it begins. check_text() has refused what libyaml's reader would. */
 static bool syntax_error(const Builder *builder, const yaml_parser_t *parser, Error *error) {
     const Source *source = &builder->tree->source;
     if (parser->error == YAML_MEMORY_ERROR) return error_memory(error, source->path);

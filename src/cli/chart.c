@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The pages of a chart: each plays the launch that was worst for a point beside the converged run. */
+/* twinbox chart: the command, and the pages of a chart, each of which plays the launch that was worst for a point beside the
+   converged run. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -242,11 +243,6 @@ static bool draw_equal_time(const char *csv, const char *folder, Error *error) {
     return true;
 }
 
-static bool is_table(const char *path) {
-    const size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".csv") == 0;
-}
-
 static bool draw_scenes(const ChartTable *table, const char *csv, const char *folder, Error *error) {
     for (int i = 0; i < table->count; i++) {
         int first = 0;
@@ -321,7 +317,7 @@ bool command_chart(int argc, char **argv, Error *error) {
     if (launches->bomb_x.count > 0 && (launches->table != NULL || launches->count > 0))
         return error_input(error, "--bomb-x", "cannot be combined with --launches");
     for (int i = 0; i < options.study.scene_count; i++)
-        if (is_table(options.scenes[i])) return draw_again(&options, options.scenes[i], error);
+        if (file_name_ends_with(options.scenes[i], ".csv")) return draw_again(&options, options.scenes[i], error);
     for (int i = 0; i < options.study.scene_count; i++) { /* a scene has its file's name */
         const char *path = options.scenes[i];
         if (!type_check(path + file_folder_length(path), path, error)) return false;

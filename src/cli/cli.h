@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What commands share: checks of outputs, notes, progress, panels, pages, completion, and the list of the commands. */
+/* The list of the commands, and what they share: notes, progress, outputs, options, panels, drawing, pages. */
 #pragma once
 #include "base/base.h"
 #include "base/csv.h"
@@ -17,23 +17,73 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Checks of output paths before the work begins, so that hours of training do not end in "cannot write". A check leaves
-   nothing behind. What may still fail later (a full disk) is reported by the writer. */
+/* The commands of twinbox. Each is one file, with its option table and glue only, and one line here. */
 
-/* A file can be written to `path`: its folder exists and takes new files, and the path is no folder. ending: of the name,
-   such as ".npz"; NULL: any. "-" (standard output), devices and pipes pass. ERROR_INPUT: another ending, or a folder;
-   ERROR_SYSTEM: the folder is missing or takes no files. */
-bool output_check_file(const char *path, const char *ending, Error *error);
+#define COMMANDS(COMMAND)                                                          \
+    COMMAND(new, "write a commented scene to start from")                          \
+    COMMAND(check, "validate a scene and draw its first frame")                    \
+    COMMAND(simulate, "run a scene with one method and store the trajectory")      \
+    COMMAND(render, "draw runs side by side as PNG frames and videos")             \
+    COMMAND(page, "write a page that plays runs side by side in a browser")        \
+    COMMAND(compare, "compare two trajectories or two PNG sequences")              \
+    COMMAND(approve, "accept the changes that a report of compare shows")          \
+    COMMAND(diverge, "find why two trajectories diverge, and how fast")            \
+    COMMAND(figure, "draw a figure for a paper from runs")                         \
+    COMMAND(import, "store the run of another program, from CSV")                  \
+    COMMAND(export, "write a run as CSV, JSON or a script for Blender")            \
+    COMMAND(dataset, "record what the engine's solver does to each touching pair") \
+    COMMAND(train, "train the network of a method")                                \
+    COMMAND(chart, "measure speed against accuracy for every method")              \
+    COMMAND(paper, "reproduce the paper, from seed to report")                     \
+    COMMAND(stability, "find where each method fails")                             \
+    COMMAND(merge, "join what the shards of a study did")                          \
+    COMMAND(problem, "write the contact problem of one step to a file")            \
+    COMMAND(solve, "solve one contact problem with many methods and score them")   \
+    COMMAND(methods, "list the methods and their settings")                        \
+    COMMAND(completion, NULL)
 
-/* The same for a .npz file of this kind (npz_check_kind; NULL: a run, which has none). ERROR_INPUT also if there is a file
-   of another kind: it must not be lost by a mistyped name. */
-bool output_check_npz(const char *path, const char *kind, Error *error);
+typedef struct Command {
+    const char *name, *summary; /* summary NULL: not listed */
+    /* True: done and equal (exit status 0). False: different (1) or, with error set, failed: the caller prints the error
+       and exits with its kind. argv[0] is "twinbox NAME". Bad options and --help end the program from within argp. */
+    bool (*run)(int argc, char **argv, Error *error);
+} Command;
 
-/* The output is, or becomes, a file of that name: not standard output, a device or a pipe. Its pieces can be kept beside it. */
-bool output_is_file(const char *path);
+/* All commands, ended by a NULL name. */
+extern const Command commands[];
 
-/* A folder exists and takes new files, or can be made with its parents. */
-bool output_check_folder(const char *path, Error *error);
+#define COMMAND_DECLARED(name, summary) bool command_##name(int argc, char **argv, Error *error);
+COMMANDS(COMMAND_DECLARED)
+#undef COMMAND_DECLARED
+
+/* What a command prints on standard error beside its errors. The options -q and -v, which every command has, set the
+   level; results and errors do not depend on it. */
+
+typedef enum NoteLevel { NOTES_QUIET, NOTES_NORMAL, NOTES_VERBOSE } NoteLevel;
+
+/* With NOTES_VERBOSE, the lines of base/base.h are printed, too, equal ones once. */
+void note_set_level(NoteLevel level);
+NoteLevel note_level(void);
+
+/* "twinbox: note: TEXT": what the user should know about the result. Not with -q. */
+void note_print(const char *format, ...) PRINTF_LIKE(1, 2);
+
+/* "twinbox: TEXT": how the result came about. Only with -v. */
+void note_verbose(const char *format, ...) PRINTF_LIKE(1, 2);
+
+/* With -v: version, threads and instruction set before the work; time and memory after it. */
+void note_begin(const char *command);
+void note_end(void);
+
+/* A progress bar on a terminal, lines of text elsewhere; with the time left once it is known.
+   A signal requests the work to stop. Work of less than a second shows nothing. There is one bar at a time. */
+
+/* Replaces the bar before it, and returns what the work reports to. Signals that are held stay so. */
+const Progress *progress_bar_begin(const char *what);
+
+/* Removes the bar from the terminal so that a line can be printed; the next report shows it again. */
+void progress_bar_clear(void);
+void progress_bar_end(void);
 
 /* How long work still takes, at the rate of its recent progress. Fed with times: it reads no clock. */
 
@@ -61,15 +111,109 @@ bool time_left_estimate(const TimeLeft *left, double time, double part, double *
 /* "8 s", "6 min 40 s" or "2 h 10 min": no digits that an estimate does not have. */
 void time_left_text(double seconds, char text[TIME_LEFT_TEXT_SIZE]);
 
-/* A progress bar on a terminal, lines of text elsewhere; with the time left once it is known (cli/cli.h).
-   A signal requests the work to stop (interrupt.h). Work of less than a second shows nothing. There is one bar at a time. */
+/* SIGINT (Ctrl-C) and SIGTERM. Either ends the program with exit status 130 (ERROR_INTERRUPTED), in every command: at
+   once where nothing would look at a request, between two pieces of work while signals are held. Files are written
+   beside their name and renamed, so that an end at once leaves no half of one. */
 
-/* Replaces the bar before it, and returns what the work reports to. Signals that are held stay so. */
-const Progress *progress_bar_begin(const char *what);
+/* Handles both signals from here on, also where the shell has a background process ignore them. */
+void interrupt_handle(void);
 
-/* Removes the bar from the terminal so that a line can be printed; the next report shows it again. */
-void progress_bar_clear(void);
-void progress_bar_end(void);
+/* While held, the first signal only requests a stop, and the second ends the program. The calls nest. */
+void interrupt_hold(void);
+void interrupt_release(void);
+
+/* True after a signal. From any thread. */
+bool interrupt_requested(void);
+
+/* The signal was the expected end of the work, which was not interrupted by it. */
+void interrupt_forget(void);
+
+/* Checks of output paths before the work begins, so that hours of training do not end in "cannot write". A check leaves
+   nothing behind. What may still fail later (a full disk) is reported by the writer. */
+
+/* A file can be written to `path`: its folder exists and takes new files, and the path is no folder. ending: of the name,
+   such as ".npz"; NULL: any. "-" (standard output), devices and pipes pass. ERROR_INPUT: another ending, or a folder;
+   ERROR_SYSTEM: the folder is missing or takes no files. */
+bool output_check_file(const char *path, const char *ending, Error *error);
+
+/* The same for a .npz file of this kind (npz_check_kind; NULL: a run, which has none). ERROR_INPUT also if there is a file
+   of another kind: it must not be lost by a mistyped name. */
+bool output_check_npz(const char *path, const char *kind, Error *error);
+
+/* The output is, or becomes, a file of that name: not standard output, a device or a pipe. Its pieces can be kept beside it. */
+bool output_is_file(const char *path);
+
+/* A folder exists and takes new files, or can be made with its parents. */
+bool output_check_folder(const char *path, Error *error);
+
+/* Results as JSON (--json): one object on standard output and nothing else there. Its first key is "format": the name of
+   the command and the version of the keys, "twinbox solve 1". A number that is not finite is null. After an error
+   nothing is printed. */
+
+#define OPTION_JSON(T, member) \
+    "--json", 0, NULL, "Print the result as one JSON object on standard output", OPTION_FLAG(T, member)
+
+/* Refuses --json where a file is written to standard output. */
+bool json_output_check(bool json, Error *error);
+
+/* Prints what `write` puts between the format and the end of the object. */
+typedef void JsonOutputWrite(JsonWriter *json, const void *context);
+bool json_output(const char *format, JsonOutputWrite *write, const void *context, Error *error);
+
+/* "point": [x, y] */
+void json_output_pair(JsonWriter *json, const char *key, double x, double y);
+
+/* The option --frames A:B of commands that show runs. */
+
+typedef struct FrameRange {
+    int first, last; /* inclusive; last -1: to the end */
+} FrameRange;
+
+/* "A:B", ":B", "A:" or "A"; `value` is a FrameRange. */
+OptionRead frames_option_read;
+
+/* Splits text at the first `separator` into two whole numbers. An empty part leaves its number unchanged. */
+bool frames_option_split(const char *text, char separator, int minimum, int maximum, int64_t numbers[2]);
+
+/* The options --camera X,Y,W,H and --view-from RUN of pictures and figures. */
+
+#define CAMERA_OPTION_VIEW "X,Y,W,H: the view around the point (X, Y), W wide and H high, in metres"
+
+/* An option's value "X,Y,W,H". */
+bool camera_option_read(const Option *option, const char *text, void *view, Error *error);
+
+/* Reads the run of --view-from, which the caller destroys; NULL if there is no `path`. ERROR_INPUT beside a view. */
+bool camera_option_load(const char *path, const CameraView *view, Trajectory **run, Error *error);
+
+/* The option --shard of commands whose work can be done in pieces (runs/pieces.h). */
+
+/* The row of a command's table; member: a text, NULL if it is not given. */
+#define OPTION_SHARD(T, member)                                                                                      \
+    "--shard", 0, "I/N", "Do share I of N only; 'twinbox merge' joins them (default: as Slurm or MPI says, or all)", \
+        OPTION_TEXT(T, member)
+
+/* How the command is to run: as a merge, a shard or the whole. A note tells what the environment says. argv must last. */
+bool shard_option_take(PiecesRun *run, const char *option, int argc, char **argv, Error *error);
+
+/* The result of a shard: "shard 3 of 16: 30 pieces ...". output: as given to pieces_open(). */
+void shard_option_print(const Pieces *pieces, const char *output);
+
+/* The next command that runs is a merge. */
+void shard_option_merge(const PiecesRun *run);
+bool shard_option_is_merge(void);
+
+/* Finds the scenes that `cmake --install` put beside the program. */
+
+/* A file or folder given on the command line: the path itself; but if it is relative and there is nothing under it in the
+   working directory, the one of the installed data, if that exists: "/usr/share/twinbox/scenes/stack.yaml" for
+   "scenes/stack.yaml". A name without "/" and "." is a scene's, too: "stack" for "scenes/stack.yaml", of the working
+   directory or installed. Valid until the program ends. */
+const char *installed_path(const char *path);
+
+/* Calls found("stack", context) and found("scenes/stack.yaml", context) for each scene that installed_path() finds by its
+   name, or, but for what the working directory has, by its path. Names may come twice. */
+typedef void InstalledScene(const char *scene, void *context);
+void installed_scenes(InstalledScene *found, void *context);
 
 /* The runs in a picture: read from .npz, or simulated from a scene with the engine and with pair-net. */
 
@@ -100,6 +244,16 @@ bool panels_add_watched(Panels *panels, const Scene *scene, const char *method_n
 /* Writes each run into the directory, under its trajectory_file_name(). */
 bool panels_store(const Panels *panels, const char *directory, Error *error);
 
+/* The time per step of each panel's method, for the captions. */
+
+typedef struct PanelCosts {
+    char texts[RENDER_PANELS_MAX][64];
+} PanelCosts;
+
+/* Reads the costs of the panels from a chart.csv: the same scene, closed loop, at the impact. A run without a row has no
+   cost; a file without any row for the runs is refused. The look then points into `costs`. */
+bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels, RenderLook *look, Error *error);
+
 /* Draws panels as frames and videos, with progress bars. */
 
 enum { DRAW_VIDEOS_MAX = 8 };
@@ -126,6 +280,17 @@ bool draw_videos_use_output(const DrawVideos *videos);
 bool draw_panels(const Panels *panels, const RenderOptions *render, const DrawVideos *videos, RenderStudy *study,
                  RenderResult *result, Error *error);
 
+/* Notes on standard error about pictures that may not show what their user expects. */
+
+/* If the runs are of different scenes. A run without a scene_hash is of an unknown scene, and not compared. */
+void note_different_scenes(const Trajectory *const *runs, int count);
+
+/* If the frames do not contain the impact, -1 for none, around which they are to be slow. */
+void note_missing_impact(const MomentPlan *plan, int impact);
+
+/* If the folder has pictures or runs that are not of the sequence, and not inputs of it. False if it cannot be read. */
+bool note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels, Error *error);
+
 /* What 'twinbox render' does for the shards of a film (render_study()). */
 
 /* Everything that decides the files beside what the manifest tells: the program, the runs, as read or as simulated here, and
@@ -141,94 +306,6 @@ typedef struct RunsPlace {
     const char *directory;
 } RunsPlace;
 bool render_store_runs(void *context, Error *error);
-
-/* What a command prints on standard error beside its errors. The options -q and -v, which every command has, set the
-   level; results and errors do not depend on it. */
-
-typedef enum NoteLevel { NOTES_QUIET, NOTES_NORMAL, NOTES_VERBOSE } NoteLevel;
-
-/* With NOTES_VERBOSE, the lines of base/base.h are printed, too, equal ones once. */
-void note_set_level(NoteLevel level);
-NoteLevel note_level(void);
-
-/* "twinbox: note: TEXT": what the user should know about the result. Not with -q. */
-void note_print(const char *format, ...) PRINTF_LIKE(1, 2);
-
-/* "twinbox: TEXT": how the result came about. Only with -v. */
-void note_verbose(const char *format, ...) PRINTF_LIKE(1, 2);
-
-/* With -v: version, threads and instruction set before the work; time and memory after it. */
-void note_begin(const char *command);
-void note_end(void);
-
-/* Results as JSON (--json): one object on standard output and nothing else there. Its first key is "format": the name of
-   the command and the version of the keys, "twinbox solve 1". A number that is not finite is null. After an error
-   nothing is printed. */
-
-#define OPTION_JSON(T, member) \
-    "--json", 0, NULL, "Print the result as one JSON object on standard output", OPTION_FLAG(T, member)
-
-/* Prints what `write` puts between the format and the end of the object. */
-/* Refuses --json where a file is written to standard output. */
-bool json_output_check(bool json, Error *error);
-
-typedef void JsonOutputWrite(JsonWriter *json, const void *context);
-bool json_output(const char *format, JsonOutputWrite *write, const void *context, Error *error);
-
-/* "point": [x, y] */
-void json_output_pair(JsonWriter *json, const char *key, double x, double y);
-
-/* The scripts in src/cli/completion, each ended by a 0. */
-
-extern const char completion_twinbox_bash[], completion__twinbox[], completion_twinbox_fish[];
-
-/* The options --camera X,Y,W,H and --view-from RUN of pictures and figures. */
-
-#define CAMERA_OPTION_VIEW "X,Y,W,H: the view around the point (X, Y), W wide and H high, in metres"
-
-/* An option's value "X,Y,W,H". */
-bool camera_option_read(const Option *option, const char *text, void *view, Error *error);
-
-/* Reads the run of --view-from, which the caller destroys; NULL if there is no `path`. ERROR_INPUT beside a view. */
-bool camera_option_load(const char *path, const CameraView *view, Trajectory **run, Error *error);
-
-/* Notes on standard error about pictures that may not show what their user expects. */
-
-/* If the runs are of different scenes. A run without a scene_hash is of an unknown scene, and not compared. */
-void note_different_scenes(const Trajectory *const *runs, int count);
-
-/* If the frames do not contain the impact, -1 for none, around which they are to be slow. */
-void note_missing_impact(const MomentPlan *plan, int impact);
-
-/* If the folder has pictures or runs that are not of the sequence, and not inputs of it. False if it cannot be read. */
-bool note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels, Error *error);
-
-/* What `twinbox --version -v` adds: what pictures are drawn by. */
-
-/* A line for each kind of context: Mesa's version and rasteriser, or why it cannot be used. The one that `render` takes
-   by default is marked. */
-void print_contexts(FILE *file);
-
-/* Finds the scenes that `cmake --install` put beside the program. */
-
-/* A file or folder given on the command line: the path itself; but if it is relative and there is nothing under it in the
-   working directory, the one of the installed data, if that exists: "/usr/share/twinbox/scenes/stack.yaml" for
-   "scenes/stack.yaml". A name without "/" and "." is a scene's, too: "stack" for "scenes/stack.yaml", of the working
-   directory or installed. Valid until the program ends. */
-const char *installed_path(const char *path);
-
-/* Calls found("stack", context) and found("scenes/stack.yaml", context) for each scene that installed_path() finds by its
-   name, or, but for what the working directory has, by its path. Names may come twice. */
-typedef void InstalledScene(const char *scene, void *context);
-void installed_scenes(InstalledScene *found, void *context);
-
-/* The scenes of scenes/templates/, embedded in the binary (sources.cmake lists them, too). */
-
-#define TEMPLATES(TEMPLATE) TEMPLATE(wall) TEMPLATE(stack) TEMPLATE(pyramid) TEMPLATE(arch) TEMPLATE(dominoes)
-
-#define TEMPLATE_DECLARED(name) extern const char template_##name##_yaml[];
-TEMPLATES(TEMPLATE_DECLARED)
-#undef TEMPLATE_DECLARED
 
 /* The pages of a study, folder/pages/NAME.html, and the table that lists them. They are written in parts, one after the
    other, so that a study that is interrupted continues with the page that it was at. */
@@ -280,97 +357,20 @@ void page_set_link(char link[PAGE_LINK_SIZE], const PageFile *file, double time,
 /* "14 pages of 2.1 MB -> DIR/pages" and what was left out. */
 void page_set_print(const PageSet *set, const char *html);
 
-/* SIGINT (Ctrl-C) and SIGTERM. Either ends the program with exit status 130 (ERROR_INTERRUPTED), in every command: at
-   once where nothing would look at a request, between two pieces of work while signals are held. Files are written
-   beside their name and renamed, so that an end at once leaves no half of one. */
+/* The scenes of scenes/templates/, embedded in the binary (sources.cmake lists them, too). */
 
-/* Handles both signals from here on, also where the shell has a background process ignore them. */
-void interrupt_handle(void);
+#define TEMPLATES(TEMPLATE) TEMPLATE(wall) TEMPLATE(stack) TEMPLATE(pyramid) TEMPLATE(arch) TEMPLATE(dominoes)
 
-/* While held, the first signal only requests a stop, and the second ends the program. The calls nest. */
-void interrupt_hold(void);
-void interrupt_release(void);
+#define TEMPLATE_DECLARED(name) extern const char template_##name##_yaml[];
+TEMPLATES(TEMPLATE_DECLARED)
+#undef TEMPLATE_DECLARED
 
-/* True after a signal. From any thread. */
-bool interrupt_requested(void);
+/* The scripts in src/cli/completion, each ended by a 0. */
 
-/* The signal was the expected end of the work, which was not interrupted by it. */
-void interrupt_forget(void);
+extern const char completion_twinbox_bash[], completion__twinbox[], completion_twinbox_fish[];
 
-/* The commands of twinbox. Each is one file, with its option table and glue only, and one line here. */
+/* What `twinbox --version -v` adds: what pictures are drawn by. */
 
-#define COMMANDS(COMMAND)                                                          \
-    COMMAND(new, "write a commented scene to start from")                          \
-    COMMAND(check, "validate a scene and draw its first frame")                    \
-    COMMAND(simulate, "run a scene with one method and store the trajectory")      \
-    COMMAND(render, "draw runs side by side as PNG frames and videos")             \
-    COMMAND(page, "write a page that plays runs side by side in a browser")        \
-    COMMAND(compare, "compare two trajectories or two PNG sequences")              \
-    COMMAND(approve, "accept the changes that a report of compare shows")          \
-    COMMAND(diverge, "find why two trajectories diverge, and how fast")            \
-    COMMAND(figure, "draw a figure for a paper from runs")                         \
-    COMMAND(import, "store the run of another program, from CSV")                  \
-    COMMAND(export, "write a run as CSV, JSON or a script for Blender")            \
-    COMMAND(dataset, "record what the engine's solver does to each touching pair") \
-    COMMAND(train, "train the network of a method")                                \
-    COMMAND(chart, "measure speed against accuracy for every method")              \
-    COMMAND(paper, "reproduce the paper, from seed to report")                     \
-    COMMAND(stability, "find where each method fails")                             \
-    COMMAND(merge, "join what the shards of a study did")                          \
-    COMMAND(problem, "write the contact problem of one step to a file")            \
-    COMMAND(solve, "solve one contact problem with many methods and score them")   \
-    COMMAND(methods, "list the methods and their settings")                        \
-    COMMAND(completion, NULL)
-
-typedef struct Command {
-    const char *name, *summary; /* summary NULL: not listed */
-    /* True: done and equal (exit status 0). False: different (1) or, with error set, failed: the caller prints the error
-       and exits with its kind. argv[0] is "twinbox NAME". Bad options and --help end the program from within argp. */
-    bool (*run)(int argc, char **argv, Error *error);
-} Command;
-
-/* All commands, ended by a NULL name. */
-extern const Command commands[];
-
-#define COMMAND_DECLARED(name, summary) bool command_##name(int argc, char **argv, Error *error);
-COMMANDS(COMMAND_DECLARED)
-#undef COMMAND_DECLARED
-
-/* The time per step of each panel's method, for the captions. */
-
-typedef struct PanelCosts {
-    char texts[RENDER_PANELS_MAX][64];
-} PanelCosts;
-
-/* Reads the costs of the panels from a chart.csv: the same scene, closed loop, at the impact. A run without a row has no
-   cost; a file without any row for the runs is refused. The look then points into `costs`. */
-bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels, RenderLook *look, Error *error);
-
-/* The option --frames A:B of commands that show runs. */
-
-typedef struct FrameRange {
-    int first, last; /* inclusive; last -1: to the end */
-} FrameRange;
-
-/* "A:B", ":B", "A:" or "A"; `value` is a FrameRange. */
-OptionRead frames_option_read;
-
-/* Splits text at the first `separator` into two whole numbers. An empty part leaves its number unchanged. */
-bool frames_option_split(const char *text, char separator, int minimum, int maximum, int64_t numbers[2]);
-
-/* The option --shard of commands whose work can be done in pieces (runs/pieces.h). */
-
-/* The row of a command's table; member: a text, NULL if it is not given. */
-#define OPTION_SHARD(T, member)                                                                                      \
-    "--shard", 0, "I/N", "Do share I of N only; 'twinbox merge' joins them (default: as Slurm or MPI says, or all)", \
-        OPTION_TEXT(T, member)
-
-/* How the command is to run: as a merge, a shard or the whole. A note tells what the environment says. argv must last. */
-bool shard_option_take(PiecesRun *run, const char *option, int argc, char **argv, Error *error);
-
-/* The result of a shard: "shard 3 of 16: 30 pieces ...". output: as given to pieces_open(). */
-void shard_option_print(const Pieces *pieces, const char *output);
-
-/* The next command that runs is a merge. */
-void shard_option_merge(const PiecesRun *run);
-bool shard_option_is_merge(void);
+/* A line for each kind of context: Mesa's version and rasteriser, or why it cannot be used. The one that `render` takes
+   by default is marked. */
+void print_contexts(FILE *file);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Options that several commands have, and the checks of their outputs. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"

@@ -173,9 +173,7 @@ static bool compare_options_parse(CompareOptions *options, int argc, char **argv
 static void compare_options_free(CompareOptions *options) { mask_free(&options->mask); }
 
 static bool is_trajectory(const char *path) {
-    size_t length = strlen(path);
-    if (path_is_standard(path)) return true; /* pictures come in folders */
-    return length > 4 && strcmp(path + length - 4, ".npz") == 0;
+    return path_is_standard(path) || file_name_ends_with(path, ".npz"); /* pictures come in folders */
 }
 
 static void print_trajectory_difference(const Trajectory *a, const TrajectoryDifference *difference) {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What compare prints, and how it watches. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"

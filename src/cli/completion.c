@@ -27,21 +27,103 @@ typedef struct CompletionValue {
     const char *scene; /* the first scene on the command line, or NULL */
 } CompletionValue;
 
+/* Prints begin, word and ending as a candidate if it begins with what was typed (behind `begin`). */
+static void offer(const char *begin, const char *typed, const char *word, const char *ending, const char *description) {
+    char whole[COMPLETION_WORD_SIZE];
+    const int length = snprintf(whole, sizeof whole, "%s%s", word, ending);
+    if (length < 0 || (size_t)length >= sizeof whole || strncmp(whole, typed, strlen(typed)) != 0) return;
+    printf("%s%s\t%.*s\n", begin, whole, (int)strcspn(description, "\n"), description);
+}
+
+/* Files: see print_completions(). */
+static void offer_entries(const char *begin, const char *endings) { printf("<files>%s\t%s\n", begin, endings); }
+
+static void offer_folders(const char *begin) { printf("<folders>%s\n", begin); }
+
+/* Methods and their settings, from the registry. */
+
+/* A method's text up to the piece that is being typed: "chart:k=5,mo" has the begin "chart:k=5," and the piece "mo". */
+typedef struct Piece {
+    char begin[COMPLETION_WORD_SIZE];
+    const char *text;
+} Piece;
+
+static Piece piece_behind(const char *begin, const char *typed, const char *text) {
+    Piece piece = {.begin = "", .text = text};
+    text_add(piece.begin, sizeof piece.begin, "%s%.*s", begin, (int)(text - typed), typed);
+    return piece;
+}
+
+static void offer_value(const Piece *piece, const SettingSpec *settings) {
+    const char *equals = strchr(piece->text, '=');
+    const size_t length = (size_t)(equals - piece->text);
+    const Piece value = piece_behind(piece->begin, piece->text, equals + 1);
+    for (const SettingSpec *setting = settings; setting != NULL && setting->key != NULL; setting++) {
+        if (strlen(setting->key) != length || strncmp(setting->key, piece->text, length) != 0) continue;
+        if (strcmp(setting->key, "network") == 0) offer_entries(value.begin, "npz");
+        if (strncmp(setting->summary, "on|off", strlen("on|off")) != 0) continue;
+        offer(value.begin, value.text, "on", "", setting->summary);
+        offer(value.begin, value.text, "off", "", setting->summary);
+    }
+}
+
+static void offer_settings(const Piece *piece, const SettingSpec *settings) {
+    if (strchr(piece->text, '=') != NULL) {
+        offer_value(piece, settings);
+        return;
+    }
+    for (const SettingSpec *setting = settings; setting != NULL && setting->key != NULL; setting++)
+        offer(piece->begin, piece->text, setting->key, "=", setting->summary);
+}
+
+/* A name; with its settings when it is complete. */
+static void offer_method_names(const Piece *piece) {
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        const MethodDescription *method = kind->description;
+        offer(piece->begin, piece->text, method->name, "", method->summary);
+        if (strcmp(method->name, piece->text) != 0) continue;
+        for (const SettingSpec *setting = method->settings; setting != NULL && setting->key != NULL; setting++) {
+            char ending[64];
+            snprintf(ending, sizeof ending, ":%s=", setting->key);
+            offer(piece->begin, piece->text, method->name, ending, setting->summary);
+        }
+    }
+}
+
+/* The first character of the last method of a list: behind the last comma, unless settings go on behind it. */
+static const char *find_last(const char *typed) {
+    const char *last = typed;
+    for (const char *comma = strchr(typed, ','); comma != NULL; comma = strchr(comma + 1, ','))
+        if (method_describe(comma + 1) != NULL) last = comma + 1;
+    return last;
+}
+
+/* A method with settings, "NAME:KEY=VALUE,KEY=VALUE"; with `list`, several separated by commas. */
+static void offer_methods(const char *begin, const char *typed, bool list) {
+    const char *method = list ? find_last(typed) : typed, *colon = strchr(method, ':'), *comma = strrchr(method, ',');
+    const MethodDescription *known = method_describe(method);
+    if (colon != NULL && known != NULL) {
+        const Piece setting = piece_behind(begin, typed, comma != NULL ? comma + 1 : colon + 1);
+        offer_settings(&setting, known->settings);
+    }
+    if (colon == NULL || (list && comma != NULL)) {
+        const Piece name = piece_behind(begin, typed, list && comma != NULL ? comma + 1 : method);
+        offer_method_names(&name);
+    }
+}
+
 /* Values of options. What a value may be is read from its row: names, the name of the value ("FILE.csv", "on|off",
    "SCENE"), and the endings in the help ("Figure to write: .png, .svg or .pdf"). */
 
 static bool has(const char *text, const char *piece) { return strstr(text, piece) != NULL; }
 
-static void completion_offer(const char *begin, const char *typed, const char *word, const char *ending,
-                             const char *description);
-
 /* One of the names; with `list`, further ones separated by commas. */
-static void completion_values_offer_names(const CompletionValue *value, const char *const *names, bool list) {
+static void offer_names(const CompletionValue *value, const char *const *names, bool list) {
     const char *comma = list ? strrchr(value->typed, ',') : NULL;
     const char *typed = comma != NULL ? comma + 1 : value->typed;
     char begin[COMPLETION_WORD_SIZE] = "";
     text_add(begin, sizeof begin, "%s%.*s", value->begin, (int)(typed - value->typed), value->typed);
-    for (int i = 0; names[i] != NULL; i++) completion_offer(begin, typed, names[i], "", "");
+    for (int i = 0; names[i] != NULL; i++) offer(begin, typed, names[i], "", "");
 }
 
 /* "fast|small", but not "N|FILE.csv": words in lower case. */
@@ -53,7 +135,7 @@ static void offer_alternatives(const CompletionValue *value, const char *text) {
         for (size_t i = 0; i < length; i++) lower = lower && islower((unsigned char)text[i]);
         if (lower) {
             snprintf(word, sizeof word, "%.*s", (int)length, text);
-            completion_offer(value->begin, value->typed, word, "", "");
+            offer(value->begin, value->typed, word, "", "");
         }
         text += length + (text[length] == '|');
     }
@@ -67,8 +149,7 @@ static void offer_parameters(const CompletionValue *value) {
         char range[128];
         snprintf(range, sizeof range, "%g to %g%s%s (the scene's: %g)", parameter->from, parameter->to,
                  parameter->unit[0] != '\0' ? " " : "", parameter->unit, parameter->value);
-        completion_offer(value->begin, value->typed, parameter->name, value->option->read == option_set ? "=" : "",
-                         range);
+        offer(value->begin, value->typed, parameter->name, value->option->read == option_set ? "=" : "", range);
     }
     scene_destroy(scene);
 }
@@ -91,11 +172,8 @@ static void find_endings(const char *text, char endings[64]) {
 static void offer_scene(const char *scene, void *context) {
     const CompletionValue *value = context;
     if (strchr(scene, '/') == NULL || strchr(value->typed, '/') != NULL)
-        completion_offer(value->begin, value->typed, scene, "", "scene");
+        offer(value->begin, value->typed, scene, "", "scene");
 }
-
-static void completion_offer_files(const char *begin, const char *endings);
-static void completion_offer_folders(const char *begin);
 
 /* Files that an option takes, by the name of its value. */
 static void offer_files(const CompletionValue *value) {
@@ -103,35 +181,33 @@ static void offer_files(const CompletionValue *value) {
     const char *name = option->value, *help = option->help != NULL ? option->help : "";
     char endings[64], named[64];
     if (has(name, "DIR")) {
-        completion_offer_folders(value->begin);
+        offer_folders(value->begin);
         return;
     }
     find_endings(name, named);
     snprintf(endings, sizeof endings, "%s", named);
     if (endings[0] == '\0') find_endings(help, endings);
     if (has(named, "yaml")) { /* a scene that is written */
-        completion_offer_files(value->begin, named);
+        offer_entries(value->begin, named);
     } else if (has(name, "SCENE")) {
         text_add(named, sizeof named, "%syaml%s", named[0] != '\0' ? " " : "", has(name, "RUN") ? " npz" : "");
-        completion_offer_files(value->begin, named);
+        offer_entries(value->begin, named);
         installed_scenes(offer_scene, (void *)value);
     } else if (endings[0] == '\0' && has(name, "RUN"))
-        completion_offer_files(value->begin, "npz");
+        offer_entries(value->begin, "npz");
     else if (named[0] != '\0' || has(name, "RUN") || has(name, "FILE") || option->name == NULL)
-        completion_offer_files(value->begin, endings);
+        offer_entries(value->begin, endings);
 }
 
-static void completion_print_methods(const char *begin, const char *typed, bool list);
-
-static void completion_print_value(const CompletionValue *value) {
+static void offer_of(const CompletionValue *value) {
     const Option *option = value->option;
     if (option->value == NULL) return;
     if (option->read == option_set || (option->name != NULL && strcmp(option->name, "--vary") == 0))
         offer_parameters(value);
     else if (option->names != NULL)
-        completion_values_offer_names(value, option->names, option->read == option_flags);
+        offer_names(value, option->names, option->read == option_flags);
     else if (has(option->value, "KEY=VALUE") || (option->name != NULL && strcmp(option->name, "--methods") == 0))
-        completion_print_methods(value->begin, value->typed, !has(option->value, "KEY=VALUE"));
+        offer_methods(value->begin, value->typed, !has(option->value, "KEY=VALUE"));
     else {
         offer_alternatives(value, option->value);
         offer_files(value);
@@ -140,25 +216,9 @@ static void completion_print_value(const CompletionValue *value) {
 
 /* Finds out what the last word is: a command, an option, the value of one, or an argument. */
 
-/* Prints begin, word and ending as a candidate if it begins with what was typed (behind `begin`). */
-static void completion_offer(const char *begin, const char *typed, const char *word, const char *ending,
-                             const char *description) {
-    char whole[COMPLETION_WORD_SIZE];
-    const int length = snprintf(whole, sizeof whole, "%s%s", word, ending);
-    if (length < 0 || (size_t)length >= sizeof whole || strncmp(whole, typed, strlen(typed)) != 0) return;
-    printf("%s%s\t%.*s\n", begin, whole, (int)strcspn(description, "\n"), description);
-}
-
-/* Files: see completion_print(). */
-static void completion_offer_files(const char *begin, const char *endings) {
-    printf("<files>%s\t%s\n", begin, endings);
-}
-
-static void completion_offer_folders(const char *begin) { printf("<folders>%s\n", begin); }
-
 static void offer_options(const Option *rows, const char *typed) {
     for (; rows->help != NULL; rows++)
-        if (rows->name != NULL) completion_offer("", typed, rows->name, "", rows->help);
+        if (rows->name != NULL) offer("", typed, rows->name, "", rows->help);
 }
 
 /* The row of "--name" or "--name=value", or NULL. */
@@ -224,35 +284,34 @@ static void complete(const CommandSpec *spec, void *context) {
     } else if (before.waiting == NULL && !before.only_inputs && typed[0] == '-') {
         offer_options(spec->options, typed);
         offer_options(options_of_all, typed);
-        completion_offer("", typed, "--help", "", "Give this help list");
-        completion_offer("", typed, "--version", "", "Print the version");
+        offer("", typed, "--help", "", "Give this help list");
+        offer("", typed, "--version", "", "Print the version");
         return;
     } else if (before.waiting == NULL) {
         /* Names are for the first argument only. */
         Option input = spec->input;
         if (before.inputs > 0) input.names = NULL;
         value.option = &input;
-        if (before.inputs < spec->inputs.most && (input.names == NULL || before.inputs == 0))
-            completion_print_value(&value);
+        if (before.inputs < spec->inputs.most && (input.names == NULL || before.inputs == 0)) offer_of(&value);
         return;
     }
-    completion_print_value(&value);
+    offer_of(&value);
 }
 
 static void complete_command(const char *typed, bool is_first) {
     for (const Command *command = commands; command->name != NULL; command++)
-        if (command->summary != NULL) completion_offer("", typed, command->name, "", command->summary);
+        if (command->summary != NULL) offer("", typed, command->name, "", command->summary);
     if (!is_first) return;
-    completion_offer("", typed, "help", "", "print the help of a command");
+    offer("", typed, "help", "", "print the help of a command");
     if (typed[0] != '-') return;
-    completion_offer("", typed, "--help", "", "list the commands");
-    completion_offer("", typed, "--version", "", "print the version");
+    offer("", typed, "--help", "", "list the commands");
+    offer("", typed, "--version", "", "print the version");
 }
 
 /* Prints what the last word may become, one line each: the whole word, a tab, a description. A line
    "<files>BEGIN<tab>npz csv" stands for files with these endings, or with any if none is given, whose names follow BEGIN
    in the word; "<folders>BEGIN" stands for folders. */
-static void completion_print(const CompletionWords *words) {
+static void print_completions(const CompletionWords *words) {
     if (words->count == 0 || strlen(words->words[words->count - 1]) >= COMPLETION_WORD_SIZE) return;
     const bool help = words->count == 2 && strcmp(words->words[0], "help") == 0;
     if (words->count == 1 || help) {
@@ -265,78 +324,6 @@ static void completion_print(const CompletionWords *words) {
         options_visit_next(complete, &rest);
         command->run(0, NULL, &(Error){0});
         return;
-    }
-}
-
-/* Methods and their settings, from the registry. */
-
-/* A method's text up to the piece that is being typed: "chart:k=5,mo" has the begin "chart:k=5," and the piece "mo". */
-typedef struct Piece {
-    char begin[COMPLETION_WORD_SIZE];
-    const char *text;
-} Piece;
-
-static Piece piece_behind(const char *begin, const char *typed, const char *text) {
-    Piece piece = {.begin = "", .text = text};
-    text_add(piece.begin, sizeof piece.begin, "%s%.*s", begin, (int)(text - typed), typed);
-    return piece;
-}
-
-static void offer_value(const Piece *piece, const SettingSpec *settings) {
-    const char *equals = strchr(piece->text, '=');
-    const size_t length = (size_t)(equals - piece->text);
-    const Piece value = piece_behind(piece->begin, piece->text, equals + 1);
-    for (const SettingSpec *setting = settings; setting != NULL && setting->key != NULL; setting++) {
-        if (strlen(setting->key) != length || strncmp(setting->key, piece->text, length) != 0) continue;
-        if (strcmp(setting->key, "network") == 0) completion_offer_files(value.begin, "npz");
-        if (strncmp(setting->summary, "on|off", strlen("on|off")) != 0) continue;
-        completion_offer(value.begin, value.text, "on", "", setting->summary);
-        completion_offer(value.begin, value.text, "off", "", setting->summary);
-    }
-}
-
-static void offer_settings(const Piece *piece, const SettingSpec *settings) {
-    if (strchr(piece->text, '=') != NULL) {
-        offer_value(piece, settings);
-        return;
-    }
-    for (const SettingSpec *setting = settings; setting != NULL && setting->key != NULL; setting++)
-        completion_offer(piece->begin, piece->text, setting->key, "=", setting->summary);
-}
-
-/* A name; with its settings when it is complete. */
-static void completion_methods_offer_names(const Piece *piece) {
-    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
-        const MethodDescription *method = kind->description;
-        completion_offer(piece->begin, piece->text, method->name, "", method->summary);
-        if (strcmp(method->name, piece->text) != 0) continue;
-        for (const SettingSpec *setting = method->settings; setting != NULL && setting->key != NULL; setting++) {
-            char ending[64];
-            snprintf(ending, sizeof ending, ":%s=", setting->key);
-            completion_offer(piece->begin, piece->text, method->name, ending, setting->summary);
-        }
-    }
-}
-
-/* The first character of the last method of a list: behind the last comma, unless settings go on behind it. */
-static const char *find_last(const char *typed) {
-    const char *last = typed;
-    for (const char *comma = strchr(typed, ','); comma != NULL; comma = strchr(comma + 1, ','))
-        if (method_describe(comma + 1) != NULL) last = comma + 1;
-    return last;
-}
-
-/* A method with settings, "NAME:KEY=VALUE,KEY=VALUE"; with `list`, several separated by commas. */
-static void completion_print_methods(const char *begin, const char *typed, bool list) {
-    const char *method = list ? find_last(typed) : typed, *colon = strchr(method, ':'), *comma = strrchr(method, ',');
-    const MethodDescription *known = method_describe(method);
-    if (colon != NULL && known != NULL) {
-        const Piece setting = piece_behind(begin, typed, comma != NULL ? comma + 1 : colon + 1);
-        offer_settings(&setting, known->settings);
-    }
-    if (colon == NULL || (list && comma != NULL)) {
-        const Piece name = piece_behind(begin, typed, list && comma != NULL ? comma + 1 : method);
-        completion_methods_offer_names(&name);
     }
 }
 
@@ -385,7 +372,7 @@ bool command_completion(int argc, char **argv, Error *error) {
     options.words.words = options.texts;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (strcmp(options.shell, "words") == 0) {
-        completion_print(&options.words);
+        print_completions(&options.words);
         return true;
     }
     for (int i = 0; i < SCRIPTS && options.words.count == 0; i++)

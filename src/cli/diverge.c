@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The result of twinbox diverge, and its two forms. */
+/* twinbox diverge: its result, both forms of it, the command. */
 #include "base/base.h"
 #include "base/json.h"
 #include "cli/cli.h"

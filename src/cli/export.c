@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files in the folder of a sequence that could be mistaken for a part of it. */
+/* twinbox export; and the note about files in the folder of a sequence that could be mistaken for a part of it. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

@@ -30,17 +30,12 @@ static const CommandSpec spec = {
         "Never overwrites a file; - writes to standard output.\v"
         "Example: twinbox new wall.yaml --like wall"};
 
-static bool ends_with(const char *text, const char *ending) {
-    const size_t length = strlen(text), tail = strlen(ending);
-    return length > tail && strcmp(text + length - tail, ending) == 0;
-}
-
 bool command_new(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const char *text = texts[options.like];
     if (strcmp(options.path, "-") == 0) return fputs(text, stdout) >= 0 || error_system(error, "-", "cannot write");
-    if (!ends_with(options.path, ".yaml"))
+    if (!file_name_ends_with(options.path, ".yaml"))
         return error_input(error, options.path, "the name of a scene must end in .yaml");
     if (!file_create(options.path, text, strlen(text), error)) return false;
     printf("%s -> %s\nnext: twinbox check %s\n", names[options.like], options.path, options.path);

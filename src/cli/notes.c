@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Standard error and signals: notes, interrupts, the time that is left, the progress bar. */
 #include "base/base.h"
 #include "base/hash.h"
 #include "base/machine.h"

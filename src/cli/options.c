@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Options as tables: the values of each kind, and the reading of a command line. */
 #include "cli/options.h"
 
 #include "base/base.h"

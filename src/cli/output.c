@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Results as JSON, the pages of a study, and the installed scenes. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The runs of a picture, what they cost, their notes, and the drawing of frames and videos. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
@@ -42,17 +43,15 @@ int panels_last_frame(const Panels *panels) {
     return frames - 1;
 }
 
-static bool is_output(const char *path) { return strcmp(path, "-") == 0; }
-
 bool draw_videos_use_output(const DrawVideos *videos) {
     for (int i = 0; i < videos->count; i++)
-        if (is_output(videos->paths[i])) return true;
+        if (path_is_standard(videos->paths[i])) return true;
     return false;
 }
 
 /* What the machine that encodes must have. */
 static bool check_place(const char *path, int width, int height, Error *error) {
-    if (!is_output(path)) return video_check(path, width, height, error);
+    if (!path_is_standard(path)) return video_check(path, width, height, error);
     return !isatty(STDOUT_FILENO) ||
            error_input(error, "--video", "'-' writes a video to standard output, which is a terminal");
 }
@@ -63,9 +62,9 @@ bool draw_videos_check(const DrawVideos *videos, int width, int height, bool of_
         const char *path = videos->paths[i];
         for (int k = 0; k < i; k++)
             if (strcmp(path, videos->paths[k]) == 0) return error_input(error, "--video", "'%s' twice", path);
-        if (!is_output(path) && !video_check_format(path, width, height, error)) return false;
+        if (!path_is_standard(path) && !video_check_format(path, width, height, error)) return false;
         if (!of_merge && !check_place(path, width, height, error)) return false;
-        files = files || !is_output(path);
+        files = files || !path_is_standard(path);
     }
     return !files || of_merge || video_check_programs(error);
 }
@@ -98,8 +97,8 @@ static bool encode(const char *path, const RenderOptions *render, const RenderRe
                           .hashes = result->hashes,
                           .path = path,
                           .rate_is_chosen = render->fps > 0};
-    const Progress *progress = progress_bar_begin(is_output(path) ? "writing" : "encoding");
-    bool ok = is_output(path) ? write_output(&video, progress, error) : video_encode(&video, progress, error);
+    const Progress *progress = progress_bar_begin(path_is_standard(path) ? "writing" : "encoding");
+    bool ok = path_is_standard(path) ? write_output(&video, progress, error) : video_encode(&video, progress, error);
     progress_bar_end();
     return ok;
 }

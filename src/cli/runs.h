@@ -20,6 +20,75 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* twinbox compare: its options, results and --watch. */
+
+typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
+typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
+
+typedef struct CompareOptions {
+    const char *paths[2], *report;
+    int count, megabytes;
+    int max_pixels;
+    Tolerance tolerance;
+    const char *rules; /* a file; NULL: not given */
+    bool flat;
+    unsigned metadata;    /* CompareMetadata */
+    unsigned annotations; /* CompareAnnotations */
+    bool watch, json;
+    Mask mask;
+} CompareOptions;
+
+/* Prints the result of a comparison of pictures. */
+void compare_print(const Regression *regression);
+
+/* The result as JSON: of pictures, what results.json of a report has; or of runs. */
+bool compare_json_pictures(const Regression *regression, Error *error);
+bool compare_json_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b,
+                       const TrajectoryDifference *difference, Error *error);
+
+typedef bool CompareRun(const CompareOptions *options, Error *error);
+
+/* Compares, and again whenever a picture or trajectory below the two inputs has changed and all have been still for half
+   a second, until Ctrl-C or SIGTERM. An error, such as a folder that is gone, is printed and does not end it. Returns
+   what the last comparison that ended returned, with its error. */
+bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error);
+
+/* The verdict on the run of `simulate`, found while its steps are made. */
+
+/* Begin with simulate_verdict_begin(); free with simulate_verdict_free(). */
+typedef struct SimulateVerdict {
+    const Scene *scene;
+    const char *method;
+    VerdictWatch watch;
+    VerdictReading reading; /* after simulate_verdict_end() */
+} SimulateVerdict;
+
+/* The scene and the method's text outlive the verdict. */
+bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error);
+
+/* To be called after every step; outlived by the verdict. */
+StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
+
+/* After the run; failure: why it failed, if it did. False if there is no verdict: the run failed for another reason than
+   a NaN or infinite state. */
+bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
+void simulate_verdict_free(SimulateVerdict *verdict);
+
+/* simulate() with the verdict in the run. */
+Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error);
+
+/* Writes that object as a file. */
+bool simulate_verdict_write(const SimulateVerdict *verdict, const char *path, Error *error);
+
+/* The tables of a study of stability, for the terminal. */
+
+/* Prints the borders of folder/stability.csv and what folder/rest.csv has, a block a study, a line a method, and where the
+   tables are. */
+bool stability_print(const char *folder, Error *error);
+
+/* "twinbox stability --plan": pieces, what they take, and how long 10, 1,000 and 100,000 cores need. */
+void stability_plan_print(const PiecesEstimate *estimate);
+
 /* The runs that show what happened in a cell of a stability map. */
 
 /* The origin of a map's runs. */
@@ -63,93 +132,6 @@ const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *c
 /* The first method that holds in the same cell, or NULL. */
 const MapCell *stability_cell_holder(const MapTable *table, const MapCell *row);
 
-/* The result of twinbox compare as JSON. */
-
-/* What results.json of a report has. */
-bool compare_json_pictures(const Regression *regression, Error *error);
-bool compare_json_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b,
-                       const TrajectoryDifference *difference, Error *error);
-
-/* The options of twinbox compare. */
-
-typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
-typedef enum CompareMetadata { METADATA_REPORT, METADATA_STRICT } CompareMetadata;
-
-typedef struct CompareOptions {
-    const char *paths[2], *report;
-    int count, megabytes;
-    int max_pixels;
-    Tolerance tolerance;
-    const char *rules; /* a file; NULL: not given */
-    bool flat;
-    unsigned metadata;    /* CompareMetadata */
-    unsigned annotations; /* CompareAnnotations */
-    bool watch, json;
-    Mask mask;
-} CompareOptions;
-
-/* The pages of stability maps: each plays what happened in a cell beside the first method that holds there. */
-
-typedef struct StabilityPages {
-    const char *folder;  /* of maps.csv */
-    const ClipMap *maps; /* [map_count] */
-    int map_count;
-} StabilityPages;
-
-/* Runs cells again (studies/stability.h tells which) and writes folder/pages/MAP-METHOD-X_Y.html, map_pages.csv and
-   stability.html. A page begins six seconds before the verdict was decided. key: of the study (runs/pieces.h). Prints how
-   many pages there are, and what was left out. */
-bool stability_pages_write(const StabilityPages *pages, uint64_t key, Error *error);
-
-/* The verdict on the run of `simulate`, found while its steps are made. */
-
-/* Begin with simulate_verdict_begin(); free with simulate_verdict_free(). */
-typedef struct SimulateVerdict {
-    const Scene *scene;
-    const char *method;
-    VerdictWatch watch;
-    VerdictReading reading; /* after simulate_verdict_end() */
-} SimulateVerdict;
-
-/* The scene and the method's text outlive the verdict. */
-bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error);
-
-/* To be called after every step; outlived by the verdict. */
-StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
-
-/* After the run; failure: why it failed, if it did. False if there is no verdict: the run failed for another reason than
-   a NaN or infinite state. */
-bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
-void simulate_verdict_free(SimulateVerdict *verdict);
-
-/* simulate() with the verdict in the run. */
-Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error);
-
-/* Writes that object as a file. */
-bool simulate_verdict_write(const SimulateVerdict *verdict, const char *path, Error *error);
-
-/* twinbox compare --watch. */
-
-typedef bool CompareRun(const CompareOptions *options, Error *error);
-
-/* Compares, and again whenever a picture or trajectory below the two inputs has changed and all have been still for half
-   a second, until Ctrl-C or SIGTERM. An error, such as a folder that is gone, is printed and does not end it. Returns
-   what the last comparison that ended returned, with its error. */
-bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error);
-
-/* "twinbox stability --plan": pieces, what they take, and how long 10, 1,000 and 100,000 cores need. */
-void stability_plan_print(const PiecesEstimate *estimate);
-
-/* Prints the result of a comparison of pictures. */
-
-void compare_print(const Regression *regression);
-
-/* The tables of a study of stability, for the terminal. */
-
-/* Prints the borders of folder/stability.csv and what folder/rest.csv has, a block a study, a line a method, and where the
-   tables are. */
-bool stability_print(const char *folder, Error *error);
-
 /* The video of one cell of a stability map. */
 
 typedef struct ClipOptions {
@@ -166,6 +148,19 @@ typedef struct ClipOptions {
    does, it is alone. Captions give methods and verdicts. ERROR_INPUT: the cell does not exist, or the method cannot run
    its scene; ERROR_SYSTEM: ffmpeg is missing. */
 bool stability_clip(const ClipOptions *options, Error *error);
+
+/* The pages of stability maps: each plays what happened in a cell beside the first method that holds there. */
+
+typedef struct StabilityPages {
+    const char *folder;  /* of maps.csv */
+    const ClipMap *maps; /* [map_count] */
+    int map_count;
+} StabilityPages;
+
+/* Runs cells again (studies/stability.h tells which) and writes folder/pages/MAP-METHOD-X_Y.html, map_pages.csv and
+   stability.html. A page begins six seconds before the verdict was decided. key: of the study (runs/pieces.h). Prints how
+   many pages there are, and what was left out. */
+bool stability_pages_write(const StabilityPages *pages, uint64_t key, Error *error);
 
 /* The kinds of network that `twinbox train` trains. To add a kind, write one file that defines train_NAME, and add one
    line KIND(NAME) here. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What `simulate` prints: the run in a line, or with --json as an object (src/runs/README.md). */
+/* twinbox simulate: the verdict on its run, what it prints (a line, or with --json an object: src/runs/README.md), the command. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox stability: the cells of its maps, the runs and clips that show them, the command. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
@@ -126,7 +127,17 @@ static Scene *read_scene(const Making *making, Error *error) {
     return scene_read_with(making->map->scene, settings, 2, error);
 }
 
-static void cell_note(char note[CELL_NOTE_SIZE], const MapCell *cell, double dt);
+/* "falls at 4.22 s (0.53 m, body 7)" */
+static void cell_note(char note[CELL_NOTE_SIZE], const MapCell *cell, double dt) {
+    size_t used = (size_t)snprintf(note, CELL_NOTE_SIZE, "%s", verdict_words[cell->verdict]);
+    if (verdict_holds((Verdict)cell->verdict) || isnan(cell->frame)) return;
+    used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, " at %.2f s", cell->frame * dt);
+    if (isnan(cell->value)) return;
+    used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, " (%.3g %s", cell->value, cell->unit);
+    if (!isnan(cell->body) && cell->body >= 0)
+        used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, ", body %.0f", cell->body);
+    snprintf(note + used, CELL_NOTE_SIZE - used, ")");
+}
 
 static bool add_run(const Making *making, const Scene *scene, const MapCell *row, Error *error) {
     Panels *panels = &making->runs->panels;
@@ -188,18 +199,6 @@ bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapTable *table, c
 }
 
 void cell_runs_free(CellRuns *runs) { panels_free(&runs->panels); }
-
-/* "falls at 4.22 s (0.53 m, body 7)" */
-static void cell_note(char note[CELL_NOTE_SIZE], const MapCell *cell, double dt) {
-    size_t used = (size_t)snprintf(note, CELL_NOTE_SIZE, "%s", verdict_words[cell->verdict]);
-    if (verdict_holds((Verdict)cell->verdict) || isnan(cell->frame)) return;
-    used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, " at %.2f s", cell->frame * dt);
-    if (isnan(cell->value)) return;
-    used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, " (%.3g %s", cell->value, cell->unit);
-    if (!isnan(cell->body) && cell->body >= 0)
-        used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, ", body %.0f", cell->body);
-    snprintf(note + used, CELL_NOTE_SIZE - used, ")");
-}
 
 enum { TITLE_SIZE = 320 };
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What stability prints, and the pages of its maps. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/machine.h"

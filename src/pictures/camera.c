@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The target view jumps: first the whole scene, then the bomb. Three passes of a moving average, centred on each
+/* Cameras: the path of a moving one, what the default one frames, and the fixed one.
+
+   The target view of a path jumps: first the whole scene, then the bomb. Three passes of a moving average, centred on each
    frame, make speed and acceleration continuous and let the camera anticipate. */
 #include "base/base.h"
 #include "engine/engine.h"

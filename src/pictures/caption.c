@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Texts of a picture: numbers, names, lines, the header. */
 #include "base/base.h"
 #include "methods/methods.h"
 #include "pictures/internal.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What HTML pages share. */
 #include "pictures/page.h"
 
 #include "base/base.h"

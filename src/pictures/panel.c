@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The metre grid behind the bodies, and its labelled axes. */
+/* Panels: the grid in which they are arranged, their metre grid and axes, scales of arrows and colours, their layers. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "pictures/internal.h"

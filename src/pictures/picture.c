@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The layout of a picture, its plan, and the drawing of one moment. */
 #include "pictures/picture.h"
 
 #include "base/base.h"

@@ -82,8 +82,6 @@ extern const char player_layout_js[], player_camera_js[], player_grid_js[], play
 extern const char player_state_js[], player_plot_js[], player_time_js[], player_pointer_js[], player_measure_js[],
     player_keys_js[], player_link_js[], player_actions_js[], player_summary_js[], player_main_js[];
 
-/* What the files of this room share. */
-
 typedef struct PlayerRun {
     int frames, chunks;              /* stored */
     Bytes *states;                   /* [chunks] */
@@ -108,14 +106,8 @@ typedef struct Player {
     Bytes viewer; /* its script */
 } Player;
 
-/* Finds what a reader looks for: where runs part, distances, hashes. */
-bool player_find_marks(Player *player, Error *error);
-
 /* Packs all states, then all contacts, or leaves these out if the page would be too large. ERROR_INPUT if it is even so. */
 bool player_pack(Player *player, Error *error);
 
 /* Frees all that a player holds. */
 void player_free(Player *player);
-
-/* What the page's script (page/codec.js) reads first: JSON. */
-void player_put_data(FILE *file, const Player *player);

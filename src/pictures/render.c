@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A sequence in pieces (runs/pieces.h): ranges of consecutive pictures, whose frames are files in the folder. The results
+/* A sequence: which moments its pictures show, and how they are drawn, as a whole or in pieces (runs/pieces.h): ranges of consecutive pictures, whose frames are files in the folder. The results
    of a piece are lines "INDEX PIXELS FILE": the hashes of its pictures. */
 #include "pictures/render.h"
 

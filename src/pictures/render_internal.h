@@ -33,7 +33,7 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment);
 void frame_part_text(char *text, size_t size, Moment moment);
 
 /* manifest.json lists a sequence: what was drawn (version, runs, look, order), where in the pictures it is
-   (manifest_view.h) and, one line per file, the frame it shows, the runs' state hashes there (trajectory_frame_hash), the
+   and, one line per file, the frame it shows, the runs' state hashes there (trajectory_frame_hash), the
    hash of its pixels (image_hash) and of its bytes.
    No dates and no paths: the same runs and options give the same bytes. During drawing it is a journal,
    manifest.json.part, with a line per finished picture, so that a later call can resume after a kill. Neither file
@@ -44,10 +44,10 @@ typedef struct Manifest {
     const RenderOptions *options;
     const MomentPlan *plan;
     int first, last;       /* pictures, inclusive */
-    char *path, *journal;  /* paths of manifest.json and of its journal */
     char *head;            /* its text before the first picture */
-    PictureHashes *hashes; /* [last - first + 1] */
+    PictureHashes *hashes; /* [last - first + 1], and in the same block: */
     bool *known;           /* [last - first + 1], whether the hashes are set */
+    char *path, *journal;  /* paths of manifest.json and of its journal */
     bool valid;            /* manifest.json is of these pictures */
     int out;               /* the journal; -1: none */
 } Manifest;
@@ -65,7 +65,7 @@ void manifest_recall(Manifest *manifest, char *why, size_t size);
 bool manifest_check(const Manifest *manifest, Error *error);
 
 /* Starts the journal with the known pictures and removes a manifest of other pictures; if the sequence is a whole run,
-   also the frames of an earlier one that would remain (stale.h). Errors of manifest_check(), too. */
+   also the frames of an earlier one that would remain. Errors of manifest_check(), too. */
 bool manifest_begin(Manifest *manifest, bool whole, Error *error);
 
 /* Records a finished picture; without a journal, in memory alone. */
@@ -74,24 +74,13 @@ bool manifest_add(Manifest *manifest, int index, PictureHashes hashes, Error *er
 /* Replaces the journal by manifest.json. */
 bool manifest_end(Manifest *manifest, Error *error);
 
-/* The text of a manifest, for file_print(). The context is a Manifest or a ManifestLine. */
-
+/* A picture's line, without indentation and comma, for file_print(). The context is a ManifestLine. */
 typedef struct ManifestLine {
     const Manifest *manifest;
     int index;
     PictureHashes hashes;
 } ManifestLine;
-
-/* The text before the first picture. */
-void manifest_print_head(FILE *out, const void *manifest);
-
-/* One picture, without indentation and comma. */
 void manifest_print_line(FILE *out, const void *line);
-
-/* The head and the lines of known pictures. */
-void manifest_print_journal(FILE *out, const void *manifest);
-
-void manifest_print_whole(FILE *out, const void *manifest);
 
 /* Bytes of the longest line of a picture. */
 enum { MANIFEST_LINE_SIZE = 640 };
@@ -122,22 +111,6 @@ typedef struct WorkerReport {
    files are safely on the disk. *kept: how many were kept; may be NULL. ERROR_INTERRUPTED if progress requests a stop. */
 bool workers_draw(const WorkerJob *job, int *kept, const Progress *progress, Error *error);
 
-/* YUV4MPEG2, a format that video programs read from a pipe. 4:4:4, 8 bits, ITU-R BT.709, limited range, exact
-   values rounded to nearest, halves up:
-
-     Y = 16 + 219 L, Cb = 128 + 224 (B - L) / 1.8556, Cr = 128 + 224 (R - L) / 1.5748, L = 0.2126 R + 0.7152 G + 0.0722 B
-
-   with R, G, B = channel / 255. The format has no field that marks BT.709. */
-
-enum { Y4M_HEADER_SIZE = 128 };
-
-/* The header line of a stream. frame_rate in Hz, to a thousandth. */
-void y4m_header(char header[Y4M_HEADER_SIZE], int width, int height, double frame_rate);
-
-/* Size in bytes of a frame with its header line, and the frame itself. */
-size_t y4m_frame_size(int width, int height);
-void y4m_frame(const Image *image, uint8_t *frame);
-
 /* The part of renderer.c that the workers of a sequence use. */
 
 /* Like renderer_create(), for a picture that is already planned. */
@@ -147,22 +120,7 @@ Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *o
    read back; *changed has a flag per row. The first call draws all. */
 bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error);
 
-/* Reads back and checks the pictures of a video, one after another. */
-
-/* Consumes a picture; false if it needs no more. */
-typedef bool (*VideoWrite)(void *context, const Image *image);
-
-/* The size of the first picture, which all must have. */
-bool video_frame_size(const VideoOptions *options, int *width, int *height, Error *error);
-
-/* Passes every stride-th picture to `write_frame`, after checking its size and pixels. Sets *stopped if it returned
-   false. */
-bool video_feed(const VideoOptions *options, int stride, int width, int height, VideoWrite write_frame, void *context,
-                bool *stopped, const Progress *progress, Error *error);
-
-/* Frame rates in lowest terms. */
-
-/* Of two numbers that are not negative and not both 0. */
+/* For frame rates in lowest terms: of two numbers that are not negative and not both 0. */
 static inline int64_t greatest_divisor(int64_t a, int64_t b) {
     while (b != 0) {
         const int64_t rest = a % b;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Frames are opaque: drawing on black and on white gives alpha from the difference. */
+/* Draws pictures in this process: the texts of their files, frames of a sequence, still bodies. */
 #include "base/base.h"
 #include "pictures/internal.h"
 #include "pictures/picture.h"
@@ -14,10 +14,164 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct Still {
+static void append(char *text, size_t size, const char *part) {
+    size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s%s", used == 0 ? "" : " | ", part);
+}
+
+static void add(FrameTexts *texts, const char *key, const char *value) {
+    texts->entries[texts->count++] = (ImageText){key, value};
+}
+
+void frame_part_text(char *text, size_t size, Moment moment) {
+    snprintf(text, size, "%d/%d", moment.part, moment.parts);
+}
+
+void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) {
+    texts->methods[0] = texts->states[0] = '\0';
+    texts->count = 0;
+    for (int i = 0; i < picture->count; i++) {
+        const Trajectory *run = picture->runs[i];
+        char hash[20];
+        int shown = picture_run_frame(picture, i, moment.frame);
+        snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(run, shown));
+        append(texts->methods, sizeof texts->methods, run->method);
+        append(texts->states, sizeof texts->states, hash);
+    }
+    snprintf(texts->frame, sizeof texts->frame, "%d", moment.frame);
+    frame_part_text(texts->part, sizeof texts->part, moment);
+    add(texts, "Scene", picture->runs[0]->scene);
+    add(texts, "Method", texts->methods);
+    add(texts, "Frame", texts->frame);
+    if (moment.kind == MOMENT_BETWEEN) add(texts, "Part", texts->part);
+    if (moment.kind == MOMENT_TITLE) add(texts, "Card", "title");
+    if (moment.kind == MOMENT_END) add(texts, "Card", "end");
+    add(texts, "State", texts->states);
+    add(texts, "Software", "twinbox");
+}
+
+/* A context and what is drawn in it. */
+typedef struct Painter {
     Context context;
     GlFunctions gl;
     Canvas *canvas;
+} Painter;
+
+static void trace(const Context *context) {
+    enum { RENDERER = 0x1F01 /* GL_RENDERER */ };
+    const GlFunction found = context->kind->find(context->state, "glGetString");
+    const unsigned char *(*get_string)(unsigned);
+    memcpy(&get_string, &found, sizeof get_string);
+    const unsigned char *name = get_string != NULL ? get_string(RENDERER) : NULL;
+    trace_line("OpenGL by %s: %s", context->kind->name, name != NULL ? (const char *)name : "no name");
+}
+
+/* painter_close() also after a failure. */
+static bool painter_open(Painter *painter, ContextChoice choice, int width, int height, bool traced, Error *error) {
+    Context *context = &painter->context;
+    if (!context_create(context, choice, error) || !gl_load(&painter->gl, context->kind->find, context->state, error))
+        return false;
+    if (traced) trace(context);
+    painter->canvas = canvas_create(&painter->gl, width, height, error);
+    return painter->canvas != NULL;
+}
+
+static void painter_close(Painter *painter) {
+    if (painter->canvas != NULL && context_make_current(&painter->context, &(Error){0}))
+        canvas_destroy(painter->canvas);
+    if (painter->context.kind != NULL) context_destroy(&painter->context);
+}
+
+struct Renderer {
+    Picture picture;
+    bool owns_picture;
+    Painter painter;
+    Drawing drawing, before; /* of this frame and of the previous one */
+    bool in_sync;            /* the canvas and the caller's image show `drawing` */
+    bool *changed;           /* [height] */
+};
+
+static bool set_up(Renderer *renderer, const RenderOptions *options, Error *error) {
+    renderer->changed = calloc((size_t)options->height, sizeof *renderer->changed);
+    if (renderer->changed == NULL) return error_memory(error, "render");
+    return painter_open(&renderer->painter, options->context, options->width, options->height, true, error);
+}
+
+Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error) {
+    Renderer *renderer = calloc(1, sizeof *renderer);
+    if (renderer == NULL) {
+        error_memory(error, "render");
+        return NULL;
+    }
+    renderer->picture = *picture;
+    if (set_up(renderer, options, error)) return renderer;
+    renderer_destroy(renderer);
+    return NULL;
+}
+
+Renderer *renderer_create(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
+                          Error *error) {
+    Picture picture;
+    if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return NULL;
+    Renderer *renderer = NULL;
+    if (picture_apply_options(&picture, options, error)) renderer = renderer_create_planned(&picture, options, error);
+    if (renderer == NULL)
+        picture_free(&picture);
+    else
+        renderer->owns_picture = true;
+    return renderer;
+}
+
+/* `changed` NULL: paint everything. */
+static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
+    return context_make_current(&renderer->painter.context, error) &&
+           canvas_paint(renderer->painter.canvas, &renderer->drawing, renderer->picture.theme->page, changed, image,
+                        error);
+}
+
+static bool compose(Renderer *renderer, Moment moment, Error *error) {
+    const int frame = moment.frame;
+    if (frame < 0 || frame >= renderer->picture.frames)
+        return error_input(error, "render", "there is no frame %d; the frames are 0 to %d", frame,
+                           renderer->picture.frames - 1);
+    drawing_clear(&renderer->drawing);
+    picture_draw(&renderer->picture, moment, &renderer->drawing);
+    return true;
+}
+
+bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
+    renderer->in_sync = false;
+    return compose(renderer, moment_stored(frame), error) && paint(renderer, NULL, image, error);
+}
+
+bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error) {
+    const Drawing before = renderer->drawing;
+    bool in_sync = renderer->in_sync;
+    renderer->in_sync = false; /* until this frame has succeeded */
+    renderer->drawing = renderer->before;
+    renderer->before = before;
+    *changed = renderer->changed;
+    if (!compose(renderer, moment, error)) return false;
+    bool part = in_sync && damage_find(&renderer->before, &renderer->drawing, image->height, renderer->changed);
+    if (!part) memset(renderer->changed, true, (size_t)image->height);
+    renderer->in_sync = paint(renderer, part ? renderer->changed : NULL, image, error);
+    return renderer->in_sync;
+}
+
+void renderer_destroy(Renderer *renderer) {
+    if (renderer == NULL) return;
+    painter_close(&renderer->painter);
+    drawing_free(&renderer->drawing);
+    drawing_free(&renderer->before);
+    free(renderer->changed);
+    if (renderer->owns_picture) picture_free(&renderer->picture);
+    free(renderer);
+}
+
+/* Bodies on a transparent background. Frames are opaque: drawing on black and on white gives alpha from the difference. */
+
+struct Still {
+    Painter painter;
     Drawing drawing;
     Image *on_white;
 };
@@ -26,12 +180,8 @@ static bool still_set_up(Still *still, int width, int height, Error *error) {
     if (width < 1 || height < 1 || width > RENDER_SIDE_MAX || height > RENDER_SIDE_MAX)
         return error_input(error, "render", "each side of the picture must be 1 to %d pixels (got %d x %d)",
                            RENDER_SIDE_MAX, width, height);
-    if ((still->on_white = image_create(width, height, error)) == NULL ||
-        !context_create(&still->context, CONTEXT_AUTO, error) ||
-        !gl_load(&still->gl, still->context.kind->find, still->context.state, error))
-        return false;
-    still->canvas = canvas_create(&still->gl, width, height, error);
-    return still->canvas != NULL;
+    return (still->on_white = image_create(width, height, error)) != NULL &&
+           painter_open(&still->painter, CONTEXT_AUTO, width, height, false, error);
 }
 
 Still *still_create(int width, int height, Error *error) {
@@ -47,8 +197,7 @@ Still *still_create(int width, int height, Error *error) {
 
 void still_destroy(Still *still) {
     if (still == NULL) return;
-    if (still->canvas != NULL && context_make_current(&still->context, &(Error){0})) canvas_destroy(still->canvas);
-    if (still->context.kind != NULL) context_destroy(&still->context);
+    painter_close(&still->painter);
     drawing_free(&still->drawing);
     image_destroy(still->on_white);
     free(still);
@@ -87,153 +236,11 @@ bool still_draw(Still *still, const StillShot *shot, Image *image, Error *error)
     Drawing *drawing = &still->drawing;
     drawing_clear(drawing);
     draw_bodies(&picture, shot, drawing);
-    if (!context_make_current(&still->context, error) ||
-        !canvas_paint(still->canvas, drawing, 0x000000, NULL, image, error) ||
-        !canvas_paint(still->canvas, drawing, 0xFFFFFF, NULL, still->on_white, error))
+    if (!context_make_current(&still->painter.context, error) ||
+        !canvas_paint(still->painter.canvas, drawing, 0x000000, NULL, image, error) ||
+        !canvas_paint(still->painter.canvas, drawing, 0xFFFFFF, NULL, still->on_white, error))
         return false;
     for (size_t i = 0; i < 4 * (size_t)image->width * (size_t)image->height; i += 4)
         take_alpha(image->pixels + i, still->on_white->pixels + i);
     return true;
-}
-
-static void append(char *text, size_t size, const char *part) {
-    size_t used = strlen(text);
-    snprintf(text + used, size - used, "%s%s", used == 0 ? "" : " | ", part);
-}
-
-static void add(FrameTexts *texts, const char *key, const char *value) {
-    texts->entries[texts->count++] = (ImageText){key, value};
-}
-
-void frame_part_text(char *text, size_t size, Moment moment) {
-    snprintf(text, size, "%d/%d", moment.part, moment.parts);
-}
-
-void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment) {
-    texts->methods[0] = texts->states[0] = '\0';
-    texts->count = 0;
-    for (int i = 0; i < picture->count; i++) {
-        const Trajectory *run = picture->runs[i];
-        char hash[20];
-        int shown = picture_run_frame(picture, i, moment.frame);
-        snprintf(hash, sizeof hash, "%016" PRIx64, trajectory_frame_hash(run, shown));
-        append(texts->methods, sizeof texts->methods, run->method);
-        append(texts->states, sizeof texts->states, hash);
-    }
-    snprintf(texts->frame, sizeof texts->frame, "%d", moment.frame);
-    frame_part_text(texts->part, sizeof texts->part, moment);
-    add(texts, "Scene", picture->runs[0]->scene);
-    add(texts, "Method", texts->methods);
-    add(texts, "Frame", texts->frame);
-    if (moment.kind == MOMENT_BETWEEN) add(texts, "Part", texts->part);
-    if (moment.kind == MOMENT_TITLE) add(texts, "Card", "title");
-    if (moment.kind == MOMENT_END) add(texts, "Card", "end");
-    add(texts, "State", texts->states);
-    add(texts, "Software", "twinbox");
-}
-
-/* Combines a picture, a context and a canvas. */
-
-struct Renderer {
-    Picture picture;
-    bool owns_picture;
-    Context context;
-    GlFunctions gl;
-    Canvas *canvas;
-    Drawing drawing, before; /* of this frame and of the previous one */
-    bool in_sync;            /* the canvas and the caller's image show `drawing` */
-    bool *changed;           /* [height] */
-};
-
-static void trace(const Context *context) {
-    enum { RENDERER = 0x1F01 /* GL_RENDERER */ };
-    const GlFunction found = context->kind->find(context->state, "glGetString");
-    const unsigned char *(*get_string)(unsigned);
-    memcpy(&get_string, &found, sizeof get_string);
-    const unsigned char *name = get_string != NULL ? get_string(RENDERER) : NULL;
-    trace_line("OpenGL by %s: %s", context->kind->name, name != NULL ? (const char *)name : "no name");
-}
-
-static bool set_up(Renderer *renderer, const RenderOptions *options, Error *error) {
-    renderer->changed = calloc((size_t)options->height, sizeof *renderer->changed);
-    if (renderer->changed == NULL) return error_memory(error, "render");
-    if (!context_create(&renderer->context, options->context, error)) return false;
-    const Context *context = &renderer->context;
-    if (!gl_load(&renderer->gl, context->kind->find, context->state, error)) return false;
-    trace(context);
-    renderer->canvas = canvas_create(&renderer->gl, options->width, options->height, error);
-    return renderer->canvas != NULL;
-}
-
-Renderer *renderer_create_planned(const Picture *picture, const RenderOptions *options, Error *error) {
-    Renderer *renderer = calloc(1, sizeof *renderer);
-    if (renderer == NULL) {
-        error_memory(error, "render");
-        return NULL;
-    }
-    renderer->picture = *picture;
-    if (set_up(renderer, options, error)) return renderer;
-    renderer_destroy(renderer);
-    return NULL;
-}
-
-Renderer *renderer_create(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                          Error *error) {
-    Picture picture;
-    if (!picture_plan(&picture, panels, panel_count, options->width, options->height, error)) return NULL;
-    Renderer *renderer = NULL;
-    if (picture_apply_options(&picture, options, error)) renderer = renderer_create_planned(&picture, options, error);
-    if (renderer == NULL)
-        picture_free(&picture);
-    else
-        renderer->owns_picture = true;
-    return renderer;
-}
-
-/* `changed` NULL: paint everything. */
-static bool paint(Renderer *renderer, const bool *changed, Image *image, Error *error) {
-    return context_make_current(&renderer->context, error) &&
-           canvas_paint(renderer->canvas, &renderer->drawing, renderer->picture.theme->page, changed, image, error);
-}
-
-static bool compose(Renderer *renderer, Moment moment, Error *error) {
-    const int frame = moment.frame;
-    if (frame < 0 || frame >= renderer->picture.frames)
-        return error_input(error, "render", "there is no frame %d; the frames are 0 to %d", frame,
-                           renderer->picture.frames - 1);
-    drawing_clear(&renderer->drawing);
-    picture_draw(&renderer->picture, moment, &renderer->drawing);
-    return true;
-}
-
-bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error) {
-    renderer->in_sync = false;
-    return compose(renderer, moment_stored(frame), error) && paint(renderer, NULL, image, error);
-}
-
-bool renderer_draw_next(Renderer *renderer, Moment moment, Image *image, const bool **changed, Error *error) {
-    const Drawing before = renderer->drawing;
-    bool in_sync = renderer->in_sync;
-    renderer->in_sync = false; /* until this frame has succeeded */
-    renderer->drawing = renderer->before;
-    renderer->before = before;
-    *changed = renderer->changed;
-    if (!compose(renderer, moment, error)) return false;
-    bool part = in_sync && damage_find(&renderer->before, &renderer->drawing, image->height, renderer->changed);
-    if (!part) memset(renderer->changed, true, (size_t)image->height);
-    renderer->in_sync = paint(renderer, part ? renderer->changed : NULL, image, error);
-    return renderer->in_sync;
-}
-
-void renderer_destroy(Renderer *renderer) {
-    if (renderer == NULL) return;
-    Error ignored = {0};
-    if (renderer->canvas != NULL && context_make_current(&renderer->context, &ignored))
-        canvas_destroy(renderer->canvas);
-    if (renderer->context.kind != NULL) context_destroy(&renderer->context);
-    drawing_free(&renderer->drawing);
-    drawing_free(&renderer->before);
-    free(renderer->changed);
-    if (renderer->owns_picture) picture_free(&renderer->picture);
-    free(renderer);
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The look: its check, colours, and the legend that explains it. */
 #include "base/base.h"
 #include "methods/methods.h"
 #include "pictures/internal.h"

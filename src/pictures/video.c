@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Videos of a PNG sequence: by ffmpeg, or raw frames as y4m. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
@@ -7,6 +8,7 @@
 #include "pixels/png.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -105,6 +107,57 @@ bool video_check_programs(Error *error) {
     return true;
 }
 
+/* Every picture is read back and checked, one after another. */
+
+static Image *read_frame(const VideoOptions *options, int index, Error *error) {
+    char path[PATH_MAX];
+    if (!sink_frame_path(path, sizeof path, options->directory, index)) {
+        error_input(error, options->directory, "the name is too long");
+        return NULL;
+    }
+    return image_read_png(path, error);
+}
+
+/* The size of the first picture, which all must have. */
+static bool find_size(const VideoOptions *options, int *width, int *height, Error *error) {
+    Image *first = read_frame(options, options->first, error);
+    if (first == NULL) return false;
+    *width = first->width;
+    *height = first->height;
+    image_destroy(first);
+    return true;
+}
+
+static bool check_frame(const VideoOptions *options, int index, const Image *image, int width, int height,
+                        Error *error) {
+    if (image->width != width || image->height != height)
+        return error_input(error, options->directory, "frame %d is %dx%d, but the first is %dx%d", index, image->width,
+                           image->height, width, height);
+    if (options->hashes != NULL && image_hash(image) != options->hashes[index - options->first].pixels)
+        return error_input(error, options->directory, "the pixels of frame %d differ from those drawn", index);
+    return true;
+}
+
+/* Consumes a picture; false if it needs no more. */
+typedef bool WriteFrame(void *context, const Image *image);
+
+/* Passes every stride-th picture to `write_frame`, after checking its size and pixels. Sets *stopped if it returned
+   false. */
+static bool feed(const VideoOptions *options, int stride, int width, int height, WriteFrame *write_frame, void *context,
+                 bool *stopped, const Progress *progress, Error *error) {
+    *stopped = false;
+    for (int index = options->first; !*stopped && index <= options->last; index += stride) {
+        Image *image = read_frame(options, index, error);
+        bool ok = image != NULL && check_frame(options, index, image, width, height, error);
+        if (ok) *stopped = !write_frame(context, image);
+        image_destroy(image);
+        if (!ok) return false;
+        if (!progress_report(progress, index - options->first + 1, options->last - options->first + 1))
+            return error_interrupted(error, options->path, "stopped");
+    }
+    return true;
+}
+
 /* Arguments of a program, terminated by NULL. */
 typedef struct Arguments {
     const char *list[ARGUMENTS_MAX];
@@ -168,8 +221,8 @@ static bool run_ffmpeg(const Encoding *encoding, const char *const *format_argum
     RawTarget target = {.rgb = malloc(3 * (size_t)encoding->width * (size_t)encoding->height)};
     if (target.rgb == NULL) return error_memory(error, encoding->options->path);
     bool stopped, ok = process_start(&target.process, arguments.list, error);
-    if (ok && !video_feed(encoding->options, encoding->stride, encoding->width, encoding->height, write_raw, &target,
-                          &stopped, encoding->progress, error)) {
+    if (ok && !feed(encoding->options, encoding->stride, encoding->width, encoding->height, write_raw, &target,
+                    &stopped, encoding->progress, error)) {
         process_kill(&target.process);
         ok = false;
     }
@@ -235,7 +288,7 @@ static bool open_draft(int *draft, char name[DRAFT_NAME_SIZE], const char *path,
 
 bool video_encode(const VideoOptions *options, const Progress *progress, Error *error) {
     Encoding encoding = {.options = options, .stride = 1, .progress = progress};
-    if (!video_frame_size(options, &encoding.width, &encoding.height, error) ||
+    if (!find_size(options, &encoding.width, &encoding.height, error) ||
         !video_check(options->path, encoding.width, encoding.height, error))
         return false;
     encoding.format = find_format(options->path);
@@ -251,4 +304,71 @@ bool video_encode(const VideoOptions *options, const Progress *progress, Error *
     if (encoding.draft >= 0) close(encoding.draft);
     if (encoding.palette_draft >= 0) close(encoding.palette_draft);
     return ok;
+}
+
+/* YUV4MPEG2, a format that video programs read from a pipe. 4:4:4, 8 bits, ITU-R BT.709, limited range, exact
+   values rounded to nearest, halves up:
+
+     Y = 16 + 219 L, Cb = 128 + 224 (B - L) / 1.8556, Cr = 128 + 224 (R - L) / 1.5748, L = 0.2126 R + 0.7152 G + 0.0722 B
+
+   with R, G, B = channel / 255. The format has no field that marks BT.709. */
+
+enum { HEADER_SIZE = 128 };
+
+static const char frame_line[] = "FRAME\n";
+enum { FRAME_LINE_SIZE = sizeof frame_line - 1 };
+
+/* The header line of a stream. frame_rate in Hz, to a thousandth. */
+static void print_header(char header[HEADER_SIZE], int width, int height, double frame_rate) {
+    const int64_t rate = (int64_t)(1000 * frame_rate + 0.5), divisor = greatest_divisor(rate, 1000);
+    snprintf(header, HEADER_SIZE, "YUV4MPEG2 W%d H%d F%" PRId64 ":%" PRId64 " Ip A1:1 C444 XCOLORRANGE=LIMITED\n",
+             width, height, rate / divisor, 1000 / divisor);
+}
+
+/* a / b rounded to the nearest integer; b > 0 and even. */
+static int nearest(int a, int b) { return (a + b / 2 + 256 * b) / b - 256; }
+
+static void convert(const Image *image, uint8_t *frame) {
+    size_t pixels = (size_t)image->width * (size_t)image->height;
+    uint8_t *y = (uint8_t *)memcpy(frame, frame_line, FRAME_LINE_SIZE) + FRAME_LINE_SIZE, *cb = y + pixels,
+            *cr = cb + pixels;
+    for (size_t i = 0; i < pixels; i++) {
+        const uint8_t *rgb = image->pixels + 4 * i;
+        /* In 1/10000 of a channel's step. */
+        int light = 2126 * rgb[0] + 7152 * rgb[1] + 722 * rgb[2];
+        y[i] = (uint8_t)(16 + nearest(219 * light, 255 * 10000));
+        cb[i] = (uint8_t)(128 + nearest(224 * (10000 * rgb[2] - light), 255 * 18556));
+        cr[i] = (uint8_t)(128 + nearest(224 * (10000 * rgb[0] - light), 255 * 15748));
+    }
+}
+
+typedef struct Y4mTarget {
+    int file;
+    int cause; /* errno of a failed write */
+    size_t size;
+    uint8_t *frame;
+} Y4mTarget;
+
+static bool write_y4m_frame(void *context, const Image *image) {
+    Y4mTarget *target = context;
+    convert(image, target->frame);
+    if (file_write_all(target->file, target->frame, target->size)) return true;
+    target->cause = errno;
+    return false;
+}
+
+bool video_write_y4m(const VideoOptions *options, int file, const Progress *progress, Error *error) {
+    int width, height;
+    char header[HEADER_SIZE];
+    if (!find_size(options, &width, &height, error)) return false;
+    const size_t size = FRAME_LINE_SIZE + 3 * (size_t)width * (size_t)height;
+    uint8_t *frame = malloc(size);
+    Y4mTarget target = {.file = file, .size = size, .frame = frame};
+    if (frame == NULL) return error_memory(error, options->path);
+    print_header(header, width, height, options->frame_rate);
+    bool stopped = !file_write_all(file, header, strlen(header)), ok = true;
+    if (stopped) target.cause = errno;
+    if (!stopped) ok = feed(options, 1, width, height, write_y4m_frame, &target, &stopped, progress, error);
+    free(frame);
+    return ok && (!stopped || error_system(error, options->path, "cannot write: %s", strerror(target.cause)));
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Processes that draw the pictures of a sequence, and the one that hears from them. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiles and links GLSL. */
+/* Shaders, the rows that changed, and the painting of drawings with OpenGL. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "pixels/gl.h"

@@ -81,13 +81,18 @@ static bool find_bounds(const Shape *shape, const Rect *clip, int32_t bounds[4])
     return bounds[0] < bounds[2] && bounds[1] < bounds[3];
 }
 
+/* Room for `wanted` items. */
+static bool reserve(Drawing *drawing, void **items, size_t *capacity, size_t wanted, size_t size) {
+    const bool done = array_reserve(items, capacity, wanted, size);
+    drawing->failed = drawing->failed || !done;
+    return done;
+}
+
 static ShapeInstance *next_shape(Drawing *drawing) {
-    size_t wanted = drawing->shape_count + 1;
-    if (!array_reserve((void **)&drawing->shapes, &drawing->shape_capacity, wanted, sizeof *drawing->shapes)) {
-        drawing->failed = true;
-        return NULL;
-    }
-    return &drawing->shapes[drawing->shape_count];
+    const size_t i = drawing->shape_count;
+    return reserve(drawing, (void **)&drawing->shapes, &drawing->shape_capacity, i + 1, sizeof *drawing->shapes)
+               ? &drawing->shapes[i]
+               : NULL;
 }
 
 void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip) {
@@ -113,27 +118,20 @@ void drawing_add_shape(Drawing *drawing, const Shape *original, const Rect *clip
 }
 
 void drawing_add_rect(Drawing *drawing, Rect rect, uint32_t color) {
-    size_t wanted = drawing->rect_count + 1;
-    if (array_reserve((void **)&drawing->rects, &drawing->rect_capacity, wanted, sizeof *drawing->rects))
+    const size_t i = drawing->rect_count;
+    if (reserve(drawing, (void **)&drawing->rects, &drawing->rect_capacity, i + 1, sizeof *drawing->rects))
         drawing->rects[drawing->rect_count++] = (RectInstance){rect, color};
-    else
-        drawing->failed = true;
 }
 
 void drawing_add_glyph(Drawing *drawing, const GlyphInstance *glyph) {
-    size_t wanted = drawing->glyph_count + 1;
-    if (array_reserve((void **)&drawing->glyphs, &drawing->glyph_capacity, wanted, sizeof *glyph))
+    const size_t i = drawing->glyph_count;
+    if (reserve(drawing, (void **)&drawing->glyphs, &drawing->glyph_capacity, i + 1, sizeof *glyph))
         drawing->glyphs[drawing->glyph_count++] = *glyph;
-    else
-        drawing->failed = true;
 }
 
 uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap) {
     const size_t start = drawing->bitmap_size, wanted = start + size;
-    if (!array_reserve((void **)&drawing->bitmaps, &drawing->bitmap_capacity, wanted, 1)) {
-        drawing->failed = true;
-        return NULL;
-    }
+    if (!reserve(drawing, (void **)&drawing->bitmaps, &drawing->bitmap_capacity, wanted, 1)) return NULL;
     drawing->bitmap_size = wanted;
     *bitmap = (uint32_t)(font_bitmaps_size + start);
     return memset(drawing->bitmaps + start, 0, size);

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Exact coverage, by signed areas: each piece of an outline within a pixel adds the area between it and the pixel's right
+/* Lines of text, and bitmaps of glyphs that are not in the atlas, from their outlines.
+
+   Exact coverage, by signed areas: each piece of an outline within a pixel adds the area between it and the pixel's right
    side, and its height to all pixels farther right. */
 #include "pixels/gl.h"
 #include "pixels/internal.h"
@@ -138,17 +140,14 @@ Font font_pick(FontFace face, double pixels) {
     return font;
 }
 
+static int compare_code(const void *code, const void *glyph) {
+    const unsigned wanted = *(const unsigned *)code, found = ((const FontGlyph *)glyph)->code;
+    return (wanted > found) - (wanted < found);
+}
+
 /* NULL if the atlas lacks the character. */
 static const FontGlyph *find_in_atlas(const Font *font, unsigned code) {
-    int low = 0, high = FONT_GLYPHS;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (font->glyphs[middle].code < code)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < FONT_GLYPHS && font->glyphs[low].code == code ? &font->glyphs[low] : NULL;
+    return bsearch(&code, font->glyphs, FONT_GLYPHS, sizeof *font->glyphs, compare_code);
 }
 
 /* The next character of a text. `outline` is NULL if the bitmap is in the atlas. */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* From filtered rows to pixels: one file, or two that are mostly equal. */
 #include "base/base.h"
 #include "pixels/internal.h"
 #include "pixels/png.h"
@@ -6,80 +7,196 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LITERALS = 256, END_OF_BLOCK = 256, FIRST_LENGTH = 257, LENGTHS = 29, SYMBOLS = FIRST_LENGTH + LENGTHS };
-enum { LENGTH_BITS = 4, MATCHED_BYTES = 3 };
+typedef uint8_t Bytes __attribute__((vector_size(16)));
 
-/* Code length in bits of each symbol, in hexadecimal: Huffman lengths for the filtered rows of frames of all scenes
-   at 720p, 1080p and 4K, with 0.0008 added to each symbol's frequency to bound the lengths. Match lengths that are
-   not whole pixels have none. */
-static const char code_lengths[SYMBOLS + 1] = "297888888879879788a898899899999989999999999998a99a9999999999999999999a99"
-                                              "a9999a99a999a999aa99aaa99a99a99a9999aaa9aa99aaaa99aa99a999aa9aa99aaaa9aa"
-                                              "a9aaa9aa9a99a99a99aaaa9aa999aa99a99a9a99a99a999a999999999999999999a99999"
-                                              "9999999989998999998898988787887888888889a700800808099999a9997779888893";
+/* The row filters of PNG (specification, section 9). */
 
-static unsigned code_length(int symbol) {
-    char digit = code_lengths[symbol];
-    return (unsigned)(digit < 'a' ? digit - '0' : digit - 'a' + 10);
+enum { NONE, SUB, UP, AVERAGE, PAETH };
+
+static void add_up(const uint8_t *restrict from, const uint8_t *restrict above, size_t bytes, uint8_t *restrict row) {
+    for (size_t i = 0; i < bytes; i++) row[i] = (uint8_t)(from[i] + above[i]);
 }
 
-/* Huffman codes are packed from their highest bit, everything else from the lowest. */
-static uint32_t reversed(uint32_t bits, unsigned count) {
-    uint32_t result = 0;
-    for (unsigned i = 0; i < count; i++) result |= (bits >> i & 1) << (count - 1 - i);
-    return result;
+/* The functions below are compiled once for each step, as a constant. */
+static inline void add_left(const uint8_t *restrict from, size_t bytes, size_t step, uint8_t *restrict row) {
+    uint8_t left[4] = {0};
+    for (size_t i = 0; i + step <= bytes; i += step)
+        for (size_t c = 0; c < step; c++) row[i + c] = left[c] = (uint8_t)(from[i + c] + left[c]);
 }
 
-/* The canonical code (RFC 1951, 3.2.2): ascending by length, then by symbol. */
-static void make_canonical(DeflateCode codes[SYMBOLS]) {
-    uint32_t next = 0;
-    for (unsigned length = 1; length <= DEFLATE_LITERAL_BITS; length++, next <<= 1)
-        for (int symbol = 0; symbol < SYMBOLS; symbol++)
-            if (code_length(symbol) == length) codes[symbol] = (DeflateCode){reversed(next++, length), length};
+typedef uint32_t Pixels __attribute__((vector_size(16)));
+
+/* Four pixels of four bytes at once: sums of neighbours, then of pairs, then with all before. */
+static void add_left_rgba(const uint8_t *restrict from, size_t bytes, uint8_t *restrict row) {
+    static const Pixels not_first = {0, UINT32_MAX, UINT32_MAX, UINT32_MAX}, last_two = {0, 0, UINT32_MAX, UINT32_MAX};
+    Pixels before = {0};
+    size_t i = 0;
+    for (; i + sizeof before <= bytes; i += sizeof before) {
+        Pixels pixels;
+        memcpy(&pixels, from + i, sizeof pixels);
+        pixels = (Pixels)((Bytes)pixels + (Bytes)(__builtin_shufflevector(pixels, pixels, 0, 0, 1, 2) & not_first));
+        pixels = (Pixels)((Bytes)pixels + (Bytes)(__builtin_shufflevector(pixels, pixels, 0, 0, 0, 1) & last_two));
+        pixels = (Pixels)((Bytes)pixels + (Bytes)before);
+        memcpy(row + i, &pixels, sizeof pixels);
+        before = __builtin_shufflevector(pixels, pixels, 3, 3, 3, 3);
+    }
+    for (; i < bytes; i++) row[i] = (uint8_t)(from[i] + (i < 4 ? 0 : row[i - 4]));
 }
 
-/* The smallest match of each length symbol, and its number of extra bits (3.2.5). */
-static const uint8_t extra_bits[LENGTHS] = {0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2,
-                                            2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 0};
-static const uint16_t min_match[LENGTHS] = {3,  4,  5,  6,  7,  8,  9,  10, 11,  13,  15,  17,  19,  23, 27,
-                                            31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195, 227, 258};
-
-/* The length symbol with its extra bits, then the only distance, whose code is one 0 bit. */
-static DeflateCode match_code(const DeflateCode codes[SYMBOLS], int pixels) {
-    int match = MATCHED_BYTES * pixels, i = LENGTHS - 1;
-    while (min_match[i] > match) i--;
-    DeflateCode code = codes[FIRST_LENGTH + i];
-    code.bits |= (uint32_t)(match - min_match[i]) << code.count;
-    code.count += extra_bits[i] + 1u;
-    return code;
+static inline void add_average(const uint8_t *restrict from, const uint8_t *restrict above, size_t bytes, size_t step,
+                               uint8_t *restrict row) {
+    uint8_t left[4] = {0};
+    for (size_t i = 0; i + step <= bytes; i += step)
+        for (size_t c = 0; c < step; c++) row[i + c] = left[c] = (uint8_t)(from[i + c] + (left[c] + above[i + c]) / 2);
 }
 
-void deflate_make_codes(DeflateCodes *codes) {
-    DeflateCode symbols[SYMBOLS] = {{0, 0}};
-    make_canonical(symbols);
-    for (int i = 0; i < LITERALS; i++) codes->literals[i] = symbols[i];
-    codes->end = symbols[END_OF_BLOCK];
-    codes->runs[0] = (DeflateCode){0, 0};
-    for (int n = 1; n <= DEFLATE_RUN; n++) codes->runs[n] = match_code(symbols, n);
+/* The neighbour nearest to left + up - corner; the first of these where they tie. */
+static inline int predict(int left, int up, int corner) {
+    int to_left = abs(up - corner), to_up = abs(left - corner), to_corner = abs(left + up - 2 * corner);
+    int nearest = to_up <= to_corner ? up : corner, distance = to_up <= to_corner ? to_up : to_corner;
+    return to_left <= distance ? left : nearest;
 }
 
-/* The code lengths are themselves Huffman-coded, here with four bits each. */
-static void write_code_length(BitWriter *writer, unsigned length) {
-    bits_write(writer, reversed(length, LENGTH_BITS), LENGTH_BITS);
+static inline void add_paeth(const uint8_t *restrict from, const uint8_t *restrict above, size_t bytes, size_t step,
+                             uint8_t *restrict row) {
+    int left[4] = {0}, corner[4] = {0};
+    for (size_t i = 0; i + step <= bytes; i += step)
+        for (size_t c = 0; c < step; c++) {
+            int up = above[i + c];
+            row[i + c] = (uint8_t)(from[i + c] + predict(left[c], up, corner[c]));
+            left[c] = row[i + c], corner[c] = up;
+        }
 }
 
-void deflate_begin(BitWriter *writer) {
-    enum { DISTANCES = 3, LENGTH_SYMBOLS = 19, REPEATS = 3 };
-    bits_write(writer, 0x0178, 16); /* zlib: deflate, window of 32 KiB, fastest */
-    bits_write(writer, 1, 1);       /* last block */
-    bits_write(writer, 2, 2);       /* dynamic Huffman codes */
-    bits_write(writer, SYMBOLS - FIRST_LENGTH, 5);
-    bits_write(writer, DISTANCES - 1, 5);
-    bits_write(writer, LENGTH_SYMBOLS - 4, 4);
-    bits_write(writer, 0, 3 * REPEATS); /* the symbols that repeat lengths come first and are unused */
-    for (int i = REPEATS; i < LENGTH_SYMBOLS; i++) bits_write(writer, LENGTH_BITS, 3);
-    for (int i = 0; i < SYMBOLS; i++) write_code_length(writer, code_length(i));
-    for (int i = 1; i < DISTANCES; i++) write_code_length(writer, 0);
-    write_code_length(writer, 1); /* the third distance symbol: three bytes */
+/* Filters that refer to the left. */
+static inline bool unfilter_step(int filter, const uint8_t *from, const uint8_t *above, size_t bytes, size_t step,
+                                 uint8_t *row) {
+    if (filter == SUB)
+        add_left(from, bytes, step, row);
+    else if (filter == AVERAGE)
+        add_average(from, above, bytes, step, row);
+    else if (filter == PAETH)
+        add_paeth(from, above, bytes, step, row);
+    else
+        return false;
+    return true;
+}
+
+/* row[bytes] = the row that `filtered`, a filter's number and `bytes` bytes, stands for. above[bytes]: the row above,
+   zeros for the first. step: 1 to 4, bytes per pixel. No two of the arrays overlap. False for an unknown filter. */
+static bool unfilter_row(const uint8_t *filtered, const uint8_t *above, size_t bytes, int step, uint8_t *row) {
+    int filter = filtered[0];
+    const uint8_t *from = filtered + 1;
+    if (filter == NONE)
+        memcpy(row, from, bytes);
+    else if (filter == UP)
+        add_up(from, above, bytes, row);
+    else if (filter == SUB && step == 4)
+        add_left_rgba(from, bytes, row);
+    else
+        return step == 4   ? unfilter_step(filter, from, above, bytes, 4, row)
+               : step == 3 ? unfilter_step(filter, from, above, bytes, 3, row)
+               : step == 2 ? unfilter_step(filter, from, above, bytes, 2, row)
+                           : unfilter_step(filter, from, above, bytes, 1, row);
+    return true;
+}
+
+/* Rows as RGBA. */
+
+enum { OPAQUE = 255 };
+
+/* Compilers make one load of it, and one store of the next. */
+static uint32_t load(const uint8_t *p) {
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+static void store(uint32_t pixel, uint8_t *rgba) {
+    pixel |= (uint32_t)OPAQUE << 24;
+    rgba[0] = (uint8_t)pixel, rgba[1] = (uint8_t)(pixel >> 8);
+    rgba[2] = (uint8_t)(pixel >> 16), rgba[3] = (uint8_t)(pixel >> 24);
+}
+
+#ifdef TWINBOX_AVX
+/* Sixteen bytes hold five pixels, of which four are taken. Returns how many pixels are done. */
+__attribute__((target("ssse3"))) static size_t expand_rgb_ssse3(const uint8_t *restrict row, size_t width,
+                                                                uint8_t *restrict rgba) {
+    static const Bytes opaque = {0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE};
+    size_t x = 0;
+    for (; x + 6 <= width; x += 4) {
+        Bytes bytes;
+        memcpy(&bytes, row + 3 * x, sizeof bytes);
+        bytes =
+            __builtin_shufflevector(bytes, (Bytes){0}, 0, 1, 2, 16, 3, 4, 5, 16, 6, 7, 8, 16, 9, 10, 11, 16) | opaque;
+        memcpy(rgba + 4 * x, &bytes, sizeof bytes);
+    }
+    return x;
+}
+#endif
+
+/* Four pixels are three words. */
+static void expand_rgb(const uint8_t *restrict row, size_t width, uint8_t *restrict rgba) {
+    size_t x = 0;
+#ifdef TWINBOX_AVX
+    if (__builtin_cpu_supports("ssse3")) x = expand_rgb_ssse3(row, width, rgba);
+    row += 3 * x, rgba += 4 * x;
+#endif
+    for (; x + 4 <= width; x += 4, row += 12, rgba += 16) {
+        uint32_t a = load(row), b = load(row + 4), c = load(row + 8);
+        store(a, rgba);
+        store(a >> 24 | b << 8, rgba + 4);
+        store(b >> 16 | c << 16, rgba + 8);
+        store(c >> 8, rgba + 12);
+    }
+    for (; x < width; x++, row += 3, rgba += 4)
+        store((uint32_t)row[0] | (uint32_t)row[1] << 8 | (uint32_t)row[2] << 16, rgba);
+}
+
+static void clear_rgb(const PngLayout *layout, uint8_t *rgba) {
+    for (size_t x = 0; x < layout->width; x++)
+        if (memcmp(rgba + 4 * x, layout->clear, 3) == 0) rgba[4 * x + 3] = 0;
+}
+
+static void expand_grey_alpha(const uint8_t *restrict row, size_t width, uint8_t *restrict rgba) {
+    for (size_t x = 0; x < width; x++) {
+        rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = row[2 * x];
+        rgba[4 * x + 3] = row[2 * x + 1];
+    }
+}
+
+/* Sample x of one channel; the first is in the highest bits of a byte. */
+static unsigned sample(const uint8_t *row, size_t x, unsigned depth) {
+    size_t bit = x * depth;
+    return (unsigned)row[bit / 8] >> (8 - depth - bit % 8) & ((1u << depth) - 1);
+}
+
+static void expand_grey(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
+    unsigned depth = (unsigned)layout->depth, scale = 255 / ((1u << depth) - 1);
+    for (size_t x = 0; x < layout->width; x++) {
+        unsigned value = sample(row, x, depth);
+        rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = (uint8_t)(value * scale);
+        rgba[4 * x + 3] = layout->has_clear && value == layout->clear[0] ? 0 : OPAQUE;
+    }
+}
+
+static bool expand_palette(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
+    unsigned depth = (unsigned)layout->depth, most = 0;
+    for (size_t x = 0; x < layout->width; x++) {
+        unsigned index = sample(row, x, depth);
+        memcpy(rgba + 4 * x, layout->palette[index], 4);
+        if (index > most) most = index;
+    }
+    return most < (unsigned)layout->colors;
+}
+
+/* rgba[4 * width] for a row. False if a colour is not in the palette. */
+static bool expand_row(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
+    if (layout->color == PNG_PALETTE) return expand_palette(layout, row, rgba);
+    if (layout->color == PNG_GREY) expand_grey(layout, row, rgba);
+    if (layout->color == PNG_GREY_ALPHA) expand_grey_alpha(row, layout->width, rgba);
+    if (layout->color == PNG_RGB) expand_rgb(row, layout->width, rgba);
+    if (layout->color == PNG_RGB && layout->has_clear) clear_rgb(layout, rgba);
+    if (layout->color == PNG_RGB_ALPHA) memcpy(rgba, row, 4 * (size_t)layout->width);
+    return true;
 }
 
 typedef struct Side {
@@ -121,7 +238,7 @@ static bool next(Side *side) { return (side->filtered = png_rows_next(&side->row
 
 static bool unfilter(Side *side, int y) {
     uint8_t *row = side->unfiltered[y % 2];
-    bool ok = png_unfilter(side->filtered, side->row, side->rows.bytes, side->rows.step, row);
+    bool ok = unfilter_row(side->filtered, side->row, side->rows.bytes, side->rows.step, row);
     side->row = row;
     return ok;
 }
@@ -129,7 +246,7 @@ static bool unfilter(Side *side, int y) {
 static uint8_t *pixels_of(const Image *image, int y) { return image->pixels + (size_t)y * (size_t)image->width * 4; }
 
 static bool expand(const Side *side, int y) {
-    return png_expand(&side->rows.layout, side->row, pixels_of(side->image, y));
+    return expand_row(&side->rows.layout, side->row, pixels_of(side->image, y));
 }
 
 static bool decode(Side *side) {
@@ -147,6 +264,12 @@ bool png_fast_decode(const uint8_t *data, size_t size, int64_t max_pixels, Image
     if (!ok) image_destroy(side.image);
     *image = ok ? side.image : NULL;
     return ok;
+}
+
+static bool same_layout(const PngLayout *a, const PngLayout *b) {
+    return a->width == b->width && a->height == b->height && a->color == b->color && a->depth == b->depth &&
+           a->colors == b->colors && memcmp(a->palette, b->palette, sizeof a->palette) == 0 &&
+           a->has_clear == b->has_clear && memcmp(a->clear, b->clear, sizeof a->clear) == 0;
 }
 
 /* Two files, row by row. */
@@ -184,7 +307,7 @@ static bool decode_rows(Pair *pair, int y) {
 
 static bool decode_both(Pair *pair) {
     Side *first = &pair->sides[0], *second = &pair->sides[1];
-    if (!png_same_layout(&first->rows.layout, &second->rows.layout) || !start(first) || !start(second)) return false;
+    if (!same_layout(&first->rows.layout, &second->rows.layout) || !start(first) || !start(second)) return false;
     image_provide(first->image);
     for (int y = 0; y < first->image->height; y++)
         if (!decode_rows(pair, y)) return false;

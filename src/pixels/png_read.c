@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Checks PNG files, and reads them, from untrusted sources: damaged, truncated, or crafted to exhaust memory. */
 #include "base/base.h"
 #include "base/file.h"
 #include "pixels/internal.h"
@@ -11,127 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-png_voidp png_memory_take(png_structp png, png_alloc_size_t size) {
-    void *block = malloc(size);
-    if (block == NULL) *(bool *)png_get_mem_ptr(png) = true;
-    return block;
-}
-
-void png_memory_release(png_structp png, png_voidp block) {
-    (void)png;
-    free(block);
-}
-
-/* Rows of PNG files as RGBA. */
-
-enum { OPAQUE = 255 };
-
-/* Compilers make one load of it, and one store of the next. */
-static uint32_t load(const uint8_t *p) {
-    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
-
-static void store(uint32_t pixel, uint8_t *rgba) {
-    pixel |= (uint32_t)OPAQUE << 24;
-    rgba[0] = (uint8_t)pixel, rgba[1] = (uint8_t)(pixel >> 8);
-    rgba[2] = (uint8_t)(pixel >> 16), rgba[3] = (uint8_t)(pixel >> 24);
-}
-
-#ifdef TWINBOX_AVX
-typedef uint8_t Bytes __attribute__((vector_size(16)));
-
-/* Sixteen bytes hold five pixels, of which four are taken. Returns how many pixels are done. */
-__attribute__((target("ssse3"))) static size_t expand_rgb_ssse3(const uint8_t *restrict row, size_t width,
-                                                                uint8_t *restrict rgba) {
-    static const Bytes opaque = {0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE, 0, 0, 0, OPAQUE};
-    size_t x = 0;
-    for (; x + 6 <= width; x += 4) {
-        Bytes bytes;
-        memcpy(&bytes, row + 3 * x, sizeof bytes);
-        bytes =
-            __builtin_shufflevector(bytes, (Bytes){0}, 0, 1, 2, 16, 3, 4, 5, 16, 6, 7, 8, 16, 9, 10, 11, 16) | opaque;
-        memcpy(rgba + 4 * x, &bytes, sizeof bytes);
-    }
-    return x;
-}
-#endif
-
-/* Four pixels are three words. */
-static void expand_rgb(const uint8_t *restrict row, size_t width, uint8_t *restrict rgba) {
-    size_t x = 0;
-#ifdef TWINBOX_AVX
-    if (__builtin_cpu_supports("ssse3")) x = expand_rgb_ssse3(row, width, rgba);
-    row += 3 * x, rgba += 4 * x;
-#endif
-    for (; x + 4 <= width; x += 4, row += 12, rgba += 16) {
-        uint32_t a = load(row), b = load(row + 4), c = load(row + 8);
-        store(a, rgba);
-        store(a >> 24 | b << 8, rgba + 4);
-        store(b >> 16 | c << 16, rgba + 8);
-        store(c >> 8, rgba + 12);
-    }
-    for (; x < width; x++, row += 3, rgba += 4)
-        store((uint32_t)row[0] | (uint32_t)row[1] << 8 | (uint32_t)row[2] << 16, rgba);
-}
-
-static void clear_rgb(const PngLayout *layout, uint8_t *rgba) {
-    for (size_t x = 0; x < layout->width; x++)
-        if (memcmp(rgba + 4 * x, layout->clear, 3) == 0) rgba[4 * x + 3] = 0;
-}
-
-static void expand_grey_alpha(const uint8_t *restrict row, size_t width, uint8_t *restrict rgba) {
-    for (size_t x = 0; x < width; x++) {
-        rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = row[2 * x];
-        rgba[4 * x + 3] = row[2 * x + 1];
-    }
-}
-
-/* Sample x of one channel; the first is in the highest bits of a byte. */
-static unsigned sample(const uint8_t *row, size_t x, unsigned depth) {
-    size_t bit = x * depth;
-    return (unsigned)row[bit / 8] >> (8 - depth - bit % 8) & ((1u << depth) - 1);
-}
-
-static void expand_grey(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
-    unsigned depth = (unsigned)layout->depth, scale = 255 / ((1u << depth) - 1);
-    for (size_t x = 0; x < layout->width; x++) {
-        unsigned value = sample(row, x, depth);
-        rgba[4 * x] = rgba[4 * x + 1] = rgba[4 * x + 2] = (uint8_t)(value * scale);
-        rgba[4 * x + 3] = layout->has_clear && value == layout->clear[0] ? 0 : OPAQUE;
-    }
-}
-
-static bool expand_palette(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
-    unsigned depth = (unsigned)layout->depth, most = 0;
-    for (size_t x = 0; x < layout->width; x++) {
-        unsigned index = sample(row, x, depth);
-        memcpy(rgba + 4 * x, layout->palette[index], 4);
-        if (index > most) most = index;
-    }
-    return most < (unsigned)layout->colors;
-}
-
-bool png_expand(const PngLayout *layout, const uint8_t *row, uint8_t *rgba) {
-    if (layout->color == PNG_PALETTE) return expand_palette(layout, row, rgba);
-    if (layout->color == PNG_GREY) expand_grey(layout, row, rgba);
-    if (layout->color == PNG_GREY_ALPHA) expand_grey_alpha(row, layout->width, rgba);
-    if (layout->color == PNG_RGB) expand_rgb(row, layout->width, rgba);
-    if (layout->color == PNG_RGB && layout->has_clear) clear_rgb(layout, rgba);
-    if (layout->color == PNG_RGB_ALPHA) memcpy(rgba, row, 4 * (size_t)layout->width);
-    return true;
-}
-
-bool png_same_layout(const PngLayout *a, const PngLayout *b) {
-    return a->width == b->width && a->height == b->height && a->color == b->color && a->depth == b->depth &&
-           a->colors == b->colors && memcmp(a->palette, b->palette, sizeof a->palette) == 0 &&
-           a->has_clear == b->has_clear && memcmp(a->clear, b->clear, sizeof a->clear) == 0;
-}
-
 bool png_check_start(const uint8_t *data, size_t size, const char *path, Error *error) {
-    static const uint8_t signature[PNG_SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
     if (size == 0) return error_input(error, path, "not a PNG file, or damaged: it is empty");
     if (!lfs_pointer_refuse(data, size, path, error)) return false;
-    return (size >= PNG_SIGNATURE && memcmp(data, signature, PNG_SIGNATURE) == 0) ||
+    return png_has_signature(data, size) ||
            error_input(error, path, "not a PNG file, or damaged: it does not begin as one");
 }
 
@@ -140,17 +24,15 @@ typedef struct Header {
     int depth, color, interlace;
 } Header;
 
-enum { GREY = 0, RGB = 2, PALETTE = 3, GREY_ALPHA = 4, RGB_ALPHA = 6 };
-
 /* Table 11.1 of the specification. */
 static bool depth_fits(int color, int depth) {
-    static const int depths[] = {[GREY] = 1 | 2 | 4 | 8 | 16,
-                                 [RGB] = 8 | 16,
-                                 [PALETTE] = 1 | 2 | 4 | 8,
-                                 [GREY_ALPHA] = 8 | 16,
-                                 [RGB_ALPHA] = 8 | 16};
+    static const int depths[] = {[PNG_GREY] = 1 | 2 | 4 | 8 | 16,
+                                 [PNG_RGB] = 8 | 16,
+                                 [PNG_PALETTE] = 1 | 2 | 4 | 8,
+                                 [PNG_GREY_ALPHA] = 8 | 16,
+                                 [PNG_RGB_ALPHA] = 8 | 16};
     bool power = depth > 0 && (depth & (depth - 1)) == 0;
-    return color <= RGB_ALPHA && power && (depths[color] & depth) != 0;
+    return color <= PNG_RGB_ALPHA && power && (depths[color] & depth) != 0;
 }
 
 static bool read_header(const PngChunk *chunk, Header *header) {
@@ -179,10 +61,9 @@ bool png_check_pixels(int width, int height, int64_t max_pixels, const char *pat
 
 /* Bytes of the filtered rows of one pass with every dx-th pixel from x on, and every dy-th row from y on. */
 static double pass_size(const Header *header, int x, int y, int dx, int dy) {
-    static const int channels[] = {[GREY] = 1, [RGB] = 3, [PALETTE] = 1, [GREY_ALPHA] = 2, [RGB_ALPHA] = 4};
     uint64_t width = ((uint64_t)header->width + (uint64_t)(dx - 1 - x)) / (uint64_t)dx;
     uint64_t height = ((uint64_t)header->height + (uint64_t)(dy - 1 - y)) / (uint64_t)dy;
-    uint64_t row = (width * (uint64_t)(channels[header->color] * header->depth) + 7) / 8;
+    uint64_t row = (width * (uint64_t)(png_channels[header->color] * header->depth) + 7) / 8;
     return width == 0 ? 0 : (double)height * (double)(row + 1);
 }
 
@@ -211,7 +92,7 @@ static bool refuse(const State *state, const char *what) {
 
 static bool check_pixels(State *state, const PngChunk *chunk) {
     if (state->pixels_ended) return refuse(state, "the IDAT chunks are not consecutive");
-    if (state->header.color == PALETTE && !state->palette) return refuse(state, "the palette is missing");
+    if (state->header.color == PNG_PALETTE && !state->palette) return refuse(state, "the palette is missing");
     for (size_t i = 0; i < chunk->length && state->compressed + i < 2; i++)
         state->zlib[state->compressed + i] = chunk->data[i];
     state->compressed += chunk->length;
@@ -235,27 +116,23 @@ static bool check_chunk(State *state, const PngChunk *chunk, size_t at) {
 }
 
 static bool check_checksum(const State *state, const PngChunk *chunk, size_t at) {
-    for (int i = 0; i < 4; i++) {
-        uint8_t letter = chunk->type[i] & 0xDF;
-        if (letter < 'A' || letter > 'Z')
-            return error_input(state->error, state->path, "not a PNG file, or damaged: no valid chunk at byte %zu", at);
-    }
-    uint32_t stored = png_number(chunk->data + chunk->length);
-    return libdeflate_crc32(0, chunk->type, chunk->length + 4) == stored ||
+    if (!png_chunk_has_name(chunk))
+        return error_input(state->error, state->path, "not a PNG file, or damaged: no valid chunk at byte %zu", at);
+    return png_chunk_is_sound(chunk) ||
            error_input(state->error, state->path,
                        "not a PNG file, or damaged: wrong checksum of the chunk %.4s at byte %zu",
                        (const char *)chunk->type, at);
 }
 
-/* RFC 1950; deflate shrinks to no less than two bits for 258 bytes (RFC 1951, 3.2.5). */
+/* RFC 1950. */
 static bool check_compressed(const State *state) {
     const uint8_t *zlib = state->zlib;
-    const double most = 1032, frame = 6; /* the zlib header and the checksum */
+    const double frame = 6; /* the zlib header and the checksum */
     if (!state->pixels) return refuse(state, "it has no pixels (chunk IDAT)");
     if (state->compressed < 2 || (zlib[0] & 0x0F) != 8 || zlib[0] >> 4 > 7 || (zlib[0] << 8 | zlib[1]) % 31 != 0 ||
         (zlib[1] & 0x20) != 0)
         return refuse(state, "the pixels are not a zlib stream");
-    return (double)state->compressed >= frame + filtered_size(&state->header) / most ||
+    return (double)state->compressed >= frame + filtered_size(&state->header) / PNG_BEST_RATIO ||
            refuse(state, "too few bytes for its pixels");
 }
 
@@ -276,7 +153,18 @@ bool png_check(const uint8_t *data, size_t size, const char *path, int *width, i
     return (state.ended || refuse(&state, "unexpected end of file")) && check_compressed(&state);
 }
 
-/* Reads PNG files from untrusted sources: damaged, truncated, or crafted to exhaust memory. */
+/* Reading by libpng. */
+
+png_voidp png_memory_take(png_structp png, png_alloc_size_t size) {
+    void *block = malloc(size);
+    if (block == NULL) *(bool *)png_get_mem_ptr(png) = true;
+    return block;
+}
+
+void png_memory_release(png_structp png, png_voidp block) {
+    (void)png;
+    free(block);
+}
 
 /* More than IMAGE_MAX_PIXELS need with 16 bits per channel, uncompressed. */
 static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
@@ -292,7 +180,7 @@ typedef struct Decoder {
     int64_t max_pixels;
     Image *image;
     uint8_t *row;      /* 16-bit samples */
-    bool memory_short; /* png_memory.h */
+    bool memory_short; /* png_memory_take() */
     Error *error;
 } Decoder;
 

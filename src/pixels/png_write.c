@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes PNG files with libpng; the pixels are compressed by libpng or by idat.c. */
+/* Writes PNG files: pictures with libpng, whose pixels are compressed by libpng or by png_idat.c; and files of few colours. */
 #include "base/base.h"
 #include "base/file.h"
 #include "pixels/internal.h"
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <zlib.h>
 
-enum { PNG_ENCODER_IDAT_PART = 1 << 15 }; /* bytes */
+enum { IDAT_PART = 1 << 15 }; /* bytes */
 
 /* Everything that encoding modifies is in this struct, as longjmp would clobber locals. */
 struct PngEncoder {
@@ -20,7 +20,7 @@ struct PngEncoder {
     png_infop info;
     uint8_t *data;
     size_t size, capacity;
-    bool memory_short; /* also of libpng (png_memory.h) */
+    bool memory_short; /* also of libpng (png_memory_take) */
     char problem[256];
 };
 
@@ -78,9 +78,8 @@ static void write_rows(png_structp png, const Image *image) {
 
 /* Split, as decoders refuse an IDAT chunk larger than the picture, which noise would produce. */
 static void write_chunks(png_structp png, const uint8_t *pixels, size_t size) {
-    for (size_t at = 0; at < size; at += PNG_ENCODER_IDAT_PART)
-        png_write_chunk(png, (png_const_bytep) "IDAT", pixels + at,
-                        size - at < PNG_ENCODER_IDAT_PART ? size - at : PNG_ENCODER_IDAT_PART);
+    for (size_t at = 0; at < size; at += IDAT_PART)
+        png_write_chunk(png, (png_const_bytep) "IDAT", pixels + at, size - at < IDAT_PART ? size - at : IDAT_PART);
     png_write_chunk(png, (png_const_bytep) "IEND", NULL, 0);
 }
 
@@ -135,104 +134,17 @@ bool image_write_png(const Image *image, const char *path, const ImageText *text
     return ok;
 }
 
-enum { NONE, SUB, UP, AVERAGE, PAETH };
+/* A file of few colours, written row by row with zlib. */
 
-static void add_up(const uint8_t *restrict from, const uint8_t *restrict above, size_t bytes, uint8_t *restrict row) {
-    for (size_t i = 0; i < bytes; i++) row[i] = (uint8_t)(from[i] + above[i]);
-}
-
-/* The functions below are compiled once for each step, as a constant. */
-static inline void add_left(const uint8_t *restrict from, size_t bytes, size_t step, uint8_t *restrict row) {
-    uint8_t left[4] = {0};
-    for (size_t i = 0; i + step <= bytes; i += step)
-        for (size_t c = 0; c < step; c++) row[i + c] = left[c] = (uint8_t)(from[i + c] + left[c]);
-}
-
-typedef uint8_t Bytes __attribute__((vector_size(16)));
-typedef uint32_t Pixels __attribute__((vector_size(16)));
-
-/* Four pixels of four bytes at once: sums of neighbours, then of pairs, then with all before. */
-static void add_left_rgba(const uint8_t *restrict from, size_t bytes, uint8_t *restrict row) {
-    static const Pixels not_first = {0, UINT32_MAX, UINT32_MAX, UINT32_MAX}, last_two = {0, 0, UINT32_MAX, UINT32_MAX};
-    Pixels before = {0};
-    size_t i = 0;
-    for (; i + sizeof before <= bytes; i += sizeof before) {
-        Pixels pixels;
-        memcpy(&pixels, from + i, sizeof pixels);
-        pixels = (Pixels)((Bytes)pixels + (Bytes)(__builtin_shufflevector(pixels, pixels, 0, 0, 1, 2) & not_first));
-        pixels = (Pixels)((Bytes)pixels + (Bytes)(__builtin_shufflevector(pixels, pixels, 0, 0, 0, 1) & last_two));
-        pixels = (Pixels)((Bytes)pixels + (Bytes)before);
-        memcpy(row + i, &pixels, sizeof pixels);
-        before = __builtin_shufflevector(pixels, pixels, 3, 3, 3, 3);
-    }
-    for (; i < bytes; i++) row[i] = (uint8_t)(from[i] + (i < 4 ? 0 : row[i - 4]));
-}
-
-static inline void add_average(const uint8_t *restrict from, const uint8_t *restrict above, size_t bytes, size_t step,
-                               uint8_t *restrict row) {
-    uint8_t left[4] = {0};
-    for (size_t i = 0; i + step <= bytes; i += step)
-        for (size_t c = 0; c < step; c++) row[i + c] = left[c] = (uint8_t)(from[i + c] + (left[c] + above[i + c]) / 2);
-}
-
-/* The neighbour nearest to left + up - corner; the first of these where they tie. */
-static inline int predict(int left, int up, int corner) {
-    int to_left = abs(up - corner), to_up = abs(left - corner), to_corner = abs(left + up - 2 * corner);
-    int nearest = to_up <= to_corner ? up : corner, distance = to_up <= to_corner ? to_up : to_corner;
-    return to_left <= distance ? left : nearest;
-}
-
-static inline void add_paeth(const uint8_t *restrict from, const uint8_t *restrict above, size_t bytes, size_t step,
-                             uint8_t *restrict row) {
-    int left[4] = {0}, corner[4] = {0};
-    for (size_t i = 0; i + step <= bytes; i += step)
-        for (size_t c = 0; c < step; c++) {
-            int up = above[i + c];
-            row[i + c] = (uint8_t)(from[i + c] + predict(left[c], up, corner[c]));
-            left[c] = row[i + c], corner[c] = up;
-        }
-}
-
-/* Filters that refer to the left. */
-static inline bool unfilter_step(int filter, const uint8_t *from, const uint8_t *above, size_t bytes, size_t step,
-                                 uint8_t *row) {
-    if (filter == SUB)
-        add_left(from, bytes, step, row);
-    else if (filter == AVERAGE)
-        add_average(from, above, bytes, step, row);
-    else if (filter == PAETH)
-        add_paeth(from, above, bytes, step, row);
-    else
-        return false;
-    return true;
-}
-
-bool png_unfilter(const uint8_t *filtered, const uint8_t *above, size_t bytes, int step, uint8_t *row) {
-    int filter = filtered[0];
-    const uint8_t *from = filtered + 1;
-    if (filter == NONE)
-        memcpy(row, from, bytes);
-    else if (filter == UP)
-        add_up(from, above, bytes, row);
-    else if (filter == SUB && step == 4)
-        add_left_rgba(from, bytes, row);
-    else
-        return step == 4   ? unfilter_step(filter, from, above, bytes, 4, row)
-               : step == 3 ? unfilter_step(filter, from, above, bytes, 3, row)
-               : step == 2 ? unfilter_step(filter, from, above, bytes, 2, row)
-                           : unfilter_step(filter, from, above, bytes, 1, row);
-    return true;
-}
-
-enum { CHUNK_FRAME = 12, INDEXED_PNG_IDAT_PART = 1 << 15, IHDR_SIZE = 13, DEPTH = 8, PALETTE = 3 };
+enum { IHDR_SIZE = 13, DEPTH = 8 };
 
 struct IndexedPng {
     int width;
-    uint8_t *row; /* [1 + width]: PNG's mark of an unfiltered row, 0, and the pixels */
     z_stream stream;
     uint8_t *file;
     size_t size, capacity;
-    uint8_t part[INDEXED_PNG_IDAT_PART]; /* of the compressed pixels */
+    uint8_t part[IDAT_PART]; /* of the compressed pixels */
+    uint8_t row[];           /* [1 + width]: PNG's mark of an unfiltered row, 0, and the pixels */
 };
 
 static void put_number(uint8_t *to, uint32_t value) {
@@ -241,41 +153,38 @@ static void put_number(uint8_t *to, uint32_t value) {
 
 /* Length, type, data, CRC of type and data. */
 static bool put_chunk(IndexedPng *png, const char *type, const uint8_t *data, size_t size, Error *error) {
-    if (!array_reserve((void **)&png->file, &png->capacity, png->size + size + CHUNK_FRAME, 1))
+    if (!array_reserve((void **)&png->file, &png->capacity, png->size + size + PNG_CHUNK_FRAME, 1))
         return error_memory(error, "image");
     uint8_t *to = png->file + png->size;
     put_number(to, (uint32_t)size);
     memcpy(to + 4, type, 4);
     if (size > 0) memcpy(to + 8, data, size);
     put_number(to + 8 + size, (uint32_t)crc32_z(0, to + 4, size + 4));
-    png->size += size + CHUNK_FRAME;
+    png->size += size + PNG_CHUNK_FRAME;
     return true;
 }
 
 static bool put_start(IndexedPng *png, int height, const Palette *palette, Error *error) {
-    static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-    uint8_t header[IHDR_SIZE] = {[8] = DEPTH, [9] = PALETTE};
+    uint8_t header[IHDR_SIZE] = {[8] = DEPTH, [9] = PNG_PALETTE};
     put_number(header, (uint32_t)png->width);
     put_number(header + 4, (uint32_t)height);
-    if (!array_reserve((void **)&png->file, &png->capacity, sizeof signature, 1)) return error_memory(error, "image");
-    memcpy(png->file, signature, sizeof signature);
-    png->size = sizeof signature;
+    if (!array_reserve((void **)&png->file, &png->capacity, PNG_SIGNATURE, 1)) return error_memory(error, "image");
+    memcpy(png->file, png_signature, PNG_SIGNATURE);
+    png->size = PNG_SIGNATURE;
     return put_chunk(png, "IHDR", header, sizeof header, error) &&
            put_chunk(png, "PLTE", palette->rgb[0], 3 * (size_t)palette->count, error);
 }
 
 IndexedPng *indexed_png_create(int width, int height, const Palette *palette, Error *error) {
     enum { LEVEL = 3 }; /* from 4 on, time doubles for a tenth of the bytes */
-    IndexedPng *png = calloc(1, sizeof *png);
-    uint8_t *row = calloc((size_t)width + 1, 1);
-    if (png == NULL || row == NULL || deflateInit(&png->stream, LEVEL) != Z_OK) {
+    IndexedPng *png = calloc(1, sizeof *png + (size_t)width + 1);
+    if (png == NULL || deflateInit(&png->stream, LEVEL) != Z_OK) {
         free(png);
-        free(row);
         error_memory(error, "image");
         return NULL;
     }
-    png->width = width, png->row = row;
-    png->stream.next_out = png->part, png->stream.avail_out = INDEXED_PNG_IDAT_PART;
+    png->width = width;
+    png->stream.next_out = png->part, png->stream.avail_out = IDAT_PART;
     if (put_start(png, height, palette, error)) return png;
     indexed_png_destroy(png);
     return NULL;
@@ -284,7 +193,6 @@ IndexedPng *indexed_png_create(int width, int height, const Palette *palette, Er
 void indexed_png_destroy(IndexedPng *png) {
     if (png == NULL) return;
     deflateEnd(&png->stream);
-    free(png->row);
     free(png->file);
     free(png);
 }
@@ -293,8 +201,8 @@ uint8_t *indexed_png_row(IndexedPng *png) { return png->row + 1; }
 
 /* Each full part becomes a chunk: decoders refuse an IDAT chunk that is larger than the picture. */
 static bool put_part(IndexedPng *png, Error *error) {
-    if (!put_chunk(png, "IDAT", png->part, INDEXED_PNG_IDAT_PART - png->stream.avail_out, error)) return false;
-    png->stream.next_out = png->part, png->stream.avail_out = INDEXED_PNG_IDAT_PART;
+    if (!put_chunk(png, "IDAT", png->part, IDAT_PART - png->stream.avail_out, error)) return false;
+    png->stream.next_out = png->part, png->stream.avail_out = IDAT_PART;
     return true;
 }
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Characters and the glyphs that draw them, the check of texts, and the font as files. */
 #include "pixels/type.h"
 
 #include "base/base.h"
@@ -6,6 +7,7 @@
 #include <limits.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { FIRST_MARK = 0x300, LAST_MARK = 0x36F };
@@ -32,16 +34,13 @@ static unsigned compose(unsigned letter, unsigned mark) {
     return 0;
 }
 
+static int compare_code(const void *code, const void *glyph) {
+    const unsigned wanted = *(const unsigned *)code, found = ((const Glyph *)glyph)->code;
+    return (wanted > found) - (wanted < found);
+}
+
 const Glyph *type_find(const Typeface *face, unsigned code) {
-    int low = 0, high = type_glyph_count;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (face->glyphs[middle].code < code)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < type_glyph_count && face->glyphs[low].code == code ? &face->glyphs[low] : NULL;
+    return bsearch(&code, face->glyphs, (size_t)type_glyph_count, sizeof *face->glyphs, compare_code);
 }
 
 unsigned type_next_code(const char **text) {

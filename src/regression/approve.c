@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Approval: folders in which no link is followed, the list of results.json, and the changes. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -119,7 +120,7 @@ static void place_close(const ApprovePlace *place) {
 enum { MAX_SIZE = 1 << 25 };
 
 /* The required members. Others (verdict, tolerance, masks) are skipped. */
-enum { FORMAT, APPROVE_READ_EXPECTED, APPROVE_READ_ACTUAL, FRAMES, TRAJECTORIES, MEMBERS };
+enum { FORMAT, EXPECTED_FOLDER, ACTUAL_FOLDER, FRAMES, TRAJECTORIES, MEMBERS };
 static const char *const members[MEMBERS] = {"format", "expected", "actual", "frames", "trajectories"};
 
 /* "x.png" or "sub/x.png": no part is empty or hidden, which includes "." and "..". */
@@ -204,6 +205,11 @@ static bool add_item(ApprovalList *list, ApprovalItem item) {
     return ok;
 }
 
+/* The name of the expected file; if that is new, of the actual one. */
+static const char *target_of(const ApprovalItem *item) {
+    return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
+}
+
 /* The hashes of the files that were named so far: a table with open addressing, at most half full. 0 is an empty place. */
 typedef struct Named {
     uint64_t *hashes; /* [size], a power of two */
@@ -228,11 +234,9 @@ static bool grow(Named *named) {
     return true;
 }
 
-static const char *approval_target(const ApprovalItem *item);
-
 /* compare names a file once; many copies of an item would write one file as many times. */
 static bool add_name(const JsonReader *json, Named *named, const ApprovalItem *item, Error *error) {
-    const char *target = approval_target(item);
+    const char *target = target_of(item);
     uint64_t hash = hash_xxh3(target, strlen(target)), *place;
     if (hash == 0) hash = 1;
     if (!grow(named)) return error_memory(error, json->path);
@@ -264,7 +268,7 @@ static bool read_member(JsonReader *json, int member, ApprovalList *list, Named 
     if (member == FORMAT)
         return strcmp(text, "twinbox compare 1") == 0 ||
                json_read_error(json, error, "not a report of twinbox compare");
-    strcpy(member == APPROVE_READ_EXPECTED ? list->expected : list->actual, text);
+    strcpy(member == EXPECTED_FOLDER ? list->expected : list->actual, text);
     return true;
 }
 
@@ -294,11 +298,6 @@ static bool read_list(JsonReader *json, ApprovalList *list, Named *named, Error 
         if (!seen[i])
             return error_input(error, json->path, "'%s' is missing: not a report of twinbox compare", members[i]);
     return true;
-}
-
-/* The name of the expected file; if that is new, of the actual one. */
-static const char *approval_target(const ApprovalItem *item) {
-    return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
 }
 
 bool approval_read(ApprovalList *list, const char *path, Error *error) {
@@ -374,12 +373,11 @@ static bool refuse_changed(const Root *root, const char *name, Error *error) {
 
 static bool decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
     Found expected, actual = {.there = false};
-    if (!inspect_below(&folders->expected, approval_target(item), &expected, error)) return false;
+    if (!inspect_below(&folders->expected, target_of(item), &expected, error)) return false;
     *action = ACTION_NONE;
     bool removed = item->actual.name[0] == '\0';
     if (removed ? !expected.there : expected.there && expected.hash == item->actual.hash) return true;
-    if (!as_reported(&expected, &item->expected))
-        return refuse_changed(&folders->expected, approval_target(item), error);
+    if (!as_reported(&expected, &item->expected)) return refuse_changed(&folders->expected, target_of(item), error);
     *action = removed ? ACTION_REMOVE : item->expected.name[0] == '\0' ? ACTION_ADD : ACTION_REPLACE;
     const char *name = removed ? item->expected.name : item->actual.name;
     return inspect_below(&folders->actual, name, &actual, error) &&
@@ -413,7 +411,7 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
     ApprovePlace target;
     (*counts[action])++;
     if (action == ACTION_NONE) return true;
-    if (!place_open(&target, &folders->expected, approval_target(item), action == ACTION_ADD, error)) return false;
+    if (!place_open(&target, &folders->expected, target_of(item), action == ACTION_ADD, error)) return false;
     bool ok = target.folder >= 0 || error_input(error, target.path, "has changed during the approval");
     if (ok && action == ACTION_REMOVE)
         ok = unlinkat(target.folder, target.name, 0) == 0 ||
@@ -426,7 +424,7 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
 }
 
 static bool is_selected(const ApprovalItem *item, const char *only, Approval *approval) {
-    bool matches = only == NULL || fnmatch(only, approval_target(item), 0) == 0 ||
+    bool matches = only == NULL || fnmatch(only, target_of(item), 0) == 0 ||
                    fnmatch(only, item->actual.name, 0) == 0; /* home.png, where home.1.png is replaced */
     approval->not_selected += !matches;
     approval->not_shown += matches && !item->shown;

@@ -75,7 +75,7 @@ int image_pixel_difference(const Image *a, const Image *b, size_t pixel);
    where both pictures have 8 bits. */
 size_t image_next_difference(const Image *a, const Image *b, size_t first, size_t x);
 
-/* masked[height, width]: see regression/compare.h; NULL: nothing is ignored. tolerance: 0..255. */
+/* masked[height, width]: Ignored; NULL: nothing is ignored. tolerance: 0..255. */
 void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked, int tolerance,
                           ImageDifference *difference);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* FLIP of a part of two pictures. */
+/* FLIP: colours, filters, tiles around differences, and their mean and percentile. */
 #include "regression/flip.h"
 
 #include "base/base.h"
@@ -124,7 +124,7 @@ float flip_amplify(float color, float feature) {
 
 #define PI 3.14159265358979323846
 
-static int flip_filter_at_most(double radius) { return radius < FLIP_RADIUS_MAX ? (int)radius : FLIP_RADIUS_MAX; }
+static int radius_of(double radius) { return radius < FLIP_RADIUS_MAX ? (int)radius : FLIP_RADIUS_MAX; }
 
 /* The constants of equation 3: weights and widths of up to two Gaussians. */
 static const struct {
@@ -134,7 +134,7 @@ static const struct {
 void flip_make_blur(FlipBlur *blur, FlipChannel channel, double pixels_per_degree) {
     double volume[2] = {0, 0};
     /* One radius for all channels: three standard deviations of the widest Gaussian. */
-    int radius = flip_filter_at_most(ceil(3 * sqrt(0.04 / (2 * PI * PI)) * pixels_per_degree));
+    int radius = radius_of(ceil(3 * sqrt(0.04 / (2 * PI * PI)) * pixels_per_degree));
     blur->count = sensitivity[channel].weight[1] > 0 ? 2 : 1;
     for (int i = 0; i < blur->count; i++) {
         FlipKernel *kernel = &blur->kernels[i];
@@ -160,7 +160,7 @@ void flip_make_features(FlipFeatures *features, double pixels_per_degree) {
     enum { LARGEST = 2 * FLIP_RADIUS_MAX + 1 };
     double deviation = 0.5 * 0.082 * pixels_per_degree; /* 0.082 degrees: the feature width at the eye's peak
                                                            contrast sensitivity */
-    int radius = flip_filter_at_most(ceil(3 * deviation));
+    int radius = radius_of(ceil(3 * deviation));
     double across[LARGEST] = {0}, edge[LARGEST] = {0}, point[LARGEST] = {0};
     for (int k = -radius; k <= radius; k++) {
         double gaussian = exp(-k * k / (2 * deviation * deviation));
@@ -205,11 +205,11 @@ struct FlipTile {
     float *planes[2][PLANES];
     uint8_t *row;        /* RGBA */
     unsigned char clear; /* not 0 if a loaded pixel is not opaque */
-    float *memory;
     Converted converted[CONVERTED];
+    float memory[]; /* of all the arrays */
 };
 
-static void flip_make_model(FlipModel *model, double pixels_per_degree) {
+static void make_model(FlipModel *model, double pixels_per_degree) {
     for (int c = 0; c < FLIP_CHANNELS; c++) flip_make_blur(&model->blurs[c], (FlipChannel)c, pixels_per_degree);
     flip_make_features(&model->features, pixels_per_degree);
     model->reach = model->blurs[0].kernels[0].radius;
@@ -218,18 +218,17 @@ static void flip_make_model(FlipModel *model, double pixels_per_degree) {
     flip_make_linear(model->linear_of);
 }
 
-static FlipTile *flip_tile_create(const FlipModel *model, Error *error) {
-    FlipTile *tile = calloc(1, sizeof *tile);
+static FlipTile *tile_create(const FlipModel *model, Error *error) {
     size_t stride = FLIP_TILE_WIDTH + 2 * (size_t)model->reach, tall = FLIP_TILE_HEIGHT + 2 * (size_t)model->reach;
     size_t large = stride * tall, small = stride * FLIP_TILE_HEIGHT;
     enum { LARGE = FLIP_CHANNELS + 1, SMALL = 1 + 2 * PLANES };
-    float *next = tile == NULL ? NULL : malloc((LARGE * large + SMALL * small) * sizeof *next + 4 * stride);
-    if (next == NULL) {
-        free(tile);
+    FlipTile *tile = malloc(sizeof *tile + (LARGE * large + SMALL * small) * sizeof *tile->memory + 4 * stride);
+    if (tile == NULL) {
         error_memory(error, "FLIP");
         return NULL;
     }
-    tile->model = model, tile->stride = stride, tile->memory = next;
+    float *next = tile->memory;
+    tile->model = model, tile->stride = stride, tile->clear = 0;
     for (int i = 0; i < CONVERTED; i++) tile->converted[i].from.x = NAN; /* equals no colour */
     for (int c = 0; c < FLIP_CHANNELS; c++, next += large) tile->channels[c] = next;
     tile->along = next, next += large;
@@ -237,11 +236,6 @@ static FlipTile *flip_tile_create(const FlipModel *model, Error *error) {
     for (int i = 0; i < 2 * PLANES; i++, next += small) tile->planes[i / PLANES][i % PLANES] = next;
     tile->row = (uint8_t *)next;
     return tile;
-}
-
-static void flip_tile_destroy(FlipTile *tile) {
-    if (tile != NULL) free(tile->memory);
-    free(tile);
 }
 
 /* The area in blocks of the filters, and around it what they reach. */
@@ -369,8 +363,7 @@ static void keep_largest(FlipTile *tile, FlipArea area, float *values, size_t st
 /* values[y - area.top][x] = FLIP of pixel x, y of the area, which has at most the size of a tile, where it is larger
    than the value already there. Rows of `values` are `stride` apart. Beyond the pictures' edges, their outermost
    pixels continue. Where a pixel that counts is not opaque, the larger value on white and on black. */
-static void flip_tile_compute(FlipTile *tile, const Image *const pictures[2], FlipArea area, float *values,
-                              size_t stride) {
+static void tile_compute(FlipTile *tile, const Image *const pictures[2], FlipArea area, float *values, size_t stride) {
     int blocks = (area.right - area.left + FLIP_BLOCK - 1) / FLIP_BLOCK;
     const Frame frame = {area.left, area.top, blocks * FLIP_BLOCK, area.bottom - area.top};
     tile->clear = 0;
@@ -384,6 +377,65 @@ static void flip_tile_compute(FlipTile *tile, const Image *const pictures[2], Fl
     }
 }
 
+/* Selection by radix: bits of floats from 0 sort as the floats do. Linear in time, whatever the values. */
+
+bool largest_create(Largest *largest, size_t keep, Error *error) {
+    *largest = (Largest){.keep = keep};
+    largest->values = malloc(2 * keep * sizeof *largest->values);
+    return largest->values != NULL || error_memory(error, "percentile");
+}
+
+void largest_free(Largest *largest) { free(largest->values); }
+
+static uint32_t bits_of(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+/* The value that `rank` - 1 values exceed or equal; rank is at most count. */
+static float select_rank(const float *values, size_t count, size_t rank) {
+    enum { DIGIT = 11, DIGITS = 1 << DIGIT };
+    uint32_t prefix = 0, known = 0; /* bits of the result, and a mask of those known */
+    for (int shift = 32 - DIGIT; known != UINT32_MAX; shift = shift > DIGIT ? shift - DIGIT : 0) {
+        size_t counts[DIGITS] = {0};
+        for (size_t i = 0; i < count; i++) {
+            uint32_t bits = bits_of(values[i]);
+            if ((bits & known) == prefix) counts[bits >> shift & (DIGITS - 1)]++;
+        }
+        uint32_t digit = DIGITS - 1;
+        for (; counts[digit] < rank; digit--) rank -= counts[digit];
+        prefix |= digit << shift;
+        known |= (uint32_t)(DIGITS - 1) << shift;
+    }
+    float value;
+    memcpy(&value, &prefix, sizeof value);
+    return value;
+}
+
+/* Keeps the largest values. Of those equal to the least, all but enough are dropped. */
+static void shrink(Largest *largest) {
+    float least = select_rank(largest->values, largest->count, largest->keep);
+    size_t count = 0;
+    for (size_t i = 0; i < largest->count; i++)
+        if (largest->values[i] > least) largest->values[count++] = largest->values[i];
+    while (count < largest->keep) largest->values[count++] = least;
+    largest->count = count;
+    largest->least = least;
+}
+
+void largest_add(Largest *largest, float value) {
+    if (value <= largest->least) return;
+    largest->values[largest->count++] = value;
+    if (largest->count == 2 * largest->keep) shrink(largest);
+}
+
+float largest_least(Largest *largest) {
+    if (largest->count < largest->keep) return 0;
+    shrink(largest);
+    return largest->least;
+}
+
 typedef struct Flip {
     const Image *pictures[2];
     int width, height;
@@ -395,23 +447,22 @@ typedef struct Flip {
     double sum;
 } Flip;
 
-static bool flip_create(Flip *flip, const Image *expected, const Image *actual, double pixels_per_degree,
-                        Error *error) {
+static bool create(Flip *flip, const Image *expected, const Image *actual, double pixels_per_degree, Error *error) {
     static const int most = 1 << 22; /* values of a band, unless one row has more */
     *flip = (Flip){.pictures = {expected, actual}, .width = expected->width, .height = expected->height};
-    flip_make_model(&flip->model, pixels_per_degree);
+    make_model(&flip->model, pixels_per_degree);
     flip->band = most / flip->width < 1 ? 1 : most / flip->width;
     if (flip->band > FLIP_TILE_HEIGHT) flip->band = FLIP_TILE_HEIGHT;
     size_t pixels = (size_t)flip->width * (size_t)flip->height;
     flip->values = malloc((size_t)flip->width * (size_t)flip->band * sizeof *flip->values);
     if (flip->values == NULL) return error_memory(error, "FLIP");
-    flip->tile = flip_tile_create(&flip->model, error);
+    flip->tile = tile_create(&flip->model, error);
     return flip->tile != NULL && largest_create(&flip->largest, pixels / 100 + 1, error);
 }
 
-static void flip_free(Flip *flip) {
+static void destroy(Flip *flip) {
     largest_free(&flip->largest);
-    flip_tile_destroy(flip->tile);
+    free(flip->tile);
     free(flip->values);
 }
 
@@ -451,7 +502,7 @@ static void fill_band(const Flip *flip, int top, int bottom) {
     for (int left = 0; left < flip->width; left += FLIP_TILE_WIDTH) {
         FlipArea area = find_reached(flip, (FlipArea){left, top, at_most(left + FLIP_TILE_WIDTH, flip->width), bottom});
         if (area.bottom > 0)
-            flip_tile_compute(flip->tile, flip->pictures, area, flip->values + (size_t)(area.top - top) * width, width);
+            tile_compute(flip->tile, flip->pictures, area, flip->values + (size_t)(area.top - top) * width, width);
     }
 }
 
@@ -468,7 +519,7 @@ static bool take_row(Flip *flip, const float *values, const FlipSink *sink, Erro
 bool flip_compare(const Image *expected, const Image *actual, double pixels_per_degree, const FlipSink *sink,
                   FlipSummary *result, Error *error) {
     Flip flip;
-    bool ok = flip_create(&flip, expected, actual, pixels_per_degree, error);
+    bool ok = create(&flip, expected, actual, pixels_per_degree, error);
     for (int top = 0; ok && top < flip.height; top += flip.band) {
         int bottom = at_most(top + flip.band, flip.height);
         fill_band(&flip, top, bottom);
@@ -479,6 +530,6 @@ bool flip_compare(const Image *expected, const Image *actual, double pixels_per_
         result->mean = flip.sum / ((double)flip.width * (double)flip.height);
         result->p99 = (double)largest_least(&flip.largest);
     }
-    flip_free(&flip);
+    destroy(&flip);
     return ok;
 }

@@ -1,11 +1,40 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The separable filters of FLIP. */
+/* FLIP, a measure of the difference that is seen; and its parts. */
 #pragma once
 #include "base/base.h"
 #include "pixels/png.h"
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* FLIP, the difference seen when two pictures alternate: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem,
+   Fairchild, "FLIP: A Difference Evaluator for Alternating Images", HPG 2020 (doi:10.1145/3406183), the version for
+   8-bit pictures.
+   Colours are blurred with the eye's contrast sensitivity at the viewing distance and compared in a perceptually
+   uniform space. Differences of edges and points amplify the result. */
+
+/* Pixels per degree of a screen of 0.7 m and 3840 pixels seen from 0.7 m, as in the paper. */
+#define FLIP_PIXELS_PER_DEGREE 67.02064327658225
+
+typedef struct FlipSummary {
+    double mean; /* over all pixels, 0 (equal) to 1 */
+    double p99;  /* the least value that at least 99% of the pixels do not exceed */
+} FlipSummary;
+
+/* Receives the values[width] of every row, from the top. False with error set stops. */
+typedef struct FlipSink {
+    bool (*row)(void *context, const float *values, int width, Error *error);
+    void *context;
+} FlipSink;
+
+/* Compares two pictures of equal size. If a pixel near a difference is not opaque, they are compared on white and on
+   black, and the larger value of each pixel counts: transparent white is not opaque white. `sink` may be NULL. Only the
+   neighbourhood of differences is computed, in tiles, so it takes little memory beside the pictures. False with error
+   set if out of memory. */
+bool flip_compare(const Image *expected, const Image *actual, double pixels_per_degree, const FlipSink *sink,
+                  FlipSummary *result, Error *error);
+
+/* The separable filters. */
 
 enum { FLIP_RADIUS_MAX = 256 };
 
@@ -45,7 +74,7 @@ void flip_filter_baseline(const float *from, const FlipKernel *kernel, size_t st
 void flip_filter_avx2(const float *from, const FlipKernel *kernel, size_t step, size_t stride, int width, int height,
                       float *to);
 
-/* The colours of FLIP. Constants and equation numbers are the paper's. */
+/* The colours. Constants and equation numbers are the paper's. */
 
 typedef struct FlipColor {
     float x, y, z; /* in any colour space */
@@ -73,29 +102,20 @@ float flip_color_error(FlipColor a, FlipColor b, float largest);
 /* Equation 6: `color` amplified by the difference of edges or points, `feature`. */
 float flip_amplify(float color, float feature);
 
-/* FLIP, the difference seen when two pictures alternate: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem,
-   Fairchild, "FLIP: A Difference Evaluator for Alternating Images", HPG 2020 (doi:10.1145/3406183), the version for
-   8-bit pictures.
-   Colours are blurred with the eye's contrast sensitivity at the viewing distance and compared in a perceptually
-   uniform space. Differences of edges and points amplify the result. */
+/* The largest of many values that come one after another, for an exact percentile in little memory. */
 
-/* Pixels per degree of a screen of 0.7 m and 3840 pixels seen from 0.7 m, as in the paper. */
-#define FLIP_PIXELS_PER_DEGREE 67.02064327658225
+typedef struct Largest {
+    size_t keep;  /* how many of the largest values matter */
+    size_t count; /* of `values`; at most 2 * keep */
+    float least;  /* values that are not larger need not be kept */
+    float *values;
+} Largest;
 
-typedef struct FlipSummary {
-    double mean; /* over all pixels, 0 (equal) to 1 */
-    double p99;  /* the least value that at least 99% of the pixels do not exceed */
-} FlipSummary;
+bool largest_create(Largest *largest, size_t keep, Error *error);
+void largest_free(Largest *largest);
 
-/* Receives the values[width] of every row, from the top. False with error set stops. */
-typedef struct FlipSink {
-    bool (*row)(void *context, const float *values, int width, Error *error);
-    void *context;
-} FlipSink;
+/* Adds a value from 0. */
+void largest_add(Largest *largest, float value);
 
-/* Compares two pictures of equal size. If a pixel near a difference is not opaque, they are compared on white and on
-   black, and the larger value of each pixel counts: transparent white is not opaque white. `sink` may be NULL. Only the
-   neighbourhood of differences is computed, in tiles, so it takes little memory beside the pictures. False with error
-   set if out of memory. */
-bool flip_compare(const Image *expected, const Image *actual, double pixels_per_degree, const FlipSink *sink,
-                  FlipSummary *result, Error *error);
+/* The least of the `keep` largest values; 0 if fewer were added. */
+float largest_least(Largest *largest);

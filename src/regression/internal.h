@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The parts of this room: antialiasing, boxes that are found again, changes in words, the report. */
+/* The parts of this room: the steps of a comparison, pixels that do not count, the naming of changes, the report, approval. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -17,117 +17,53 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* The fixed parts of report.html (src/regression/page), embedded in the binary by base/tools/embed.cmake. */
+/* The steps of regression_run(). */
 
-extern const char report_page_css[], report_page_html[], report_help_html[];
-extern const char report_stage_js[], report_list_js[], report_page_js[]; /* one scope, in this order */
+/* Compares the states behind the pictures. */
 
-/* The results of a comparison as CI systems show them: a list of test cases, the frames, then the trajectories. */
+/* Finds and compares the .npz files of the same name in both folders. Ignores those that are a trajectory in neither
+   folder; ERROR_INPUT if only one of the two is a trajectory. */
+bool regression_find_runs(Regression *regression, Error *error);
 
-typedef struct RegressionCase {
-    const char *kind; /* "frames" or "trajectories" */
-    const char *name, *verdict;
-    bool failed;
-    RegressionText words;
-    char paths[SIDES][PATH_MAX]; /* of the files; "" where there is none, or if it is too long */
-    double seconds;
-    const RegressionFrame *frame; /* NULL for a trajectory */
-} RegressionCase;
+/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. False with error set when memory is
+   short. */
+bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             Error *error);
 
-int regression_case_count(const Regression *regression);
-RegressionCase regression_case(const Regression *regression, int i);
+/* What the options and rules of a comparison mean for a frame: its limits, and the pixels that it ignores. */
 
-/* The parts of a comparison's report. */
+/* Reads the rules that the options name, or RULES_NAME in the expected folder if it is there. For folders, each rule must
+   match a frame: ERROR_INPUT otherwise. */
+bool regression_read_rules(Regression *regression, Error *error);
 
-enum { REPORT_KINDS = 4 }; /* expected, actual, difference, FLIP */
-extern const char report_kind_letters[REPORT_KINDS + 1];
+/* Whether the masks of a frame of this size could hide all its pixels, or not fit: false is certain, true is not. */
+bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height);
 
-typedef struct ReportPicture {
-    uint8_t *data; /* a PNG file, or NULL */
-    size_t size;
-} ReportPicture;
+/* Cuts both pictures of a frame to their overlap, and marks in *masked[height, width] what is ignored (regression/compare.h):
+   masks, and edges if the tolerance says so. *masked is malloc'ed, or NULL if nothing can be ignored. */
+bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
+                       uint8_t **masked, Error *error);
 
-typedef struct ReportPictures {
-    int count;                             /* frames of the comparison */
-    ReportPicture (*frames)[REPORT_KINDS]; /* [count], by frame */
-    int left_out;                          /* frames whose pictures did not fit */
-} ReportPictures;
+/* Compares the pictures of regression_ignore(): sets the frame's difference, which is not equal for other sizes. */
+void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
+                        const Image *actual, const uint8_t *masked);
 
-/* Fills the pictures, and `shown` and `flip` of the frames. On failure nothing needs to be freed. */
-bool report_pictures_gather(ReportPictures *pictures, Regression *regression, size_t max_bytes,
-                            const Progress *progress, Error *error);
-void report_pictures_free(ReportPictures *pictures);
+/* Sets the frame's verdict on pixels from its difference. Where a limit of FLIP decides, measures FLIP, and for this
+   copies what is ignored into the actual picture. */
+bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
+                       const uint8_t *masked, Error *error);
 
-/* The pages of runs that differ. */
-enum { REPORT_RUN_SIZE = 256 };
-typedef struct ReportRuns {
-    char (*links)[REPORT_RUN_SIZE +
-                  PLAYER_LINK_SIZE]; /* [runs of the comparison] "run-NAME.html#t=0.55&body=7", or empty */
-    int left_out;                    /* runs whose page did not fit */
-} ReportRuns;
+/* Measures FLIP of the first frame that failed by its pixels, from its files, if that has not been done: it is the frame
+   that compare names. Only if it has a limit of FLIP: FLIP takes longer than everything else. */
+bool regression_measure_first(Regression *regression, Error *error);
 
-/* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference.
-   ERROR_INPUT if a run has changed since the comparison. On failure nothing needs to be freed. */
-bool report_runs_write(ReportRuns *runs, const Regression *regression, const char *folder, size_t max_bytes,
-                       const Progress *progress, Error *error);
-void report_runs_free(ReportRuns *runs);
+/* Regions and names of what changed in a frame: sets `changes` and `other_view` of a frame whose pixels differ. data: the two PNG files, whose texts are read.
+   Thread-safe. False with error set if out of memory. */
+bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             const Image *const images[SIDES], const uint8_t *masked, Error *error);
 
-typedef struct Report {
-    const Regression *regression;
-    const ReportPictures *pictures;
-    const ReportRuns *runs;
-    const char *folder; /* of the report, as given */
-} Report;
-
-/* Writers for file_write_text(); `report` is a Report. */
-void report_write_page(FILE *file, const void *report);
-void report_write_junit(FILE *file, const void *report);
-void report_write_tap(FILE *file, const void *report);
-void report_write_json(FILE *file, const void *report);
-
-/* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder, even
-   if one is made meanwhile. */
-
-typedef struct Root {
-    int folder;       /* an open directory */
-    const char *path; /* of the caller, for messages */
-} Root;
-
-typedef struct ApprovePlace {
-    int folder;          /* an open directory; -1 if there is no such folder */
-    const char *name;    /* in it; points into the relative name */
-    char path[PATH_MAX]; /* for messages */
-} ApprovePlace;
-
-/* What follows the current directory in the path, or the path itself if it is relative; NULL if it leads elsewhere. Links
-   are not looked at. */
-const char *path_below_current(const char *path);
-
-/* Reads the failures from results.json. */
-
-typedef struct ApprovalFile {
-    const char *name; /* relative to the folder; empty: there was no file */
-    uint64_t hash;
-} ApprovalFile;
-
-typedef struct ApprovalItem {
-    bool failed, shown;
-    ApprovalFile expected, actual;
-} ApprovalItem;
-
-typedef struct ApprovalList {
-    char expected[PATH_MAX], actual[PATH_MAX]; /* folders */
-    ApprovalItem *items;                       /* failures only */
-    size_t count, capacity;
-} ApprovalList;
-
-/* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names that leave the folder,
-   hidden names, names that do not end with .png or .npz, and a file that is named twice. On failure nothing needs to be
-   freed. Memory: at most four times the size of the file and 2 MiB. */
-bool approval_read(ApprovalList *list, const char *path, Error *error);
-void approval_free(ApprovalList *list);
-
-/* Masks that leave nothing to compare. */
+/* Groups failed frames by cause: fills `causes`. A frame may have several. False with error set if out of memory. */
+bool regression_find_causes(Regression *regression, Error *error);
 
 /* How many pixels of a picture of this size the mask hides at most, or all if it may not fit to it. An upper bound that
    costs no pass over pixels. */
@@ -161,8 +97,6 @@ double mask_most_hidden(const Mask *mask, int width, int height);
 /* Sets masked[height, width] (regression/compare.h) to IGNORED_EDGE where pixels differ in this way and are not ignored yet.
    Both pictures must have the same size. Compares 8 bits per channel. */
 void antialias_mark(const Image *expected, const Image *actual, uint8_t *masked);
-
-/* Pictures of the differences between two pictures. */
 
 /* The expected picture, pale and grey, with differing pixels coloured: yellow for 1, over red, to violet for 255. What
    `masked` ignores (regression/compare.h) is hatched if it is masked, and blue if it is a pixel of an edge that differs. Both
@@ -286,61 +220,92 @@ void panel_close(Panel *panel);
 
 size_t panel_pixel(const Panel *panel, int x, int y);
 
-/* The part of a box's bounds that is in the panel; empty if right <= left. */
-ViewRect panel_bounds(const Panel *panel, const BoxModel *box, double margin);
-
-/* The bounds of the panel's unknown pixels; empty if there are none. */
-ViewRect panel_unknown(const Panel *panel);
+/* Fills the pixels of the panel with those that tell what happened to a body, near it or within `changed`. */
+void panel_collect(Panel *panel, int body, ViewRect changed);
 
 /* Explains the unknown pixels, which are within `changed`, by a change of one body. */
 BodyFit panel_fit(Panel *panel, int body, ViewRect changed);
 
-/* Groups failed frames by cause. */
+/* The fixed parts of report.html (src/regression/page), embedded in the binary by base/tools/embed.cmake. */
 
-/* Fills `causes`. A frame may have several. False with error set if out of memory. */
-bool regression_find_causes(Regression *regression, Error *error);
+extern const char report_page_css[], report_page_html[], report_help_html[];
+extern const char report_stage_js[], report_list_js[], report_page_js[]; /* one scope, in this order */
 
-/* What the options and rules of a comparison mean for a frame: its limits, and the pixels that it ignores. */
+/* The parts of a comparison's report. */
 
-/* Reads the rules that the options name, or RULES_NAME in the expected folder if it is there. For folders, each rule must
-   match a frame: ERROR_INPUT otherwise. */
-bool regression_read_rules(Regression *regression, Error *error);
+enum { REPORT_KINDS = 4 }; /* expected, actual, difference, FLIP */
+extern const char report_kind_letters[REPORT_KINDS + 1];
 
-/* Whether the masks of a frame of this size could hide all its pixels, or not fit: false is certain, true is not. */
-bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height);
+typedef struct ReportPicture {
+    uint8_t *data; /* a PNG file, or NULL */
+    size_t size;
+} ReportPicture;
 
-/* Cuts both pictures of a frame to their overlap, and marks in *masked[height, width] what is ignored (regression/compare.h):
-   masks, and edges if the tolerance says so. *masked is malloc'ed, or NULL if nothing can be ignored. */
-bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
-                       uint8_t **masked, Error *error);
+typedef struct ReportPictures {
+    int count;                             /* frames of the comparison */
+    ReportPicture (*frames)[REPORT_KINDS]; /* [count], by frame */
+    int left_out;                          /* frames whose pictures did not fit */
+} ReportPictures;
 
-/* Compares the pictures of regression_ignore(): sets the frame's difference, which is not equal for other sizes. */
-void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
-                        const Image *actual, const uint8_t *masked);
+/* The pages of runs that differ. */
+enum { REPORT_RUN_SIZE = 256 };
+typedef struct ReportRuns {
+    /* [runs of the comparison] "run-NAME.html#t=0.55&body=7", or empty */
+    char (*links)[REPORT_RUN_SIZE + PLAYER_LINK_SIZE];
+    int left_out; /* runs whose page did not fit */
+} ReportRuns;
 
-/* Sets the frame's verdict on pixels from its difference. Where a limit of FLIP decides, measures FLIP, and for this
-   copies what is ignored into the actual picture. */
-bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
-                       const uint8_t *masked, Error *error);
+typedef struct Report {
+    const Regression *regression;
+    const ReportPictures *pictures;
+    const ReportRuns *runs;
+    const char *folder; /* of the report, as given */
+} Report;
 
-/* Measures FLIP of the first frame that failed by its pixels, from its files, if that has not been done: it is the frame
-   that compare names. Only if it has a limit of FLIP: FLIP takes longer than everything else. */
-bool regression_measure_first(Regression *regression, Error *error);
+/* Writers for file_write_text(); `report` is a Report. */
+void report_write_page(FILE *file, const void *report);
+void report_write_junit(FILE *file, const void *report);
+void report_write_tap(FILE *file, const void *report);
+void report_write_json(FILE *file, const void *report);
 
-/* Regions and names of what changed in a frame. */
+/* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder, even
+   if one is made meanwhile. */
 
-/* Sets `changes` and `other_view` of a frame whose pixels differ. data: the two PNG files, whose texts are read.
-   Thread-safe. False with error set if out of memory. */
-bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             const Image *const images[SIDES], const uint8_t *masked, Error *error);
+typedef struct Root {
+    int folder;       /* an open directory */
+    const char *path; /* of the caller, for messages */
+} Root;
 
-/* Compares the states behind the pictures. */
+typedef struct ApprovePlace {
+    int folder;          /* an open directory; -1 if there is no such folder */
+    const char *name;    /* in it; points into the relative name */
+    char path[PATH_MAX]; /* for messages */
+} ApprovePlace;
 
-/* Finds and compares the .npz files of the same name in both folders. Ignores those that are a trajectory in neither
-   folder; ERROR_INPUT if only one of the two is a trajectory. */
-bool regression_find_runs(Regression *regression, Error *error);
+/* What follows the current directory in the path, or the path itself if it is relative; NULL if it leads elsewhere. Links
+   are not looked at. */
+const char *path_below_current(const char *path);
 
-/* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. False with error set when memory is
-   short. */
-bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             Error *error);
+/* Reads the failures from results.json. */
+
+typedef struct ApprovalFile {
+    const char *name; /* relative to the folder; empty: there was no file */
+    uint64_t hash;
+} ApprovalFile;
+
+typedef struct ApprovalItem {
+    bool failed, shown;
+    ApprovalFile expected, actual;
+} ApprovalItem;
+
+typedef struct ApprovalList {
+    char expected[PATH_MAX], actual[PATH_MAX]; /* folders */
+    ApprovalItem *items;                       /* failures only */
+    size_t count, capacity;
+} ApprovalList;
+
+/* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names that leave the folder,
+   hidden names, names that do not end with .png or .npz, and a file that is named twice. On failure nothing needs to be
+   freed. Memory: at most four times the size of the file and 2 MiB. */
+bool approval_read(ApprovalList *list, const char *path, Error *error);
+void approval_free(ApprovalList *list);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A picture that masks where it is neither black nor transparent. It is decompressed when it is first drawn on a picture of
-   its size: a small file of any size costs nothing where it does not fit. */
+/* Masks: rectangles, colours and pictures that hide pixels from a comparison. */
 #include "base/base.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
@@ -9,43 +8,52 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct MaskPicture MaskPicture;
+static int64_t clamp(int64_t value, int64_t largest) { return value < 0 ? 0 : value > largest ? largest : value; }
 
-static double mask_cover_clamp(double value, double largest) {
-    return value < 0 ? 0 : value > largest ? largest : value;
-}
+/* The part of a rectangle that is in a picture of this size. */
+typedef struct Covered {
+    size_t left, top, right, bottom;
+} Covered;
 
-static double rectangle_area(const MaskPart *part, double width, double height) {
-    double left = mask_cover_clamp(part->x, width), right = mask_cover_clamp((double)part->x + part->width, width);
-    double top = mask_cover_clamp(part->y, height), bottom = mask_cover_clamp((double)part->y + part->height, height);
-    return (right - left) * (bottom - top);
+static Covered covered(const MaskPart *part, int width, int height) {
+    return (Covered){(size_t)clamp(part->x, width), (size_t)clamp(part->y, height),
+                     (size_t)clamp((int64_t)part->x + part->width, width),
+                     (size_t)clamp((int64_t)part->y + part->height, height)};
 }
 
 double mask_most_hidden(const Mask *mask, int width, int height) {
     double area = 0;
-    for (int i = 0; i < mask->count; i++)
-        area += mask->parts[i].kind == MASK_RECTANGLE ? rectangle_area(&mask->parts[i], width, height)
-                                                      : (double)width * height;
+    for (int i = 0; i < mask->count; i++) {
+        const Covered all = {0, 0, (size_t)width, (size_t)height};
+        const Covered part = mask->parts[i].kind == MASK_RECTANGLE ? covered(&mask->parts[i], width, height) : all;
+        area += (double)(part.right - part.left) * (double)(part.bottom - part.top);
+    }
     return area;
 }
 
-struct MaskPicture {
+/* A picture that masks where it is neither black nor transparent. It is decompressed when it is first drawn on a picture of
+   its size: a small file of any size costs nothing where it does not fit. */
+typedef struct MaskPicture {
     char *path;
     uint8_t *file; /* [size], until it is decoded */
     size_t size;
     int width, height;
     uint8_t *bits; /* one for each pixel; NULL: not decoded */
     Error fault;   /* of decoding; then it is not tried again */
-};
+} MaskPicture;
 
-static size_t mask_picture_pixel_count(const MaskPicture *picture) {
-    return (size_t)picture->width * (size_t)picture->height;
+static size_t bits_of(const MaskPicture *picture) { return (size_t)picture->width * (size_t)picture->height; }
+
+static void destroy(MaskPicture *picture) {
+    if (picture == NULL) return;
+    free(picture->path);
+    free(picture->file);
+    free(picture->bits);
+    free(picture);
 }
 
-static void mask_picture_destroy(MaskPicture *picture);
-
 /* Checks the file without decompressing it. NULL with error set. */
-static MaskPicture *mask_picture_read(const char *path, Error *error) {
+static MaskPicture *read_picture(const char *path, Error *error) {
     MaskPicture *picture = calloc(1, sizeof *picture);
     if (picture == NULL || (picture->path = strdup(path)) == NULL)
         error_memory(error, path);
@@ -53,16 +61,8 @@ static MaskPicture *mask_picture_read(const char *path, Error *error) {
              png_check(picture->file, picture->size, path, &picture->width, &picture->height, error) &&
              png_check_pixels(picture->width, picture->height, IMAGE_MAX_PIXELS, path, error))
         return picture;
-    mask_picture_destroy(picture);
+    destroy(picture);
     return NULL;
-}
-
-static void mask_picture_destroy(MaskPicture *picture) {
-    if (picture == NULL) return;
-    free(picture->path);
-    free(picture->file);
-    free(picture->bits);
-    free(picture);
 }
 
 static void set_bits(const Image *image, size_t count, uint8_t *bits) {
@@ -75,9 +75,9 @@ static void set_bits(const Image *image, size_t count, uint8_t *bits) {
 static void decode(MaskPicture *picture) {
     Image *image = image_decode_png(picture->file, picture->size, picture->path, IMAGE_MAX_PIXELS, &picture->fault);
     if (image == NULL) return;
-    picture->bits = calloc(mask_picture_pixel_count(picture) / 8 + 1, 1);
+    picture->bits = calloc(bits_of(picture) / 8 + 1, 1);
     if (picture->bits != NULL)
-        set_bits(image, mask_picture_pixel_count(picture), picture->bits);
+        set_bits(image, bits_of(picture), picture->bits);
     else
         error_memory(&picture->fault, picture->path);
     image_destroy(image);
@@ -87,8 +87,7 @@ static void decode(MaskPicture *picture) {
 
 /* Sets the masked bytes to IGNORED_MASK. ERROR_INPUT if `expected`, whose file is `path`, has another size, or if the
    pixels are damaged. Threads may share a picture. */
-static bool mask_picture_draw(MaskPicture *picture, const Image *expected, const char *path, uint8_t *masked,
-                              Error *error) {
+static bool draw_picture(MaskPicture *picture, const Image *expected, const char *path, uint8_t *masked, Error *error) {
     if (picture->width != expected->width || picture->height != expected->height)
         return error_input(error, picture->path, "the mask has %d x %d pixels, but %s has %d x %d", picture->width,
                            picture->height, path, expected->width, expected->height);
@@ -98,7 +97,7 @@ static bool mask_picture_draw(MaskPicture *picture, const Image *expected, const
         *error = picture->fault;
         return false;
     }
-    for (size_t i = 0; i < mask_picture_pixel_count(picture); i++)
+    for (size_t i = 0; i < bits_of(picture); i++)
         if (picture->bits[i / 8] >> i % 8 & 1) masked[i] = IGNORED_MASK;
     return true;
 }
@@ -114,10 +113,10 @@ bool mask_add_rectangle(Mask *mask, int x, int y, int width, int height, Error *
 }
 
 bool mask_add_picture(Mask *mask, const char *path, Error *error) {
-    MaskPicture *picture = mask_picture_read(path, error);
+    MaskPicture *picture = read_picture(path, error);
     if (picture == NULL) return false;
     if (add(mask, (MaskPart){.kind = MASK_PICTURE, .picture = picture}, error)) return true;
-    mask_picture_destroy(picture);
+    destroy(picture);
     return false;
 }
 
@@ -126,7 +125,7 @@ bool mask_add_color(Mask *mask, const uint8_t color[3], Error *error) {
 }
 
 void mask_free(Mask *mask) {
-    for (int i = 0; i < mask->count; i++) mask_picture_destroy(mask->parts[i].picture);
+    for (int i = 0; i < mask->count; i++) destroy(mask->parts[i].picture);
     mask->count = 0;
 }
 
@@ -139,12 +138,10 @@ static void draw_color(const uint8_t color[3], const Image *expected, uint8_t *m
     }
 }
 
-static int64_t clamp(int64_t value, int64_t largest) { return value < 0 ? 0 : value > largest ? largest : value; }
-
 static void draw_rectangle(const MaskPart *part, int width, int height, uint8_t *masked) {
-    size_t left = (size_t)clamp(part->x, width), right = (size_t)clamp((int64_t)part->x + part->width, width);
-    size_t top = (size_t)clamp(part->y, height), bottom = (size_t)clamp((int64_t)part->y + part->height, height);
-    for (size_t y = top; y < bottom; y++) memset(masked + y * (size_t)width + left, IGNORED_MASK, right - left);
+    const Covered in = covered(part, width, height);
+    for (size_t y = in.top; y < in.bottom; y++)
+        memset(masked + y * (size_t)width + in.left, IGNORED_MASK, in.right - in.left);
 }
 
 bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_t *masked, Error *error) {
@@ -155,7 +152,7 @@ bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_
         case MASK_RECTANGLE: draw_rectangle(part, width, height, masked); break;
         case MASK_COLOR: draw_color(part->color, expected, masked); break;
         case MASK_PICTURE:
-            if (!mask_picture_draw(part->picture, expected, path, masked, error)) return false;
+            if (!draw_picture(part->picture, expected, path, masked, error)) return false;
         }
     }
     return true;

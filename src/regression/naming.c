@@ -4,13 +4,11 @@
 #include "regression/naming.h"
 
 #include "base/base.h"
-#include "base/file.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/internal.h"
 #include "runs/trajectory.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +16,7 @@
 static const int BORDER = 4; /* pixels; a panel's frame is drawn around its rectangle */
 
 /* Adds a change. Returns its index, or -1 if there is no room. */
-static int naming_add(Naming *naming, const Change *change) {
+static int add_change(Naming *naming, const Change *change) {
     FrameChanges *changes = naming->changes;
     if (changes->count == CHANGES_MAX) return -1;
     changes->list[changes->count] = *change;
@@ -53,13 +51,11 @@ static int64_t take(Naming *naming, ViewRect rect, const BoxModel *box, double m
 
 /* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change.
    Returns their number. */
-static int64_t naming_take_rectangle(Naming *naming, ViewRect rect, int change) {
-    return take(naming, rect, NULL, 0, change);
-}
+static int64_t take_rectangle(Naming *naming, ViewRect rect, int change) { return take(naming, rect, NULL, 0, change); }
 
 static int nearest(double value, int low, int high) { return value <= low ? low : value >= high ? high : (int)value; }
 
-static int64_t naming_take_box(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
+static int64_t take_box(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
     double bounds[4];
     box_bounds(box, margin + 1, bounds);
     ViewRect inside = {
@@ -71,8 +67,8 @@ static int64_t naming_take_box(Naming *naming, ViewRect rect, const BoxModel *bo
 /* Gives the unknown pixels of a rectangle to a new change, if there are any and there is room. */
 static void name_rectangle(Naming *naming, ViewRect rect, ChangeSubject subject, int panel) {
     const Change change = {.subject = subject, .panel = panel};
-    int at = naming_add(naming, &change);
-    if (at >= 0 && naming_take_rectangle(naming, rect, at) == 0) naming->changes->count--;
+    int at = add_change(naming, &change);
+    if (at >= 0 && take_rectangle(naming, rect, at) == 0) naming->changes->count--;
 }
 
 static void name_parts(Naming *naming) {
@@ -84,7 +80,7 @@ static void name_parts(Naming *naming) {
 }
 
 /* Whether the bodies of a panel are known. */
-static bool naming_knows_bodies(const Naming *naming, int panel) {
+static bool knows_bodies(const Naming *naming, int panel) {
     const NamingScene *scene = naming->scene;
     return !scene->view->follows && scene->runs[panel][0] != NULL && scene->runs[panel][1] != NULL;
 }
@@ -102,7 +98,7 @@ static void name_rest(Naming *naming) {
     const FrameView *view = naming->scene->view;
     for (int i = 0; i < view->panel_count; i++) {
         ViewRect rect = view->panels[i].rect;
-        if (!naming_knows_bodies(naming, i)) leave_rectangle(naming, rect); /* a body may be what changed */
+        if (!knows_bodies(naming, i)) leave_rectangle(naming, rect); /* a body may be what changed */
         name_rectangle(naming,
                        (ViewRect){rect.left - BORDER, rect.top - BORDER, rect.right + BORDER, rect.bottom + BORDER},
                        view->marks ? SUBJECT_MARKS : SUBJECT_BACKGROUND, i + 1);
@@ -114,61 +110,6 @@ static void name_rest(Naming *naming) {
 static bool names_better(const FrameChanges *changes, const int64_t *pixels, int i, int j) {
     bool several_i = changes->list[i].subject == SUBJECT_BODIES, several_j = changes->list[j].subject == SUBJECT_BODIES;
     return several_i != several_j ? several_j : pixels[i] > pixels[j];
-}
-
-static void name_region(Naming *naming, int region) {
-    FrameChanges *changes = naming->changes;
-    const ImageRegion *r = &changes->regions.list[region];
-    int64_t pixels[CHANGES_MAX] = {0};
-    int best = -1, others = -1;
-    for (int y = r->top; y < r->bottom; y++)
-        for (int x = r->left; x < r->right; x++) {
-            uint8_t owner = naming->owners[(size_t)y * (size_t)naming->scene->view->width + (size_t)x];
-            if (owner >= OWNER_FIRST) pixels[owner - OWNER_FIRST]++;
-        }
-    for (int i = 0; i < changes->count; i++) {
-        if (pixels[i] == 0) continue;
-        others++;
-        if (best < 0 || names_better(changes, pixels, i, best)) best = i;
-    }
-    changes->region_change[region] = (int16_t)best;
-    changes->region_others[region] = (int16_t)(others > 0 ? others : 0);
-}
-
-static void mark_differences(Naming *naming, const uint8_t *masked) {
-    const Image *a = naming->pictures[0], *b = naming->pictures[1];
-    size_t width = (size_t)a->width, all = width * (size_t)a->height;
-    for (size_t first = 0; first < all; first += width)
-        for (size_t x = image_next_difference(a, b, first, 0); x < width; x = image_next_difference(a, b, first, x + 1))
-            if ((masked == NULL || masked[first + x] == 0) && image_pixel_difference(a, b, first + x) > 0)
-                naming->owners[first + x] = OWNER_UNKNOWN;
-}
-
-static bool naming_bodies(Naming *naming, int number, Error *error);
-
-bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,
-                 FrameChanges *changes, Error *error) {
-    const FrameView *view = scene->view;
-    size_t pixels = (size_t)view->width * (size_t)view->height;
-    Naming naming = {scene, {expected, actual}, .changes = changes};
-    changes->count = 0;
-    memset(changes->region_change, -1, sizeof changes->region_change);
-    memset(changes->region_others, 0, sizeof changes->region_others);
-    if (view->width != expected->width || view->height != expected->height || pixels > NAMING_PIXELS_MAX) return true;
-    naming.owners = calloc(pixels, 1);
-    naming.tops = malloc(pixels * sizeof *naming.tops);
-    bool ok = (naming.owners != NULL && naming.tops != NULL) || error_memory(error, "regions");
-    if (ok) {
-        mark_differences(&naming, masked);
-        name_parts(&naming);
-    }
-    for (int panel = 0; ok && panel < view->panel_count; panel++)
-        ok = !naming_knows_bodies(&naming, panel) || naming_bodies(&naming, panel, error);
-    if (ok) name_rest(&naming);
-    for (int i = 0; ok && i < changes->regions.kept; i++) name_region(&naming, i);
-    free(naming.owners);
-    free(naming.tops);
-    return ok;
 }
 
 static const double SEEN = 0.01;  /* pixels; the states of a body that moved less explain no pixel */
@@ -187,6 +128,21 @@ static Change change_of(const Panel *panel, const Drawn *body, ChangeKind kind) 
     return (Change){.subject = subject, .kind = kind, .panel = panel->number + 1, .body = body->index};
 }
 
+/* The bounds of the panel's unknown pixels; empty if there are none. */
+static ViewRect unknown_of(const Panel *panel) {
+    const ViewRect rect = panel->view->rect;
+    ViewRect found = {rect.right, rect.bottom, rect.left, rect.top};
+    for (int y = rect.top; y < rect.bottom; y++)
+        for (int x = rect.left; x < rect.right; x++) {
+            if (panel->naming->owners[panel_pixel(panel, x, y)] != OWNER_UNKNOWN) continue;
+            if (x < found.left) found.left = x;
+            if (x >= found.right) found.right = x + 1;
+            if (y < found.top) found.top = y;
+            if (y >= found.bottom) found.bottom = y + 1;
+        }
+    return found;
+}
+
 static int by_movement(const void *a, const void *b) {
     const Drawn *x = *(const Drawn *const *)a, *y = *(const Drawn *const *)b;
     if (x->moved != y->moved) return x->moved > y->moved ? -1 : 1;
@@ -196,8 +152,7 @@ static int by_movement(const void *a, const void *b) {
 static int64_t take_body(Panel *panel, const Drawn *body, int change) {
     int64_t taken = 0;
     for (int side = 0; side < 2; side++)
-        if (body->exists[side])
-            taken += naming_take_box(panel->naming, panel->view->rect, &body->box[side], AROUND, change);
+        if (body->exists[side]) taken += take_box(panel->naming, panel->view->rect, &body->box[side], AROUND, change);
     return taken;
 }
 
@@ -215,7 +170,7 @@ static int add_moved(Panel *panel, const Drawn *body) {
         change.right = b->x - a->x, change.up = a->y - b->y;
         change.turn = atan2(a->cosine * b->sine - a->sine * b->cosine, a->cosine * b->cosine + a->sine * b->sine);
     }
-    return naming_add(panel->naming, &change);
+    return add_change(panel->naming, &change);
 }
 
 /* Those that moved farthest get names, and the others their number. */
@@ -235,7 +190,7 @@ static bool name_moved(Panel *panel, Error *error) {
         }
         Change others = change_of(panel, moved[i], CHANGE_MOVED);
         others.subject = SUBJECT_BODIES, others.by_states = true, others.body = count - SINGLE;
-        if (i == SINGLE) rest = naming_add(panel->naming, &others);
+        if (i == SINGLE) rest = add_change(panel->naming, &others);
         if (rest >= 0) take_body(panel, moved[i], rest);
     }
     drop_empty(panel->naming, rest);
@@ -269,7 +224,7 @@ static int next_candidate(const Panel *panel) {
 static bool name_best(Panel *panel) {
     BodyFit best = {.explained = -1};
     int body = -1;
-    const ViewRect changed = panel_unknown(panel);
+    const ViewRect changed = unknown_of(panel);
     count_unknown(panel);
     for (int i = 0; i < panel->count; i++) panel->bodies[i].tried = false;
     for (int tried = 0, at; tried < CANDIDATES && (at = next_candidate(panel)) >= 0; tried++) {
@@ -289,7 +244,7 @@ static bool name_best(Panel *panel) {
     drawn.box[1].x += best.right, drawn.box[1].y -= best.up;
     drawn.box[1].cosine = cos(best.turn) * drawn.box[0].cosine - sin(best.turn) * drawn.box[0].sine;
     drawn.box[1].sine = sin(best.turn) * drawn.box[0].cosine + cos(best.turn) * drawn.box[0].sine;
-    int added = naming_add(panel->naming, &change);
+    int added = add_change(panel->naming, &change);
     bool took = added >= 0 && take_body(panel, &drawn, added) > 0;
     drop_empty(panel->naming, added);
     return took;
@@ -304,15 +259,15 @@ static void name_others(Panel *panel) {
     if (count == 0) return;
     Change others = change_of(panel, &panel->bodies[last], CHANGE_OTHER);
     if (count > 1) others.subject = SUBJECT_BODIES, others.body = count;
-    if ((change = naming_add(panel->naming, &others)) < 0) return;
+    if ((change = add_change(panel->naming, &others)) < 0) return;
     for (int i = 0; i < panel->count; i++)
         if (panel->bodies[i].pixels > 0)
-            naming_take_box(panel->naming, panel->view->rect, &panel->bodies[i].box[0], AROUND, change);
+            take_box(panel->naming, panel->view->rect, &panel->bodies[i].box[0], AROUND, change);
     drop_empty(panel->naming, change);
 }
 
 /* Names the bodies of a panel: those whose states differ, then those whose pixels do. They must be known. */
-static bool naming_bodies(Naming *naming, int number, Error *error) {
+static bool name_bodies(Naming *naming, int number, Error *error) {
     Panel panel;
     bool usable = false,
          ok = panel_open(&panel, naming, number, &usable, error) && (!usable || name_moved(&panel, error));
@@ -325,67 +280,55 @@ static bool naming_bodies(Naming *naming, int number, Error *error) {
     return ok;
 }
 
-/* Errors are not reported: without a view or a run there are fewer names, and the comparison of runs reports a damaged
-   run itself. */
-static void read_run(ShownFolder *folder, const char *name) {
-    char path[PATH_MAX];
-    for (int i = 0; i < folder->run_count; i++)
-        if (strcmp(folder->names[i], name) == 0) return;
-    if (folder->run_count == VIEW_PANELS_MAX) return;
-    if (file_path(path, sizeof path, &(Error){0}, "%s%s", folder->path, name))
-        folder->runs[folder->run_count] = trajectory_read(path, &(Error){0});
-    folder->names[folder->run_count++] = name;
-}
-
-static void read_runs(ShownFolder *folder) {
-    for (int i = 0; i < folder->view.panel_count; i++) {
-        const ViewPanel *panel = &folder->view.panels[i];
-        read_run(folder, panel->run);
-        for (int k = 0; k < panel->outline_count; k++) read_run(folder, panel->outlines[k]);
-    }
-}
-
-const Trajectory *shown_run(const ShownFolder *folder, const char *name) {
-    for (int i = 0; i < folder->run_count; i++)
-        if (strcmp(folder->names[i], name) == 0) return folder->runs[i];
-    return NULL;
-}
-
-static ShownFolder *read_folder(const char *picture, size_t length) {
-    ShownFolder *folder = calloc(1, sizeof *folder);
-    char path[PATH_MAX];
-    if (folder == NULL || (folder->path = strndup(picture, length)) == NULL) {
-        free(folder);
-        return NULL;
-    }
-    if (file_path(path, sizeof path, &(Error){0}, "%smanifest.json", folder->path) &&
-        view_read(&folder->view, path, &(Error){0}))
-        read_runs(folder);
-    return folder;
-}
-
-const ShownFolder *shown_find(Shown *shown, const char *picture) {
-    size_t length = file_folder_length(picture);
-    ShownFolder *found = NULL;
-#pragma omp critical(shown_folders)
-    {
-        found = shown->first;
-        while (found != NULL && (strncmp(found->path, picture, length) != 0 || found->path[length] != '\0'))
-            found = found->next;
-        if (found == NULL && (found = read_folder(picture, length)) != NULL) {
-            found->next = shown->first;
-            shown->first = found;
+static void name_region(Naming *naming, int region) {
+    FrameChanges *changes = naming->changes;
+    const ImageRegion *r = &changes->regions.list[region];
+    int64_t pixels[CHANGES_MAX] = {0};
+    int best = -1, others = -1;
+    for (int y = r->top; y < r->bottom; y++)
+        for (int x = r->left; x < r->right; x++) {
+            uint8_t owner = naming->owners[(size_t)y * (size_t)naming->scene->view->width + (size_t)x];
+            if (owner >= OWNER_FIRST) pixels[owner - OWNER_FIRST]++;
         }
+    for (int i = 0; i < changes->count; i++) {
+        if (pixels[i] == 0) continue;
+        others++;
+        if (best < 0 || names_better(changes, pixels, i, best)) best = i;
     }
-    return found;
+    changes->region_change[region] = (int16_t)best;
+    changes->region_others[region] = (int16_t)(others > 0 ? others : 0);
 }
 
-void shown_free(Shown *shown) {
-    while (shown->first != NULL) {
-        ShownFolder *folder = shown->first;
-        shown->first = folder->next;
-        for (int i = 0; i < folder->run_count; i++) trajectory_destroy(folder->runs[i]);
-        free(folder->path);
-        free(folder);
+static void mark_differences(Naming *naming, const uint8_t *masked) {
+    const Image *a = naming->pictures[0], *b = naming->pictures[1];
+    size_t width = (size_t)a->width, all = width * (size_t)a->height;
+    for (size_t first = 0; first < all; first += width)
+        for (size_t x = image_next_difference(a, b, first, 0); x < width; x = image_next_difference(a, b, first, x + 1))
+            if ((masked == NULL || masked[first + x] == 0) && image_pixel_difference(a, b, first + x) > 0)
+                naming->owners[first + x] = OWNER_UNKNOWN;
+}
+
+bool naming_find(const NamingScene *scene, const Image *expected, const Image *actual, const uint8_t *masked,
+                 FrameChanges *changes, Error *error) {
+    const FrameView *view = scene->view;
+    size_t pixels = (size_t)view->width * (size_t)view->height;
+    Naming naming = {scene, {expected, actual}, .changes = changes};
+    changes->count = 0;
+    memset(changes->region_change, -1, sizeof changes->region_change);
+    memset(changes->region_others, 0, sizeof changes->region_others);
+    if (view->width != expected->width || view->height != expected->height || pixels > NAMING_PIXELS_MAX) return true;
+    naming.owners = calloc(pixels, 1);
+    naming.tops = malloc(pixels * sizeof *naming.tops);
+    bool ok = (naming.owners != NULL && naming.tops != NULL) || error_memory(error, "regions");
+    if (ok) {
+        mark_differences(&naming, masked);
+        name_parts(&naming);
     }
+    for (int panel = 0; ok && panel < view->panel_count; panel++)
+        ok = !knows_bodies(&naming, panel) || name_bodies(&naming, panel, error);
+    if (ok) name_rest(&naming);
+    for (int i = 0; ok && i < changes->regions.kept; i++) name_region(&naming, i);
+    free(naming.owners);
+    free(naming.tops);
+    return ok;
 }

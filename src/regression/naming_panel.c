@@ -1,122 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A panel of a picture as naming sees it: its bodies as drawn, what is on top, and the pixels that tell of one body. */
 #include "base/base.h"
 #include "regression/compare.h"
 #include "regression/internal.h"
 #include "regression/naming.h"
 #include "runs/trajectory.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const double SMALL = 0.005;     /* pixels; smaller movements round to 0.00 */
-static const double ALONG = 0.25;      /* a movement's smaller part is left out below this share of the larger */
-static const double SEEN_TURN = 0.001; /* rad */
-static const double DEGREES = 57.29577951308232;
-
-static void add_subject(ChangeText *text, const Change *change) {
-    static const char *const names[] = {
-        [SUBJECT_HEADER] = "header",         [SUBJECT_CAPTION] = "caption",   [SUBJECT_AXIS] = "axis",
-        [SUBJECT_LEGEND] = "legend",         [SUBJECT_TIMELINE] = "timeline", [SUBJECT_MARKS] = "marks",
-        [SUBJECT_BACKGROUND] = "background", [SUBJECT_PAGE] = "page"};
-    switch (change->subject) {
-    case SUBJECT_BODY: text_add(text->text, sizeof text->text, "body %d", change->body); break;
-    case SUBJECT_BOMB: text_add(text->text, sizeof text->text, "bomb (body %d)", change->body); break;
-    case SUBJECT_FIXED: text_add(text->text, sizeof text->text, "static body %d", change->body); break;
-    case SUBJECT_GROUND: text_add(text->text, sizeof text->text, "ground (body %d)", change->body); break;
-    case SUBJECT_BODIES:
-        text_add(text->text, sizeof text->text, "%d more %s", change->body, change->body == 1 ? "body" : "bodies");
-        break;
-    case SUBJECT_HEADER:
-    case SUBJECT_CAPTION:
-    case SUBJECT_AXIS:
-    case SUBJECT_LEGEND:
-    case SUBJECT_TIMELINE:
-    case SUBJECT_MARKS:
-    case SUBJECT_BACKGROUND:
-    case SUBJECT_PAGE: text_add(text->text, sizeof text->text, "%s", names[change->subject]); break;
-    }
-    if (change->panel > 0) text_add(text->text, sizeof text->text, " of panel %d", change->panel);
-}
-
-static void add_pixels(ChangeText *text, double pixels, const char *positive, const char *negative) {
-    double size = fabs(pixels);
-    text_add(text->text, sizeof text->text, " %.*f px %s",
-             size < 0.1    ? 2
-             : size < 9.95 ? 1
-                           : 0,
-             size, pixels > 0 ? positive : negative);
-}
-
-/* " 0.4 px right", " 3 px right and 2 px up"; a movement along one axis has one part. */
-static void add_amount(ChangeText *text, const Change *change) {
-    double right = fabs(change->right), up = fabs(change->up);
-    bool has_right = right >= SMALL && right >= ALONG * up, has_up = up >= SMALL && up >= ALONG * right;
-    bool turns = fabs(change->turn) >= SEEN_TURN;
-    if (has_right || has_up) text_add(text->text, sizeof text->text, " moved");
-    if (has_right) add_pixels(text, change->right, "right", "left");
-    if (has_right && has_up) text_add(text->text, sizeof text->text, " and");
-    if (has_up) add_pixels(text, change->up, "up", "down");
-    if (turns)
-        text_add(text->text, sizeof text->text, "%s %.2g degrees", has_right || has_up ? ", turned" : " turned",
-                 DEGREES * fabs(change->turn));
-    if (!has_right && !has_up && !turns) text_add(text->text, sizeof text->text, " moved less than 0.01 px");
-}
-
-ChangeText change_words(const Change *change) {
-    ChangeText text = {""};
-    add_subject(&text, change);
-    switch (change->kind) {
-    case CHANGE_OTHER:
-        if (change->subject <= SUBJECT_BODIES) text_add(text.text, sizeof text.text, " changed");
-        break;
-    case CHANGE_MOVED:
-        if (change->subject == SUBJECT_BODIES)
-            text_add(text.text, sizeof text.text, " moved");
-        else
-            add_amount(&text, change);
-        break;
-    case CHANGE_COLOUR: text_add(text.text, sizeof text.text, ": colour"); break;
-    case CHANGE_LINE_WIDTH: text_add(text.text, sizeof text.text, ": line width"); break;
-    case CHANGE_APPEARED: text_add(text.text, sizeof text.text, " only in the actual run"); break;
-    case CHANGE_DISAPPEARED: text_add(text.text, sizeof text.text, " only in the expected run"); break;
-    }
-    return text;
-}
-
-ChangeText change_cause(const Change *change) {
-    bool several = change->subject == SUBJECT_BODIES;
-    if (change->kind != CHANGE_MOVED && !several) return change_words(change);
-    ChangeText text = {""};
-    if (several)
-        text_add(text.text, sizeof text.text, "other bodies");
-    else
-        add_subject(&text, change);
-    text_add(text.text, sizeof text.text, change->kind == CHANGE_MOVED ? " moved" : " changed");
-    return text;
-}
-
-ChangeText region_name(const FrameChanges *changes, int region) {
-    ChangeText text = {""};
-    int change = changes->region_change[region], others = changes->region_others[region];
-    if (change < 0) return text;
-    text = change_words(&changes->list[change]);
-    if (others > 0)
-        text_add(text.text, sizeof text.text, ", and %d more %s", others, others == 1 ? "change" : "changes");
-    return text;
-}
-
-ChangeText region_words(const FrameChanges *changes, int region) {
-    ChangeText text = {""};
-    const ImageRegion *r = &changes->regions.list[region];
-    ChangeText name = region_name(changes, region);
-    text_add(text.text, sizeof text.text, "%d x %d pixels at (%d, %d), %" PRId64 " of them %s", r->right - r->left,
-             r->bottom - r->top, r->left, r->top, r->pixels, r->pixels == 1 ? "differs" : "differ");
-    if (name.text[0] != '\0') text_add(text.text, sizeof text.text, ": %s", name.text);
-    return text;
-}
 
 enum { PAINTED_MAX = 64 /* times the panel, by all bodies */ };
 
@@ -160,7 +52,8 @@ static void add_layer(Panel *panel, BodyLayer wanted) {
     }
 }
 
-ViewRect panel_bounds(const Panel *panel, const BoxModel *box, double margin) {
+/* The part of a box's bounds that is in the panel; empty if right <= left. */
+static ViewRect panel_bounds(const Panel *panel, const BoxModel *box, double margin) {
     double bounds[4];
     ViewRect rect = panel->view->rect;
     box_bounds(box, margin, bounds);
@@ -232,4 +125,103 @@ bool panel_open(Panel *panel, Naming *naming, int number, bool *usable, Error *e
 void panel_close(Panel *panel) {
     free(panel->bodies);
     free(panel->pixels);
+}
+
+/* Which pixels tell what happened to a body. */
+
+static const double NEAR = 1.5; /* pixels beyond its edge where other bodies hide what is behind it */
+static const double REACH = 3;  /* pixels beyond its edge that a fit takes in any case */
+
+static void colour_at(const Image *image, size_t pixel, double colour[3]) {
+    for (int c = 0; c < 3; c++) colour[c] = image->pixels[4 * pixel + (size_t)c];
+}
+
+/* The panel's most frequent colour near a body, where no body is. */
+static void find_background(const Panel *panel, ViewRect rect, double colour[3]) {
+    const Image *image = panel->naming->pictures[0];
+    int64_t votes = 0;
+    memset(colour, 0, 3 * sizeof *colour);
+    for (int y = rect.top; y < rect.bottom; y++)
+        for (int x = rect.left; x < rect.right; x++) {
+            size_t pixel = panel_pixel(panel, x, y);
+            double here[3];
+            if (panel->naming->tops[pixel] >= 0) continue;
+            colour_at(image, pixel, here);
+            bool same = here[0] == colour[0] && here[1] == colour[1] && here[2] == colour[2];
+            if (votes == 0) memcpy(colour, here, sizeof here);
+            votes += same || votes == 0 ? 1 : -1;
+        }
+}
+
+/* True if another body is within a pixel: what the body's smoothed edge is drawn over is then not known. */
+static bool is_crowded(const Panel *panel, int x, int y, int self) {
+    const ViewRect rect = panel->view->rect;
+    for (int v = y - 1; v <= y + 1; v++)
+        for (int u = x - 1; u <= x + 1; u++) {
+            if (u < rect.left || v < rect.top || u >= rect.right || v >= rect.bottom) continue;
+            int top = panel->naming->tops[panel_pixel(panel, u, v)];
+            if (top >= 0 && top != self) return true;
+        }
+    return false;
+}
+
+/* What is behind the smoothed edge at a pixel: the nearest pixel outside. */
+static void behind_edge(const Panel *panel, const BoxModel *box, int x, int y, double colour[3]) {
+    const ViewRect rect = panel->view->rect;
+    double farthest = 0.5;
+    for (int i = 0; i < 9; i++) {
+        int u = x + i % 3 - 1, v = y + i / 3 - 1;
+        double distance = box_distance(box, u + 0.5, v + 0.5);
+        if (distance < farthest || u < rect.left || v < rect.top || u >= rect.right || v >= rect.bottom) continue;
+        farthest = distance;
+        colour_at(panel->naming->pictures[0], panel_pixel(panel, u, v), colour);
+    }
+}
+
+/* Adds the pixel to those of a fit unless it says nothing about the body. */
+static void add_pixel(Panel *panel, int self, int x, int y, const double background[3]) {
+    const Naming *naming = panel->naming;
+    const BoxModel *box = &panel->bodies[self].box[0];
+    size_t at = panel_pixel(panel, x, y);
+    double distance = box_distance(box, x + 0.5, y + 0.5), after[3];
+    if (naming->tops[at] > self) return; /* a body drawn later hides it */
+    if (distance > REACH && naming->owners[at] == OWNER_NONE) return;
+    if (distance > -0.5 && distance < NEAR && is_crowded(panel, x, y, self)) return;
+    FitPixel *pixel = &panel->pixels->list[panel->pixels->count++];
+    *pixel = (FitPixel){.x = x + 0.5, .y = y + 0.5};
+    colour_at(naming->pictures[0], at, pixel->before);
+    colour_at(naming->pictures[1], at, after);
+    bool masked = naming->owners[at] != OWNER_UNKNOWN; /* equal, or changed by something else */
+    for (int c = 0; c < 3; c++) pixel->difference[c] = masked ? 0 : after[c] - pixel->before[c];
+    memcpy(pixel->behind, background, sizeof pixel->behind);
+    if (distance >= 0.5)
+        memcpy(pixel->behind, pixel->before, sizeof pixel->behind);
+    else if (distance > -0.5)
+        behind_edge(panel, box, x, y, pixel->behind);
+}
+
+/* Far inside, boxes are of one colour. */
+static double depth_of(const BoxModel *box) { return fmax(0.5 * fmin(box->half_width, box->half_height), 8); }
+
+static ViewRect join(ViewRect a, ViewRect b) {
+    return (ViewRect){a.left < b.left ? a.left : b.left, a.top < b.top ? a.top : b.top,
+                      a.right > b.right ? a.right : b.right, a.bottom > b.bottom ? a.bottom : b.bottom};
+}
+
+/* Takes every n-th row if there are too many pixels. */
+void panel_collect(Panel *panel, int self, ViewRect changed) {
+    const BoxModel *box = &panel->bodies[self].box[0];
+    const ViewRect rect = join(changed, panel_bounds(panel, box, REACH));
+    double depth = depth_of(box), background[3];
+    find_background(panel, rect, background);
+    for (int stride = 1;; stride *= 2) {
+        bool full = false;
+        panel->pixels->count = 0;
+        for (int y = rect.top; y < rect.bottom && !full; y++)
+            for (int x = rect.left + y % stride; x < rect.right && !full; x += stride) {
+                full = panel->pixels->count == FIT_PIXELS_MAX;
+                if (!full && box_distance(box, x + 0.5, y + 0.5) >= -depth) add_pixel(panel, self, x, y, background);
+            }
+        if (!full) return;
+    }
 }

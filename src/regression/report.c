@@ -1,19 +1,281 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes a report: makes its pictures, writes the pages of runs, then the four files. */
 #include "regression/report.h"
 
 #include "base/base.h"
 #include "base/file.h"
+#include "base/hash.h"
 #include "base/machine.h"
+#include "pictures/player.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/flip.h"
 #include "regression/internal.h"
 #include "regression/regression.h"
+#include "runs/trajectory.h"
 
+#include <assert.h>
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-/* results.json is last: if it exists, the report is complete. */
+const char report_kind_letters[REPORT_KINDS + 1] = "eadf";
+enum { DIFFERENCE = SIDES, HEAT };
+
+/* Loads a file and checks that it has not changed since the comparison. */
+static bool load(const RegressionFrame *frame, RegressionSide side, ReportPicture *picture, Error *error) {
+    const char *path = frame->at[side]->path;
+    picture->data = image_load_png(path, &picture->size, error);
+    if (picture->data == NULL) return false;
+    return hash_xxh3(picture->data, picture->size) == frame->files[side].hash ||
+           error_input(error, path, "has changed since the comparison");
+}
+
+/* Measures FLIP; draws its picture only if picture != NULL. */
+static bool measure(const Image *expected, const Image *actual, RegressionFrame *frame, ReportPicture *picture,
+                    Error *error) {
+    IndexedPng *heat = NULL;
+    FlipSummary flip;
+    if (picture != NULL && (heat = heat_picture(expected->width, expected->height, error)) == NULL) return false;
+    const FlipSink sink = heat_picture_sink(heat);
+    bool ok = flip_compare(expected, actual, FLIP_PIXELS_PER_DEGREE, heat != NULL ? &sink : NULL, &flip, error);
+    if (ok) frame->flip = flip.mean, frame->flip_p99 = flip.p99;
+    if (ok && heat != NULL) ok = (picture->data = indexed_png_end(heat, &picture->size, error)) != NULL;
+    indexed_png_destroy(heat);
+    return ok;
+}
+
+static int larger(int a, int b) { return a > b ? a : b; }
+
+/* Measures FLIP and, if there is room, draws the difference pictures. Of pictures of different size, the difference
+   picture shows both, and FLIP the overlap. */
+static bool draw(const Regression *regression, RegressionFrame *frame, Image *expected, Image *actual,
+                 ReportPicture pictures[REPORT_KINDS], bool room, Error *error) {
+    uint8_t *masked;
+    int width = larger(expected->width, actual->width), height = larger(expected->height, actual->height);
+    if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
+    ReportPicture *difference = &pictures[DIFFERENCE];
+    if (room) difference->data = difference_picture(expected, actual, masked, width, height, &difference->size, error);
+    image_copy_masked(expected, actual, masked);
+    bool ok =
+        (!room || difference->data != NULL) && measure(expected, actual, frame, room ? &pictures[HEAT] : NULL, error);
+    free(masked);
+    return ok;
+}
+
+/* Only for frames with two pictures whose pixels differ. */
+static bool draw_differences(const Regression *regression, RegressionFrame *frame, ReportPicture pictures[REPORT_KINDS],
+                             bool room, Error *error) {
+    Image *images[SIDES] = {NULL, NULL};
+    if (frame->pixels == PIXELS_EQUAL || frame->pixels > PIXELS_RESIZED || frame->sizes_alone) return true;
+    assert(frame->at[EXPECTED] != NULL && frame->at[ACTUAL] != NULL);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        images[side] = image_decode_png(pictures[side].data, pictures[side].size, frame->at[side]->path,
+                                        regression->options.max_pixels, error);
+    bool ok = images[EXPECTED] != NULL && images[ACTUAL] != NULL &&
+              draw(regression, frame, images[EXPECTED], images[ACTUAL], pictures, room, error);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) image_destroy(images[side]);
+    return ok;
+}
+
+static void drop(ReportPicture pictures[REPORT_KINDS]) {
+    for (int kind = 0; kind < REPORT_KINDS; kind++) {
+        free(pictures[kind].data);
+        pictures[kind] = (ReportPicture){NULL, 0};
+    }
+}
+
+enum { BATCH = 16 };
+
+/* Frames whose pictures are made in parallel. */
+typedef struct Batch {
+    ReportPictures *pictures;
+    Regression *regression;
+    bool room;
+    int wanted, done; /* frames of all batches */
+    int count, frames[BATCH];
+} Batch;
+
+static bool make_frame(void *context, int i, Error *error) {
+    const Batch *batch = context;
+    RegressionFrame *frame = &batch->regression->frames[batch->frames[i]];
+    ReportPicture *made = batch->pictures->frames[batch->frames[i]];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if (frame->at[side] != NULL && !load(frame, side, &made[side], error)) return false;
+    return draw_differences(batch->regression, frame, made, batch->room, error);
+}
+
+/* Keeps a frame's pictures if they fit into *left bytes of base64. Once some do not fit, *left is 0. */
+static void keep_frame(ReportPictures *pictures, RegressionFrame *frame, int i, size_t *left) {
+    ReportPicture *made = pictures->frames[i];
+    size_t size = 0;
+    for (int kind = 0; kind < REPORT_KINDS; kind++) size += (made[kind].size + 2) / 3 * 4;
+    frame->shown = size > 0 && size <= *left;
+    *left = frame->shown ? *left - size : 0;
+    pictures->left_out += !frame->shown;
+    if (!frame->shown) drop(made);
+}
+
+static bool make_batch(Batch *batch, size_t *left, const Progress *progress, Error *error) {
+    const ParallelWork work = {make_frame, batch};
+    batch->room = *left > 0;
+    bool ok = parallel_for(&work, batch->count, "report", NULL, error);
+    for (int k = 0; k < batch->count; k++)
+        keep_frame(batch->pictures, &batch->regression->frames[batch->frames[k]], batch->frames[k], left);
+    if (!ok) return false;
+    batch->done += batch->count;
+    batch->count = 0;
+    if (!progress_report(progress, batch->done, batch->wanted)) return error_interrupted(error, "report", "stopped");
+    return true;
+}
+
+/* First failures, then frames within tolerance. */
+static bool is_wanted(const RegressionFrame *frame, bool failed) {
+    return failed ? frame_failed(frame) : !frame_failed(frame) && frame->pixels == PIXELS_WITHIN;
+}
+
+static void free_pictures(ReportPictures *pictures) {
+    for (int i = 0; pictures->frames != NULL && i < pictures->count; i++) drop(pictures->frames[i]);
+    free(pictures->frames);
+}
+
+/* Fills the pictures, and `shown` and `flip` of the frames. On failure nothing needs to be freed. */
+static bool gather_pictures(ReportPictures *pictures, Regression *regression, size_t max_bytes,
+                            const Progress *progress, Error *error) {
+    *pictures = (ReportPictures){.count = regression->count};
+    pictures->frames = calloc((size_t)regression->count + 1, sizeof *pictures->frames);
+    if (pictures->frames == NULL) return error_memory(error, "report");
+    Batch batch = {.pictures = pictures, .regression = regression};
+    bool ok = true;
+    for (int i = 0; i < regression->count; i++) {
+        RegressionFrame *frame = &regression->frames[i];
+        if (frame->pixels == PIXELS_EQUAL) frame->flip = frame->flip_p99 = 0;
+        batch.wanted += is_wanted(frame, true) || is_wanted(frame, false);
+    }
+    for (int failed = 1; failed >= 0; failed--)
+        for (int i = 0; ok && i < regression->count; i++) {
+            if (!is_wanted(&regression->frames[i], failed)) continue;
+            batch.frames[batch.count++] = i;
+            if (batch.count == BATCH) ok = make_batch(&batch, &max_bytes, progress, error);
+        }
+    ok = ok && make_batch(&batch, &max_bytes, progress, error);
+    if (!ok) free_pictures(pictures);
+    return ok;
+}
+
+/* The pages of runs that differ, beside the report. */
+
+/* Of the states in a page. A page of longer runs shows the frames around the first difference. */
+enum { STATE_BYTES = 8 << 20, FRAMES_BEFORE = 60 };
+
+static bool read_runs(Trajectory *runs[SIDES], const Regression *regression, const RegressionRun *run, Error *error) {
+    char path[PATH_MAX];
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if (!file_path(path, sizeof path, error, "%s/%s", regression->sequences[side]->folder, run->name) ||
+            (runs[side] = trajectory_read(path, error)) == NULL)
+            return false;
+    TrajectoryDifference now;
+    trajectory_compare(runs[EXPECTED], runs[ACTUAL], &now);
+    return (!now.equal && now.frame == run->difference.frame && now.body == run->difference.body) ||
+           error_input(error, path, "has changed since the comparison");
+}
+
+typedef struct Stem {
+    char text[REPORT_RUN_SIZE - 40];
+} Stem;
+
+/* The run's name, without .npz, as a file name. */
+static Stem stem_of(const RegressionRun *run) {
+    Stem stem;
+    snprintf(stem.text, sizeof stem.text, "%.*s", (int)strlen(run->name) - 4, run->name);
+    file_name_clean(stem.text);
+    return stem;
+}
+
+/* "run-NAME.html"; a second run of that name gets "run-NAME-2.html". */
+static void name_page(char name[REPORT_RUN_SIZE], const Regression *regression, int index) {
+    const Stem stem = stem_of(&regression->runs[index]);
+    char number[16] = "";
+    int same = 1;
+    for (int i = 0; i < index; i++) {
+        const Stem other = stem_of(&regression->runs[i]);
+        same += strcmp(stem.text, other.text) == 0;
+    }
+    if (same > 1) snprintf(number, sizeof number, "-%d", same);
+    snprintf(name, REPORT_RUN_SIZE, "run-%s%s.html", stem.text, number);
+}
+
+/* All frames if their states fit. */
+static PlayerOptions choose_frames(const Trajectory *const runs[SIDES], int first) {
+    const Trajectory *a = runs[EXPECTED], *b = runs[ACTUAL];
+    const int frames = a->frames > b->frames ? a->frames : b->frames, bodies = a->bodies + b->bodies;
+    const int room = STATE_BYTES / (int)(6 * sizeof(float)) / (bodies > 0 ? bodies : 1);
+    PlayerOptions options = {.last = -1, .names = {"expected", "actual"}};
+    if (frames <= room) return options;
+    options.first = first > FRAMES_BEFORE ? first - FRAMES_BEFORE : 0;
+    options.last = options.first + (room > FRAMES_BEFORE ? room : FRAMES_BEFORE + 1);
+    if (options.last >= frames) options.last = frames - 1;
+    return options;
+}
+
+typedef struct Writing {
+    ReportRuns *runs;
+    const Regression *regression;
+    const char *folder;
+    size_t left; /* bytes */
+} Writing;
+
+static bool write_page(Writing *writing, int index, const Trajectory *const runs[SIDES], Error *error) {
+    char name[REPORT_RUN_SIZE], path[PATH_MAX], moment[PLAYER_LINK_SIZE];
+    const TrajectoryDifference *difference = &writing->regression->runs[index].difference;
+    const PlayerOptions options = choose_frames(runs, difference->frame);
+    PlayerResult result;
+    name_page(name, writing->regression, index);
+    if (!file_path(path, sizeof path, error, "%s/%s", writing->folder, name) ||
+        !player_write(runs, SIDES, &options, path, &result, error))
+        return false;
+    player_link(moment, difference->frame > 0 ? difference->frame * (double)runs[EXPECTED]->dt : 0, difference->body);
+    snprintf(writing->runs->links[index], sizeof writing->runs->links[index], "%s%s", name, moment);
+    writing->left = (size_t)result.bytes < writing->left ? writing->left - (size_t)result.bytes : 0;
+    return true;
+}
+
+/* Runs of different time steps have no common moment: no page. */
+static bool show_run(Writing *writing, int index, Error *error) {
+    Trajectory *runs[SIDES] = {NULL, NULL};
+    bool ok = read_runs(runs, writing->regression, &writing->regression->runs[index], error);
+    if (ok && memcmp(&runs[EXPECTED]->dt, &runs[ACTUAL]->dt, sizeof(float)) == 0) {
+        if (writing->left == 0)
+            writing->runs->left_out++;
+        else
+            ok = write_page(writing, index, (const Trajectory *const *)runs, error);
+    }
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) trajectory_destroy(runs[side]);
+    return ok;
+}
+
+static bool show_runs(Writing *writing, const Progress *progress, Error *error) {
+    const int count = writing->regression->run_count;
+    for (int i = 0; i < count; i++) {
+        if (!progress_report(progress, i, count)) return error_interrupted(error, "report", "stopped");
+        if (!writing->regression->runs[i].difference.equal && !show_run(writing, i, error)) return false;
+    }
+    return true;
+}
+
+/* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference.
+   ERROR_INPUT if a run has changed since the comparison. On failure nothing needs to be freed. */
+static bool write_run_pages(ReportRuns *runs, const Regression *regression, const char *folder, size_t max_bytes,
+                            const Progress *progress, Error *error) {
+    *runs = (ReportRuns){.links = calloc((size_t)regression->run_count + 1, sizeof *runs->links)};
+    if (runs->links == NULL) return error_memory(error, "report");
+    Writing writing = {runs, regression, folder, max_bytes};
+    if (show_runs(&writing, progress, error)) return true;
+    free(runs->links);
+    return false;
+}
+
+/* The files of a report. results.json is last: if it exists, the report is complete. */
 static const struct {
     const char *name;
     void (*write)(FILE *file, const void *report);
@@ -27,172 +289,15 @@ bool regression_report_write(Regression *regression, const char *folder, size_t 
     ReportPictures pictures;
     ReportRuns runs = {0};
     char path[PATH_MAX];
-    if (!file_make_directory(folder, error) ||
-        !report_pictures_gather(&pictures, regression, max_bytes, progress, error))
+    if (!file_make_directory(folder, error) || !gather_pictures(&pictures, regression, max_bytes, progress, error))
         return false;
     const Report report = {regression, &pictures, &runs, folder};
-    bool ok = report_runs_write(&runs, regression, folder, max_bytes, progress, error);
+    bool ok = write_run_pages(&runs, regression, folder, max_bytes, progress, error);
     for (size_t i = 0; ok && i < sizeof parts / sizeof parts[0]; i++) {
         ok = file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) &&
              file_write_text(path, parts[i].write, &report, error);
     }
-    report_runs_free(&runs);
-    report_pictures_free(&pictures);
-    return ok;
-}
-
-int regression_case_count(const Regression *regression) { return regression->count + regression->run_count; }
-
-static RegressionCase frame_case(const RegressionFrame *frame) {
-    RegressionCase made = {.kind = "frames",
-                           .name = frame_name(frame),
-                           .verdict = frame_verdict(frame),
-                           .failed = frame_failed(frame),
-                           .words = frame_words(frame),
-                           .seconds = frame->seconds,
-                           .frame = frame};
-    for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (frame->at[side] != NULL && !file_path(made.paths[side], PATH_MAX, &(Error){0}, "%s", frame->at[side]->path))
-            made.paths[side][0] = '\0';
-    return made;
-}
-
-RegressionCase regression_case(const Regression *regression, int i) {
-    if (i < regression->count) return frame_case(&regression->frames[i]);
-    const RegressionRun *run = &regression->runs[i - regression->count];
-    RegressionCase made = {.kind = "trajectories",
-                           .name = run->name,
-                           .verdict = run->difference.equal ? "equal" : "physics changed",
-                           .failed = !run->difference.equal,
-                           .words = run_words(run),
-                           .seconds = run->seconds};
-    for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (!file_path(made.paths[side], PATH_MAX, &(Error){0}, "%s/%s", regression->sequences[side]->folder,
-                       run->name))
-            made.paths[side][0] = '\0';
-    return made;
-}
-
-/* The step summary of GitHub Actions. */
-
-/* More rows would not be read, and GitHub would take seconds to show them. */
-enum { MAX_ROWS = 1000, LAST_LINE = 128 };
-
-typedef struct Summary {
-    const Regression *regression;
-    long limit; /* bytes */
-} Summary;
-
-/* Text in a paragraph or a cell: all that Markdown may read as markup has a backslash. */
-static void put_text(FILE *out, const char *text) {
-    for (; *text != '\0'; text++) {
-        if (strchr("\\`*_[]<>!|~&$#@:", *text) != NULL) fputc('\\', out);
-        fputc((unsigned char)*text < ' ' ? ' ' : *text, out);
-    }
-}
-
-static size_t longest_run(const char *text, char of) {
-    size_t longest = 0;
-    for (size_t run; *text != '\0'; text += run > 0 ? run : 1) {
-        run = strspn(text, (const char[]){of, '\0'});
-        if (run > longest) longest = run;
-    }
-    return longest;
-}
-
-/* A code span, in which only more backticks than any in the text end it. '|' would end a cell. */
-static void put_code(FILE *out, const char *text) {
-    size_t fence = longest_run(text, '`') + 1;
-    for (size_t i = 0; i < fence; i++) fputc('`', out);
-    fputc(' ', out);
-    for (; *text != '\0'; text++) {
-        if (*text == '|') fputc('\\', out);
-        fputc((unsigned char)*text < ' ' ? ' ' : *text, out);
-    }
-    fputc(' ', out);
-    for (size_t i = 0; i < fence; i++) fputc('`', out);
-}
-
-/* Each line is an item of a list. */
-static void write_items(FILE *out, const char *lines) {
-    char item[sizeof((RegressionText *)NULL)->text];
-    for (size_t length; *lines != '\0'; lines += length + (lines[length] == '\n')) {
-        length = strcspn(lines, "\n");
-        snprintf(item, sizeof item, "%.*s", (int)length, lines);
-        fputs("- ", out);
-        put_text(out, item);
-        fputc('\n', out);
-    }
-}
-
-static void write_head(FILE *out, const Regression *regression) {
-    fputs("### twinbox compare: ", out);
-    put_text(out, regression_verdict(regression).text);
-    fputs("\n\nExpected ", out);
-    put_code(out, regression->sequences[EXPECTED]->folder);
-    fputs(", actual ", out);
-    put_code(out, regression->sequences[ACTUAL]->folder);
-    fprintf(out, ": %d of %d frames failed.\n\n", regression->failed, regression->count);
-    write_items(out, regression_begin(regression).text);
-    for (int i = 0; i < regression->cause_count; i++) write_items(out, cause_words(&regression->causes[i]).text);
-    write_items(out, regression_notes(regression).text);
-    fputc('\n', out);
-}
-
-static void write_figures(FILE *out, const RegressionFrame *frame) {
-    bool measured = frame != NULL && frame->pixels <= PIXELS_DIFFER;
-    if (measured && isfinite(frame->flip))
-        fprintf(out, " | %.4g", frame->flip);
-    else
-        fputs(" |", out);
-    if (measured)
-        fprintf(out, " | %d |\n", frame->difference.largest);
-    else
-        fputs(" | |\n", out);
-}
-
-static void write_row(FILE *out, const RegressionCase *made) {
-    fputs("| ", out);
-    put_code(out, made->name);
-    fputs(" | ", out);
-    put_text(out, made->verdict);
-    fputs(" | ", out);
-    put_text(out, made->words.text);
-    write_figures(out, made->frame);
-}
-
-/* The length of a row, to know whether it fits before it is written. */
-static size_t row_length(const RegressionCase *made) {
-    return 16 + 4 * strlen(made->name) + 2 * (strlen(made->verdict) + strlen(made->words.text)) + 64;
-}
-
-static void write_summary(FILE *out, const void *context) {
-    const Summary *summary = context;
-    const Regression *regression = summary->regression;
-    const int failures = regression->failed + regression->run_failed, count = regression_case_count(regression);
-    int rows = 0;
-    write_head(out, regression);
-    if (failures > 0) fputs("| name | verdict | difference | FLIP | largest |\n|---|---|---|---:|---:|\n", out);
-    for (int i = 0; i < count && rows < MAX_ROWS; i++) {
-        const RegressionCase made = regression_case(regression, i);
-        if (!made.failed) continue;
-        if (ftell(out) + (long)row_length(&made) + LAST_LINE > summary->limit) break;
-        write_row(out, &made);
-        rows++;
-    }
-    if (rows < failures) fprintf(out, "\n%d more failures are in the report.\n", failures - rows);
-    fputc('\n', out);
-}
-
-bool github_summary_append(const Regression *regression, const char *path, Error *error) {
-    struct stat status;
-    off_t used = stat(path, &status) == 0 ? status.st_size : 0;
-    if (used >= GITHUB_SUMMARY_MAX) return true;
-    const Summary summary = {regression, (long)(GITHUB_SUMMARY_MAX - 1 - used)};
-    size_t size;
-    char *text = file_print(write_summary, &summary, &size);
-    if (text == NULL) return error_memory(error, path);
-    bool ok = (long)size > summary.limit || file_append(path, text, size, error);
-    free(text);
+    free(runs.links);
+    free_pictures(&pictures);
     return ok;
 }

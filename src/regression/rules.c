@@ -117,12 +117,6 @@ static bool read_tolerance(const YamlTree *tree, int node, const Field *field, v
     return read_level(tree, node, field->key, &tolerance->tolerance, error);
 }
 
-static bool read_beyond(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    Tolerance *tolerance = member;
-    tolerance->given |= LIMIT_BEYOND;
-    return read_share(tree, node, field->key, &tolerance->beyond, error);
-}
-
 static bool read_fuzzy(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
     const YamlNode *list = &tree->nodes[node];
@@ -134,25 +128,27 @@ static bool read_fuzzy(const YamlTree *tree, int node, const Field *field, void 
            read_share(tree, tree->nodes[node + 1].end, field->key, &tolerance->share, error);
 }
 
-static bool read_flip_mean(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+static bool read_beyond(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
-    tolerance->given |= LIMIT_FLIP_MEAN;
-    return read_share(tree, node, field->key, &tolerance->flip_mean, error);
+    tolerance->given |= LIMIT_BEYOND;
+    return read_share(tree, node, field->key, &tolerance->beyond, error);
 }
 
-static bool read_flip_p99(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+static bool read_flip_limit(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
-    tolerance->given |= LIMIT_FLIP_P99;
-    return read_share(tree, node, field->key, &tolerance->flip_p99, error);
+    const bool p99 = strcmp(field->key, "p99") == 0;
+    tolerance->given |= p99 ? LIMIT_FLIP_P99 : LIMIT_FLIP_MEAN;
+    return read_share(tree, node, field->key, p99 ? &tolerance->flip_p99 : &tolerance->flip_mean, error);
 }
 
 static bool read_flip(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    static const Field fields[] = {
-        {"mean", read_flip_mean, 0, NULL, false}, {"p99", read_flip_p99, 0, NULL, false}, {NULL, NULL, 0, NULL, false}};
+    static const Field fields[] = {{"mean", read_flip_limit, 0, NULL, false},
+                                   {"p99", read_flip_limit, 0, NULL, false},
+                                   {NULL, NULL, 0, NULL, false}};
     int nodes[FIELDS_MAX];
     if (tree->nodes[node].kind == YAML_MAPPING)
         return fields_read(tree, node, "a limit of FLIP", fields, member, nodes, error);
-    return read_flip_mean(tree, node, field, member, error);
+    return read_flip_limit(tree, node, field, member, error);
 }
 
 static bool read_antialias(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {

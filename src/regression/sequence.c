@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pictures of a folder in order, and the pairs that two folders have. */
 #include "base/base.h"
 #include "base/file.h"
 #include "regression/compare.h"
@@ -26,9 +27,8 @@ static bool is_png(const char *name) {
     return ending != NULL && strcasecmp(ending, ".png") == 0;
 }
 
-/* Finds folder, stem and number of a frame's name. */
-/* 19 or more digits do not count as a number. */
-static void sequence_read_name(SequenceFrame *frame) {
+/* Finds folder, stem and number of a frame's name. 19 or more digits do not count as a number. */
+static void read_name(SequenceFrame *frame) {
     enum { DIGITS = 18 };
     frame->folder = (int)file_folder_length(frame->name);
     const char *base = frame->name + frame->folder, *ending = strrchr(base, '.');
@@ -53,7 +53,7 @@ static bool add_frame(ImageSequence *sequence, size_t *capacity, const char *bef
     snprintf(path, size, "%s%s", before, name);
     SequenceFrame *frame = &sequence->frames[sequence->count++];
     *frame = (SequenceFrame){.path = path, .name = path + strlen(before)};
-    sequence_read_name(frame);
+    read_name(frame);
     return true;
 }
 
@@ -64,23 +64,23 @@ static int compare_parts(const char *x, int x_length, const char *y, int y_lengt
 }
 
 /* Order by folder; by folder and stem; by number; by all of these, then name. */
-static int sequence_compare_folders(const SequenceFrame *x, const SequenceFrame *y) {
+static int compare_folders(const SequenceFrame *x, const SequenceFrame *y) {
     return compare_parts(x->name, x->folder, y->name, y->folder);
 }
 
 int sequence_compare_stems(const SequenceFrame *x, const SequenceFrame *y) {
-    int order = sequence_compare_folders(x, y);
+    int order = compare_folders(x, y);
     return order != 0 ? order : compare_parts(x->name, x->stem, y->name, y->stem);
 }
 
-static int sequence_compare_numbers(const SequenceFrame *x, const SequenceFrame *y) {
+static int compare_numbers(const SequenceFrame *x, const SequenceFrame *y) {
     return (x->number > y->number) - (x->number < y->number);
 }
 
-static int sequence_compare_frames(const void *x, const void *y) {
+static int compare_frames(const void *x, const void *y) {
     const SequenceFrame *a = x, *b = y;
     int order = sequence_compare_stems(a, b);
-    if (order == 0) order = sequence_compare_numbers(a, b);
+    if (order == 0) order = compare_numbers(a, b);
     return order != 0 ? order : strcmp(a->name, b->name);
 }
 
@@ -96,7 +96,7 @@ static bool list_pictures(ImageSequence *sequence, bool recursive, Error *error)
     free(before);
     folder_list_free(&files);
     if (ok && sequence->count > 0)
-        qsort(sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, sequence_compare_frames);
+        qsort(sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, compare_frames);
     return ok;
 }
 
@@ -147,7 +147,7 @@ void image_sequence_close(ImageSequence *sequence) {
     free(sequence);
 }
 
-/* Frames in the order of sequence_compare_frames(). */
+/* Frames in the order of compare_frames(). */
 typedef struct Range {
     const SequenceFrame **frames;
     int count;
@@ -159,7 +159,7 @@ static SequenceFrame *find(const ImageSequence *sequence, const SequenceFrame *k
     return bsearch(key, sequence->frames, (size_t)sequence->count, sizeof *sequence->frames, compare);
 }
 
-static int compare_stems(const void *x, const void *y) { return sequence_compare_stems(x, y); }
+static int by_stem(const void *x, const void *y) { return sequence_compare_stems(x, y); }
 
 /* home.png for home.1.png, if that is another accepted picture for it. If `b` has any home.N.png, these are frames. */
 static SequenceFrame *accepted_for(const ImageSequence *a, const ImageSequence *b, const SequenceFrame *frame) {
@@ -170,9 +170,9 @@ static SequenceFrame *accepted_for(const ImageSequence *a, const ImageSequence *
     if (snprintf(name, sizeof name, "%.*s%s", dot, frame->name, strrchr(frame->name, '.')) >= (int)sizeof name)
         return NULL;
     SequenceFrame key = {.name = name};
-    sequence_read_name(&key);
-    if (find(b, &key, sequence_compare_frames) == NULL || find(b, frame, compare_stems) != NULL) return NULL;
-    return find(a, &key, sequence_compare_frames);
+    read_name(&key);
+    if (find(b, &key, compare_frames) == NULL || find(b, frame, by_stem) != NULL) return NULL;
+    return find(a, &key, compare_frames);
 }
 
 /* The frames of `a` that can make pairs; the others are linked to theirs. */
@@ -249,7 +249,7 @@ static Range take_leading(Range *range, bool any, int (*compare)(const SequenceF
 
 static int by_stem_and_number(const SequenceFrame *x, const SequenceFrame *y) {
     int order = sequence_compare_stems(x, y);
-    return order != 0 ? order : sequence_compare_numbers(x, y);
+    return order != 0 ? order : compare_numbers(x, y);
 }
 
 static bool has_one_numbered_stem(Range range) {
@@ -272,7 +272,7 @@ static bool merge(Pairing *pairing, Range a, Range b, int (*compare)(const Seque
 
 static bool pair_folder(Pairing *pairing, Range a, Range b, Error *error) {
     bool numbers_alone = has_one_numbered_stem(a) && has_one_numbered_stem(b);
-    return merge(pairing, a, b, numbers_alone ? sequence_compare_numbers : by_stem_and_number, pair_group, error);
+    return merge(pairing, a, b, numbers_alone ? compare_numbers : by_stem_and_number, pair_group, error);
 }
 
 static bool pair_sequences(Pairing *pairing, const ImageSequence *a, const ImageSequence *b,
@@ -282,7 +282,7 @@ static bool pair_sequences(Pairing *pairing, const ImageSequence *a, const Image
         return true;
     }
     Range first = take_frames(a, b, frames), second = take_frames(b, NULL, frames + a->count);
-    return merge(pairing, first, second, sequence_compare_folders, pair_folder, error);
+    return merge(pairing, first, second, compare_folders, pair_folder, error);
 }
 
 SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b, int *count, Error *error) {

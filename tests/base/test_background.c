@@ -28,8 +28,7 @@ static bool give(Background *background, int from, int to, Error *error) {
     return done;
 }
 
-static void items_are_done_in_order(void **state) {
-    (void)state;
+TEST(items_are_done_in_order) {
     Log log = {0};
     Error error = {0};
     Background *background = background_start(note, &log, &error);
@@ -41,8 +40,7 @@ static void items_are_done_in_order(void **state) {
     background_stop(background);
 }
 
-static void nothing_is_done_after_a_failure(void **state) {
-    (void)state;
+TEST(nothing_is_done_after_a_failure) {
     Log log = {0};
     Error error = {0};
     Background *background = background_start(note, &log, &error);
@@ -53,8 +51,7 @@ static void nothing_is_done_after_a_failure(void **state) {
     assert_int_equal(log.items[log.count - 1], 500);
 }
 
-static void it_stops_with_an_item_in_work(void **state) {
-    (void)state;
+TEST(it_stops_with_an_item_in_work) {
     Log log = {0};
     Error error = {0};
     int item = 7;
@@ -66,11 +63,4 @@ static void it_stops_with_an_item_in_work(void **state) {
     background_stop(NULL);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(items_are_done_in_order),
-        cmocka_unit_test(nothing_is_done_after_a_failure),
-        cmocka_unit_test(it_stops_with_an_item_in_work),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -6,8 +6,7 @@
 #include "base/hash.h"
 
 /* The step of FNV-1a, written out; the start value is the one that the reference trajectories define. */
-static void fnv_is_xor_then_multiply(void **state) {
-    (void)state;
+TEST(fnv_is_xor_then_multiply) {
     uint64_t expected = ((FNV1A64_START ^ 'a') * 0x100000001b3ULL ^ 'b') * 0x100000001b3ULL;
     assert_true(hash_fnv1a64(FNV1A64_START, "ab", 2) == expected);
     assert_true(hash_fnv1a64(hash_fnv1a64(FNV1A64_START, "a", 1), "b", 1) == expected);
@@ -15,13 +14,9 @@ static void fnv_is_xor_then_multiply(void **state) {
 }
 
 /* The published value of XXH3 of nothing. */
-static void xxh3_of_nothing(void **state) {
-    (void)state;
-    assert_true(hash_xxh3("", 0) == 0x2d06800538d394c2ULL);
-}
+TEST(xxh3_of_nothing) { assert_true(hash_xxh3("", 0) == 0x2d06800538d394c2ULL); }
 
-static void arrays_grow_by_doubling_and_keep_their_items(void **state) {
-    (void)state;
+TEST(arrays_grow_by_doubling_and_keep_their_items) {
     void *items = NULL;
     size_t capacity = 0, grown = 0;
     for (size_t i = 0; i < 1000; i++) {
@@ -39,8 +34,7 @@ static void arrays_grow_by_doubling_and_keep_their_items(void **state) {
     free(items);
 }
 
-static void the_first_error_stays(void **state) {
-    (void)state;
+TEST(the_first_error_stays) {
     Error error = {0};
     assert_false(error_input(&error, "a.yaml:1:2", "mass is %d", 0));
     assert_false(error_system(&error, "b", "later"));
@@ -48,8 +42,7 @@ static void the_first_error_stays(void **state) {
     assert_string_equal(error.message, "a.yaml:1:2: error: mass is 0");
 }
 
-static void long_errors_lose_their_middle(void **state) {
-    (void)state;
+TEST(long_errors_lose_their_middle) {
     static char long_text[5000];
     memset(long_text, 'x', sizeof long_text - 1);
     memcpy(long_text, "begin", 5);
@@ -64,8 +57,7 @@ static void long_errors_lose_their_middle(void **state) {
     assert_true(strlen(other.message) < sizeof other.message);
 }
 
-static void known_names_are_listed_once_and_whole(void **state) {
-    (void)state;
+TEST(known_names_are_listed_once_and_whole) {
     NameList known = {0};
     Error error = {0}, none = {0};
     assert_false(error_unknown(&none, "--kind", "x", "a kind", &known));
@@ -94,8 +86,7 @@ static void known_names_are_listed_once_and_whole(void **state) {
     assert_int_equal(strlen(strrchr(known.text, ' ') + 1), strlen("number-000"));
 }
 
-static void text_is_cut_between_characters(void **state) {
-    (void)state;
+TEST(text_is_cut_between_characters) {
     static const char text[] = "a\xC3\xA9\xF0\x9F\x98\x80z"; /* characters of 1, 2, 4 and 1 bytes */
     static const size_t lengths[] = {0, 1, 1, 3, 3, 3, 3, 7, 8, 8};
     for (size_t limit = 0; limit < sizeof lengths / sizeof lengths[0]; limit++)
@@ -103,15 +94,4 @@ static void text_is_cut_between_characters(void **state) {
     assert_int_equal(utf8_cut("\x80\xFF", 1), 1); /* what is no UTF-8 counts by bytes */
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fnv_is_xor_then_multiply),
-        cmocka_unit_test(xxh3_of_nothing),
-        cmocka_unit_test(arrays_grow_by_doubling_and_keep_their_items),
-        cmocka_unit_test(the_first_error_stays),
-        cmocka_unit_test(long_errors_lose_their_middle),
-        cmocka_unit_test(text_is_cut_between_characters),
-        cmocka_unit_test(known_names_are_listed_once_and_whole),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

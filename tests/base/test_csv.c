@@ -14,8 +14,7 @@ static Csv read_good(const char *text) {
     return csv;
 }
 
-static void fields_are_found_and_unquoted(void **state) {
-    (void)state;
+TEST(fields_are_found_and_unquoted) {
     static const char *const texts[] = {
         "a,b\n\"x,\"\"y\"\"\",\n\"\",\"c\"\n",
         "a,b\r\n\"x,\"\"y\"\"\",\r\n\"\",\"c\"",
@@ -36,16 +35,14 @@ static void fields_are_found_and_unquoted(void **state) {
     }
 }
 
-static void errors_name_line_and_column_in_characters(void **state) {
-    (void)state;
+TEST(errors_name_line_and_column_in_characters) {
     Error error = {0};
     Csv csv = read_good("a,b,c\n\"1,\",\xc3\xa4\xc3\xb6,2\n");
     assert_refused(csv_error(&csv, 1, 2, &error, "not %d", 7), "table.csv:2:9: error: not 7");
     csv_free(&csv);
 }
 
-static void broken_tables_are_refused_with_their_place(void **state) {
-    (void)state;
+TEST(broken_tables_are_refused_with_their_place) {
 #define CASE(text, message) \
     { text, sizeof(text) - 1, message }
     static const struct {
@@ -76,16 +73,14 @@ static void broken_tables_are_refused_with_their_place(void **state) {
     }
 }
 
-static void large_and_missing_files_are_refused(void **state) {
-    (void)state;
+TEST(large_and_missing_files_are_refused) {
     Error error = {0};
     Csv csv;
     assert_refused(csv_read(&csv, write_table("a\n1\n2\n", 6), 5, 1, 3, &error), "larger than 5 bytes");
     assert_refused(csv_read(&csv, temporary_path("none.csv"), 5, 1, 3, &error), "cannot open");
 }
 
-static void what_is_put_is_read_again(void **state) {
-    (void)state;
+TEST(what_is_put_is_read_again) {
     static const char *const texts[] = {"k=20", "k=20,warm=off", "say \"k\"", "\"", ",", "", " a "};
     enum { COUNT = sizeof texts / sizeof *texts };
     char *data = NULL;
@@ -105,8 +100,7 @@ static void what_is_put_is_read_again(void **state) {
     free(data);
 }
 
-static void shown_text_is_short_and_prints(void **state) {
-    (void)state;
+TEST(shown_text_is_short_and_prints) {
     assert_string_equal(csv_show("").text, "");
     assert_string_equal(csv_show("1e999").text, "1e999");
     assert_string_equal(csv_show("\xc3\xa4\x1b[2J").text, "???[2J");
@@ -116,14 +110,4 @@ static void shown_text_is_short_and_prints(void **state) {
                         "01234567890123456789012345678901234567890123...");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fields_are_found_and_unquoted),
-        cmocka_unit_test(errors_name_line_and_column_in_characters),
-        cmocka_unit_test(broken_tables_are_refused_with_their_place),
-        cmocka_unit_test(large_and_missing_files_are_refused),
-        cmocka_unit_test(what_is_put_is_read_again),
-        cmocka_unit_test(shown_text_is_short_and_prints),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

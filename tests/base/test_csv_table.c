@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "base/file.h"
+#include "files.h"
 #include "base/csv.h"
 
 #include <math.h>
@@ -44,12 +44,7 @@ static const CsvColumn later[] = {
 };
 static const CsvLayout grown = CSV_LAYOUT("rows", later, Row, .max_rows = 3, .header = CSV_EXACT);
 
-static const char *write_file(const char *text) {
-    Error error = {0};
-    const char *path = temporary_path("rows.csv");
-    assert_ok(file_write_soon(path, text, strlen(text), &error), error);
-    return path;
-}
+static const char *write_file(const char *text) { return write_bytes(temporary_path("rows.csv"), text, strlen(text)); }
 
 static CsvTable read_good(const CsvLayout *layout, const char *text) {
     Error error = {0};
@@ -65,8 +60,7 @@ static void expect_refused(const CsvLayout *layout, const char *text, const char
     assert_null(table.rows);
 }
 
-static void each_kind_fills_its_member(void **state) {
-    (void)state;
+TEST(each_kind_fills_its_member) {
     CsvTable table = read_good(&exact, HEADER "\"a,\"\"b\xc3\xa4\",x [m],blue,-5,1/3,1e30,-0.5\n,,red,7,2,0,\n");
     const Row *rows = table.rows;
     assert_int_equal(table.count, 2);
@@ -83,8 +77,7 @@ static void each_kind_fills_its_member(void **state) {
     csv_table_free(&table);
 }
 
-static void columns_are_found_by_name(void **state) {
-    (void)state;
+TEST(columns_are_found_by_name) {
     CsvTable table =
         read_good(&all, "optional,word,more,more,text,integer,number,single,name\n1,green,,\"x;y\",t,1,2,3,n\n");
     const Row *row = table.rows;
@@ -100,8 +93,7 @@ static void columns_are_found_by_name(void **state) {
     csv_table_free(&table);
 }
 
-static void other_headers_are_refused(void **state) {
-    (void)state;
+TEST(other_headers_are_refused) {
     expect_refused(&all, "text,name\na,b\n", "rows.csv:1:1: error: the column 'word' is missing");
     expect_refused(&all, "name,text,name\na,b,c\n", "rows.csv:1:11: error: the column 'name' appears twice");
     expect_refused(&exact, "text,name\na,b\n", "rows.csv:1:1: error: the column 'word' is missing");
@@ -116,8 +108,7 @@ static void other_headers_are_refused(void **state) {
     expect_refused(&subset, "word,text,word\n1,2,3\n", "rows.csv:1:11: error: the column 'word' appears twice");
 }
 
-static void wrong_fields_are_refused_with_their_place(void **state) {
-    (void)state;
+TEST(wrong_fields_are_refused_with_their_place) {
     static const struct {
         const char *row, *message;
     } cases[] = {
@@ -147,8 +138,7 @@ static void wrong_fields_are_refused_with_their_place(void **state) {
     }
 }
 
-static void rows_are_limited_in_number(void **state) {
-    (void)state;
+TEST(rows_are_limited_in_number) {
 #define ROW(text) text ",n,red,1,2,3,\n"
     CsvTable table = read_good(&all, HEADER);
     assert_int_equal(table.count, 0);
@@ -161,16 +151,14 @@ static void rows_are_limited_in_number(void **state) {
     expect_refused(&all, HEADER ROW("a") ROW("b") ROW("c") ROW("d"), "rows.csv:5:1: error: the table has more than 3");
 }
 
-static void keys_are_not_repeated(void **state) {
-    (void)state;
+TEST(keys_are_not_repeated) {
     CsvTable table = read_good(&all, HEADER ROW("b") "b,n,blue,1,2,3,\n" ROW("a"));
     csv_table_free(&table);
     expect_refused(&all, HEADER ROW("b") ROW("a") "b,other,red,2,3,4,0\n",
                    "rows.csv:4:1: error: the row repeats that of line 2");
 }
 
-static void errors_point_at_a_field(void **state) {
-    (void)state;
+TEST(errors_point_at_a_field) {
     CsvTable table = read_good(&subset, "number,name\n2,\"a,b\"\n3,c\n");
     Error error = {0};
     assert_refused(csv_table_error(&table, 1, NAME, &error, "not %d", 7), "rows.csv:3:3: error: not 7");
@@ -178,24 +166,14 @@ static void errors_point_at_a_field(void **state) {
     csv_table_free(&table);
 }
 
-static void expect_text(const char *path, const char *expected) {
-    Error error = {0};
-    size_t size;
-    char *text = file_read(path, 10000, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, expected);
-    free(text);
-}
-
 static const Row written[] = {{"k=20,b=\"c\"", "x [m]", GREEN, -5, 0.1f, 1234567.8912, -0.12345678},
                               {"", "", RED, 0, -3, 0, NAN}};
 
-static void written_tables_are_read_back(void **state) {
-    (void)state;
+TEST(written_tables_are_read_back) {
     Error error = {0};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &exact, written, 2, &error), error);
-    expect_text(path, HEADER "\"k=20,b=\"\"c\"\"\",\"x [m]\",green,-5,0.1,1234567.89,-0.123457\n,\"\",red,0,-3,0,\n");
+    assert_file(path, HEADER "\"k=20,b=\"\"c\"\"\",\"x [m]\",green,-5,0.1,1234567.89,-0.123457\n,\"\",red,0,-3,0,\n");
     CsvTable table;
     assert_ok(csv_table_read(&table, path, &exact, &error), error);
     const Row *rows = table.rows;
@@ -207,8 +185,7 @@ static void written_tables_are_read_back(void **state) {
     csv_table_free(&table);
 }
 
-static void unreadable_values_are_not_written(void **state) {
-    (void)state;
+TEST(unreadable_values_are_not_written) {
     Row rows[4] = {written[0], written[0], written[0], written[0]};
     static const char *const messages[] = {"text: a control character in 'a?b'", "number: inf cannot be written",
                                            "number: nan cannot be written", "optional: -inf cannot be written"};
@@ -231,8 +208,7 @@ static void unreadable_values_are_not_written(void **state) {
     }
 }
 
-static void an_optional_column_may_be_missing(void **state) {
-    (void)state;
+TEST(an_optional_column_may_be_missing) {
     Error error = {0};
     CsvTable table = read_good(&grown, "integer\n3\n");
     assert_int_equal(((Row *)table.rows)->integer, 3);
@@ -245,18 +221,4 @@ static void an_optional_column_may_be_missing(void **state) {
                    "rows.csv:1:1: error: column 1 must be 'integer' (got 'text')");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_optional_column_may_be_missing),
-        cmocka_unit_test(each_kind_fills_its_member),
-        cmocka_unit_test(columns_are_found_by_name),
-        cmocka_unit_test(other_headers_are_refused),
-        cmocka_unit_test(wrong_fields_are_refused_with_their_place),
-        cmocka_unit_test(rows_are_limited_in_number),
-        cmocka_unit_test(keys_are_not_repeated),
-        cmocka_unit_test(errors_point_at_a_field),
-        cmocka_unit_test(written_tables_are_read_back),
-        cmocka_unit_test(unreadable_values_are_not_written),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "folder_entries.h"
+#include "files.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -17,16 +17,6 @@
 static void write_file(const char *path, const char *text) {
     Error error = {0};
     assert_ok(file_write(path, text, strlen(text), &error), error);
-}
-
-static void expect_file(const char *path, const char *text) {
-    Error error = {0};
-    size_t size = 0;
-    char *data = file_read(path, 1000, &size, &error);
-    assert_ok(data != NULL, error);
-    assert_int_equal(size, strlen(text));
-    assert_string_equal(data, text);
-    free(data);
 }
 
 static const char *fresh_folder(const char *name) {
@@ -43,20 +33,18 @@ static void expect_write_error(const char *path, const char *reason) {
     assert_error(error, ERROR_SYSTEM, reason);
 }
 
-static void written_is_read(void **state) {
-    (void)state;
+TEST(written_is_read) {
     const char *folder = fresh_folder("written"), *path = temporary_path("written/file");
     write_file(path, "first");
-    expect_file(path, "first");
+    assert_file(path, "first");
     write_file(path, "");
-    expect_file(path, "");
+    assert_file(path, "");
     write_file(path, "second");
-    expect_file(path, "second");
-    assert_int_equal(count_entries(folder), 1);
+    assert_file(path, "second");
+    assert_int_equal(count_files(folder, ""), 1);
 }
 
-static void new_files_follow_the_umask(void **state) {
-    (void)state;
+TEST(new_files_follow_the_umask) {
     const char *path = temporary_path("umask");
     mode_t previous = umask(027);
     write_file(path, "text");
@@ -66,26 +54,24 @@ static void new_files_follow_the_umask(void **state) {
     assert_int_equal(status.st_mode & 0777, 0640);
 }
 
-static void names_without_folder_are_in_this_one(void **state) {
-    (void)state;
+TEST(names_without_folder_are_in_this_one) {
     int here = open(".", O_RDONLY | O_DIRECTORY);
     assert_true(here >= 0);
     assert_int_equal(chdir(fresh_folder("here")), 0);
     write_file("plain", "text");
-    expect_file("plain", "text");
-    assert_int_equal(count_entries("."), 1);
+    assert_file("plain", "text");
+    assert_int_equal(count_files(".", ""), 1);
     assert_int_equal(fchdir(here), 0);
     close(here);
 }
 
-static void links_are_followed(void **state) {
-    (void)state;
+TEST(links_are_followed) {
     fresh_folder("links");
     const char *target = temporary_path("links/target"), *link = temporary_path("links/link");
     write_file(target, "old");
     assert_int_equal(symlink("target", link), 0);
     write_file(link, "new");
-    expect_file(target, "new");
+    assert_file(target, "new");
     struct stat status;
     assert_int_equal(lstat(link, &status), 0);
     assert_true(S_ISLNK(status.st_mode));
@@ -104,8 +90,7 @@ static bool find_device(char path[256], const char *name, unsigned minor_number)
     return file >= 0;
 }
 
-static void devices_are_written_into(void **state) {
-    (void)state;
+TEST(devices_are_written_into) {
     char null[256], full[256];
     if (!find_device(null, "null", 3) || !find_device(full, "full", 7)) skip();
     write_file(null, "text");
@@ -126,8 +111,7 @@ static void *read_fifo(void *path) {
     return text;
 }
 
-static void fifos_are_written_into(void **state) {
-    (void)state;
+TEST(fifos_are_written_into) {
     char path[256];
     strcpy(path, temporary_path("fifo"));
     assert_int_equal(mkfifo(path, 0600), 0);
@@ -140,8 +124,7 @@ static void fifos_are_written_into(void **state) {
 }
 
 /* A link such as /dev/stdout, when it leads to a file, is written where the program's output has got to. */
-static void standard_output_is_written_into(void **state) {
-    (void)state;
+TEST(standard_output_is_written_into) {
     const char *path = temporary_path("output"), *link = temporary_path("stdout");
     assert_int_equal(symlink("/proc/self/fd/1", link), 0);
     fflush(stdout);
@@ -157,11 +140,10 @@ static void standard_output_is_written_into(void **state) {
     close(saved);
     assert_ok(done, error);
     assert_true(before && after);
-    expect_file(path, "before text after");
+    assert_file(path, "before text after");
 }
 
-static void failed_writes_leave_nothing(void **state) {
-    (void)state;
+TEST(failed_writes_leave_nothing) {
     const char *folder = fresh_folder("failed");
     expect_write_error(temporary_path("failed/missing/file"), strerror(ENOENT));
     expect_write_error("", "cannot write: ");
@@ -175,12 +157,11 @@ static void failed_writes_leave_nothing(void **state) {
     sprintf(joined, "%s%s", path, longest);
     expect_write_error(joined, strerror(ENAMETOOLONG));
     free(joined);
-    assert_int_equal(count_entries(folder), 0);
+    assert_int_equal(count_files(folder, ""), 0);
 }
 
 /* A file that may not grow stands for a full disk. */
-static void a_full_disk_keeps_the_old_file(void **state) {
-    (void)state;
+TEST(a_full_disk_keeps_the_old_file) {
     const char *folder = fresh_folder("quota"), *path = temporary_path("quota/file");
     write_file(path, "old");
     struct rlimit previous, small;
@@ -194,8 +175,8 @@ static void a_full_disk_keeps_the_old_file(void **state) {
     setrlimit(RLIMIT_FSIZE, &previous);
     assert_false(done);
     assert_error(error, ERROR_SYSTEM, strerror(EFBIG));
-    expect_file(path, "old");
-    assert_int_equal(count_entries(folder), 1);
+    assert_file(path, "old");
+    assert_int_equal(count_files(folder, ""), 1);
 }
 
 static void expect_read_error(const char *path, size_t limit, const char *reason) {
@@ -204,8 +185,7 @@ static void expect_read_error(const char *path, size_t limit, const char *reason
     assert_refused(file_read(path, limit, &size, &error), path, reason);
 }
 
-static void bad_inputs_are_refused(void **state) {
-    (void)state;
+TEST(bad_inputs_are_refused) {
     const char *path = temporary_path("limit"), *fifo = temporary_path("unread");
     write_file(path, "1234567890");
     expect_read_error(path, 9, "larger than 9 bytes");
@@ -218,8 +198,7 @@ static void bad_inputs_are_refused(void **state) {
     expect_read_error("/proc/self/maps", 100, "larger than 100 bytes");
 }
 
-static void directories_are_made_with_those_above(void **state) {
-    (void)state;
+TEST(directories_are_made_with_those_above) {
     Error error = {0};
     const char *path = temporary_path("a//b/c/"), *file = temporary_path("file");
     assert_ok(file_make_directory(path, &error), error);
@@ -233,33 +212,26 @@ static void directories_are_made_with_those_above(void **state) {
     assert_error(empty, ERROR_SYSTEM, strerror(ENOENT));
 }
 
-static void folders_end_with_their_slash(void **state) {
-    (void)state;
+TEST(folders_end_with_their_slash) {
     assert_int_equal(file_folder_length("scenes/single.yaml"), 7);
     assert_int_equal(file_folder_length("single.yaml"), 0);
     assert_int_equal(file_folder_length("/single.yaml"), 1);
     assert_int_equal(file_folder_length("a/b/"), 4);
 }
 
-static void many_files_wait_for_the_disk_once(void **state) {
-    (void)state;
+TEST(many_files_wait_for_the_disk_once) {
     Error error = {0};
-    size_t size;
     const char *path = temporary_path("soon");
     assert_ok(file_write_soon(path, "old and long", 12, &error), error);
     assert_ok(file_write_soon(path, "new", 3, &error), error);
     assert_ok(file_sync(path, &error), error);
     assert_ok(file_sync(temporary_folder, &error), error);
-    char *data = file_read(path, 100, &size, &error);
-    assert_ok(data != NULL, error);
-    assert_string_equal(data, "new");
-    free(data);
+    assert_file(path, "new");
     assert_false(file_write_soon(temporary_path("no/such/folder"), "new", 3, &error));
     assert_error(error, ERROR_SYSTEM, "no/such/folder");
 }
 
-static void paths_are_printed_whole_or_refused(void **state) {
-    (void)state;
+TEST(paths_are_printed_whole_or_refused) {
     Error error = {0};
     char path[8];
     assert_ok(file_path(path, sizeof path, &error, "%s/%s.x", "ab", "cd"), error);
@@ -268,22 +240,4 @@ static void paths_are_printed_whole_or_refused(void **state) {
                    "path: error: ab/cde.... is longer than 7 bytes");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(written_is_read),
-        cmocka_unit_test(new_files_follow_the_umask),
-        cmocka_unit_test(names_without_folder_are_in_this_one),
-        cmocka_unit_test(links_are_followed),
-        cmocka_unit_test(devices_are_written_into),
-        cmocka_unit_test(fifos_are_written_into),
-        cmocka_unit_test(standard_output_is_written_into),
-        cmocka_unit_test(failed_writes_leave_nothing),
-        cmocka_unit_test(a_full_disk_keeps_the_old_file),
-        cmocka_unit_test(bad_inputs_are_refused),
-        cmocka_unit_test(directories_are_made_with_those_above),
-        cmocka_unit_test(folders_end_with_their_slash),
-        cmocka_unit_test(many_files_wait_for_the_disk_once),
-        cmocka_unit_test(paths_are_printed_whole_or_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -2,39 +2,18 @@
 /* New files: whole, and never over one that exists. */
 #include "testing.h"
 
-#include "base/file.h"
+#include "files.h"
 
-#include <dirent.h>
-
-static int entries(void) {
-    DIR *folder = opendir(temporary_folder);
-    int count = 0;
-    while (readdir(folder) != NULL) count++;
-    closedir(folder);
-    return count - 2; /* without . and .. */
-}
-
-static void assert_content(const char *path, const char *expected) {
-    Error error = {0};
-    size_t size;
-    char *text = file_read(path, 100, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, expected);
-    free(text);
-}
-
-static void a_new_file_is_written(void **state) {
-    (void)state;
+TEST(a_new_file_is_written) {
     Error error = {0};
     const char *path = temporary_path("new");
     assert_ok(file_create(path, "text", 4, &error), error);
-    assert_content(path, "text");
-    assert_int_equal(entries(), 1);
+    assert_file(path, "text");
+    assert_int_equal(count_files(temporary_folder, ""), 1);
     assert_int_equal(remove(path), 0);
 }
 
-static void a_file_that_exists_is_kept(void **state) {
-    (void)state;
+TEST(a_file_that_exists_is_kept) {
     const char *path = write_bytes(temporary_path("old"), "mine", 4), *link = temporary_path("link");
     assert_int_equal(symlink("nothing", link), 0);
     const char *const taken[] = {path, link, temporary_path(".")};
@@ -42,20 +21,14 @@ static void a_file_that_exists_is_kept(void **state) {
         Error error = {0};
         assert_refused(file_create(taken[i], "text", 4, &error), "exists already, and is not overwritten");
     }
-    assert_content(path, "mine");
-    assert_int_equal(entries(), 2);
+    assert_file(path, "mine");
+    assert_int_equal(count_files(temporary_folder, ""), 2);
 }
 
-static void a_missing_folder_is_an_error(void **state) {
-    (void)state;
+TEST(a_missing_folder_is_an_error) {
     Error error = {0};
     assert_false(file_create(temporary_path("missing/new"), "text", 4, &error));
     assert_error(error, ERROR_SYSTEM, "missing/new: error: cannot write: No such file or directory");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_new_file_is_written),
-                                       cmocka_unit_test(a_file_that_exists_is_kept),
-                                       cmocka_unit_test(a_missing_folder_is_an_error)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -16,8 +16,7 @@ static void give(size_t size) {
     close(ends[0]);
 }
 
-static void all_of_it_is_read(void **state) {
-    (void)state;
+TEST(all_of_it_is_read) {
     const size_t sizes[] = {0, 1, 60000};
     for (int i = 0; i < 3; i++) {
         Error error = {0};
@@ -31,16 +30,14 @@ static void all_of_it_is_read(void **state) {
     }
 }
 
-static void more_than_the_limit_is_refused(void **state) {
-    (void)state;
+TEST(more_than_the_limit_is_refused) {
     Error error = {0};
     size_t size;
     give(101);
     assert_refused(file_read_input(100, &size, &error), "standard input: error: larger than 100 bytes");
 }
 
-static void what_cannot_be_read_is_an_error(void **state) {
-    (void)state;
+TEST(what_cannot_be_read_is_an_error) {
     Error error = {0};
     size_t size;
     close(STDIN_FILENO);
@@ -48,11 +45,4 @@ static void what_cannot_be_read_is_an_error(void **state) {
     assert_error(error, ERROR_SYSTEM, "standard input: error: cannot read: ");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_of_it_is_read),
-        cmocka_unit_test(more_than_the_limit_is_refused),
-        cmocka_unit_test(what_cannot_be_read_is_an_error),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

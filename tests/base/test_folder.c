@@ -63,18 +63,11 @@ static void refuse(const char *folder, bool recursive, ErrorKind kind, const cha
     assert_error(error, kind, text);
 }
 
-static void files_of_all_subfolders_are_listed(void **state) {
-    (void)state;
-    assert_lists(true, "a.x b/c.x b/d/e.x", 0);
-}
+TEST_WITH(files_of_all_subfolders_are_listed, make_tree, NULL) { assert_lists(true, "a.x b/c.x b/d/e.x", 0); }
 
-static void without_subfolders_their_files_are_counted(void **state) {
-    (void)state;
-    assert_lists(false, "a.x", 2);
-}
+TEST_WITH(without_subfolders_their_files_are_counted, make_tree, NULL) { assert_lists(false, "a.x", 2); }
 
-static void links_within_the_folder_add_no_folder_twice(void **state) {
-    (void)state;
+TEST_WITH(links_within_the_folder_add_no_folder_twice, make_tree, NULL) {
     make_link("a.x", "tree/link.x");
     make_link("b", "tree/same");
     make_link("..", "tree/b/up"); /* a walk that follows it does not end */
@@ -82,8 +75,7 @@ static void links_within_the_folder_add_no_folder_twice(void **state) {
     assert_lists(true, "a.x b/c.x b/d/e.x link.x", 0);
 }
 
-static void links_out_of_the_folder_are_refused(void **state) {
-    (void)state;
+TEST_WITH(links_out_of_the_folder_are_refused, make_tree, NULL) {
     make_link("../outside", "tree/far");
     refuse("tree", true, ERROR_INPUT, "tree/far: error: is a link to ");
     assert_lists(false, "a.x", 2); /* subfolders are left out anyway */
@@ -98,27 +90,23 @@ static void links_out_of_the_folder_are_refused(void **state) {
     refuse("tree", true, ERROR_INPUT, "such links are not followed");
 }
 
-static void links_to_hidden_places_are_refused(void **state) {
-    (void)state;
+TEST_WITH(links_to_hidden_places_are_refused, make_tree, NULL) {
     make_link(".b", "tree/seen");
     refuse("tree", true, ERROR_INPUT, "which is hidden");
 }
 
-static void links_to_nothing_are_refused(void **state) {
-    (void)state;
+TEST_WITH(links_to_nothing_are_refused, make_tree, NULL) {
     make_link("nothing", "tree/nothing.x");
     refuse("tree", true, ERROR_INPUT, "tree/nothing.x: error: cannot be read");
 }
 
-static void a_folder_that_does_not_exist_is_the_users_mistake(void **state) {
-    (void)state;
+TEST_WITH(a_folder_that_does_not_exist_is_the_users_mistake, make_tree, NULL) {
     refuse("nowhere", true, ERROR_INPUT, "nowhere/: error: cannot be read");
     refuse("tree/a.x", true, ERROR_INPUT, "tree/a.x/: error: cannot be read");
 }
 
 /* Each call fails in turn. When none fails any more, the list is whole. */
-static void no_failed_call_shortens_the_list(void **state) {
-    (void)state;
+TEST_WITH(no_failed_call_shortens_the_list, make_tree, NULL) {
     int *const countdowns[] = {&failing_opendir, &failing_readdir, &failing_stat};
     const int calls[] = {3, 16, 7}; /* at least: folders; their entries with . and .., and ends; entries not hidden */
     make_link("a.x", "tree/link.x");
@@ -139,16 +127,4 @@ static void no_failed_call_shortens_the_list(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(files_of_all_subfolders_are_listed, make_tree),
-        cmocka_unit_test_setup(without_subfolders_their_files_are_counted, make_tree),
-        cmocka_unit_test_setup(links_within_the_folder_add_no_folder_twice, make_tree),
-        cmocka_unit_test_setup(links_out_of_the_folder_are_refused, make_tree),
-        cmocka_unit_test_setup(links_to_hidden_places_are_refused, make_tree),
-        cmocka_unit_test_setup(links_to_nothing_are_refused, make_tree),
-        cmocka_unit_test_setup(a_folder_that_does_not_exist_is_the_users_mistake, make_tree),
-        cmocka_unit_test_setup(no_failed_call_shortens_the_list, make_tree),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

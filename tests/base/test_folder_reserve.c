@@ -49,8 +49,7 @@ static pid_t start_holder(bool leave) {
     return holder;
 }
 
-static void the_other_process_is_named(void **state) {
-    (void)state;
+TEST(the_other_process_is_named) {
     char name[64];
     Error error = {0};
     choose_folder("held/by/another");
@@ -67,8 +66,7 @@ static void the_other_process_is_named(void **state) {
     assert_ok(error.kind == ERROR_NONE, error);
 }
 
-static void children_of_an_ended_process_are_waited_for(void **state) {
-    (void)state;
+TEST(children_of_an_ended_process_are_waited_for) {
     Error error = {0};
     choose_folder("left");
     const pid_t holder = start_holder(true);
@@ -77,8 +75,7 @@ static void children_of_an_ended_process_are_waited_for(void **state) {
     assert_ok(error.kind == ERROR_NONE, error);
 }
 
-static void a_process_may_reserve_a_folder_again(void **state) {
-    (void)state;
+TEST(a_process_may_reserve_a_folder_again) {
     Error error = {0};
     for (int i = 0; i < 30; i++) {
         char name[32];
@@ -94,9 +91,4 @@ static void a_process_may_reserve_a_folder_again(void **state) {
     assert_error(error, ERROR_SYSTEM, "cannot make the directory");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_other_process_is_named),
-                                       cmocka_unit_test(children_of_an_ended_process_are_waited_for),
-                                       cmocka_unit_test(a_process_may_reserve_a_folder_again)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -2,16 +2,12 @@
 /* What the reader adds to jansson: places, limits, and walking containers without reading beyond the file. */
 #include "testing.h"
 
-#include "base/file.h"
 #include "base/json.h"
 
 enum { MAX_SIZE = 1 << 20 };
 
 static const char *store(const char *text, size_t size) {
-    Error error = {0};
-    const char *path = temporary_path("values.json");
-    assert_ok(file_write(path, text, size, &error), error);
-    return path;
+    return write_bytes(temporary_path("values.json"), text, size);
 }
 
 static JsonReader open_text(const char *text, size_t size) {
@@ -39,8 +35,7 @@ static void refuse(const char *text, size_t size, const char *why) {
     json_read_close(&reader);
 }
 
-static void values_are_read_one_by_one_with_their_places(void **state) {
-    (void)state;
+TEST(values_are_read_one_by_one_with_their_places) {
     static const char text[] = " [ -0.5E+1 ,\r\n\t\"\xc3\xa4\\u00e4\",  {\n \"a\": [1,\n2]} ,\n7] ";
     Error error = {0};
     bool more;
@@ -65,8 +60,7 @@ static void values_are_read_one_by_one_with_their_places(void **state) {
     json_read_close(&reader);
 }
 
-static void invalid_json_is_refused_with_its_place(void **state) {
-    (void)state;
+TEST(invalid_json_is_refused_with_its_place) {
     static const struct {
         const char *text, *why;
     } cases[] = {
@@ -91,8 +85,7 @@ static void invalid_json_is_refused_with_its_place(void **state) {
 }
 
 /* Terminal escape sequences in a file must not reach the terminal. */
-static void messages_contain_nothing_of_the_file(void **state) {
-    (void)state;
+TEST(messages_contain_nothing_of_the_file) {
     Error error = {0};
     JsonReader reader = open_text("[\x1b[31m]", 7);
     int count;
@@ -103,8 +96,7 @@ static void messages_contain_nothing_of_the_file(void **state) {
 }
 
 /* A truncated file is never read beyond its end or accepted. */
-static void every_truncated_file_is_refused(void **state) {
-    (void)state;
+TEST(every_truncated_file_is_refused) {
     static const char whole[] = "[{\"a\": [1, \"\\u00e4\xc3\xa4\", {\"b\": null}], \"c\": -1.5e3}, true, 12]";
     for (size_t size = 0; size < sizeof whole - 1; size++) refuse(whole, size, "values.json:1:");
 }
@@ -117,8 +109,7 @@ static size_t repeat(char *text, const char *first, const char *part, size_t cou
     return (size_t)(at - text) + (size_t)sprintf(at, "%s", last);
 }
 
-static void size_depth_and_memory_of_a_value_are_limited(void **state) {
-    (void)state;
+TEST(size_depth_and_memory_of_a_value_are_limited) {
     char *text = malloc(MAX_SIZE + 1);
     const size_t most = JSON_VALUE_SIZE;
     int count;
@@ -137,8 +128,7 @@ static void size_depth_and_memory_of_a_value_are_limited(void **state) {
     free(text);
 }
 
-static void the_memory_of_a_value_is_reused(void **state) {
-    (void)state;
+TEST(the_memory_of_a_value_is_reused) {
     char *text = malloc(MAX_SIZE + 1);
     const size_t items = 10000; /* 2 MB if all were kept */
     int count;
@@ -150,22 +140,10 @@ static void the_memory_of_a_value_is_reused(void **state) {
     free(text);
 }
 
-static void a_large_file_is_refused(void **state) {
-    (void)state;
+TEST(a_large_file_is_refused) {
     Error error = {0};
     JsonReader reader;
     assert_refused(json_read_open(&reader, store("[1, 2]", 6), 5, &error), "larger than 5 bytes");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_are_read_one_by_one_with_their_places),
-        cmocka_unit_test(invalid_json_is_refused_with_its_place),
-        cmocka_unit_test(messages_contain_nothing_of_the_file),
-        cmocka_unit_test(every_truncated_file_is_refused),
-        cmocka_unit_test(size_depth_and_memory_of_a_value_are_limited),
-        cmocka_unit_test(the_memory_of_a_value_is_reused),
-        cmocka_unit_test(a_large_file_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -37,8 +37,7 @@ static void write_all_kinds(FILE *out, const void *context) {
     json_end(&writer);
 }
 
-static void what_is_written_has_this_form(void **state) {
-    (void)state;
+TEST(what_is_written_has_this_form) {
     Error error = {0};
     size_t size;
     const char *path = temporary_path("kinds.json");
@@ -58,9 +57,4 @@ static void what_is_written_has_this_form(void **state) {
     free(text);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_written_has_this_form),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

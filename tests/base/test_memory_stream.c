@@ -17,8 +17,7 @@ static void write_lines(FILE *file, int first, int last) {
     for (int i = first; i < last; i++) fprintf(file, "line %d\n", i);
 }
 
-static void holds_what_is_written(void **state) {
-    (void)state;
+TEST(holds_what_is_written) {
     char *text, line[32];
     size_t size, at = 0;
     FILE *file = memory_stream(&text, &size);
@@ -38,8 +37,7 @@ static void holds_what_is_written(void **state) {
     free(text);
 }
 
-static void is_empty_at_first(void **state) {
-    (void)state;
+TEST(is_empty_at_first) {
     char *text;
     size_t size;
     FILE *file = memory_stream(&text, &size);
@@ -51,8 +49,7 @@ static void is_empty_at_first(void **state) {
 }
 
 /* Also where memory is there again later, and for whatever function wrote: none of them is checked for its result. */
-static void tells_that_memory_ran_out(void **state) {
-    (void)state;
+TEST(tells_that_memory_ran_out) {
     char *text;
     size_t size;
     FILE *file = memory_stream(&text, &size);
@@ -69,8 +66,4 @@ static void tells_that_memory_ran_out(void **state) {
     free(text);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(holds_what_is_written), cmocka_unit_test(is_empty_at_first),
-                                       cmocka_unit_test(tells_that_memory_ran_out)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -4,8 +4,7 @@
 
 #include "methods/methods.h"
 
-static void a_name_has_no_folders(void **state) {
-    (void)state;
+TEST(a_name_has_no_folders) {
     static const struct {
         const char *text, *name;
     } cases[] = {{"engine", "engine"},
@@ -34,8 +33,7 @@ static void expect_colours(const MethodDescription *const *methods, int count, c
     for (int i = 0; i < count; i++) assert_int_equal(found[i], expected[i]);
 }
 
-static void a_method_has_its_colour_in_any_order(void **state) {
-    (void)state;
+TEST(a_method_has_its_colour_in_any_order) {
     expect_colours((const MethodDescription *[]){&green, &blue}, 2, (MethodColour[]){METHOD_GREEN, METHOD_BLUE});
     expect_colours((const MethodDescription *[]){&blue, &green}, 2, (MethodColour[]){METHOD_BLUE, METHOD_GREEN});
     /* also behind a method that has none */
@@ -43,8 +41,7 @@ static void a_method_has_its_colour_in_any_order(void **state) {
                    (MethodColour[]){METHOD_ORANGE, METHOD_GREEN, METHOD_BLUE});
 }
 
-static void two_runs_of_a_method_have_different_colours(void **state) {
-    (void)state;
+TEST(two_runs_of_a_method_have_different_colours) {
     expect_colours((const MethodDescription *[]){&green, &green, &green}, 3,
                    (MethodColour[]){METHOD_GREEN, METHOD_BLUE, METHOD_ORANGE});
     const MethodDescription *many[METHOD_COLOURS - 1];
@@ -55,9 +52,4 @@ static void two_runs_of_a_method_have_different_colours(void **state) {
         for (int k = 0; k < i; k++) assert_int_not_equal(found[i], found[k]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_name_has_no_folders),
-                                       cmocka_unit_test(a_method_has_its_colour_in_any_order),
-                                       cmocka_unit_test(two_runs_of_a_method_have_different_colours)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

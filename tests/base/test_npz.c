@@ -3,7 +3,7 @@
    (test_npz_hostile.c: files made for harm). test_numpy.c compares with NumPy. */
 #include "testing.h"
 
-#include "base/file.h"
+#include "files.h"
 #include "base/npz.h"
 
 #include <time.h>
@@ -55,8 +55,7 @@ static int read_and_compare(const char *path) {
     return done;
 }
 
-static void written_is_read(void **state) {
-    (void)state;
+TEST(written_is_read) {
     const char *path = temporary_path("written.npz");
     write_arrays(path);
     assert_int_equal(read_and_compare(path), 1);
@@ -71,26 +70,18 @@ static void written_is_read(void **state) {
     npz_close(file);
 }
 
-static char *file_bytes(const char *path, size_t *size) {
-    Error error = {0};
-    char *data = file_read(path, 1 << 20, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
-}
-
 /* Whatever the time zone: a zip holds local time. */
-static void same_arrays_same_bytes(void **state) {
-    (void)state;
+TEST(same_arrays_same_bytes) {
     static const char *const zones[] = {"UTC0", "XXX-14", "XXX+12", "EST5EDT,M3.2.0,M11.1.0", "XXX3:30YYY,J1/0,J2/0"};
     const char *first = temporary_path("first.npz"), *second = temporary_path("second.npz");
     write_arrays(first);
     size_t size, other_size;
-    char *data = file_bytes(first, &size);
+    char *data = read_whole(first, &size);
     for (size_t i = 0; i < sizeof zones / sizeof zones[0]; i++) {
         setenv("TZ", zones[i], 1);
         tzset();
         write_arrays(second);
-        char *other = file_bytes(second, &other_size);
+        char *other = read_whole(second, &other_size);
         if (other_size != size || memcmp(data, other, size) != 0) fail_msg("other bytes in zone %s", zones[i]);
         free(other);
     }
@@ -99,8 +90,7 @@ static void same_arrays_same_bytes(void **state) {
     free(data);
 }
 
-static void mismatches_name_found_and_wanted(void **state) {
-    (void)state;
+TEST(mismatches_name_found_and_wanted) {
     const char *path = temporary_path("mismatch.npz");
     write_arrays(path);
     NpzFile *file = open_file(path);
@@ -122,8 +112,7 @@ static void mismatches_name_found_and_wanted(void **state) {
     npz_close(file);
 }
 
-static void bad_texts_are_not_written(void **state) {
-    (void)state;
+TEST(bad_texts_are_not_written) {
     static const char *const texts[] = {
         "\xff", "\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
@@ -135,12 +124,11 @@ static void bad_texts_are_not_written(void **state) {
     }
 }
 
-static void truncated_files_are_refused(void **state) {
-    (void)state;
+TEST(truncated_files_are_refused) {
     const char *path = temporary_path("truncated.npz");
     write_arrays(path);
     size_t size;
-    char *data = file_bytes(path, &size);
+    char *data = read_whole(path, &size);
     for (size_t length = 0; length < size; length++) {
         write_bytes(path, data, length);
         if (read_and_compare(path) != 0) fail_msg("cut off at %zu, and read", length);
@@ -151,12 +139,11 @@ static void truncated_files_are_refused(void **state) {
 static uint32_t random_next(uint32_t *seed) { return *seed = *seed * 1664525 + 1013904223; }
 
 /* Whatever is changed, what is read is what was written. */
-static void flipped_bytes_are_refused_or_harmless(void **state) {
-    (void)state;
+TEST(flipped_bytes_are_refused_or_harmless) {
     const char *path = temporary_path("flipped.npz");
     write_arrays(path);
     size_t size;
-    char *data = file_bytes(path, &size), *damaged = malloc(size);
+    char *data = read_whole(path, &size), *damaged = malloc(size);
     uint32_t seed = 1;
     int refused = 0;
     for (int round = 0; round < 4000; round++) {
@@ -171,8 +158,7 @@ static void flipped_bytes_are_refused_or_harmless(void **state) {
     free(data);
 }
 
-static void failed_writes_tell(void **state) {
-    (void)state;
+TEST(failed_writes_tell) {
     Error error = {0};
     assert_false(npz_write(temporary_path("nowhere/x.npz"), arrays, ARRAYS, &error));
     assert_error(error, ERROR_SYSTEM, "nowhere/x.npz: error: cannot write: ");
@@ -191,8 +177,7 @@ static bool is_table(const char *kind, int32_t version, Error *error) {
     return is;
 }
 
-static void kind_and_version_are_checked(void **state) {
-    (void)state;
+TEST(kind_and_version_are_checked) {
     Error error;
     assert_true(is_table("table", 3, &error));
     assert_refused(is_table("chair", 3, &error), "kind.npz: error: not a file of kind 'table'");
@@ -201,8 +186,7 @@ static void kind_and_version_are_checked(void **state) {
     assert_refused(is_table("table", 4, &error), "kind.npz: error: table of version 4; expected version 3");
 }
 
-static void scalars_and_names_are_read(void **state) {
-    (void)state;
+TEST(scalars_and_names_are_read) {
     const NpzArray fields[] = {{"hash", NPZ_UINT64, 0, {0}, &hash},
                                {"good", NPZ_TEXT, 0, {0}, "z\xc3\xa4h"},
                                {"bad", NPZ_TEXT, 0, {0}, "z\33[2J"},
@@ -224,17 +208,4 @@ static void scalars_and_names_are_read(void **state) {
     npz_close(file);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(written_is_read),
-        cmocka_unit_test(same_arrays_same_bytes),
-        cmocka_unit_test(mismatches_name_found_and_wanted),
-        cmocka_unit_test(bad_texts_are_not_written),
-        cmocka_unit_test(truncated_files_are_refused),
-        cmocka_unit_test(flipped_bytes_are_refused_or_harmless),
-        cmocka_unit_test(failed_writes_tell),
-        cmocka_unit_test(kind_and_version_are_checked),
-        cmocka_unit_test(scalars_and_names_are_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -55,8 +55,7 @@ static void expect_in(NpzFile *file, const char *name, NpzType type, const void 
     free(data);
 }
 
-static void numbers_of_any_type_become_the_type_that_is_read(void **state) {
-    (void)state;
+TEST(numbers_of_any_type_become_the_type_that_is_read) {
     const float f4[] = {0, 1, 100};
     const double f8[] = {0, 1, 100};
     const int32_t i4[] = {0, 1, 100};
@@ -83,8 +82,7 @@ static void numbers_of_any_type_become_the_type_that_is_read(void **state) {
 }
 
 /* Each number keeps what its new type can hold. */
-static void numbers_are_rounded_once(void **state) {
-    (void)state;
+TEST(numbers_are_rounded_once) {
     const int64_t two[] = {2};
     expect("np.array([0.1, -1/60])", NPZ_FLOAT32, 1, two, (const float[]){0.1F, (float)(-1.0 / 60)}, 8);
     expect("np.array([np.nan, -np.inf])", NPZ_FLOAT64, 1, two, (const double[]){(double)NAN, (double)-INFINITY}, 16);
@@ -96,8 +94,7 @@ static void numbers_are_rounded_once(void **state) {
     expect("np.array([16777217, 16777219])", NPZ_FLOAT32, 1, two, (const float[]){16777216, 16777220}, 8);
 }
 
-static void fortran_order_is_turned(void **state) {
-    (void)state;
+TEST(fortran_order_is_turned) {
     const int64_t three_by_two[] = {3, 2}, cube[] = {2, 3, 2};
     const float rows[] = {0, 1, 2, 3, 4, 5}, cells[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
     expect("np.asfortranarray(np.arange(6.).reshape(3, 2))", NPZ_FLOAT32, 2, three_by_two, rows, sizeof rows);
@@ -106,14 +103,12 @@ static void fortran_order_is_turned(void **state) {
     expect("np.asfortranarray(np.zeros((0, 2)))", NPZ_FLOAT32, 2, (const int64_t[]){0, 2}, "", 0);
 }
 
-static void one_number_is_a_scalar(void **state) {
-    (void)state;
+TEST(one_number_is_a_scalar) {
     expect("[1/60]", NPZ_FLOAT32, 0, NULL, (const float[]){1.0F / 60}, 4);
     expect("np.float64(2.5)", NPZ_FLOAT32, 0, NULL, (const float[]){2.5F}, 4);
 }
 
-static void texts_of_either_order_are_read(void **state) {
-    (void)state;
+TEST(texts_of_either_order_are_read) {
     Error error = {0};
     char text[16];
     NpzFile *file = make("np.array('z\\u00e4h', '>U8')");
@@ -134,8 +129,7 @@ static void expect_refused(const char *expression, bool converts, NpzType type, 
     npz_close(file);
 }
 
-static void what_does_not_fit_is_refused(void **state) {
-    (void)state;
+TEST(what_does_not_fit_is_refused) {
     const int64_t one[] = {1}, grid[] = {2, 2};
     expect_refused("[[0, 0], [1e39, 0]]", true, NPZ_FLOAT32, 2, grid,
                    "array 'array': item [1, 0] is 9.9999999999999994e+38, which does not fit into float32");
@@ -153,8 +147,7 @@ static void what_does_not_fit_is_refused(void **state) {
 }
 
 /* Files of twinbox itself have exact types. */
-static void nothing_is_converted_unless_it_is_wanted(void **state) {
-    (void)state;
+TEST(nothing_is_converted_unless_it_is_wanted) {
     const int64_t grid[] = {2, 2};
     expect_refused("np.zeros((2, 2))", false, NPZ_FLOAT32, 2, grid,
                    "is float64 of 2 dimensions; expected float32 of 2");
@@ -166,15 +159,4 @@ static void nothing_is_converted_unless_it_is_wanted(void **state) {
                    "is float32 of 1 dimensions; expected float32 of 0");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_of_any_type_become_the_type_that_is_read),
-        cmocka_unit_test(numbers_are_rounded_once),
-        cmocka_unit_test(fortran_order_is_turned),
-        cmocka_unit_test(one_number_is_a_scalar),
-        cmocka_unit_test(texts_of_either_order_are_read),
-        cmocka_unit_test(what_does_not_fit_is_refused),
-        cmocka_unit_test(nothing_is_converted_unless_it_is_wanted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -2,7 +2,7 @@
 /* Files that are no .npz, or one made for harm: refused with the reason, before they cost time or memory. */
 #include "testing.h"
 
-#include "base/file.h"
+#include "files.h"
 #include "base/npz.h"
 
 #include <zip.h>
@@ -12,13 +12,6 @@ static NpzFile *open_file(const char *path) {
     NpzFile *file = npz_open(path, &error);
     assert_ok(file != NULL, error);
     return file;
-}
-
-static char *file_bytes(const char *path, size_t *size) {
-    Error error = {0};
-    char *data = file_read(path, 1 << 20, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
 }
 
 /* A zip of one member with these bytes. */
@@ -55,8 +48,7 @@ static void expect_head_refused(const char *dictionary, size_t data_size, const 
 
 #define HEAD(type, order, shape) "{'descr': '" type "', 'fortran_order': " order ", 'shape': " shape ", }\n"
 
-static void heads_are_read_strictly(void **state) {
-    (void)state;
+TEST(heads_are_read_strictly) {
     expect_head_refused(HEAD("<f4", "False", "(3, 2)"), 24, NULL);
     expect_head_refused(HEAD("<f4", "False", "(3,)"), 12, NULL);
     expect_head_refused(HEAD("<f4", "False", "()"), 4, NULL);
@@ -83,8 +75,7 @@ static void heads_are_read_strictly(void **state) {
     expect_head_refused(HEAD("<f4", "Maybe", "(3, 2)"), 24, "damaged head");
 }
 
-static void sizes_must_agree_before_anything_is_inflated(void **state) {
-    (void)state;
+TEST(sizes_must_agree_before_anything_is_inflated) {
     expect_head_refused(HEAD("<f4", "False", "(3, 2)"), 23, "array 'array' is damaged: ");
     expect_head_refused(HEAD("<f4", "False", "(3, 2)"), 25, "array 'array' is damaged: ");
     expect_head_refused(HEAD("<f4", "False", "(4294967296, 4294967296)"), 0, "larger than 2 GiB");
@@ -93,8 +84,7 @@ static void sizes_must_agree_before_anything_is_inflated(void **state) {
     expect_head_refused(HEAD("<f4", "False", "(0, 7)"), 0, NULL);
 }
 
-static void other_files_are_refused(void **state) {
-    (void)state;
+TEST(other_files_are_refused) {
     const char *path = temporary_path("other.npz");
     expect_refused(temporary_path("missing.npz"), "cannot open: ");
     expect_refused("/dev/zero", "not a regular file");
@@ -116,16 +106,14 @@ static void other_files_are_refused(void **state) {
     expect_refused(path, "cut off or longer");
 }
 
-static void other_compressions_are_refused(void **state) {
-    (void)state;
+TEST(other_compressions_are_refused) {
     const char *path = temporary_path("bzip2.npz");
     char zeros[10000] = {0};
     write_member(path, "a.npy", zeros, sizeof zeros, ZIP_CM_BZIP2);
     expect_refused(path, "array 'a' is neither stored nor deflated");
 }
 
-static void encrypted_arrays_are_refused(void **state) {
-    (void)state;
+TEST(encrypted_arrays_are_refused) {
     const char *path = temporary_path("encrypted.npz");
     remove(path);
     zip_t *archive = zip_open(path, ZIP_CREATE, NULL);
@@ -143,15 +131,14 @@ static char *find_header(char *data, size_t size, const char *signature) {
     return NULL;
 }
 
-static void a_name_twice_is_refused(void **state) {
-    (void)state;
+TEST(a_name_twice_is_refused) {
     const char *path = temporary_path("twice.npz");
     float value = 1;
     NpzArray twins[] = {{"twin1", NPZ_FLOAT32, 0, {0}, &value}, {"twin2", NPZ_FLOAT32, 0, {0}, &value}};
     Error error = {0};
     assert_ok(npz_write(path, twins, 2, &error), error);
     size_t size;
-    char *data = file_bytes(path, &size);
+    char *data = read_whole(path, &size);
     find_header(data, size, "PK\1\2")[46 + 4] = '1';
     find_header(data, size, "PK\3\4")[30 + 4] = '1';
     write_bytes(path, data, size);
@@ -159,8 +146,7 @@ static void a_name_twice_is_refused(void **state) {
     expect_refused(path, "holds array 'twin1' twice");
 }
 
-static void too_many_arrays_are_refused(void **state) {
-    (void)state;
+TEST(too_many_arrays_are_refused) {
     static char names[257][16];
     static NpzArray many[257];
     uint8_t value = 1;
@@ -181,14 +167,13 @@ static void set_little_endian(char *at, uint32_t value) {
 }
 
 /* A member that claims a gigabyte and takes a few hundred bytes: more than deflate can do. */
-static void small_files_cannot_hold_much(void **state) {
-    (void)state;
+TEST(small_files_cannot_hold_much) {
     const char *path = temporary_path("claim.npz");
     NpzArray array = {"empty", NPZ_FLOAT32, 1, {0}, NULL};
     Error error = {0};
     assert_ok(npz_write(path, &array, 1, &error), error);
     size_t size;
-    char *data = file_bytes(path, &size);
+    char *data = read_whole(path, &size);
     set_little_endian(find_header(data, size, "PK\1\2") + 24, 1U << 30);
     write_bytes(path, data, size);
     free(data);
@@ -207,8 +192,7 @@ static void write_zeros(const char *path, const char *type, size_t size) {
 }
 
 /* 16 MiB and 256 times the file. Zeros deflate to 1/1000, by npz_write() to 1/218. */
-static void more_than_the_budget_is_refused(void **state) {
-    (void)state;
+TEST(more_than_the_budget_is_refused) {
     const char *path = temporary_path("bomb.npz");
     write_zeros(path, "|u1", 16 << 20);
     npz_close(open_file(path));
@@ -217,8 +201,7 @@ static void more_than_the_budget_is_refused(void **state) {
     expect_refused(path, "(16 MiB and 256 times the size of the file)");
 }
 
-static void what_is_written_is_within_the_budget(void **state) {
-    (void)state;
+TEST(what_is_written_is_within_the_budget) {
     enum { SIZE = 64 << 20 };
     const char *path = temporary_path("zeros.npz");
     NpzArray array = {"zeros", NPZ_UINT8, 1, {SIZE}, calloc(SIZE, 1)};
@@ -229,8 +212,7 @@ static void what_is_written_is_within_the_budget(void **state) {
 }
 
 /* An array that is read again and again: 15 MiB, three times of which would exceed 16 MiB and 256 times 15 KB. */
-static void all_that_is_read_is_limited(void **state) {
-    (void)state;
+TEST(all_that_is_read_is_limited) {
     enum { SIZE = 15 << 20 };
     const char *path = temporary_path("again.npz");
     const int64_t shape = SIZE;
@@ -245,8 +227,7 @@ static void all_that_is_read_is_limited(void **state) {
 }
 
 /* 15 MiB of bytes are 120 MiB as integers of 8 bytes. */
-static void converted_arrays_count_as_what_they_become(void **state) {
-    (void)state;
+TEST(converted_arrays_count_as_what_they_become) {
     enum { SIZE = 15 << 20 };
     const char *path = temporary_path("converted.npz");
     const int64_t shape = SIZE;
@@ -259,8 +240,7 @@ static void converted_arrays_count_as_what_they_become(void **state) {
     assert_error(error, ERROR_INPUT, "bytes together");
 }
 
-static void shapes_are_expected_without_data(void **state) {
-    (void)state;
+TEST(shapes_are_expected_without_data) {
     const char *path = temporary_path("shapes.npz");
     const float numbers[6] = {0};
     const NpzArray written[] = {{"a", NPZ_FLOAT32, 2, {3, 2}, numbers}, {"b", NPZ_FLOAT32, 0, {0}, numbers}};
@@ -278,8 +258,7 @@ static void shapes_are_expected_without_data(void **state) {
 }
 
 /* Directories of millions of entries, or thousands of directories, never reach libzip. */
-static void large_directories_are_refused(void **state) {
-    (void)state;
+TEST(large_directories_are_refused) {
     const char *path = temporary_path("directory.npz");
     enum { SIZE = 1 << 20 };
     char *data = calloc(SIZE, 1);
@@ -302,8 +281,7 @@ static void large_directories_are_refused(void **state) {
 }
 
 /* A file of holes of more than 2 GiB. */
-static void large_files_are_refused(void **state) {
-    (void)state;
+TEST(large_files_are_refused) {
     const char *path = temporary_path("large.npz");
     write_bytes(path, "", 0);
     assert_int_equal(truncate(path, ((off_t)1 << 31) + 1), 0);
@@ -311,23 +289,4 @@ static void large_files_are_refused(void **state) {
     remove(path);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heads_are_read_strictly),
-        cmocka_unit_test(sizes_must_agree_before_anything_is_inflated),
-        cmocka_unit_test(other_files_are_refused),
-        cmocka_unit_test(other_compressions_are_refused),
-        cmocka_unit_test(encrypted_arrays_are_refused),
-        cmocka_unit_test(a_name_twice_is_refused),
-        cmocka_unit_test(too_many_arrays_are_refused),
-        cmocka_unit_test(small_files_cannot_hold_much),
-        cmocka_unit_test(more_than_the_budget_is_refused),
-        cmocka_unit_test(what_is_written_is_within_the_budget),
-        cmocka_unit_test(all_that_is_read_is_limited),
-        cmocka_unit_test(converted_arrays_count_as_what_they_become),
-        cmocka_unit_test(shapes_are_expected_without_data),
-        cmocka_unit_test(large_directories_are_refused),
-        cmocka_unit_test(large_files_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -43,8 +43,7 @@ static int allow_all(void **state) {
 }
 
 /* libzip needs a descriptor of its own. */
-static void a_lack_of_descriptors_is_no_damage(void **state) {
-    (void)state;
+TEST_WITH(a_lack_of_descriptors_is_no_damage, NULL, allow_all) {
     for (unsigned more = 0; more < 2; more++) {
         Error error = {0};
         allow_files(more);
@@ -55,8 +54,7 @@ static void a_lack_of_descriptors_is_no_damage(void **state) {
 }
 
 /* Nor does it make a file one of another kind, which an output does not replace. */
-static void a_lack_of_descriptors_is_no_other_kind(void **state) {
-    (void)state;
+TEST_WITH(a_lack_of_descriptors_is_no_other_kind, NULL, allow_all) {
     Error error = {0};
     allow_files(1);
     assert_false(output_check_npz(path, NULL, &error));
@@ -82,23 +80,13 @@ static bool read_all(Error *error) {
 }
 
 /* libzip reports it as damage, as no archive, or as no error. */
-static void a_lack_of_memory_is_no_damage(void **state) {
-    (void)state;
-    assert_memory_is_named(read_all);
-}
+TEST(a_lack_of_memory_is_no_damage) { assert_memory_is_named(read_all); }
 
 /* The file is that of the last write that was done. */
-static void writing_names_the_lack_of_memory(void **state) {
-    (void)state;
+TEST(writing_names_the_lack_of_memory) {
     Error error = {0};
     assert_memory_is_named(write_all);
     assert_ok(read_all(&error), error);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_lack_of_memory_is_no_damage),
-                                       cmocka_unit_test(writing_names_the_lack_of_memory),
-                                       cmocka_unit_test_teardown(a_lack_of_descriptors_is_no_damage, allow_all),
-                                       cmocka_unit_test_teardown(a_lack_of_descriptors_is_no_other_kind, allow_all)};
-    return cmocka_run_group_tests(tests, begin, NULL);
-}
+RUN_TESTS(begin, NULL)

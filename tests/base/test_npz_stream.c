@@ -5,9 +5,8 @@
 
 #include "base/file.h"
 #include "base/npz.h"
-#include "pictures/folders.h"
+#include "files.h"
 
-#include <dirent.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -54,8 +53,7 @@ static void append_in_pieces(NpzStream *stream, int array, const void *data, siz
     }
 }
 
-static void rows_give_the_bytes_of_the_whole(void **state) {
-    (void)state;
+TEST(rows_give_the_bytes_of_the_whole) {
     const NpzArray whole[] = {
         {"noise", NPZ_FLOAT32, 2, {ROWS, 2}, noise},    {"zeros", NPZ_INT32, 2, {ROWS, 2}, zeros},
         {"small", NPZ_FLOAT32, 1, {SMALL}, noise},      {"none", NPZ_INT64, 1, {0}, noise},
@@ -95,8 +93,7 @@ static void rows_give_the_bytes_of_the_whole(void **state) {
     npz_close(file);
 }
 
-static void blocks_are_deflated_where_that_pays(void **state) {
-    (void)state;
+TEST(blocks_are_deflated_where_that_pays) {
     const char *path = temporary_path("blocks.npz");
     const size_t half = ROWS * sizeof *noise;
     const NpzArray arrays[] = {{"both", NPZ_FLOAT32, 1, {2 * ROWS}, noise},
@@ -108,19 +105,7 @@ static void blocks_are_deflated_where_that_pays(void **state) {
     assert_in_range(file_size(path), 1, half / 50);
 }
 
-/* Hidden ones, too. */
-static int count_entries(const char *folder) {
-    int count = 0;
-    DIR *directory = opendir(folder);
-    assert_non_null(directory);
-    for (struct dirent *entry = readdir(directory); entry != NULL; entry = readdir(directory))
-        count += entry->d_name[0] != '.' || strlen(entry->d_name) > 2;
-    closedir(directory);
-    return count;
-}
-
-static void an_unfinished_stream_leaves_nothing(void **state) {
-    (void)state;
+TEST(an_unfinished_stream_leaves_nothing) {
     char folder[256];
     snprintf(folder, sizeof folder, "%s", temporary_path("unfinished"));
     assert_int_equal(mkdir(folder, 0777), 0);
@@ -131,16 +116,15 @@ static void an_unfinished_stream_leaves_nothing(void **state) {
     assert_ok(stream != NULL, error);
     const int array = npz_stream_add(stream, &(NpzArray){"noise", NPZ_UINT32, 1, {0}, NULL}, &error);
     assert_ok(npz_stream_append(stream, array, noise, 2 * ROWS, &error), error);
-    assert_int_equal(count_entries(folder), 0); /* so a program that is killed leaves nothing either */
+    assert_int_equal(count_files(folder, ""), 0); /* so a program that is killed leaves nothing either */
     npz_stream_destroy(stream);
-    assert_int_equal(count_entries(folder), 0);
+    assert_int_equal(count_files(folder, ""), 0);
     assert_null(npz_stream_create(temporary_path("nowhere/run.npz"), 1, &error));
     assert_error(error, ERROR_SYSTEM, "nowhere/run.npz: error: cannot write: ");
 }
 
 /* A full disk, as the limit of a file's size shows it. */
-static void a_full_disk_is_told(void **state) {
-    (void)state;
+TEST(a_full_disk_is_told) {
     struct rlimit limit;
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
@@ -156,12 +140,4 @@ static void a_full_disk_is_told(void **state) {
     assert_int_not_equal(access(path, F_OK), 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_give_the_bytes_of_the_whole),
-        cmocka_unit_test(blocks_are_deflated_where_that_pays),
-        cmocka_unit_test(an_unfinished_stream_leaves_nothing),
-        cmocka_unit_test(a_full_disk_is_told),
-    };
-    return cmocka_run_group_tests(tests, make_numbers, free_numbers);
-}
+RUN_TESTS(make_numbers, free_numbers)

@@ -15,8 +15,7 @@ static const uint64_t hash = 0xfedcba9876543210U;
 static const uint8_t bytes[1][1][5][1] = {{{{0}, {1}, {255}, {7}, {8}}}};
 static const char text[] = "z\xc3\xa4h \xe2\x82\xac \xf0\x9f\xa7\xb1";
 
-static void numpy_reads_what_is_written(void **state) {
-    (void)state;
+TEST(numpy_reads_what_is_written) {
     const NpzArray arrays[] = {
         {"matrix", NPZ_FLOAT32, 2, {3, 2}, matrix},
         {"reals", NPZ_FLOAT64, 1, {2}, reals},
@@ -99,8 +98,7 @@ static void expect_arrays(const char *path) {
     "  bytes=np.array([0, 1, 255, 7, 8], 'u1').reshape(1, 1, 5, 1), empty=np.zeros((0, 2), '<f4'),\n"    \
     "  text='z\\u00e4h \\u20ac \\U0001f9f1', nothing='')\n"
 
-static void what_numpy_writes_is_read(void **state) {
-    (void)state;
+TEST(what_numpy_writes_is_read) {
     const char *path = temporary_path("numpy.npz");
     run_python(MAKE "np.savez(sys.argv[1], **arrays)\n", path);
     expect_arrays(path);
@@ -124,8 +122,7 @@ static void expect_refused(const char *expression, const char *reason) {
     assert_refused(npz_open(path, &error), reason, "'array' is ");
 }
 
-static void other_arrays_of_numpy_are_refused(void **state) {
-    (void)state;
+TEST(other_arrays_of_numpy_are_refused) {
     expect_refused("np.zeros(3, complex)", "of the unsupported type '<c16'");
     expect_refused("np.array([None, {}])", "of the unsupported type '|O'");
     expect_refused("np.array(['a', 'b'])", "an array of texts");
@@ -133,11 +130,4 @@ static void other_arrays_of_numpy_are_refused(void **state) {
     expect_refused("np.zeros((1, 1, 1, 1, 1))", "of more than 4 dimensions");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numpy_reads_what_is_written),
-        cmocka_unit_test(what_numpy_writes_is_read),
-        cmocka_unit_test(other_arrays_of_numpy_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

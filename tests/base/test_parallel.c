@@ -19,16 +19,14 @@ static bool fail_at_500(void *context, int i, Error *error) {
     return i != 500 || error_input(error, "piece", "number %d", i);
 }
 
-static void every_piece_is_done_once(void **state) {
-    (void)state;
+TEST(every_piece_is_done_once) {
     int done[PIECES] = {0};
     Error error = {0};
     assert_ok(parallel_for(&(ParallelWork){add_one, done}, PIECES, "test", NULL, &error), error);
     for (int i = 0; i < PIECES; i++) assert_int_equal(done[i], 1);
 }
 
-static void an_error_stops_the_rest(void **state) {
-    (void)state;
+TEST(an_error_stops_the_rest) {
     int done[PIECES] = {0};
     Error error = {0};
     assert_refused(parallel_for(&(ParallelWork){fail_at_500, done}, PIECES, "test", NULL, &error),
@@ -41,8 +39,7 @@ static bool stop_at_ten(void *context, double done, double total) {
     return done < *(const double *)context;
 }
 
-static void progress_can_stop_it(void **state) {
-    (void)state;
+TEST(progress_can_stop_it) {
     int done[PIECES] = {0}, count = 0;
     double limit = 10;
     Error error = {0};
@@ -69,8 +66,7 @@ static bool count_call(void *context, double done, double total) {
     return true;
 }
 
-static void progress_is_reported_by_one_thread_at_a_time(void **state) {
-    (void)state;
+TEST(progress_is_reported_by_one_thread_at_a_time) {
     atomic_int begun = 0;
     int calls = 0;
     Error error = {0};
@@ -79,9 +75,4 @@ static void progress_is_reported_by_one_thread_at_a_time(void **state) {
     assert_int_equal(calls, PIECES);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_piece_is_done_once), cmocka_unit_test(an_error_stops_the_rest),
-        cmocka_unit_test(progress_can_stop_it), cmocka_unit_test(progress_is_reported_by_one_thread_at_a_time)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -13,8 +13,7 @@ static float parsed(const char *text) {
     return value;
 }
 
-static void decimals_round_to_the_nearest_float(void **state) {
-    (void)state;
+TEST(decimals_round_to_the_nearest_float) {
     static const char *const texts[] = {"0",   "1",    "-1",    "+2.5",         ".5",    "5.",
                                         "1e3", "1E-3", "-0.05", "3.4028235e38", "1e-45", "0.1"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) assert_true(parsed(texts[i]) == strtof(texts[i], NULL));
@@ -23,21 +22,18 @@ static void decimals_round_to_the_nearest_float(void **state) {
 }
 
 /* Just above the middle between 1 and its successor 1 + 2^-23, by less than a double can tell. */
-static void decimals_round_once(void **state) {
-    (void)state;
+TEST(decimals_round_once) {
     const char *text = "1.000000059604644775390625000000000001";
     assert_true((float)strtod(text, NULL) == 1);
     assert_true(parsed(text) == nextafterf(1, 2));
 }
 
-static void fractions_divide_in_float(void **state) {
-    (void)state;
+TEST(fractions_divide_in_float) {
     assert_true(parsed("1/60") == 1.0F / 60.0F);
     assert_true(parsed("-1/0.3") == -1.0F / 0.3F);
 }
 
-static void what_is_no_decimal_is_refused(void **state) {
-    (void)state;
+TEST(what_is_no_decimal_is_refused) {
     static const char *const texts[] = {
         "",      " 1",   "1 ",   "\t1", "1x",    "0x10", "inf",        "-inf",      "nan",     "infinity",
         ".",     "+",    "-",    "e5",  "1e",    "1e+",  "1,5",        "--1",       "1e39",    "-1e39",
@@ -51,8 +47,7 @@ static void what_is_no_decimal_is_refused(void **state) {
 }
 
 /* As strtod reads it, up to what is no part of it. */
-static void a_leading_number_leaves_the_rest(void **state) {
-    (void)state;
+TEST(a_leading_number_leaves_the_rest) {
     double value = 7;
     const char *rest = NULL;
     assert_true(parse_leading_double("-0.1e1*$x", &value, &rest));
@@ -69,8 +64,7 @@ static void a_leading_number_leaves_the_rest(void **state) {
 
 /* A thread's own locale stands for one of the user's: C.UTF-8 always exists but has the same point, so a
    German one is used where the machine has it. */
-static void locale_does_not_matter(void **state) {
-    (void)state;
+TEST(locale_does_not_matter) {
     locale_t german = newlocale(LC_ALL_MASK, "de_DE.UTF-8", (locale_t)0);
     locale_t other = german != (locale_t)0 ? german : newlocale(LC_ALL_MASK, "C.UTF-8", (locale_t)0);
     assert_true(other != (locale_t)0);
@@ -83,8 +77,7 @@ static void locale_does_not_matter(void **state) {
     freelocale(other);
 }
 
-static void whole_numbers(void **state) {
-    (void)state;
+TEST(whole_numbers) {
     int64_t value = 0;
     assert_true(parse_int("42", 0, 100, &value) && value == 42);
     assert_true(parse_int("-7", -7, 0, &value) && value == -7);
@@ -113,8 +106,7 @@ static void check_range(const char *text, double first, double step, int decimal
     }
 }
 
-static void doubles_keep_their_digits(void **state) {
-    (void)state;
+TEST(doubles_keep_their_digits) {
     double value = 7;
     assert_true(parse_double("-0.1", &value));
     assert_true(value == -0.1);
@@ -123,8 +115,7 @@ static void doubles_keep_their_digits(void **state) {
     assert_true(value == -0.1);
 }
 
-static void ranges_give_the_decimals(void **state) {
-    (void)state;
+TEST(ranges_give_the_decimals) {
     check_range("-5:5:0.05", -5, 0.05, 2, 201);
     check_range("-0.3:0.3:0.1", -0.3, 0.1, 1, 7);
     check_range("0:1:0.001", 0, 0.001, 3, 1001);
@@ -134,8 +125,7 @@ static void ranges_give_the_decimals(void **state) {
     check_range("0:0.9:1", 0, 1, 0, 1);
 }
 
-static void bad_ranges_are_refused(void **state) {
-    (void)state;
+TEST(bad_ranges_are_refused) {
     static const char *const texts[] = {
         "",        "1",      "1:2",    "1:2:",   ":2:1",          "1:2:3:4",        "2:1:0.5",    "1:2:0",    "1:2:-1",
         "1:2:nan", " 1:2:1", "1:2:1 ", "0:10:1", "0:1e300:1e299", "-1e308:1e308:1", "0:1:1e-320", "0:1e999:1"};
@@ -148,18 +138,4 @@ static void bad_ranges_are_refused(void **state) {
     assert_true(parse_range("0:10:1", 11, &range));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(decimals_round_to_the_nearest_float),
-        cmocka_unit_test(decimals_round_once),
-        cmocka_unit_test(fractions_divide_in_float),
-        cmocka_unit_test(a_leading_number_leaves_the_rest),
-        cmocka_unit_test(what_is_no_decimal_is_refused),
-        cmocka_unit_test(locale_does_not_matter),
-        cmocka_unit_test(whole_numbers),
-        cmocka_unit_test(doubles_keep_their_digits),
-        cmocka_unit_test(ranges_give_the_decimals),
-        cmocka_unit_test(bad_ranges_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -3,8 +3,7 @@
 
 #include "base/machine.h"
 
-static void a_program_is_fed_and_what_it_says_comes_back(void **state) {
-    (void)state;
+TEST(a_program_is_fed_and_what_it_says_comes_back) {
     Error error = {0};
     Process process;
     char text[64];
@@ -14,8 +13,7 @@ static void a_program_is_fed_and_what_it_says_comes_back(void **state) {
     assert_string_equal(text, "TWO BOXES");
 }
 
-static void failure_comes_with_its_words(void **state) {
-    (void)state;
+TEST(failure_comes_with_its_words) {
     Error error = {0};
     Process process;
     char text[64];
@@ -30,8 +28,7 @@ static void failure_comes_with_its_words(void **state) {
 }
 
 /* A program that does not read must not take this one with it (SIGPIPE). */
-static void a_deaf_program_is_survived(void **state) {
-    (void)state;
+TEST(a_deaf_program_is_survived) {
     Error error = {0};
     Process process;
     char text[16], *much = calloc(1, 1 << 20);
@@ -46,8 +43,7 @@ static void a_deaf_program_is_survived(void **state) {
     free(much);
 }
 
-static void output_is_kept_in_tmpdir(void **state) {
-    (void)state;
+TEST(output_is_kept_in_tmpdir) {
     Error error = {0};
     Process process;
     assert_int_equal(setenv("TMPDIR", "/nonexistent", 1), 0);
@@ -56,9 +52,4 @@ static void output_is_kept_in_tmpdir(void **state) {
     assert_error(error, ERROR_SYSTEM, "true: error: no temporary file in /nonexistent: No such file or directory");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(output_is_kept_in_tmpdir), cmocka_unit_test(a_program_is_fed_and_what_it_says_comes_back),
-        cmocka_unit_test(failure_comes_with_its_words), cmocka_unit_test(a_deaf_program_is_survived)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -25,8 +25,7 @@ static Settings parsed(const char *text) {
     return settings;
 }
 
-static void values_are_found_by_key(void **state) {
-    (void)state;
+TEST(values_are_found_by_key) {
     Settings settings = parsed("network=a=b.npz,iterations=12,warm=off");
     assert_int_equal(settings.count, 3);
     assert_string_equal(settings_get(&settings, "network"), "a=b.npz");
@@ -43,8 +42,7 @@ static void values_are_found_by_key(void **state) {
     free(values);
 }
 
-static void defaults_do_not_replace(void **state) {
-    (void)state;
+TEST(defaults_do_not_replace) {
     Settings settings = parsed("warm=on");
     assert_true(settings_default(&settings, "warm", "off"));
     assert_true(settings_default(&settings, "network", "n.npz"));
@@ -63,8 +61,7 @@ static void refuse(const char *text, const SettingSpec *table, const char *reaso
     assert_error(error, ERROR_INPUT, "--method: error: ");
 }
 
-static void bad_settings_are_refused(void **state) {
-    (void)state;
+TEST(bad_settings_are_refused) {
     refuse("iterations", known, "'iterations' is not key=value");
     refuse("iterations=", known, "'iterations=' is not key=value");
     refuse("=3", known, "not key=value");
@@ -85,8 +82,7 @@ static void bad_settings_are_refused(void **state) {
     refuse(text, known, "too long");
 }
 
-static void too_many_settings_are_refused(void **state) {
-    (void)state;
+TEST(too_many_settings_are_refused) {
     char keys[SETTINGS_MAX + 1][2], text[8 * (SETTINGS_MAX + 1)] = "";
     SettingSpec table[SETTINGS_MAX + 2] = {0};
     for (int i = 0; i <= SETTINGS_MAX; i++) {
@@ -98,8 +94,7 @@ static void too_many_settings_are_refused(void **state) {
     refuse(text, table, "more than 16 settings");
 }
 
-static void bad_values_are_refused(void **state) {
-    (void)state;
+TEST(bad_values_are_refused) {
     static const char *const bad[][2] = {
         {"iterations=0", "iterations: error: must be a whole number from 1 to 12 (got '0')"},
         {"iterations=13", "iterations: error: must be a whole number from 1 to 12 (got '13')"},
@@ -121,11 +116,4 @@ static void bad_values_are_refused(void **state) {
     assert_true(values.iterations == 1 && values.share == 1.25f && !values.warm);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_are_found_by_key),       cmocka_unit_test(defaults_do_not_replace),
-        cmocka_unit_test(bad_settings_are_refused),      cmocka_unit_test(bad_values_are_refused),
-        cmocka_unit_test(too_many_settings_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -5,7 +5,7 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "folder_entries.h"
+#include "files.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -76,15 +76,6 @@ static const char *below(const char *name) {
     return path;
 }
 
-static void expect_file(const char *path, const char *text) {
-    Error error = {0};
-    size_t size;
-    char *found = file_read(path, 100, &size, &error);
-    assert_ok(found != NULL, error);
-    assert_string_equal(found, text);
-    free(found);
-}
-
 static bool replace_file(const char *path, const char *text, Error *error) {
     return file_write(path, text, strlen(text), error);
 }
@@ -133,17 +124,17 @@ static int kill_at_each_call(Write *write_file) {
         assert_int_equal(write_in_child(replace_file, "old", NO_CALL), 0);
         const int status = write_in_child(write_file, "new", call);
         kills += WIFSIGNALED(status);
-        if (WIFSIGNALED(status)) expect_file(below("file"), "old");
+        if (WIFSIGNALED(status)) assert_file(below("file"), "old");
         unlink(below("file-created"));
         assert_int_equal(write_in_child(write_file, "new", NO_CALL), 0);
-        expect_file(below("file"), "new");
+        assert_file(below("file"), "new");
         unlink(below("file-created"));
-        assert_int_equal(count_entries(folder), 1);
+        assert_int_equal(count_files(folder, ""), 1);
     }
     return kills;
 }
 
-static void a_kill_leaves_nothing(void **state) {
+TEST(a_kill_leaves_nothing) {
     static Write *const writes[] = {replace_file, create_file, publish_draft};
     (void)state;
     for (int names = 0; names < 2; names++)
@@ -181,8 +172,7 @@ static int let_other_write(void) {
     return status;
 }
 
-static void files_in_use_stay(void **state) {
-    (void)state;
+TEST(files_in_use_stay) {
     for (int names = 0; names < 2; names++) {
         make_folder();
         all_have_names = names == 1;
@@ -192,14 +182,13 @@ static void files_in_use_stay(void **state) {
         Error error = {0};
         assert_ok(file_write(below("file"), "new", 3, &error), error);
         assert_null(before_rename);
-        expect_file(below("file"), "new");
-        assert_int_equal(count_entries(folder), 2);
+        assert_file(below("file"), "new");
+        assert_int_equal(count_files(folder, ""), 2);
     }
     all_have_names = false;
 }
 
-static void only_such_names_are_removed(void **state) {
-    (void)state;
+TEST(only_such_names_are_removed) {
     make_folder();
     write_bytes(below(".twinbox-0123456789abcdef.tmp"), "x", 1);      /* a reservation */
     write_bytes(below(".twinbox-00000000-99999999-0-0.tmp"), "x", 1); /* another machine's */
@@ -208,12 +197,11 @@ static void only_such_names_are_removed(void **state) {
     assert_int_equal(mkdir(below(".twinbox-folder.tmp"), 0777), 0);
     assert_int_equal(symlink("file", below(".twinbox-link.tmp")), 0);
     assert_int_equal(write_in_child(replace_file, "new", NO_CALL), 0);
-    assert_int_equal(count_entries(folder), 6);
+    assert_int_equal(count_files(folder, ""), 6);
     assert_int_not_equal(access(below(".twinbox-0123456789abcdef.tmp"), F_OK), 0);
 }
 
-static void drafts_for_pipes_are_in_the_folder_for_temporary_files(void **state) {
-    (void)state;
+TEST(drafts_for_pipes_are_in_the_folder_for_temporary_files) {
     make_folder();
     assert_int_equal(setenv("TMPDIR", folder, 1), 0);
     Error error = {0};
@@ -230,12 +218,4 @@ static void drafts_for_pipes_are_in_the_folder_for_temporary_files(void **state)
     unsetenv("TMPDIR");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_kill_leaves_nothing),
-        cmocka_unit_test(files_in_use_stay),
-        cmocka_unit_test(only_such_names_are_removed),
-        cmocka_unit_test(drafts_for_pipes_are_in_the_folder_for_temporary_files),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

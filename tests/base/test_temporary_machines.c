@@ -6,7 +6,7 @@
 #include "testing.h"
 
 #include "base/file.h"
-#include "folder_entries.h"
+#include "files.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -112,27 +112,18 @@ static void write_whole(Node where, const char *name) {
     assert_int_equal(wait_for(start(where, name, false, false)), 0);
 }
 
-static void expect_file(const char *name) {
-    Error error = {0};
-    size_t size;
-    char *found = file_read(below(name), 100, &size, &error);
-    assert_ok(found != NULL, error);
-    assert_string_equal(found, name);
-    free(found);
-}
-
 /* One process is about to name its file while another writes one. */
 static void expect_both(Node first, Node second) {
     const pid_t writing = start(first, "first", false, true);
     assert_true(WIFSTOPPED(wait_for(writing)));
-    assert_int_equal(count_entries(folder), 1);
+    assert_int_equal(count_files(folder, ""), 1);
     write_whole(second, "second");
-    assert_int_equal(count_entries(folder), 2);
+    assert_int_equal(count_files(folder, ""), 2);
     kill(writing, SIGCONT);
     assert_int_equal(wait_for(writing), 0);
-    expect_file("first");
-    expect_file("second");
-    assert_int_equal(count_entries(folder), 2);
+    assert_file(below("first"), "first");
+    assert_file(below("second"), "second");
+    assert_int_equal(count_files(folder, ""), 2);
     assert_int_equal(remove(below("first")), 0);
     assert_int_equal(remove(below("second")), 0);
 }
@@ -145,8 +136,7 @@ static pid_t ended_process(void) {
     return child;
 }
 
-static void living_processes_keep_their_files(void **state) {
-    (void)state;
+TEST(living_processes_keep_their_files) {
     const pid_t ended = ended_process();
     make_folder("living");
     for (Locks locks = REAL_LOCKS; locks <= NO_LOCKS; locks++) {
@@ -157,28 +147,21 @@ static void living_processes_keep_their_files(void **state) {
 }
 
 /* Two processes with one name of a machine, one number and one time: the second finds the first name taken. */
-static void a_name_is_used_once(void **state) {
-    (void)state;
+TEST(a_name_is_used_once) {
     const pid_t ended = ended_process();
     make_folder("once");
     expect_both((Node){REAL_LOCKS, 1, ended}, (Node){REAL_LOCKS, 1, ended});
 }
 
-static void a_machine_removes_what_its_killed_processes_left(void **state) {
-    (void)state;
+TEST(a_machine_removes_what_its_killed_processes_left) {
     make_folder("killed");
     for (Locks locks = REAL_LOCKS; locks <= NO_LOCKS; locks++) {
         assert_true(WIFSIGNALED(wait_for(start((Node){locks, 1, 0}, "lost", true, false))));
         write_whole((Node){locks, 2, 0}, "file");
-        assert_int_equal(count_entries(folder), 2);
+        assert_int_equal(count_files(folder, ""), 2);
         write_whole((Node){locks, 1, 0}, "file");
-        assert_int_equal(count_entries(folder), 1);
+        assert_int_equal(count_files(folder, ""), 1);
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(living_processes_keep_their_files),
-                                       cmocka_unit_test(a_name_is_used_once),
-                                       cmocka_unit_test(a_machine_removes_what_its_killed_processes_left)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

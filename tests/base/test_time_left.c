@@ -37,8 +37,7 @@ static double estimate_at(const Work *work, double time) {
 
 static bool none(double estimate) { return isnan(estimate) != 0; }
 
-static void steady_work_is_estimated_exactly(void **state) {
-    (void)state;
+TEST(steady_work_is_estimated_exactly) {
     static const double durations[] = {4, 10, 100, 3000};
     for (int i = 0; i < 4; i++) {
         const Work work = {1 / durations[i], 1e9, 1};
@@ -48,8 +47,7 @@ static void steady_work_is_estimated_exactly(void **state) {
     }
 }
 
-static void nothing_is_estimated_at_the_beginning(void **state) {
-    (void)state;
+TEST(nothing_is_estimated_at_the_beginning) {
     const Work quick = {0.1, 1e9, 1}, slow = {1e-4, 1e9, 1};
     assert_true(none(estimate_at(&quick, 1.9)));
     assert_false(none(estimate_at(&quick, 2)));
@@ -58,8 +56,7 @@ static void nothing_is_estimated_at_the_beginning(void **state) {
 }
 
 /* Ten seconds of which the first two bring half a per cent: the mean rate would give 6 min 37 s. */
-static void a_slow_start_is_no_reason_to_despair(void **state) {
-    (void)state;
+TEST(a_slow_start_is_no_reason_to_despair) {
     const Work work = {0.0025, 2, 0.995 / 8};
     int shown = 0;
     for (double time = 0.1; time < 10; time += 0.1) {
@@ -73,8 +70,7 @@ static void a_slow_start_is_no_reason_to_despair(void **state) {
 
 /* A stage ten times slower, or faster, than the one before: the estimate knows the new rate after half of the old
    stage's time. */
-static void the_recent_rate_counts(void **state) {
-    (void)state;
+TEST(the_recent_rate_counts) {
     const Work slower = {0.005, 100, 0.0005}, faster = {0.0005, 100, 0.005};
     assert_near(estimate_at(&slower, 200), true_left(&slower, 200), 1);
     assert_near(estimate_at(&faster, 160), true_left(&faster, 160), 1);
@@ -84,22 +80,19 @@ static void the_recent_rate_counts(void **state) {
 }
 
 /* Half of it was done in an earlier run. */
-static void a_jump_is_no_rate(void **state) {
-    (void)state;
+TEST(a_jump_is_no_rate) {
     const Work work = {5, 0.1, 0.005};
     for (double time = 0.2; time < 4; time += 0.2) assert_true(none(estimate_at(&work, time)));
     assert_near(estimate_at(&work, 5), 100 - 4.9, 0.5);
 }
 
-static void stalled_work_has_no_estimate(void **state) {
-    (void)state;
+TEST(stalled_work_has_no_estimate) {
     const Work work = {0.01, 30, 0};
     assert_near(estimate_at(&work, 30), 70, 1e-3);
     assert_true(none(estimate_at(&work, 60)));
 }
 
-static void texts_have_few_digits(void **state) {
-    (void)state;
+TEST(texts_have_few_digits) {
     static const struct {
         double seconds;
         const char *text;
@@ -113,13 +106,4 @@ static void texts_have_few_digits(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(steady_work_is_estimated_exactly),
-                                       cmocka_unit_test(nothing_is_estimated_at_the_beginning),
-                                       cmocka_unit_test(a_slow_start_is_no_reason_to_despair),
-                                       cmocka_unit_test(the_recent_rate_counts),
-                                       cmocka_unit_test(a_jump_is_no_rate),
-                                       cmocka_unit_test(stalled_work_has_no_estimate),
-                                       cmocka_unit_test(texts_have_few_digits)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -10,8 +10,7 @@ static void assert_shown(const char *text, VisibleLines lines, const char *expec
     assert_string_equal(shown, expected);
 }
 
-static void what_is_obeyed_becomes_visible(void **state) {
-    (void)state;
+TEST(what_is_obeyed_becomes_visible) {
     assert_shown("a \xc3\xa4 \xf0\x9f\x98\x80\\", VISIBLE_ONE_LINE, "a \xc3\xa4 \xf0\x9f\x98\x80\\");
     assert_shown("\33[31m\a\x7f\r\t\n", VISIBLE_ONE_LINE, "\\x1b[31m\\x07\\x7f\\x0d\\x09\\n");
     assert_shown("\33[31m\r\t\n", VISIBLE_LINES, "\\x1b[31m\\x0d\t\n");
@@ -21,8 +20,7 @@ static void what_is_obeyed_becomes_visible(void **state) {
 }
 
 /* Every byte alone, and all characters below U+3000: what is shown has no control and is shown as it is again. */
-static void what_is_shown_stays(void **state) {
-    (void)state;
+TEST(what_is_shown_stays) {
     for (unsigned c = 1; c < 0x3000; c++) {
         char text[4] = {(char)c}, shown[64], again[64];
         if (c >= 0x100 && c < 0x800) text[0] = (char)(0xc0 | c >> 6), text[1] = (char)(0x80 | (c & 63));
@@ -35,8 +33,7 @@ static void what_is_shown_stays(void **state) {
     }
 }
 
-static void the_middle_goes_where_room_is_short(void **state) {
-    (void)state;
+TEST(the_middle_goes_where_room_is_short) {
     char shown[24];
     for (int length = 0; length < 200; length++) {
         char text[256] = "begin";
@@ -51,8 +48,7 @@ static void the_middle_goes_where_room_is_short(void **state) {
     }
 }
 
-static void a_name_is_no_second_message(void **state) {
-    (void)state;
+TEST(a_name_is_no_second_message) {
     Error name = {0}, key = {0}, output = {0}, where = {0};
     error_input(&name, "a\nb.yaml", "cannot open");
     assert_string_equal(name.message, "a\\nb.yaml: error: cannot open");
@@ -66,27 +62,18 @@ static void a_name_is_no_second_message(void **state) {
     assert_string_equal(where.message, "ffmpeg: error: failed, in scene \\x1b");
 }
 
-static void additions_end_where_the_message_does(void **state) {
-    (void)state;
+TEST(additions_end_where_the_message_does) {
     Error error = {0};
     error_input(&error, "a", "b");
     for (int i = 0; i < 5000; i++) error_add(&error, ", %s", "more");
     assert_true(strlen(error.message) < sizeof error.message);
 }
 
-static void controls_are_found(void **state) {
-    (void)state;
+TEST(controls_are_found) {
     assert_int_equal(control_in_text("a \xc3\xa4 \xff"), 0);
     assert_int_equal(control_in_text("a\nb"), '\n');
     assert_int_equal(control_in_text("a\x7f"), 0x7f);
     assert_int_equal(control_in_text("\xc2\x9b"), 0x9b);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_obeyed_becomes_visible),       cmocka_unit_test(what_is_shown_stays),
-        cmocka_unit_test(the_middle_goes_where_room_is_short),  cmocka_unit_test(a_name_is_no_second_message),
-        cmocka_unit_test(additions_end_where_the_message_does), cmocka_unit_test(controls_are_found),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

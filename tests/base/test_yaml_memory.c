@@ -23,8 +23,7 @@ static bool read_tree(Error *error) {
     return true;
 }
 
-static void a_lack_of_memory_is_no_mistake_in_the_file(void **state) {
-    (void)state;
+TEST(a_lack_of_memory_is_no_mistake_in_the_file) {
     path = write_bytes(temporary_path("a.yaml"), text, strlen(text));
     assert_memory_is_named(read_tree);
 }
@@ -37,15 +36,10 @@ static bool read_broken(Error *error) {
     return failure.kind == ERROR_INPUT && strstr(failure.message, "expected ',' or ']'") != NULL;
 }
 
-static void mistakes_keep_their_words(void **state) {
-    (void)state;
+TEST(mistakes_keep_their_words) {
     static const char broken[] = "a: [1, 2]\nb: [[1 }\n";
     path = write_bytes(temporary_path("b.yaml"), broken, strlen(broken));
     assert_memory_is_named(read_broken);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_lack_of_memory_is_no_mistake_in_the_file),
-                                       cmocka_unit_test(mistakes_keep_their_words)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

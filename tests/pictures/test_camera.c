@@ -47,8 +47,7 @@ static void add_impact(int step) {
     trajectory_end_contacts(run);
 }
 
-static void what_stands_and_what_strikes_is_held(void **state) {
-    (void)state;
+TEST_WITH(what_stands_and_what_strikes_is_held, make, destroy) {
     add_impact(9);
     for (int i = 0; i < SIZES; i++)
         for (float far = 1; far < 3; far += 1) {
@@ -62,8 +61,7 @@ static void what_stands_and_what_strikes_is_held(void **state) {
 }
 
 /* Whatever a body does after the impact, or less than half of all bodies without one, every frame has the same view. */
-static void a_body_that_flies_off_changes_nothing(void **state) {
-    (void)state;
+TEST_WITH(a_body_that_flies_off_changes_nothing, make, destroy) {
     static const float far[] = {3, 20, 1e3F, 1e5F, 1e30F, NAN};
     for (int impact = 0; impact < 2; impact++) {
         if (impact) add_impact(5);
@@ -79,8 +77,7 @@ static void a_body_that_flies_off_changes_nothing(void **state) {
 }
 
 /* What a frame without marks draws depends on no later frame, in any panel: neither camera nor texts. */
-static void no_mark_of_frame_0_moves(void **state) {
-    (void)state;
+TEST_WITH(no_mark_of_frame_0_moves, make, destroy) {
     Trajectory *other = run_make("pair-net", 12);
     const Trajectory *panels[] = {run, other, run};
     for (int count = 1; count <= 3; count++) {
@@ -107,8 +104,7 @@ static void no_mark_of_frame_0_moves(void **state) {
 }
 
 /* On a slope without a view of its own, nothing stays where it starts. */
-static void where_most_bodies_leave_all_their_way_is_held(void **state) {
-    (void)state;
+TEST_WITH(where_most_bodies_leave_all_their_way_is_held, make, destroy) {
     for (int frame = 1; frame < run->frames; frame++) {
         run_position(run, frame, FIRST_BOX)->x += 5 * (float)frame;
         run_position(run, frame, SECOND_BOX)->x += 6 * (float)frame;
@@ -121,8 +117,7 @@ static void where_most_bodies_leave_all_their_way_is_held(void **state) {
 }
 
 /* A bomb from 1 km away is not framed: nothing else could be made out. */
-static void a_bomb_from_far_away_does_not_count(void **state) {
-    (void)state;
+TEST_WITH(a_bomb_from_far_away_does_not_count, make, destroy) {
     add_impact(9);
     const Camera near = camera_fit(run, 900, 880);
     *run_position(run, 2, BOMB_BODY) = vec2(700, 700);
@@ -143,8 +138,7 @@ static Camera struck(float side, Vec2 way, const int size[2]) {
     return camera_fit(run, size[0], size[1]);
 }
 
-static void what_is_struck_from_the_side_has_room_to_fall(void **state) {
-    (void)state;
+TEST_WITH(what_is_struck_from_the_side_has_room_to_fall, make, destroy) {
     add_impact(9);
     static const int high[2] = {300, 900}; /* the width decides the scale */
     for (int i = 0; i < SIZES; i++) {
@@ -157,8 +151,7 @@ static void what_is_struck_from_the_side_has_room_to_fall(void **state) {
 }
 
 /* With room at both sides, the boxes from -2.5 m to 3 m are in the middle, wherever the bomb comes from. */
-static void what_stands_is_in_the_middle(void **state) {
-    (void)state;
+TEST_WITH(what_stands_is_in_the_middle, make, destroy) {
     add_impact(9);
     for (float x = -4; x <= 4; x += 2) {
         for (int frame = 2; frame < run->frames; frame++) run_position(run, frame, BOMB_BODY)->x = x;
@@ -168,8 +161,7 @@ static void what_stands_is_in_the_middle(void **state) {
 }
 
 /* The ground is 100 m wide, the movement 5 m. */
-static void the_ground_does_not_count(void **state) {
-    (void)state;
+TEST_WITH(the_ground_does_not_count, make, destroy) {
     Camera camera = camera_fit(run, 900, 880), without;
     assert_true(camera.scale > 900 / 12.0);
     run->size[GROUND_BODY] = vec2(5000, 20);
@@ -178,8 +170,7 @@ static void the_ground_does_not_count(void **state) {
     assert_inside(&camera, 0, -0.1, sizes[0]); /* but its top is visible */
 }
 
-static void grid_lines_fall_between_pixels(void **state) {
-    (void)state;
+TEST_WITH(grid_lines_fall_between_pixels, make, destroy) {
     for (int i = 0; i < SIZES; i++) {
         Camera camera = camera_fit(run, sizes[i][0], sizes[i][1]);
         assert_true(camera.left == rint(camera.left) && camera.top == rint(camera.top));
@@ -187,8 +178,7 @@ static void grid_lines_fall_between_pixels(void **state) {
     }
 }
 
-static void what_the_scene_asks_for_is_shown(void **state) {
-    (void)state;
+TEST_WITH(what_the_scene_asks_for_is_shown, make, destroy) {
     run->camera_center = vec2(3, 4);
     run->camera_size = vec2(40, 10);
     for (int i = 0; i < SIZES; i++) {
@@ -201,8 +191,7 @@ static void what_the_scene_asks_for_is_shown(void **state) {
 }
 
 /* The point in the middle of the panel and the view's corners. */
-static void a_view_is_shown_where_it_is(void **state) {
-    (void)state;
+TEST_WITH(a_view_is_shown_where_it_is, make, destroy) {
     const CameraView view = {-3, 2, 8, 3};
     for (int i = 0; i < SIZES; i++) {
         const Camera camera = camera_show(&view, sizes[i][0], sizes[i][1]);
@@ -223,8 +212,7 @@ static Camera camera_with(const RenderLook *look) {
     return picture.camera;
 }
 
-static void a_look_sets_the_view(void **state) {
-    (void)state;
+TEST_WITH(a_look_sets_the_view, make, destroy) {
     Trajectory *other = run_make("engine", 12), *first = run;
     run_position(other, 0, FIRST_BOX)->x = -9;
     run = other;
@@ -241,8 +229,7 @@ static void a_look_sets_the_view(void **state) {
     trajectory_destroy(other);
 }
 
-static void only_the_first_panel_counts(void **state) {
-    (void)state;
+TEST_WITH(only_the_first_panel_counts, make, destroy) {
     Trajectory *network = run_make("pair-net", 12);
     const Trajectory *panels[] = {run, network};
     Picture calm, wild;
@@ -254,8 +241,7 @@ static void only_the_first_panel_counts(void **state) {
     trajectory_destroy(network);
 }
 
-static void wild_numbers_leave_a_camera(void **state) {
-    (void)state;
+TEST_WITH(wild_numbers_leave_a_camera, make, destroy) {
     static const float bad[] = {NAN, INFINITY, -INFINITY, 3e38F, -3e38F, 0};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         for (int body = 0; body < RUN_BODIES; body++)
@@ -265,22 +251,4 @@ static void wild_numbers_leave_a_camera(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(what_stands_and_what_strikes_is_held, make, destroy),
-        cmocka_unit_test_setup_teardown(a_body_that_flies_off_changes_nothing, make, destroy),
-        cmocka_unit_test_setup_teardown(no_mark_of_frame_0_moves, make, destroy),
-        cmocka_unit_test_setup_teardown(where_most_bodies_leave_all_their_way_is_held, make, destroy),
-        cmocka_unit_test_setup_teardown(a_bomb_from_far_away_does_not_count, make, destroy),
-        cmocka_unit_test_setup_teardown(what_stands_is_in_the_middle, make, destroy),
-        cmocka_unit_test_setup_teardown(what_is_struck_from_the_side_has_room_to_fall, make, destroy),
-        cmocka_unit_test_setup_teardown(a_view_is_shown_where_it_is, make, destroy),
-        cmocka_unit_test_setup_teardown(a_look_sets_the_view, make, destroy),
-        cmocka_unit_test_setup_teardown(the_ground_does_not_count, make, destroy),
-        cmocka_unit_test_setup_teardown(grid_lines_fall_between_pixels, make, destroy),
-        cmocka_unit_test_setup_teardown(what_the_scene_asks_for_is_shown, make, destroy),
-        cmocka_unit_test_setup_teardown(only_the_first_panel_counts, make, destroy),
-        cmocka_unit_test_setup_teardown(wild_numbers_leave_a_camera, make, destroy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

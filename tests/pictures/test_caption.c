@@ -29,21 +29,15 @@ static void assert_caption(const char *method, bool described, const char *name,
     trajectory_destroy(run);
 }
 
-static void a_description_gives_the_caption(void **state) {
-    (void)state;
+TEST(a_description_gives_the_caption) {
     assert_caption("captioned:k=3", true, "captioned:k=3", "a caption");
     assert_caption("captioned:network=/far/away/net.npz,k=3", true, "captioned:network=net.npz,k=3", "a caption");
 }
 
-static void without_a_description_there_is_only_the_name(void **state) {
-    (void)state;
+TEST(without_a_description_there_is_only_the_name) {
     assert_caption("bare:k=3", true, "bare:k=3", "");
     assert_caption("unknown:network=/far/away/net.npz", true, "unknown:network=net.npz", "");
     assert_caption("captioned:k=3", false, "captioned:k=3", "");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_description_gives_the_caption),
-                                       cmocka_unit_test(without_a_description_there_is_only_the_name)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -72,8 +72,7 @@ static int count_names(int count, int width, int height, const RenderLook *look,
     return found;
 }
 
-static void every_name_is_in_every_picture(void **state) {
-    (void)state;
+TEST_WITH(every_name_is_in_every_picture, make, destroy) {
     static const int sizes[][2] = {{480, 320}, {640, 360}, {960, 540}, {1280, 720}, {1920, 1080}, {540, 960}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
         for (int count = 1; count <= RENDER_PANELS_MAX; count++)
@@ -81,8 +80,7 @@ static void every_name_is_in_every_picture(void **state) {
 }
 
 /* Short ones next to long ones give their room to these. */
-static void names_are_whole_where_there_is_room(void **state) {
-    (void)state;
+TEST_WITH(names_are_whole_where_there_is_room, make, destroy) {
     for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
         assert_int_equal(count_names(count, 1280, 720, &(RenderLook){0}, true), count);
         if (count > 1)
@@ -90,8 +88,7 @@ static void names_are_whole_where_there_is_room(void **state) {
     }
 }
 
-static void room_is_shared_fairly(void **state) {
-    (void)state;
+TEST(room_is_shared_fairly) {
     const int widths[] = {10, 50, 20, 90};
     assert_true(caption_fair_width(widths, 4, 170) >= 90);
     assert_true(caption_fair_width(widths, 4, 1000) >= 90);
@@ -101,11 +98,4 @@ static void room_is_shared_fairly(void **state) {
     assert_int_equal(caption_fair_width(widths, 4, -5), -5);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_name_is_in_every_picture, make, destroy),
-        cmocka_unit_test_setup_teardown(names_are_whole_where_there_is_room, make, destroy),
-        cmocka_unit_test(room_is_shared_fairly),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

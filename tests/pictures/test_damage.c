@@ -79,8 +79,7 @@ static Trajectory *golden_run(const char *scene, const char *method) {
     return run;
 }
 
-static void followed_frames_equal_whole_ones(void **state) {
-    (void)state;
+TEST(followed_frames_equal_whole_ones) {
     static const char *const scenes[] = {"single", "stack", "pyramid", "pyramid_settled"};
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; i += (size_t)sampled(3)) {
         Trajectory *runs[PANELS] = {golden_run(scenes[i], "engine"), golden_run(scenes[i], "pair-net")};
@@ -98,8 +97,7 @@ static void followed_frames_equal_whole_ones(void **state) {
 }
 
 /* Bodies that appear and disappear, shapes taller than the picture, a moving ground, NaN and infinite poses. */
-static void wild_frames_equal_whole_ones(void **state) {
-    (void)state;
+TEST(wild_frames_equal_whole_ones) {
     static const float wild[] = {0, 1, 40, -40, 3e38F, NAN, INFINITY, 5, -1e6F, 2};
     enum { FRAMES = sizeof wild / sizeof wild[0] };
     Trajectory *run = run_make("engine", FRAMES);
@@ -124,8 +122,7 @@ static void wild_frames_equal_whole_ones(void **state) {
 }
 
 /* A single frame drawn in between invalidates the canvas; a frame that does not exist does not. */
-static void other_calls_may_come_between(void **state) {
-    (void)state;
+TEST(other_calls_may_come_between) {
     Error error = {0};
     Trajectory *run = run_make("engine", 6);
     const Trajectory *const panels[] = {run};
@@ -144,8 +141,7 @@ static void other_calls_may_come_between(void **state) {
     trajectory_destroy(run);
 }
 
-static void only_touched_rows_change(void **state) {
-    (void)state;
+TEST(only_touched_rows_change) {
     Drawing before = {0}, after = {0};
     bool changed[100];
     const Rect clip = {0, 0, 100, 100};
@@ -170,12 +166,4 @@ static void only_touched_rows_change(void **state) {
     drawing_free(&after);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(followed_frames_equal_whole_ones),
-        cmocka_unit_test(wild_frames_equal_whole_ones),
-        cmocka_unit_test(other_calls_may_come_between),
-        cmocka_unit_test(only_touched_rows_change),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

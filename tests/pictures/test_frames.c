@@ -7,8 +7,7 @@
 enum { FRAMES = 40 };
 
 /* The stored frames are all frames from the first to the last in steps of `every`, counted one by one. */
-static void stored_frames_are_those_in_steps(void **state) {
-    (void)state;
+TEST(stored_frames_are_those_in_steps) {
     for (int every = 1; every < 12; every++)
         for (int first = 0; first < FRAMES; first++)
             for (int last = first; last < FRAMES; last++) {
@@ -21,8 +20,7 @@ static void stored_frames_are_those_in_steps(void **state) {
 }
 
 /* A shorter run has fewer; one that ends before the first stored frame has none. */
-static void a_shorter_run_has_fewer(void **state) {
-    (void)state;
+TEST(a_shorter_run_has_fewer) {
     const PlayerFrames frames = {10, 30, 5};
     assert_int_equal(player_frame_count(&frames, 31), 5);
     assert_int_equal(player_frame_count(&frames, 30), 4);
@@ -31,8 +29,7 @@ static void a_shorter_run_has_fewer(void **state) {
 }
 
 /* An event is shown in the first stored frame that has it. */
-static void an_event_is_in_the_first_frame_that_has_it(void **state) {
-    (void)state;
+TEST(an_event_is_in_the_first_frame_that_has_it) {
     for (int every = 1; every < 12; every++) {
         const PlayerFrames frames = {7, 33, every};
         for (int frame = 0; frame < FRAMES; frame++) {
@@ -45,11 +42,4 @@ static void an_event_is_in_the_first_frame_that_has_it(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stored_frames_are_those_in_steps),
-        cmocka_unit_test(a_shorter_run_has_fewer),
-        cmocka_unit_test(an_event_is_in_the_first_frame_that_has_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -130,8 +130,7 @@ static bool is_equal(const Image *expected, int i, bool dark, ContextChoice cont
     return difference.equal;
 }
 
-static void the_gallery_is_drawn_again(void **state) {
-    (void)state;
+TEST(the_gallery_is_drawn_again) {
     int different = 0;
     for (int i = 0; i < ENTRIES; i++)
         for (int dark = 0; dark <= (entries[i].dark ? 1 : 0); dark++) {
@@ -166,6 +165,5 @@ int main(int argc, char **argv) {
         write_all();
         return 0;
     }
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_gallery_is_drawn_again)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_all_tests(NULL, NULL);
 }

@@ -88,8 +88,7 @@ static int compare(const Golden *golden) {
     return different;
 }
 
-static void golden_frames_are_drawn_again(void **state) {
-    (void)state;
+TEST(golden_frames_are_drawn_again) {
     int frames = 0, different = 0;
     DIR *directory = opendir(FRAMES);
     if (directory == NULL) fail_msg("%s cannot be read", FRAMES);
@@ -107,7 +106,4 @@ static void golden_frames_are_drawn_again(void **state) {
     if (frames == 0) fail_msg("there is no golden frame in %s", FRAMES);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(golden_frames_are_drawn_again)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

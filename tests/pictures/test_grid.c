@@ -17,8 +17,7 @@ static void count_tics(const Picture *picture, const Drawing *drawing, int *acro
     }
 }
 
-static void every_frame_has_three_tics_on_each_axis(void **state) {
-    (void)state;
+TEST(every_frame_has_three_tics_on_each_axis) {
     static const LookCamera cameras[] = {LOOK_FIT, LOOK_BOMB, LOOK_DIVERGENCE};
     Error error = {0};
     Trajectory *runs[] = {trajectory_read(SOURCE_DIR "/golden/trajectories/stack-engine.npz", &error),
@@ -44,7 +43,4 @@ static void every_frame_has_three_tics_on_each_axis(void **state) {
     trajectory_destroy(runs[1]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_frame_has_three_tics_on_each_axis)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

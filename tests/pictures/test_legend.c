@@ -23,8 +23,7 @@ static bool has_room_for_its_rows(const Trajectory *const *runs, const RenderLoo
     return same;
 }
 
-static void the_layout_has_the_rows_that_are_drawn(void **state) {
-    (void)state;
+TEST(the_layout_has_the_rows_that_are_drawn) {
     static const RenderLook looks[] = {
         {.show = LOOK_CONTACTS | LOOK_IMPULSES | LOOK_VELOCITIES},
         {.compare = LOOK_DIFFERENCE, .show = LOOK_TRAILS | LOOK_VELOCITIES | LOOK_CONTACTS}};
@@ -40,7 +39,4 @@ static void the_layout_has_the_rows_that_are_drawn(void **state) {
     for (int i = 0; i < 2; i++) trajectory_destroy(runs[i]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_layout_has_the_rows_that_are_drawn)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

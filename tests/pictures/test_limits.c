@@ -70,7 +70,7 @@ static char *text_of(const char *path, size_t *size) {
     return text;
 }
 
-static void the_same_runs_give_the_same_bytes(void **state) {
+TEST(the_same_runs_give_the_same_bytes) {
     const char *paths[] = {temporary_path("a.html"), temporary_path("b.html")};
     char *texts[2];
     size_t sizes[2];
@@ -91,7 +91,7 @@ static void the_same_runs_give_the_same_bytes(void **state) {
 }
 
 /* The page with contacts is too large, the states alone fit. */
-static void contacts_are_left_out_first(void **state) {
+TEST(contacts_are_left_out_first) {
     const char *path = temporary_path("left.html");
     PlayerResult whole, less;
     Error error;
@@ -107,7 +107,7 @@ static void contacts_are_left_out_first(void **state) {
 }
 
 /* With the step that the message proposes, the page is small enough. */
-static void what_is_too_large_is_refused_with_a_way_out(void **state) {
+TEST(what_is_too_large_is_refused_with_a_way_out) {
     const char *path = temporary_path("refused.html");
     const int64_t most = 500000;
     PlayerResult result;
@@ -123,7 +123,7 @@ static void what_is_too_large_is_refused_with_a_way_out(void **state) {
     assert_true(result.bytes <= most && result.frames == (FRAMES - 1) / every + 1);
 }
 
-static void frames_beyond_the_end_are_refused(void **state) {
+TEST(frames_beyond_the_end_are_refused) {
     const char *path = temporary_path("frames.html");
     PlayerResult result;
     Error error;
@@ -133,8 +133,7 @@ static void frames_beyond_the_end_are_refused(void **state) {
                    "beyond the last frame");
 }
 
-static void a_link_names_moment_and_body(void **state) {
-    (void)state;
+TEST(a_link_names_moment_and_body) {
     char text[PLAYER_LINK_SIZE];
     player_link(text, 0.55, 7);
     assert_string_equal(text, "#t=0.55&body=7");
@@ -142,13 +141,4 @@ static void a_link_names_moment_and_body(void **state) {
     assert_string_equal(text, "#t=12");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_same_runs_give_the_same_bytes),
-        cmocka_unit_test(contacts_are_left_out_first),
-        cmocka_unit_test(what_is_too_large_is_refused_with_a_way_out),
-        cmocka_unit_test(frames_beyond_the_end_are_refused),
-        cmocka_unit_test(a_link_names_moment_and_body),
-    };
-    return cmocka_run_group_tests(tests, begin, end);
-}
+RUN_TESTS(begin, end)

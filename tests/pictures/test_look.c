@@ -16,8 +16,7 @@ static Picture picture_with_look(int count, const RenderLook *look) {
     return picture;
 }
 
-static void a_look_that_the_runs_do_not_have_is_refused(void **state) {
-    (void)state;
+TEST_WITH(a_look_that_the_runs_do_not_have_is_refused, make, destroy) {
     static const struct {
         RenderLook look;
         int count;
@@ -44,8 +43,7 @@ static void a_look_that_the_runs_do_not_have_is_refused(void **state) {
     assert_ok(look_check(&(RenderLook){.show = LOOK_TRAILS | LOOK_VELOCITIES}, panels, 3, &error), error);
 }
 
-static void poses_between_frames_lie_between(void **state) {
-    (void)state;
+TEST_WITH(poses_between_frames_lie_between, make, destroy) {
     Moment between = {MOMENT_BETWEEN, 4, 1, 4, 4};
     Pose a = pose_stored(runs[0], 4, SECOND_BOX), b = pose_stored(runs[0], 5, SECOND_BOX);
     Pose pose = pose_at(runs[0], between, SECOND_BOX);
@@ -59,8 +57,7 @@ static void poses_between_frames_lie_between(void **state) {
     assert_near(pose_at(runs[0], between, BOMB_BODY).y, pose_stored(runs[0], 10, BOMB_BODY).y, 0);
 }
 
-static void distances_between_frames_lie_between(void **state) {
-    (void)state;
+TEST_WITH(distances_between_frames_lie_between, make, destroy) {
     Picture picture = picture_with_look(2, &(RenderLook){0});
     double before = picture_distance(&picture, moment_stored(9)), after = picture_distance(&picture, moment_stored(10));
     assert_near(picture_distance(&picture, (Moment){MOMENT_BETWEEN, 9, 1, 2, 2}), (before + after) / 2, 1e-6);
@@ -68,8 +65,7 @@ static void distances_between_frames_lie_between(void **state) {
     picture_free(&picture);
 }
 
-static void events_are_found_where_they_are(void **state) {
-    (void)state;
+TEST_WITH(events_are_found_where_they_are, make, destroy) {
     Events events = events_find(panels, 2);
     assert_int_equal(events.impact, 20);
     assert_int_equal(events.divergence, 5); /* 2 mm */
@@ -84,8 +80,7 @@ static void events_are_found_where_they_are(void **state) {
     assert_int_equal(events_find(panels, 2).impact, -1);
 }
 
-static void each_compare_has_its_panels(void **state) {
-    (void)state;
+TEST_WITH(each_compare_has_its_panels, make, destroy) {
     static const int shown[] = {3, 1, 2}, first[] = {0, 0, 1};
     for (int compare = LOOK_SPLIT; compare <= LOOK_DIFFERENCE; compare++) {
         Picture picture = picture_with_look(3, &(RenderLook){.compare = (LookCompare)compare});
@@ -96,8 +91,7 @@ static void each_compare_has_its_panels(void **state) {
 }
 
 /* With a fixed camera only the timeline takes room. */
-static void curves_are_the_largest_distances(void **state) {
-    (void)state;
+TEST_WITH(curves_are_the_largest_distances, make, destroy) {
     Picture picture = picture_with_look(3, &(RenderLook){.show = LOOK_TIMELINE});
     assert_int_equal(picture.curve_points, FRAMES);
     for (int frame = 0; frame < FRAMES; frame++) {
@@ -109,8 +103,7 @@ static void curves_are_the_largest_distances(void **state) {
 }
 
 /* No jumps: from frame to frame, centre and size of the view change by a small fraction. */
-static void cameras_ease(void **state) {
-    (void)state;
+TEST_WITH(cameras_ease, make, destroy) {
     for (int run = 0; run < RUNS; run++) trajectory_destroy(runs[run]);
     for (int run = 0; run < RUNS; run++) panels[run] = runs[run] = run_make("engine", 400);
     for (int frame = 200; frame < 400; frame++) run_position(runs[1], frame, SECOND_BOX)->x += 1;
@@ -152,8 +145,7 @@ static double lightness(uint32_t color) {
 }
 
 /* Equal steps of distance are equal steps of lightness, so that grey prints show distances as well. */
-static void colors_of_distance_are_even_in_lightness(void **state) {
-    (void)state;
+TEST_WITH(colors_of_distance_are_even_in_lightness, make, destroy) {
     for (int theme = LOOK_LIGHT; theme <= LOOK_DARK; theme++) {
         const Theme *colors = theme_get((LookTheme)theme);
         double first = lightness(theme_ramp(colors, 0)), last = lightness(theme_ramp(colors, 1));
@@ -167,8 +159,7 @@ static void colors_of_distance_are_even_in_lightness(void **state) {
     }
 }
 
-static void distances_have_their_place_on_the_scale(void **state) {
-    (void)state;
+TEST_WITH(distances_have_their_place_on_the_scale, make, destroy) {
     Scales scales;
     Error error = {0};
     Picture picture = picture_with_look(2, &(RenderLook){.show = LOOK_IMPULSES});
@@ -200,8 +191,7 @@ static uint64_t hash_of(const RenderLook *look, int count, Moment moment) {
 }
 
 /* Each option changes the picture, and so do costs and the text of the end card. */
-static void every_option_changes_the_picture(void **state) {
-    (void)state;
+TEST_WITH(every_option_changes_the_picture, make, destroy) {
     const Moment moment = moment_stored(25), end = {MOMENT_END, FRAMES - 1, 0, 1, 1};
     uint64_t plain = hash_of(&(RenderLook){0}, 2, moment);
     for (int bit = 0; bit < 7; bit++) assert_true(hash_of(&(RenderLook){.show = 1u << bit}, 2, moment) != plain);
@@ -211,18 +201,4 @@ static void every_option_changes_the_picture(void **state) {
     assert_true(hash_of(&(RenderLook){.end = "Over"}, 2, end) != hash_of(&(RenderLook){0}, 2, end));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_look_that_the_runs_do_not_have_is_refused, make, destroy),
-        cmocka_unit_test_setup_teardown(poses_between_frames_lie_between, make, destroy),
-        cmocka_unit_test_setup_teardown(distances_between_frames_lie_between, make, destroy),
-        cmocka_unit_test_setup_teardown(events_are_found_where_they_are, make, destroy),
-        cmocka_unit_test_setup_teardown(each_compare_has_its_panels, make, destroy),
-        cmocka_unit_test_setup_teardown(curves_are_the_largest_distances, make, destroy),
-        cmocka_unit_test_setup_teardown(cameras_ease, make, destroy),
-        cmocka_unit_test_setup_teardown(colors_of_distance_are_even_in_lightness, make, destroy),
-        cmocka_unit_test_setup_teardown(distances_have_their_place_on_the_scale, make, destroy),
-        cmocka_unit_test_setup_teardown(every_option_changes_the_picture, make, destroy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -45,8 +45,7 @@ static void assert_followed(const RenderLook *look, int count, int width, int he
     renderer_destroy(whole);
 }
 
-static void every_look_is_the_same_whole_or_followed(void **state) {
-    (void)state;
+TEST_WITH(every_look_is_the_same_whole_or_followed, make, destroy) {
     static const RenderLook looks[] = {
         {.show = LOOK_GHOSTS | LOOK_CONTACTS},
         {.show = LOOK_DISTANCE | LOOK_VELOCITIES, .theme = LOOK_DARK},
@@ -60,8 +59,7 @@ static void every_look_is_the_same_whole_or_followed(void **state) {
     for (size_t i = 0; i < sizeof looks / sizeof looks[0]; i++) assert_followed(&looks[i], RUNS, WIDTH, HEIGHT);
 }
 
-static void looks_fit_every_size_and_length(void **state) {
-    (void)state;
+TEST_WITH(looks_fit_every_size_and_length, make, destroy) {
     static const int sizes[][2] = {{64, 64}, {64, 400}, {300, 96}, {420, 560}};
     for (int i = 0; i < 4; i++) {
         RenderLook look = {.compare = (LookCompare)(i % 3), .camera = (LookCamera)(1 + i % 2), .show = ALL_SHOWN};
@@ -70,8 +68,7 @@ static void looks_fit_every_size_and_length(void **state) {
     }
 }
 
-static void hostile_runs_do_no_harm(void **state) {
-    (void)state;
+TEST_WITH(hostile_runs_do_no_harm, make, destroy) {
     static const float bad[] = {NAN, INFINITY, -INFINITY, 3e38F, -1e20F, 1e-40F};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         for (int run = 0; run < RUNS; run++) {
@@ -89,11 +86,4 @@ static void hostile_runs_do_no_harm(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_look_is_the_same_whole_or_followed, make, destroy),
-        cmocka_unit_test_setup_teardown(looks_fit_every_size_and_length, make, destroy),
-        cmocka_unit_test_setup_teardown(hostile_runs_do_no_harm, make, destroy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -4,7 +4,7 @@
 #include "testing.h"
 
 #include "base/hash.h"
-#include "folders.h"
+#include "files.h"
 #include "mesa.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
@@ -122,8 +122,7 @@ static void check_picture(const json_t *item, int index) {
     free(data);
 }
 
-static void a_manifest_tells_of_every_picture(void **state) {
-    (void)state;
+TEST(a_manifest_tells_of_every_picture) {
     json_error_t failure;
     json_t *manifest = json_load_file(manifest_of(whole), JSON_REJECT_DUPLICATES, &failure);
     if (manifest == NULL) fail_msg("manifest.json:%d:%d: %s", failure.line, failure.column, failure.text);
@@ -191,8 +190,7 @@ static void check_view(const char *directory, bool moving) {
     json_decref(manifest);
 }
 
-static void the_view_leads_to_the_bodies(void **state) {
-    (void)state;
+TEST(the_view_leads_to_the_bodies) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("moving"));
     options.look.camera = LOOK_BOMB;
@@ -207,8 +205,7 @@ static void the_view_leads_to_the_bodies(void **state) {
     free(result.hashes);
 }
 
-static void the_view_names_the_files_of_the_runs(void **state) {
-    (void)state;
+TEST(the_view_names_the_files_of_the_runs) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("named"));
     options.look.show = LOOK_GHOSTS;
@@ -222,16 +219,14 @@ static void the_view_names_the_files_of_the_runs(void **state) {
     json_decref(manifest);
 }
 
-static void a_manifest_names_no_place(void **state) {
-    (void)state;
+TEST(a_manifest_names_no_place) {
     size_t size;
     char *text = read_whole(manifest_of(whole), &size);
     assert_null(strstr(text, temporary_folder));
     free(text);
 }
 
-static void nothing_is_drawn_twice(void **state) {
-    (void)state;
+TEST(nothing_is_drawn_twice) {
     char why[256];
     assert_int_equal(resume(copied("again"), why), PICTURES);
     assert_string_equal(why, "");
@@ -239,26 +234,20 @@ static void nothing_is_drawn_twice(void **state) {
     assert_non_null(strstr(why, "fresh/manifest.json: error: cannot open"));
 }
 
-static void overwrite(const char *path, const char *data, size_t size) {
-    Error error = {0};
-    assert_ok(file_write_soon(path, data, size, &error), error);
-}
-
-static void what_is_missing_or_damaged_is_drawn_again(void **state) {
-    (void)state;
+TEST(what_is_missing_or_damaged_is_drawn_again) {
     size_t size, other_size;
     const char *directory = copied("damaged");
     char *data = read_whole(frame_path(directory, 4), &size),
          *other = read_whole(frame_path(directory, 5), &other_size);
     assert_int_equal(unlink(frame_path(directory, 0)), 0);
-    overwrite(frame_path(directory, 1), data, size / 2);    /* truncated */
-    overwrite(frame_path(directory, 2), data, 0);           /* empty */
-    overwrite(frame_path(directory, 4), other, other_size); /* exchanged */
-    overwrite(frame_path(directory, 5), data, size);
+    write_bytes(frame_path(directory, 1), data, size / 2);    /* truncated */
+    write_bytes(frame_path(directory, 2), data, 0);           /* empty */
+    write_bytes(frame_path(directory, 4), other, other_size); /* exchanged */
+    write_bytes(frame_path(directory, 5), data, size);
     data[size / 2] ^= 1;
-    overwrite(frame_path(directory, 7), data, size); /* one bit changed */
+    write_bytes(frame_path(directory, 7), data, size); /* one bit changed */
     other = realloc(other, other_size + 1);
-    overwrite(frame_path(directory, PICTURES - 1), other, other_size + 1); /* one byte appended */
+    write_bytes(frame_path(directory, PICTURES - 1), other, other_size + 1); /* one byte appended */
     assert_int_equal(unlink(frame_path(directory, 9)), 0);
     free(data);
     free(other);
@@ -277,8 +266,7 @@ static bool stop(void *context, double done, double total) {
     return done < how->at;
 }
 
-static void a_stopped_sequence_goes_on(void **state) {
-    (void)state;
+TEST(a_stopped_sequence_goes_on) {
     for (int at = 1; at < PICTURES; at += 30) {
         Error error = {0};
         RenderOptions options = options_for(temporary_path("stopped"));
@@ -289,8 +277,7 @@ static void a_stopped_sequence_goes_on(void **state) {
     }
 }
 
-static void a_killed_sequence_goes_on(void **state) {
-    (void)state;
+TEST(a_killed_sequence_goes_on) {
     RenderOptions options = options_for(temporary_path("killed"));
     for (int at = 1; at < PICTURES; at += 30) {
         int status;
@@ -307,8 +294,7 @@ static void a_killed_sequence_goes_on(void **state) {
 }
 
 /* A power failure cuts a write: the last line may be partial, and so may pictures. */
-static void every_cut_of_the_journal_is_survived(void **state) {
-    (void)state;
+TEST(every_cut_of_the_journal_is_survived) {
     Error error = {0};
     char journal[600];
     RenderOptions options = options_for(temporary_path("cut"));
@@ -321,15 +307,14 @@ static void every_cut_of_the_journal_is_survived(void **state) {
                            size - 1, size};
     for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
         assert_int_equal(unlink(manifest_of(options.directory)), i == 0 ? -1 : 0);
-        overwrite(journal, text, cuts[i]);
+        write_bytes(journal, text, cuts[i]);
         resume(options.directory, NULL);
     }
     free(text);
 }
 
 /* Pictures of another sequence are not kept. */
-static void another_sequence_is_redrawn(void **state) {
-    (void)state;
+TEST(another_sequence_is_redrawn) {
     static const struct {
         RenderOptions options;
         const char *why;
@@ -358,8 +343,7 @@ static void another_sequence_is_redrawn(void **state) {
 }
 
 /* One different bit of a run makes it another run, even if no picture shows it. */
-static void another_run_is_redrawn(void **state) {
-    (void)state;
+TEST(another_run_is_redrawn) {
     const char *directory = copied("run");
     char why[256];
     runs[0]->velocity[2 * RUN_BODIES + FIRST_BOX].x = 1e-9F;
@@ -384,8 +368,7 @@ static char *replaced(const char *text, const char *from, const char *to) {
 }
 
 /* Whatever a manifest contains, the pictures become correct. */
-static void a_manifest_is_not_trusted(void **state) {
-    (void)state;
+TEST(a_manifest_is_not_trusted) {
     static const char *const changes[][2] = {
         {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_000004.png\""},
         {"\"file\": \"frame_000003.png\"", "\"file\": \"frame_999999999999999999999.png\""},
@@ -402,27 +385,26 @@ static void a_manifest_is_not_trusted(void **state) {
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         char *changed = replaced(text, changes[i][0], changes[i][1]);
         bool ours = strncmp(changed, text, 12) == 0;
-        overwrite(manifest_of(directory), changed, strlen(changed));
+        write_bytes(manifest_of(directory), changed, strlen(changed));
         free(changed);
         if (ours) assert_true(resume(directory, NULL) < PICTURES);
     }
     char *large = calloc(1, 1 << 20);
     memcpy(large, text, size);
-    overwrite(manifest_of(directory), large, 1 << 20);
+    write_bytes(manifest_of(directory), large, 1 << 20);
     assert_int_equal(resume(directory, NULL), 0);
     free(large);
     free(text);
 }
 
 /* Files of other programs are not touched. */
-static void files_that_are_not_manifests_stay(void **state) {
-    (void)state;
+TEST(files_that_are_not_manifests_stay) {
     static const char foreign[] = "{\"name\": \"my own\"}";
     Error error = {0};
     RenderOptions options = options_for(copied("foreign"));
     for (int again = 0; again < 2; again++) {
         options.resume = again == 1;
-        overwrite(manifest_of(options.directory), foreign, sizeof foreign - 1);
+        write_bytes(manifest_of(options.directory), foreign, sizeof foreign - 1);
         assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error),
                        "foreign/manifest.json: error: is not a manifest of twinbox");
         size_t size;
@@ -437,27 +419,10 @@ static void files_that_are_not_manifests_stay(void **state) {
     assert_int_equal(mkfifo(manifest_of(options.directory), 0600), 0);
     assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(unlink(manifest_of(options.directory)), 0);
-    overwrite(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
+    write_bytes(temporary_path("elsewhere.json"), foreign, sizeof foreign - 1);
     assert_int_equal(symlink("../elsewhere.json", manifest_of(options.directory)), 0);
     assert_false(render_sequence(panels, 2, &options, NULL, NULL, &error));
     assert_int_equal(count_files(options.directory, ".png"), PICTURES);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_manifest_tells_of_every_picture),
-        cmocka_unit_test(the_view_leads_to_the_bodies),
-        cmocka_unit_test(the_view_names_the_files_of_the_runs),
-        cmocka_unit_test(a_manifest_names_no_place),
-        cmocka_unit_test(nothing_is_drawn_twice),
-        cmocka_unit_test(what_is_missing_or_damaged_is_drawn_again),
-        cmocka_unit_test(a_stopped_sequence_goes_on),
-        cmocka_unit_test(a_killed_sequence_goes_on),
-        cmocka_unit_test(every_cut_of_the_journal_is_survived),
-        cmocka_unit_test(another_sequence_is_redrawn),
-        cmocka_unit_test(another_run_is_redrawn),
-        cmocka_unit_test(a_manifest_is_not_trusted),
-        cmocka_unit_test(files_that_are_not_manifests_stay),
-    };
-    return cmocka_run_group_tests(tests, make, destroy);
-}
+RUN_TESTS(make, destroy)

@@ -17,8 +17,7 @@ static Picture picture_of(double metres) {
     return picture;
 }
 
-static void marks_shrink_with_the_boxes(void **state) {
-    (void)state;
+TEST_WITH(marks_shrink_with_the_boxes, make, destroy) {
     for (double metres = 4; metres < 1000; metres *= 1.5) {
         Picture picture = picture_of(metres);
         const double box = picture.camera.scale, side = panel_side(&picture);
@@ -30,8 +29,7 @@ static void marks_shrink_with_the_boxes(void **state) {
     }
 }
 
-static void beside_large_boxes_marks_have_the_panels_proportions(void **state) {
-    (void)state;
+TEST_WITH(beside_large_boxes_marks_have_the_panels_proportions, make, destroy) {
     Picture near = picture_of(4), nearer = picture_of(2);
     assert_near(marks_dot_radius(&near), marks_dot_radius(&nearer), 0);
     assert_near(marks_line_thickness(&near), marks_line_thickness(&nearer), 0);
@@ -41,8 +39,7 @@ static void beside_large_boxes_marks_have_the_panels_proportions(void **state) {
 }
 
 /* Thin arrows have no halo: of 5,000 boxes nothing else would be seen. */
-static void a_thin_arrow_is_drawn_once(void **state) {
-    (void)state;
+TEST(a_thin_arrow_is_drawn_once) {
     const Rect clip = {0, 0, 100, 100};
     for (double thickness = 0.6; thickness < 4; thickness += 0.2) {
         Drawing drawing = {0};
@@ -54,11 +51,4 @@ static void a_thin_arrow_is_drawn_once(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(marks_shrink_with_the_boxes, make, destroy),
-        cmocka_unit_test_setup_teardown(beside_large_boxes_marks_have_the_panels_proportions, make, destroy),
-        cmocka_unit_test(a_thin_arrow_is_drawn_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of a video: counts, order and fractions. */
+/* The order of a video: counts, order and fractions; films of any frame rate play in real time, and films of a given length
+   last as long. */
 #include "testing.h"
 
 #include "pictures/render.h"
@@ -46,8 +47,7 @@ static MomentPlan plan_for(RenderOptions options) {
     return plan;
 }
 
-static void the_impact_is_the_bombs_first_touch_of_a_box(void **state) {
-    (void)state;
+TEST(the_impact_is_the_bombs_first_touch_of_a_box) {
     assert_int_equal(trajectory_impact(run), IMPACT);
     Trajectory *quiet = struck(FRAMES, 0);
     assert_int_equal(trajectory_impact(quiet), -1);
@@ -59,8 +59,7 @@ static void the_impact_is_the_bombs_first_touch_of_a_box(void **state) {
     run->bomb = BOMB_BODY;
 }
 
-static void without_options_a_picture_is_a_frame(void **state) {
-    (void)state;
+TEST(without_options_a_picture_is_a_frame) {
     for (int slow = 0; slow <= 1; slow++) {
         MomentPlan plan = plan_for((RenderOptions){.slow = slow});
         assert_int_equal(moments_last(&plan) + 1, FRAMES);
@@ -74,8 +73,7 @@ static void without_options_a_picture_is_a_frame(void **state) {
 /* Simulated time, in frames. */
 static double time_of(Moment moment) { return moment.frame + moment_fraction(moment); }
 
-static void slow_motion_adds_parts_around_the_impact(void **state) {
-    (void)state;
+TEST(slow_motion_adds_parts_around_the_impact) {
     for (int slow = 2; slow <= RENDER_SLOW_MAX; slow++) {
         MomentPlan plan = plan_for((RenderOptions){.slow = slow});
         int count = moments_last(&plan) + 1, stored = 0;
@@ -97,8 +95,7 @@ static void slow_motion_adds_parts_around_the_impact(void **state) {
     }
 }
 
-static void slow_motion_ends_where_the_run_does(void **state) {
-    (void)state;
+TEST(slow_motion_ends_where_the_run_does) {
     static const struct {
         int frames, impact, between;
     } cases[] = {{FRAMES, 2, 2 + AFTER}, {FRAMES, FRAMES - 1, BEFORE}, {10, 4, 9}, {FRAMES, 0, 0}};
@@ -114,8 +111,7 @@ static void slow_motion_ends_where_the_run_does(void **state) {
     }
 }
 
-static void the_first_impact_of_all_panels_counts(void **state) {
-    (void)state;
+TEST(the_first_impact_of_all_panels_counts) {
     Trajectory *later = struck(FRAMES + 5, IMPACT + 30);
     MomentPlan plan;
     Error error = {0};
@@ -129,8 +125,7 @@ static void assert_same_moment(Moment a, Moment b) {
     assert_true(a.kind == b.kind && a.frame == b.frame && moment_fraction(a) == moment_fraction(b) && a.slow == b.slow);
 }
 
-static void cards_and_hold_stand_around_the_run(void **state) {
-    (void)state;
+TEST(cards_and_hold_stand_around_the_run) {
     enum { CARD = 120, HOLD = 90 }; /* 2 s and 1.5 s at 60 Hz */
     MomentPlan plan = plan_for((RenderOptions){.slow = 3, .hold = 1.5, .title_card = true, .end_card = true});
     MomentPlan bare = plan_for((RenderOptions){.slow = 3});
@@ -154,8 +149,7 @@ static void cards_and_hold_stand_around_the_run(void **state) {
 }
 
 /* A range of frames has its own cards and hold around the run's moments; its indices begin with the first frame. */
-static void a_range_of_frames_is_a_complete_sequence(void **state) {
-    (void)state;
+TEST(a_range_of_frames_is_a_complete_sequence) {
     MomentPlan bare = plan_for((RenderOptions){.slow = 5});
     RenderOptions options = {.slow = 5, .hold = 0.5, .title_card = true, .end_card = true};
     const Trajectory *panels[] = {run};
@@ -177,8 +171,7 @@ static void a_range_of_frames_is_a_complete_sequence(void **state) {
         }
 }
 
-static void what_is_out_of_range_is_refused(void **state) {
-    (void)state;
+TEST(what_is_out_of_range_is_refused) {
     static const struct {
         RenderOptions options;
         const char *text;
@@ -203,16 +196,178 @@ static void what_is_out_of_range_is_refused(void **state) {
     run->dt = 1.0F / 60;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_impact_is_the_bombs_first_touch_of_a_box),
-        cmocka_unit_test(without_options_a_picture_is_a_frame),
-        cmocka_unit_test(slow_motion_adds_parts_around_the_impact),
-        cmocka_unit_test(slow_motion_ends_where_the_run_does),
-        cmocka_unit_test(the_first_impact_of_all_panels_counts),
-        cmocka_unit_test(cards_and_hold_stand_around_the_run),
-        cmocka_unit_test(a_range_of_frames_is_a_complete_sequence),
-        cmocka_unit_test(what_is_out_of_range_is_refused),
-    };
-    return cmocka_run_group_tests(tests, make, destroy);
+/* Films of other rates, and of given lengths. */
+
+static const double run_rates[] = {20, 59.94, 60, 75.5, 120, 1000}; /* Hz */
+static const double film_rates[] = {1, 24, 25, 29.97, 30, 50, 60, 120, 240};
+enum { RUN_RATES = sizeof run_rates / sizeof *run_rates, FILM_RATES = sizeof film_rates / sizeof *film_rates };
+
+static bool plan_range(MomentPlan *plan, double rate, int first, int last, RenderOptions options, Error *error) {
+    const Trajectory *panels[] = {run};
+    run->dt = (float)(1 / rate);
+    return moments_plan(plan, panels, 1, first, last, &options, error);
 }
+
+static MomentPlan plan_at(double rate, RenderOptions options) {
+    MomentPlan plan;
+    Error error = {0};
+    assert_ok(plan_range(&plan, rate, 0, FRAMES - 1, options, &error), error);
+    return plan;
+}
+
+TEST(pictures_are_shown_at_their_time) {
+    for (int r = 0; r < RUN_RATES; r++)
+        for (int f = 0; f < FILM_RATES; f++) {
+            const double fps = film_rates[f], length = (FRAMES - 1) / run_rates[r];
+            MomentPlan plan = plan_at(run_rates[r], (RenderOptions){.fps = fps});
+            const int last = moments_last(&plan);
+            assert_near(plan.rate, fps, 1e-9);
+            for (int p = 0; p < last; p++) {
+                Moment moment = moments_at(&plan, p);
+                assert_near(time_of(moment) / run_rates[r], p / fps, 1e-5); /* rates are rounded to 1/1000 Hz */
+                assert_int_equal(moment.kind, moment.part > 0 ? MOMENT_BETWEEN : MOMENT_STORED);
+                assert_true(moment.part < moment.parts && moment.slow == 1);
+                assert_int_equal(moment.parts, moments_at(&plan, 0).parts);
+            }
+            assert_true(time_of(moments_at(&plan, last)) == FRAMES - 1);
+            assert_true(last / fps > length - 1e-5 && last / fps < length + 1 / fps); /* at most one picture late */
+        }
+}
+
+/* A film of the run's rate, or of a whole fraction of it, shows stored frames only. */
+TEST(frames_are_picked_where_they_fit) {
+    for (int every = 1; every <= 4; every++) {
+        MomentPlan plan = plan_at(120, (RenderOptions){.fps = 120.0 / every});
+        for (int p = 0; p < moments_last(&plan); p++) {
+            Moment moment = moments_at(&plan, p);
+            assert_true(moment.kind == MOMENT_STORED && moment.frame == p * every && moment.parts == 1);
+        }
+    }
+    MomentPlan finer = plan_at(20, (RenderOptions){.fps = 60});
+    for (int p = 0; p <= moments_last(&finer); p++) {
+        Moment moment = moments_at(&finer, p);
+        assert_true(moment.frame == p / 3 && moment.part == p % 3 && moment.parts == 3);
+    }
+}
+
+/* 0.15 s before the impact to 0.6 s after it are slower, at any rate of the film. */
+TEST(slow_motion_is_as_slow_at_every_rate) {
+    for (int f = 1; f < FILM_RATES; f++)
+        for (int slow = 2; slow <= 5; slow++) {
+            const double fps = film_rates[f];
+            MomentPlan plan = plan_at(60, (RenderOptions){.fps = fps, .slow = slow});
+            for (int p = 1; p < moments_last(&plan); p++) {
+                Moment before = moments_at(&plan, p - 1), moment = moments_at(&plan, p);
+                const bool inside = time_of(before) >= IMPACT - 9 && time_of(moment) < IMPACT + 36;
+                const bool outside = time_of(before) >= IMPACT + 36 || time_of(moment) <= IMPACT - 9;
+                const double passed = (time_of(moment) - time_of(before)) / 60;
+                if (inside || outside) assert_near(passed, 1 / fps / (inside ? slow : 1), 1e-9);
+                assert_true(moment.slow == (time_of(moment) >= IMPACT - 9 && time_of(moment) < IMPACT + 36 ? slow : 1));
+            }
+            const double length = (FRAMES - 1 + (slow - 1) * 45) / 60.0;
+            assert_true(moments_last(&plan) / fps >= length - 1e-9 && moments_last(&plan) / fps < length + 1 / fps);
+        }
+}
+
+/* Twice as slow at half the rate shows every frame: no pose is interpolated, although it is slow motion. */
+TEST(slow_motion_interpolates_only_where_it_must) {
+    MomentPlan plan = plan_at(120, (RenderOptions){.fps = 60, .slow = 2});
+    for (int p = 0; p < moments_last(&plan); p++) {
+        Moment moment = moments_at(&plan, p);
+        assert_true(moment.kind == MOMENT_STORED && moment.parts == 1);
+    }
+    plan = plan_at(120, (RenderOptions){.fps = 60, .slow = 4});
+    assert_int_equal(moments_at(&plan, moments_last(&plan) / 2).parts, 2);
+}
+
+TEST(cards_and_hold_last_as_long_at_every_rate) {
+    for (int f = 0; f < FILM_RATES; f++) {
+        const double fps = film_rates[f];
+        MomentPlan plan = plan_at(60, (RenderOptions){.fps = fps, .hold = 3, .title_card = true, .end_card = true});
+        assert_near(plan.title / fps, 2, 0.5 / fps + 1e-9);
+        assert_near(plan.end / fps, 2, 0.5 / fps + 1e-9);
+        assert_near(plan.hold / fps, 3, 0.5 / fps + 1e-9);
+    }
+}
+
+TEST(a_duration_is_that_of_the_whole_film) {
+    static const double durations[] = {0.5, 1, 2, 7.5, 30};
+    for (int d = 0; d < 5; d++)
+        for (int f = 1; f < FILM_RATES; f++)
+            for (int parts = 0; parts < 8; parts++) {
+                RenderOptions options = {.fps = film_rates[f],
+                                         .duration = 5 + durations[d],
+                                         .slow = parts & 1 ? 3 : 0,
+                                         .hold = parts & 2 ? 1 : 0,
+                                         .title_card = parts & 4,
+                                         .end_card = parts & 4};
+                MomentPlan plan = plan_at(60, options);
+                const int count = moments_last(&plan) + 1, begin = plan.title, end = begin + plan.run - 1;
+                assert_near(count / film_rates[f], options.duration, 0.5 / film_rates[f] + 1e-9);
+                assert_int_equal(plan.title + plan.run + plan.hold + plan.end, count);
+                assert_true(time_of(moments_at(&plan, begin)) == 0);
+                assert_true(time_of(moments_at(&plan, end - 1)) < FRAMES - 1);
+                assert_true(time_of(moments_at(&plan, end)) == FRAMES - 1);
+                const Moment first = moments_at(&plan, begin), second = moments_at(&plan, begin + 1);
+                if (!(parts & 1)) assert_near(time_of(second) / 60 * film_rates[f], plan.speed, 1e-6);
+                assert_near(first.slow, 1 / plan.speed, 1e-12);
+            }
+    MomentPlan same = plan_at(60, (RenderOptions){.duration = FRAMES / 60.0});
+    assert_near(same.speed, 1, 1e-6);
+    for (int p = 0; p < FRAMES; p++) assert_int_equal(moments_at(&same, p).frame, p);
+}
+
+/* File names begin with the first frame. */
+TEST(a_range_plays_in_real_time) {
+    MomentPlan plan;
+    Error error = {0};
+    assert_ok(plan_range(&plan, 60, 30, 41, (RenderOptions){.fps = 30}, &error), error);
+    assert_int_equal(moments_last(&plan), 30 + 6);
+    for (int p = 0; p < 6; p++) assert_int_equal(moments_at(&plan, 30 + p).frame, 30 + 2 * p);
+    assert_int_equal(moments_at(&plan, 36).frame, 41);
+    assert_ok(plan_range(&plan, 60, 50, 50, (RenderOptions){.fps = 30}, &error), error);
+    assert_int_equal(moments_last(&plan), 50);
+}
+
+TEST(what_makes_no_sense_is_refused) {
+    const struct {
+        double rate;
+        int first, last;
+        RenderOptions options;
+        const char *text;
+    } wrong[] = {
+        {60, 0, 9, {.fps = 0.5}, "the pictures per second must be 1 to 240 (got 0.5)"},
+        {60, 0, 9, {.fps = 241}, "(got 241)"},
+        {60, 0, 9, {.fps = NAN}, "pictures per second"},
+        {60, 0, 9, {.fps = -1}, "pictures per second"},
+        {60, 0, 9, {.duration = -1}, "the film can last up to 3600 s (got -1)"},
+        {60, 0, 9, {.duration = 3601}, "the film can last up to 3600 s"},
+        {60, 0, 9, {.duration = NAN}, "the film can last"},
+        {60, 5, 5, {.duration = 2}, "--duration: error: a single frame has no speed; --hold shows it"},
+        {60, 0, 9, {.duration = 0.02}, "--duration: error: 0.02 s are too short: 0.0333 s at 60 pictures per second"},
+        {60, 0, 9, {.duration = 0.1, .fps = 10}, "0.1 s are too short: 0.2 s at 10 pictures per second are needed"},
+        {60,
+         0,
+         9,
+         {.duration = 4.5, .fps = 10, .hold = 0.5, .title_card = true, .end_card = true},
+         "4.5 s are too short: with the cards and the held frame, 4.7 s at 10 pictures per second are needed"},
+        {1e12, 0, 9, {.fps = 60}, "have no real time that a video can show"},
+        {1e-4, 0, 9, {.fps = 60}, "time steps of 10000 s have no real time"},
+        {1e-3, 0, FRAMES - 1, {.fps = 240, .slow = 16}, NULL},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        Error error = {0};
+        MomentPlan plan;
+        const bool planned = plan_range(&plan, wrong[i].rate, wrong[i].first, wrong[i].last, wrong[i].options, &error);
+        assert_int_equal(planned, wrong[i].text == NULL);
+        if (!planned) assert_error(error, ERROR_INPUT, wrong[i].text);
+    }
+    Error error = {0};
+    MomentPlan plan;
+    run->dt = 1000;
+    const Trajectory *panels[] = {run};
+    assert_refused(moments_plan(&plan, panels, 1, 0, 9999, &(RenderOptions){.fps = 240}, &error),
+                   "too many pictures for one sequence");
+}
+
+RUN_TESTS(make, destroy)

@@ -54,8 +54,7 @@ static double scale_in(const Picture *picture, int columns, Vec2 needs) {
 }
 
 /* No grid in which names are whole shows the scene more than 5% larger. */
-static void the_grid_is_the_one_with_the_largest_scene(void **state) {
-    (void)state;
+TEST(the_grid_is_the_one_with_the_largest_scene) {
     static const float scenes[][2] = {{3, 60}, {60, 3}, {10, 10}, {5, 20}, {20, 5}};
     for (size_t scene = 0; scene < sizeof scenes / sizeof scenes[0]; scene++) {
         make(scenes[scene][0], scenes[scene][1]);
@@ -80,8 +79,7 @@ static void the_grid_is_the_one_with_the_largest_scene(void **state) {
 
 /* In a row, or in a column, the scene has the whole length of the panel but for its margin (7% of at most six shorter sides)
    and the rounding of the scale. */
-static void long_scenes_fill_their_panels(void **state) {
-    (void)state;
+TEST(long_scenes_fill_their_panels) {
     for (int wide = 0; wide < 2; wide++) {
         make(wide ? 60 : 3, wide ? 3 : 60);
         for (int i = 0; i < SIZES; i++)
@@ -100,8 +98,7 @@ static void long_scenes_fill_their_panels(void **state) {
     }
 }
 
-static void the_ground_takes_little(void **state) {
-    (void)state;
+TEST(the_ground_takes_little) {
     static const float scenes[][2] = {{3, 60}, {60, 3}, {10, 10}, {1, 1}};
     for (size_t scene = 0; scene < sizeof scenes / sizeof scenes[0]; scene++) {
         make(scenes[scene][0], scenes[scene][1]);
@@ -118,8 +115,7 @@ static void the_ground_takes_little(void **state) {
 }
 
 /* A moving camera comes closer than the fixed one, and an overlay has the names of all runs in one line. */
-static void panels_that_need_their_room_keep_it(void **state) {
-    (void)state;
+TEST(panels_that_need_their_room_keep_it) {
     make(3, 60);
     const Picture overlay = plan(3, sizes[0], &(RenderLook){.compare = LOOK_OVERLAY});
     assert_int_equal(overlay.layout.panels[0].right, overlay.layout.right);
@@ -132,8 +128,7 @@ static void panels_that_need_their_room_keep_it(void **state) {
 }
 
 /* Numbers stand at equal distances: every first, second, fifth, ... line. */
-static void axes_are_numbered_in_equal_steps(void **state) {
-    (void)state;
+TEST(axes_are_numbered_in_equal_steps) {
     make(60, 3);
     for (int i = 0; i < SIZES; i++)
         for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
@@ -166,13 +161,4 @@ static void axes_are_numbered_in_equal_steps(void **state) {
     destroy();
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_grid_is_the_one_with_the_largest_scene),
-        cmocka_unit_test(long_scenes_fill_their_panels),
-        cmocka_unit_test(the_ground_takes_little),
-        cmocka_unit_test(panels_that_need_their_room_keep_it),
-        cmocka_unit_test(axes_are_numbered_in_equal_steps),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

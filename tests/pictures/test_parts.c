@@ -57,8 +57,7 @@ static void check(const RenderLook *look, int count, int width, int height) {
     picture_free(&picture);
 }
 
-static void every_mark_is_in_a_part(void **state) {
-    (void)state;
+TEST_WITH(every_mark_is_in_a_part, make, destroy) {
     for (int i = 0; i < SIZES; i++)
         for (int compare = LOOK_SPLIT; compare <= LOOK_DIFFERENCE; compare++)
             for (int camera = LOOK_FIT; camera <= LOOK_DIVERGENCE; camera++)
@@ -68,8 +67,7 @@ static void every_mark_is_in_a_part(void **state) {
 }
 
 /* A region in a panel must not be taken for a caption. */
-static void parts_and_panels_do_not_overlap(void **state) {
-    (void)state;
+TEST_WITH(parts_and_panels_do_not_overlap, make, destroy) {
     for (int i = 0; i < SIZES; i++) {
         Error error = {0};
         Picture picture;
@@ -101,8 +99,7 @@ static void make_box(Vec2 size) {
     }
 }
 
-static void every_mark_of_long_scenes_is_in_a_part(void **state) {
-    (void)state;
+TEST_WITH(every_mark_of_long_scenes_is_in_a_part, make, destroy) {
     for (int wide = 0; wide < 2; wide++) {
         make_box(wide ? vec2(60, 3) : vec2(3, 60));
         for (int i = 0; i < SIZES; i++)
@@ -111,10 +108,4 @@ static void every_mark_of_long_scenes_is_in_a_part(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_mark_is_in_a_part, make, destroy),
-        cmocka_unit_test_setup_teardown(every_mark_of_long_scenes_is_in_a_part, make, destroy),
-        cmocka_unit_test_setup_teardown(parts_and_panels_do_not_overlap, make, destroy)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -44,8 +44,7 @@ static uint64_t hash_of(int count, int width, int height, int frame) {
     return hash;
 }
 
-static void both_contexts_draw_the_same(void **state) {
-    (void)state;
+TEST_WITH(both_contexts_draw_the_same, make, destroy) {
     static const int sizes[][2] = {{640, 360}, {1280, 720}, {360, 640}, {64, 64}, {65, 333}, {2000, 301}};
     for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
         const int *size = sizes[count - 1];
@@ -67,8 +66,7 @@ static void copy_panel(Image *to, const Image *from, const Rect *rect) {
     }
 }
 
-static void an_ended_panel_holds_its_last_frame(void **state) {
-    (void)state;
+TEST_WITH(an_ended_panel_holds_its_last_frame, make, destroy) {
     runs[1]->frames = 6;
     Picture picture;
     Error error = {0};
@@ -97,8 +95,7 @@ static void an_ended_panel_holds_its_last_frame(void **state) {
     image_destroy(b);
 }
 
-static void the_largest_distance_of_any_panel_counts(void **state) {
-    (void)state;
+TEST_WITH(the_largest_distance_of_any_panel_counts, make, destroy) {
     Picture picture;
     Error error = {0};
     run_position(runs[1], 4, SECOND_BOX)->y += 2;
@@ -112,8 +109,7 @@ static void the_largest_distance_of_any_panel_counts(void **state) {
 }
 
 /* The header shows the distance, and nothing else changes. */
-static void the_distance_is_written_down(void **state) {
-    (void)state;
+TEST_WITH(the_distance_is_written_down, make, destroy) {
     uint64_t before = hash_of(2, 640, 360, 4);
     *run_position(runs[1], 4, FIRST_BOX) = vec2(-500, 500); /* out of view */
     *run_position(runs[0], 4, FIRST_BOX) = vec2(-500, 500);
@@ -127,8 +123,7 @@ static void the_distance_is_written_down(void **state) {
     assert_true(hash_of(2, 640, 360, 4) == far); /* both are "> 1000 m" */
 }
 
-static void hostile_poses_do_no_harm(void **state) {
-    (void)state;
+TEST_WITH(hostile_poses_do_no_harm, make, destroy) {
     static const float bad[] = {NAN, INFINITY, -INFINITY, 3e38F, -1e20F, 1e9F, 1e-40F};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         *run_position(runs[1], 5, FIRST_BOX) = vec2(bad[i], 1);
@@ -145,8 +140,7 @@ static void hostile_poses_do_no_harm(void **state) {
     }
 }
 
-static void bodies_out_of_view_are_counted(void **state) {
-    (void)state;
+TEST_WITH(bodies_out_of_view_are_counted, make, destroy) {
     Picture picture;
     Error error = {0};
     *run_position(runs[1], 5, FIRST_BOX) = vec2(-1000, 3);
@@ -157,8 +151,7 @@ static void bodies_out_of_view_are_counted(void **state) {
     assert_int_equal(panel_count_out_of_view(&picture, 0, moment_stored(5)), 0);
 }
 
-static void an_absent_body_is_not_drawn(void **state) {
-    (void)state;
+TEST_WITH(an_absent_body_is_not_drawn, make, destroy) {
     run_position(runs[0], 0, BOMB_BODY)->x = 1;
     assert_true(isnan((double)run_position(runs[0], 0, BOMB_BODY)->y));
     uint64_t half = hash_of(1, 640, 360, 0);
@@ -183,8 +176,7 @@ static uint64_t hash_with_words(const char *title, const char *note) {
 }
 
 /* The scene's own name as title changes nothing; every other text does. */
-static void a_title_and_notes_are_drawn(void **state) {
-    (void)state;
+TEST_WITH(a_title_and_notes_are_drawn, make, destroy) {
     uint64_t plain = hash_of(2, 1280, 720, 4);
     assert_true(hash_with_words(NULL, NULL) == plain);
     assert_true(hash_with_words("two_boxes", NULL) == plain);
@@ -194,8 +186,7 @@ static void a_title_and_notes_are_drawn(void **state) {
 }
 
 /* From 9 to 10 and from 99 to 100, the text beside the numbers does not move. */
-static void captions_do_not_jump(void **state) {
-    (void)state;
+TEST_WITH(captions_do_not_jump, make, destroy) {
     trajectory_destroy(runs[0]);
     panels[0] = runs[0] = run_make("engine", 1010);
     Picture picture;
@@ -218,16 +209,14 @@ static uint64_t hash_with_method(const char *method) {
 }
 
 /* The same network in another folder gives the same picture; another setting another one. */
-static void folders_of_networks_are_left_out(void **state) {
-    (void)state;
+TEST_WITH(folders_of_networks_are_left_out, make, destroy) {
     uint64_t hash = hash_with_method("pair-net:network=b.npz,dt=1/60");
     assert_true(hash_with_method("pair-net:network=/home/a/b.npz,dt=1/60") == hash);
     assert_true(hash_with_method("pair-net:network=b.npz,dt=2/60") != hash);
     assert_true(hash_with_method("pair-net:network=a.npz,dt=1/60") != hash);
 }
 
-static void hostile_names_do_no_harm(void **state) {
-    (void)state;
+TEST_WITH(hostile_names_do_no_harm, make, destroy) {
     for (int byte = 1; byte < 256; byte++) {
         memset(runs[0]->scene, byte, TRAJECTORY_NAME_SIZE - 1);
         memset(runs[0]->method, byte, TRAJECTORY_NAME_SIZE - 1);
@@ -244,8 +233,7 @@ static void hostile_names_do_no_harm(void **state) {
     }
 }
 
-static void what_cannot_be_shown_is_refused(void **state) {
-    (void)state;
+TEST_WITH(what_cannot_be_shown_is_refused, make, destroy) {
     static const int sizes[][2] = {{63, 64}, {64, 63}, {8193, 64}, {64, 8193}, {-5, 100}, {0, 0}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         Error error = {0};
@@ -270,20 +258,4 @@ static void what_cannot_be_shown_is_refused(void **state) {
     renderer_destroy(renderer);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(both_contexts_draw_the_same, make, destroy),
-        cmocka_unit_test_setup_teardown(an_ended_panel_holds_its_last_frame, make, destroy),
-        cmocka_unit_test_setup_teardown(the_largest_distance_of_any_panel_counts, make, destroy),
-        cmocka_unit_test_setup_teardown(the_distance_is_written_down, make, destroy),
-        cmocka_unit_test_setup_teardown(hostile_poses_do_no_harm, make, destroy),
-        cmocka_unit_test_setup_teardown(bodies_out_of_view_are_counted, make, destroy),
-        cmocka_unit_test_setup_teardown(an_absent_body_is_not_drawn, make, destroy),
-        cmocka_unit_test_setup_teardown(a_title_and_notes_are_drawn, make, destroy),
-        cmocka_unit_test_setup_teardown(captions_do_not_jump, make, destroy),
-        cmocka_unit_test_setup_teardown(folders_of_networks_are_left_out, make, destroy),
-        cmocka_unit_test_setup_teardown(hostile_names_do_no_harm, make, destroy),
-        cmocka_unit_test_setup_teardown(what_cannot_be_shown_is_refused, make, destroy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

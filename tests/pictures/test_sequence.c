@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "pixels/built_contexts.h"
-#include "folders.h"
+#include "files.h"
 #include "mesa.h"
 #include "pictures/render.h"
 #include "runs.h"
@@ -36,8 +36,7 @@ static RenderOptions options_for(const char *directory, int jobs) {
     return (RenderOptions){.width = 160, .height = 90, .last = -1, .jobs = jobs, .directory = directory};
 }
 
-static void any_number_of_jobs_writes_the_same_files(void **state) {
-    (void)state;
+TEST_WITH(any_number_of_jobs_writes_the_same_files, make, destroy) {
     static const int jobs[] = {2, 3, 20}; /* fewer and more than frames */
     Error error = {0};
     for (int i = 0; i < 2; i++) {
@@ -55,8 +54,7 @@ static void any_number_of_jobs_writes_the_same_files(void **state) {
     }
 }
 
-static void a_sequence_holds_the_frames_of_the_renderer(void **state) {
-    (void)state;
+TEST_WITH(a_sequence_holds_the_frames_of_the_renderer, make, destroy) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("range"), 2);
     options.first = 3, options.last = 7;
@@ -82,8 +80,7 @@ static void assert_text(const char *path, const char *key, const char *wanted) {
     assert_string_equal(value, wanted);
 }
 
-static void frames_tell_their_origin(void **state) {
-    (void)state;
+TEST_WITH(frames_tell_their_origin, make, destroy) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("texts"), 1);
     options.first = options.last = FRAMES - 1;
@@ -115,8 +112,7 @@ static bool listen_to(void *context, double done, double total) {
     return done < listener->stop_at;
 }
 
-static void progress_counts_the_frames(void **state) {
-    (void)state;
+TEST_WITH(progress_counts_the_frames, make, destroy) {
     Error error = {0};
     Listener listener = {.stop_at = 1000};
     RenderOptions options = options_for(temporary_path("progress"), 3);
@@ -125,8 +121,7 @@ static void progress_counts_the_frames(void **state) {
 }
 
 /* No process remains, and no file is incomplete. */
-static void a_sequence_can_be_stopped(void **state) {
-    (void)state;
+TEST_WITH(a_sequence_can_be_stopped, make, destroy) {
     Error error = {0};
     trajectory_destroy(runs[0]);
     panels[0] = runs[0] = run_make("engine", 2000);
@@ -153,8 +148,7 @@ static void limit_files(rlim_t bytes, void (*handler)(int)) {
     signal(SIGXFSZ, handler);
 }
 
-static void a_full_disk_is_told(void **state) {
-    (void)state;
+TEST_WITH(a_full_disk_is_told, make, destroy) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("full"), 2);
     /* Too small for the manifest, for a picture (3 kB), for the journal's growth. */
@@ -175,8 +169,7 @@ static void a_full_disk_is_told(void **state) {
 }
 
 /* With its signal, the same limit kills the process. */
-static void a_killed_process_is_reported(void **state) {
-    (void)state;
+TEST_WITH(a_killed_process_is_reported, make, destroy) {
     Error error = {0};
     RenderOptions options = options_for(temporary_path("killed"), 2);
     limit_files(2000, SIG_DFL);
@@ -187,8 +180,7 @@ static void a_killed_process_is_reported(void **state) {
     assert_int_equal(waitpid(-1, NULL, WNOHANG), -1);
 }
 
-static void folders_that_cannot_be_written_are_refused(void **state) {
-    (void)state;
+TEST_WITH(folders_that_cannot_be_written_are_refused, make, destroy) {
     Error error = {0};
     const char *file = temporary_path("file"), *inside = temporary_path("file/frames");
     assert_ok(file_write(file, "", 0, &error), error);
@@ -201,8 +193,7 @@ static void folders_that_cannot_be_written_are_refused(void **state) {
     assert_error(error, ERROR_SYSTEM, "/proc");
 }
 
-static void wrong_options_are_refused(void **state) {
-    (void)state;
+TEST_WITH(wrong_options_are_refused, make, destroy) {
     const char *directory = temporary_path("never");
     const struct {
         RenderOptions options;
@@ -225,17 +216,4 @@ static void wrong_options_are_refused(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(any_number_of_jobs_writes_the_same_files, make, destroy),
-        cmocka_unit_test_setup_teardown(a_sequence_holds_the_frames_of_the_renderer, make, destroy),
-        cmocka_unit_test_setup_teardown(frames_tell_their_origin, make, destroy),
-        cmocka_unit_test_setup_teardown(progress_counts_the_frames, make, destroy),
-        cmocka_unit_test_setup_teardown(a_sequence_can_be_stopped, make, destroy),
-        cmocka_unit_test_setup_teardown(a_full_disk_is_told, make, destroy),
-        cmocka_unit_test_setup_teardown(a_killed_process_is_reported, make, destroy),
-        cmocka_unit_test_setup_teardown(folders_that_cannot_be_written_are_refused, make, destroy),
-        cmocka_unit_test_setup_teardown(wrong_options_are_refused, make, destroy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -27,8 +27,7 @@ static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
     if (found != rgba) fail_msg("pixel (%d, %d) is %08x, not %08x", x, y, found, rgba);
 }
 
-static void bodies_stand_on_nothing(void **state) {
-    (void)state;
+TEST(bodies_stand_on_nothing) {
     Trajectory *run = run_make("engine", 3);
     Image *image = shoot(run, 0, METHOD_BLUE, STILL_ALL);
     expect_pixel(image, 60, 150, 0x0072B2FF);  /* the middle of the first box */
@@ -48,8 +47,7 @@ static void bodies_stand_on_nothing(void **state) {
 }
 
 /* Alpha sums to the boxes' areas (corners are round): an edge within a pixel counts in part. */
-static void alpha_is_coverage(void **state) {
-    (void)state;
+TEST(alpha_is_coverage) {
     Trajectory *run = run_make("engine", 8);
     Image *image = shoot(run, 7, METHOD_BLUE, STILL_MOVING);
     double sum = 0;
@@ -66,18 +64,10 @@ static void alpha_is_coverage(void **state) {
     trajectory_destroy(run);
 }
 
-static void sizes_are_limited(void **state) {
-    (void)state;
+TEST(sizes_are_limited) {
     Error error = {0};
     assert_refused(still_create(RENDER_SIDE_MAX + 1, 10, &error), "(got 8193 x 10)");
     assert_refused(still_create(10, 0, &error), "(got 10 x 0)");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies_stand_on_nothing),
-        cmocka_unit_test(alpha_is_coverage),
-        cmocka_unit_test(sizes_are_limited),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

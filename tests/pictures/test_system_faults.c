@@ -3,7 +3,7 @@
 #define _GNU_SOURCE /* RTLD_NEXT */
 #include "testing.h"
 
-#include "folders.h"
+#include "files.h"
 #include "mesa.h"
 #include "pictures/render.h"
 #include "runs.h"
@@ -64,8 +64,7 @@ static bool draw(const RenderOptions *options, int frames, Error *error) {
     return done;
 }
 
-static void interrupted_calls_are_continued(void **state) {
-    (void)state;
+TEST(interrupted_calls_are_continued) {
     Error error = {0};
     char whole[256];
     snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
@@ -80,8 +79,7 @@ static void interrupted_calls_are_continued(void **state) {
 }
 
 /* Each is left over by a call that ends well otherwise. */
-static void what_cannot_be_removed_is_an_error(void **state) {
-    (void)state;
+TEST(what_cannot_be_removed_is_an_error) {
     static const struct {
         const char *ending;
         int frames; /* of a second call */
@@ -101,8 +99,7 @@ static void what_cannot_be_removed_is_an_error(void **state) {
 }
 
 /* The system is to blame, not the file. */
-static void what_cannot_be_inspected_is_an_error(void **state) {
-    (void)state;
+TEST(what_cannot_be_inspected_is_an_error) {
     static const char *const endings[] = {"manifest.json", "manifest.json.part"};
     RenderOptions options = options_for(temporary_path("unseen"));
     for (int i = 0; i < 2; i++) {
@@ -115,9 +112,4 @@ static void what_cannot_be_inspected_is_an_error(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(interrupted_calls_are_continued),
-                                       cmocka_unit_test(what_cannot_be_removed_is_an_error),
-                                       cmocka_unit_test(what_cannot_be_inspected_is_an_error)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -40,8 +40,7 @@ static Lab seen(uint32_t colour, int sight) {
 static double distance(Lab a, Lab b) { return sqrt(pow(a.l - b.l, 2) + pow(a.a - b.a, 2) + pow(a.b - b.b, 2)); }
 
 /* 2.3 is what a trained eye just notices; boxes are small and apart. */
-static void colours_differ_for_all_readers(void **state) {
-    (void)state;
+TEST(colours_differ_for_all_readers) {
     for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
         const Theme *theme = theme_get((LookTheme)t);
         for (int sight = 0; sight < 4; sight++)
@@ -54,8 +53,7 @@ static void colours_differ_for_all_readers(void **state) {
 }
 
 /* In grey the engine differs from every other method's boxes, and all boxes from their panel. */
-static void grey_tells_boxes_from_the_engines_and_the_page(void **state) {
-    (void)state;
+TEST(grey_tells_boxes_from_the_engines_and_the_page) {
     for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
         const Theme *theme = theme_get((LookTheme)t);
         const double blue = seen(theme->bodies[METHOD_BLUE].fill, 0).l, panel = seen(theme->panel, 0).l;
@@ -67,8 +65,4 @@ static void grey_tells_boxes_from_the_engines_and_the_page(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(colours_differ_for_all_readers),
-                                       cmocka_unit_test(grey_tells_boxes_from_the_engines_and_the_page)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -25,8 +25,7 @@ static int destroy(void **state) {
     return 0;
 }
 
-static void lines_fit_and_hold_every_word(void **state) {
-    (void)state;
+TEST(lines_fit_and_hold_every_word) {
     const Font font = font_pick(FONT_SEMIBOLD, 20);
     for (int room = 150; room < 1500; room += 37)
         for (int first = 100; first <= room; first += 50) {
@@ -42,8 +41,7 @@ static void lines_fit_and_hold_every_word(void **state) {
         }
 }
 
-static void a_word_longer_than_a_line_is_broken(void **state) {
-    (void)state;
+TEST(a_word_longer_than_a_line_is_broken) {
     const Font font = font_pick(FONT_SEMIBOLD, 20);
     const TextLines lines = text_lines(&font, "D\xC3\xA4mpfungsgleichungssysteme", 120, 120);
     assert_int_equal(lines.count, 3);
@@ -64,8 +62,7 @@ static Picture plan(const char *title, const char *caption, int width, int heigh
 }
 
 /* Each line moves the panels down. */
-static void the_header_is_as_high_as_its_title(void **state) {
-    (void)state;
+TEST_WITH(the_header_is_as_high_as_its_title, make, destroy) {
     const Picture one = plan(NULL, NULL, 960, 540), more = plan(LONG_TITLE, NULL, 960, 540);
     assert_int_equal(one.layout.header_lines, 1);
     assert_true(more.layout.header_lines > 1);
@@ -74,8 +71,7 @@ static void the_header_is_as_high_as_its_title(void **state) {
     assert_int_equal(more.layout.panels[0].bottom, one.layout.panels[0].bottom);
 }
 
-static void too_long_a_title_is_an_error(void **state) {
-    (void)state;
+TEST_WITH(too_long_a_title_is_an_error, make, destroy) {
     Error error = {0};
     char text[2 * sizeof LONG_TITLE];
     snprintf(text, sizeof text, "%.126s %.126s", LONG_TITLE, LONG_TITLE);
@@ -101,8 +97,7 @@ static bool draws(const Drawing *drawing, const Font *font, const char *text) {
 }
 
 /* In the panel and on both cards; the other run keeps its name. */
-static void a_caption_stands_for_the_method(void **state) {
-    (void)state;
+TEST_WITH(a_caption_stands_for_the_method, make, destroy) {
     const Picture picture = plan(NULL, "our own", 960, 540);
     const MomentKind kinds[] = {MOMENT_STORED, MOMENT_TITLE, MOMENT_END};
     for (int i = 0; i < 3; i++) {
@@ -121,8 +116,7 @@ static void a_caption_stands_for_the_method(void **state) {
     drawing_free(&drawing);
 }
 
-static void captions_are_checked(void **state) {
-    (void)state;
+TEST(captions_are_checked) {
     Error error = {0};
     char text[CAPTION_TEXT_SIZE + 1];
     memset(text, 'a', sizeof text);
@@ -133,14 +127,4 @@ static void captions_are_checked(void **state) {
                    "--caption: error: the text has 256 bytes, but at most 255 are allowed");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_fit_and_hold_every_word),
-        cmocka_unit_test(a_word_longer_than_a_line_is_broken),
-        cmocka_unit_test_setup_teardown(the_header_is_as_high_as_its_title, make, destroy),
-        cmocka_unit_test_setup_teardown(too_long_a_title_is_an_error, make, destroy),
-        cmocka_unit_test_setup_teardown(a_caption_stands_for_the_method, make, destroy),
-        cmocka_unit_test(captions_are_checked),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

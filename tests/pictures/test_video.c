@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "base/machine.h"
-#include "folders.h"
+#include "files.h"
 #include "mesa.h"
 #include "pictures/render.h"
 #include "runs.h"
@@ -69,8 +69,7 @@ static void assert_nothing_left(const char *directory) {
     assert_int_equal(count_files(directory, ".part"), 0);
 }
 
-static void each_form_has_all_its_frames_and_the_same_bytes_again(void **state) {
-    (void)state;
+TEST(each_form_has_all_its_frames_and_the_same_bytes_again) {
     static const struct {
         const char *name;
         double rate, tolerance;
@@ -95,8 +94,7 @@ static void each_form_has_all_its_frames_and_the_same_bytes_again(void **state) 
 }
 
 /* A GIF of a chosen rate has up to 50 frames per second, of the run's rate up to 25. */
-static void gifs_keep_a_chosen_rate(void **state) {
-    (void)state;
+TEST(gifs_keep_a_chosen_rate) {
     static const struct {
         double rate;
         bool chosen;
@@ -117,8 +115,7 @@ static void gifs_keep_a_chosen_rate(void **state) {
 }
 
 /* Large pictures are scaled to 800 pixels, in their shape; small ones keep their size. */
-static void gifs_are_small(void **state) {
-    (void)state;
+TEST(gifs_are_small) {
     static const int sizes[][4] = {
         {1600, 90, 800, 45}, {90, 1600, 45, 800}, {801, 100, 800, 100}, {800, 60, 800, 60}, {96, 64, 96, 64}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
@@ -140,8 +137,7 @@ static void gifs_are_small(void **state) {
 }
 
 /* No name is taken for a pattern, an option or a URL. */
-static void any_file_name_works(void **state) {
-    (void)state;
+TEST(any_file_name_works) {
     static const char *const names[] = {"-y.mp4", "a%03d.gif", "http:x.mp4", "b c'\"$.mp4"};
     Error error = {0};
     char before[512];
@@ -158,13 +154,7 @@ static void any_file_name_works(void **state) {
     assert_int_equal(count_files(directory, ""), 4);
 }
 
-static void overwrite(const char *path, const char *data, size_t size) {
-    Error error = {0};
-    assert_ok(file_write_soon(path, data, size, &error), error);
-}
-
-static void a_damaged_frame_makes_no_video(void **state) {
-    (void)state;
+TEST(a_damaged_frame_makes_no_video) {
     size_t size, other_size;
     const char *path = temporary_path("kept.mp4"), *frame = frame_path(folder, 4);
     char *data = read_whole(frame, &size), *other = read_whole(frame_path(folder, 8), &other_size);
@@ -174,11 +164,11 @@ static void a_damaged_frame_makes_no_video(void **state) {
         static const char *const texts[] = {"cannot open", "unexpected end of file", "differ from those drawn",
                                             "frame 4 is 8x8, but the first is 96x64"};
         VideoOptions options = options_for(path);
-        overwrite(path, "old", 3);
+        write_bytes(path, "old", 3);
         error = (Error){0};
         if (i == 0) assert_int_equal(unlink(frame), 0);
-        if (i == 1) overwrite(frame, data, size - 20);
-        if (i == 2) overwrite(frame, other, other_size);
+        if (i == 1) write_bytes(frame, data, size - 20);
+        if (i == 2) write_bytes(frame, other, other_size);
         if (i == 3) assert_ok(image_write_png(small, frame, NULL, 0, &error), error);
         assert_refused(video_encode(&options, NULL, &error), texts[i]);
         size_t old_size;
@@ -187,7 +177,7 @@ static void a_damaged_frame_makes_no_video(void **state) {
         free(old);
         assert_nothing_left(temporary_folder);
     }
-    overwrite(frame, data, size);
+    write_bytes(frame, data, size);
     image_destroy(small);
     free(other);
     free(data);
@@ -200,14 +190,13 @@ static void pretend(const char *name, const char *script) {
     Error error = {0};
     assert_ok(file_make_directory(directory, &error), error);
     snprintf(path, sizeof path, "%s/%s", directory, name);
-    overwrite(path, script, strlen(script));
+    write_bytes(path, script, strlen(script));
     assert_int_equal(chmod(path, 0700), 0);
     snprintf(path, sizeof path, "%s:/usr/bin:/bin", directory);
     assert_int_equal(setenv("PATH", path, 1), 0);
 }
 
-static void a_video_that_lacks_a_frame_is_removed(void **state) {
-    (void)state;
+TEST(a_video_that_lacks_a_frame_is_removed) {
     static const struct {
         const char *ffmpeg, *text;
     } cases[] = {
@@ -236,8 +225,7 @@ static void a_video_that_lacks_a_frame_is_removed(void **state) {
     setenv("PATH", "/usr/bin:/bin", 1);
 }
 
-static void missing_programs_are_told(void **state) {
-    (void)state;
+TEST(missing_programs_are_told) {
     Error error = {0};
     assert_ok(video_check_programs(&error), error);
     setenv("PATH", temporary_folder, 1);
@@ -251,8 +239,7 @@ static bool never(void *context, double done, double total) {
     return false;
 }
 
-static void a_video_can_be_stopped(void **state) {
-    (void)state;
+TEST(a_video_can_be_stopped) {
     Error error = {0};
     VideoOptions options = options_for(temporary_path("stopped.gif"));
     assert_false(video_encode(&options, &(Progress){never, NULL}, &error));
@@ -268,8 +255,7 @@ static bool kill_oneself(void *context, double done, double total) {
 }
 
 /* The encoder has no name of a file. */
-static void a_killed_program_leaves_nothing(void **state) {
-    (void)state;
+TEST(a_killed_program_leaves_nothing) {
     static const char *const names[] = {"killed/a.mp4", "killed/a.gif"};
     Error error = {0};
     int status;
@@ -287,8 +273,7 @@ static void a_killed_program_leaves_nothing(void **state) {
     }
 }
 
-static void wrong_names_are_refused(void **state) {
-    (void)state;
+TEST(wrong_names_are_refused) {
     Error error = {0};
     assert_ok(file_make_directory(temporary_path("folder.mp4"), &error), error);
     assert_ok(file_write(temporary_path("a.y4m"), "", 0, &error), error);
@@ -314,8 +299,7 @@ static void wrong_names_are_refused(void **state) {
     }
 }
 
-static void y4m_holds_every_frame(void **state) {
-    (void)state;
+TEST(y4m_holds_every_frame) {
     Error error = {0};
     int frames, width, height;
     double rate;
@@ -328,8 +312,7 @@ static void y4m_holds_every_frame(void **state) {
     assert_true(frames == FRAMES && width == WIDTH && height == HEIGHT && rate == 60);
 }
 
-static void a_reader_that_has_gone_is_told(void **state) {
-    (void)state;
+TEST(a_reader_that_has_gone_is_told) {
     Error error = {0};
     int ends[2];
     VideoOptions options = options_for("the pipe");
@@ -342,20 +325,4 @@ static void a_reader_that_has_gone_is_told(void **state) {
     assert_int_equal(close(ends[1]), 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gifs_keep_a_chosen_rate),
-        cmocka_unit_test(gifs_are_small),
-        cmocka_unit_test(each_form_has_all_its_frames_and_the_same_bytes_again),
-        cmocka_unit_test(any_file_name_works),
-        cmocka_unit_test(a_damaged_frame_makes_no_video),
-        cmocka_unit_test(a_video_that_lacks_a_frame_is_removed),
-        cmocka_unit_test(missing_programs_are_told),
-        cmocka_unit_test(a_video_can_be_stopped),
-        cmocka_unit_test(a_killed_program_leaves_nothing),
-        cmocka_unit_test(wrong_names_are_refused),
-        cmocka_unit_test(y4m_holds_every_frame),
-        cmocka_unit_test(a_reader_that_has_gone_is_told),
-    };
-    return cmocka_run_group_tests(tests, make, destroy);
-}
+RUN_TESTS(make, destroy)

@@ -1,91 +1,106 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The conversion against BT.709 in closed form. */
+/* Pictures as y4m against BT.709 in closed form. */
 #include "testing.h"
 
-#include "pictures/render_internal.h"
+#include "base/file.h"
+#include "pictures/render.h"
 
-#include <math.h>
+#include <fcntl.h>
 
-static void convert(const uint8_t rgb[3], uint8_t yuv[3]) {
-    uint8_t pixels[4] = {rgb[0], rgb[1], rgb[2], 255}, frame[16];
-    Image image = {.width = 1, .height = 1, .pixels = pixels};
-    y4m_frame(&image, frame);
+enum { HEADER_MOST = 128, LARGEST = 1 << 18 };
+
+/* Writes the opaque pixels[width * height], 0xRRGGBB, as a video of one picture; returns the malloc'ed stream. */
+static char *stream_of(const uint32_t *pixels, int width, int height, double rate, size_t *size) {
+    Error error = {0};
+    Image *image = image_create(width, height, &error);
+    assert_ok(image != NULL, error);
+    for (int i = 0; i < width * height; i++)
+        for (int c = 0; c < 4; c++) image->pixels[4 * i + c] = c < 3 ? (uint8_t)(pixels[i] >> (16 - 8 * c)) : 255;
+    const char *png = temporary_path("frame_000000.png"), *path = temporary_path("video.y4m");
+    assert_ok(image_write_png(image, png, NULL, 0, &error), error);
+    image_destroy(image);
+    const VideoOptions options = {.directory = temporary_folder, .frame_rate = rate, .path = path};
+    const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    assert_true(file >= 0);
+    assert_ok(video_write_y4m(&options, file, NULL, &error), error);
+    close(file);
+    char *stream = file_read(path, LARGEST, size, &error);
+    assert_ok(stream != NULL, error);
+    return stream;
+}
+
+/* The planes of such a picture: Y[count], Cb[count], Cr[count]. */
+static void convert(const uint32_t *pixels, int count, uint8_t *planes) {
+    size_t size;
+    char *stream = stream_of(pixels, count, 1, 60, &size);
+    const char *frame = strchr(stream, '\n') + 1;
     assert_memory_equal(frame, "FRAME\n", 6);
-    memcpy(yuv, frame + 6, 3);
+    assert_int_equal(size, (size_t)(frame - stream) + 6 + 3 * (size_t)count);
+    memcpy(planes, frame + 6, 3 * (size_t)count);
+    free(stream);
 }
 
 /* ITU-R BT.709-6, item 3.2 to 3.5. */
-static void every_value_is_the_nearest(void **state) {
-    (void)state;
-    for (int r = 0; r < 256; r += 15)
-        for (int g = 0; g < 256; g += 17)
-            for (int b = 0; b < 256; b += 5) {
-                uint8_t rgb[3] = {(uint8_t)r, (uint8_t)g, (uint8_t)b}, yuv[3];
-                double light = (0.2126 * r + 0.7152 * g + 0.0722 * b) / 255;
-                convert(rgb, yuv);
-                assert_near(yuv[0], 16 + 219 * light, 0.5 + 1e-9);
-                assert_near(yuv[1], 128 + 224 * (b / 255.0 - light) / 1.8556, 0.5 + 1e-9);
-                assert_near(yuv[2], 128 + 224 * (r / 255.0 - light) / 1.5748, 0.5 + 1e-9);
-            }
-}
-
-static void grey_has_no_colour_and_white_is_235(void **state) {
-    (void)state;
-    for (int grey = 0, before = 15; grey < 256; grey++) {
-        uint8_t yuv[3];
-        convert((const uint8_t[]){(uint8_t)grey, (uint8_t)grey, (uint8_t)grey}, yuv);
-        assert_true(yuv[1] == 128 && yuv[2] == 128 && yuv[0] >= before);
-        assert_true((yuv[0] == 16) == (grey == 0) && (yuv[0] == 235) == (grey == 255));
-        before = yuv[0];
+TEST(every_value_is_the_nearest) {
+    enum { COUNT = 16 * 52 };
+    uint32_t pixels[COUNT];
+    uint8_t planes[3 * COUNT];
+    for (int r = 0; r < 256; r += 15) {
+        for (int i = 0; i < COUNT; i++) pixels[i] = (uint32_t)(r << 16 | i / 52 * 17 << 8 | i % 52 * 5);
+        convert(pixels, COUNT, planes);
+        for (int i = 0; i < COUNT; i++) {
+            const int g = i / 52 * 17, b = i % 52 * 5;
+            const double light = (0.2126 * r + 0.7152 * g + 0.0722 * b) / 255;
+            assert_near(planes[i], 16 + 219 * light, 0.5 + 1e-9);
+            assert_near(planes[COUNT + i], 128 + 224 * (b / 255.0 - light) / 1.8556, 0.5 + 1e-9);
+            assert_near(planes[2 * COUNT + i], 128 + 224 * (r / 255.0 - light) / 1.5748, 0.5 + 1e-9);
+        }
     }
 }
 
-/* Known from test charts. */
-static void primaries_are_those_of_bt709(void **state) {
-    (void)state;
-    static const uint8_t cases[][2][3] = {
-        {{255, 0, 0}, {63, 102, 240}}, {{0, 255, 0}, {173, 42, 26}}, {{0, 0, 255}, {32, 240, 118}}};
-    for (int i = 0; i < 3; i++) {
-        uint8_t yuv[3];
-        convert(cases[i][0], yuv);
-        assert_memory_equal(yuv, cases[i][1], 3);
+TEST(grey_has_no_colour_and_white_is_235) {
+    uint32_t greys[256];
+    uint8_t planes[3 * 256];
+    for (uint32_t i = 0; i < 256; i++) greys[i] = i * 0x010101;
+    convert(greys, 256, planes);
+    for (int grey = 0; grey < 256; grey++) {
+        assert_true(planes[256 + grey] == 128 && planes[512 + grey] == 128);
+        assert_true(planes[grey] >= planes[grey > 0 ? grey - 1 : 0]);
+        assert_true((planes[grey] == 16) == (grey == 0) && (planes[grey] == 235) == (grey == 255));
     }
 }
 
-static void planes_follow_each_other(void **state) {
-    (void)state;
-    uint8_t pixels[2 * 3 * 4] = {0}, frame[6 + 18];
-    Image image = {.width = 2, .height = 3, .pixels = pixels};
-    pixels[4 * 3 + 2] = 255; /* blue at (1, 1) */
-    assert_int_equal(y4m_frame_size(2, 3), sizeof frame);
-    y4m_frame(&image, frame);
-    assert_memory_equal(frame + 6, ((const uint8_t[]){16, 16, 16, 32, 16, 16}), 6);
-    assert_memory_equal(frame + 12, ((const uint8_t[]){128, 128, 128, 240, 128, 128}), 6);
-    assert_memory_equal(frame + 18, ((const uint8_t[]){128, 128, 128, 118, 128, 128}), 6);
+/* Red, green and blue, known from test charts. */
+TEST(primaries_are_those_of_bt709) {
+    uint8_t planes[9];
+    convert((const uint32_t[]){0xFF0000, 0x00FF00, 0x0000FF}, 3, planes);
+    assert_memory_equal(planes, ((const uint8_t[]){63, 173, 32, 102, 42, 240, 240, 26, 118}), 9);
 }
 
-static void the_header_has_the_rate_as_a_fraction(void **state) {
-    (void)state;
+/* A picture of 2 x 3 pixels, blue at (1, 1). */
+TEST(planes_follow_each_other_in_rows) {
+    size_t size;
+    char *stream = stream_of((const uint32_t[]){0, 0, 0, 0x0000FF, 0, 0}, 2, 3, 60, &size);
+    assert_memory_equal(
+        stream + size - 18,
+        ((const uint8_t[]){16, 16, 16, 32, 16, 16, 128, 128, 128, 240, 128, 128, 128, 128, 128, 118, 128, 128}), 18);
+    free(stream);
+}
+
+TEST(the_header_has_the_rate_as_a_fraction) {
     static const struct {
         double rate;
         const char *text;
-    } cases[] = {{1 / (double)(1.0F / 60), "YUV4MPEG2 W192 H108 F60:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\n"},
-                 {59.94, "YUV4MPEG2 W192 H108 F2997:50 Ip A1:1 C444 XCOLORRANGE=LIMITED\n"},
-                 {0.5, "YUV4MPEG2 W192 H108 F1:2 Ip A1:1 C444 XCOLORRANGE=LIMITED\n"}};
+    } cases[] = {{1 / (double)(1.0F / 60), "60:1"}, {59.94, "2997:50"}, {0.5, "1:2"}};
     for (int i = 0; i < 3; i++) {
-        char header[Y4M_HEADER_SIZE];
-        y4m_header(header, 192, 108, cases[i].rate);
-        assert_string_equal(header, cases[i].text);
+        char expected[HEADER_MOST];
+        size_t size;
+        char *stream = stream_of((const uint32_t[]){0, 0}, 2, 1, cases[i].rate, &size);
+        snprintf(expected, sizeof expected, "YUV4MPEG2 W2 H1 F%s Ip A1:1 C444 XCOLORRANGE=LIMITED\nFRAME\n",
+                 cases[i].text);
+        assert_memory_equal(stream, expected, strlen(expected));
+        free(stream);
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_value_is_the_nearest),
-        cmocka_unit_test(grey_has_no_colour_and_white_is_235),
-        cmocka_unit_test(primaries_are_those_of_bt709),
-        cmocka_unit_test(planes_follow_each_other),
-        cmocka_unit_test(the_header_has_the_rate_as_a_fraction),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

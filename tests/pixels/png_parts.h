@@ -4,7 +4,7 @@
 #include <zlib.h>
 
 typedef struct PngParts {
-    uint8_t data[8192];
+    uint8_t data[1 << 16];
     size_t size;
 } PngParts;
 
@@ -14,9 +14,14 @@ static inline void put_bytes(PngParts *parts, const void *data, size_t size) {
     parts->size += size;
 }
 
+static inline void store_number(uint8_t to[4], uint32_t value) {
+    for (int i = 0; i < 4; i++) to[i] = (uint8_t)(value >> (24 - 8 * i));
+}
+
 static inline void put_number(PngParts *parts, uint32_t value) {
-    put_bytes(parts, (uint8_t[]){(uint8_t)(value >> 24), (uint8_t)(value >> 16), (uint8_t)(value >> 8), (uint8_t)value},
-              4);
+    uint8_t bytes[4];
+    store_number(bytes, value);
+    put_bytes(parts, bytes, sizeof bytes);
 }
 
 static inline void put_chunk(PngParts *parts, const char *type, const void *data, size_t size) {
@@ -29,10 +34,10 @@ static inline void put_chunk(PngParts *parts, const char *type, const void *data
 
 static inline void put_header(PngParts *parts, uint32_t width, uint32_t height, int depth, int color) {
     uint8_t data[13] = {0};
-    for (int i = 0; i < 4; i++)
-        data[i] = (uint8_t)(width >> (24 - 8 * i)), data[4 + i] = (uint8_t)(height >> (24 - 8 * i));
+    store_number(data, width);
+    store_number(data + 4, height);
     data[8] = (uint8_t)depth, data[9] = (uint8_t)color;
-    *parts = (PngParts){.size = 0};
+    parts->size = 0;
     put_bytes(parts, "\x89PNG\r\n\x1a\n", 8);
     put_chunk(parts, "IHDR", data, sizeof data);
 }

@@ -5,8 +5,7 @@
 #include "pixels/gl.h"
 #include "pictures/mesa.h"
 
-static void the_first_kind_is_the_default(void **state) {
-    (void)state;
+TEST(the_first_kind_is_the_default) {
     Error error = {0};
     Context context;
     assert_non_null(context_kinds[0]);
@@ -15,8 +14,7 @@ static void the_first_kind_is_the_default(void **state) {
     context_destroy(&context);
 }
 
-static void every_kind_draws_by_llvmpipe(void **state) {
-    (void)state;
+TEST(every_kind_draws_by_llvmpipe) {
     for (int i = 0; context_kinds[i] != NULL; i++) {
         Error error = {0};
         Context context;
@@ -30,8 +28,7 @@ static void every_kind_draws_by_llvmpipe(void **state) {
     }
 }
 
-static void a_kind_that_is_not_built_in_is_refused(void **state) {
-    (void)state;
+TEST(a_kind_that_is_not_built_in_is_refused) {
     for (ContextChoice choice = CONTEXT_OSMESA; choice <= CONTEXT_EGL; choice++) {
         Context context;
         Error error = {0};
@@ -40,8 +37,7 @@ static void a_kind_that_is_not_built_in_is_refused(void **state) {
     }
 }
 
-static void only_a_missing_library_is_to_be_installed(void **state) {
-    (void)state;
+TEST(only_a_missing_library_is_to_be_installed) {
     Error missing = {0}, broken = {0};
     assert_false(context_load("libnone.so.1", "libnone1", NULL, 0, NULL, &missing));
     assert_string_equal(missing.message,
@@ -51,10 +47,4 @@ static void only_a_missing_library_is_to_be_installed(void **state) {
     assert_null(strstr(broken.message, "install"));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_first_kind_is_the_default),
-                                       cmocka_unit_test(every_kind_draws_by_llvmpipe),
-                                       cmocka_unit_test(a_kind_that_is_not_built_in_is_refused),
-                                       cmocka_unit_test(only_a_missing_library_is_to_be_installed)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

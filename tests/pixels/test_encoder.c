@@ -73,8 +73,7 @@ static void assert_checked(void) {
     assert_int_equal(system(command), 0);
 }
 
-static void every_picture_comes_back(void **state) {
-    (void)state;
+TEST(every_picture_comes_back) {
     static const int sizes[][2] = {{1, 1},  {1, 200}, {200, 1},  {2, 3},    {86, 4},  {87, 4},
                                    {88, 4}, {173, 5}, {300, 40}, {2000, 9}, {8192, 3}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
@@ -95,8 +94,7 @@ static void every_picture_comes_back(void **state) {
             }
 }
 
-static void random_pictures_come_back(void **state) {
-    (void)state;
+TEST(random_pictures_come_back) {
     for (int i = 0; i < 400; i++) {
         Error error = {0};
         const uint8_t *data;
@@ -114,8 +112,7 @@ static void random_pictures_come_back(void **state) {
 }
 
 /* The bytes equal those of a new encoder, whatever was encoded before. */
-static void kept_rows_change_no_byte(void **state) {
-    (void)state;
+TEST(kept_rows_change_no_byte) {
     enum { WIDTH = 230, HEIGHT = 61 };
     Error error = {0};
     Image *image = blank_image(WIDTH, HEIGHT);
@@ -137,8 +134,7 @@ static void kept_rows_change_no_byte(void **state) {
 }
 
 /* Rows not flagged as changed are not read. */
-static void only_changed_rows_are_read(void **state) {
-    (void)state;
+TEST(only_changed_rows_are_read) {
     Error error = {0};
     bool none[40] = {false};
     const uint8_t *data;
@@ -154,8 +150,7 @@ static void only_changed_rows_are_read(void **state) {
     image_destroy(first);
 }
 
-static void small_is_smaller(void **state) {
-    (void)state;
+TEST(small_is_smaller) {
     Error error = {0};
     const uint8_t *data;
     size_t sizes[2];
@@ -172,11 +167,4 @@ static void small_is_smaller(void **state) {
     image_destroy(image);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_picture_comes_back), cmocka_unit_test(random_pictures_come_back),
-        cmocka_unit_test(kept_rows_change_no_byte), cmocka_unit_test(only_changed_rows_are_read),
-        cmocka_unit_test(small_is_smaller),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

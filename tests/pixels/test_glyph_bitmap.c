@@ -34,8 +34,7 @@ static bool has_curves(const Typeface *face, const Glyph *glyph) {
 
 /* Straight edges differ by the rounding of a level; FreeType draws curves as lines that may be a fifth of a pixel (10 of 51
    levels) away. Digits are left out: those of the atlas have equal widths. */
-static void own_glyphs_are_those_of_freetype(void **state) {
-    (void)state;
+TEST(own_glyphs_are_those_of_freetype) {
     static const Typeface *const faces[FONT_FACES] = {&type_regular, &type_semibold};
     int compared = 0;
     for (int face = 0; face < FONT_FACES; face++)
@@ -60,8 +59,7 @@ static void own_glyphs_are_those_of_freetype(void **state) {
 }
 
 /* A frame that reuses the place of another's bitmap is another frame, and clipped rows begin at the right texel. */
-static void the_bitmaps_belong_to_the_drawing(void **state) {
-    (void)state;
+TEST(the_bitmaps_belong_to_the_drawing) {
     Drawing drawing = {0}, rows = {0};
     const Font font = font_pick(FONT_REGULAR, 20);
     font_add(&drawing, &font,
@@ -81,8 +79,4 @@ static void the_bitmaps_belong_to_the_drawing(void **state) {
     drawing_free(&rows);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(own_glyphs_are_those_of_freetype),
-                                       cmocka_unit_test(the_bitmaps_belong_to_the_drawing)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -23,8 +23,7 @@ static int destroy(void **state) {
 
 static uint8_t *channel(Image *image, int x, int y, int c) { return &image->pixels[(y * image->width + x) * 4 + c]; }
 
-static void equal_pictures_have_no_difference(void **state) {
-    (void)state;
+TEST_WITH(equal_pictures_have_no_difference, make, destroy) {
     ImageDifference d;
     *channel(a, 1, 1, 2) = *channel(b, 1, 1, 2) = 9;
     image_compare(a, b, &d);
@@ -33,8 +32,7 @@ static void equal_pictures_have_no_difference(void **state) {
     assert_true(image_hash(a) == image_hash(b));
 }
 
-static void differences_are_counted_by_pixel(void **state) {
-    (void)state;
+TEST_WITH(differences_are_counted_by_pixel, make, destroy) {
     ImageDifference d;
     *channel(a, 3, 1, 0) = 5;
     *channel(a, 3, 1, 1) = 20;
@@ -48,14 +46,12 @@ static void differences_are_counted_by_pixel(void **state) {
     assert_int_equal(d.first_y, 1);
 }
 
-static void one_bit_changes_the_hash(void **state) {
-    (void)state;
+TEST_WITH(one_bit_changes_the_hash, make, destroy) {
     *channel(a, 3, 2, 3) = 1;
     assert_true(image_hash(a) != image_hash(b));
 }
 
-static void the_shape_counts(void **state) {
-    (void)state;
+TEST_WITH(the_shape_counts, make, destroy) {
     ImageDifference d;
     Error error = {0};
     Image *turned = image_create(3, 4, &error);
@@ -67,8 +63,7 @@ static void the_shape_counts(void **state) {
 }
 
 /* Only rows flagged as changed are read. */
-static void the_hash_of_a_sequence_is_that_of_its_pictures(void **state) {
-    (void)state;
+TEST_WITH(the_hash_of_a_sequence_is_that_of_its_pictures, make, destroy) {
     uint64_t rows[3];
     assert_true(image_hash_next(a, NULL, rows) == image_hash(a));
     *channel(a, 1, 0, 0) = 7;
@@ -80,21 +75,10 @@ static void the_hash_of_a_sequence_is_that_of_its_pictures(void **state) {
     assert_true(image_hash_next(a, NULL, rows) == image_hash(a));
 }
 
-static void rows_that_change_places_change_the_hash(void **state) {
-    (void)state;
+TEST_WITH(rows_that_change_places_change_the_hash, make, destroy) {
     *channel(a, 1, 0, 0) = 7;
     *channel(b, 1, 1, 0) = 7;
     assert_true(image_hash(a) != image_hash(b));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(equal_pictures_have_no_difference, make, destroy),
-        cmocka_unit_test_setup_teardown(differences_are_counted_by_pixel, make, destroy),
-        cmocka_unit_test_setup_teardown(one_bit_changes_the_hash, make, destroy),
-        cmocka_unit_test_setup_teardown(the_shape_counts, make, destroy),
-        cmocka_unit_test_setup_teardown(the_hash_of_a_sequence_is_that_of_its_pictures, make, destroy),
-        cmocka_unit_test_setup_teardown(rows_that_change_places_change_the_hash, make, destroy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

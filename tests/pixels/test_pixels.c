@@ -41,8 +41,7 @@ static void assert_only(const Image *image, Rect rect, uint32_t color) {
         }
 }
 
-static void edges_between_pixels_are_sharp(void **state) {
-    (void)state;
+TEST(edges_between_pixels_are_sharp) {
     assert_only(paint(box(40, 30, 20, 10)), (Rect){30, 25, 50, 35}, WHITE);
     assert_only(paint(box(40.5, 30.5, 21, 1)), (Rect){30, 30, 51, 31}, WHITE);
     drawing_add_rect(&drawing, (Rect){3, 4, 9, 17}, 0x123456);
@@ -50,8 +49,7 @@ static void edges_between_pixels_are_sharp(void **state) {
 }
 
 /* 51 levels in steps of 5: the coverage of a pixel, rounded. */
-static void edges_within_pixels_cover_their_share(void **state) {
-    (void)state;
+TEST(edges_within_pixels_cover_their_share) {
     for (int i = 0; i <= 16; i++) {
         const Image *image = paint(box(40 + i / 16.0, 30, 20, 10));
         int gained = (int)floor(51.0 * i / 16 + 0.5), lost = (int)floor(51.0 * (16 - i) / 16 + 0.5);
@@ -62,8 +60,7 @@ static void edges_within_pixels_cover_their_share(void **state) {
     }
 }
 
-static void area_does_not_depend_on_the_angle(void **state) {
-    (void)state;
+TEST(area_does_not_depend_on_the_angle) {
     for (int i = 0; i < 40; i++) {
         const Image *image = paint(turned(box(47.3, 48.9, 50, 31), 0.17 * i));
         assert_true(fabs(area(image) - 50.0 * 31.0) < 0.005 * 50 * 31);
@@ -71,8 +68,7 @@ static void area_does_not_depend_on_the_angle(void **state) {
 }
 
 /* A box with a corner radius of half its side. */
-static void a_disc_has_the_area_of_a_circle(void **state) {
-    (void)state;
+TEST(a_disc_has_the_area_of_a_circle) {
     for (double radius = 3; radius < 45; radius += 3.7) {
         Shape disc = box(48, 48, 2 * radius, 2 * radius);
         disc.radius = radius;
@@ -80,8 +76,7 @@ static void a_disc_has_the_area_of_a_circle(void **state) {
     }
 }
 
-static void moving_by_whole_pixels_moves_the_pixels(void **state) {
-    (void)state;
+TEST(moving_by_whole_pixels_moves_the_pixels) {
     Image *before = image_create(SCREEN_SIDE, SCREEN_SIDE, &(Error){0});
     Shape shape = turned(box(30.3, 31.7, 25, 14), 0.6);
     shape.radius = 3.3, shape.outline = 1.4, shape.line = 0x405060;
@@ -94,8 +89,7 @@ static void moving_by_whole_pixels_moves_the_pixels(void **state) {
 }
 
 /* Smaller differences can be due to the machine's arithmetic. */
-static void positions_snap_to_a_256th_of_a_pixel(void **state) {
-    (void)state;
+TEST(positions_snap_to_a_256th_of_a_pixel) {
     Shape shape = turned(box(30.25, 31.75, 25, 14), 0.6);
     drawing_add_shape(&drawing, &shape, &everything);
     shape.x += 1e-3, shape.y -= 1e-3, shape.half_width -= 1e-3, shape.half_height += 1e-3;
@@ -108,16 +102,14 @@ static void positions_snap_to_a_256th_of_a_pixel(void **state) {
 }
 
 /* A sixteenth of a pixel can be seen. */
-static void small_movements_show(void **state) {
-    (void)state;
+TEST(small_movements_show) {
     Shape shape = turned(box(30.25, 31.75, 25, 14), 0.6);
     uint64_t hash = image_hash(paint(shape));
     shape.x += 1.0 / 16;
     assert_true(image_hash(paint(shape)) != hash);
 }
 
-static void outline_and_fill_meet_where_they_should(void **state) {
-    (void)state;
+TEST(outline_and_fill_meet_where_they_should) {
     Shape shape = box(40, 40, 20, 20);
     shape.outline = 2, shape.line = 0xFF0000, shape.fill = 0x00FF00;
     const Image *image = paint(shape);
@@ -130,8 +122,7 @@ static void outline_and_fill_meet_where_they_should(void **state) {
 }
 
 /* Counter-clockwise: the band goes from the top to the left, to the bottom, to the right. */
-static void the_band_shows_quarter_turns(void **state) {
-    (void)state;
+TEST(the_band_shows_quarter_turns) {
     static const int at[4][2] = {{48, 32}, {32, 48}, {48, 63}, {63, 48}};
     for (int quarter = 0; quarter < 4; quarter++) {
         Shape shape = turned(box(48, 48, 40, 40), quarter * PI / 2);
@@ -142,8 +133,7 @@ static void the_band_shows_quarter_turns(void **state) {
 }
 
 /* What is below is visible inside; a thick outline fills the box. */
-static void a_hollow_box_is_its_outline_alone(void **state) {
-    (void)state;
+TEST(a_hollow_box_is_its_outline_alone) {
     for (int i = 0; i < 20; i++) {
         Shape hollow = turned(box(47.3, 48.9, 50, 31), 0.17 * i);
         hollow.hollow = true, hollow.line = WHITE, hollow.fill = 0x123456, hollow.outline = 0.8 + 0.3 * i;
@@ -159,8 +149,7 @@ static void a_hollow_box_is_its_outline_alone(void **state) {
     assert_only(paint(thick), (Rect){30, 25, 50, 35}, WHITE);
 }
 
-static void lines_have_their_length_and_thickness(void **state) {
-    (void)state;
+TEST(lines_have_their_length_and_thickness) {
     for (int i = 0; i < 12; i++) {
         double length = 6 * i, t = 3 + 0.5 * i, c = cos(0.4 * i), s = sin(0.4 * i);
         Point from = {48 - c * length / 2, 48 - s * length / 2}, to = {48 + c * length / 2, 48 + s * length / 2};
@@ -170,8 +159,7 @@ static void lines_have_their_length_and_thickness(void **state) {
 }
 
 /* A slanted line equals the box that it represents, although it is drawn in tiles; also with a clip. */
-static void long_lines_are_drawn_completely(void **state) {
-    (void)state;
+TEST(long_lines_are_drawn_completely) {
     for (int i = 0; i < 24; i++) {
         double c = cos(0.26 * i), s = sin(0.26 * i), t = 2 + 0.3 * i;
         const Rect clip = i % 2 == 0 ? everything : (Rect){20, 30, 70, 77};
@@ -187,8 +175,7 @@ static void long_lines_are_drawn_completely(void **state) {
 }
 
 /* Dashes of 4 and gaps of 6 thicknesses, with round ends; one segment, or segments of any length. */
-static void dashes_continue_across_segments(void **state) {
-    (void)state;
+TEST(dashes_continue_across_segments) {
     for (int pieces = 1; pieces < 20; pieces += 3) {
         DashedLine line = {2, 0, WHITE, {4, 6, 0, 0}};
         for (int i = 0; i < pieces; i++)
@@ -204,8 +191,7 @@ static void dashes_continue_across_segments(void **state) {
 }
 
 /* The tip is at the arrow's end; an arrow without length is not drawn. */
-static void arrows_point_where_they_end(void **state) {
-    (void)state;
+TEST(arrows_point_where_they_end) {
     const ArrowStyle style = {2, WHITE, BLACK};
     for (int i = 0; i < 16; i++) {
         Point to = {48 + 30 * cos(0.39 * i), 48 + 30 * sin(0.39 * i)};
@@ -222,16 +208,14 @@ static void arrows_point_where_they_end(void **state) {
     assert_int_equal(drawing.shape_count, 0);
 }
 
-static void nothing_is_painted_outside_the_clip(void **state) {
-    (void)state;
+TEST(nothing_is_painted_outside_the_clip) {
     Shape shape = turned(box(40, 40, 400, 400), 0.3);
     drawing_add_shape(&drawing, &shape, &(Rect){10, 20, 33, 35});
     assert_only(painted(), (Rect){10, 20, 33, 35}, WHITE);
 }
 
 /* Upper edge at y = 10, in a box of up to 1000 km. */
-static void large_boxes_keep_their_edges(void **state) {
-    (void)state;
+TEST(large_boxes_keep_their_edges) {
     for (double side = 400; side < 1e8; side *= 3.7)
         for (int half_turn = 0; half_turn < 2; half_turn++) {
             double half = rint(side) / 2;
@@ -241,8 +225,7 @@ static void large_boxes_keep_their_edges(void **state) {
         }
 }
 
-static void shapes_with_invalid_positions_are_not_painted(void **state) {
-    (void)state;
+TEST(shapes_with_invalid_positions_are_not_painted) {
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e30, -1e30, 3e9};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         Shape shapes[] = {box(bad[i], 10, 5, 5), box(10, bad[i], 5, 5), box(10, 10, NAN, 5), box(10, 10, 5, -3),
@@ -256,8 +239,7 @@ static void shapes_with_invalid_positions_are_not_painted(void **state) {
     assert_only(painted(), (Rect){0, 0, 0, 0}, WHITE);
 }
 
-static void glyphs_are_the_bitmaps_of_the_font(void **state) {
-    (void)state;
+TEST(glyphs_are_the_bitmaps_of_the_font) {
     Font font = font_pick(FONT_SEMIBOLD, 33);
     assert_int_equal(font.pixels, 32);
     int behind = font_add(&drawing, &font, "R", 20, 50, WHITE);
@@ -272,8 +254,7 @@ static void glyphs_are_the_bitmaps_of_the_font(void **state) {
 }
 
 /* A character missing from the font, an overlong encoding, a truncated surrogate, a lone byte. */
-static void unknown_characters_show_as_question_marks(void **state) {
-    (void)state;
+TEST(unknown_characters_show_as_question_marks) {
     Font font = font_pick(FONT_REGULAR, 20);
     assert_int_equal(font_width(&font, "\xE4\xBD\xA0"), font_width(&font, "?"));
     assert_int_equal(font_width(&font, "\xC0\xAF"), font_width(&font, "??"));
@@ -282,8 +263,7 @@ static void unknown_characters_show_as_question_marks(void **state) {
     assert_int_not_equal(font_width(&font, "\xC2\xB5"), font_width(&font, "?")); /* micro */
 }
 
-static void digits_have_equal_width(void **state) {
-    (void)state;
+TEST(digits_have_equal_width) {
     for (double size = 9; size < 80; size++)
         for (FontFace face = FONT_REGULAR; face <= FONT_SEMIBOLD; face++) {
             Font font = font_pick(face, size);
@@ -294,8 +274,7 @@ static void digits_have_equal_width(void **state) {
         }
 }
 
-static void long_text_is_cut_to_fit(void **state) {
-    (void)state;
+TEST(long_text_is_cut_to_fit) {
     Font font = font_pick(FONT_REGULAR, 20);
     const char *text = "sequential impulses, engine";
     for (int room = 0; room <= font_width(&font, text) + 2; room++) {
@@ -309,29 +288,4 @@ static void long_text_is_cut_to_fit(void **state) {
     assert_int_equal(drawing.glyph_count, 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(edges_between_pixels_are_sharp),
-        cmocka_unit_test(edges_within_pixels_cover_their_share),
-        cmocka_unit_test(area_does_not_depend_on_the_angle),
-        cmocka_unit_test(a_disc_has_the_area_of_a_circle),
-        cmocka_unit_test(moving_by_whole_pixels_moves_the_pixels),
-        cmocka_unit_test(positions_snap_to_a_256th_of_a_pixel),
-        cmocka_unit_test(small_movements_show),
-        cmocka_unit_test(outline_and_fill_meet_where_they_should),
-        cmocka_unit_test(the_band_shows_quarter_turns),
-        cmocka_unit_test(a_hollow_box_is_its_outline_alone),
-        cmocka_unit_test(lines_have_their_length_and_thickness),
-        cmocka_unit_test(long_lines_are_drawn_completely),
-        cmocka_unit_test(dashes_continue_across_segments),
-        cmocka_unit_test(arrows_point_where_they_end),
-        cmocka_unit_test(nothing_is_painted_outside_the_clip),
-        cmocka_unit_test(large_boxes_keep_their_edges),
-        cmocka_unit_test(shapes_with_invalid_positions_are_not_painted),
-        cmocka_unit_test(unknown_characters_show_as_question_marks),
-        cmocka_unit_test(digits_have_equal_width),
-        cmocka_unit_test(long_text_is_cut_to_fit),
-        cmocka_unit_test(glyphs_are_the_bitmaps_of_the_font),
-    };
-    return cmocka_run_group_tests(tests, open_screens, close_screens);
-}
+RUN_TESTS(open_screens, close_screens)

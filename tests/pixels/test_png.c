@@ -18,8 +18,7 @@ static Image *patterned(int width, int height) {
     return image;
 }
 
-static void written_pictures_come_back(void **state) {
-    (void)state;
+TEST(written_pictures_come_back) {
     static const int sizes[][2] = {{1, 1}, {7, 5}, {300, 1}, {1, 300}, {640, 480}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         Error error = {0};
@@ -36,8 +35,7 @@ static void written_pictures_come_back(void **state) {
     }
 }
 
-static void alpha_is_dropped(void **state) {
-    (void)state;
+TEST(alpha_is_dropped) {
     Error error = {0};
     const char *path = temporary_path("opaque.png");
     Image *image = patterned(2, 1);
@@ -51,8 +49,7 @@ static void alpha_is_dropped(void **state) {
     image_destroy(back);
 }
 
-static void texts_come_back(void **state) {
-    (void)state;
+TEST(texts_come_back) {
     Error error = {0};
     const char *path = temporary_path("text.png");
     const ImageText texts[] = {{"Scene", "pyramid"}, {"Method", "engine | pr\xC3\xA9"}, {"Empty", ""}};
@@ -106,8 +103,7 @@ static void expected_pixel(const PngKind *kind, int x, int y, uint8_t pixel[4]) 
     }
 }
 
-static void every_kind_is_read(void **state) {
-    (void)state;
+TEST(every_kind_is_read) {
     for (int i = 0; i < 2 * KINDS; i++) {
         const PngKind *kind = &kinds[i / 2];
         const char *path = temporary_path("kind.png");
@@ -147,8 +143,7 @@ static void refuse(const char *path, const char *text) {
     assert_error(error, ERROR_INPUT, text);
 }
 
-static void truncated_files_are_refused(void **state) {
-    (void)state;
+TEST(truncated_files_are_refused) {
     size_t size;
     char *data = small_file(&size);
     const char *path = temporary_path("truncated.png");
@@ -160,8 +155,7 @@ static void truncated_files_are_refused(void **state) {
 }
 
 /* Checksums cover every byte of a PNG after its signature. */
-static void every_flipped_bit_is_noticed(void **state) {
-    (void)state;
+TEST(every_flipped_bit_is_noticed) {
     size_t size;
     char *data = small_file(&size);
     const char *path = temporary_path("flipped.png");
@@ -174,8 +168,7 @@ static void every_flipped_bit_is_noticed(void **state) {
     free(data);
 }
 
-static void large_claims_are_refused_before_they_cost(void **state) {
-    (void)state;
+TEST(large_claims_are_refused_before_they_cost) {
     const char *path = temporary_path("claim.png");
     write_claim(path, 19000, 19000);
     refuse(path, "19000 x 19000 pixels; at most 100000000");
@@ -187,8 +180,7 @@ static void large_claims_are_refused_before_they_cost(void **state) {
     refuse(path, "damaged"); /* for missing pixels, not for its size */
 }
 
-static void the_limit_of_pixels_is_the_callers(void **state) {
-    (void)state;
+TEST(the_limit_of_pixels_is_the_callers) {
     Error error = {0};
     size_t size;
     uint8_t *data = (uint8_t *)small_file(&size);
@@ -201,8 +193,7 @@ static void the_limit_of_pixels_is_the_callers(void **state) {
 }
 
 /* acTL before the pixels: libpng would read only the first picture. */
-static void animations_are_refused(void **state) {
-    (void)state;
+TEST(animations_are_refused) {
     const char *path = temporary_path("animated.png");
     FILE *file = fopen(path, "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
@@ -220,8 +211,7 @@ static void animations_are_refused(void **state) {
 }
 
 /* Two pictures that differ in 16 bits but not in 8. */
-static void sixteen_bits_count_in_full(void **state) {
-    (void)state;
+TEST(sixteen_bits_count_in_full) {
     Error error = {0};
     static const PngKind kind = {"rgb 16", PNG_COLOR_TYPE_RGB, 16, false};
     for (int interlace = 0; interlace < 2; interlace++) {
@@ -246,8 +236,7 @@ static void sixteen_bits_count_in_full(void **state) {
 }
 
 /* A sample v of 8 bits is v * 257 in 16. */
-static void depths_are_compared_by_what_they_mean(void **state) {
-    (void)state;
+TEST(depths_are_compared_by_what_they_mean) {
     ImageDifference difference;
     Image shallow = {1, 1, (uint8_t[]){1, 128, 255, 255}, NULL};
     Image deep = {1, 1, (uint8_t[]){1, 128, 255, 255}, (uint16_t[]){257, 128 * 257, 65535, 65535}};
@@ -283,8 +272,7 @@ static void write_text_bomb(const char *path) {
     free(text);
 }
 
-static void texts_that_swell_do_no_harm(void **state) {
-    (void)state;
+TEST(texts_that_swell_do_no_harm) {
     Error error = {0};
     const char *path = temporary_path("bomb.png");
     static char value[SWOLLEN];
@@ -297,8 +285,7 @@ static void texts_that_swell_do_no_harm(void **state) {
     assert_int_equal(error.kind, ERROR_INPUT);
 }
 
-static void what_is_no_file_is_refused(void **state) {
-    (void)state;
+TEST(what_is_no_file_is_refused) {
     Error error = {0};
     assert_refused(image_read_png(temporary_path("missing.png"), &error), "missing.png");
     error = (Error){0};
@@ -306,8 +293,7 @@ static void what_is_no_file_is_refused(void **state) {
     assert_int_equal(error.kind, ERROR_INPUT);
 }
 
-static void a_failed_write_is_the_systems_fault(void **state) {
-    (void)state;
+TEST(a_failed_write_is_the_systems_fault) {
     Error error = {0};
     Image *image = patterned(2, 2);
     assert_false(image_write_png(image, temporary_path("no/such/folder.png"), NULL, 0, &error));
@@ -315,22 +301,4 @@ static void a_failed_write_is_the_systems_fault(void **state) {
     image_destroy(image);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(written_pictures_come_back),
-        cmocka_unit_test(alpha_is_dropped),
-        cmocka_unit_test(texts_come_back),
-        cmocka_unit_test(every_kind_is_read),
-        cmocka_unit_test(truncated_files_are_refused),
-        cmocka_unit_test(every_flipped_bit_is_noticed),
-        cmocka_unit_test(large_claims_are_refused_before_they_cost),
-        cmocka_unit_test(the_limit_of_pixels_is_the_callers),
-        cmocka_unit_test(animations_are_refused),
-        cmocka_unit_test(sixteen_bits_count_in_full),
-        cmocka_unit_test(depths_are_compared_by_what_they_mean),
-        cmocka_unit_test(texts_that_swell_do_no_harm),
-        cmocka_unit_test(what_is_no_file_is_refused),
-        cmocka_unit_test(a_failed_write_is_the_systems_fault),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

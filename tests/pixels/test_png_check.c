@@ -43,8 +43,7 @@ static uint8_t *kind_bytes(const PngKind *kind, int interlace, size_t *size) {
     return data;
 }
 
-static void every_kind_is_valid(void **state) {
-    (void)state;
+TEST(every_kind_is_valid) {
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++)
         for (int interlace = 0; interlace < 2; interlace++) {
             size_t size;
@@ -57,8 +56,7 @@ static void every_kind_is_valid(void **state) {
         }
 }
 
-static void cut_and_changed_files_are_refused(void **state) {
-    (void)state;
+TEST(cut_and_changed_files_are_refused) {
     Error error;
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         size_t size;
@@ -73,8 +71,7 @@ static void cut_and_changed_files_are_refused(void **state) {
     }
 }
 
-static void what_is_no_picture_is_named(void **state) {
-    (void)state;
+TEST(what_is_no_picture_is_named) {
     static const char pointer[] =
         "version https://git-lfs.github.com/spec/v1\n"
         "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
@@ -87,8 +84,7 @@ static void what_is_no_picture_is_named(void **state) {
 }
 
 /* Headers of 4 x 4 pixels with these values. */
-static void headers_are_checked(void **state) {
-    (void)state;
+TEST(headers_are_checked) {
     static const struct {
         uint32_t width, height;
         int depth, color;
@@ -111,8 +107,7 @@ static size_t begin(PngParts *png, uint8_t pixels[64]) {
     return compress_zeros(pixels, 64, 4 * 13);
 }
 
-static void chunks_out_of_order_are_refused(void **state) {
-    (void)state;
+TEST(chunks_out_of_order_are_refused) {
     PngParts png;
     uint8_t pixels[64];
     size_t size = begin(&png, pixels);
@@ -148,8 +143,7 @@ static void chunks_out_of_order_are_refused(void **state) {
     refuse(png.data, png.size, "the palette is missing");
 }
 
-static void pixels_that_cannot_be_complete_are_refused(void **state) {
-    (void)state;
+TEST(pixels_that_cannot_be_complete_are_refused) {
     PngParts png;
     uint8_t pixels[4096];
     size_t size = begin(&png, pixels);
@@ -168,8 +162,7 @@ static void pixels_that_cannot_be_complete_are_refused(void **state) {
 }
 
 /* The best that zlib does lies above the limit. */
-static void the_smallest_file_of_a_large_picture_is_valid(void **state) {
-    (void)state;
+TEST(the_smallest_file_of_a_large_picture_is_valid) {
     PngParts png;
     uint8_t pixels[4096];
     Error error;
@@ -181,8 +174,7 @@ static void the_smallest_file_of_a_large_picture_is_valid(void **state) {
     assert_true(decodes(png.data, png.size));
 }
 
-static void odd_but_valid_files_are_accepted(void **state) {
-    (void)state;
+TEST(odd_but_valid_files_are_accepted) {
     PngParts png;
     uint8_t pixels[64];
     Error error;
@@ -197,16 +189,4 @@ static void odd_but_valid_files_are_accepted(void **state) {
     assert_true(decodes(png.data, png.size));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_kind_is_valid),
-        cmocka_unit_test(cut_and_changed_files_are_refused),
-        cmocka_unit_test(what_is_no_picture_is_named),
-        cmocka_unit_test(headers_are_checked),
-        cmocka_unit_test(chunks_out_of_order_are_refused),
-        cmocka_unit_test(pixels_that_cannot_be_complete_are_refused),
-        cmocka_unit_test(the_smallest_file_of_a_large_picture_is_valid),
-        cmocka_unit_test(odd_but_valid_files_are_accepted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -16,8 +16,7 @@ static void claim(PngParts *file, int color) {
     put_chunk(file, "IEND", NULL, 0);
 }
 
-static void too_few_bytes_are_refused_first(void **state) {
-    (void)state;
+TEST(too_few_bytes_are_refused_first) {
     PngParts file;
     for (int color = 0; color <= 6; color += 2) {
         Error error = {0};
@@ -29,7 +28,4 @@ static void too_few_bytes_are_refused_first(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(too_few_bytes_are_refused_first)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

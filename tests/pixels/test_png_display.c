@@ -28,22 +28,19 @@ static void assert_differ(const char *text) {
     assert_string_equal(display.text, text);
 }
 
-static void files_without_such_chunks_display_alike(void **state) {
-    (void)state;
+TEST_WITH(files_without_such_chunks_display_alike, begin, NULL) {
     put_chunk(&a, "tEXt", "Title\0x", 7);
     put_chunk(&b, "tIME", "\x07\xEA\x01\x01\0\0\0", 7);
     assert_differ("");
 }
 
-static void gamma_is_told_in_numbers(void **state) {
-    (void)state;
+TEST_WITH(gamma_is_told_in_numbers, begin, NULL) {
     put_chunk(&a, "gAMA", "\0\0\xB1\x8F", 4); /* 45455 */
     put_chunk(&b, "gAMA", "\0\1\x86\xA0", 4); /* 100000 */
     assert_differ("gAMA 0.45455 and 1");
 }
 
-static void a_chunk_in_one_file_differs_from_none(void **state) {
-    (void)state;
+TEST_WITH(a_chunk_in_one_file_differs_from_none, begin, NULL) {
     static const uint8_t primaries[32] = {1};
     put_chunk(&a, "sRGB", "\0", 1);
     put_chunk(&b, "cICP", "\x0C\x0D\0\1", 4);
@@ -51,8 +48,7 @@ static void a_chunk_in_one_file_differs_from_none(void **state) {
     assert_differ("cICP none and set, sRGB 0 and none, cHRM none and set");
 }
 
-static void values_without_a_short_form_differ(void **state) {
-    (void)state;
+TEST_WITH(values_without_a_short_form_differ, begin, NULL) {
     static const uint8_t first[32] = {1}, second[32] = {2};
     put_chunk(&a, "cHRM", first, sizeof first);
     put_chunk(&b, "cHRM", second, sizeof second);
@@ -70,23 +66,20 @@ static void put_profile(PngParts *png, const char *name, const char *profile, in
 }
 
 /* An optimiser of PNG files compresses and names it otherwise. */
-static void a_profile_is_its_content(void **state) {
-    (void)state;
+TEST_WITH(a_profile_is_its_content, begin, NULL) {
     static const char profile[] = "a profile a profile a profile";
     put_profile(&a, "icc", profile, 0);
     put_profile(&b, "ICC profile", profile, 9);
     assert_differ("");
 }
 
-static void profiles_of_equal_length_differ(void **state) {
-    (void)state;
+TEST_WITH(profiles_of_equal_length_differ, begin, NULL) {
     put_profile(&a, "icc", "profile 1", 9);
     put_profile(&b, "icc", "profile 2", 9);
     assert_differ("iCCP differs");
 }
 
-static void damaged_profiles_differ_unless_their_bytes_are_equal(void **state) {
-    (void)state;
+TEST_WITH(damaged_profiles_differ_unless_their_bytes_are_equal, begin, NULL) {
     put_chunk(&a, "iCCP", "icc\0\0broken", 11);
     put_chunk(&b, "iCCP", "icc\0\0BROKEN", 11);
     assert_differ("iCCP differs");
@@ -105,29 +98,25 @@ static void put_orientation(PngParts *png, bool little, uint8_t value) {
     put_chunk(png, "eXIf", little ? intel : motorola, sizeof intel);
 }
 
-static void orientations_count_in_both_byte_orders(void **state) {
-    (void)state;
+TEST_WITH(orientations_count_in_both_byte_orders, begin, NULL) {
     put_orientation(&a, true, 6);
     put_orientation(&b, false, 8);
     assert_differ("orientation 6 and 8");
 }
 
-static void the_same_orientation_displays_alike(void **state) {
-    (void)state;
+TEST_WITH(the_same_orientation_displays_alike, begin, NULL) {
     put_orientation(&a, true, 3);
     put_orientation(&b, false, 3);
     assert_differ("");
 }
 
-static void upright_is_no_orientation(void **state) {
-    (void)state;
+TEST_WITH(upright_is_no_orientation, begin, NULL) {
     put_orientation(&a, false, 1);
     assert_differ("");
 }
 
 /* Read out of bounds, the sanitizer stops these. */
-static void damaged_directories_do_no_harm(void **state) {
-    (void)state;
+TEST_WITH(damaged_directories_do_no_harm, begin, NULL) {
     uint8_t exif[34] = "II*\0\x08\0\0\0\xFF\xFF";
     for (size_t size = 0; size <= sizeof exif; size++) {
         begin(NULL);
@@ -146,19 +135,4 @@ static void damaged_directories_do_no_harm(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(files_without_such_chunks_display_alike, begin),
-        cmocka_unit_test_setup(gamma_is_told_in_numbers, begin),
-        cmocka_unit_test_setup(a_chunk_in_one_file_differs_from_none, begin),
-        cmocka_unit_test_setup(values_without_a_short_form_differ, begin),
-        cmocka_unit_test_setup(a_profile_is_its_content, begin),
-        cmocka_unit_test_setup(profiles_of_equal_length_differ, begin),
-        cmocka_unit_test_setup(damaged_profiles_differ_unless_their_bytes_are_equal, begin),
-        cmocka_unit_test_setup(orientations_count_in_both_byte_orders, begin),
-        cmocka_unit_test_setup(the_same_orientation_displays_alike, begin),
-        cmocka_unit_test_setup(upright_is_no_orientation, begin),
-        cmocka_unit_test_setup(damaged_directories_do_no_harm, begin),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

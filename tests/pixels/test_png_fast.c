@@ -7,7 +7,7 @@
 #include "regression/compare.h"
 #include "pixels/internal.h"
 
-#include <zlib.h>
+#include "png_parts.h"
 
 static uint32_t seed = 1;
 
@@ -16,30 +16,7 @@ static uint32_t draw(uint32_t below) {
     return (uint32_t)((uint64_t)(seed >> 8) * below >> 24);
 }
 
-enum { SIDE = 48, ROOM = 1 << 16, CHUNKS = 4096 };
-
-typedef struct File {
-    size_t size;
-    uint8_t bytes[ROOM];
-} File;
-
-static void put_number(uint8_t *to, uint32_t value) {
-    for (int i = 0; i < 4; i++) to[i] = (uint8_t)(value >> (24 - 8 * i));
-}
-
-static uint32_t number(const uint8_t *p) {
-    return (uint32_t)p[0] << 24 | (uint32_t)p[1] << 16 | (uint32_t)p[2] << 8 | p[3];
-}
-
-static void put_chunk(File *file, const char *type, const uint8_t *data, size_t size) {
-    uint8_t *to = file->bytes + file->size;
-    assert_true(file->size + size + 12 <= ROOM);
-    put_number(to, (uint32_t)size);
-    memcpy(to + 4, type, 4);
-    if (size > 0) memcpy(to + 8, data, size);
-    put_number(to + 8 + size, (uint32_t)crc32(0, to + 4, (uInt)size + 4));
-    file->size += size + 12;
-}
+enum { SIDE = 48, ROOM = sizeof((PngParts *)NULL)->data, CHUNKS = 4096 };
 
 typedef struct Kind {
     int color, depth, channels;
@@ -61,7 +38,7 @@ static size_t make_rows(const Kind *kind, int width, int height, uint32_t filter
     return (size_t)(to - rows);
 }
 
-static void put_palette(File *file, const Kind *kind, bool whole) {
+static void put_palette(PngParts *file, const Kind *kind, bool whole) {
     uint8_t data[768];
     uint32_t most = kind->color == 3 ? 1u << kind->depth : 256, count = whole ? most : 1 + draw(most);
     for (uint32_t i = 0; i < 3 * count; i++) data[i] = (uint8_t)draw(256);
@@ -73,7 +50,7 @@ static void put_palette(File *file, const Kind *kind, bool whole) {
     if (kind->color == 3) put_chunk(file, "tRNS", data, 1 + draw(count));
 }
 
-static void put_other(File *file) {
+static void put_other(PngParts *file) {
     static const char *const types[] = {"tEXt", "gAMA", "bKGD", "sBIT", "pHYs", "zTXt",
                                         "iCCP", "heLo", "eXIf", "tIME", "hIST"};
     uint8_t data[40];
@@ -92,7 +69,7 @@ static size_t compress_rows(const uint8_t *rows, size_t size, int bits, uint8_t 
     return stream.total_out;
 }
 
-static void put_pixels(File *file, const uint8_t *packed, size_t size) {
+static void put_pixels(PngParts *file, const uint8_t *packed, size_t size) {
     for (size_t at = 0, part; at < size; at += part) {
         part = draw(2) == 0 ? size : draw(40);
         if (part > size - at) part = size - at;
@@ -117,15 +94,10 @@ static void change_rows(uint8_t *rows, size_t size, int height) {
 }
 
 /* sound: every filter is known, every colour in the palette, and the window as large as usual. */
-static void make_file(File *file, const Kind *kind, bool sound) {
+static void make_file(PngParts *file, const Kind *kind, bool sound) {
     static uint8_t rows[SIDE * (SIDE * 8 + 1)], packed[ROOM / 2];
     int width = 1 + (int)draw(SIDE), height = 1 + (int)draw(SIDE);
-    uint8_t header[13] = {[8] = (uint8_t)kind->depth, [9] = (uint8_t)kind->color};
-    put_number(header, (uint32_t)width);
-    put_number(header + 4, (uint32_t)height);
-    memcpy(file->bytes, "\x89PNG\r\n\x1A\n", 8);
-    file->size = 8;
-    put_chunk(file, "IHDR", header, sizeof header);
+    put_header(file, (uint32_t)width, (uint32_t)height, kind->depth, kind->color);
     put_other(file);
     put_palette(file, kind, sound);
     put_other(file);
@@ -136,9 +108,9 @@ static void make_file(File *file, const Kind *kind, bool sound) {
     put_chunk(file, "IEND", NULL, 0);
 }
 
-static Image *by_libpng(const File *file) {
+static Image *by_libpng(const PngParts *file) {
     Error error = {0};
-    Image *image = png_libpng_decode(file->bytes, file->size, "file", 1 << 20, &error);
+    Image *image = png_libpng_decode(file->data, file->size, "file", 1 << 20, &error);
     if (image == NULL) assert_error(error, ERROR_INPUT, "file");
     return image;
 }
@@ -149,9 +121,9 @@ static void assert_same(const Image *a, const Image *b) {
 }
 
 /* Whether the fast decoder accepts. */
-static bool check_file(const File *file) {
+static bool check_file(const PngParts *file) {
     Image *fast;
-    if (!png_fast_decode(file->bytes, file->size, 1 << 20, &fast)) {
+    if (!png_fast_decode(file->data, file->size, 1 << 20, &fast)) {
         assert_null(fast);
         return false;
     }
@@ -164,18 +136,16 @@ static bool check_file(const File *file) {
     return true;
 }
 
-static File good, bad;
+static PngParts good, bad;
 
-static void what_it_is_for_is_accepted(void **state) {
-    (void)state;
+TEST(what_it_is_for_is_accepted) {
     for (int i = 0; i < 4000; i++) {
         make_file(&good, &kinds[i % KINDS], true);
         assert_int_equal(check_file(&good), i % KINDS < SHALLOW);
     }
 }
 
-static void what_is_unusual_is_decoded_as_by_libpng(void **state) {
-    (void)state;
+TEST(what_is_unusual_is_decoded_as_by_libpng) {
     int accepted = 0;
     for (int i = 0; i < 4000; i++) {
         make_file(&good, &kinds[i % SHALLOW], false);
@@ -185,10 +155,9 @@ static void what_is_unusual_is_decoded_as_by_libpng(void **state) {
 }
 
 /* The second half of the picture repeats the first, 2 KiB behind it; the header claims a window of 256 bytes. */
-static void a_window_that_is_too_small_is_left_to_libpng(void **state) {
-    (void)state;
+TEST(a_window_that_is_too_small_is_left_to_libpng) {
     enum { WIDTH = 32, HEIGHT = 32, BYTES = 1 + 4 * WIDTH };
-    uint8_t rows[HEIGHT][BYTES], packed[2 * sizeof rows], header[13] = {[3] = WIDTH, [7] = HEIGHT, [8] = 8, [9] = 6};
+    uint8_t rows[HEIGHT][BYTES], packed[2 * sizeof rows];
     for (int y = 0; y < HEIGHT; y++)
         for (int i = 0; i < BYTES; i++)
             rows[y][i] = (uint8_t)(i == 0 ? 0 : y < HEIGHT / 2 ? draw(256) : rows[y - HEIGHT / 2][i]);
@@ -197,9 +166,7 @@ static void a_window_that_is_too_small_is_left_to_libpng(void **state) {
         int window = i % 2 == 0 ? 15 : 8;
         packed[0] = (uint8_t)((window - 8) << 4 | 8);
         packed[1] = (uint8_t)(31 - (packed[0] << 8) % 31);
-        memcpy(good.bytes, "\x89PNG\r\n\x1A\n", 8);
-        good.size = 8;
-        put_chunk(&good, "IHDR", header, sizeof header);
+        put_header(&good, WIDTH, HEIGHT, 8, 6);
         put_chunk(&good, "IDAT", packed, size);
         put_chunk(&good, "IEND", NULL, 0);
         assert_int_equal(check_file(&good), window == 15);
@@ -207,16 +174,11 @@ static void a_window_that_is_too_small_is_left_to_libpng(void **state) {
 }
 
 /* Positions of the chunks, and the end of the last one. */
-static int find_chunks(const File *file, size_t at[CHUNKS]) {
+static int find_chunks(const PngParts *file, size_t at[CHUNKS]) {
     int count = 0;
-    for (at[0] = 8; at[count] < file->size; count++) at[count + 1] = at[count] + 12 + number(file->bytes + at[count]);
+    for (at[0] = 8; at[count] < file->size; count++)
+        at[count + 1] = at[count] + 12 + png_number(file->data + at[count]);
     return count;
-}
-
-static void append(const uint8_t *bytes, size_t size) {
-    assert_true(bad.size + size <= ROOM);
-    memcpy(bad.bytes + bad.size, bytes, size);
-    bad.size += size;
 }
 
 /* Removes chunk i, moves it to j, or copies it there. */
@@ -224,22 +186,22 @@ static void rearrange(const size_t at[CHUNKS], int count) {
     int i = (int)draw((uint32_t)count), j = (int)draw((uint32_t)count);
     bool copy = draw(2) == 0, insert = draw(2) == 0;
     bad.size = 0;
-    append(good.bytes, 8);
+    put_bytes(&bad, good.data, 8);
     for (int k = 0; k < count; k++) {
-        if (k == j && insert) append(good.bytes + at[i], at[i + 1] - at[i]);
-        if (k != i || copy) append(good.bytes + at[k], at[k + 1] - at[k]);
+        if (k == j && insert) put_bytes(&bad, good.data + at[i], at[i + 1] - at[i]);
+        if (k != i || copy) put_bytes(&bad, good.data + at[k], at[k + 1] - at[k]);
     }
 }
 
 static void make_checksum(uint8_t *chunk) {
-    uint32_t length = number(chunk);
-    put_number(chunk + 8 + length, (uint32_t)crc32(0, chunk + 4, length + 4));
+    uint32_t length = png_number(chunk);
+    store_number(chunk + 8 + length, (uint32_t)crc32(0, chunk + 4, length + 4));
 }
 
 /* Changes bytes of a chunk, its type included, and makes its checksum right. In headers and at the ends of chunks, where
    the stream's own checksum is, more often than elsewhere. */
 static void change_chunk(uint8_t *chunk) {
-    uint32_t length = number(chunk), from = draw(16) == 0 ? 0 : 4;
+    uint32_t length = png_number(chunk), from = draw(16) == 0 ? 0 : 4;
     if (from == 4 && length == 0) return;
     for (uint32_t n = 1 + draw(2); n > 0; n--) {
         uint32_t place =
@@ -252,33 +214,32 @@ static void change_chunk(uint8_t *chunk) {
 /* Adds bytes to a chunk, or takes some from its end. */
 static void resize_chunk(const size_t at[CHUNKS], int i) {
     uint8_t bytes[8];
-    uint32_t length = number(good.bytes + at[i]), kept = draw(2) == 0 ? length : length - draw(length + 1),
+    uint32_t length = png_number(good.data + at[i]), kept = draw(2) == 0 ? length : length - draw(length + 1),
              more = draw(5);
     for (size_t k = 0; k < sizeof bytes; k++) bytes[k] = (uint8_t)draw(256);
     bad.size = 0;
-    append(good.bytes, at[i] + 8 + kept);
-    append(bytes, more + 4);
-    put_number(bad.bytes + at[i], kept + more);
-    make_checksum(bad.bytes + at[i]);
-    append(good.bytes + at[i + 1], good.size - at[i + 1]);
+    put_bytes(&bad, good.data, at[i] + 8 + kept);
+    put_bytes(&bad, bytes, more + 4);
+    store_number(bad.data + at[i], kept + more);
+    make_checksum(bad.data + at[i]);
+    put_bytes(&bad, good.data + at[i + 1], good.size - at[i + 1]);
 }
 
 static void damage(void) {
     static size_t at[CHUNKS];
     int count = find_chunks(&good, at), i = (int)draw((uint32_t)count);
     bad.size = good.size;
-    memcpy(bad.bytes, good.bytes, good.size);
+    memcpy(bad.data, good.data, good.size);
     uint32_t how = draw(16);
     if (how == 0) bad.size = draw((uint32_t)good.size);
-    if (how == 1) bad.bytes[draw((uint32_t)good.size)] ^= (uint8_t)(1u << draw(8));
-    if (how == 2) put_number(bad.bytes + at[i], draw(2) == 0 ? draw(100) : draw(1 << 24) << 8);
+    if (how == 1) bad.data[draw((uint32_t)good.size)] ^= (uint8_t)(1u << draw(8));
+    if (how == 2) store_number(bad.data + at[i], draw(2) == 0 ? draw(100) : draw(1 << 24) << 8);
     if (how >= 3 && how < 6) rearrange(at, count);
     if (how >= 6 && how < 9) resize_chunk(at, i);
-    if (how >= 9) change_chunk(bad.bytes + at[how < 11 ? 0 : i]);
+    if (how >= 9) change_chunk(bad.data + at[how < 11 ? 0 : i]);
 }
 
-static void damaged_files_are_decoded_only_if_libpng_does(void **state) {
-    (void)state;
+TEST(damaged_files_are_decoded_only_if_libpng_does) {
     int accepted = 0;
     for (int i = 0; i < 40000; i++) {
         if (i % 4 == 0) make_file(&good, &kinds[draw(SHALLOW)], i % 8 == 0);
@@ -288,19 +249,17 @@ static void damaged_files_are_decoded_only_if_libpng_does(void **state) {
     assert_true(accepted > 1000 && accepted < 20000); /* else the damage tests nothing */
 }
 
-static void noise_is_refused(void **state) {
-    (void)state;
+TEST(noise_is_refused) {
     for (int i = 0; i < 20000; i++) {
         bad.size = draw(200);
-        for (size_t k = 0; k < bad.size; k++) bad.bytes[k] = (uint8_t)draw(256);
-        if (i % 2 == 0) memcpy(bad.bytes, "\x89PNG\r\n\x1A\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x8\2\0\0\0\x90wS\xDE", 33);
+        for (size_t k = 0; k < bad.size; k++) bad.data[k] = (uint8_t)draw(256);
+        if (i % 2 == 0) memcpy(bad.data, "\x89PNG\r\n\x1A\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x8\2\0\0\0\x90wS\xDE", 33);
         assert_false(check_file(&bad));
     }
 }
 
 /* The pixels of both, and one picture only if all are equal. */
-static void pairs_are_as_two_pictures(void **state) {
-    (void)state;
+TEST(pairs_are_as_two_pictures) {
     int same = 0, pairs = 0;
     for (int i = 0; i < 6000; i++) {
         uint32_t start = seed;
@@ -310,7 +269,7 @@ static void pairs_are_as_two_pictures(void **state) {
         make_file(&bad, &kinds[i % SHALLOW], true);
         changes.bytes = 0, changes.otherwise = false;
         Image *images[2], *wanted[2] = {by_libpng(&good), by_libpng(&bad)};
-        if (png_fast_decode_pair((const uint8_t *const[]){good.bytes, bad.bytes}, (const size_t[]){good.size, bad.size},
+        if (png_fast_decode_pair((const uint8_t *const[]){good.data, bad.data}, (const size_t[]){good.size, bad.size},
                                  1 << 20, images)) {
             for (int k = 0; k < 2; k++) assert_same(images[k], wanted[k]);
             ImageDifference difference;
@@ -324,14 +283,4 @@ static void pairs_are_as_two_pictures(void **state) {
     assert_true(same > 1000 && pairs - same > 1000);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_it_is_for_is_accepted),
-        cmocka_unit_test(what_is_unusual_is_decoded_as_by_libpng),
-        cmocka_unit_test(a_window_that_is_too_small_is_left_to_libpng),
-        cmocka_unit_test(damaged_files_are_decoded_only_if_libpng_does),
-        cmocka_unit_test(noise_is_refused),
-        cmocka_unit_test(pairs_are_as_two_pictures),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -63,8 +63,7 @@ static void decode(Error *error) {
 }
 
 /* Interlaced, or with 16 bits, a file is read by libpng. */
-static void no_picture_is_called_damaged(void **state) {
-    (void)state;
+TEST_WITH(no_picture_is_called_damaged, NULL, unload) {
     static const PngKind kinds[] = {{"rgb", PNG_COLOR_TYPE_RGB, 8, false},
                                     {"palette", PNG_COLOR_TYPE_PALETTE, 4, true},
                                     {"rgba16", PNG_COLOR_TYPE_RGB_ALPHA, 16, false}};
@@ -82,8 +81,7 @@ static void find_text(Error *error) {
     if (image_find_text(file, file_size, text.key, value, sizeof value, error)) assert_string_equal(value, text.value);
 }
 
-static void no_text_is_called_missing(void **state) {
-    (void)state;
+TEST_WITH(no_text_is_called_missing, NULL, unload) {
     Error error = {0};
     Image *image = image_create(3, 2, &error);
     assert_ok(image != NULL && image_write_png(image, temporary_path("text.png"), &text, 1, &error), error);
@@ -109,8 +107,7 @@ static void compare(Error *error) {
     if (png_display_compare(a.data, a.size, b.data, b.size, &display, error)) assert_string_equal(display.text, "");
 }
 
-static void no_profile_is_called_different(void **state) {
-    (void)state;
+TEST(no_profile_is_called_different) {
     put_profile(&a, 0);
     put_profile(&b, 9);
     fail_each(compare);
@@ -129,17 +126,8 @@ static void encode(Error *error) {
     image_destroy(image);
 }
 
-static void encoding_names_the_lack_of_memory(void **state) {
-    (void)state;
+TEST(encoding_names_the_lack_of_memory) {
     for (effort = PNG_FAST; effort <= PNG_SMALL; effort++) fail_each(encode);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(no_picture_is_called_damaged, unload),
-        cmocka_unit_test_teardown(no_text_is_called_missing, unload),
-        cmocka_unit_test(no_profile_is_called_different),
-        cmocka_unit_test(encoding_names_the_lack_of_memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -11,8 +11,7 @@ static void assert_all(unsigned first, unsigned last) {
             fail_msg("U+%04X is missing", code);
 }
 
-static void alphabets_are_whole(void **state) {
-    (void)state;
+TEST(alphabets_are_whole) {
     assert_all(0x20, 0x7E);
     assert_all(0xA0, 0xAC);  /* Latin-1, without the soft hyphen */
     assert_all(0xAE, 0x148); /* Latin Extended-A, without the deprecated U+0149 */
@@ -23,8 +22,7 @@ static void alphabets_are_whole(void **state) {
     assert_all(0x400, 0x45F); /* Cyrillic */
 }
 
-static void common_symbols_are_there(void **state) {
-    (void)state;
+TEST(common_symbols_are_there) {
     Error error = {0};
     assert_ok(
         type_check("\u2264\u2265\u00D7\u00B0\u00B5\u2192\u2190\u2013\u2014\u2026\u00B7\u00B2\u00B3\u00BD\u0394\u03C0"
@@ -35,8 +33,7 @@ static void common_symbols_are_there(void **state) {
         error);
 }
 
-static void a_letter_and_its_mark_are_one_character(void **state) {
-    (void)state;
+TEST(a_letter_and_its_mark_are_one_character) {
     const char *text = "U\xCC\x88"
                        "bungsblatt"; /* U and a combining diaeresis */
     assert_int_equal(type_next_code(&text), 0xDC);
@@ -54,8 +51,7 @@ static void refuse(const char *text, const char *message) {
     assert_refused(type_check(text, "--title", &error), message);
 }
 
-static void what_cannot_be_drawn_is_named(void **state) {
-    (void)state;
+TEST(what_cannot_be_drawn_is_named) {
     refuse("1 \xE6\x97\xA5", "--title: error: the font has no character '\xE6\x97\xA5' (U+65E5)");
     refuse("\xF0\x9F\x98\x80", "(U+1F600)");
     refuse("a\nb", "control character U+000A");
@@ -70,8 +66,7 @@ static void what_cannot_be_drawn_is_named(void **state) {
 }
 
 /* Every character is either drawn or refused. */
-static void every_character_passes_or_fails(void **state) {
-    (void)state;
+TEST(every_character_passes_or_fails) {
     int passed = 0;
     for (uint32_t code = 1; code < 0x30000; code++) {
         char text[8] = "";
@@ -85,8 +80,7 @@ static void every_character_passes_or_fails(void **state) {
     assert_int_equal(passed, type_glyph_count);
 }
 
-static void figures_carry_the_font_that_they_need(void **state) {
-    (void)state;
+TEST(figures_carry_the_font_that_they_need) {
     assert_true(font_file_suffices("Pyramid: 5 \xC2\xB5s \xE2\x80\x93 \xE2\x88\x92"
                                    "1"));
     assert_false(font_file_suffices("\xC3\x9C"));
@@ -95,14 +89,4 @@ static void figures_carry_the_font_that_they_need(void **state) {
     assert_memory_equal(font_file(false).bytes, "OTTO", 4);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(alphabets_are_whole),
-        cmocka_unit_test(common_symbols_are_there),
-        cmocka_unit_test(a_letter_and_its_mark_are_one_character),
-        cmocka_unit_test(what_cannot_be_drawn_is_named),
-        cmocka_unit_test(every_character_passes_or_fails),
-        cmocka_unit_test(figures_carry_the_font_that_they_need),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

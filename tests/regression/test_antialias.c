@@ -101,8 +101,7 @@ static void assert_difference(const TestShape *shape, const TestDrawing *one, co
     if (compared(shape, one, other).pixels == 0) fail_msg("%s: not detected", name_of(shape));
 }
 
-static void shapes_that_move_by_a_part_of_a_pixel_are_equal(void **state) {
-    (void)state;
+TEST(shapes_that_move_by_a_part_of_a_pixel_are_equal) {
     static const double moves[][2] = {{0.1, 0.06}, {-0.2, 0.15}, {0.3, 0.1}, {0, -0.3}};
     for (int i = 0; i < SHAPES; i++)
         for (int k = 0; k < 4; k++) {
@@ -112,8 +111,7 @@ static void shapes_that_move_by_a_part_of_a_pixel_are_equal(void **state) {
         }
 }
 
-static void shapes_sampled_otherwise_are_equal(void **state) {
-    (void)state;
+TEST(shapes_sampled_otherwise_are_equal) {
     for (int i = 0; i < SHAPES; i++) {
         TestDrawing coarse = plain;
         coarse.samples = 4;
@@ -145,8 +143,7 @@ static bool starting_method(const Image *image, const Image *other, int x, int y
 
 /* Lines and rings that move by a part of a pixel: the starting method counts pixels in the middle of most of them,
    and none counts here. */
-static void the_starting_method_fails_where_this_one_does_not(void **state) {
-    (void)state;
+TEST(the_starting_method_fails_where_this_one_does_not) {
     TestDrawing moved = plain;
     int failed = 0, lines = 0;
     moved.x = 0.3, moved.y = 0.1;
@@ -167,8 +164,7 @@ static void the_starting_method_fails_where_this_one_does_not(void **state) {
 }
 
 /* Any colours, and dark as well as light ink. */
-static void colours_do_not_matter(void **state) {
-    (void)state;
+TEST(colours_do_not_matter) {
     static const TestDrawing one = {.samples = FINE, .strength = 1, .ink = {250, 90, 20}, .paper = {20, 24, 60}};
     for (int i = 0; i < SHAPES; i++) {
         TestDrawing moved = one;
@@ -177,8 +173,7 @@ static void colours_do_not_matter(void **state) {
     }
 }
 
-static void real_changes_are_detected(void **state) {
-    (void)state;
+TEST(real_changes_are_detected) {
     TestDrawing changes[] = {plain, plain, plain, plain, plain, plain};
     changes[0].strength = 0; /* erased */
     changes[1].strength = 0.7;
@@ -191,8 +186,7 @@ static void real_changes_are_detected(void **state) {
 }
 
 /* In the picture of a shape: a pixel of the edge, the inside or the paper gets the opposite colour, or red. */
-static void single_wrong_pixels_are_detected(void **state) {
-    (void)state;
+TEST(single_wrong_pixels_are_detected) {
     for (int i = 0; i < SHAPES; i++) {
         Image *image = drawn(&shapes[i], &plain), *wrong = drawn(&shapes[i], &plain);
         for (int at = SIDE + 1; at < SIDE * (SIDE - 1); at += 5) {
@@ -208,8 +202,7 @@ static void single_wrong_pixels_are_detected(void **state) {
 }
 
 /* A crisp edge that moves by a whole pixel has no coverage to compare. */
-static void an_edge_that_moves_by_a_pixel_differs(void **state) {
-    (void)state;
+TEST(an_edge_that_moves_by_a_pixel_differs) {
     Error error = {0};
     Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
     for (int i = 0; i < SIDE * SIDE; i++) {
@@ -222,8 +215,7 @@ static void an_edge_that_moves_by_a_pixel_differs(void **state) {
 }
 
 /* What a transparent pixel hides does not matter: premultiplied, (171, 0, 85, 128) lies half way to transparent. */
-static void transparent_edges_are_edges(void **state) {
-    (void)state;
+TEST(transparent_edges_are_edges) {
     Error error = {0};
     Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
     for (int y = 0; y < SIDE; y++)
@@ -241,8 +233,7 @@ static void transparent_edges_are_edges(void **state) {
 }
 
 /* A reproducible texture without flat areas: each change of brightness counts nearly everywhere. */
-static void textures_have_no_edges(void **state) {
-    (void)state;
+TEST(textures_have_no_edges) {
     Error error = {0};
     Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
     uint32_t random = 1;
@@ -258,8 +249,7 @@ static void textures_have_no_edges(void **state) {
 }
 
 /* By one level, or two. */
-static void areas_that_become_lighter_differ(void **state) {
-    (void)state;
+TEST(areas_that_become_lighter_differ) {
     Error error = {0};
     for (int slope = 0; slope <= 2; slope++)
         for (int more = 1; more <= 2; more++) {
@@ -276,8 +266,7 @@ static void areas_that_become_lighter_differ(void **state) {
 }
 
 /* Pictures smaller than the windows. */
-static void small_pictures_are_compared(void **state) {
-    (void)state;
+TEST(small_pictures_are_compared) {
     Error error = {0};
     for (int width = 1; width <= 4; width++)
         for (int height = 1; height <= 4; height++) {
@@ -291,8 +280,7 @@ static void small_pictures_are_compared(void **state) {
         }
 }
 
-static void masked_pixels_stay_masked(void **state) {
-    (void)state;
+TEST(masked_pixels_stay_masked) {
     TestDrawing moved = plain;
     moved.x = 0.3;
     Image *a = drawn(&shapes[2], &plain), *b = drawn(&shapes[2], &moved);
@@ -304,20 +292,4 @@ static void masked_pixels_stay_masked(void **state) {
     image_destroy(b);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shapes_that_move_by_a_part_of_a_pixel_are_equal),
-        cmocka_unit_test(shapes_sampled_otherwise_are_equal),
-        cmocka_unit_test(the_starting_method_fails_where_this_one_does_not),
-        cmocka_unit_test(colours_do_not_matter),
-        cmocka_unit_test(real_changes_are_detected),
-        cmocka_unit_test(single_wrong_pixels_are_detected),
-        cmocka_unit_test(an_edge_that_moves_by_a_pixel_differs),
-        cmocka_unit_test(transparent_edges_are_edges),
-        cmocka_unit_test(textures_have_no_edges),
-        cmocka_unit_test(areas_that_become_lighter_differ),
-        cmocka_unit_test(small_pictures_are_compared),
-        cmocka_unit_test(masked_pixels_stay_masked),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

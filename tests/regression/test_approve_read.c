@@ -1,22 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "base/file.h"
 #include "regression/internal.h"
 
 #define HEAD "{\"format\": \"twinbox compare 1\", \"expected\": \"old\", \"actual\": \"new\""
 #define FILE_1 "{\"name\": \"1.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
 #define FILE_0 "{\"name\": \"0.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"
 
-static const char *store(const char *text) {
-    Error error = {0};
-    const char *path = temporary_path("results.json");
-    assert_ok(file_write(path, text, strlen(text), &error), error);
-    return path;
-}
+static const char *store(const char *text) { return write_bytes(temporary_path("results.json"), text, strlen(text)); }
 
-static void failures_are_read_in_any_order_of_members(void **state) {
-    (void)state;
+TEST(failures_are_read_in_any_order_of_members) {
     Error error = {0};
     ApprovalList list;
     const char *text = "{\"trajectories\": [], \"frames\": [\n"
@@ -38,8 +31,7 @@ static void failures_are_read_in_any_order_of_members(void **state) {
     approval_free(&list);
 }
 
-static void invalid_results_are_refused_with_their_place(void **state) {
-    (void)state;
+TEST(invalid_results_are_refused_with_their_place) {
     static const struct {
         const char *text, *why;
     } cases[] = {
@@ -73,8 +65,7 @@ static void invalid_results_are_refused_with_their_place(void **state) {
 }
 
 /* One of thousands, each with its own name, so that the table of names has grown many times. */
-static void a_file_that_is_named_twice_is_refused(void **state) {
-    (void)state;
+TEST(a_file_that_is_named_twice_is_refused) {
     enum { COUNT = 3000, SIZE = 120 };
     for (int twice = 0; twice <= 1; twice++) {
         Error error = {0};
@@ -95,11 +86,4 @@ static void a_file_that_is_named_twice_is_refused(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(failures_are_read_in_any_order_of_members),
-        cmocka_unit_test(invalid_results_are_refused_with_their_place),
-        cmocka_unit_test(a_file_that_is_named_twice_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

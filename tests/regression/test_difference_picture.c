@@ -38,8 +38,7 @@ static void assert_pixel(const Image *image, int x, int red, int green, int blue
 static int luma(const uint8_t *p) { return p[0] * 3 + p[1] * 6 + p[2]; }
 
 /* Pixel x differs by x. The ends are the header's colours; between them each step is darker, or as dark. */
-static void differences_are_coloured_by_size(void **state) {
-    (void)state;
+TEST(differences_are_coloured_by_size) {
     Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
     for (int x = 0; x < LEVELS; x++) actual->pixels[4 * x + x % 4] = (uint8_t)x;
     Image *drawn = draw(expected, actual, NULL);
@@ -56,8 +55,7 @@ static void differences_are_coloured_by_size(void **state) {
     image_destroy(drawn);
 }
 
-static void equal_pixels_are_pale(void **state) {
-    (void)state;
+TEST(equal_pixels_are_pale) {
     Image *expected = black(LEVELS, 1);
     for (int x = 0; x < LEVELS; x++) memset(expected->pixels + 4 * x, x, 4);
     Image *drawn = draw(expected, expected, NULL);
@@ -67,8 +65,7 @@ static void equal_pixels_are_pale(void **state) {
 }
 
 /* In diagonal lines, every eighth pixel; a masked difference is not coloured. */
-static void masked_pixels_are_hatched(void **state) {
-    (void)state;
+TEST(masked_pixels_are_hatched) {
     uint8_t masked[LEVELS];
     Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
     memset(actual->pixels, 255, 4 * LEVELS);
@@ -84,8 +81,7 @@ static void masked_pixels_are_hatched(void **state) {
 }
 
 /* Two 16-bit pictures that differ in the last bit count as different by 1. */
-static void sixteen_bits_count_in_full(void **state) {
-    (void)state;
+TEST(sixteen_bits_count_in_full) {
     uint16_t deep[2][8] = {{0}, {0, 0, 0, 0, 1}};
     Image expected = {2, 1, (uint8_t[8]){0}, deep[0]}, actual = {2, 1, (uint8_t[8]){0}, deep[1]};
     Image *drawn = draw(&expected, &actual, NULL);
@@ -95,8 +91,7 @@ static void sixteen_bits_count_in_full(void **state) {
 }
 
 /* The header's colours at the ends; only 0 is black. */
-static void heat_goes_from_black_to_yellow(void **state) {
-    (void)state;
+TEST(heat_goes_from_black_to_yellow) {
     Error error = {0};
     size_t size;
     float values[LEVELS];
@@ -117,8 +112,7 @@ static void heat_goes_from_black_to_yellow(void **state) {
 }
 
 /* Noise does not shrink: 300 KB are ten parts. */
-static void noise_comes_back(void **state) {
-    (void)state;
+TEST(noise_comes_back) {
     enum { WIDTH = 1000, HEIGHT = 300 };
     Error error = {0};
     Palette palette = {.count = LEVELS};
@@ -140,8 +134,7 @@ static void noise_comes_back(void **state) {
     image_destroy(drawn);
 }
 
-static void ignored_edges_are_blue(void **state) {
-    (void)state;
+TEST(ignored_edges_are_blue) {
     uint8_t masked[LEVELS];
     Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
     memset(actual->pixels, 255, 4 * LEVELS);
@@ -154,8 +147,7 @@ static void ignored_edges_are_blue(void **state) {
 }
 
 /* Equal but for one pixel, 24 x 12 and 16 x 20. */
-static void what_only_one_picture_has_is_striped(void **state) {
-    (void)state;
+TEST(what_only_one_picture_has_is_striped) {
     Error error = {0};
     size_t size;
     Image *a = black(24, 12), *b = black(16, 20);
@@ -186,12 +178,4 @@ static void what_only_one_picture_has_is_striped(void **state) {
     image_destroy(drawn);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(differences_are_coloured_by_size), cmocka_unit_test(equal_pixels_are_pale),
-        cmocka_unit_test(ignored_edges_are_blue),           cmocka_unit_test(what_only_one_picture_has_is_striped),
-        cmocka_unit_test(masked_pixels_are_hatched),        cmocka_unit_test(sixteen_bits_count_in_full),
-        cmocka_unit_test(heat_goes_from_black_to_yellow),   cmocka_unit_test(noise_comes_back),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -68,13 +68,9 @@ static double expected_grey(double first, double second) {
     return error < knee ? 0.95 * error / knee : 0.95 + 0.05 * (error - knee) / (largest - knee);
 }
 
-static void equal_pictures_have_none(void **state) {
-    (void)state;
-    assert_true(flip_plain(0x336699, 0x336699) == 0);
-}
+TEST_WITH(equal_pictures_have_none, make, destroy) { assert_true(flip_plain(0x336699, 0x336699) == 0); }
 
-static void plain_greys_follow_the_equations(void **state) {
-    (void)state;
+TEST_WITH(plain_greys_follow_the_equations, make, destroy) {
     for (int grey = 0; grey < 256; grey += 5) {
         uint32_t color = (uint32_t)grey * 0x010101;
         assert_near(flip_plain(0xFFFFFF, color), expected_grey(255, grey), 1e-4);
@@ -84,13 +80,9 @@ static void plain_greys_follow_the_equations(void **state) {
 }
 
 /* The pair that the paper normalises with. */
-static void green_and_blue_are_the_farthest(void **state) {
-    (void)state;
-    assert_near(flip_plain(0x00FF00, 0x0000FF), 1, 1e-5);
-}
+TEST_WITH(green_and_blue_are_the_farthest, make, destroy) { assert_near(flip_plain(0x00FF00, 0x0000FF), 1, 1e-5); }
 
-static void it_is_symmetric(void **state) {
-    (void)state;
+TEST_WITH(it_is_symmetric, make, destroy) {
     paint(a, 0, SIDE, 0xFFFFFF);
     paint(a, 20, 30, 0x0072B2);
     paint(b, 0, SIDE, 0xFFFFFF);
@@ -101,8 +93,7 @@ static void it_is_symmetric(void **state) {
     assert_true(there > 0 && flip(NULL) == there);
 }
 
-static void a_larger_shift_looks_larger(void **state) {
-    (void)state;
+TEST_WITH(a_larger_shift_looks_larger, make, destroy) {
     double before = 0;
     paint(a, 0, SIDE, 0xFFFFFF);
     paint(a, 10, 20, 0x0072B2);
@@ -116,8 +107,7 @@ static void a_larger_shift_looks_larger(void **state) {
 }
 
 /* At many pixels per degree, the eye blurs stripes to the grey of equal luminance. */
-static void fine_stripes_vanish_with_distance(void **state) {
-    (void)state;
+TEST_WITH(fine_stripes_vanish_with_distance, make, destroy) {
     Error error = {0};
     FlipSummary near, far;
     for (int x = 0; x < SIDE; x++) {
@@ -130,8 +120,7 @@ static void fine_stripes_vanish_with_distance(void **state) {
 }
 
 /* Only the neighbourhood of differences is computed; a single pixel reaches as far as the widest filter, 10 pixels. */
-static void the_map_is_local_and_its_mean_the_mean(void **state) {
-    (void)state;
+TEST_WITH(the_map_is_local_and_its_mean_the_mean, make, destroy) {
     static float map[SIDE * SIDE];
     double sum = 0;
     paint(a, 0, SIDE, 0xFFFFFF);
@@ -151,8 +140,7 @@ static void the_map_is_local_and_its_mean_the_mean(void **state) {
 static uint32_t busy_grey(int x) { return (uint32_t)(x * 37 % 200) * 0x010101; }
 
 /* Away from the edges, a region has the same values as in a larger picture, which is computed whole. */
-static void the_surroundings_do_not_matter(void **state) {
-    (void)state;
+TEST_WITH(the_surroundings_do_not_matter, make, destroy) {
     static float small[SIDE * SIDE], large[SIDE * SIDE * 4];
     Error error = {0};
     FlipSummary result;
@@ -182,8 +170,7 @@ static double sum_of(const FlipKernel *kernel, bool above) {
 
 /* The deviation is half a feature of 0.082 degrees, 2.75 pixels. The first derivative changes sign at 0, the second
    there. */
-static void kernels_are_derivatives_of_a_gaussian(void **state) {
-    (void)state;
+TEST(kernels_are_derivatives_of_a_gaussian) {
     FlipFeatures features;
     flip_make_features(&features, FLIP_PIXELS_PER_DEGREE);
     int radius = features.edge.radius;
@@ -207,8 +194,7 @@ static void filter(const float *from, const FlipKernel *kernel, size_t step, flo
 }
 
 /* The kernels sum to 1: a uniform plane stays unchanged, and a step of 1 gives an edge of 1. */
-static void filters_are_scaled_by_what_they_find(void **state) {
-    (void)state;
+TEST(filters_are_scaled_by_what_they_find) {
     enum { STRIDE = 4 * FLIP_BLOCK, PLANE = STRIDE * STRIDE };
     static float from[PLANE], between[PLANE], to[PLANE];
     FlipFeatures features;
@@ -248,8 +234,7 @@ static double flip_of_pixels(const uint8_t first[4], const uint8_t second[4]) {
 }
 
 /* The larger of the values on white and on black. 0.967380 is that of black and white. */
-static void transparency_is_a_difference(void **state) {
-    (void)state;
+TEST(transparency_is_a_difference) {
     static const uint8_t clear_white[] = {255, 255, 255, 0}, clear_black[] = {0, 0, 0, 0}, black[] = {0, 0, 0, 255},
                          white[] = {255, 255, 255, 255}, half_white[] = {255, 255, 255, 128};
     assert_near(flip_of_pixels(white, clear_white), 0.967380, 1e-5);
@@ -260,19 +245,4 @@ static void transparency_is_a_difference(void **state) {
     assert_true(flip_of_pixels(clear_white, clear_black) == 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(equal_pictures_have_none, make, destroy),
-        cmocka_unit_test_setup_teardown(plain_greys_follow_the_equations, make, destroy),
-        cmocka_unit_test_setup_teardown(green_and_blue_are_the_farthest, make, destroy),
-        cmocka_unit_test_setup_teardown(it_is_symmetric, make, destroy),
-        cmocka_unit_test_setup_teardown(a_larger_shift_looks_larger, make, destroy),
-        cmocka_unit_test_setup_teardown(fine_stripes_vanish_with_distance, make, destroy),
-        cmocka_unit_test_setup_teardown(the_map_is_local_and_its_mean_the_mean, make, destroy),
-        cmocka_unit_test_setup_teardown(the_surroundings_do_not_matter, make, destroy),
-        cmocka_unit_test(kernels_are_derivatives_of_a_gaussian),
-        cmocka_unit_test(filters_are_scaled_by_what_they_find),
-        cmocka_unit_test(transparency_is_a_difference),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

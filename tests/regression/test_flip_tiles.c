@@ -151,8 +151,7 @@ static const int sizes[][2] = {{1, 1}, {150, 1}, {1, 150}, {127, 65}, {128, 64},
 enum { SIZES = sizeof sizes / sizeof sizes[0] };
 static const double distances[] = {20, FLIP_PIXELS_PER_DEGREE, 200};
 
-static void noise_has_the_same_bits(void **state) {
-    (void)state;
+TEST(noise_has_the_same_bits) {
     for (int i = 0; i < 2 * SIZES; i++) {
         const int *size = sizes[i / 2];
         Image *a = noise(size[0], size[1], 1), *b = noise(size[0], size[1], 2);
@@ -163,8 +162,7 @@ static void noise_has_the_same_bits(void **state) {
 }
 
 /* Few pixels differ: most tiles are computed in part or not at all. Sampled: each distance once. */
-static void few_differences_have_the_same_bits(void **state) {
-    (void)state;
+TEST(few_differences_have_the_same_bits) {
     uint32_t seed = 3;
     for (int count = 0; count < 12; count += sampled(5)) {
         Image *a = noise(300, 200, 5), *b = noise(300, 200, 5);
@@ -177,8 +175,7 @@ static void few_differences_have_the_same_bits(void **state) {
 }
 
 /* Many equal values, ascending, descending and in no order: the least of the largest is that of a sort. */
-static void the_largest_are_those_of_a_sort(void **state) {
-    (void)state;
+TEST(the_largest_are_those_of_a_sort) {
     enum { COUNT = 5000 };
     static float values[COUNT];
     for (int order = 0; order < 4; order++)
@@ -200,11 +197,4 @@ static void the_largest_are_those_of_a_sort(void **state) {
         }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noise_has_the_same_bits),
-        cmocka_unit_test(few_differences_have_the_same_bits),
-        cmocka_unit_test(the_largest_are_those_of_a_sort),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

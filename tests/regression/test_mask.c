@@ -25,8 +25,7 @@ static uint8_t *made(void) {
     return masked;
 }
 
-static void rectangles_are_cut_at_the_edges(void **state) {
-    (void)state;
+TEST_WITH(rectangles_are_cut_at_the_edges, NULL, clear) {
     Error error = {0};
     assert_ok(mask_add_rectangle(&mask, -2, -1, 3, 2, &error), error);
     assert_ok(mask_add_rectangle(&mask, 4, 2, 1000000, 1000000, &error), error);
@@ -39,8 +38,7 @@ static void rectangles_are_cut_at_the_edges(void **state) {
 }
 
 /* White, dark, black; the last two transparent, which the opaque file does not preserve. */
-static void pictures_mask_where_they_are_not_black(void **state) {
-    (void)state;
+TEST_WITH(pictures_mask_where_they_are_not_black, NULL, clear) {
     Error error = {0};
     const char *path = temporary_path("mask.png");
     Image *image = image_create(WIDTH, HEIGHT, &error);
@@ -58,8 +56,7 @@ static void pictures_mask_where_they_are_not_black(void **state) {
 }
 
 /* Its header and checksums are right, so it is only found out where its pixels are needed; then for each picture. */
-static void pictures_with_damaged_pixels_are_refused_when_drawn(void **state) {
-    (void)state;
+TEST_WITH(pictures_with_damaged_pixels_are_refused_when_drawn, NULL, clear) {
     static const uint8_t damaged[] = {
         0x89, 'P',  'N',  'G',  '\r', '\n', 0x1A, '\n', 0,    0,   0,   13,  'I',  'H',  'D',  'R',  0,
         0,    0,    1,    0,    0,    0,    1,    8,    0,    0,   0,   0,   0x3A, 0x7E, 0x9B, 0x55, 0,
@@ -80,8 +77,7 @@ static void pictures_with_damaged_pixels_are_refused_when_drawn(void **state) {
 }
 
 /* Opaque ones: the odd pixels are not. */
-static void colours_mask_where_the_expected_picture_has_them(void **state) {
-    (void)state;
+TEST_WITH(colours_mask_where_the_expected_picture_has_them, NULL, clear) {
     Error error = {0};
     for (int i = 8; i <= 11; i++) assert_ok(mask_add_color(&mask, (const uint8_t[3]){(uint8_t)i, 0, 0}, &error), error);
     assert_ok(mask_add_color(&mask, (const uint8_t[3]){4, 1, 0}, &error), error);
@@ -90,8 +86,7 @@ static void colours_mask_where_the_expected_picture_has_them(void **state) {
     free(masked);
 }
 
-static void masked_pixels_do_not_count(void **state) {
-    (void)state;
+TEST_WITH(masked_pixels_do_not_count, NULL, clear) {
     Error error = {0};
     ImageDifference difference;
     Image *a = image_create(WIDTH, HEIGHT, &error), *b = image_create(WIDTH, HEIGHT, &error);
@@ -114,21 +109,10 @@ static void masked_pixels_do_not_count(void **state) {
     image_destroy(b);
 }
 
-static void the_number_of_masks_is_limited(void **state) {
-    (void)state;
+TEST_WITH(the_number_of_masks_is_limited, NULL, clear) {
     Error error = {0};
     for (int i = 0; i < MASK_PARTS; i++) assert_ok(mask_add_rectangle(&mask, 0, 0, 1, 1, &error), error);
     assert_refused(mask_add_rectangle(&mask, 0, 0, 1, 1, &error), "at most 64 masks");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(rectangles_are_cut_at_the_edges, clear),
-        cmocka_unit_test_teardown(pictures_mask_where_they_are_not_black, clear),
-        cmocka_unit_test_teardown(pictures_with_damaged_pixels_are_refused_when_drawn, clear),
-        cmocka_unit_test_teardown(colours_mask_where_the_expected_picture_has_them, clear),
-        cmocka_unit_test_teardown(masked_pixels_do_not_count, clear),
-        cmocka_unit_test_teardown(the_number_of_masks_is_limited, clear),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -319,8 +319,7 @@ static void show_wrong(const Stage *stage, const Seed *seed, const FrameChanges 
                   found >= 0 ? change_words(&changes->list[found]).text : "nothing");
 }
 
-static void changes_get_their_names(void **state) {
-    (void)state;
+TEST(changes_get_their_names) {
     static const char *const kinds[] = {"text", "movement in the run", "movement in the picture", "colour",
                                         "line width"};
     int all = getenv("TWINBOX_ALL_CHANGES") != NULL ? MANY : FEW, right = 0, done = 0, by[5] = {0}, right_by[5] = {0};
@@ -350,7 +349,4 @@ static void changes_get_their_names(void **state) {
     if (100 * right < AT_LEAST * done) fail_msg("%d of %d names are right, fewer than %d%%", right, done, AT_LEAST);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(changes_get_their_names)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -76,8 +76,7 @@ static void draw(const Configuration *configuration, const Trajectory *const *ru
     drawn->error = error;
 }
 
-static void every_configuration_draws_the_same_frames(void **state) {
-    (void)state;
+TEST(every_configuration_draws_the_same_frames) {
     size_t size = CONFIGURATIONS * sizeof(Drawn);
     FILE *file = tmpfile();
     assert_non_null(file);
@@ -112,7 +111,4 @@ static void every_configuration_draws_the_same_frames(void **state) {
     fclose(file);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_configuration_draws_the_same_frames)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

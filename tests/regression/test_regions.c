@@ -48,8 +48,7 @@ static void assert_region(const ImageRegion *region, int64_t pixels, int left, i
     assert_int_equal(region->bottom, bottom);
 }
 
-static void neighbours_within_the_gap_are_one_region(void **state) {
-    (void)state;
+TEST(neighbours_within_the_gap_are_one_region) {
     Pair pair = make_pair(64, 48); /* gap 4 */
     change(&pair, 10, 10);
     change(&pair, 14, 14);
@@ -68,8 +67,7 @@ static void neighbours_within_the_gap_are_one_region(void **state) {
 }
 
 /* Its two arms meet in the last row. */
-static void arms_that_meet_below_are_one_region(void **state) {
-    (void)state;
+TEST(arms_that_meet_below_are_one_region) {
     Pair pair = make_pair(64, 48);
     for (int y = 5; y < 30; y++) change(&pair, 10, y), change(&pair, 40, y);
     assert_int_equal(regions_of(&pair, NULL).count, 2);
@@ -80,8 +78,7 @@ static void arms_that_meet_below_are_one_region(void **state) {
     free_pair(&pair);
 }
 
-static void equal_pictures_have_none(void **state) {
-    (void)state;
+TEST(equal_pictures_have_none) {
     Pair pair = make_pair(5, 3);
     assert_int_equal(regions_of(&pair, NULL).count, 0);
     assert_int_equal(regions_of(&pair, NULL).kept, 0);
@@ -134,8 +131,7 @@ static void compare_with_flood_fill(int width, int height, uint32_t rarity) {
     free_pair(&pair);
 }
 
-static void regions_are_those_of_a_flood_fill(void **state) {
-    (void)state;
+TEST(regions_are_those_of_a_flood_fill) {
     static const uint32_t rarities[] = {1, 5, 30, 60, 90, 200, 1000};
     for (size_t i = 0; i < sizeof rarities / sizeof rarities[0]; i++)
         for (int repeat = 0; repeat < 4; repeat++) {
@@ -147,8 +143,7 @@ static void regions_are_those_of_a_flood_fill(void **state) {
 }
 
 /* As many regions as possible: single pixels just too far apart. */
-static void a_grid_of_pixels_is_counted(void **state) {
-    (void)state;
+TEST(a_grid_of_pixels_is_counted) {
     Pair pair = make_pair(1000, 500);
     for (int y = 0; y < 500; y += 5)
         for (int x = 0; x < 1000; x += 5) change(&pair, x, y);
@@ -160,13 +155,4 @@ static void a_grid_of_pixels_is_counted(void **state) {
     free_pair(&pair);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(neighbours_within_the_gap_are_one_region),
-        cmocka_unit_test(arms_that_meet_below_are_one_region),
-        cmocka_unit_test(equal_pictures_have_none),
-        cmocka_unit_test(regions_are_those_of_a_flood_fill),
-        cmocka_unit_test(a_grid_of_pixels_is_counted),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

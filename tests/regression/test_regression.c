@@ -139,16 +139,14 @@ static Image *drawn(int frame) {
     return image;
 }
 
-static void nothing_changed(void **state) {
-    (void)state;
+TEST_WITH(nothing_changed, make, remove_folders) {
     Regression regression = compared();
     assert_verdicts(&regression, "eeeeee", "equal");
     assert_string_equal(regression_begin(&regression).text, "");
     regression_free(&regression);
 }
 
-static void a_box_drawn_a_sixteenth_of_a_pixel_aside(void **state) {
-    (void)state;
+TEST_WITH(a_box_drawn_a_sixteenth_of_a_pixel_aside, make, remove_folders) {
     run_position(run, 3, FIRST_BOX)->x += SIXTEENTH;
     Image *image = drawn(3);
     replace_pixels(3, image);
@@ -165,8 +163,7 @@ static void a_box_drawn_a_sixteenth_of_a_pixel_aside(void **state) {
     regression_free(&regression);
 }
 
-static void a_box_moved_a_sixteenth_of_a_pixel(void **state) {
-    (void)state;
+TEST_WITH(a_box_moved_a_sixteenth_of_a_pixel, make, remove_folders) {
     run_position(run, 3, FIRST_BOX)->x += SIXTEENTH;
     render_into(actual);
     Regression regression = compared();
@@ -189,8 +186,7 @@ static void a_box_moved_a_sixteenth_of_a_pixel(void **state) {
 }
 
 /* One channel of one pixel of the caption differs by one. */
-static void one_pixel_of_a_label(void **state) {
-    (void)state;
+TEST_WITH(one_pixel_of_a_label, make, remove_folders) {
     Image *image = drawn(4);
     uint8_t *pixel = image->pixels + (12 * WIDTH + 20) * 4;
     pixel[1] = (uint8_t)(pixel[1] > 0 ? pixel[1] - 1 : 1);
@@ -205,8 +201,7 @@ static void one_pixel_of_a_label(void **state) {
 }
 
 /* A cause has one line, with the frames that it covers. */
-static void causes_of_several_frames(void **state) {
-    (void)state;
+TEST_WITH(causes_of_several_frames, make, remove_folders) {
     static const int frames[] = {1, 2, 3, 5};
     for (int i = 0; i < 4; i++) {
         Vec2 *box = run_position(run, frames[i], SECOND_BOX), old = *box;
@@ -225,8 +220,7 @@ static void causes_of_several_frames(void **state) {
 }
 
 /* A run that has not drawn the pictures gives no names. */
-static void a_run_of_other_pictures(void **state) {
-    (void)state;
+TEST_WITH(a_run_of_other_pictures, make, remove_folders) {
     Error error = {0};
     run_position(run, 3, FIRST_BOX)->x += 1;
     Image *image = drawn(3);
@@ -239,8 +233,7 @@ static void a_run_of_other_pictures(void **state) {
     regression_free(&regression);
 }
 
-static void two_frames_swapped(void **state) {
-    (void)state;
+TEST_WITH(two_frames_swapped, make, remove_folders) {
     char second[512], third[512];
     snprintf(second, sizeof second, "%s", frame_path(actual, 2));
     snprintf(third, sizeof third, "%s", frame_path(actual, 3));
@@ -252,8 +245,7 @@ static void two_frames_swapped(void **state) {
 }
 
 /* Not visible in any pixel; detected by the run. */
-static void the_last_bit_of_one_body(void **state) {
-    (void)state;
+TEST_WITH(the_last_bit_of_one_body, make, remove_folders) {
     Error error = {0};
     float *angle = run_angle(run, 4, SECOND_BOX);
     *angle = nextafterf(*angle, 10);
@@ -275,8 +267,7 @@ static void the_last_bit_of_one_body(void **state) {
     regression_free(&regression);
 }
 
-static void both_at_once(void **state) {
-    (void)state;
+TEST_WITH(both_at_once, make, remove_folders) {
     run_position(run, 5, FIRST_BOX)->y += 1;
     render_into(actual);
     Image *image = drawn(1);
@@ -290,8 +281,7 @@ static void both_at_once(void **state) {
 }
 
 /* A run of another length differs from its end on, a run of other bodies everywhere. */
-static void other_runs_beside_the_frames(void **state) {
-    (void)state;
+TEST_WITH(other_runs_beside_the_frames, make, remove_folders) {
     Error error = {0};
     Trajectory *other = run_make("engine", 4);
     assert_ok(trajectory_write(other, in(actual, "two_boxes-engine.npz"), &error), error);
@@ -307,8 +297,7 @@ static void other_runs_beside_the_frames(void **state) {
 }
 
 /* If most bodies leave where they start, their motion moves the camera of frame 0; the renderer has not changed. */
-static void a_camera_that_follows_the_run(void **state) {
-    (void)state;
+TEST_WITH(a_camera_that_follows_the_run, make, remove_folders) {
     run->camera_size = vec2(0, 0);
     render_into(expected);
     for (int frame = 1; frame < FRAMES; frame++)
@@ -336,19 +325,4 @@ static void a_camera_that_follows_the_run(void **state) {
     regression_free(&regression);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(nothing_changed, make, remove_folders),
-        cmocka_unit_test_setup_teardown(a_box_drawn_a_sixteenth_of_a_pixel_aside, make, remove_folders),
-        cmocka_unit_test_setup_teardown(a_box_moved_a_sixteenth_of_a_pixel, make, remove_folders),
-        cmocka_unit_test_setup_teardown(one_pixel_of_a_label, make, remove_folders),
-        cmocka_unit_test_setup_teardown(causes_of_several_frames, make, remove_folders),
-        cmocka_unit_test_setup_teardown(a_run_of_other_pictures, make, remove_folders),
-        cmocka_unit_test_setup_teardown(two_frames_swapped, make, remove_folders),
-        cmocka_unit_test_setup_teardown(the_last_bit_of_one_body, make, remove_folders),
-        cmocka_unit_test_setup_teardown(both_at_once, make, remove_folders),
-        cmocka_unit_test_setup_teardown(other_runs_beside_the_frames, make, remove_folders),
-        cmocka_unit_test_setup_teardown(a_camera_that_follows_the_run, make, remove_folders),
-    };
-    return cmocka_run_group_tests(tests, draw_expected, NULL);
-}
+RUN_TESTS(draw_expected, NULL)

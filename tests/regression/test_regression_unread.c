@@ -48,26 +48,12 @@ static void assert_never_equal(int *countdown, int calls) {
     assert_true(call > calls);
 }
 
-static void folders_that_cannot_be_opened(void **state) {
-    (void)state;
-    assert_never_equal(&failing_opendir, 3 * 2);
-}
+TEST(folders_that_cannot_be_opened) { assert_never_equal(&failing_opendir, 3 * 2); }
 
-static void folders_that_end_early(void **state) {
-    (void)state;
+TEST(folders_that_end_early) {
     assert_never_equal(&failing_readdir, 3 * (3 + 1 + 2 * 3)); /* entries, with . and .., and the end of each */
 }
 
-static void entries_that_cannot_be_inspected(void **state) {
-    (void)state;
-    assert_never_equal(&failing_stat, 3 * 4);
-}
+TEST(entries_that_cannot_be_inspected) { assert_never_equal(&failing_stat, 3 * 4); }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(folders_that_cannot_be_opened),
-        cmocka_unit_test(folders_that_end_early),
-        cmocka_unit_test(entries_that_cannot_be_inspected),
-    };
-    return cmocka_run_group_tests(tests, make, NULL);
-}
+RUN_TESTS(make, NULL)

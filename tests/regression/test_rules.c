@@ -16,8 +16,7 @@ static void expect_refused(const char *text, const char *message) {
     assert_error(error, ERROR_INPUT, message);
 }
 
-static void mistakes_are_refused_with_their_place(void **state) {
-    (void)state;
+TEST(mistakes_are_refused_with_their_place) {
     static const struct {
         const char *text, *message;
     } table[] = {
@@ -58,8 +57,7 @@ static void mistakes_are_refused_with_their_place(void **state) {
 }
 
 /* Rules, and pictures of masks. */
-static void numbers_of_rules_are_limited(void **state) {
-    (void)state;
+TEST(numbers_of_rules_are_limited) {
     enum { ROOM = 64 };
     Error error;
     static char many[(RULES_MAX + 2) * ROOM];
@@ -92,8 +90,7 @@ static const char text[] = "rules:\n"
                            "    masks: [{rectangle: [1, 0, 1, 1]}]\n"
                            "  - {files: sub/a.png, fuzzy: [9, 0.1], masks: [{colour: \"#0aFF00\"}]}\n";
 
-static void later_rules_replace_limits(void **state) {
-    (void)state;
+TEST(later_rules_replace_limits) {
     Error error;
     Rules *rules = read_text(text, &error);
     assert_ok(rules != NULL, error);
@@ -110,8 +107,7 @@ static void later_rules_replace_limits(void **state) {
     rules_destroy(rules);
 }
 
-static void all_masks_count(void **state) {
-    (void)state;
+TEST(all_masks_count) {
     Error error;
     Rules *rules = read_text(text, &error);
     Image *expected = image_create(3, 1, &error);
@@ -127,8 +123,7 @@ static void all_masks_count(void **state) {
     rules_destroy(rules);
 }
 
-static void a_rule_without_files_is_refused(void **state) {
-    (void)state;
+TEST(a_rule_without_files_is_refused) {
     Error error;
     static const char *const names[] = {"b.png", "sub/a.png"}, *const other[] = {"b.png", "sub/c.png"};
     Rules *rules = read_text(text, &error);
@@ -139,8 +134,7 @@ static void a_rule_without_files_is_refused(void **state) {
 }
 
 /* 100 pixels, of which 10 differ by at most 40, and 2 by more than 20. */
-static void every_limit_that_is_given_must_hold(void **state) {
-    (void)state;
+TEST(every_limit_that_is_given_must_hold) {
     static const ImageDifference difference = {.pixels = 10, .beyond = 2, .largest = 40, .counted = 100};
     static const FlipSummary flip = {.mean = 0.02, .p99 = 0.3};
     static const struct {
@@ -168,8 +162,7 @@ static void every_limit_that_is_given_must_hold(void **state) {
     assert_true(tolerance_holds(&(Tolerance){0}, &(ImageDifference){.counted = 100}, &flip));
 }
 
-static void limits_of_flip_are_parsed(void **state) {
-    (void)state;
+TEST(limits_of_flip_are_parsed) {
     Tolerance tolerance = {0};
     assert_true(tolerance_parse_flip(&tolerance, "0.01") && tolerance.flip_mean == 0.01);
     assert_true(tolerance_parse_flip(&tolerance, "p99=0.1") && tolerance.flip_p99 == 0.1);
@@ -180,15 +173,4 @@ static void limits_of_flip_are_parsed(void **state) {
         if (tolerance_parse_flip(&tolerance, wrong[i])) fail_msg("accepted: '%s'", wrong[i]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mistakes_are_refused_with_their_place),
-        cmocka_unit_test(numbers_of_rules_are_limited),
-        cmocka_unit_test(later_rules_replace_limits),
-        cmocka_unit_test(all_masks_count),
-        cmocka_unit_test(a_rule_without_files_is_refused),
-        cmocka_unit_test(every_limit_that_is_given_must_hold),
-        cmocka_unit_test(limits_of_flip_are_parsed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -53,8 +53,7 @@ static void assert_pairs(const char *a, const char *b, const char *wanted) {
     image_sequence_close(second);
 }
 
-static void frames_meet_by_stem_and_number(void **state) {
-    (void)state;
+TEST(frames_meet_by_stem_and_number) {
     const char *a = folder_of("stems_a", "pyramid_000030.png stack_000000.png stack_000030.png cover.png notes.txt");
     const char *b = folder_of("stems_b", "stack_30.PNG stack_000031.png pyramid_000030.png cover.png .stack_1.png");
     assert_pairs(a, b,
@@ -62,26 +61,22 @@ static void frames_meet_by_stem_and_number(void **state) {
                  "stack_000030.png=stack_30.PNG -=stack_000031.png");
 }
 
-static void a_longer_stem_is_another(void **state) {
-    (void)state;
+TEST(a_longer_stem_is_another) {
     assert_pairs(folder_of("long_a", "a_1.png a_b_1.png"), folder_of("long_b", "a_1.png a_b_2.png"),
                  "a_1.png=a_1.png a_b_1.png=- -=a_b_2.png");
 }
 
 /* Two tools name their frames differently. */
-static void where_there_is_one_stem_numbers_decide(void **state) {
-    (void)state;
+TEST(where_there_is_one_stem_numbers_decide) {
     assert_pairs(folder_of("ours", "frame_000002.png frame_000010.png"), folder_of("theirs", "0010.png 0003.png 2.png"),
                  "frame_000002.png=2.png -=0003.png frame_000010.png=0010.png");
 }
 
-static void a_name_without_number_meets_no_other(void **state) {
-    (void)state;
+TEST(a_name_without_number_meets_no_other) {
     assert_pairs(folder_of("cover_a", "cover.png"), folder_of("cover_b", "title.png"), "cover.png=- -=title.png");
 }
 
-static void each_folder_is_paired_by_itself(void **state) {
-    (void)state;
+TEST(each_folder_is_paired_by_itself) {
     assert_pairs(folder_of("deep_a", "x.png p/frame_1.png p/frame_2.png q/frame_1.png p/r/x.png"),
                  folder_of("deep_b", "p/shot-1.png p/shot-2.png q/a_1.png q/b_1.png x.png r/x.png"),
                  "x.png=x.png p/frame_1.png=p/shot-1.png p/frame_2.png=p/shot-2.png p/r/x.png=- -=q/a_1.png "
@@ -89,8 +84,7 @@ static void each_folder_is_paired_by_itself(void **state) {
 }
 
 /* plot-1.png and plot-01.png are two files. */
-static void equal_names_meet_first(void **state) {
-    (void)state;
+TEST(equal_names_meet_first) {
     const char *two = folder_of("exact_a", "plot-1.png plot-01.png");
     assert_pairs(two, folder_of("exact_b", "plot-01.png plot-1.png"), "plot-01.png=plot-01.png plot-1.png=plot-1.png");
     assert_pairs(two, folder_of("exact_c", "plot-1.png"), "plot-01.png=- plot-1.png=plot-1.png");
@@ -100,8 +94,7 @@ static void equal_names_meet_first(void **state) {
     assert_pairs(folder_of("exact_f", "X.PNG"), folder_of("exact_g", "X.png x.png"), "X.PNG=X.png -=x.png");
 }
 
-static void names_with_a_second_number_are_accepted_too(void **state) {
-    (void)state;
+TEST(names_with_a_second_number_are_accepted_too) {
     assert_pairs(folder_of("more_a", "home.png home.1.png home.10.png home.2.png home.01.png home.0.png home.x.png"),
                  folder_of("more_b", "home.png"),
                  "home.png|home.1.png|home.2.png|home.10.png=home.png home.0.png=- home.01.png=- home.x.png=-");
@@ -111,8 +104,7 @@ static void names_with_a_second_number_are_accepted_too(void **state) {
 }
 
 /* Then they are frames of their own, and what lacks is missing. */
-static void numbered_names_in_both_folders_are_frames(void **state) {
-    (void)state;
+TEST(numbered_names_in_both_folders_are_frames) {
     assert_pairs(folder_of("own_a", "home.png home.1.png home.2.png"), folder_of("own_b", "home.png home.1.png"),
                  "home.png=home.png home.1.png=home.1.png home.2.png=-");
     assert_pairs(folder_of("own_c", "home.1.png home.2.png"), folder_of("own_d", "home.png"),
@@ -124,16 +116,14 @@ static void numbered_names_in_both_folders_are_frames(void **state) {
                  "home.png=home.png -=home.1.png");
 }
 
-static void two_files_meet_whatever_their_names(void **state) {
-    (void)state;
+TEST(two_files_meet_whatever_their_names) {
     char a[300], b[300];
     snprintf(a, sizeof a, "%s/before_7.png", folder_of("files_a", "before_7.png"));
     snprintf(b, sizeof b, "%s/after.png", folder_of("files_b", "after.png"));
     assert_pairs(a, b, "before_7.png=after.png");
 }
 
-static void numbers_too_long_are_part_of_the_name(void **state) {
-    (void)state;
+TEST(numbers_too_long_are_part_of_the_name) {
     ImageSequence *sequence = opened(folder_of("digits", "1234567890123456789.png 123456789012345678.png"));
     assert_int_equal(sequence->count, 2);
     assert_true(sequence->frames[0].number == 123456789012345678 && sequence->frames[0].stem == 0);
@@ -146,8 +136,7 @@ static void refuse(const char *path, const char *text) {
     assert_refused(image_sequence_open(path, true, &error), text);
 }
 
-static void doubtful_folders_are_refused(void **state) {
-    (void)state;
+TEST(doubtful_folders_are_refused) {
     refuse(folder_of("bytes", "frame_\xFF.png"), "is not UTF-8 or has control characters");
     refuse(folder_of("line", "frame_\x01.png"), "is not UTF-8 or has control characters");
     refuse(temporary_path("nowhere"), "nowhere: error: cannot be read");
@@ -159,8 +148,7 @@ static void doubtful_folders_are_refused(void **state) {
     image_sequence_close(file);
 }
 
-static void frames_that_could_be_two_pairs_are_refused(void **state) {
-    (void)state;
+TEST(frames_that_could_be_two_pairs_are_refused) {
     Error error = {0};
     int count;
     ImageSequence *a = opened(folder_of("twice", "frame_1.png frame_01.png")),
@@ -173,8 +161,7 @@ static void frames_that_could_be_two_pairs_are_refused(void **state) {
     image_sequence_close(b);
 }
 
-static void pictures_in_subfolders_are_counted(void **state) {
-    (void)state;
+TEST(pictures_in_subfolders_are_counted) {
     Error error = {0};
     ImageSequence *sequence = image_sequence_open(folder_of("flat", "1.png a/1.png a/b/2.png a/x.txt"), false, &error);
     assert_ok(sequence != NULL, error);
@@ -183,8 +170,7 @@ static void pictures_in_subfolders_are_counted(void **state) {
     image_sequence_close(sequence);
 }
 
-static void names_are_utf8_without_control_characters(void **state) {
-    (void)state;
+TEST(names_are_utf8_without_control_characters) {
     static const char *const good[] = {"frame_1.png", "\xC3\xA9", "\xE4\xBD\xA0", "\xF0\x9F\x98\x80", "a b"};
     static const char *const bad[] = {"\n",       "\x7F", "\xC2\x85", "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80",
                                       "\xE4\xBD", "\x80"};
@@ -192,22 +178,4 @@ static void names_are_utf8_without_control_characters(void **state) {
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) assert_false(name_is_text(bad[i]));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_meet_by_stem_and_number),
-        cmocka_unit_test(a_longer_stem_is_another),
-        cmocka_unit_test(where_there_is_one_stem_numbers_decide),
-        cmocka_unit_test(a_name_without_number_meets_no_other),
-        cmocka_unit_test(each_folder_is_paired_by_itself),
-        cmocka_unit_test(equal_names_meet_first),
-        cmocka_unit_test(names_with_a_second_number_are_accepted_too),
-        cmocka_unit_test(numbered_names_in_both_folders_are_frames),
-        cmocka_unit_test(two_files_meet_whatever_their_names),
-        cmocka_unit_test(numbers_too_long_are_part_of_the_name),
-        cmocka_unit_test(doubtful_folders_are_refused),
-        cmocka_unit_test(frames_that_could_be_two_pairs_are_refused),
-        cmocka_unit_test(pictures_in_subfolders_are_counted),
-        cmocka_unit_test(names_are_utf8_without_control_characters),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -33,14 +33,14 @@ static TrajectoryDifference compared(void) {
     return d;
 }
 
-TEST(same_is_equal) {
+TEST_WITH(same_is_equal, make, destroy) {
     TrajectoryDifference d = compared();
     assert_true(d.equal);
     assert_string_equal(d.what, "");
     assert_true(d.frame == -1 && d.body == -1 && d.max_frame == -1 && d.max_body == -1 && d.max_distance == 0);
 }
 
-TEST(names_and_contacts_do_not_count) {
+TEST_WITH(names_and_contacts_do_not_count, make, destroy) {
     strcpy(b->scene, "other");
     strcpy(b->method, "momentum");
     b->scene_hash = 1;
@@ -50,7 +50,7 @@ TEST(names_and_contacts_do_not_count) {
     assert_true(compared().equal);
 }
 
-TEST(the_first_and_the_largest_are_found) {
+TEST_WITH(the_first_and_the_largest_are_found, make, destroy) {
     int first = 2 * EXAMPLE_BODIES + 1, last = 3 * EXAMPLE_BODIES + 2;
     b->position[first] = vec2(a->position[first].x + 3, a->position[first].y - 4);
     b->angle[first] = a->angle[first] - 0.5F;
@@ -65,7 +65,7 @@ TEST(the_first_and_the_largest_are_found) {
 }
 
 /* One bit in any of the six numbers, down to the sign of a zero. */
-TEST(one_bit_is_a_difference) {
+TEST_WITH(one_bit_is_a_difference, make, destroy) {
     int i = 1 * EXAMPLE_BODIES + 1;
     float *const numbers[] = {&b->position[i].x, &b->position[i].y, &b->angle[i],
                               &b->velocity[i].x, &b->velocity[i].y, &b->angular_velocity[i]};
@@ -80,7 +80,7 @@ TEST(one_bit_is_a_difference) {
     assert_true(compared().equal);
 }
 
-TEST(a_body_in_one_only) {
+TEST_WITH(a_body_in_one_only, make, destroy) {
     example_pose(b, 1, 2, (float[]){0, 0, 0, 0, 0, 0});
     TrajectoryDifference d = compared();
     assert_false(d.equal);
@@ -88,7 +88,7 @@ TEST(a_body_in_one_only) {
     assert_string_equal(d.what, "body 2 exists in frame 1 of the second only");
 }
 
-TEST(other_worlds_are_told_apart) {
+TEST_WITH(other_worlds_are_told_apart, make, destroy) {
     b->dt = 0.01F;
     TrajectoryDifference d;
     trajectory_compare(a, b, &d);
@@ -105,7 +105,7 @@ TEST(other_worlds_are_told_apart) {
     assert_true(!d.equal && d.frame == -1 && d.body == -1 && d.max_frame == -1);
 }
 
-TEST(a_shorter_run_is_compared_as_far_as_it_goes) {
+TEST_WITH(a_shorter_run_is_compared_as_far_as_it_goes, make, destroy) {
     b->frames = 3;
     TrajectoryDifference d;
     trajectory_compare(a, b, &d);
@@ -117,7 +117,7 @@ TEST(a_shorter_run_is_compared_as_far_as_it_goes) {
     assert_string_equal(d.what, "");
 }
 
-TEST(the_distance_of_a_frame_is_the_largest_of_its_bodies) {
+TEST_WITH(the_distance_of_a_frame_is_the_largest_of_its_bodies, make, destroy) {
     b->position[2 * EXAMPLE_BODIES + 1].y += 3;
     b->position[2 * EXAMPLE_BODIES + 2].y -= 4;
     assert_true(fabs(trajectory_distance(a, b, 2) - 4) < 1e-6);
@@ -134,4 +134,4 @@ TEST(the_distance_of_a_frame_is_the_largest_of_its_bodies) {
     assert_true(trajectory_distance(b, a, 2) == 50);
 }
 
-RUN_TESTS_EACH(make, destroy)
+RUN_TESTS(NULL, NULL)

@@ -87,7 +87,7 @@ static void expect_first(const TrajectoryParting *parting, int frame, int body, 
     assert_int_equal(parting->cause, cause);
 }
 
-TEST(equal_runs_do_not_part) {
+TEST_WITH(equal_runs_do_not_part, make, destroy) {
     b->position[at(1, BOMB)] = vec2(-NAN, NAN); /* as absent as any */
     TrajectoryParting parting = parted(0);
     expect_first(&parting, -1, -1, PART_NONE);
@@ -96,7 +96,7 @@ TEST(equal_runs_do_not_part) {
     assert_int_equal(parting.frames, FRAMES);
 }
 
-TEST(frame_0_is_the_start) {
+TEST_WITH(frame_0_is_the_start, make, destroy) {
     b->velocity[at(0, 2)].y += 1;
     contact(b, 1, 0)->normal_impulse = 5;
     TrajectoryParting parting = parted(0);
@@ -104,7 +104,7 @@ TEST(frame_0_is_the_start) {
     assert_true(parting.first.by.speed == 1 && parting.first.by.distance == 0);
 }
 
-TEST(other_impulses_are_the_solver) {
+TEST_WITH(other_impulses_are_the_solver, make, destroy) {
     b->position[at(4, 2)] = vec2(a->position[at(4, 2)].x + 3, a->position[at(4, 2)].y - 4);
     b->angle[at(4, 2)] -= 0.5F;
     b->angular_velocity[at(4, 2)] = -2;
@@ -126,7 +126,7 @@ TEST(other_impulses_are_the_solver) {
 }
 
 /* The least feature comes first, wherever it stands in the file. */
-TEST(of_equal_differences_the_first_contact_counts) {
+TEST_WITH(of_equal_differences_the_first_contact_counts, make, destroy) {
     b->angle[at(4, 2)] = 1;
     for (int i = 0; i < CONTACTS; i++) contact(b, 4, i)->normal_impulse = 3;
     TrajectoryParting parting = parted(0);
@@ -134,14 +134,14 @@ TEST(of_equal_differences_the_first_contact_counts) {
     assert_true(parting.contacts.largest_b.b == 1 && parting.contacts.largest_b.feature == 6);
 }
 
-TEST(contacts_in_another_order_are_the_same) {
+TEST_WITH(contacts_in_another_order_are_the_same, make, destroy) {
     b->angle[at(4, 2)] = 1;
     for (int i = 0; i < CONTACTS; i++) *contact(b, 4, i) = *contact(a, 4, CONTACTS - 1 - i);
     TrajectoryParting parting = parted(0);
     expect_first(&parting, 4, 2, PART_ELSEWHERE);
 }
 
-TEST(a_contact_of_one_run_is_collision_detection) {
+TEST_WITH(a_contact_of_one_run_is_collision_detection, make, destroy) {
     b->angle[at(4, 2)] = 1;
     contact(b, 4, 0)->normal_impulse = 3;
     contact(b, 4, 1)->feature = 9;
@@ -151,7 +151,7 @@ TEST(a_contact_of_one_run_is_collision_detection) {
     assert_true(parting.contacts.only.feature == 6 && parting.contacts.only_first_a);
 }
 
-TEST(a_contact_elsewhere_is_collision_detection) {
+TEST_WITH(a_contact_elsewhere_is_collision_detection, make, destroy) {
     b->angle[at(4, 2)] = 1;
     contact(b, 4, 1)->point.x += 1;
     TrajectoryParting parting = parted(0);
@@ -159,14 +159,14 @@ TEST(a_contact_elsewhere_is_collision_detection) {
     assert_int_equal(parting.contacts.moved, 1);
 }
 
-TEST(equal_impulses_leave_no_contact_to_blame) {
+TEST_WITH(equal_impulses_leave_no_contact_to_blame, make, destroy) {
     b->velocity[at(4, 1)].x = -0.0F;
     TrajectoryParting parting = parted(0);
     expect_first(&parting, 4, 1, PART_ELSEWHERE);
     assert_int_equal(parting.step, -1);
 }
 
-TEST(impulses_of_an_earlier_step_are_hidden) {
+TEST_WITH(impulses_of_an_earlier_step_are_hidden, make, destroy) {
     b->angle[at(4, 1)] = 1;
     contact(b, 2, 1)->tangent_impulse = nextafterf(-0.5F, 0);
     contact(b, 4, 1)->normal_impulse = 3;
@@ -177,7 +177,7 @@ TEST(impulses_of_an_earlier_step_are_hidden) {
     assert_int_equal(parting.contacts.largest_a.feature, 6);
 }
 
-TEST(hidden_and_never_seen) {
+TEST_WITH(hidden_and_never_seen, make, destroy) {
     contact(a, FRAMES - 1, 1)->normal_impulse = 0;
     contact(b, FRAMES - 1, 1)->normal_impulse = -0.0F;
     TrajectoryParting parting = parted(0);
@@ -185,7 +185,7 @@ TEST(hidden_and_never_seen) {
     assert_int_equal(parting.step, FRAMES - 1);
 }
 
-TEST(a_bomb_that_comes_otherwise_is_the_launch) {
+TEST_WITH(a_bomb_that_comes_otherwise_is_the_launch, make, destroy) {
     b->position[at(BOMB_FRAME, BOMB)].x += 1;
     TrajectoryParting parting = parted(0);
     expect_first(&parting, BOMB_FRAME, BOMB, PART_LAUNCH);
@@ -197,7 +197,7 @@ TEST(a_bomb_that_comes_otherwise_is_the_launch) {
 }
 
 /* However large the tolerance: a body that is not there is nowhere near. */
-TEST(a_bomb_in_one_run_only_is_the_launch) {
+TEST_WITH(a_bomb_in_one_run_only_is_the_launch, make, destroy) {
     put(b, BOMB_FRAME - 1, BOMB);
     TrajectoryParting parting = parted(1e9);
     expect_first(&parting, BOMB_FRAME - 1, BOMB, PART_LAUNCH);
@@ -206,7 +206,7 @@ TEST(a_bomb_in_one_run_only_is_the_launch) {
 }
 
 /* 1 m in frame 2, 3 m in frame 5: what is beyond is beyond, and not what is on the limit. */
-TEST(the_tolerance_is_of_positions) {
+TEST_WITH(the_tolerance_is_of_positions, make, destroy) {
     b->position[at(2, 1)].y += 1;
     b->angle[at(3, 1)] = 90;
     b->velocity[at(4, 1)].x = 90;
@@ -227,7 +227,7 @@ TEST(the_tolerance_is_of_positions) {
     assert_true(parting.beyond.frame == 2 && parting.beyond.body == 1);
 }
 
-TEST(a_shorter_run_is_compared_as_far_as_it_goes) {
+TEST_WITH(a_shorter_run_is_compared_as_far_as_it_goes, make, destroy) {
     b->position[at(5, 1)].x += 1;
     b->frames = 5;
     TrajectoryParting parting = parted(0);
@@ -235,4 +235,4 @@ TEST(a_shorter_run_is_compared_as_far_as_it_goes) {
     assert_int_equal(parting.frames, 5);
 }
 
-RUN_TESTS_EACH(make, destroy)
+RUN_TESTS(NULL, NULL)

@@ -3,7 +3,7 @@
 #include "made.h"
 
 #include "base/file.h"
-#include "pictures/folders.h"
+#include "files.h"
 
 static Scene *read_scene(const char *name, int frames) {
     Scene *scene = scene_named(name);

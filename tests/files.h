@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Folders of pictures. Include testing.h first. */
+/* Whole files, and what a folder holds. Include testing.h first. */
 #pragma once
 #include "base/file.h"
 
@@ -33,6 +33,14 @@ static inline char *read_whole(const char *path, size_t *size) {
     char *data = file_read(path, 1 << 30, size, &error);
     assert_ok(data != NULL, error);
     return data;
+}
+
+static inline void assert_file(const char *path, const char *text) {
+    size_t size;
+    char *data = read_whole(path, &size);
+    assert_int_equal(size, strlen(text));
+    assert_string_equal(data, text);
+    free(data);
 }
 
 static inline void assert_same_file(const char *a, const char *b) {
