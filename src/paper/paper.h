@@ -249,6 +249,9 @@ typedef struct SystemPart {
     bool timed; /* its rows have times */
 } SystemPart;
 
+/* Draws a table of the study; width 0: it has no rows to show. */
+typedef bool PlotWrite(const CsvTable *table, PlotPage *page, Error *error);
+
 typedef struct PaperSystem {
     const char *name; /* "sain": in tables, and of files */
     const char *const
@@ -258,7 +261,7 @@ typedef struct PaperSystem {
     const SystemPart *parts;
     /* Reads the system's table from claims->folder and states each claim by claim_state(). False with error set. */
     bool (*claim)(const Claims *claims, Error *error);
-    bool (*plot)(const char *folder, PlotPage *page, Error *error);
+    PlotWrite *plot;
 } PaperSystem;
 
 #define SYSTEM_METHODS(...) ((const char *const[]){__VA_ARGS__, NULL})

@@ -85,17 +85,11 @@ typedef struct SweepRow {
    *rows: touching pairs, summed over all steps. ERROR_INPUT if the launch of the row touches no box. */
 bool sweep_draw(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error);
 
-/* The plots of plots.h, each in plot_NAME.c. They read their table from the folder and write the page. The page's width
-   stays 0 if the table has no rows to show. False with error set if the table is missing or damaged. */
-bool plot_factors(const char *folder, PlotPage *page, Error *error);
-bool plot_closed_loop(const char *folder, PlotPage *page, Error *error);
-bool plot_transfer(const char *folder, PlotPage *page, Error *error);
+/* The plots of report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with error set
+   if memory is short. Those of the systems that the paper cites are in paper.h. */
+PlotWrite plot_factors, plot_closed_loop, plot_transfer, plot_sain, plot_hybrid, plot_gns, plot_subspace;
 
-/* Of the systems that the paper cites (paper/paper.h). */
-bool plot_sain(const char *folder, PlotPage *page, Error *error);
-bool plot_hybrid(const char *folder, PlotPage *page, Error *error);
-bool plot_gns(const char *folder, PlotPage *page, Error *error);
-bool plot_subspace(const char *folder, PlotPage *page, Error *error);
+extern const char *const paper_scene_titles[PAPER_SCENES]; /* of paper_scene_names, for readers */
 
 /* A run of the engine, step by step, for figures that need a step's contact problem. */
 

@@ -130,7 +130,6 @@ typedef struct Table {
 
 static void panel_of(const void *of, int panel, PlotPanel *out) {
     (void)of, (void)panel;
-    out->box = (PlotBox){10, 10, 80, 80};
     out->x = plot_linear_axis(0, 8, "Across");
     out->y = plot_linear_axis(0, 8, "Up");
 }
@@ -146,8 +145,7 @@ static bool point_of(const void *of, int panel, int series, int row, PlotPoint *
 static void draw_table(PlotPage *page, const Table *table) {
     Error error = {0};
     const PlotSpec spec = {.of = table,
-                           .width = 100,
-                           .height = 100,
+                           .grid = {100, 100, 10, 10, 10, 10, 1, 1, 0, 0},
                            .panels = 1,
                            .series = table->series,
                            .rows = table->rows,
