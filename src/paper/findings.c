@@ -15,22 +15,15 @@
 #include <string.h>
 
 bool findings_add(const FindingsFile *file, const void *row) {
-    return csv_row_print(file->out, file->layout, row, file->error);
+    return csv_row_print(file->out, &file->table->layout, row, file->error);
 }
 
-static bool write_table(const FindingsTable *table, const StudyTables *study, const char *folder, Error *error) {
-    char path[PATH_MAX], *text = NULL;
-    size_t size;
-    if (!file_path(path, sizeof path, error, "%s/findings/%s.csv", folder, table->layout.name)) return false;
-    const FindingsFile file = {&table->layout, memory_stream(&text, &size), error};
-    if (file.out == NULL) return error_memory(error, path);
-    csv_header_print(file.out, file.layout);
-    bool written = table->write(&file, study);
-    const bool whole = !ferror(file.out);
-    if ((fclose(file.out) != 0 || !whole) && written) written = error_memory(error, path);
-    written = written && file_write(path, text, size, error);
-    free(text);
-    return written;
+static bool write_rows(void *context, FILE *out, Error *error) {
+    FindingsFile *file = context;
+    file->out = out;
+    file->error = error;
+    csv_header_print(out, &file->table->layout);
+    return file->table->write(file, file->study);
 }
 
 bool findings_write(const char *folder, Error *error) {
@@ -42,8 +35,11 @@ bool findings_write(const char *folder, Error *error) {
     if (!file_path(path, sizeof path, error, "%s/findings", folder) || !study_tables_read(&study, folder, error))
         return false;
     bool written = file_make_directory(path, error);
-    for (size_t i = 0; written && i < sizeof tables / sizeof *tables; i++)
-        written = write_table(tables[i], &study, folder, error);
+    for (size_t i = 0; written && i < sizeof tables / sizeof *tables; i++) {
+        FindingsFile file = {.table = tables[i], .study = &study};
+        written = file_path(path, sizeof path, error, "%s/findings/%s.csv", folder, tables[i]->layout.name) &&
+                  text_write(path, write_rows, &file, error);
+    }
     study_tables_free(&study);
     return written;
 }

@@ -366,5 +366,5 @@ const PaperSystem system_gns = {.name = "gns",
                                 .methods = SYSTEM_METHODS("gns", "gns:rigid=off", "gns:net=off"),
                                 .table = &gns_table_layout,
                                 .parts = parts,
-                                .claim = gns_claims,
+                                .claims = gns_claims,
                                 .plot = plot_gns};

@@ -10,6 +10,7 @@
 #include "methods/tabulation.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
+#include "paper/report_internal.h"
 #include "scenes/scenes.h"
 #include "studies/chart.h"
 
@@ -365,7 +366,7 @@ static bool write_learning(const SystemStudy *study, int index, FILE *lines, con
     return ok;
 }
 
-const SystemPart hybrid_parts[] = {
+static const SystemPart parts[] = {
     {"single", .weight = 2, .quick_weight = 0.1, .index = 0, .write = write_learning, .timed = true},
     {"stack", .weight = 20, .quick_weight = 0.2, .index = 1, .write = write_learning, .timed = true},
     {"pyramid", .weight = 4, .quick_weight = 0.2, .index = 2, .write = write_learning, .timed = true},
@@ -376,3 +377,10 @@ const SystemPart hybrid_parts[] = {
     {"stack-narrow", .weight = 7, .quick_weight = 0.2, .index = 7, .write = write_learning, .timed = true},
     {"stack-wide", .weight = 7, .quick_weight = 0.2, .index = 8, .write = write_learning, .timed = true},
     {0}};
+
+const PaperSystem system_hybrid = {.name = "hybrid",
+                                   .methods = SYSTEM_METHODS("hybrid", "hybrid:net=off"),
+                                   .table = &hybrid_layout,
+                                   .parts = parts,
+                                   .claims = hybrid_claims,
+                                   .plot = plot_hybrid};

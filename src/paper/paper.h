@@ -169,14 +169,16 @@ typedef struct ClaimRow {
 
 extern const CsvLayout claim_layout;
 
-/* What a system's claims are judged from, and where they go. */
+/* What a system's claims are judged from besides its table, and where they go. */
 typedef struct Claims {
     const char *system;           /* its name */
-    const char *folder;           /* of the study: its table is in folder/system_NAME.csv */
     const SystemScoreRow *scores; /* [score_count] of all systems and rivals (system_score_find) */
     int score_count;
     FILE *lines; /* claim_state() writes to it */
 } Claims;
+
+/* Judges a claim from the system's table and states it. False with error set. */
+typedef bool ClaimRule(const Claims *claims, const CsvTable *table, Error *error);
 
 typedef struct Claim {
     const char
@@ -199,8 +201,10 @@ ClaimHolds claim_in_cases(int holding, int cases);
 
 /* Writes folder/systems.csv from the systems' tables and folder/system_scores.csv. systems: ended by NULL. ERROR_INPUT
    where a table is missing or damaged, with path:line:column, or a text is too long. */
-struct PaperSystem;
 bool system_claims_write(const struct PaperSystem *const *systems, const char *folder, Error *error);
+
+/* Those of one system, from folder/system_NAME.csv. */
+bool system_claims_state(const struct PaperSystem *system, const char *folder, Claims *claims, Error *error);
 
 /* The systems that the paper cites, as parts of its study. Each system is one constant PaperSystem: the methods that are
    scored, the study that measures its claims, the rules that judge them, and its figure. To add a system NAME:
@@ -259,8 +263,7 @@ typedef struct PaperSystem {
                                    strips show, then its ablations. In a scene without their network they have no row */
     const CsvLayout *table; /* of system_NAME.csv */
     const SystemPart *parts;
-    /* Reads the system's table from claims->folder and states each claim by claim_state(). False with error set. */
-    bool (*claim)(const Claims *claims, Error *error);
+    ClaimRule *const *claims; /* ended by NULL */
     PlotWrite *plot;
 } PaperSystem;
 

@@ -51,8 +51,7 @@ extern const GnsVariant gns_variants[GNS_VARIANTS];
 
 extern const CsvLayout gns_table_layout;
 
-/* States the claims from the table. */
-bool gns_claims(const Claims *claims, Error *error);
+extern ClaimRule *const gns_claims[];
 
 /* A run of gns beside the run of the method that made its training data. */
 
@@ -95,8 +94,7 @@ extern const CsvLayout subspace_study_layout;
 /* The offline engine of the claims: the converged solution of each step. */
 #define SUBSPACE_STUDY_OFFLINE "reference"
 
-/* States the claims (PaperSystem.claim). */
-bool subspace_claim(const Claims *claims, Error *error);
+extern ClaimRule *const subspace_claims[];
 
 /* The row of a method in a scene of paper_scene_names, or NULL. */
 const SubspaceStudyRow *subspace_study_find(const SubspaceStudyRow *rows, int count, int scene, const char *method);
@@ -129,7 +127,7 @@ SainNumber sain_error, sain_engine_error, sain_constant_error;
 /* The most launches of any row. */
 int sain_most_launches(const CsvTable *table);
 
-bool sain_claims_state(const Claims *claims, Error *error);
+extern ClaimRule *const sain_claims[];
 
 /* What the memory of hybrid learns over the launches, what it costs and what it saves. */
 
@@ -165,10 +163,7 @@ typedef struct HybridRow {
 
 extern const CsvLayout hybrid_layout;
 
-/* Parts of the study, ended by a name of NULL. */
-extern const SystemPart hybrid_parts[];
-
-bool hybrid_claim(const Claims *claims, Error *error);
+extern ClaimRule *const hybrid_claims[];
 
 /* Training with laws of physics in the loss, and the engine's own violations of these laws: the paper's outlook. */
 

@@ -14,6 +14,16 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* A text of the report is complete in memory before it becomes a file. */
+
+typedef bool TextWrite(void *context, FILE *out, Error *error);
+
+/* The text that `write` writes, to be freed. NULL with error set where it fails; `what` is without memory. */
+char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error);
+
+/* The same to a file. */
+bool text_write(const char *path, TextWrite *write, void *context, Error *error);
+
 /* A Markdown text as one HTML5 page that needs no other file, for phones, screens and paper. */
 
 typedef struct HtmlPage {
@@ -190,12 +200,7 @@ TransferCounts transfer_counts(const StudyTables *study);
 
 /* The tables of findings.h, one function each. */
 
-/* Where a table's rows go. */
-typedef struct FindingsFile {
-    const CsvLayout *layout;
-    FILE *out;
-    Error *error;
-} FindingsFile;
+typedef struct FindingsFile FindingsFile;
 
 /* False with error set for numbers that are infinite. */
 bool findings_add(const FindingsFile *file, const void *row);
@@ -205,6 +210,14 @@ typedef struct FindingsTable {
     /* Adds all rows. */
     bool (*write)(const FindingsFile *file, const StudyTables *study);
 } FindingsTable;
+
+/* A table that is being written. */
+struct FindingsFile {
+    const FindingsTable *table;
+    const StudyTables *study;
+    FILE *out;
+    Error *error;
+};
 
 extern const FindingsTable findings_summary, findings_targets, findings_paper_table1, findings_factors,
     findings_definitions, findings_laws, findings_transfer, findings_aims, findings_claims, findings_systems;

@@ -189,5 +189,5 @@ const PaperSystem system_sain = {.name = "sain",
                                      SYSTEM_METHODS("sain", "sain:engine=off", "sain:engine=shuffled", "sain:net=off"),
                                  .table = &sain_layout,
                                  .parts = parts,
-                                 .claim = sain_claims_state,
+                                 .claims = sain_claims,
                                  .plot = plot_sain};

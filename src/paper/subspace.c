@@ -185,5 +185,5 @@ const PaperSystem system_subspace = {
     .methods = SYSTEM_METHODS("subspace", "subspace:net=off", "subspace:components=8", "subspace:components=128"),
     .table = &subspace_study_layout,
     .parts = parts,
-    .claim = subspace_claim,
+    .claims = subspace_claims,
     .plot = plot_subspace};

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The frame of the systems that the paper cites, tried on a system made for this test: interior with other limits. */
-#include "testing.h"
+#include "tables.h"
 
-#include "base/file.h"
-#include "paper/paper.h"
 #include "sanitized.h"
 #include "studies/chart.h"
 
@@ -30,38 +28,28 @@ static bool write_part(const SystemStudy *study, int index, FILE *lines, const P
 
 static const SystemPart parts[] = {{"one", 1, 1, 1, write_part, false}, {"ten", 1, 1, 10, write_part, false}, {0}};
 
-/* From the table and from the scores. */
-static bool claim(const Claims *claims, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, claims->folder, &double_table, error)) return false;
-    const DoubleRow *rows = table.rows;
-    const SystemScoreRow *score = system_score_find(claims->scores, claims->score_count, "interior:near=0.01", 1);
-    const Claim error_falls = {"The error falls, \"always\"", "A paper, section 1", "error",
-                               claim_at_most(rows[1].error, 5, 10)},
-                quick = {"It is quick", "A paper, section 2", "time", claim_at_most(score->us_step, 1e9, 1e9)};
-    const bool stated = claim_state(claims, &error_falls, error, "%.3g m/s", rows[1].error) &&
-                        claim_state(claims, &quick, error, "below %g s, %.1f s, %g s", 1e3, (double)NAN, -(double)NAN);
-    csv_table_free(&table);
-    return stated;
+static bool claim_error(const Claims *claims, const CsvTable *table, Error *error) {
+    const DoubleRow *rows = table->rows;
+    const Claim claim = {"The error falls, \"always\"", "A paper, section 1", "error",
+                         claim_at_most(rows[1].error, 5, 10)};
+    return claim_state(claims, &claim, error, "%.3g m/s", rows[1].error);
 }
 
-static bool plot(const char *folder, PlotPage *page, Error *error) {
-    (void)folder, (void)page, (void)error;
-    return true;
+static bool claim_time(const Claims *claims, const CsvTable *table, Error *error) {
+    const SystemScoreRow *score = system_score_find(claims->scores, claims->score_count, "interior:near=0.01", 1);
+    const Claim claim = {"It is quick", "A paper, section 2", "time", claim_at_most(score->us_step, 1e9, 1e9)};
+    (void)table;
+    return claim_state(claims, &claim, error, "below %g s, %.1f s, %g s", 1e3, (double)NAN, -(double)NAN);
 }
+
+static ClaimRule *const claims_double[] = {claim_error, claim_time, NULL};
 
 static const PaperSystem system_double = {.name = "double",
                                           .methods = SYSTEM_METHODS("interior:near=0.01", "interior:near=0.5"),
                                           .table = &double_table,
                                           .parts = parts,
-                                          .claim = claim,
-                                          .plot = plot};
+                                          .claims = claims_double};
 static const PaperSystem *const systems[] = {&system_double, NULL};
-
-static const char *folder(void) {
-    temporary_path(""); /* makes it */
-    return temporary_folder;
-}
 
 static const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .seed = 1};
 
@@ -169,23 +157,14 @@ static void claims_follow_from_tables_and_scores(void **state) {
 
 static void rules_have_two_limits(void **state) {
     (void)state;
-    assert_int_equal(claim_at_least(3, 3, 2), CLAIM_YES);
-    assert_int_equal(claim_at_least(2.9, 3, 2), CLAIM_PARTLY);
-    assert_int_equal(claim_at_least(1.9, 3, 2), CLAIM_NO);
-    assert_int_equal(claim_at_most(3, 3, 4), CLAIM_YES);
-    assert_int_equal(claim_at_most(4, 3, 4), CLAIM_PARTLY);
-    assert_int_equal(claim_at_most(4.1, 3, 4), CLAIM_NO);
-    assert_int_equal(claim_at_least((double)NAN, 3, 2), CLAIM_NO);
-    assert_int_equal(claim_at_most((double)NAN, 3, 4), CLAIM_NO);
-    assert_int_equal(claim_in_cases(0, 3), CLAIM_NO);
-    assert_int_equal(claim_in_cases(1, 3), CLAIM_PARTLY);
-    assert_int_equal(claim_in_cases(3, 3), CLAIM_YES);
+    static const double least[] = {3, 2.9, 1.9, (double)NAN}, most[] = {3, 4, 4.1, (double)NAN};
+    static const ClaimHolds holds[] = {CLAIM_YES, CLAIM_PARTLY, CLAIM_NO, CLAIM_NO};
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(claim_at_least(least[i], 3, 2), holds[i]);
+        assert_int_equal(claim_at_most(most[i], 3, 4), holds[i]);
+        assert_int_equal(claim_in_cases(i, 3), i == 0 ? CLAIM_NO : i == 3 ? CLAIM_YES : CLAIM_PARTLY);
+    }
     assert_int_equal(claim_in_cases(0, 0), CLAIM_NO);
-}
-
-static void write_text(const char *name, const char *text) {
-    Error error = {0};
-    assert_ok(file_write(temporary_path(name), text, strlen(text), &error), error);
 }
 
 static void refuse(const char *message) {
