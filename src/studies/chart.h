@@ -181,18 +181,10 @@ typedef struct ChartRow {
     const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
 } ChartRow;
 
+/* The header is exact, but that the last column, cpu, may be missing. Refused: a median time outside its quartiles. */
 extern const CsvLayout chart_layout;
 
-typedef struct ChartTable {
-    CsvTable csv;
-    int count;
-    const ChartRow *rows; /* [count] */
-} ChartTable;
-
-/* Reads a chart. Refused, as "path:line:column: error: reason": what csv_table_read() refuses (the header is exact; the
-   last column, cpu, may be missing), and a median time outside its quartiles. On failure nothing is to be freed. */
-bool chart_csv_read(ChartTable *table, const char *path, Error *error);
-void chart_csv_free(ChartTable *table);
+static inline const ChartRow *chart_row(const CsvTable *table, int i) { return (const ChartRow *)table->rows + i; }
 
 /* The methods that a study compares, each with some settings. */
 

@@ -23,7 +23,7 @@ static const char letters[VERDICT_LOOKS] = {
 };
 
 typedef struct StabilityHtml {
-    MapTable maps;
+    CsvTable maps;
     CsvTable table; /* of MapPage */
     const MapPage *pages;
     MapPanels *map; /* the current one */
@@ -146,7 +146,8 @@ static void stability_html_put_html(FILE *out, const void *context) {
 bool stability_html_write(const char *folder, Error *error) {
     char path[CSV_PATH_SIZE];
     StabilityHtml html = {.error = error};
-    if (!file_path(path, sizeof path, error, "%s/stability.html", folder) || !map_table_read(&html.maps, folder, error))
+    if (!file_path(path, sizeof path, error, "%s/stability.html", folder) ||
+        !csv_table_read_from(&html.maps, folder, &map_layout, error))
         return false;
     bool done = csv_table_read_from(&html.table, folder, &map_page_layout, error);
     html.pages = html.table.rows;
@@ -158,12 +159,12 @@ bool stability_html_write(const char *folder, Error *error) {
     free(text);
     free(html.map);
     csv_table_free(&html.table);
-    map_table_free(&html.maps);
+    csv_table_free(&html.maps);
     return done;
 }
 
 typedef struct ChartHtml {
-    ChartTable chart;
+    CsvTable chart;
     CsvTable table; /* of LaunchPage */
     const LaunchPage *pages;
     const char *csv; /* path of the chart's table */
@@ -186,7 +187,7 @@ static const LaunchPage *find_page(const ChartHtml *html, const char *scene, con
 
 static const ChartRow *find_row(const ChartHtml *html, const LaunchPage *page) {
     for (int i = 0; i < html->chart.count; i++) {
-        const ChartRow *row = &html->chart.rows[i];
+        const ChartRow *row = chart_row(&html->chart, i);
         if (row->protocol == PROTOCOL_CLOSED && same_point(page, row->scene, row->method, row->setting, row->phase))
             return row;
     }
@@ -316,7 +317,7 @@ static void put_scene(FILE *out, ChartHtml *html, const ChartRow *first) {
 
 static bool is_first(const ChartHtml *html, int row) {
     int first = 0;
-    while (strcmp(html->chart.rows[first].scene, html->chart.rows[row].scene) != 0) first++;
+    while (strcmp(chart_row(&html->chart, first)->scene, chart_row(&html->chart, row)->scene) != 0) first++;
     return first == row;
 }
 
@@ -345,7 +346,7 @@ static void put_html(FILE *out, const void *context) {
     const int left_out = count_left_out(html);
     if (left_out > 0) fprintf(out, "<p class=\"odd\">Without a page for lack of room: %d points.</p>\n", left_out);
     for (int i = 0; i < html->chart.count; i++)
-        if (!html->failed && is_first(html, i)) put_scene(out, html, &html->chart.rows[i]);
+        if (!html->failed && is_first(html, i)) put_scene(out, html, chart_row(&html->chart, i));
     house_page_end(out);
 }
 
@@ -353,7 +354,8 @@ bool chart_html_write(const char *folder, Error *error) {
     char csv[CSV_PATH_SIZE], path[CSV_PATH_SIZE];
     ChartHtml html = {.csv = csv, .error = error};
     if (!csv_table_path(csv, folder, &chart_layout, error) ||
-        !file_path(path, sizeof path, error, "%s/chart.html", folder) || !chart_csv_read(&html.chart, csv, error))
+        !file_path(path, sizeof path, error, "%s/chart.html", folder) ||
+        !csv_table_read(&html.chart, csv, &chart_layout, error))
         return false;
     bool done = csv_table_read_from(&html.table, folder, &launch_page_layout, error);
     html.pages = html.table.rows;
@@ -363,6 +365,6 @@ bool chart_html_write(const char *folder, Error *error) {
     done = done && !html.failed && file_write(path, text, size, error);
     free(text);
     csv_table_free(&html.table);
-    chart_csv_free(&html.chart);
+    csv_table_free(&html.chart);
     return done;
 }

@@ -257,7 +257,7 @@ typedef struct Chart {
    there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
    them are left out, and counted in their line. False with error set if nothing remains, or for more than
    CHART_MAX_LINES lines. */
-bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
+bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 
 /* Replaces characters that names do not have (csv_plain_length), or that the font lacks, by '?'. */

@@ -273,14 +273,14 @@ bool chart_plot(const char *csv_path, const char *scene, const char *folder, Err
     char stem[PATH_MAX];
     if (!check_name(csv_path, scene, error)) return false;
     if (!file_path(stem, sizeof stem, error, "%s/chart-%s", folder, scene)) return false;
-    ChartTable table;
-    if (!chart_csv_read(&table, csv_path, error)) return false;
+    CsvTable table;
+    if (!csv_table_read(&table, csv_path, &chart_layout, error)) return false;
     Chart chart;
     bool drawn = chart_gather(&chart, &table, scene, csv_path, error);
     if (drawn) {
         drawn = draw(&chart, scene, stem, error);
         chart_free(&chart);
     }
-    chart_csv_free(&table);
+    csv_table_free(&table);
     return drawn;
 }

@@ -219,30 +219,18 @@ static const CsvColumn columns[] = {
 
 enum { SOLVER_MEDIAN = 6 };
 
-const CsvLayout chart_layout =
-    CSV_LAYOUT("chart", columns, ChartRow, .min_rows = 1, .max_rows = CHART_MAX_ROWS, .header = CSV_EXACT);
-
 /* Comparisons with NAN are false: a missing time is not checked. */
 static bool is_ordered(const ChartRow *row) {
     return !(row->us_solver_q1 > row->us_solver || row->us_solver > row->us_solver_q3 ||
              row->us_solver_q1 > row->us_solver_q3);
 }
 
-bool chart_csv_read(ChartTable *table, const char *path, Error *error) {
-    *table = (ChartTable){.count = 0};
-    if (!csv_table_read(&table->csv, path, &chart_layout, error)) return false;
-    table->count = table->csv.count;
-    table->rows = table->csv.rows;
-    for (int i = 0; i < table->count; i++) {
-        if (is_ordered(&table->rows[i])) continue;
-        csv_table_error(&table->csv, i, SOLVER_MEDIAN, error, "us_solver: the median is outside the quartiles");
-        chart_csv_free(table);
-        return false;
-    }
+static bool check_times(const CsvTable *table, Error *error) {
+    for (int i = 0; i < table->count; i++)
+        if (!is_ordered(chart_row(table, i)))
+            return csv_table_error(table, i, SOLVER_MEDIAN, error, "us_solver: the median is outside the quartiles");
     return true;
 }
 
-void chart_csv_free(ChartTable *table) {
-    csv_table_free(&table->csv);
-    *table = (ChartTable){.count = 0};
-}
+const CsvLayout chart_layout = CSV_LAYOUT("chart", columns, ChartRow, .min_rows = 1, .max_rows = CHART_MAX_ROWS,
+                                          .header = CSV_EXACT, .check = check_times);

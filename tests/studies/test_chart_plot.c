@@ -209,15 +209,15 @@ static void texts_become_plain(void **state) {
 static void marks_are_gathered_by_line_and_time(void **state) {
     (void)state;
     Error error = {0};
-    ChartTable table;
-    assert_ok(chart_csv_read(&table,
+    CsvTable table;
+    assert_ok(csv_table_read(&table,
                              write_rows("single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
                                         "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,,\n"
                                         "stack,engine,k=10,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
                                         "stack,engine,k=5,closed,impact,39,2,2,2,,,3,,,,,,,,\n"
                                         "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,,\n"
                                         "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,,\n"),
-                             &error),
+                             &chart_layout, &error),
               error);
     Chart chart;
     assert_ok(chart_gather(&chart, &table, "stack", "rows.csv", &error), error);
@@ -238,24 +238,24 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     assert_string_equal(impact->marks[2].label, "k=7,b=0.5");
     assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
     chart_free(&chart);
-    chart_csv_free(&table);
+    csv_table_free(&table);
 }
 
 /* A baseline a thousand times faster would push the methods that compete into a corner. */
 static void the_axes_show_what_competes(void **state) {
     (void)state;
     Error error = {0};
-    ChartTable table;
+    CsvTable table;
     const char *path = write_rows("stack,engine,k=5,closed,impact,40,20,19,21,,,1,,,,,,,,\n"
                                   "stack,engine,k=100,closed,impact,40,200,190,210,,,0.1,,,,,,,,\n"
                                   "stack,playback,launches=25,closed,impact,40,0.2,0.1,0.3,,,0.05,,,,,,,,\n"
                                   "stack,playback,launches=100,closed,after,40,0.4,0.3,0.5,,,0.01,,,,,,,,\n"
                                   "stack,constant,,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
                                   "stack,reference,,closed,impact,40,400,390,410,,,0,,,,,,,,\n");
-    assert_ok(chart_csv_read(&table, path, &error), error);
+    assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
     Chart chart;
     assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
-    chart_csv_free(&table);
+    csv_table_free(&table);
     assert_true(chart.us_least == 4 && chart.us_most == 210); /* the constant is near */
     assert_true(chart.error_least == 0.1 && chart.error_most == 3);
     assert_int_equal(chart.panels[0].count, 3);
@@ -297,7 +297,7 @@ static void a_method_has_one_style_in_all_charts(void **state) {
 static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
     (void)state;
     Error error = {0};
-    ChartTable table;
+    CsvTable table;
     const char *path = write_rows("stack,momentum,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
                                   "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
                                   "stack,momentum,\"k=5,near=0.1\",closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
@@ -306,7 +306,7 @@ static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
                                   "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n"
                                   "stack,momentum,\"near=0.5,more=96\",closed,impact,40,6,6,6,,,1,,,,,,,,\n"
                                   "stack,scene-net,more=96,closed,impact,40,6,6,6,,,1,,,,,,,,\n");
-    assert_ok(chart_csv_read(&table, path, &error), error);
+    assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
     Chart chart;
     assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
     assert_int_equal(chart.line_count, 3);
@@ -317,25 +317,25 @@ static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
     for (int i = 1; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 3);
     assert_string_equal(chart.panels[0].marks[3].label, "k=5,near=0.1");
     chart_free(&chart);
-    chart_csv_free(&table);
+    csv_table_free(&table);
 }
 
 /* Two names that are equal where they are truncated. */
 static void truncated_names_stay_distinct(void **state) {
     (void)state;
     Error error = {0};
-    ChartTable table;
+    CsvTable table;
     const char *path = write_rows(
         "stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
         "stack,a-name-of-more-than-forty-characters-which-ends-in-2,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n");
-    assert_ok(chart_csv_read(&table, path, &error), error);
+    assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
     Chart chart;
     assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
     assert_int_equal(chart.line_count, 2);
     assert_string_equal(chart.lines[0].name, "a-name-of-more-than-forty-characters...");
     assert_string_equal(chart.lines[1].name, chart.lines[0].name);
     chart_free(&chart);
-    chart_csv_free(&table);
+    csv_table_free(&table);
 }
 
 int main(void) {

@@ -54,10 +54,10 @@ static void a_method_without_rivals_has_no_figure(void **state) {
     Error error = {0};
     bool drawn = true;
     const char *path = temporary_path("alone.csv");
-    ChartTable chart;
-    assert_ok(chart_csv_read(&chart, SAMPLE, &error), error);
+    CsvTable chart;
+    assert_ok(csv_table_read(&chart, SAMPLE, &chart_layout, &error), error);
     assert_ok(csv_table_write(path, &chart_layout, chart.rows, 1, &error), error);
-    chart_csv_free(&chart);
+    csv_table_free(&chart);
     assert_ok(equal_time_plot(path, folder(), &drawn, &error), error);
     assert_false(drawn);
 }
