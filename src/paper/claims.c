@@ -18,12 +18,12 @@
 const char *const claim_holds_words[CLAIM_HOLDS + 1] = {"no", "partly", "yes"};
 
 static const CsvColumn columns[] = {
-    {"system", CSV_NAME, .offset = offsetof(ClaimRow, system), .key = true},
-    {"claim", CSV_TEXT, .offset = offsetof(ClaimRow, claim), .maximum = CLAIM_TEXT_SIZE, .quoted = true, .key = true},
-    {"source", CSV_TEXT, .offset = offsetof(ClaimRow, source), .maximum = CLAIM_TEXT_SIZE, .quoted = true},
-    {"measured", CSV_TEXT, .offset = offsetof(ClaimRow, measured), .maximum = CLAIM_TEXT_SIZE, .quoted = true},
-    {"figure", CSV_TEXT, .offset = offsetof(ClaimRow, figure), .maximum = CLAIM_TEXT_SIZE, .quoted = true},
-    {"holds", CSV_WORD, .offset = offsetof(ClaimRow, holds), .words = claim_holds_words},
+    CSV_MEMBER(ClaimRow, system, CSV_NAME, .key = true),
+    CSV_MEMBER(ClaimRow, claim, CSV_TEXT, .maximum = CLAIM_TEXT_SIZE, .quoted = true, .key = true),
+    CSV_MEMBER(ClaimRow, source, CSV_TEXT, .maximum = CLAIM_TEXT_SIZE, .quoted = true),
+    CSV_MEMBER(ClaimRow, measured, CSV_TEXT, .maximum = CLAIM_TEXT_SIZE, .quoted = true),
+    CSV_MEMBER(ClaimRow, figure, CSV_TEXT, .maximum = CLAIM_TEXT_SIZE, .quoted = true),
+    CSV_MEMBER(ClaimRow, holds, CSV_WORD, .words = claim_holds_words),
 };
 const CsvLayout claim_layout = CSV_LAYOUT("systems", columns, ClaimRow, .max_rows = 100);
 

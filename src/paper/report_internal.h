@@ -223,12 +223,9 @@ extern const FindingsTable findings_summary, findings_targets, findings_paper_ta
     findings_definitions, findings_laws, findings_transfer, findings_aims, findings_claims, findings_systems;
 
 /* Columns of a row with members of these names; a text, a count, a number that may be NAN. */
-#define FINDINGS_TEXT(Row, member) \
-    { #member, CSV_TEXT, .offset = offsetof(Row, member) }
-#define FINDINGS_COUNT(Row, member) \
-    { #member, CSV_INTEGER, .offset = offsetof(Row, member) }
-#define FINDINGS_NUMBER(Row, member) \
-    { #member, CSV_OPTIONAL, .offset = offsetof(Row, member), .digits = 9 }
+#define FINDINGS_TEXT(Row, member) CSV_MEMBER(Row, member, CSV_TEXT)
+#define FINDINGS_COUNT(Row, member) CSV_MEMBER(Row, member, CSV_INTEGER)
+#define FINDINGS_NUMBER(Row, member) CSV_MEMBER(Row, member, CSV_OPTIONAL, .digits = 9)
 
 /* An initialiser of a FindingsTable. */
 #define FINDINGS_TABLE(name, columns, Row, write) \

@@ -153,11 +153,6 @@ double sain_engine_error(const SainRow *row) { return row->engine; }
 
 double sain_constant_error(const SainRow *row) { return row->constant; }
 
-static int compare(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double sain_median(const CsvTable *table, SainScene scene, RelationForm form, int launches, SainNumber *of) {
     enum { MOST = 64 };
     const SainRow *rows = table->rows;
@@ -166,9 +161,7 @@ double sain_median(const CsvTable *table, SainScene scene, RelationForm form, in
     for (int i = 0; i < table->count && count < MOST; i++)
         if (rows[i].scene == (int)scene && rows[i].form == (int)form && rows[i].launches == launches)
             numbers[count++] = of(&rows[i]);
-    if (count == 0) return (double)NAN;
-    qsort(numbers, (size_t)count, sizeof *numbers, compare);
-    return (numbers[(count - 1) / 2] + numbers[count / 2]) / 2;
+    return statistics_quantile(numbers, count, 0.5);
 }
 
 int sain_most_launches(const CsvTable *table) {

@@ -153,8 +153,7 @@ const SubspaceStudyRow *subspace_study_find(const SubspaceStudyRow *rows, int co
 }
 
 #define MOST 1e30
-#define COLUMN(kind, member, ...) \
-    { #member, kind, .offset = offsetof(SubspaceStudyRow, member), __VA_ARGS__ }
+#define COLUMN(kind, member, ...) CSV_MEMBER(SubspaceStudyRow, member, kind, __VA_ARGS__)
 
 static const CsvColumn columns[] = {
     COLUMN(CSV_WORD, scene, .words = paper_scene_names, .key = true),

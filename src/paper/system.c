@@ -187,20 +187,20 @@ bool system_scores_write(void *context, FILE *lines, const Progress *progress, E
 #define MOST 1e30
 
 static const CsvColumn columns[] = {
-    {"system", CSV_NAME, .offset = offsetof(SystemScoreRow, system), .key = true},
-    {"method", CSV_TEXT, .offset = offsetof(SystemScoreRow, method), .maximum = SYSTEM_NAME_SIZE, .key = true},
-    {"scene", CSV_WORD, .offset = offsetof(SystemScoreRow, scene), .words = paper_scene_names, .key = true},
-    {"launches", CSV_NUMBER, .offset = offsetof(SystemScoreRow, launches), .minimum = 1, .maximum = LAUNCHED_MAX},
-    {"frames", CSV_NUMBER, .offset = offsetof(SystemScoreRow, frames), .minimum = 1, .maximum = 1e6},
-    {"frames_engine", CSV_NUMBER, .offset = offsetof(SystemScoreRow, frames_engine), .maximum = 1e6},
-    {"frames_converged", CSV_NUMBER, .offset = offsetof(SystemScoreRow, frames_converged), .maximum = 1e6},
-    {"moved", CSV_NUMBER, .offset = offsetof(SystemScoreRow, moved), .maximum = 1e6},
-    {"penetration_max", CSV_NUMBER, .offset = offsetof(SystemScoreRow, penetration_max), .maximum = MOST},
-    {"energy_created", CSV_NUMBER, .offset = offsetof(SystemScoreRow, energy_created), .maximum = MOST},
-    {"momentum_error", CSV_OPTIONAL, .offset = offsetof(SystemScoreRow, momentum_error), .maximum = MOST},
-    {"fallback_share", CSV_OPTIONAL, .offset = offsetof(SystemScoreRow, fallback_share), .maximum = 1},
-    {"us_step", CSV_OPTIONAL, .offset = offsetof(SystemScoreRow, us_step), .maximum = MOST},
-    {"us_step_engine", CSV_OPTIONAL, .offset = offsetof(SystemScoreRow, us_step_engine), .maximum = MOST},
+    CSV_MEMBER(SystemScoreRow, system, CSV_NAME, .key = true),
+    CSV_MEMBER(SystemScoreRow, method, CSV_TEXT, .maximum = SYSTEM_NAME_SIZE, .key = true),
+    CSV_MEMBER(SystemScoreRow, scene, CSV_WORD, .words = paper_scene_names, .key = true),
+    CSV_MEMBER(SystemScoreRow, launches, CSV_NUMBER, .minimum = 1, .maximum = LAUNCHED_MAX),
+    CSV_MEMBER(SystemScoreRow, frames, CSV_NUMBER, .minimum = 1, .maximum = 1e6),
+    CSV_MEMBER(SystemScoreRow, frames_engine, CSV_NUMBER, .maximum = 1e6),
+    CSV_MEMBER(SystemScoreRow, frames_converged, CSV_NUMBER, .maximum = 1e6),
+    CSV_MEMBER(SystemScoreRow, moved, CSV_NUMBER, .maximum = 1e6),
+    CSV_MEMBER(SystemScoreRow, penetration_max, CSV_NUMBER, .maximum = MOST),
+    CSV_MEMBER(SystemScoreRow, energy_created, CSV_NUMBER, .maximum = MOST),
+    CSV_MEMBER(SystemScoreRow, momentum_error, CSV_OPTIONAL, .maximum = MOST),
+    CSV_MEMBER(SystemScoreRow, fallback_share, CSV_OPTIONAL, .maximum = 1),
+    CSV_MEMBER(SystemScoreRow, us_step, CSV_OPTIONAL, .maximum = MOST),
+    CSV_MEMBER(SystemScoreRow, us_step_engine, CSV_OPTIONAL, .maximum = MOST),
 };
 const CsvLayout system_score_layout =
     CSV_LAYOUT("system_scores", columns, SystemScoreRow, .min_rows = 1, .max_rows = SYSTEM_SCORES_MAX);

@@ -186,12 +186,9 @@ void method_scores_free(MethodScores *scores) {
 static const char *const protocol_words[] = {"frozen", "closed", NULL};
 static const char *const phase_words[] = {"impact", "after", "rest", NULL};
 
-#define TEXT(member, size) \
-    { #member, CSV_TEXT, .offset = offsetof(ChartRow, member), .maximum = (size)-1, .key = true }
-#define WORD(member, list) \
-    { #member, CSV_WORD, .offset = offsetof(ChartRow, member), .words = list, .key = true }
-#define FIGURE(member, least, most) \
-    { #member, CSV_OPTIONAL, .offset = offsetof(ChartRow, member), .minimum = least, .maximum = most }
+#define TEXT(member, size) CSV_MEMBER(ChartRow, member, CSV_TEXT, .maximum = (size)-1, .key = true)
+#define WORD(member, list) CSV_MEMBER(ChartRow, member, CSV_WORD, .words = list, .key = true)
+#define FIGURE(member, least, most) CSV_MEMBER(ChartRow, member, CSV_OPTIONAL, .minimum = least, .maximum = most)
 
 static const CsvColumn columns[] = {
     TEXT(scene, CHART_NAME_SIZE),
@@ -199,7 +196,7 @@ static const CsvColumn columns[] = {
     TEXT(setting, CHART_SETTING_SIZE),
     WORD(protocol, protocol_words),
     WORD(phase, phase_words),
-    {"launches", CSV_INTEGER, .offset = offsetof(ChartRow, launches), .maximum = INT_MAX},
+    CSV_MEMBER(ChartRow, launches, CSV_INTEGER, .maximum = INT_MAX),
     FIGURE(us_solver, 0, INFINITY),
     FIGURE(us_solver_q1, 0, INFINITY),
     FIGURE(us_solver_q3, 0, INFINITY),
@@ -214,7 +211,7 @@ static const CsvColumn columns[] = {
     FIGURE(drift, -INFINITY, INFINITY),
     FIGURE(energy, -INFINITY, INFINITY),
     FIGURE(moved, 0, INFINITY),
-    {"cpu", CSV_TEXT, .offset = offsetof(ChartRow, cpu), .maximum = CPU_NAME_SIZE - 1, .optional = true},
+    CSV_MEMBER(ChartRow, cpu, CSV_TEXT, .maximum = CPU_NAME_SIZE - 1, .optional = true),
 };
 
 enum { SOLVER_MEDIAN = 6 };
