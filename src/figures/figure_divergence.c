@@ -14,7 +14,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { BAND_BODIES = 5 }; /* bodies shifted, one at a time */
 

@@ -3,7 +3,6 @@
    from its table. */
 #include "base/base.h"
 #include "base/csv.h"
-#include "base/file.h"
 #include "learning/subspace_training.h"
 #include "methods/relation_view.h"
 #include "paper/paper.h"
@@ -12,7 +11,6 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 const char *const claim_holds_words[CLAIM_HOLDS + 1] = {"no", "partly", "yes"};

@@ -19,7 +19,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 const double gns_times[GNS_TIMES] = {0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4, 5};
 

@@ -11,9 +11,7 @@
 #include "studies/chart.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 const char *const rate_definition_names[RATE_DEFINITIONS + 1] = {"range", "absolute", "bodies"};
 

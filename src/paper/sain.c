@@ -13,7 +13,6 @@
 #include "scenes/scenes.h"
 #include "studies/chart.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { SEEDS = 3, STEPS = 500, QUICK_STEPS = 40, BATCH = 256, PATH_SIZE = 4096 };

@@ -39,19 +39,23 @@ bool converged_step_solve(ConvergedStep *converged, const ContactProblem *proble
 
 /* Log of a run, for comparison with another run of the same launch. */
 
+typedef struct LoggedFrame {
+    double energy;      /* J: mechanical energy of all dynamic bodies */
+    double penetration; /* m: deepest contact of the step; 0 without contacts */
+    Phase phase;        /* of the step */
+    Vec2 bomb;          /* m: the bomb's position; 0 before it is there */
+} LoggedFrame;
+
 /* Zero-initialise; arrays grow and are reused. Bodies exclude the bomb. */
 typedef struct RunLog {
     int bodies, frames;          /* frames: index of the last logged frame */
     int touch;                   /* first step in which the bomb touches; 0: none */
     int launch_frame, end_frame; /* the bomb's frame, and 5 s later: displaced boxes are counted between them */
     Vec2 *position;              /* [frames + 1, bodies] m */
-    double *energy;              /* [frames + 1] J: mechanical energy of all dynamic bodies */
-    double *penetration;         /* [frames + 1] m: deepest contact of the step; 0 without contacts */
-    Phase *phase;                /* [frames + 1] of each step */
-    Vec2 *bomb;                  /* [frames + 1] m: the bomb's position; 0 before it is there */
+    LoggedFrame *at;             /* [frames + 1] */
     double momentum_error;       /* N s: momentum created by steps (ContactSolution), sum */
     int fallen_back;             /* steps with discarded outputs, beyond training or solved by sweeps */
-    size_t position_capacity, energy_capacity, penetration_capacity, phase_capacity, bomb_capacity;
+    size_t position_capacity, at_capacity;
 } RunLog;
 
 void run_log_free(RunLog *log);
@@ -360,6 +364,13 @@ struct SpeedAccuracyScene {
 
 /* Of the studies. */
 const StudySize *speed_accuracy_size(bool quick);
+
+/* Hashes a scene's file and its networks. A missing network is an error only of the method that needs it. */
+bool study_key_add_scene(StudyKey *key, const char *path, Error *error);
+
+/* Opens the pieces of a study in its folder and does them. Shards share a folder; a whole study has it to itself. */
+bool study_do(Pieces *pieces, const char *folder, const StudyKey *key, const PiecesRun *run, const PiecePlan *plan,
+              const Progress *progress, Error *error);
 
 /* Does the pieces of the study, then writes folder/chart.csv, fills scenes[scene_count] and draws; a shard does its pieces
    only. An interrupted study continues if options, files and program are the same. ERROR_INPUT for an invalid option,

@@ -7,7 +7,6 @@
 #include "base/file.h"
 #include "base/machine.h"
 #include "runs/pieces.h"
-#include "scenes/scenes.h"
 #include "studies/chart.h"
 #include "studies/stability_internal.h"
 
@@ -261,15 +260,9 @@ static bool know_names(const StabilityOptions *options, Error *error) {
     return true;
 }
 
-/* Hashes the scene and its networks. A missing network is an error only of the method that needs it. */
-static bool add_scene_to_key(const StabilityPlace *place, StudyKey *key, Error *error) {
+static bool add_place_to_key(const StabilityPlace *place, StudyKey *key, Error *error) {
     char path[STABILITY_PATH_SIZE];
-    if (!stability_path(path, place, error)) return false;
-    Scene *scene = scene_read(path, error);
-    if (scene == NULL) return false;
-    for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
-    scene_destroy(scene);
-    return study_key_add_file(key, path, error);
+    return stability_path(path, place, error) && study_key_add_scene(key, path, error);
 }
 
 /* Hashes a range that is not in the program. */
@@ -283,14 +276,14 @@ static void add_scan_to_key(const char *name, const char *parameter, const Borde
 static bool add_study_to_key(const Run *run, const StabilityStudy *study, StudyKey *key, Error *error) {
     const StabilityPlace place = {run->options->scenes, study->scene, study->file};
     add_scan_to_key(study->name, study->parameter, &study->scan, key);
-    return add_scene_to_key(&place, key, error);
+    return add_place_to_key(&place, key, error);
 }
 
 static bool add_map_to_key(const Run *run, const StabilityMap *map, StudyKey *key, Error *error) {
     const StabilityPlace place = {run->options->scenes, map->scene, map->file};
     add_scan_to_key(map->name, map->x.parameter, &map->x.scan, key);
     add_scan_to_key(map->name, map->y.parameter, &map->y.scan, key);
-    return add_scene_to_key(&place, key, error);
+    return add_place_to_key(&place, key, error);
 }
 
 /* Hashes everything that determines the result: the program, the options, the scenes. */
@@ -321,15 +314,6 @@ static bool finish(const Run *run, const Pieces *pieces, Error *error) {
            pieces_end(pieces, error);
 }
 
-/* Shards share a folder; a whole study has it to itself. */
-static bool do_pieces(Run *run, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
-    const StabilityOptions *options = run->options;
-    if (!pieces_open(pieces, options->folder, false, key, options->run, error)) return false;
-    if (pieces->mode == PIECES_WHOLE && !folder_reserve(options->folder, error)) return false;
-    return pieces_do(pieces, &run->plan.plan, progress, error) &&
-           (pieces->mode == PIECES_SHARD || finish(run, pieces, error));
-}
-
 static bool begin(Run *run, const StabilityOptions *options, Error *error) {
     *run = (Run){.options = options};
     return know_names(options, error) && contenders_parse(&run->methods, options->methods, STUDY_STABILITY, error) &&
@@ -348,8 +332,9 @@ static void end(Run *run) {
 bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error) {
     Run run;
     StudyKey key = {0};
-    const bool ok =
-        begin(&run, options, error) && find_key(&run, &key, error) && do_pieces(&run, pieces, &key, progress, error);
+    const bool ok = begin(&run, options, error) && find_key(&run, &key, error) &&
+                    study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
+                    (pieces->mode == PIECES_SHARD || finish(&run, pieces, error));
     pieces->plan = NULL;
     study_key_free(&key);
     end(&run);
