@@ -6,7 +6,6 @@
 
 /* Without its network gns falls: as its teacher until something touches, and then through the ground, g t^2 / 2. */
 static void without_its_network_boxes_fall_away(void **state) {
-    (void)state;
     Error error = {0};
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     assert_ok(scene != NULL, error);
@@ -32,7 +31,6 @@ static void expect_verdicts_of(const char *rows, const char *verdicts) {
 }
 
 static void verdicts_follow_from_the_numbers(void **state) {
-    (void)state;
     expect_verdicts_of(
         "rollout,M = 5,stack,1,11,0.1,0,,,,,\nrollout,M = 2,stack,1,11,0.2,0,,,,,\n"
         "rollout,M = 1,stack,1,11,0.3,0,,,,,\nrollout,without noise,stack,1,11,0.4,0,,,,,\n"

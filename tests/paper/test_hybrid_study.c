@@ -28,7 +28,6 @@ static CsvTable table_of(FILE *lines) {
 
 /* No limit on times, only on what is true of any. */
 static void a_learning_has_rows_that_fit_together(void **state) {
-    (void)state;
     Error error = {0};
     const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .quick = true, .seed = 1};
     FILE *lines = tmpfile();
@@ -70,7 +69,6 @@ static void expect_verdicts_of(const HybridRow *like, double share_after, const 
 }
 
 static void verdicts_follow_from_the_table(void **state) {
-    (void)state;
     HybridRow row = {.tolerance = 0.1,
                      .launches = 1000,
                      .share = 0.6,

@@ -84,7 +84,6 @@ static void expect_no_text(const char *text, const char *unwanted) {
 
 /* Expected numbers follow from the tables; comments name the rows. */
 static void numbers_are_computed_from_the_tables(void **state) {
-    (void)state;
     char *text = write_and_read("report.md");
     /* 0.004 is below the paper's rows 0 to 100; a ninth network with the target pair has 1289 parameters. */
     expect_text(text, "| pair | 0.004 | 4 of 6 | 8 | inputs-contact | 20.0% |");
@@ -108,7 +107,6 @@ static void numbers_are_computed_from_the_tables(void **state) {
 }
 
 static void runs_are_counted(void **state) {
-    (void)state;
     char *text = write_and_read("report.md");
     expect_text(text,
                 "2 of 5 runs stay within 0.1 m of the engine's for 600 frames (10 s). The lowest number of frames is "
@@ -123,7 +121,6 @@ static void runs_are_counted(void **state) {
 }
 
 static void rates_are_beside_those_of_cheaper_predictors(void **state) {
-    (void)state;
     char *text = write_and_read("report.md");
     expect_text(text, "| contact-net | stack | all | 70.0% | 35.0% | 72.0% | 70.0% | 90.0% | 100.0% |");
     /* No warm start was rated by this definition. */
@@ -136,7 +133,6 @@ static void rates_are_beside_those_of_cheaper_predictors(void **state) {
 }
 
 static void medians_are_over_seeds(void **state) {
-    (void)state;
     char *text = write_and_read("report.md");
     expect_text(text, "| none | 0 | 3 | 0.002 | 0.001 | 0.003 | 0.5 | 0.8 | 0.4 | 0.1 | 0.05 |");
     expect_text(text, "| engine | – | 1 | – | – | – | – | 0 | 0.01 | 0.02 | 0 |");
@@ -154,7 +150,6 @@ static void medians_are_over_seeds(void **state) {
 }
 
 static void aims_state_by_how_much_they_are_missed(void **state) {
-    (void)state;
     char *text = write_and_read("report.md");
     expect_text(text, "| Test / constant, pair | at most 0.4 | inputs-contact | 0.2 | 1 | reached | – |");
     expect_text(text, "| Test / constant, net | at most 0.4 | net | 0.7 | 1 | missed | 0.3 |");
@@ -167,7 +162,6 @@ static void aims_state_by_how_much_they_are_missed(void **state) {
 }
 
 static void claims_are_judged(void **state) {
-    (void)state;
     char *text = write_and_read("report.md");
     /* Inputs seen from the contact are neither the paper's relative ones nor raw. */
     expect_text(text, "0.25 with relative inputs, 1.1 with raw ones. The claim holds here.");
@@ -184,7 +178,6 @@ static void claims_are_judged(void **state) {
 }
 
 static void systems_are_beside_their_claims(void **state) {
-    (void)state;
     char *text = write_and_read("report.md");
     expect_text(text, "Claims that hold here: 1 of 4; partly: 1; not: 2.");
     expect_text(
@@ -211,7 +204,6 @@ static void systems_are_beside_their_claims(void **state) {
 }
 
 static void quick_studies_are_marked(void **state) {
-    (void)state;
     char *text = write_and_read("report.md");
     expect_no_text(text, "quick run");
     free(text);
@@ -222,7 +214,6 @@ static void quick_studies_are_marked(void **state) {
 }
 
 static void texts_stay_texts(void **state) {
-    (void)state;
     char *markdown = write_and_read("report.md");
     expect_no_text(markdown, "<script");
     expect_text(markdown, "&lt;script&gt;alert(1)&lt;/script&gt; of a name that is ...");
@@ -234,7 +225,6 @@ static void texts_stay_texts(void **state) {
 
 /* The parser of Python's library knows no closing tag that may be left out; the page leaves out none. */
 static void the_page_is_whole_and_needs_nothing(void **state) {
-    (void)state;
     free(write_and_read("report.html"));
     run_python("import base64, html.parser, re, sys\n"
                "page = open(sys.argv[1], encoding='utf-8').read()\n"
@@ -279,7 +269,6 @@ static void the_page_is_whole_and_needs_nothing(void **state) {
 }
 
 static void the_same_folder_gives_the_same_bytes(void **state) {
-    (void)state;
     static const char *const names[] = {"report.md", "report.html"};
     for (int i = 0; i < 2; i++) {
         char *first = write_and_read(names[i]), *second = write_and_read(names[i]);
@@ -303,7 +292,6 @@ static void refuse_table(const char *name, const char *text, const char *message
 }
 
 static void damaged_tables_are_refused_with_their_place(void **state) {
-    (void)state;
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,-1,2,3\n",
                  "transfer.csv:2:11: error: launches: '-1' is less than 1");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\n",
@@ -321,7 +309,6 @@ static void damaged_tables_are_refused_with_their_place(void **state) {
 }
 
 static void a_million_rows_are_refused(void **state) {
-    (void)state;
     make_study();
     FILE *file = fopen(temporary_path("study.csv"), "w");
     assert_non_null(file);
@@ -332,7 +319,6 @@ static void a_million_rows_are_refused(void **state) {
 }
 
 static void figures_that_miss_or_are_damaged_are_refused(void **state) {
-    (void)state;
     make_study();
     remove(temporary_path("figures/scenes.png"));
     expect_refused("figures/scenes.png: error: cannot open");
@@ -354,7 +340,6 @@ static void figures_that_miss_or_are_damaged_are_refused(void **state) {
 }
 
 static void few_rows_and_empty_fields_are_a_report_too(void **state) {
-    (void)state;
     make_study();
     write_text("networks.csv",
                "network,factor,value,inputs,data,labels,target,layers,hidden,output,scale,optimizer,loss,"

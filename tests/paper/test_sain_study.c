@@ -9,7 +9,6 @@
 
 /* The same part twice: the same rows, one for each form and scene. */
 static void a_part_is_repeatable(void **state) {
-    (void)state;
     static char texts[2][2048];
     const SystemStudy study = {SOURCE_DIR "/scenes", true, 1};
     for (int run = 0; run < 2; run++) {
@@ -42,14 +41,12 @@ static void expect_verdicts_of(double on, double off, double shuffled, const cha
 }
 
 static void verdicts_follow_from_the_table(void **state) {
-    (void)state;
     expect_verdicts_of(1, 2, 3, "yes yes yes yes");
     expect_verdicts_of(1.99, 1, 3, "no yes partly partly");
     expect_verdicts_of(5, 4, 4, "no no no no");
 }
 
 static void medians_leave_out_other_rows(void **state) {
-    (void)state;
     SainRow rows[] = {{SAIN_STACK, RELATION_ENGINE, 4, 1, 3, 0, 0},
                       {SAIN_STACK, RELATION_ENGINE, 4, 2, 1, 0, 0},
                       {SAIN_STACK, RELATION_ENGINE, 4, 3, 2, 0, 0},

@@ -20,7 +20,6 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
 
 /* The part of the single box: the scene has two bodies that move, so one row of eight components, which lose nothing. */
 static void a_scene_has_a_row_for_each_engine_and_size(void **state) {
-    (void)state;
     Pieces done;
     Error error = {0};
     static const CsvLayout *const layout = &subspace_study_layout;
@@ -53,7 +52,6 @@ static void a_scene_has_a_row_for_each_engine_and_size(void **state) {
 
 /* A stack 400 and 200 times as fast as the converged solution; the errors are 0.05 and 2 m. */
 static void claims_follow_from_the_table(void **state) {
-    (void)state;
     static const char *const figures[] = {
         "\"200 to 400 times (converged solution), 10 to 20 times (interior), 5.0 to 10 times (engine)\"",
         "\"0.05 to 2 m; the components alone lose 0.001 to 0.01 m, the engine is 0.5 to 0.5 m away\"",

@@ -90,7 +90,6 @@ static void write_study(void) {
 }
 
 static void parts_and_scores_are_done_once(void **state) {
-    (void)state;
     remove_temporary_folder();
     temporary_folder[0] = '\0';
     parts_written = 0;
@@ -119,7 +118,6 @@ static const SystemScoreRow *score(const CsvTable *scores, const char *method) {
 }
 
 static void scores_are_those_of_runs_beside_the_engine_s(void **state) {
-    (void)state;
     Error error = {0};
     CsvTable scores;
     write_study();
@@ -139,7 +137,6 @@ static void scores_are_those_of_runs_beside_the_engine_s(void **state) {
 }
 
 static void claims_follow_from_tables_and_scores(void **state) {
-    (void)state;
     Error error = {0};
     CsvTable claims;
     write_study();
@@ -156,7 +153,6 @@ static void claims_follow_from_tables_and_scores(void **state) {
 }
 
 static void rules_have_two_limits(void **state) {
-    (void)state;
     static const double least[] = {3, 2.9, 1.9, (double)NAN}, most[] = {3, 4, 4.1, (double)NAN};
     static const ClaimHolds holds[] = {CLAIM_YES, CLAIM_PARTLY, CLAIM_NO, CLAIM_NO};
     for (int i = 0; i < 4; i++) {
@@ -173,7 +169,6 @@ static void refuse(const char *message) {
 }
 
 static void damaged_tables_are_refused(void **state) {
-    (void)state;
     write_study();
     write_text("system_double.csv", "launches,error\n1,0.5\n10,-5\n");
     refuse("system_double.csv:3:4: error: ");
@@ -187,7 +182,6 @@ static void damaged_tables_are_refused(void **state) {
 
 /* What the table could not hold is refused when it is written. */
 static void a_text_that_cannot_be_read_back_is_refused(void **state) {
-    (void)state;
     char text[CLAIM_TEXT_SIZE + 2];
     memset(text, 'x', sizeof text - 1);
     text[sizeof text - 1] = '\0';
@@ -212,7 +206,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 static void strips_are_refused_or_stopped(void **state) {
-    (void)state;
     Error error = {0};
     const Progress progress = {stop, NULL};
     assert_false(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), &progress, &error));
@@ -223,7 +216,6 @@ static void strips_are_refused_or_stopped(void **state) {
 /* The engine and the system, in this order. Not under sanitizers: in a process with the threads of OpenMP and of Mesa, the
    search for leaks crashes in one of a hundred runs. They watch strips and pages in other tests. */
 static void a_page_plays_the_runs_of_the_strips(void **state) {
-    (void)state;
     Error error = {0};
 #ifdef SANITIZED
     skip();

@@ -54,7 +54,6 @@ static void assert_same(double found, double value) {
 }
 
 static void every_setting_meets_its_best_rival_at_its_time(void **state) {
-    (void)state;
     static const double factors[] = {1, 0.5, 2};
     CsvTable rows = read_chart();
     EqualTime table;
@@ -85,7 +84,6 @@ static void every_setting_meets_its_best_rival_at_its_time(void **state) {
 
 /* At 20 microseconds, the time of momentum with 50 sweeps. */
 static void methods_are_compared_at_one_time(void **state) {
-    (void)state;
     static const struct {
         const char *method, *rival;
         double error, ratio;

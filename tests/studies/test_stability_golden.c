@@ -36,8 +36,8 @@ static bool check_side(Golden *golden, int i, const StabilityScan *scan, bool ho
                             error))
         return false;
     if (verdict_holds(reading.verdict) == holds && (int)reading.verdict <= row->verdict) return true;
-    return csv_table_error(&golden->table, i, 0, error, "%s, %s: %s at %s %g (frame %d, body %d, %g %s)",
-                           row->study, method.text, verdict_name(reading.verdict), row->parameter, value, reading.frame,
+    return csv_table_error(&golden->table, i, 0, error, "%s, %s: %s at %s %g (frame %d, body %d, %g %s)", row->study,
+                           method.text, verdict_name(reading.verdict), row->parameter, value, reading.frame,
                            reading.body, reading.value, reading.unit);
 }
 
@@ -64,7 +64,6 @@ static bool check_row(void *context, int i, Error *error) {
 }
 
 static void borders_are_where_they_were(void **state) {
-    (void)state;
     Error error = {0};
     Golden golden = {0};
     assert_ok(csv_table_read_from(&golden.table, SOURCE_DIR "/golden", &border_layout, &error), error);
