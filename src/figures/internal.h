@@ -148,21 +148,6 @@ void caption_scene(FILE *out, const FigureSpec *spec);
 /* " at 0.5, 0.6 and 0.8~s"; many moments by their number, the first and the last. */
 void caption_times(FILE *out, const FigureSpec *spec);
 
-/* A polygon rasteriser with antialiasing by scan-line coverage. Pixels, y down.
-   Why our own: sketch_formats.h. */
-
-typedef struct RasterEdge {
-    double x0, y0, x1, y1; /* y0 < y1 */
-    int winding;           /* 1 or -1 */
-} RasterEdge;
-
-/* Initialise with zeros. */
-typedef struct Raster {
-    RasterEdge *edges;
-    size_t count, capacity;
-    bool failed; /* out of memory */
-} Raster;
-
 /* Blends one colour, alpha 0 .. 255, over a pixel. */
 void pixel_over(uint8_t *pixel, const uint8_t colour[3], int alpha);
 

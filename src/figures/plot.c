@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Plots: panels with axes, series and legends; plot_draw() for those that differ in their data only. */
 #include "base/base.h"
 #include "base/file.h"
 #include "figures/sketch.h"

@@ -13,7 +13,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-const char *const claim_holds_words[CLAIM_HOLDS + 1] = {"no", "partly", "yes"};
+static const char *const claim_holds_words[CLAIM_HOLDS + 1] = {"no", "partly", "yes"};
 
 static const CsvColumn columns[] = {
     CSV_MEMBER(ClaimRow, system, CSV_NAME, .key = true),

@@ -20,7 +20,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-const double gns_times[GNS_TIMES] = {0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4, 5};
+/* s after the bomb's launch */
+static const double gns_times[GNS_TIMES] = {0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4, 5};
 
 static const double far_enough = 0.5; /* m, as in charts (run_log_moved) */
 
@@ -162,7 +163,7 @@ static bool measure(const GnsExamples *examples, GnsNet *net, int steps, GnsRow 
     return ok;
 }
 
-const char *const gns_measure_words[GNS_MEASURES + 1] = {"rollout", "large", "cost"};
+static const char *const gns_measure_words[GNS_MEASURES + 1] = {"rollout", "large", "cost"};
 
 const GnsVariant gns_variants[GNS_VARIANTS] = {{"M = 5", "gns.npz", "", 5},
                                                {"M = 2", "gns-m2.npz", "", 2},

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rates of right predictions of a network, of the constant predictor and of the engine with fewer sweeps. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The tables of the study, and the datasets that its parts train on. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -27,7 +28,7 @@ const char *const paper_law_words[LAW_WORDS + 1] = {
     [LAW_MOMENTUM] = "momentum", [LAW_ENERGY] = "energy", [LAW_APPROACH] = "approach", [LAW_CONE] = "cone",
     [LAW_SET_ALL] = "all",       [LAW_SET_NONE] = "none", [LAW_SET_ENGINE] = "engine"};
 const char *const paper_optimizer_words[PAPER_OPTIMIZERS + 1] = {"adam", "gd", "bfgs", "lm", NULL};
-const char *const paper_phase_words[RATE_PHASES + 1] = {
+static const char *const paper_phase_words[RATE_PHASES + 1] = {
     [PHASE_IMPACT] = "impact", [PHASE_AFTER] = "after", [PHASE_REST] = "rest", [RATE_ALL] = "all"};
 static const char *const start_words[] = {"scratch", "transfer", NULL};
 
@@ -147,48 +148,31 @@ static FloatRange range_of(const char *text) {
     return range;
 }
 
-static Dataset *record(const PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
+/* Launches of `count` scenes from `first` on, with bomb_x in this range, if not NULL. */
+static Dataset *record(const PaperDatasets *datasets, int first, int count, const char *bomb_x, DatasetOptions options,
+                       Error *error) {
+    const char *scenes[PAPER_SCENES];
+    for (int i = 0; i < count; i++) scenes[i] = datasets->scenes[first + i];
+    options.scenes = scenes;
+    options.scene_count = count;
+    options.seed = datasets->seed;
+    if (bomb_x != NULL) options.bomb_x = range_of(bomb_x);
+    return dataset_record(&options, NULL, error);
+}
+
+static Dataset *record_for(const PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
     const PaperDataSize *size = datasets->size;
-    const char *const scenes[PAPER_TRAINING_SCENES] = {datasets->scenes[0], datasets->scenes[1]};
-    DatasetOptions options = {.scenes = scenes,
-                              .scene_count = PAPER_TRAINING_SCENES,
-                              .view = network->view,
-                              .target = network->target,
-                              .labels = network->labels,
-                              .seed = datasets->seed};
-    switch (network->data) {
-    case DATA_RANDOM: options.random = size->random; break;
-    case DATA_MIXED:
-        options.bomb_x = range_of(size->mixed);
-        options.random = size->mixed_random;
-        break;
-    case DATA_FINE: options.bomb_x = range_of(size->fine); break;
-    case DATA_FINEST: options.bomb_x = range_of(size->finest); break;
-    case DATA_PAPER: options.bomb_x = range_of(size->paper); break;
-    default: options.bomb_x = range_of(size->swept); break;
-    }
+    DatasetOptions options = {.view = network->view, .target = network->target, .labels = network->labels};
+    const char *const ranges[PAPER_DATA] = {[DATA_SWEPT] = size->swept,
+                                            [DATA_MIXED] = size->mixed,
+                                            [DATA_FINE] = size->fine,
+                                            [DATA_FINEST] = size->finest,
+                                            [DATA_PAPER] = size->paper};
+    if (network->data == DATA_RANDOM) options.random = size->random;
+    if (network->data == DATA_MIXED) options.random = size->mixed_random;
     if (network->target == TARGET_IMPULSE)
         options.every = network->data == DATA_FINEST ? size->finest_every : size->impulse_every;
-    return dataset_record(&options, NULL, error);
-}
-
-/* Launches of one scene, with the target pair. The caller destroys it. */
-static Dataset *paper_scene_dataset(const PaperDatasets *datasets, int scene, const char *bomb_x, Error *error) {
-    const char *const scenes[1] = {datasets->scenes[scene]};
-    const DatasetOptions options = {
-        .scenes = scenes, .scene_count = 1, .bomb_x = range_of(bomb_x), .seed = datasets->seed};
-    return dataset_record(&options, NULL, error);
-}
-
-/* The same for the sweep of both training scenes, with the pairs' context (dataset.h). */
-static Dataset *paper_context_dataset(const PaperDatasets *datasets, Error *error) {
-    const char *const scenes[PAPER_TRAINING_SCENES] = {datasets->scenes[0], datasets->scenes[1]};
-    const DatasetOptions options = {.scenes = scenes,
-                                    .scene_count = PAPER_TRAINING_SCENES,
-                                    .bomb_x = range_of(datasets->size->swept),
-                                    .context = true,
-                                    .seed = datasets->seed};
-    return dataset_record(&options, NULL, error);
+    return record(datasets, 0, PAPER_TRAINING_SCENES, ranges[network->data], options, error);
 }
 
 const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
@@ -202,7 +186,7 @@ const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *networ
         error_input(error, "study", "more than %d datasets", PAPER_DATASETS_MAX);
         return NULL;
     }
-    Dataset *dataset = record(datasets, network, error);
+    Dataset *dataset = record_for(datasets, network, error);
     if (dataset == NULL) return NULL;
     datasets->items[datasets->count++] =
         (StoredDataset){network->data, network->labels, network->view, network->target, dataset};
@@ -217,7 +201,9 @@ void paper_outlook_free(PaperOutlook *outlook) {
 bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Error *error) {
     PaperLaws *part = context;
     PaperOutlook *outlook = part->outlook;
-    if (outlook->laws == NULL) outlook->laws = paper_context_dataset(outlook->datasets, error);
+    if (outlook->laws == NULL) /* with the pairs' context */
+        outlook->laws = record(outlook->datasets, 0, PAPER_TRAINING_SCENES, outlook->datasets->size->swept,
+                               (DatasetOptions){.context = true}, error);
     if (outlook->laws == NULL) return false;
     LawResult result;
     const LawStudy *study = &part->study;
@@ -239,7 +225,7 @@ bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, 
     PaperOutlook *outlook = part->outlook;
     for (int i = 0; i < 3; i++) {
         if (outlook->scenes[i] == NULL)
-            outlook->scenes[i] = paper_scene_dataset(outlook->datasets, i, outlook->bomb_x[i], error);
+            outlook->scenes[i] = record(outlook->datasets, i, 1, outlook->bomb_x[i], (DatasetOptions){0}, error);
         if (outlook->scenes[i] == NULL) return false;
     }
     const TransferData data = {outlook->scenes[0], outlook->scenes[1], outlook->scenes[2]};

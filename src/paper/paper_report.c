@@ -220,7 +220,8 @@ bool html_page_write(const HtmlPage *page, FILE *out, Error *error) {
     return markdown_memory_run(html_page_write_markdown, &writing, error);
 }
 
-char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error) {
+/* The text that `write` writes, to be freed. NULL with error set where it fails; `what` is without memory. */
+static char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error) {
     char *text = NULL;
     FILE *out = memory_stream(&text, size);
     if (out == NULL) return error_memory(error, what), NULL;

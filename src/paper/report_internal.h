@@ -18,10 +18,7 @@
 
 typedef bool TextWrite(void *context, FILE *out, Error *error);
 
-/* The text that `write` writes, to be freed. NULL with error set where it fails; `what` is without memory. */
-char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error);
-
-/* The same to a file. */
+/* Writes to a file what `write` writes. False with error set where it fails, or memory is short. */
 bool text_write(const char *path, TextWrite *write, void *context, Error *error);
 
 /* A Markdown text as one HTML5 page that needs no other file, for phones, screens and paper. */
@@ -40,7 +37,6 @@ bool html_page_write(const HtmlPage *page, FILE *out, Error *error);
 /* report.md.in and report.css, built into the program (paper/sources.cmake). Each ends in a 0. */
 
 extern const unsigned char paper_report_md_in[], paper_report_css[];
-extern const size_t paper_report_md_in_size, paper_report_css_size;
 
 /* Fills a Markdown template with values from CSV files. Its tags:
 
@@ -178,7 +174,7 @@ typedef struct TransferCounts {
 
 TransferCounts transfer_counts(const StudyTables *study);
 
-/* The tables of findings.h, one function each. */
+/* The tables of findings, one function each. */
 
 typedef struct FindingsFile FindingsFile;
 
@@ -199,8 +195,9 @@ struct FindingsFile {
     Error *error;
 };
 
-extern const FindingsTable findings_summary, findings_targets, findings_paper_table1, findings_factors,
-    findings_definitions, findings_laws, findings_transfer, findings_aims, findings_claims, findings_systems;
+/* In findings_tables.c; the others are in findings.c. */
+extern const FindingsTable findings_targets, findings_paper_table1, findings_definitions, findings_laws,
+    findings_transfer;
 
 /* Columns of a row with members of these names; a text, a count, a number that may be NAN. */
 #define FINDINGS_TEXT(Row, member) CSV_MEMBER(Row, member, CSV_TEXT)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The study of sain: trainings on few launches of the stack, scored on held-out ones of two scenes. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/machine.h"
@@ -22,7 +23,8 @@ static const int held_out[SAIN_SCENES] = {24, 5}, quick_held_out[SAIN_SCENES] = 
 
 static const double first_rate = 0.003;
 
-const char *const sain_scene_words[SAIN_SCENES + 1] = {"stack", "pyramid_settled", NULL};
+/* Scene files without .yaml. */
+static const char *const sain_scene_words[SAIN_SCENES + 1] = {"stack", "pyramid_settled", NULL};
 
 static const CsvColumn columns[] = {
     {"scene", CSV_WORD, offsetof(SainRow, scene), .words = sain_scene_words, .key = true},

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The study of subspace: errors and times of its sizes beside those of the engines that it replaces. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"

@@ -69,6 +69,24 @@ Scene scene_study_launch(const SceneStudy *study, int launch) {
     return launch_scene(study->scene, &study->launches[launch]);
 }
 
+/* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene after
+   scene. */
+
+/* A scene and its pieces: a launch each, the last one is of the times. */
+typedef struct ChartScene {
+    SceneStudy study;
+    int64_t first;
+    double launch_weight, times_weight; /* of pieces */
+    int working;                        /* launches that are being scored */
+} ChartScene;
+
+/* chart_plan_free(), also after a failure. */
+typedef struct ChartPlan {
+    ChartScene *scenes; /* [count] */
+    int count;
+    PiecePlan plan;
+} ChartPlan;
+
 /* Seconds of one core per step of a body: of the converged run, of a method with the solutions that it is scored against, and
    of a method whose times are measured. */
 static const double converged_seconds = 1.5e-6, scored_seconds = 8e-7, timed_seconds = 3e-7;
@@ -170,6 +188,10 @@ static void chart_plan_free(ChartPlan *plan) {
     free(plan->scenes);
     *plan = (ChartPlan){0};
 }
+
+/* chart.csv from the pieces. */
+
+enum { ROWS_EACH = PROTOCOLS * PHASES };
 
 /* Methods are put together in groups that take about this much, so that a launch is read a few times only. */
 enum { GROUP_BYTES = 64 << 20 };

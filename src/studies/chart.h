@@ -16,8 +16,6 @@
 
 /* stability.html: the maps of a study as tables, whose cells link to pages of runs. */
 
-extern const char stability_css[]; /* page/stability.css */
-
 /* Writes folder/stability.html from maps.csv and map_pages.csv (studies/stability.h) there. */
 bool stability_html_write(const char *folder, Error *error);
 
@@ -90,7 +88,7 @@ typedef struct StepPlace {
 typedef struct StepScores {
     int count;
     double *error;    /* [count] m/s, RMS over the dynamic bodies */
-    double *share;    /* [count] share of bodies that are right (solution_error.h) */
+    double *share;    /* [count] share of bodies that are right (methods/reference.h) */
     StepPlace *place; /* [count] */
     size_t error_capacity, share_capacity, place_capacity;
 } StepScores;
@@ -112,12 +110,8 @@ typedef struct Rollout {
     World *world;
     ConvergedStep converged;
     RunLog log;
-    int solves, unconverged; /* reference solves; those with a residual above SOLVE_CONVERGED */
+    int solves, unconverged; /* reference solves; those with a residual above 1 mm/s */
 } Rollout;
-
-/* m/s, far below the differences between methods. Only states that a bad method made explode, and steps without a
-   solution (methods/reference.h), do not reach it. */
-#define SOLVE_CONVERGED 1e-3
 
 void rollout_free(Rollout *rollout);
 
@@ -302,32 +296,10 @@ typedef struct WorstLaunch {
 bool worst_launch_find(const SceneStudy *study, const Method *method, WorstLaunch worst[PHASES],
                        const Progress *progress, Error *error);
 
-/* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene after
-   scene. */
-
-/* A scene and its pieces: a launch each, the last one is of the times. */
-typedef struct ChartScene {
-    SceneStudy study;
-    int64_t first;
-    double launch_weight, times_weight; /* of pieces */
-    int working;                        /* launches that are being scored */
-} ChartScene;
-
-/* chart_plan_free(), also after a failure. */
-typedef struct ChartPlan {
-    ChartScene *scenes; /* [count] */
-    int count;
-    PiecePlan plan;
-} ChartPlan;
-
-/* chart.csv from the pieces of the study. */
-
-enum { ROWS_EACH = PROTOCOLS * PHASES };
-
 /* What the pieces of a scene say about its reference solves. */
 typedef struct SceneSolves {
     double frozen_residual;      /* m/s: largest residual of those of frozen steps */
-    int64_t solves, unconverged; /* those in closed loop; those with a residual above SOLVE_CONVERGED (rollout.h) */
+    int64_t solves, unconverged; /* those in closed loop; those with a residual above 1 mm/s */
 } SceneSolves;
 
 /* The speed-accuracy study: every method in every scene, on held-out launches.
@@ -349,7 +321,7 @@ typedef struct SpeedAccuracyOptions {
     const char *folder;   /* created if missing */
     bool pages;           /* for draw() */
     const PiecesRun *run; /* whole, a shard, or a merge */
-    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result (study_key.h). */
+    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result. */
     bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, uint64_t key,
                  Error *error);
 } SpeedAccuracyOptions;
@@ -401,11 +373,9 @@ bool piece_tables_write(const Pieces *pieces, const char *folder, const CsvLayou
 
 enum { CLOSED_LOOP_FRAMES = 600 };
 
-#define CLOSED_LOOP_APART 0.1 /* m */
-
 /* A run of one launch beside others of the same launch. */
 typedef struct LaunchLoop {
-    double frames_engine; /* first frame in which a body is more than CLOSED_LOOP_APART from its place in the engine's
+    double frames_engine;    /* first frame in which a body is more than 0.1 m from its place in the engine's
                                 run; the scene's frames: never */
     double frames_converged; /* the same of the converged run; NAN without one */
     double moved;            /* boxes that moved more than 0.5 m in the 5 s after the launch */
@@ -536,8 +506,6 @@ typedef struct LaunchPage {
 extern const CsvLayout launch_page_layout;
 
 /* chart.html: the charts of a study; their points, and a table of them, link to pages of runs. */
-
-extern const char chart_css[]; /* page/chart.css */
 
 /* Writes folder/chart.html from chart.csv, chart_pages.csv (studies/chart.h) and the charts' .svg files there. Without a
    script: a picture with links above its points, which a table repeats for the keyboard. */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The data of a chart of one scene: its lines, its marks, and what is left out. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "figures/sketch.h"

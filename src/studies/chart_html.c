@@ -17,6 +17,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+extern const char chart_css[], stability_css[]; /* page/, embedded */
+
 static void begin_page(FILE *out, const char *title, const char *style) {
     house_page_begin(out, title, style);
     fprintf(out, "<header><h1>%s</h1></header>\n<p class=\"soft\">", title);

@@ -123,7 +123,7 @@ typedef struct BestRival {
     CurveReach reach; /* CURVE_BEFORE without a rival */
 } BestRival;
 
-/* Every method's error next to the error that its best rival (rival_curves.h) has in the same time: equal_time.csv for
+/* Every method's error next to the error that its best rival has in the same time: equal_time.csv for
    each setting at the time that it takes, equal_time_methods.csv for each method at one time for all in a scene. */
 
 typedef struct EqualTimeRow {

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const double apart_distance = 0.1; /* m */
 static const double moved_distance = 0.5; /* m: half a box */
 static const double moved_after = 5;      /* s */
 
@@ -146,12 +147,16 @@ void rollout_free(Rollout *rollout) {
     *rollout = (Rollout){0};
 }
 
+/* m/s, far below the differences between methods. Only states that a bad method made explode, and steps without a
+   solution (methods/reference.h), do not reach it. */
+static const double solve_converged = 1e-3;
+
 static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
     const ContactProblem *problem = world_problem(rollout->world);
     const Reference *reference = &rollout->converged.reference;
     if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
     rollout->solves++;
-    rollout->unconverged += reference->residual > SOLVE_CONVERGED;
+    rollout->unconverged += reference->residual > solve_converged;
     if (step_scores_add(scores, frame, problem, world_solution(rollout->world)->velocities, reference->velocities))
         return true;
     return error_memory(error, "study");
@@ -220,9 +225,9 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
     if (!ok) return false;
     const RunLog *log = &rollout->log;
     const int frames = launched->frames;
-    *result = (LaunchLoop){.frames_engine = run_log_apart(log, engine, CLOSED_LOOP_APART, frames),
+    *result = (LaunchLoop){.frames_engine = run_log_apart(log, engine, apart_distance, frames),
                            .frames_converged = converged != NULL
-                                                   ? (double)run_log_apart(log, converged, CLOSED_LOOP_APART, frames)
+                                                   ? (double)run_log_apart(log, converged, apart_distance, frames)
                                                    : (double)NAN,
                            .moved = run_log_moved(log, launched),
                            .momentum_error = log->momentum_error,

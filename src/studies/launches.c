@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pieces of a chart: the launch that is worst for a method, launches scored by all methods, the tables that pieces make,
+   and the times of a scene. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"

@@ -320,7 +320,7 @@ typedef struct StabilityOptions {
     const char *names[STABILITY_MAX_NAMES];
     const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
     const PiecesRun *run;    /* whole, a shard, or a merge */
-    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables (study_key.h). */
+    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables. */
     bool (*draw)(void *context, uint64_t key, Error *error);
     void *draw_context;
 } StabilityOptions;
@@ -351,9 +351,6 @@ typedef struct MapPanels {
 /* Gathers the map whose rows start at *row and advances *row past them. ERROR_INPUT, with path:line:column: a repeated
    cell, more than MAP_MAX_VALUES values or MAP_MAX_METHODS methods. */
 bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *error);
-
-/* Writes the figure and its caption. All cells have the same size; ticks show their values. */
-void map_panels_write(const MapPanels *map, PlotPage *page);
 
 /* The figures of a stability study, drawn from its tables. */
 

@@ -420,7 +420,8 @@ static void write_caption(const MapPanels *map, char caption[PLOT_CAPTION_SIZE])
         map->first->map, x, y);
 }
 
-void map_panels_write(const MapPanels *map, PlotPage *page) {
+/* The figure and its caption. All cells have the same size; ticks show their values. */
+static void write_map(const MapPanels *map, PlotPage *page) {
     const Layout layout = lay_out(map, &page->sketch);
     sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
@@ -441,7 +442,7 @@ static bool process_maps(const CsvTable *table, const char *folder, bool draw, c
         ok = go_on(row, table->count, folder, progress, error) && map_panels_gather(map, table, &row, error);
         if (!ok || !draw) continue;
         PlotPage page = {0};
-        map_panels_write(map, &page);
+        write_map(map, &page);
         ok = plot_page_write(&page, folder, "map-", map->first->map, error);
         plot_page_free(&page);
     }
