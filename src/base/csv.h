@@ -52,9 +52,9 @@ void csv_put(FILE *file, const char *text, bool quoted);
      } RateRow;
 
      static const CsvColumn rate_columns[] = {
-         {"network", CSV_NAME, .offset = offsetof(RateRow, network)},
-         {"phase", CSV_WORD, .offset = offsetof(RateRow, phase), .words = phase_words},
-         {"rate", CSV_OPTIONAL, .offset = offsetof(RateRow, rate), .maximum = 1},
+         CSV_MEMBER(RateRow, network, CSV_NAME),
+         CSV_MEMBER(RateRow, phase, CSV_WORD, .words = phase_words),
+         CSV_MEMBER(RateRow, rate, CSV_OPTIONAL, .maximum = 1),
      };
      const CsvLayout rate_layout = CSV_LAYOUT("rates", rate_columns, RateRow, .min_rows = 1, .max_rows = 5000);
 */
@@ -91,6 +91,8 @@ typedef enum CsvHeader {
     CSV_SUBSET /* any of the columns, in any order */
 } CsvHeader;
 
+struct CsvTable;
+
 typedef struct CsvLayout {
     const char *name; /* of the file: NAME.csv */
     const CsvColumn *columns;
@@ -98,7 +100,13 @@ typedef struct CsvLayout {
     size_t row_size;  /* of the row's struct */
     int min_rows, max_rows;
     CsvHeader header;
+    /* Refuses rows that contradict themselves or each other, by csv_table_error(). NULL: nothing more to check. */
+    bool (*check)(const struct CsvTable *table, Error *error);
 } CsvLayout;
+
+/* An initialiser of a column with the name of its member: CSV_MEMBER(RateRow, rate, CSV_OPTIONAL, .maximum = 1). */
+#define CSV_MEMBER(Row, member, sort, ...) \
+    { .name = #member, .kind = (sort), .offset = offsetof(Row, member), __VA_ARGS__ }
 
 /* An initialiser: CSV_LAYOUT("rates", rate_columns, RateRow, .min_rows = 1, .max_rows = 5000). */
 #define CSV_LAYOUT(file, column_array, Row, ...)                                   \
@@ -116,7 +124,7 @@ typedef struct CsvTable {
 
 /* Reads a file. Refused, with "path:line:column: error: reason": what csv_read() refuses, a header that the layout does
    not accept, a column that appears twice, fields that are not of their column's kind or range, fewer than min_rows or
-   more than max_rows rows, repeated keys. On failure nothing is to be freed. */
+   more than max_rows rows, repeated keys, what the layout's check refuses. On failure nothing is to be freed. */
 bool csv_table_read(CsvTable *table, const char *path, const CsvLayout *layout, Error *error);
 
 /* The same of folder/NAME.csv. */

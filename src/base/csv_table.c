@@ -322,7 +322,9 @@ bool csv_table_read(CsvTable *table, const char *path, const CsvLayout *layout, 
     *table = (CsvTable){.count = 0};
     const size_t max_size = ((size_t)layout->max_rows + 1) * ROW_MAX_SIZE;
     if (!csv_read(&table->csv, path, max_size, layout->min_rows, layout->max_rows, error)) return false;
-    if (read_header(&reading) && read_rows(&reading) && check_keys(&reading)) return true;
+    if (read_header(&reading) && read_rows(&reading) && check_keys(&reading) &&
+        (layout->check == NULL || layout->check(table, error)))
+        return true;
     csv_table_free(table);
     return false;
 }

@@ -243,12 +243,12 @@ static bool draw_equal_time(const char *csv, const char *folder, Error *error) {
     return true;
 }
 
-static bool draw_scenes(const ChartTable *table, const char *csv, const char *folder, Error *error) {
+static bool draw_scenes(const CsvTable *table, const char *csv, const char *folder, Error *error) {
     for (int i = 0; i < table->count; i++) {
         int first = 0;
-        while (strcmp(table->rows[first].scene, table->rows[i].scene) != 0) first++;
+        while (strcmp(chart_row(table, first)->scene, chart_row(table, i)->scene) != 0) first++;
         if (first < i) continue;
-        const char *scene = table->rows[i].scene;
+        const char *scene = chart_row(table, i)->scene;
         const Drawn drawn = {scene, "", !chart_scene_untimed(table->rows, table->count, scene)};
         if (!draw_scene(csv, &drawn, folder, i, table->count, error)) return false;
     }
@@ -258,16 +258,16 @@ static bool draw_scenes(const ChartTable *table, const char *csv, const char *fo
 /* The charts of a finished table. */
 static bool draw_again(const Options *given, const char *csv, Error *error) {
     const SpeedAccuracyOptions *options = &given->study;
-    ChartTable table;
+    CsvTable table;
     if (options->scene_count > 1 || options->methods != NULL || options->quick || options->pages ||
         given->shard != NULL || options->launches.count > 0 || options->launches.table != NULL ||
         options->launches.bomb_x.count > 0)
         return error_input(error, csv, "a finished chart is drawn as it is: give only this file and -o DIR");
-    if (!chart_csv_read(&table, csv, error)) return false;
+    if (!csv_table_read(&table, csv, &chart_layout, error)) return false;
     const bool drawn = folder_reserve(options->folder, error) && draw_scenes(&table, csv, options->folder, error) &&
                        draw_equal_time(csv, options->folder, error);
     progress_bar_end();
-    chart_csv_free(&table);
+    csv_table_free(&table);
     return drawn;
 }
 

@@ -142,11 +142,11 @@ static bool has_settings(const ChartRow *row, const Trajectory *run) {
 
 /* The row with the settings of the run. A run without settings that does not state its scene's iterations is the only row
    of its method. NULL if there is no row. */
-static const ChartRow *find_cost(const ChartTable *table, const Trajectory *run) {
+static const ChartRow *find_cost(const CsvTable *table, const Trajectory *run) {
     const ChartRow *found = NULL;
     int fitting = 0;
     for (int i = 0; i < table->count; i++) {
-        const ChartRow *row = &table->rows[i];
+        const ChartRow *row = chart_row(table, i);
         if (strcmp(row->scene, run->scene) != 0 || row->protocol != PROTOCOL_CLOSED || row->phase != PHASE_IMPACT ||
             isnan(row->us_solver) || !is_of(row, run))
             continue;
@@ -158,8 +158,8 @@ static const ChartRow *find_cost(const ChartTable *table, const Trajectory *run)
 }
 
 bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels, RenderLook *look, Error *error) {
-    ChartTable table;
-    if (!chart_csv_read(&table, path, error)) return false;
+    CsvTable table;
+    if (!csv_table_read(&table, path, &chart_layout, error)) return false;
     int found = 0;
     for (int i = 0; i < panels->count; i++) {
         const ChartRow *row = find_cost(&table, panels->runs[i]);
@@ -170,7 +170,7 @@ bool panel_costs_read(PanelCosts *costs, const char *path, const Panels *panels,
         look->costs[i] = costs->texts[i];
         found++;
     }
-    chart_csv_free(&table);
+    csv_table_free(&table);
     return found > 0 || error_input(error, path, "has no closed-loop time at the impact for any of these runs");
 }
 

@@ -111,7 +111,7 @@ enum { CELL_NOTE_SIZE = 160 };
 /* Runs the cell's method and the first one that holds there, until three seconds after the frame that decided the verdict, at
    most 60 frames per second. The runs have the verdicts of the table. `progress` NULL: each run has a bar. Errors name
    `input`. cell_runs_free() also after a failure. */
-bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapTable *table, const MapCell *cell, const char *input,
+bool cell_runs_make(CellRuns *runs, const ClipMap *map, const CsvTable *table, const MapCell *cell, const char *input,
                     const Progress *progress, Error *error);
 void cell_runs_free(CellRuns *runs);
 
@@ -127,10 +127,10 @@ bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error);
 
 /* The row of the table that the cell names. Numbers may be rounded as in the figure: the nearest within 1% counts. NULL
    with error set if there is none; the error lists the known values. */
-const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *cell, Error *error);
+const MapCell *stability_cell_find(const CsvTable *table, const StabilityCell *cell, Error *error);
 
 /* The first method that holds in the same cell, or NULL. */
-const MapCell *stability_cell_holder(const MapTable *table, const MapCell *row);
+const MapCell *stability_cell_holder(const CsvTable *table, const MapCell *row);
 
 /* The video of one cell of a stability map. */
 

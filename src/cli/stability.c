@@ -43,12 +43,12 @@ bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error) {
 static bool is_near(double value, double typed) { return fabs(value - typed) <= share * fabs(value); }
 
 /* Names the known values of the part that was not found. */
-static const MapCell *fail(const MapTable *table, const StabilityCell *cell, bool map_known, bool method_known,
+static const MapCell *fail(const CsvTable *table, const StabilityCell *cell, bool map_known, bool method_known,
                            Error *error) {
     NameList names = {0}, ups = {0};
     char text[MAP_METHOD_SIZE];
     for (int i = 0; i < table->count; i++) {
-        const MapCell *row = &table->cells[i];
+        const MapCell *row = map_cell(table, i);
         map_cell_method(text, row);
         if (map_known && strcmp(row->map, cell->map) != 0) continue;
         if (map_known && method_known && strcmp(text, cell->method) == 0) {
@@ -60,7 +60,7 @@ static const MapCell *fail(const MapTable *table, const StabilityCell *cell, boo
             name_list_add(&names, map_known ? text : row->map);
     }
     if (!map_known)
-        error_input(error, "--clip", "there is no map %s in %s; its maps: %s", cell->map, table->csv.csv.path,
+        error_input(error, "--clip", "there is no map %s in %s; its maps: %s", cell->map, table->csv.path,
                     names.used > 0 ? names.text : "none");
     else if (!method_known)
         error_input(error, "--clip", "map %s has no method %s; its methods: %s", cell->map, cell->method, names.text);
@@ -74,11 +74,11 @@ static double distance(const MapCell *row, const StabilityCell *cell) {
     return fabs(row->x - cell->x) + fabs(row->y - cell->y);
 }
 
-const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *cell, Error *error) {
+const MapCell *stability_cell_find(const CsvTable *table, const StabilityCell *cell, Error *error) {
     const MapCell *found = NULL;
     bool map_known = false, method_known = false;
     for (int i = 0; i < table->count; i++) {
-        const MapCell *row = &table->cells[i];
+        const MapCell *row = map_cell(table, i);
         char method[MAP_METHOD_SIZE];
         if (strcmp(row->map, cell->map) != 0) continue;
         map_known = true;
@@ -91,9 +91,9 @@ const MapCell *stability_cell_find(const MapTable *table, const StabilityCell *c
     return found != NULL ? found : fail(table, cell, map_known, method_known, error);
 }
 
-const MapCell *stability_cell_holder(const MapTable *table, const MapCell *row) {
+const MapCell *stability_cell_holder(const CsvTable *table, const MapCell *row) {
     for (int i = 0; i < table->count; i++) {
-        const MapCell *other = &table->cells[i];
+        const MapCell *other = map_cell(table, i);
         if (strcmp(other->map, row->map) == 0 && other->x == row->x && other->y == row->y &&
             other->verdict < VERDICTS && verdict_holds((Verdict)other->verdict))
             return other;
@@ -114,7 +114,7 @@ typedef struct Making {
     const Progress *progress;
 } Making;
 
-static void choose_rows(CellRuns *runs, const MapTable *table, const MapCell *cell) {
+static void choose_rows(CellRuns *runs, const CsvTable *table, const MapCell *cell) {
     const MapCell *holder = verdict_holds((Verdict)cell->verdict) ? NULL : stability_cell_holder(table, cell);
     if (holder != NULL) runs->rows[runs->count++] = holder;
     runs->rows[runs->count++] = cell;
@@ -190,7 +190,7 @@ static bool thin_out(CellRuns *runs, Error *error) {
     return true;
 }
 
-bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapTable *table, const MapCell *cell, const char *input,
+bool cell_runs_make(CellRuns *runs, const ClipMap *map, const CsvTable *table, const MapCell *cell, const char *input,
                     const Progress *progress, Error *error) {
     const Making making = {runs, map, input, progress};
     *runs = (CellRuns){.count = 0};
@@ -202,7 +202,7 @@ void cell_runs_free(CellRuns *runs) { panels_free(&runs->panels); }
 
 enum { TITLE_SIZE = 320 };
 
-static const MapCell *find_cell(const ClipOptions *options, const MapTable *table, Error *error) {
+static const MapCell *find_cell(const ClipOptions *options, const CsvTable *table, Error *error) {
     StabilityCell cell;
     if (!stability_cell_parse(&cell, options->cell, error)) return NULL;
     const MapCell *row = stability_cell_find(table, &cell, error);
@@ -247,15 +247,15 @@ static bool stability_clip_draw(const ClipOptions *options, CellRuns *runs, Erro
 }
 
 bool stability_clip(const ClipOptions *options, Error *error) {
-    MapTable table;
-    if (!map_table_read(&table, options->folder, error)) return false;
+    CsvTable table;
+    if (!csv_table_read_from(&table, options->folder, &map_layout, error)) return false;
     CellRuns runs = {.count = 0};
     const MapCell *row = find_cell(options, &table, error);
     const ClipMap *map = row != NULL ? find_map(options, row, error) : NULL;
     bool ok = map != NULL && cell_runs_make(&runs, map, &table, row, options->cell, NULL, error) &&
               stability_clip_draw(options, &runs, error);
     cell_runs_free(&runs);
-    map_table_free(&table);
+    csv_table_free(&table);
     return ok;
 }
 

@@ -46,34 +46,34 @@ static void write_label(char label[LABEL_SIZE], const char *method, const char *
 }
 
 /* The borders of one method, from row i on, in as many lines as needed. Returns the row after them. */
-static int print_method(const BorderTable *table, int i) {
-    const BorderRow *row = &table->rows[i];
+static int print_method(const CsvTable *table, int i) {
+    const BorderRow *row = border_row(table, i);
     char label[LABEL_SIZE], border[LABEL_SIZE];
     write_label(label, row->method, row->setting);
     int next = i, width = printf("  %-*s", LABEL_WIDTH, label);
     do {
-        describe(&table->rows[next], border);
+        describe(border_row(table, next), border);
         if (next > i) width += printf(";");
         if (next > i && width + (int)strlen(border) + 2 > LINE_WIDTH) width = printf("\n  %-*s", LABEL_WIDTH, "") - 1;
         width += printf(" %s", border);
         next++;
-    } while (next < table->count && border_same_study(&table->rows[next], row) &&
-             border_same_method(&table->rows[next], row));
+    } while (next < table->count && border_same_study(border_row(table, next), row) &&
+             border_same_method(border_row(table, next), row));
     printf("\n");
     return next;
 }
 
 static bool print_borders(const char *folder, Error *error) {
-    BorderTable table;
-    if (!border_table_read(&table, folder, error)) return false;
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &border_layout, error)) return false;
     for (int i = 0; i < table.count;) {
-        const BorderRow *row = &table.rows[i];
+        const BorderRow *row = border_row(&table, i);
         if (i == 0 || !border_same_study(row, row - 1))
             printf("%s: %s%s%s, holds | fails\n", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "",
                    row->unit);
         i = print_method(&table, i);
     }
-    border_table_free(&table);
+    csv_table_free(&table);
     return true;
 }
 
@@ -174,7 +174,7 @@ static const double shown_before = 6;
 typedef struct Pages {
     const StabilityPages *options;
     PageSet set;
-    MapTable table;
+    CsvTable table;
     MapPanels *map; /* the current one, */
     int panel;      /* and method */
     int first, row; /* the map's first part; the row of the table behind it */
@@ -254,11 +254,11 @@ static bool write_method(void *context, int part, FILE *rows, const Progress *pr
     return true;
 }
 
-static int count_methods(const MapTable *table) {
+static int count_methods(const CsvTable *table) {
     int count = 0;
     for (int i = 0; i < table->count; i++)
-        count += i == 0 || strcmp(table->cells[i].map, table->cells[i - 1].map) != 0 ||
-                 !map_cell_same_method(&table->cells[i], &table->cells[i - 1]);
+        count += i == 0 || strcmp(map_cell(table, i)->map, map_cell(table, i - 1)->map) != 0 ||
+                 !map_cell_same_method(map_cell(table, i), map_cell(table, i - 1));
     return count;
 }
 
@@ -268,12 +268,12 @@ bool stability_pages_write(const StabilityPages *options, uint64_t key, Error *e
         .map = calloc(1, sizeof *pages.map),
         .set = {.folder = options->folder, .layout = &map_page_layout, .write = write_method, .context = &pages}};
     if (pages.map == NULL) return error_memory(error, "pages");
-    bool ok = map_table_read(&pages.table, options->folder, error);
+    bool ok = csv_table_read_from(&pages.table, options->folder, &map_layout, error);
     if (ok) pages.set.parts = count_methods(&pages.table);
     ok = ok && page_set_make(&pages.set, key, progress_bar_begin("pages"), error) &&
          stability_html_write(options->folder, error) && page_set_end(&pages.set, error);
     progress_bar_end();
-    map_table_free(&pages.table);
+    csv_table_free(&pages.table);
     free(pages.map);
     if (ok) page_set_print(&pages.set, "stability.html");
     return ok;

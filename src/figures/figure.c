@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The kinds of figures, and captions for LaTeX. */
 #include "figures/figure.h"
 
 #include "base/base.h"

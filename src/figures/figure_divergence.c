@@ -14,7 +14,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { BAND_BODIES = 5 }; /* bodies shifted, one at a time */
 
@@ -144,32 +143,23 @@ static bool ever_diverges(const double *distance, int frames) {
     return false;
 }
 
-static void draw_legend_row(Sketch *sketch, Point at, double points, double width, char *words, size_t size) {
-    text_fit(words, size, points, width - sample - 1.5);
-    sketch_text(sketch, (Point){at.x + sample + 1.5, at.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s",
-                words);
-}
-
 /* Rows above the plot, down from `top`. */
 static void draw_legend(const Divergence *d, Sketch *sketch, double left, double top, double width) {
     const FigureSpec *spec = d->spec;
-    const double line = line_height(spec->points);
-    char words[2 * CAPTION_TEXT_SIZE + 64];
+    const double line = line_height(spec->points), indent = sample + 1.5;
     Point at = {left, top - line / 2};
     for (int i = 1; i < spec->run_count; i++, at.y -= line) {
         const Pen pen = line_pen(d, i);
         bool ever = ever_diverges(d->distance[i], d->frames);
         if (ever) sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
-        snprintf(words, sizeof words, "%s vs %s%s", run_name(spec, spec->runs[i]).text,
-                 run_name(spec, spec->runs[0]).text, ever ? "" : ": identical");
-        draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
+        draw_fitted(sketch, (Point){at.x + indent, at.y}, spec->points, INK, width - indent, "%s vs %s%s",
+                    run_name(spec, spec->runs[i]).text, run_name(spec, spec->runs[0]).text, ever ? "" : ": identical");
     }
     if (d->low == NULL) return;
     sketch_rectangle(sketch, (Point){at.x, at.y - 0.3 * line}, (Point){at.x + sample, at.y + 0.3 * line},
                      &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
-    snprintf(words, sizeof words, "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec, spec->runs[0]).text,
-             d->shifted);
-    draw_legend_row(sketch, at, spec->points, width, words, sizeof words);
+    draw_fitted(sketch, (Point){at.x + indent, at.y}, spec->points, INK, width - indent,
+                "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec, spec->runs[0]).text, d->shifted);
 }
 
 static void draw_impact(const Divergence *d, Sketch *sketch, const PlotPanel *plot) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A picture per matrix. If it has more weights than pixels, each pixel shows the largest weight that it covers. */
+/* The figure of a network: its units and weights, or its matrices if it has too many units. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"
@@ -14,16 +14,67 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* "sigmoid" */
+static const char *activation_name(Activation activation) {
+    static const char *const words[] = {[ACTIVATION_LINEAR] = "linear",
+                                        [ACTIVATION_SIGMOID] = "sigmoid",
+                                        [ACTIVATION_TANH] = "tanh",
+                                        [ACTIVATION_RELU] = "relu"};
+    return words[activation];
+}
+
+/* Mixes a colour with white. */
+static uint32_t mix(uint32_t colour, double share) {
+    uint32_t mixed = 0;
+    for (int shift = 0; shift < 24; shift += 8) {
+        double channel = (double)(colour >> shift & 255);
+        mixed |= (uint32_t)lrint(255 + share * (channel - 255)) << shift;
+    }
+    return mixed;
+}
+
+uint32_t weight_colour(double share) {
+    const uint32_t above = 0x004C80, below = 0xE69F00;
+    return mix(share > 0 ? above : below, fmin(fabs(share), 1));
+}
+
+/* In mm. */
+static double network_title_height(const FigureSpec *spec) { return 1.5 * line_height(spec->points); }
+
+/* The title, cut to the page's width: the file, and what is in it. */
+static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *format, ...) PRINTF_LIKE(3, 4);
+static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *format, ...) {
+    char title[NETWORK_TEXT_SIZE + 160];
+    const int used = snprintf(title, NETWORK_TEXT_SIZE, "%s: ", spec->network + file_folder_length(spec->network));
+    const size_t begin = used < NETWORK_TEXT_SIZE ? (size_t)used : NETWORK_TEXT_SIZE - 1;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(title + begin, sizeof title - begin, format, arguments);
+    va_end(arguments);
+    if (spec->facts != NULL) snprintf(spec->facts->network, sizeof spec->facts->network, "%s", title);
+    draw_fitted(sketch, (Point){PAGE_EDGE, sketch->height - 0.6 * line_height(spec->points)}, spec->points, INK,
+                sketch->width, "%s", title);
+}
+
+/* "10-10-2, 132 parameters" */
+static void draw_dense_title(Sketch *sketch, const FigureSpec *spec, const Network *network) {
+    char widths[64];
+    for (int i = 0, used = 0; i <= network->layers; i++)
+        used += snprintf(widths + used, sizeof widths - (size_t)used, "%s%d", i > 0 ? "-" : "", network->widths[i]);
+    draw_network_title(sketch, spec, "%s, %d parameters", widths, network_parameter_count(network));
+}
+
+/* A picture per matrix. If it has more weights than pixels, each pixel shows the largest weight that it covers. */
+
 enum { MATRICES_MAX = NETWORK_MAX_LAYERS };
 
-static const double network_matrices_max_width = 56, network_matrices_min_width = 36, network_matrices_gap = 4,
-                    aspect = 0.6; /* mm, width of a picture and gap; height /
-                                                                          width */
-static const double network_matrices_small_type = 0.85;
+static const double widest_matrix = 56, narrowest_matrix = 36, matrix_gap = 4; /* mm */
+static const double aspect = 0.6;                                              /* height / width of a picture */
 
 typedef struct Matrix {
     const char *name;
@@ -46,7 +97,7 @@ static double weight_at(const Matrix *matrix, int input, int output) {
     return (double)matrix->weights[i];
 }
 
-static double network_matrices_find_largest(const Matrix *matrix) {
+static double largest_in_matrix(const Matrix *matrix) {
     double largest = 0;
     for (size_t i = 0; i < (size_t)matrix->inputs * (size_t)matrix->outputs; i++)
         largest = fmax(largest, fabs((double)matrix->weights[i]));
@@ -67,8 +118,8 @@ static double weight_of_pixel(const Matrix *matrix, int x, int y, int columns, i
     return largest;
 }
 
-static bool network_matrices_draw_weights(const Matrices *all, Sketch *sketch, const Matrix *matrix, Point low,
-                                          double largest, Error *error) {
+static bool draw_weights(const Matrices *all, Sketch *sketch, const Matrix *matrix, Point low, double largest,
+                         Error *error) {
     const double dots = all->spec->dpi / 25.4;
     const int columns = (int)fmax(rint(all->width * dots), 1), rows = (int)fmax(rint(all->height * dots), 1);
     Image *image = image_create(columns, rows, error);
@@ -86,37 +137,29 @@ static bool network_matrices_draw_weights(const Matrices *all, Sketch *sketch, c
     return true;
 }
 
-static double network_title_height(const FigureSpec *spec);
-
 static bool draw_matrix(const Matrices *all, Sketch *sketch, int i, Error *error) {
     const Matrix *matrix = &all->matrices[i];
-    const double points = all->spec->points, line = line_height(points), small = network_matrices_small_type * points;
-    const double largest = network_matrices_find_largest(matrix), column = i % all->columns;
+    const double points = all->spec->points, line = line_height(points), small = SMALL_TYPE * points;
+    const double largest = largest_in_matrix(matrix), column = i % all->columns;
     const double top = sketch->height - network_title_height(all->spec) - (i / all->columns) * all->row;
-    const Point low = {0.2 + column * (all->width + network_matrices_gap), top - line - all->height};
-    char words[96];
-    if (!network_matrices_draw_weights(all, sketch, matrix, low, largest, error)) return false;
+    const Point low = {PAGE_EDGE + column * (all->width + matrix_gap), top - line - all->height};
+    if (!draw_weights(all, sketch, matrix, low, largest, error)) return false;
     sketch_rectangle(sketch, low, (Point){low.x + all->width, low.y + all->height},
                      &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
-    snprintf(words, sizeof words, "%s%s%s", matrix->name, matrix->activation[0] != '\0' ? ", " : "",
-             matrix->activation);
-    text_fit(words, sizeof words, points, all->width);
-    sketch_text(sketch, (Point){low.x, top - line / 2}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s", words);
-    snprintf(words, sizeof words, "%d to %d, max |w| %.2g", matrix->inputs, matrix->outputs, largest);
-    text_fit(words, sizeof words, small, all->width);
-    sketch_text(sketch, (Point){low.x, low.y - 0.6 * line}, &(TextStyle){small, TEXT_LEFT, INK_SOFT, 0, false}, "%s",
-                words);
+    draw_fitted(sketch, (Point){low.x, top - line / 2}, points, INK, all->width, "%s%s%s", matrix->name,
+                matrix->activation[0] != '\0' ? ", " : "", matrix->activation);
+    draw_fitted(sketch, (Point){low.x, low.y - 0.6 * line}, small, INK_SOFT, all->width, "%d to %d, max |w| %.2g",
+                matrix->inputs, matrix->outputs, largest);
     return true;
 }
 
 /* The colour scale, from the most negative to the most positive weight. */
 static void draw_color_scale(const Matrices *all, Sketch *sketch) {
     enum { STEPS = 20 };
-    const double points = network_matrices_small_type * all->spec->points, y = 0.5 * line_height(points), high = 2,
-                 cell = 1;
+    const double points = SMALL_TYPE * all->spec->points, y = 0.5 * line_height(points), high = 2, cell = 1;
     const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
-    sketch_text(sketch, (Point){0.2, y}, &words, "negative");
-    double x = 0.2 + type_width("negative", points) + 1.2;
+    sketch_text(sketch, (Point){PAGE_EDGE, y}, &words, "negative");
+    double x = PAGE_EDGE + type_width("negative", points) + 1.2;
     const double start = x;
     for (int i = 0; i < STEPS; i++, x += cell) {
         const Pen pen = {weight_colour(2.0 * i / (STEPS - 1) - 1), 1, NO_COLOUR, 0, NULL};
@@ -127,34 +170,26 @@ static void draw_color_scale(const Matrices *all, Sketch *sketch) {
     sketch_text(sketch, (Point){x + 1.2, y}, &words, "positive; columns: inputs, rows: outputs");
 }
 
-static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *title);
-
-static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matrices, int count, const char *title,
-                     Error *error) {
+static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matrices, int count, Error *error) {
     assert(count > 0);
     Matrices all = {.spec = spec, .count = count, .matrices = matrices};
-    const double usable = spec->width - 0.4, line = line_height(spec->points);
-    all.columns =
-        (int)fmax(floor((usable + network_matrices_gap) / (network_matrices_min_width + network_matrices_gap)), 1);
+    const double usable = spec->width - 2 * PAGE_EDGE, line = line_height(spec->points);
+    all.columns = (int)fmax(floor((usable + matrix_gap) / (narrowest_matrix + matrix_gap)), 1);
     if (all.columns > count) all.columns = count;
     all.rows = (count + all.columns - 1) / all.columns;
-    all.width = fmin((usable - (all.columns - 1) * network_matrices_gap) / all.columns, network_matrices_max_width);
+    all.width = fmin((usable - (all.columns - 1) * matrix_gap) / all.columns, widest_matrix);
     all.height = aspect * all.width;
     all.row = all.height + 2.5 * line;
     sketch_begin(sketch, spec->width, network_title_height(spec) + all.rows * all.row + 1.2 * line);
     for (int i = 0; i < count; i++)
         if (!draw_matrix(&all, sketch, i, error)) return false;
     draw_color_scale(&all, sketch);
-    draw_network_title(sketch, spec, title);
     return true;
 }
 
-static const char *activation_name(Activation activation);
-static void format_widths(char text[WIDTHS_TEXT_SIZE], const Network *network);
-
 static bool draw_dense_matrices(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
     Matrix matrices[MATRICES_MAX];
-    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE], names[MATRICES_MAX][24];
+    char names[MATRICES_MAX][24];
     for (int i = 0; i < network->layers; i++) {
         snprintf(names[i], sizeof names[i], "layer %d", i + 1);
         matrices[i] = (Matrix){names[i],
@@ -164,10 +199,9 @@ static bool draw_dense_matrices(Sketch *sketch, const FigureSpec *spec, const Ne
                                network->widths[i + 1],
                                false};
     }
-    format_widths(widths, network);
-    snprintf(title, sizeof title, "%s: %s, %d parameters", spec->network + file_folder_length(spec->network), widths,
-             network_parameter_count(network));
-    return draw_all(sketch, spec, matrices, network->layers, title, error);
+    if (!draw_all(sketch, spec, matrices, network->layers, error)) return false;
+    draw_dense_title(sketch, spec, network);
+    return true;
 }
 
 static Matrix projection_matrix(const char *name, const Projection *projection) {
@@ -188,60 +222,185 @@ static bool draw_slot_matrices(Sketch *sketch, const FigureSpec *spec, const Slo
         layer_matrix("layer 2", &network->second),
         {"impulses", "linear", network->rows, network->second.to, 2 * network->slot_count, false},
     };
-    char title[NETWORK_TEXT_SIZE + 160];
-    snprintf(title, sizeof title, "%s: %d bodies, %d contacts, %zu parameters",
-             spec->network + file_folder_length(spec->network), network->body_count, network->slot_count,
-             network->parameter_count);
-    return draw_all(sketch, spec, matrices, (int)(sizeof matrices / sizeof *matrices), title, error);
+    if (!draw_all(sketch, spec, matrices, (int)(sizeof matrices / sizeof *matrices), error)) return false;
+    draw_network_title(sketch, spec, "%d bodies, %d contacts, %zu parameters", network->body_count, network->slot_count,
+                       network->parameter_count);
+    return true;
 }
 
-/* A network: its layers, their widths, its weights. */
+/* A column of units per layer, and a line per weight: stronger ones are darker and wider. */
 
-/* "sigmoid" */
-static const char *activation_name(Activation activation) {
-    static const char *const words[] = {[ACTIVATION_LINEAR] = "linear",
-                                        [ACTIVATION_SIGMOID] = "sigmoid",
-                                        [ACTIVATION_TANH] = "tanh",
-                                        [ACTIVATION_RELU] = "relu"};
-    return words[activation];
+static const double thinnest = 0.5, thickest = 4.5; /* LINE_UNIT */
+static const double max_height = 120, max_step = 5.2,
+                    name_gap = 1.5; /* mm: the largest layer; between units; to a name */
+
+typedef struct Units {
+    const FigureSpec *spec;
+    const Network *network;
+    double left, right; /* mm, x of the first and the last column */
+    double middle, step, radius;
+    double largest; /* weight */
+} Units;
+
+static Point unit_place(const Units *units, int layer, int i) {
+    double share = (double)layer / units->network->layers;
+    double up = ((units->network->widths[layer] - 1) / 2.0 - i) * units->step;
+    return (Point){units->left + share * (units->right - units->left), units->middle + up};
 }
 
-static void format_widths(char text[WIDTHS_TEXT_SIZE], const Network *network) {
-    int used = 0;
-    for (int i = 0; i <= network->layers; i++)
-        used += snprintf(text + used, (size_t)(WIDTHS_TEXT_SIZE - used), "%s%d", i > 0 ? "-" : "", network->widths[i]);
-}
-
-/* Mixes a colour with white. */
-static uint32_t mix(uint32_t colour, double share) {
-    uint32_t mixed = 0;
-    for (int shift = 0; shift < 24; shift += 8) {
-        double channel = (double)(colour >> shift & 255);
-        mixed |= (uint32_t)lrint(255 + share * (channel - 255)) << shift;
+/* The i-th word of a list such as "dx dy v1x"; false if it has not `count` words. */
+static bool nth_word(const char *words, int i, int count, char *word, size_t size) {
+    int found = 0;
+    for (const char *at = words; *at != '\0';) {
+        size_t length = strcspn(at, " ");
+        if (length > 0 && found++ == i) snprintf(word, size, "%.*s", (int)length, at);
+        at += length + (at[length] == ' ');
     }
-    return mixed;
+    return found == count;
 }
 
-uint32_t weight_colour(double share) {
-    const uint32_t above = 0x004C80, below = 0xE69F00;
-    return mix(share > 0 ? above : below, fmin(fabs(share), 1));
+static void unit_name(const char *words, int i, int count, char name[32]) {
+    if (!nth_word(words, i, count, name, 32)) snprintf(name, 32, "%d", i + 1);
 }
 
-/* In mm. */
-static double network_title_height(const FigureSpec *spec) { return 1.5 * line_height(spec->points); }
-
-/* A title, shortened to the page's width. */
-static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *title) {
-    const double line = line_height(spec->points);
-    char words[NETWORK_TEXT_SIZE];
-    snprintf(words, sizeof words, "%s", title);
-    if (spec->facts != NULL) snprintf(spec->facts->network, sizeof spec->facts->network, "%s", title);
-    text_fit(words, sizeof words, spec->points, sketch->width);
-    sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false},
-                "%s", words);
+static double widest_name(const Units *units, const char *words, int count) {
+    double widest = 0;
+    for (int i = 0; i < count; i++) {
+        char name[32];
+        unit_name(words, i, count, name);
+        widest = fmax(widest, type_width(name, SMALL_TYPE * units->spec->points));
+    }
+    return widest;
 }
 
-static bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error);
+static double largest_weight(const Network *network) {
+    double largest = 0;
+    for (int l = 0; l < network->layers; l++)
+        for (int i = 0; i < network->widths[l] * network->widths[l + 1]; i++)
+            largest = fmax(largest, fabs((double)network->weights[l][i]));
+    return largest;
+}
+
+typedef struct WeightLine {
+    double share; /* relative to the largest weight, -1 .. 1 */
+    int layer, from, to;
+} WeightLine;
+
+/* The strongest last, drawn on top. */
+static int by_strength(const void *a, const void *b) {
+    const WeightLine *p = a, *q = b;
+    double difference = fabs(p->share) - fabs(q->share);
+    if (difference != 0) return difference > 0 ? 1 : -1;
+    if (p->layer != q->layer) return p->layer - q->layer;
+    return p->from != q->from ? p->from - q->from : p->to - q->to;
+}
+
+static Pen weight_pen(double share) {
+    return pen_line(weight_colour(share), thinnest + (thickest - thinnest) * fabs(share), NULL);
+}
+
+static bool draw_weight_lines(const Units *units, Sketch *sketch, Error *error) {
+    const Network *network = units->network;
+    int count = 0;
+    for (int l = 0; l < network->layers; l++) count += network->widths[l] * network->widths[l + 1];
+    WeightLine *lines = malloc((size_t)count * sizeof *lines);
+    if (lines == NULL) return error_memory(error, "figure");
+    count = 0;
+    for (int l = 0; l < network->layers; l++)
+        for (int to = 0; to < network->widths[l + 1]; to++)
+            for (int from = 0; from < network->widths[l]; from++) {
+                double weight = (double)network->weights[l][to * network->widths[l] + from];
+                lines[count++] = (WeightLine){units->largest > 0 ? weight / units->largest : 0, l, from, to};
+            }
+    qsort(lines, (size_t)count, sizeof *lines, by_strength);
+    for (int i = 0; i < count; i++) {
+        const Pen pen = weight_pen(lines[i].share);
+        sketch_line(sketch, unit_place(units, lines[i].layer, lines[i].from),
+                    unit_place(units, lines[i].layer + 1, lines[i].to), &pen);
+    }
+    free(lines);
+    return true;
+}
+
+static void draw_unit_dots(const Units *units, Sketch *sketch) {
+    const Network *network = units->network;
+    const double small = SMALL_TYPE * units->spec->points, beside = units->radius + name_gap;
+    const Pen pen = {0xFFFFFF, 1, INK, 1.4, NULL};
+    const int last = network->layers;
+    for (int layer = 0; layer <= last; layer++)
+        for (int i = 0; i < network->widths[layer]; i++) {
+            const Point at = unit_place(units, layer, i);
+            char name[32];
+            sketch_dot(sketch, at, units->radius, &pen);
+            if (layer > 0 && layer < last) continue;
+            unit_name(layer == 0 ? network->inputs : network->outputs, i, network->widths[layer], name);
+            sketch_text(sketch, (Point){at.x + (layer == 0 ? -beside : beside), at.y},
+                        &(TextStyle){small, layer == 0 ? TEXT_RIGHT : TEXT_LEFT, INK, 0, false}, "%s", name);
+        }
+}
+
+/* Below the columns the layers' sizes and activations, below these the meaning of lines. */
+static void draw_footer(const Units *units, Sketch *sketch) {
+    const Network *network = units->network;
+    const double line = line_height(units->spec->points), points = units->spec->points;
+    const TextStyle center = {points, TEXT_CENTER, INK, 0, false}, left = {points, TEXT_LEFT, INK, 0, false};
+    const double sample = 7;
+    for (int layer = 0; layer <= network->layers; layer++) {
+        const double x = unit_place(units, layer, 0).x;
+        sketch_text(sketch, (Point){x, 2.6 * line}, &center, "%d %s", network->widths[layer],
+                    layer == 0                 ? network->widths[0] == 1 ? "input" : "inputs"
+                    : layer == network->layers ? network->widths[layer] == 1 ? "output" : "outputs"
+                                               : "units");
+        if (layer > 0)
+            sketch_text(sketch, (Point){x, 1.7 * line},
+                        &(TextStyle){SMALL_TYPE * points, TEXT_CENTER, INK_SOFT, 0, false}, "%s",
+                        activation_name(network->activations[layer - 1]));
+    }
+    double x = PAGE_EDGE;
+    for (int sign = 1; sign >= -1; sign -= 2) {
+        const Pen pen = weight_pen(sign);
+        const Point from = {x, 0.6 * line}, to = {x + sample, 0.6 * line};
+        char words[64];
+        snprintf(words, sizeof words, "weight %s", show_decimals(sign * units->largest, 2).text);
+        sketch_line(sketch, from, to, &pen);
+        sketch_text(sketch, (Point){to.x + 1.2, to.y}, &left, "%s", words);
+        x = to.x + 1.2 + type_width(words, points) + 4;
+    }
+}
+
+static bool check_room(const Units *units, Error *error) {
+    const double least = 8 * units->network->layers;
+    return units->right - units->left >= least ||
+           error_input(error, units->spec->network,
+                       "the names of inputs and outputs leave %.1f mm for %d layers at a width of %g mm; at least %g "
+                       "mm are needed",
+                       fmax(units->right - units->left, 0), units->network->layers, units->spec->width, least);
+}
+
+static bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
+    const double line = line_height(spec->points), foot = 3.3 * line;
+    const int last = network->layers;
+    int most = 0;
+    for (int i = 0; i <= last; i++) most = network->widths[i] > most ? network->widths[i] : most;
+    Units units = {.spec = spec, .network = network, .largest = largest_weight(network)};
+    units.step = fmin(max_step, max_height / most);
+    units.radius = fmin(0.3 * units.step, 1.4);
+    const double beside = units.radius + name_gap, words = type_width("99 outputs", spec->points) / 2;
+    units.left = fmax(widest_name(&units, network->inputs, network->widths[0]) + beside, words) + 0.3;
+    units.right =
+        spec->width - fmax(widest_name(&units, network->outputs, network->widths[last]) + beside, words) - 0.3;
+    if (!check_room(&units, error)) return false;
+    units.middle = foot + most * units.step / 2;
+    sketch_begin(sketch, spec->width, foot + most * units.step + network_title_height(spec));
+    bool done = draw_weight_lines(&units, sketch, error);
+    draw_unit_dots(&units, sketch);
+    draw_footer(&units, sketch);
+    draw_dense_title(sketch, spec, network);
+    return done;
+}
+
+/* With more units in a layer, the matrices are drawn. */
+enum { UNITS_MAX = 40 };
 
 static bool draw_dense(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Network *network = network_read(spec->network, error);
@@ -292,182 +451,3 @@ const FigureKind figure_network = {
     .draw = draw,
     .caption = caption,
 };
-
-/* A column of units per layer, and a line per weight: stronger ones are darker and wider. */
-
-static const double network_units_small_type = 0.85; /* font size of names / the figure's font size */
-static const double network_units_min_width = 0.5, network_units_max_width = 4.5; /* LINE_UNIT */
-static const double max_height = 120, max_step = 5.2,
-                    network_units_gap = 1.5; /* mm: height of the largest layer; between units;
-                                                                 beside a name */
-
-typedef struct Units {
-    const FigureSpec *spec;
-    const Network *network;
-    double left, right; /* mm, x of the first and the last column */
-    double middle, step, radius;
-    double largest; /* weight */
-} Units;
-
-static Point unit_place(const Units *units, int layer, int i) {
-    double share = (double)layer / units->network->layers;
-    double up = ((units->network->widths[layer] - 1) / 2.0 - i) * units->step;
-    return (Point){units->left + share * (units->right - units->left), units->middle + up};
-}
-
-/* The i-th word of a list such as "dx dy v1x"; false if it has not `count` words. */
-static bool nth_word(const char *words, int i, int count, char *word, size_t size) {
-    int found = 0;
-    for (const char *at = words; *at != '\0';) {
-        size_t length = strcspn(at, " ");
-        if (length > 0 && found++ == i) snprintf(word, size, "%.*s", (int)length, at);
-        at += length + (at[length] == ' ');
-    }
-    return found == count;
-}
-
-static void unit_name(const char *words, int i, int count, char name[32]) {
-    if (!nth_word(words, i, count, name, 32)) snprintf(name, 32, "%d", i + 1);
-}
-
-static double widest_name(const Units *units, const char *words, int count) {
-    double widest = 0;
-    for (int i = 0; i < count; i++) {
-        char name[32];
-        unit_name(words, i, count, name);
-        widest = fmax(widest, type_width(name, network_units_small_type * units->spec->points));
-    }
-    return widest;
-}
-
-static double network_units_find_largest(const Network *network) {
-    double largest = 0;
-    for (int l = 0; l < network->layers; l++)
-        for (int i = 0; i < network->widths[l] * network->widths[l + 1]; i++)
-            largest = fmax(largest, fabs((double)network->weights[l][i]));
-    return largest;
-}
-
-typedef struct WeightLine {
-    double share; /* relative to the largest weight, -1 .. 1 */
-    int layer, from, to;
-} WeightLine;
-
-/* The strongest last, drawn on top. */
-static int by_strength(const void *a, const void *b) {
-    const WeightLine *p = a, *q = b;
-    double difference = fabs(p->share) - fabs(q->share);
-    if (difference != 0) return difference > 0 ? 1 : -1;
-    if (p->layer != q->layer) return p->layer - q->layer;
-    return p->from != q->from ? p->from - q->from : p->to - q->to;
-}
-
-static Pen weight_pen(double share) {
-    return pen_line(weight_colour(share),
-                    network_units_min_width + (network_units_max_width - network_units_min_width) * fabs(share), NULL);
-}
-
-static bool network_units_draw_weights(const Units *units, Sketch *sketch, Error *error) {
-    const Network *network = units->network;
-    int count = 0;
-    for (int l = 0; l < network->layers; l++) count += network->widths[l] * network->widths[l + 1];
-    WeightLine *lines = malloc((size_t)count * sizeof *lines);
-    if (lines == NULL) return error_memory(error, "figure");
-    count = 0;
-    for (int l = 0; l < network->layers; l++)
-        for (int to = 0; to < network->widths[l + 1]; to++)
-            for (int from = 0; from < network->widths[l]; from++) {
-                double weight = (double)network->weights[l][to * network->widths[l] + from];
-                lines[count++] = (WeightLine){units->largest > 0 ? weight / units->largest : 0, l, from, to};
-            }
-    qsort(lines, (size_t)count, sizeof *lines, by_strength);
-    for (int i = 0; i < count; i++) {
-        const Pen pen = weight_pen(lines[i].share);
-        sketch_line(sketch, unit_place(units, lines[i].layer, lines[i].from),
-                    unit_place(units, lines[i].layer + 1, lines[i].to), &pen);
-    }
-    free(lines);
-    return true;
-}
-
-static void draw_unit_dots(const Units *units, Sketch *sketch) {
-    const Network *network = units->network;
-    const double small = network_units_small_type * units->spec->points, beside = units->radius + network_units_gap;
-    const Pen pen = {0xFFFFFF, 1, INK, 1.4, NULL};
-    const int last = network->layers;
-    for (int layer = 0; layer <= last; layer++)
-        for (int i = 0; i < network->widths[layer]; i++) {
-            const Point at = unit_place(units, layer, i);
-            char name[32];
-            sketch_dot(sketch, at, units->radius, &pen);
-            if (layer > 0 && layer < last) continue;
-            unit_name(layer == 0 ? network->inputs : network->outputs, i, network->widths[layer], name);
-            sketch_text(sketch, (Point){at.x + (layer == 0 ? -beside : beside), at.y},
-                        &(TextStyle){small, layer == 0 ? TEXT_RIGHT : TEXT_LEFT, INK, 0, false}, "%s", name);
-        }
-}
-
-/* Below the columns the layers' sizes and activations, below these the meaning of lines. */
-static void draw_footer(const Units *units, Sketch *sketch) {
-    const Network *network = units->network;
-    const double line = line_height(units->spec->points), points = units->spec->points;
-    const TextStyle center = {points, TEXT_CENTER, INK, 0, false}, left = {points, TEXT_LEFT, INK, 0, false};
-    const double sample = 7;
-    for (int layer = 0; layer <= network->layers; layer++) {
-        const double x = unit_place(units, layer, 0).x;
-        sketch_text(sketch, (Point){x, 2.6 * line}, &center, "%d %s", network->widths[layer],
-                    layer == 0                 ? network->widths[0] == 1 ? "input" : "inputs"
-                    : layer == network->layers ? network->widths[layer] == 1 ? "output" : "outputs"
-                                               : "units");
-        if (layer > 0)
-            sketch_text(sketch, (Point){x, 1.7 * line},
-                        &(TextStyle){network_units_small_type * points, TEXT_CENTER, INK_SOFT, 0, false}, "%s",
-                        activation_name(network->activations[layer - 1]));
-    }
-    double x = 0.2;
-    for (int sign = 1; sign >= -1; sign -= 2) {
-        const Pen pen = weight_pen(sign);
-        const Point from = {x, 0.6 * line}, to = {x + sample, 0.6 * line};
-        char words[64];
-        snprintf(words, sizeof words, "weight %s", show_decimals(sign * units->largest, 2).text);
-        sketch_line(sketch, from, to, &pen);
-        sketch_text(sketch, (Point){to.x + 1.2, to.y}, &left, "%s", words);
-        x = to.x + 1.2 + type_width(words, points) + 4;
-    }
-}
-
-static bool check_room(const Units *units, Error *error) {
-    const double least = 8 * units->network->layers;
-    return units->right - units->left >= least ||
-           error_input(error, units->spec->network,
-                       "the names of inputs and outputs leave %.1f mm for %d layers at a width of %g mm; at least %g "
-                       "mm are needed",
-                       fmax(units->right - units->left, 0), units->network->layers, units->spec->width, least);
-}
-
-/* Each begins the sketch. */
-static bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
-    const double line = line_height(spec->points), foot = 3.3 * line;
-    const int last = network->layers;
-    int most = 0;
-    for (int i = 0; i <= last; i++) most = network->widths[i] > most ? network->widths[i] : most;
-    Units units = {.spec = spec, .network = network, .largest = network_units_find_largest(network)};
-    units.step = fmin(max_step, max_height / most);
-    units.radius = fmin(0.3 * units.step, 1.4);
-    const double beside = units.radius + network_units_gap, words = type_width("99 outputs", spec->points) / 2;
-    units.left = fmax(widest_name(&units, network->inputs, network->widths[0]) + beside, words) + 0.3;
-    units.right =
-        spec->width - fmax(widest_name(&units, network->outputs, network->widths[last]) + beside, words) - 0.3;
-    if (!check_room(&units, error)) return false;
-    units.middle = foot + most * units.step / 2;
-    sketch_begin(sketch, spec->width, foot + most * units.step + network_title_height(spec));
-    bool done = network_units_draw_weights(&units, sketch, error);
-    draw_unit_dots(&units, sketch);
-    draw_footer(&units, sketch);
-    char title[NETWORK_TEXT_SIZE + 128], widths[WIDTHS_TEXT_SIZE];
-    format_widths(widths, network);
-    snprintf(title, sizeof title, "%s: %s, %d parameters", spec->network + file_folder_length(spec->network), widths,
-             network_parameter_count(network));
-    draw_network_title(sketch, spec, title);
-    return done;
-}

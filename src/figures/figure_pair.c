@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The figure of a pair: its contact as the narrow phase found it; and the separating axis theorem. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "figures/figure.h"
@@ -10,7 +11,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static double dot(Vec2 a, Vec2 b) { return (double)a.x * (double)b.x + (double)a.y * (double)b.y; }
 
@@ -168,12 +168,9 @@ static void draw_halves(Sketch *sketch, const Collision *collision, View overlap
 
 static void draw_title(Sketch *sketch, const FigureSpec *spec, const Collision *collision) {
     const Trajectory *run = spec->runs[0];
-    char title[CAPTION_TEXT_SIZE + 96];
-    snprintf(title, sizeof title, "%s, %.3f s, bodies %d and %d", run_name(spec, run).text,
-             (collision->step - 1) * (double)run->dt, collision->bodies[0], collision->bodies[1]);
-    text_fit(title, sizeof title, spec->points, sketch->width - 0.4);
-    sketch_text(sketch, (Point){0.2, sketch->height - 0.6 * line_height(spec->points)},
-                &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s", title);
+    draw_fitted(sketch, (Point){PAGE_EDGE, sketch->height - 0.6 * line_height(spec->points)}, spec->points, INK,
+                sketch->width - 2 * PAGE_EDGE, "%s, %.3f s, bodies %d and %d", run_name(spec, run).text,
+                (collision->step - 1) * (double)run->dt, collision->bodies[0], collision->bodies[1]);
 }
 
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
@@ -183,7 +180,7 @@ static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
         *spec->facts = (FigureFacts){
             .frame_count = 1, .frames = {collision.step - 1}, .bodies = {collision.bodies[0], collision.bodies[1]}};
     const Vec2 down = collision_turn_up(&collision);
-    const double width = spec->width, line = line_height(spec->points), edge = 0.2, gap = 3;
+    const double width = spec->width, line = line_height(spec->points), edge = PAGE_EDGE, gap = 3;
     if (width >= side_by_side) {
         const double side = 0.44 * width;
         sketch_begin(sketch, width, side + 2.6 * line + edge);

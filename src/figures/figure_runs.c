@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Many moments of one run in one picture: the last is opaque, earlier ones are paler. */
+/* The figures of moments of runs: strobe, strip, annotated. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "figures/figure.h"
@@ -16,12 +16,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIGURE_STROBE_DEFAULT_MOMENTS = 9 };
+/* Many moments of one run in one picture: the last is opaque, earlier ones are paler. */
 
-static const double figure_strobe_edge = 0.2;                         /* mm, margin of the page, half a frame line */
-static const double max_height = 120, figure_strobe_max_aspect = 1.2; /* mm; height / width */
+enum { STROBE_MOMENTS = 9 }; /* by default */
+
 static const double palest = 0.12, before_last = 0.5; /* opacity of the first moment, and of the one before the last */
-static const double small_type = 0.85;                /* font size of the times / the figure's font size */
 
 typedef struct Strobe {
     const FigureSpec *spec;
@@ -80,7 +79,7 @@ static void draw_bomb_path(const Strobe *strobe, Sketch *sketch, const View *vie
 /* The times at the bomb's positions, where there is room. */
 static void draw_times(const Strobe *strobe, Sketch *sketch, const View *view, LabelField *field) {
     const Trajectory *run = strobe->run;
-    const double points = small_type * strobe->spec->points, height = points * MM_PER_POINT;
+    const double points = SMALL_TYPE * strobe->spec->points, height = points * MM_PER_POINT;
     const double half = 0.5 * (double)run->size[run->bomb].x * view->scale;
     Point at;
     for (int i = 0; i < strobe->count; i++)
@@ -110,21 +109,19 @@ static bool draw_bomb(const Strobe *strobe, Sketch *sketch, Error *error) {
     return true;
 }
 
-static void figure_strobe_draw_texts(const Strobe *strobe, Sketch *sketch) {
+static void strobe_draw_texts(const Strobe *strobe, Sketch *sketch) {
     const FigureSpec *spec = strobe->spec;
     const RunCells *cells = &strobe->cells;
     const double line = line_height(spec->points), y = strobe->low.y / 2 - 0.2;
-    char title[CAPTION_TEXT_SIZE + 96];
     const double dt = (double)strobe->run->dt;
     const double first = strobe->frames[0] * dt, last = strobe->frames[strobe->count - 1] * dt;
+    const Point top = {strobe->low.x, strobe->low.y + cells->height + 0.6 * line};
+    const RunName name = run_name(spec, strobe->run);
     if (strobe->count > 1)
-        snprintf(title, sizeof title, "%s, %d moments from %.2f to %.2f s", run_name(strobe->spec, strobe->run).text,
-                 strobe->count, first, last);
+        draw_fitted(sketch, top, spec->points, INK, cells->width, "%s, %d moments from %.2f to %.2f s", name.text,
+                    strobe->count, first, last);
     else
-        snprintf(title, sizeof title, "%s, %.2f s", run_name(strobe->spec, strobe->run).text, last);
-    text_fit(title, sizeof title, spec->points, cells->width);
-    sketch_text(sketch, (Point){strobe->low.x, strobe->low.y + cells->height + 0.6 * line},
-                &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s", title);
+        draw_fitted(sketch, top, spec->points, INK, cells->width, "%s, %.2f s", name.text, last);
     run_cells_draw_scale_bar(cells, sketch, (Point){strobe->low.x, y}, spec->points);
     int outside = run_count_outside(strobe->run, strobe->frames[strobe->count - 1], &cells->window);
     if (outside > 0)
@@ -132,12 +129,13 @@ static void figure_strobe_draw_texts(const Strobe *strobe, Sketch *sketch) {
                     &(TextStyle){spec->points, TEXT_RIGHT, INK_SOFT, 0, false}, "%d out of view at the end", outside);
 }
 
-static bool figure_strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+static bool strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strobe strobe = {.spec = spec, .run = spec->runs[0]};
-    const double line = line_height(spec->points), width = spec->width - 2 * figure_strobe_edge;
-    const double height = fmin(max_height, figure_strobe_max_aspect * width);
+    const double max_height = 120, max_aspect = 1.2; /* mm; height / width */
+    const double line = line_height(spec->points), width = spec->width - 2 * PAGE_EDGE;
+    const double height = fmin(max_height, max_aspect * width);
     run_colours(spec, &strobe.colour);
-    if (!run_frames(spec, FIGURE_STROBE_DEFAULT_MOMENTS, 0, strobe.frames, &strobe.count, error)) return false;
+    if (!run_frames(spec, STROBE_MOMENTS, 0, strobe.frames, &strobe.count, error)) return false;
     WorldWindow window = run_window(strobe.spec, strobe.frames, strobe.count);
     run_window_widen(&window, width / height);
     bool done = run_cells_begin(&strobe.cells, &window, width, height, spec->dpi, error);
@@ -147,16 +145,14 @@ static bool figure_strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *er
         done = draw_moments(&strobe, sketch, error) && draw_bomb(&strobe, sketch, error);
     }
     if (done) {
-        sketch_rectangle(sketch, strobe.low,
-                         (Point){strobe.low.x + strobe.cells.width, strobe.low.y + strobe.cells.height},
-                         &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
-        figure_strobe_draw_texts(&strobe, sketch);
+        run_cells_frame(&strobe.cells, sketch, strobe.low);
+        strobe_draw_texts(&strobe, sketch);
     }
     run_cells_free(&strobe.cells);
     return done;
 }
 
-static void figure_strobe_caption(FILE *out, const FigureSpec *spec) {
+static void strobe_caption(FILE *out, const FigureSpec *spec) {
     fputs("One run of the ", out);
     caption_scene(out, spec);
     caption_times(out, spec);
@@ -174,16 +170,15 @@ const FigureKind figure_strobe = {
     .takes_times = true,
     .takes_view = true,
     .takes_moments = true,
-    .draw = figure_strobe_draw,
-    .caption = figure_strobe_caption,
+    .draw = strobe_draw,
+    .caption = strobe_caption,
 };
 
 /* Moments of runs: a row per run, a column per moment, all with one camera. */
 
-static const double figure_strip_gap = 1.2,
-                    figure_strip_edge = 0.2; /* mm: between cells; margin of the page, half a frame line */
+static const double strip_gap = 1.2; /* mm: between cells */
 
-enum { FIGURE_STRIP_DEFAULT_MOMENTS = 5 };
+enum { STRIP_MOMENTS = 5 }; /* by default */
 
 typedef struct Strip {
     const FigureSpec *spec;
@@ -195,8 +190,7 @@ typedef struct Strip {
 } Strip;
 
 static double strip_height(const Strip *strip) {
-    return strip->top + strip->foot + strip->spec->run_count * (strip->cells.height + figure_strip_gap) -
-           figure_strip_gap;
+    return strip->top + strip->foot + strip->spec->run_count * (strip->cells.height + strip_gap) - strip_gap;
 }
 
 static bool check_bodies(const FigureSpec *spec, Error *error) {
@@ -229,10 +223,9 @@ static bool lay_out_beside(Strip *strip, int lines, Error *error) {
     const FigureSpec *spec = strip->spec;
     const double line = line_height(spec->points);
     strip->left = (lines + 0.1) * line, strip->top = 1.15 * line, strip->foot = line + 0.6;
-    const double width =
-        (spec->width - figure_strip_edge - strip->left - (strip->count - 1) * figure_strip_gap) / strip->count;
+    const double width = (spec->width - PAGE_EDGE - strip->left - (strip->count - 1) * strip_gap) / strip->count;
     const double height = ((spec->height > 0 ? spec->height : FIGURE_HEIGHT_MAX) - strip->top - strip->foot -
-                           (spec->run_count - 1) * figure_strip_gap) /
+                           (spec->run_count - 1) * strip_gap) /
                           spec->run_count;
     const double least = 5;
     if (width < least || height < least)
@@ -245,8 +238,7 @@ static bool lay_out_beside(Strip *strip, int lines, Error *error) {
     if (spec->height > 0) run_window_fill(&window, width / height);
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
     if (!sketch_check_pixels(spec->width, strip_height(strip), spec->dpi, error)) return false;
-    const double used =
-        strip->left + figure_strip_edge + strip->count * strip->cells.width + (strip->count - 1) * figure_strip_gap;
+    const double used = strip->left + PAGE_EDGE + strip->count * strip->cells.width + (strip->count - 1) * strip_gap;
     strip->start = (spec->width - used) / 2 + strip->left;
     return true;
 }
@@ -258,7 +250,7 @@ static bool names_fit(const Strip *strip) {
     return true;
 }
 
-static bool figure_strip_lay_out(Strip *strip, Error *error) {
+static bool strip_lay_out(Strip *strip, Error *error) {
     if (!lay_out_beside(strip, 1, error)) return false;
     if (names_fit(strip)) return true;
     run_cells_free(&strip->cells);
@@ -267,8 +259,8 @@ static bool figure_strip_lay_out(Strip *strip, Error *error) {
 
 static Point cell_corner(const Strip *strip, int row, int column) {
     const RunCells *cells = &strip->cells;
-    return (Point){strip->start + column * (cells->width + figure_strip_gap),
-                   strip->foot + (strip->spec->run_count - 1 - row) * (cells->height + figure_strip_gap)};
+    return (Point){strip->start + column * (cells->width + strip_gap),
+                   strip->foot + (strip->spec->run_count - 1 - row) * (cells->height + strip_gap)};
 }
 
 /* Of the bodies in question: that others are cut off is meant. */
@@ -283,7 +275,7 @@ static int count_outside(const Strip *strip, const Trajectory *run, int frame) {
 
 /* In the upper right corner of a cell, in as many words as it has room for. */
 static void draw_outside(const Strip *strip, Sketch *sketch, Point corner, int count) {
-    const double points = 0.85 * strip->spec->points, margin = 0.8;
+    const double points = SMALL_TYPE * strip->spec->points, margin = 0.8;
     char words[32];
     snprintf(words, sizeof words, "%d out of view", count);
     if (type_width(words, points) > strip->cells.width - 2 * margin) snprintf(words, sizeof words, "%d out", count);
@@ -296,11 +288,11 @@ static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, E
     RunCells cells = strip->cells;
     const FigureSpec *spec = strip->spec;
     const Trajectory *run = spec->runs[row];
-    const Point low = cell_corner(strip, row, column), high = {low.x + cells.width, low.y + cells.height};
+    const Point low = cell_corner(strip, row, column);
     const int frame = strip->frames[column], outside = count_outside(strip, run, frame);
     if (!run_cells_draw(&cells, sketch, low, run, frame, strip->colours[row], error)) return false;
-    sketch_rectangle(sketch, low, high, &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
-    if (outside > 0) draw_outside(strip, sketch, high, outside);
+    run_cells_frame(&cells, sketch, low);
+    if (outside > 0) draw_outside(strip, sketch, (Point){low.x + cells.width, low.y + cells.height}, outside);
     return true;
 }
 
@@ -331,7 +323,7 @@ static void draw_name(const Strip *strip, Sketch *sketch, const RunName *name, P
     draw_turned(strip, sketch, (Point){low.x - 0.55 * line_height(points), middle}, settings.text);
 }
 
-static void figure_strip_draw_texts(const Strip *strip, Sketch *sketch) {
+static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
     const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;
     const TextStyle upright = {spec->points, TEXT_CENTER, INK, 0, false};
@@ -348,22 +340,21 @@ static void figure_strip_draw_texts(const Strip *strip, Sketch *sketch) {
     run_cells_draw_scale_bar(cells, sketch, (Point){strip->start, strip->foot / 2 - 0.3}, spec->points);
 }
 
-static bool figure_strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
     run_colours(spec, strip.colours);
     bool done = run_check_worlds(spec, error) && check_bodies(spec, error) &&
-                run_frames(spec, FIGURE_STRIP_DEFAULT_MOMENTS, 0, strip.frames, &strip.count, error) &&
-                figure_strip_lay_out(&strip, error);
+                run_frames(spec, STRIP_MOMENTS, 0, strip.frames, &strip.count, error) && strip_lay_out(&strip, error);
     if (done) sketch_begin(sketch, spec->width, strip_height(&strip));
     for (int row = 0; done && row < spec->run_count; row++)
         for (int column = 0; done && column < strip.count; column++)
             done = draw_cell(&strip, sketch, row, column, error);
-    if (done) figure_strip_draw_texts(&strip, sketch);
+    if (done) strip_draw_texts(&strip, sketch);
     run_cells_free(&strip.cells);
     return done;
 }
 
-static void figure_strip_caption(FILE *out, const FigureSpec *spec) {
+static void strip_caption(FILE *out, const FigureSpec *spec) {
     fputs("The ", out);
     caption_scene(out, spec);
     caption_times(out, spec);
@@ -384,19 +375,18 @@ const FigureKind figure_strip = {
     .takes_height = true,
     .min_bodies = 1,
     .max_bodies = FIGURE_BODIES_MAX,
-    .draw = figure_strip_draw,
-    .caption = figure_strip_caption,
+    .draw = strip_draw,
+    .caption = strip_caption,
 };
 
 /* One moment with the contacts, normals and impulses of the step that starts there. The poses are those before the
    step, for which the contacts were found. */
 
-static const double figure_annotated_gap = 2,
-                    figure_annotated_edge = 0.2;       /* mm: between cells; margin of the page, half a frame line */
-static const double max_ring = 0.55, min_ring = 0.3;   /* mm */
-static const double ring_share = 0.06;                 /* / the shortest side of a body */
-static const double body_opacity = 0.4;                /* opacity of the bodies, so that the marks stand out */
-static const double figure_annotated_max_aspect = 1.3; /* height / width of a cell, at most */
+static const double annotated_gap = 2;               /* mm: between cells */
+static const double max_ring = 0.55, min_ring = 0.3; /* mm */
+static const double ring_share = 0.06;               /* / the shortest side of a body */
+static const double body_opacity = 0.4;              /* opacity of the bodies, so that the marks stand out */
+static const double annotated_aspect = 1.3;          /* height / width of a cell, at most */
 
 enum { MAX_PANELS = 3 };
 
@@ -456,18 +446,16 @@ static double ring_radius(const Trajectory *run, double scale) {
     return fmin(fmax(ring_share * side * scale, min_ring), max_ring);
 }
 
-static bool figure_annotated_lay_out(Annotated *figure, Error *error) {
+static bool annotated_lay_out(Annotated *figure, Error *error) {
     const FigureSpec *spec = figure->spec;
     const double line = line_height(spec->points), arrow_share = 0.22, max_arrow = 14;
     figure->top = 2.2 * line, figure->foot = 2.2 * line;
-    const double width =
-        (spec->width - 2 * figure_annotated_edge - (spec->run_count - 1) * figure_annotated_gap) / spec->run_count;
-    const double height = fmin(FIGURE_HEIGHT_MAX - figure->top - figure->foot, figure_annotated_max_aspect * width);
+    const double width = (spec->width - 2 * PAGE_EDGE - (spec->run_count - 1) * annotated_gap) / spec->run_count;
+    const double height = fmin(FIGURE_HEIGHT_MAX - figure->top - figure->foot, annotated_aspect * width);
     WorldWindow window = run_window(spec, &figure->frame, 1);
     run_window_widen(&window, width / height);
     if (!run_cells_begin(&figure->cells, &window, width, height, spec->dpi, error)) return false;
-    figure->start =
-        (spec->width - spec->run_count * figure->cells.width - (spec->run_count - 1) * figure_annotated_gap) / 2;
+    figure->start = (spec->width - spec->run_count * figure->cells.width - (spec->run_count - 1) * annotated_gap) / 2;
     figure->look.points = spec->points;
     figure->look.ring = ring_radius(spec->runs[0], figure->cells.scale);
     if (figure->look.largest > 0)
@@ -479,16 +467,12 @@ static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point
     const FigureSpec *spec = figure->spec;
     const Trajectory *run = spec->runs[panel];
     const double line = line_height(spec->points), top = low.y + figure->cells.height;
-    char title[CAPTION_TEXT_SIZE + 32], counts[96], part[48] = "";
-    snprintf(title, sizeof title, "%s, %.3f s", run_name(spec, run).text, figure->frame * (double)run->dt);
-    text_fit(title, sizeof title, spec->points, figure->cells.width);
-    sketch_text(sketch, (Point){low.x, top + 1.6 * line}, &(TextStyle){spec->points, TEXT_LEFT, INK, 0, false}, "%s",
-                title);
+    char part[48] = "";
+    draw_fitted(sketch, (Point){low.x, top + 1.6 * line}, spec->points, INK, figure->cells.width, "%s, %.3f s",
+                run_name(spec, run).text, figure->frame * (double)run->dt);
     if (numbered < count) snprintf(part, sizeof part, ", %d labelled", numbered);
-    snprintf(counts, sizeof counts, "%d %s, impulses in N s%s", count, count == 1 ? "contact" : "contacts", part);
-    text_fit(counts, sizeof counts, CONTACT_TYPE * spec->points, figure->cells.width);
-    sketch_text(sketch, (Point){low.x, top + 0.6 * line},
-                &(TextStyle){CONTACT_TYPE * spec->points, TEXT_LEFT, INK_SOFT, 0, false}, "%s", counts);
+    draw_fitted(sketch, (Point){low.x, top + 0.6 * line}, SMALL_TYPE * spec->points, INK_SOFT, figure->cells.width,
+                "%d %s, impulses in N s%s", count, count == 1 ? "contact" : "contacts", part);
 }
 
 static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
@@ -499,13 +483,12 @@ static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, 
         image->pixels[4 * i + 3] = (uint8_t)lrint(body_opacity * image->pixels[4 * i + 3]);
     sketch_image(sketch, image, low, figure->cells.width);
     image_destroy(image);
-    sketch_rectangle(sketch, low, (Point){low.x + figure->cells.width, low.y + figure->cells.height},
-                     &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
+    run_cells_frame(&figure->cells, sketch, low);
     return true;
 }
 
 static bool draw_panel(Annotated *figure, Sketch *sketch, int panel, Error *error) {
-    const Point low = {figure->start + panel * (figure->cells.width + figure_annotated_gap), figure->foot};
+    const Point low = {figure->start + panel * (figure->cells.width + annotated_gap), figure->foot};
     const View view = run_cells_view(&figure->cells, low);
     int count, numbered;
     if (!draw_scene(figure, sketch, panel, low, error) ||
@@ -519,7 +502,7 @@ static bool draw_panel(Annotated *figure, Sketch *sketch, int panel, Error *erro
 /* Two lines that explain the marks. */
 static void draw_legend(const Annotated *figure, Sketch *sketch) {
     const FigureSpec *spec = figure->spec;
-    const double line = line_height(spec->points), points = CONTACT_TYPE * spec->points;
+    const double line = line_height(spec->points), points = SMALL_TYPE * spec->points;
     const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
     double x = figure->start + figure->cells.width * 0.25 + 12, y = figure->foot - 0.7 * line;
     run_cells_draw_scale_bar(&figure->cells, sketch, (Point){figure->start, y}, points);
@@ -534,11 +517,10 @@ static void draw_legend(const Annotated *figure, Sketch *sketch) {
         sketch_text(sketch, (Point){x, y}, &words, "all impulses are 0");
 }
 
-static bool figure_annotated_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+static bool annotated_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Annotated figure = {.spec = spec};
     run_colours(spec, figure.colours);
-    bool done =
-        run_check_worlds(spec, error) && choose_moment(&figure, error) && figure_annotated_lay_out(&figure, error);
+    bool done = run_check_worlds(spec, error) && choose_moment(&figure, error) && annotated_lay_out(&figure, error);
     if (done) sketch_begin(sketch, spec->width, figure.top + figure.foot + figure.cells.height);
     for (int i = 0; done && i < spec->run_count; i++) done = draw_panel(&figure, sketch, i, error);
     if (done) draw_legend(&figure, sketch);
@@ -546,7 +528,7 @@ static bool figure_annotated_draw(Sketch *sketch, const FigureSpec *spec, Error 
     return done;
 }
 
-static void figure_annotated_caption(FILE *out, const FigureSpec *spec) {
+static void annotated_caption(FILE *out, const FigureSpec *spec) {
     fputs("Contacts of the ", out);
     caption_scene(out, spec);
     caption_times(out, spec);
@@ -565,6 +547,6 @@ const FigureKind figure_annotated = {
     .takes_times = true,
     .takes_view = true,
     .needs_contacts = true,
-    .draw = figure_annotated_draw,
-    .caption = figure_annotated_caption,
+    .draw = annotated_draw,
+    .caption = annotated_caption,
 };

@@ -17,20 +17,11 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* A network is drawn as units, or as matrices if it has too many units. */
-
-/* With more units in a layer, the matrices are drawn. */
-enum { UNITS_MAX = 40 };
-
 /* The colour of a weight, `share` of the largest, -1 .. 1: blue above 0, orange below, white at 0. The blue is
    darker, which distinguishes the signs in grey prints. */
 uint32_t weight_colour(double share);
 
-/* "10-10-2" */
-enum { WIDTHS_TEXT_SIZE = 64 };
-
-/* The kinds of figures, one per file figure_NAME.c. */
-
+/* The kinds of figures. */
 extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe, figure_network, figure_pair;
 
 /* Shared by figures of runs: the frames, the part of the world, and its rendered pixels. */
@@ -89,8 +80,18 @@ View run_cells_view(const RunCells *cells, Point low);
 /* Draws a scale bar below the cells: a round length of at most a quarter of a cell, from `left`. */
 void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left, double points);
 
+/* A line around a cell. */
+void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low);
+
+#define PAGE_EDGE 0.2   /* mm: margin of the page, half a frame's line */
+#define SMALL_TYPE 0.85 /* size of small texts / the figure's font size */
+
 /* Line height of text, mm. */
 double line_height(double points);
+
+/* A text from `left`, cut to `width` mm. */
+void draw_fitted(Sketch *sketch, Point left, double points, uint32_t ink, double width, const char *format, ...)
+    PRINTF_LIKE(6, 7);
 
 /* The caption of one of the figure's runs, or the name of its method (methods/methods.h). */
 typedef struct RunName {
@@ -109,9 +110,6 @@ typedef struct ContactLook {
     double largest;     /* N s, largest impulse of all panels */
     double points;      /* font size */
 } ContactLook;
-
-/* Font size of the numbers / the figure's font size. */
-#define CONTACT_TYPE 0.85
 
 /* In N s. */
 double impulse_magnitude(const TrajectoryContact *contact);
@@ -149,21 +147,6 @@ void caption_scene(FILE *out, const FigureSpec *spec);
 
 /* " at 0.5, 0.6 and 0.8~s"; many moments by their number, the first and the last. */
 void caption_times(FILE *out, const FigureSpec *spec);
-
-/* A polygon rasteriser with antialiasing by scan-line coverage. Pixels, y down.
-   Why our own: sketch_formats.h. */
-
-typedef struct RasterEdge {
-    double x0, y0, x1, y1; /* y0 < y1 */
-    int winding;           /* 1 or -1 */
-} RasterEdge;
-
-/* Initialise with zeros. */
-typedef struct Raster {
-    RasterEdge *edges;
-    size_t count, capacity;
-    bool failed; /* out of memory */
-} Raster;
 
 /* Blends one colour, alpha 0 .. 255, over a pixel. */
 void pixel_over(uint8_t *pixel, const uint8_t colour[3], int alpha);

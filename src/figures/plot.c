@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Plots: panels with axes, series and legends; plot_draw() for those that differ in their data only. */
 #include "base/base.h"
 #include "base/file.h"
 #include "figures/sketch.h"
@@ -186,6 +187,16 @@ bool plot_page_write(PlotPage *page, const char *folder, const char *prefix, con
            file_write(caption, page->caption, strlen(page->caption), error);
 }
 
+bool plot_level(PlotPoint *out, int i, double y) {
+    *out = (PlotPoint){i == 0 ? -INFINITY : INFINITY, y, 0};
+    return i < 2;
+}
+
+bool plot_upright(PlotPoint *out, int i, double x) {
+    *out = (PlotPoint){x, i == 0 ? -INFINITY : INFINITY, 0};
+    return i < 2;
+}
+
 /* What plot_draw() draws with. */
 typedef struct Plotter {
     const PlotSpec *spec;
@@ -285,7 +296,7 @@ static void draw_series(Plotter *plotter, const PlotPanel *panel, int index, int
 }
 
 static void draw_panel(Plotter *plotter, int index) {
-    PlotPanel panel = {0};
+    PlotPanel panel = {.box = plot_grid_box(&plotter->spec->grid, index)};
     plotter->spec->panel(plotter->spec->of, index, &panel);
     if (panel.box.width <= 0) return;
     plot_panel_place(&panel);
@@ -309,7 +320,7 @@ bool plot_draw(PlotPage *page, const PlotSpec *spec, const char *what, Error *er
     plotter.points = malloc((size_t)spec->rows * sizeof *plotter.points + 1);
     plotter.places = malloc(2 * (size_t)spec->rows * sizeof *plotter.places + 1);
     const bool room = plotter.points != NULL && plotter.places != NULL;
-    sketch_begin(&page->sketch, spec->width, spec->height);
+    sketch_begin(&page->sketch, spec->grid.width, spec->grid.height);
     for (int panel = 0; room && panel < spec->panels; panel++) draw_panel(&plotter, panel);
     if (room) draw_legend(&plotter);
     snprintf(page->caption, sizeof page->caption, "%s%s\n", spec->caption,

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What figures of runs share: contacts with their numbers; moments, windows and rendered cells; texts. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "figures/figure.h"
@@ -12,6 +13,7 @@
 #include "runs/trajectory.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -86,7 +88,7 @@ void draw_contact_sample(Sketch *sketch, Point at, const ContactLook *look) {
     const double reach = NORMAL_RINGS * look->ring;
     draw_contact_point(sketch, at, (Point){reach, 0}, look->ring);
     sketch_text(sketch, (Point){at.x + reach + 1, at.y},
-                &(TextStyle){CONTACT_TYPE * look->points, TEXT_LEFT, INK, 0, false}, "contact, normal");
+                &(TextStyle){SMALL_TYPE * look->points, TEXT_LEFT, INK, 0, false}, "contact, normal");
 }
 
 static void draw_contact(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
@@ -128,7 +130,7 @@ static bool place_number(const ContactLook *look, const ShownContact *contact, L
 /* Numbers stand outside the pile of contacts, whose middle is at `middle`. */
 static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field,
                         double middle, bool crowded) {
-    const double points = CONTACT_TYPE * look->points, em = points * MM_PER_POINT, farthest = 12;
+    const double points = SMALL_TYPE * look->points, em = points * MM_PER_POINT, farthest = 12;
     char text[32];
     PageBox box;
     Segment leader;
@@ -314,7 +316,22 @@ void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left,
     sketch_scale_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
 }
 
+void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low) {
+    sketch_rectangle(sketch, low, (Point){low.x + cells->width, low.y + cells->height},
+                     &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
+}
+
 double line_height(double points) { return 1.35 * points * MM_PER_POINT; }
+
+void draw_fitted(Sketch *sketch, Point left, double points, uint32_t ink, double width, const char *format, ...) {
+    char text[2 * CAPTION_TEXT_SIZE + 128];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    text_fit(text, sizeof text, points, width);
+    sketch_text(sketch, left, &(TextStyle){points, TEXT_LEFT, ink, 0, false}, "%s", text);
+}
 
 RunName run_name(const FigureSpec *spec, const Trajectory *run) {
     RunName name;

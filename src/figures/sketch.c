@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The page of a sketch: shapes, lines, arrows, texts and pictures as a list of marks. */
 #include "figures/sketch.h"
 
 #include "base/base.h"

@@ -75,7 +75,7 @@ double plot_tick_width(const PlotTick *tick, double points);
 /* As many ticks at round numbers as have room for numbers of this size. across: along the page's width. */
 void plot_ticks_choose(PlotTicks *ticks, const PlotAxis *axis, double points, bool across);
 
-/* A page of boxes, lines, arrows and text, recorded as a list and then written as PNG, SVG or PDF (sketch_files.h).
+/* A page of boxes, lines, arrows and text, recorded as a list and then written as PNG, SVG or PDF.
    Lengths in mm from the page's lower left corner. Later marks are above earlier ones; pictures are below and arrows
    and text above all else. */
 
@@ -379,12 +379,16 @@ typedef struct PlotPoint {
     double group; /* the line is interrupted where it changes */
 } PlotPoint;
 
+/* A line across the panel: of a series, the points 0 and 1 are its ends; false for others. */
+bool plot_level(PlotPoint *out, int i, double y);
+bool plot_upright(PlotPoint *out, int i, double x);
+
 /* Each series may have a point for each of the rows, in each panel. The first series is on top. */
 typedef struct PlotSpec {
-    const void *of;       /* handed to the functions */
-    double width, height; /* mm, of the page */
+    const void *of; /* handed to the functions */
+    PlotGrid grid;
     int panels, series, rows;
-    void (*panel)(const void *of, int panel, PlotPanel *out); /* *out is zero before; width 0: left out */
+    void (*panel)(const void *of, int panel, PlotPanel *out); /* *out has its box of the grid; width 0: left out */
     PlotLook (*look)(const void *of, int series);
     bool (*point)(const void *of, int panel, int series, int row, PlotPoint *out); /* false: none */
     int legend_columns;

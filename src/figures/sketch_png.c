@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A sketch as PNG: a rasteriser of polygons, letters and pictures. */
 #include "base/base.h"
 #include "base/file.h"
 #include "figures/internal.h"
@@ -10,6 +11,20 @@
 #include <png.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* A polygon rasteriser with antialiasing by scan-line coverage. Pixels, y down. */
+
+typedef struct RasterEdge {
+    double x0, y0, x1, y1; /* y0 < y1 */
+    int winding;           /* 1 or -1 */
+} RasterEdge;
+
+/* Initialise with zeros. */
+typedef struct Raster {
+    RasterEdge *edges;
+    size_t count, capacity;
+    bool failed; /* out of memory */
+} Raster;
 
 enum { LINES = 16 }; /* scan lines per pixel; coverage along a scan line is exact */
 

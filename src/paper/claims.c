@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the papers of the systems claim: the table of all claims, then the rules by which those of each system are judged
+   from its table. */
 #include "base/base.h"
 #include "base/csv.h"
-#include "base/file.h"
 #include "learning/subspace_training.h"
 #include "methods/relation_view.h"
 #include "paper/paper.h"
@@ -10,18 +11,17 @@
 
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
-const char *const claim_holds_words[CLAIM_HOLDS + 1] = {"no", "partly", "yes"};
+static const char *const claim_holds_words[CLAIM_HOLDS + 1] = {"no", "partly", "yes"};
 
 static const CsvColumn columns[] = {
-    {"system", CSV_NAME, .offset = offsetof(ClaimRow, system), .key = true},
-    {"claim", CSV_TEXT, .offset = offsetof(ClaimRow, claim), .maximum = CLAIM_TEXT_SIZE, .quoted = true, .key = true},
-    {"source", CSV_TEXT, .offset = offsetof(ClaimRow, source), .maximum = CLAIM_TEXT_SIZE, .quoted = true},
-    {"measured", CSV_TEXT, .offset = offsetof(ClaimRow, measured), .maximum = CLAIM_TEXT_SIZE, .quoted = true},
-    {"figure", CSV_TEXT, .offset = offsetof(ClaimRow, figure), .maximum = CLAIM_TEXT_SIZE, .quoted = true},
-    {"holds", CSV_WORD, .offset = offsetof(ClaimRow, holds), .words = claim_holds_words},
+    CSV_MEMBER(ClaimRow, system, CSV_NAME, .key = true),
+    CSV_MEMBER(ClaimRow, claim, CSV_TEXT, .maximum = CLAIM_TEXT_SIZE, .quoted = true, .key = true),
+    CSV_MEMBER(ClaimRow, source, CSV_TEXT, .maximum = CLAIM_TEXT_SIZE, .quoted = true),
+    CSV_MEMBER(ClaimRow, measured, CSV_TEXT, .maximum = CLAIM_TEXT_SIZE, .quoted = true),
+    CSV_MEMBER(ClaimRow, figure, CSV_TEXT, .maximum = CLAIM_TEXT_SIZE, .quoted = true),
+    CSV_MEMBER(ClaimRow, holds, CSV_WORD, .words = claim_holds_words),
 };
 const CsvLayout claim_layout = CSV_LAYOUT("systems", columns, ClaimRow, .max_rows = 100);
 
@@ -67,35 +67,45 @@ bool claim_state(const Claims *claims, const Claim *claim, Error *error, const c
            csv_row_print(claims->lines, &claim_layout, &row, error);
 }
 
-static bool state_all(const PaperSystem *const *systems, Claims *claims, Error *error) {
-    csv_header_print(claims->lines, &claim_layout);
-    for (int i = 0; systems[i] != NULL; i++) {
-        claims->system = systems[i]->name;
-        if (!systems[i]->claim(claims, error)) return false;
-    }
-    return true;
+bool system_claims_state(const PaperSystem *system, const char *folder, Claims *claims, Error *error) {
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, system->table, error)) return false;
+    bool stated = true;
+    claims->system = system->name;
+    for (int i = 0; stated && system->claims[i] != NULL; i++) stated = system->claims[i](claims, &table, error);
+    csv_table_free(&table);
+    return stated;
+}
+
+typedef struct Stating {
+    const PaperSystem *const *systems;
+    const char *folder;
+    Claims claims;
+} Stating;
+
+static bool state_all(void *context, FILE *lines, Error *error) {
+    Stating *stating = context;
+    bool stated = true;
+    stating->claims.lines = lines;
+    csv_header_print(lines, &claim_layout);
+    for (int i = 0; stated && stating->systems[i] != NULL; i++)
+        stated = system_claims_state(stating->systems[i], stating->folder, &stating->claims, error);
+    return stated;
 }
 
 bool system_claims_write(const PaperSystem *const *systems, const char *folder, Error *error) {
-    char path[CSV_PATH_SIZE], *text = NULL;
-    size_t size;
+    char path[CSV_PATH_SIZE];
     CsvTable scores;
     if (!csv_table_path(path, folder, &claim_layout, error) ||
         !csv_table_read_from(&scores, folder, &system_score_layout, error))
         return false;
-    Claims claims = {.folder = folder, .scores = scores.rows, .score_count = scores.count};
-    claims.lines = memory_stream(&text, &size);
-    bool written = claims.lines != NULL || error_memory(error, path);
-    if (claims.lines != NULL) {
-        written = state_all(systems, &claims, error);
-        const bool whole = !ferror(claims.lines);
-        if ((fclose(claims.lines) != 0 || !whole) && written) written = error_memory(error, path);
-    }
-    written = written && file_write(path, text, size, error);
-    free(text);
+    Stating stating = {systems, folder, {.scores = scores.rows, .score_count = scores.count}};
+    const bool written = text_write(path, state_all, &stating, error);
     csv_table_free(&scores);
     return written;
 }
+
+/* The claims of Sanchez-Gonzalez et al. (2020), judged from system_gns.csv. */
 
 static const char abstract[] = "Sanchez-Gonzalez et al. 2020, abstract";
 
@@ -110,93 +120,98 @@ static const double moved_right = 0.25;
 /* Hours: a day, a week. */
 static const double day = 24, week = 168;
 
-typedef struct GnsClaimsRows {
-    const GnsRow *rows;
-    int count;
-} GnsClaimsRows;
+static const char *const taught_scenes[] = {"single", "stack", "pyramid_settled"};
+enum { TAUGHT_SCENES = sizeof taught_scenes / sizeof *taught_scenes };
 
-static const char *const gns_claims_scenes[] = {"single", "stack", "pyramid_settled"};
-enum { GNS_CLAIMS_SCENES = sizeof gns_claims_scenes / sizeof *gns_claims_scenes };
+static const GnsRow unmeasured = {.error = NAN, .ms_step = NAN, .ms_gradient = NAN, .hours = NAN, .boxes = NAN};
 
-/* NULL: not measured. */
-static const GnsRow *find(const GnsClaimsRows *rows, GnsMeasure measure, const char *variant, const char *scene,
+static const GnsRow *find(const CsvTable *table, GnsMeasure measure, const char *variant, const char *scene,
                           double seconds) {
-    for (int i = 0; i < rows->count; i++) {
-        const GnsRow *row = &rows->rows[i];
-        if (row->measure == (int)measure && strcmp(row->variant, variant) == 0 && strcmp(row->scene, scene) == 0 &&
-            (isnan(seconds) || fabs(row->seconds - seconds) < 1e-6))
-            return row;
-    }
-    return NULL;
+    const GnsRow *rows = table->rows;
+    for (int i = 0; i < table->count; i++)
+        if (rows[i].measure == (int)measure && strcmp(rows[i].variant, variant) == 0 &&
+            strcmp(rows[i].scene, scene) == 0 && (isnan(seconds) || fabs(rows[i].seconds - seconds) < 1e-6))
+            return &rows[i];
+    return &unmeasured;
 }
 
-static double error_of(const GnsClaimsRows *rows, int variant, const char *scene) {
-    const GnsRow *row = find(rows, GNS_ROLLOUT, gns_variants[variant].name, scene, compared_at);
-    return row != NULL ? row->error : NAN;
+static double error_of(const CsvTable *table, int variant, const char *scene) {
+    return find(table, GNS_ROLLOUT, gns_variants[variant].name, scene, compared_at)->error;
 }
 
-/* Counts the scenes and pairs of variants in which the first has the smaller error; adds the errors to the text. */
-static void gns_claims_compare(const GnsClaimsRows *rows, const int *variants, int count, int *holding, int *cases,
-                               char *text, size_t size) {
-    *holding = *cases = 0;
-    text[0] = '\0';
-    for (int s = 0; s < GNS_CLAIMS_SCENES; s++) {
-        if (isnan(error_of(rows, variants[0], gns_claims_scenes[s]))) continue;
-        size_t used = strlen(text);
-        snprintf(text + used, size - used, "%s%s", used > 0 ? "; " : "", gns_claims_scenes[s]);
+static void append(char text[CLAIM_TEXT_SIZE], const char *format, ...) PRINTF_LIKE(2, 3);
+static void append(char text[CLAIM_TEXT_SIZE], const char *format, ...) {
+    const size_t used = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, CLAIM_TEXT_SIZE - used, format, arguments);
+    va_end(arguments);
+}
+
+/* Begins the part of a scene: "stack", or "; stack" behind others. */
+static void append_scene(char text[CLAIM_TEXT_SIZE], const char *scene) {
+    append(text, "%s%s", text[0] != '\0' ? "; " : "", scene);
+}
+
+static bool state_text(const Claims *claims, const Claim *claim, const char *text, Error *error) {
+    return claim_state(claims, claim, error, "%s", text[0] != '\0' ? text : "not measured");
+}
+
+/* Whether the errors of the variants rise from each to the next, in how many scenes and pairs; adds the errors to the
+   text. */
+static ClaimHolds compare_variants(const CsvTable *table, const int *variants, int count, char text[CLAIM_TEXT_SIZE]) {
+    int holding = 0, cases = 0;
+    for (int s = 0; s < TAUGHT_SCENES; s++) {
+        double before = error_of(table, variants[0], taught_scenes[s]);
+        if (isnan(before)) continue;
+        append_scene(text, taught_scenes[s]);
         for (int v = 0; v < count; v++) {
-            const double error = error_of(rows, variants[v], gns_claims_scenes[s]);
-            used = strlen(text);
-            snprintf(text + used, size - used, "%s %.2f m (%s)", v > 0 ? "," : ":", error,
-                     gns_variants[variants[v]].name);
-            if (v == 0) continue;
-            ++*cases;
-            if (error_of(rows, variants[v - 1], gns_claims_scenes[s]) < error) ++*holding;
+            const double error = error_of(table, variants[v], taught_scenes[s]);
+            append(text, "%s %.2f m (%s)", v > 0 ? "," : ":", error, gns_variants[variants[v]].name);
+            cases += v > 0;
+            holding += v > 0 && before < error;
+            before = error;
         }
     }
+    return claim_in_cases(holding, cases);
 }
 
-static bool claim_rounds(const Claims *claims, const GnsClaimsRows *rows, Error *error) {
+static bool claim_rounds(const Claims *claims, const CsvTable *table, Error *error) {
     static const int variants[] = {GNS_SHIPPED, GNS_TWO_ROUNDS, GNS_ONE_ROUND};
-    int holding, cases;
-    char text[CLAIM_TEXT_SIZE];
-    gns_claims_compare(rows, variants, 3, &holding, &cases, text, sizeof text);
+    char text[CLAIM_TEXT_SIZE] = "";
     const Claim claim = {"The error of a rollout falls with the number M of rounds of messages", abstract,
                          "Mean distance of boxes from the taught run 1 s after the launch, held-out launches; of each "
                          "scene, M = 5 must beat 2, and 2 must beat 1",
-                         claim_in_cases(holding, cases)};
-    return claim_state(claims, &claim, error, "%s", text[0] != '\0' ? text : "not measured");
+                         compare_variants(table, variants, 3, text)};
+    return state_text(claims, &claim, text, error);
 }
 
-static bool claim_noise(const Claims *claims, const GnsClaimsRows *rows, Error *error) {
+static bool claim_noise(const Claims *claims, const CsvTable *table, Error *error) {
     static const int variants[] = {GNS_SHIPPED, GNS_NO_NOISE};
-    int holding, cases;
-    char text[CLAIM_TEXT_SIZE];
-    gns_claims_compare(rows, variants, 2, &holding, &cases, text, sizeof text);
+    char text[CLAIM_TEXT_SIZE] = "";
     const Claim claim = {
         "Noise on the inputs in training lowers the error of a rollout", abstract,
         "The same distance, of the same network trained without noise; it must be larger in each scene",
-        claim_in_cases(holding, cases)};
-    return claim_state(claims, &claim, error, "%s", text[0] != '\0' ? text : "not measured");
+        compare_variants(table, variants, 2, text)};
+    return state_text(claims, &claim, text, error);
 }
 
-static bool claim_shapes(const Claims *claims, const GnsClaimsRows *rows, Error *error) {
+static bool claim_shapes(const Claims *claims, const CsvTable *table, Error *error) {
     double most = NAN;
     char text[CLAIM_TEXT_SIZE] = "";
-    for (int s = 0; s < GNS_CLAIMS_SCENES; s++) {
+    for (int s = 0; s < TAUGHT_SCENES; s++) {
         const GnsRow *soon = NULL, *last = NULL;
-        for (int i = 0; i < rows->count; i++) {
-            const GnsRow *row = &rows->rows[i];
+        for (int i = 0; i < table->count; i++) {
+            const GnsRow *row = (const GnsRow *)table->rows + i;
             if (row->measure != GNS_ROLLOUT || strcmp(row->variant, gns_variants[GNS_NOT_RIGID].name) != 0 ||
-                strcmp(row->scene, gns_claims_scenes[s]) != 0)
+                strcmp(row->scene, taught_scenes[s]) != 0)
                 continue;
             if (soon == NULL) soon = row;
             last = row;
         }
         if (soon == NULL) continue;
-        const size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used, "%s%s: %.3f m after %g s, %.3f m after %g s", used > 0 ? "; " : "",
-                 gns_claims_scenes[s], soon->shape, soon->seconds, last->shape, last->seconds);
+        append_scene(text, taught_scenes[s]);
+        append(text, ": %.3f m after %g s, %.3f m after %g s", soon->shape, soon->seconds, last->shape, last->seconds);
         most = fmax(most, last->shape);
     }
     const Claim claim = {
@@ -205,146 +220,129 @@ static bool claim_shapes(const Claims *claims, const GnsClaimsRows *rows, Error 
         "Distance of particles from the best-fitting rigid box, with rigid=off; yes from 5% of a box's "
         "edge in the worst scene, partly from 1%",
         claim_at_least(most, deformed, little_deformed)};
-    return claim_state(claims, &claim, error, "%s", text[0] != '\0' ? text : "not measured");
+    return state_text(claims, &claim, text, error);
 }
 
-static bool claim_large(const Claims *claims, const GnsClaimsRows *rows, Error *error) {
+static bool claim_large(const Claims *claims, const CsvTable *table, Error *error) {
     static const char *const piles[] = {"pyramid", "pyramid_18"};
     int right = 0, cases = 0;
     char text[CLAIM_TEXT_SIZE] = "";
     for (int s = 0; s < 2; s++) {
-        const GnsRow *row = find(rows, GNS_LARGE, gns_variants[GNS_SHIPPED].name, piles[s], NAN);
-        if (row == NULL) continue;
-        const size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used,
-                 "%s%s, %.0f boxes: %.0f moved (taught run: %.0f), %.2g m off, %.3g ms a step", used > 0 ? "; " : "",
-                 piles[s], row->boxes, row->moved, row->moved_engine, row->error, row->ms_step);
-        right += fabs(row->moved - row->moved_engine) <= moved_right * fmax(row->moved_engine, 1) ? 1 : 0;
+        const GnsRow *row = find(table, GNS_LARGE, gns_variants[GNS_SHIPPED].name, piles[s], NAN);
+        if (row == &unmeasured) continue;
+        append_scene(text, piles[s]);
+        append(text, ", %.0f boxes: %.0f moved (taught run: %.0f), %.2g m off, %.3g ms a step", row->boxes, row->moved,
+               row->moved_engine, row->error, row->ms_step);
+        right += fabs(row->moved - row->moved_engine) <= moved_right * fmax(row->moved_engine, 1);
         cases++;
     }
     const Claim claim = {"One network simulates many more bodies than it was trained on: 66 to 200 boxes", abstract,
                          "Boxes that moved more than 0.5 m: in each pile, their number must be within 25% of the "
                          "taught run's. An example of training has at most 12 boxes",
                          claim_in_cases(right, cases)};
-    return claim_state(claims, &claim, error, "%s", text[0] != '\0' ? text : "not measured");
+    return state_text(claims, &claim, text, error);
 }
 
-static bool claim_cost(const Claims *claims, const GnsClaimsRows *rows, Error *error) {
-    const GnsRow *ours = find(rows, GNS_COST, "width 16, M = 5", "pyramid_settled", NAN);
-    const GnsRow *theirs = find(rows, GNS_COST, "width 128, M = 10", "pyramid_settled", NAN);
-    const double hours = theirs != NULL ? theirs->hours : NAN;
+static bool claim_cost(const Claims *claims, const CsvTable *table, Error *error) {
+    const GnsRow *ours = find(table, GNS_COST, "width 16, M = 5", "pyramid_settled", NAN),
+                 *theirs = find(table, GNS_COST, "width 128, M = 10", "pyramid_settled", NAN);
     const Claim claim = {
         "The paper's own network, 128 wide with M = 10, can be trained as there: 20 million steps of 2",
         "Sanchez-Gonzalez et al. 2020, appendix on training",
         "Time of a gradient step, all threads of this machine; yes within a day, partly within a week",
-        claim_at_most(hours, day, week)};
+        claim_at_most(theirs->hours, day, week)};
     return claim_state(
         claims, &claim, error,
         "%.3g ms a gradient step, %.3g hours in all (16 wide, M = 5: %.3g ms, %.3g hours); a step of %.0f "
         "boxes takes %.3g ms (%.3g ms)",
-        theirs != NULL ? theirs->ms_gradient : NAN, hours, ours != NULL ? ours->ms_gradient : NAN,
-        ours != NULL ? ours->hours : NAN, theirs != NULL ? theirs->boxes : NAN, theirs != NULL ? theirs->ms_step : NAN,
-        ours != NULL ? ours->ms_step : NAN);
+        theirs->ms_gradient, theirs->hours, ours->ms_gradient, ours->hours, theirs->boxes, theirs->ms_step,
+        ours->ms_step);
 }
 
-bool gns_claims(const Claims *claims, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, claims->folder, &gns_table_layout, error)) return false;
-    const GnsClaimsRows rows = {table.rows, table.count};
-    const bool ok = claim_rounds(claims, &rows, error) && claim_noise(claims, &rows, error) &&
-                    claim_shapes(claims, &rows, error) && claim_large(claims, &rows, error) &&
-                    claim_cost(claims, &rows, error);
-    csv_table_free(&table);
-    return ok;
-}
+ClaimRule *const gns_claims[] = {claim_rounds, claim_noise, claim_shapes, claim_large, claim_cost, NULL};
 
 /* The claims of in-situ adaptive tabulation and of the paper's description of Ajay et al., judged from
    system_hybrid.csv. */
 
-enum { HYBRID_CLAIMS_SCENES = 3 };
-
 /* Those that the issue of memory is about: single, stack, settled pyramid. */
-static const int hybrid_claims_scenes[HYBRID_CLAIMS_SCENES] = {0, 1, 3};
+enum { REMEMBERED = 3 };
+static const int remembered[REMEMBERED] = {0, 1, 3};
 
 static const double standard_tolerance = 0.1; /* m/s */
 
-typedef struct HybridClaimsRows {
-    const HybridRow *items;
-    int count;
-} HybridClaimsRows;
-
-/* The last row of a scene's learning with the standard tolerance: of one family; before a change; after it. NULL:
-   none. */
+/* The last row of a scene's learning with the standard tolerance: of one family; before a change; after it. */
 typedef enum Part { ONE_FAMILY, BEFORE_CHANGE, AFTER_CHANGE } Part;
 
-static const HybridRow *last_row(const HybridClaimsRows *rows, int scene, Part part) {
-    const HybridRow *found = NULL;
-    for (int i = 0; i < rows->count; i++) {
-        const HybridRow *row = &rows->items[i];
-        if (row->scene == scene && row->changes == (part != ONE_FAMILY) && row->turned == (part == AFTER_CHANGE) &&
-            fabs(row->tolerance - standard_tolerance) < 1e-6)
-            found = row;
+static HybridRow last_row(const CsvTable *table, int scene, Part part) {
+    HybridRow found = {.share = NAN,
+                       .error_95 = NAN,
+                       .us_answer = NAN,
+                       .us_solve = NAN,
+                       .us_step = NAN,
+                       .us_step_solve = NAN,
+                       .paid = NAN};
+    for (int i = 0; i < table->count; i++) {
+        const HybridRow *row = (const HybridRow *)table->rows + i;
+        if (row->scene == remembered[scene] && row->changes == (part != ONE_FAMILY) &&
+            row->turned == (part == AFTER_CHANGE) && fabs(row->tolerance - standard_tolerance) < 1e-6)
+            found = *row;
     }
     return found;
 }
 
-static double value(const HybridRow *row, double number) { return row != NULL ? number : NAN; }
-
-#define OF_ROW(row, member) value(row, (row) != NULL ? (row)->member : 0)
-
-static bool claim_growth(const Claims *claims, const HybridClaimsRows *rows, Error *error) {
-    double share[HYBRID_CLAIMS_SCENES];
+static bool claim_growth(const Claims *claims, const CsvTable *table, Error *error) {
+    double share[REMEMBERED];
     int holding = 0;
-    for (int i = 0; i < HYBRID_CLAIMS_SCENES; i++) {
-        share[i] = OF_ROW(last_row(rows, hybrid_claims_scenes[i], ONE_FAMILY), share);
+    for (int i = 0; i < REMEMBERED; i++) {
+        share[i] = last_row(table, i, ONE_FAMILY).share;
         holding += share[i] >= 0.5;
     }
     const Claim claim = {
         "After some launches most queries are answered from memory", "Pope 1997, section 4",
         "share of steps with an impact that the memory answers after all launches of one family; at least half "
         "(single, stack, settled pyramid)",
-        claim_in_cases(holding, HYBRID_CLAIMS_SCENES)};
+        claim_in_cases(holding, REMEMBERED)};
     return claim_state(claims, &claim, error, "%.0f%%, %.0f%%, %.0f%%", 100 * share[0], 100 * share[1], 100 * share[2]);
 }
 
-static bool hybrid_claims_claim_error(const Claims *claims, const HybridClaimsRows *rows, Error *error) {
-    double wrong[HYBRID_CLAIMS_SCENES];
+static bool claim_answers(const Claims *claims, const CsvTable *table, Error *error) {
+    double wrong[REMEMBERED];
     int holding = 0;
-    for (int i = 0; i < HYBRID_CLAIMS_SCENES; i++) {
-        wrong[i] = OF_ROW(last_row(rows, hybrid_claims_scenes[i], ONE_FAMILY), error_95);
+    for (int i = 0; i < REMEMBERED; i++) {
+        wrong[i] = last_row(table, i, ONE_FAMILY).error_95;
         holding += wrong[i] <= standard_tolerance;
     }
     const Claim claim = {
         "The error of answers stays within the tolerance", "Pope 1997, section 4; Lu and Pope 2009",
         "95% of the answers on launches not learned are within the tolerance of 0.1 m/s (single, stack, "
         "settled pyramid)",
-        claim_in_cases(holding, HYBRID_CLAIMS_SCENES)};
+        claim_in_cases(holding, REMEMBERED)};
     return claim_state(claims, &claim, error, "%.3g, %.3g, %.3g m/s", wrong[0], wrong[1], wrong[2]);
 }
 
-static bool hybrid_claims_claim_speed(const Claims *claims, const HybridClaimsRows *rows, Error *error) {
-    double factor[HYBRID_CLAIMS_SCENES], whole[HYBRID_CLAIMS_SCENES];
+static bool claim_time_saved(const Claims *claims, const CsvTable *table, Error *error) {
+    double factor[REMEMBERED], whole[REMEMBERED];
     int holding = 0;
-    for (int i = 0; i < HYBRID_CLAIMS_SCENES; i++) {
-        const HybridRow *row = last_row(rows, hybrid_claims_scenes[i], ONE_FAMILY);
-        factor[i] = OF_ROW(row, us_solve) / OF_ROW(row, us_answer);
-        whole[i] = OF_ROW(row, us_step_solve) / OF_ROW(row, us_step);
+    for (int i = 0; i < REMEMBERED; i++) {
+        const HybridRow row = last_row(table, i, ONE_FAMILY);
+        factor[i] = row.us_solve / row.us_answer;
+        whole[i] = row.us_step_solve / row.us_step;
         holding += whole[i] >= 2;
     }
     const Claim claim = {
         "Tabulation is faster than solving, by orders of magnitude", "Pope 1997, section 4 (a factor of 1000)",
         "time of interior:near=0.001 over that of hybrid, on answered steps and, in brackets, on all steps with an "
         "impact, of which the latter is at least 2 (single, stack, settled pyramid)",
-        claim_in_cases(holding, HYBRID_CLAIMS_SCENES)};
+        claim_in_cases(holding, REMEMBERED)};
     return claim_state(claims, &claim, error, "%.3g (%.3g), %.3g (%.3g), %.3g (%.3g) times", factor[0], whole[0],
                        factor[1], whole[1], factor[2], whole[2]);
 }
 
-static bool claim_paid(const Claims *claims, const HybridClaimsRows *rows, Error *error) {
-    char text[HYBRID_CLAIMS_SCENES][24];
+static bool claim_paid(const Claims *claims, const CsvTable *table, Error *error) {
+    char text[REMEMBERED][24];
     int holding = 0;
-    for (int i = 0; i < HYBRID_CLAIMS_SCENES; i++) {
-        const double paid = OF_ROW(last_row(rows, hybrid_claims_scenes[i], ONE_FAMILY), paid);
+    for (int i = 0; i < REMEMBERED; i++) {
+        const double paid = last_row(table, i, ONE_FAMILY).paid;
         if (isnan(paid))
             snprintf(text[i], sizeof text[i], "never");
         else
@@ -355,45 +353,29 @@ static bool claim_paid(const Claims *claims, const HybridClaimsRows *rows, Error
         "The time saved pays for the learning", "the paper's description of Ajay et al. 2019",
         "launch from which on time saved exceeds the time spent on learning and questions, with one family "
         "(single, stack, settled pyramid)",
-        claim_in_cases(holding, HYBRID_CLAIMS_SCENES)};
+        claim_in_cases(holding, REMEMBERED)};
     return claim_state(claims, &claim, error, "%s, %s, %s", text[0], text[1], text[2]);
 }
 
-static bool claim_change(const Claims *claims, const HybridClaimsRows *rows, Error *error) {
-    double before[HYBRID_CLAIMS_SCENES], after[HYBRID_CLAIMS_SCENES];
+static bool claim_change(const Claims *claims, const CsvTable *table, Error *error) {
+    double before[REMEMBERED], after[REMEMBERED];
     int holding = 0;
-    for (int i = 0; i < HYBRID_CLAIMS_SCENES; i++) {
-        before[i] = OF_ROW(last_row(rows, hybrid_claims_scenes[i], BEFORE_CHANGE), share);
-        after[i] = OF_ROW(last_row(rows, hybrid_claims_scenes[i], AFTER_CHANGE), share);
+    for (int i = 0; i < REMEMBERED; i++) {
+        before[i] = last_row(table, i, BEFORE_CHANGE).share;
+        after[i] = last_row(table, i, AFTER_CHANGE).share;
         holding += after[i] >= 0.5 * before[i];
     }
     const Claim claim = {
         "The memory grows into new situations", "the paper's description of Ajay et al. 2019",
         "share answered before bombs turn and spin, and after as many launches with it; at least half of that "
         "before (single, stack, settled pyramid)",
-        claim_in_cases(holding, HYBRID_CLAIMS_SCENES)};
+        claim_in_cases(holding, REMEMBERED)};
     return claim_state(claims, &claim, error, "%.0f%% and %.0f%%, %.0f%% and %.0f%%, %.0f%% and %.0f%%",
                        100 * before[0], 100 * after[0], 100 * before[1], 100 * after[1], 100 * before[2],
                        100 * after[2]);
 }
 
-bool hybrid_claim(const Claims *claims, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, claims->folder, &hybrid_layout, error)) return false;
-    const HybridClaimsRows rows = {table.rows, table.count};
-    const bool ok = claim_growth(claims, &rows, error) && hybrid_claims_claim_error(claims, &rows, error) &&
-                    hybrid_claims_claim_speed(claims, &rows, error) && claim_paid(claims, &rows, error) &&
-                    claim_change(claims, &rows, error);
-    csv_table_free(&table);
-    return ok;
-}
-
-const PaperSystem system_hybrid = {.name = "hybrid",
-                                   .methods = SYSTEM_METHODS("hybrid", "hybrid:net=off"),
-                                   .table = &hybrid_layout,
-                                   .parts = hybrid_parts,
-                                   .claim = hybrid_claim,
-                                   .plot = plot_hybrid};
+ClaimRule *const hybrid_claims[] = {claim_growth, claim_answers, claim_time_saved, claim_paid, claim_change, NULL};
 
 /* The claims of Ajay et al. (2019), judged from system_sain.csv. */
 
@@ -402,13 +384,13 @@ const PaperSystem system_hybrid = {.name = "hybrid",
 static const double clear = 0.95; /* of the rival's error: less is a gain that seeds do not explain */
 
 /* The numbers of launches up to SAIN_LITTLE at which sain is more accurate than the other form. */
-typedef struct SainClaimsCases {
+typedef struct Launches {
     int holding, count;
     double first[2], last[2]; /* both errors with the fewest and the most launches of these */
-} SainClaimsCases;
+} Launches;
 
-static SainClaimsCases sain_claims_compare(const CsvTable *table, RelationForm other) {
-    SainClaimsCases cases = {0};
+static Launches compare_forms(const CsvTable *table, RelationForm other) {
+    Launches cases = {0};
     for (int launches = 1; launches <= SAIN_LITTLE; launches *= 2) {
         const double with = sain_median(table, SAIN_STACK, RELATION_ENGINE, launches, sain_error),
                      without = sain_median(table, SAIN_STACK, other, launches, sain_error);
@@ -424,7 +406,7 @@ static SainClaimsCases sain_claims_compare(const CsvTable *table, RelationForm o
 
 static bool claim_cases(const Claims *claims, const CsvTable *table, RelationForm other, const Claim *claim,
                         Error *error) {
-    const SainClaimsCases cases = sain_claims_compare(table, other);
+    const Launches cases = compare_forms(table, other);
     Claim judged = *claim;
     judged.holds = claim_in_cases(cases.holding, cases.count);
     return claim_state(claims, &judged, error, "%.2f against %.2f m/s after 1 launch, %.2f against %.2f after %d",
@@ -442,34 +424,40 @@ static bool claim_gain(const Claims *claims, const CsvTable *table, SainScene sc
     return claim_state(claims, &judged, error, "%.2f m/s; engine alone %.2f, network alone %.2f", with, engine, alone);
 }
 
-bool sain_claims_state(const Claims *claims, Error *error) {
-    static const Claim faster = {.claim = "With little data it is more accurate than the network alone",
-                                 .source = SOURCE ", abstract",
-                                 .measured =
-                                     "stack, RMS velocity error at held-out impacts after 1 to 16 launches; holds "
-                                     "where it is at most 95% of that without the engine"},
-                       knows = {.claim = "It uses what the engine did to each body",
+static bool claim_faster(const Claims *claims, const CsvTable *table, Error *error) {
+    static const Claim claim = {.claim = "With little data it is more accurate than the network alone",
+                                .source = SOURCE ", abstract",
+                                .measured =
+                                    "stack, RMS velocity error at held-out impacts after 1 to 16 launches; holds "
+                                    "where it is at most 95% of that without the engine"};
+    return claim_cases(claims, table, RELATION_ALONE, &claim, error);
+}
+
+static bool claim_knows(const Claims *claims, const CsvTable *table, Error *error) {
+    static const Claim claim = {.claim = "It uses what the engine did to each body",
                                 .source = SOURCE ", model",
                                 .measured = "the same beside a network that sees, and corrects, what the engine did to "
-                                            "another body"},
-                       better = {.claim = "The learned correction makes the engine more accurate",
-                                 .source = SOURCE ", abstract",
-                                 .measured =
-                                     "stack, held-out impacts, most launches; holds below 95% of the error of the "
-                                     "engine alone, partly below all of it"},
-                       transfers = {.claim = "It generalises to scenes that it was not trained on",
-                                    .source = SOURCE ", abstract",
-                                    .measured =
-                                        "the same, trained on the stack only and scored on the settled pyramid"};
-    CsvTable table;
-    if (!csv_table_read_from(&table, claims->folder, &sain_layout, error)) return false;
-    const bool ok = claim_cases(claims, &table, RELATION_ALONE, &faster, error) &&
-                    claim_cases(claims, &table, RELATION_SHUFFLED, &knows, error) &&
-                    claim_gain(claims, &table, SAIN_STACK, &better, error) &&
-                    claim_gain(claims, &table, SAIN_PYRAMID, &transfers, error);
-    csv_table_free(&table);
-    return ok;
+                                            "another body"};
+    return claim_cases(claims, table, RELATION_SHUFFLED, &claim, error);
 }
+
+static bool claim_better(const Claims *claims, const CsvTable *table, Error *error) {
+    static const Claim claim = {.claim = "The learned correction makes the engine more accurate",
+                                .source = SOURCE ", abstract",
+                                .measured =
+                                    "stack, held-out impacts, most launches; holds below 95% of the error of the "
+                                    "engine alone, partly below all of it"};
+    return claim_gain(claims, table, SAIN_STACK, &claim, error);
+}
+
+static bool claim_transfers(const Claims *claims, const CsvTable *table, Error *error) {
+    static const Claim claim = {.claim = "It generalises to scenes that it was not trained on",
+                                .source = SOURCE ", abstract",
+                                .measured = "the same, trained on the stack only and scored on the settled pyramid"};
+    return claim_gain(claims, table, SAIN_PYRAMID, &claim, error);
+}
+
+ClaimRule *const sain_claims[] = {claim_faster, claim_knows, claim_better, claim_transfers, NULL};
 
 /* What Holden et al. 2019 claim, judged by system_subspace.csv. */
 
@@ -477,12 +465,12 @@ bool sain_claims_state(const Claims *claims, Error *error) {
 static const double least_claimed = 300;
 
 /* Cases of a rule: how many, in how many it holds, and the range of its figure. */
-typedef struct SubspaceClaimsCases {
+typedef struct Cases {
     int count, holding;
     double least, most;
-} SubspaceClaimsCases;
+} Cases;
 
-static void add_case(SubspaceClaimsCases *cases, double figure, bool holds) {
+static void add_case(Cases *cases, double figure, bool holds) {
     if (isnan(figure)) return;
     cases->least = cases->count == 0 ? figure : fmin(cases->least, figure);
     cases->most = cases->count == 0 ? figure : fmax(cases->most, figure);
@@ -491,9 +479,9 @@ static void add_case(SubspaceClaimsCases *cases, double figure, bool holds) {
 }
 
 /* The ratio of an engine's step to that of each row of subspace in its scene. */
-static SubspaceClaimsCases speed_over(const CsvTable *table, const char *engine) {
+static Cases speed_over(const CsvTable *table, const char *engine) {
     const SubspaceStudyRow *rows = table->rows;
-    SubspaceClaimsCases cases = {0};
+    Cases cases = {0};
     for (int i = 0; i < table->count; i++) {
         if (rows[i].components == 0) continue;
         const SubspaceStudyRow *other = subspace_study_find(rows, table->count, rows[i].scene, engine);
@@ -503,9 +491,9 @@ static SubspaceClaimsCases speed_over(const CsvTable *table, const char *engine)
     return cases;
 }
 
-static bool subspace_claims_claim_speed(const Claims *claims, const CsvTable *table, Error *error) {
-    const SubspaceClaimsCases reference = speed_over(table, SUBSPACE_STUDY_OFFLINE),
-                              interior = speed_over(table, SUBSPACE_OFFLINE), engine = speed_over(table, "engine");
+static bool claim_step_time(const Claims *claims, const CsvTable *table, Error *error) {
+    const Cases reference = speed_over(table, SUBSPACE_STUDY_OFFLINE), interior = speed_over(table, SUBSPACE_OFFLINE),
+                engine = speed_over(table, "engine");
     const Claim claim = {"A step is 300 to 5,000 times as fast as that of the offline engine",
                          "Holden et al. 2019, section 6",
                          "whole step of the converged solution over a step with 8, 32 and 128 components in four "
@@ -517,9 +505,9 @@ static bool subspace_claims_claim_speed(const Claims *claims, const CsvTable *ta
                        reference.least, reference.most, interior.least, interior.most, engine.least, engine.most);
 }
 
-static bool subspace_claims_claim_error(const Claims *claims, const CsvTable *table, Error *error) {
+static bool claim_distance(const Claims *claims, const CsvTable *table, Error *error) {
     const SubspaceStudyRow *rows = table->rows;
-    SubspaceClaimsCases error_of = {0}, floor = {0}, chaos = {0};
+    Cases error_of = {0}, floor = {0}, chaos = {0};
     for (int i = 0; i < table->count; i++) {
         if (rows[i].components == 0) continue;
         const SubspaceStudyRow *engine = subspace_study_find(rows, table->count, rows[i].scene, "engine");
@@ -538,7 +526,7 @@ static bool subspace_claims_claim_error(const Claims *claims, const CsvTable *ta
 
 static bool claim_network(const Claims *claims, const CsvTable *table, Error *error) {
     const SubspaceStudyRow *rows = table->rows;
-    SubspaceClaimsCases cases = {0};
+    Cases cases = {0};
     for (int i = 0; i < table->count; i++) {
         if (rows[i].components == 0) continue;
         const double ratio = rows[i].rms / rows[i].linear_rms;
@@ -555,7 +543,7 @@ static bool claim_network(const Claims *claims, const CsvTable *table, Error *er
 /* Of scenes with more than eight numbers. */
 static bool claim_components(const Claims *claims, const CsvTable *table, Error *error) {
     const SubspaceStudyRow *rows = table->rows;
-    SubspaceClaimsCases cases = {0};
+    Cases cases = {0};
     for (int scene = 0; scene < PAPER_SCENES; scene++) {
         const SubspaceStudyRow *few = subspace_study_find(rows, table->count, scene, "subspace:components=8"),
                                *many = subspace_study_find(rows, table->count, scene, "subspace:components=128");
@@ -570,12 +558,4 @@ static bool claim_components(const Claims *claims, const CsvTable *table, Error 
                        cases.most, cases.holding, cases.count);
 }
 
-bool subspace_claim(const Claims *claims, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, claims->folder, &subspace_study_layout, error)) return false;
-    const bool stated = subspace_claims_claim_speed(claims, &table, error) &&
-                        subspace_claims_claim_error(claims, &table, error) && claim_network(claims, &table, error) &&
-                        claim_components(claims, &table, error);
-    csv_table_free(&table);
-    return stated;
-}
+ClaimRule *const subspace_claims[] = {claim_step_time, claim_distance, claim_network, claim_components, NULL};

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the report states beyond the study's tables: the summary, aims, factors, claims, systems; and the writing of all. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -15,37 +16,7 @@
 #include <string.h>
 
 bool findings_add(const FindingsFile *file, const void *row) {
-    return csv_row_print(file->out, file->layout, row, file->error);
-}
-
-static bool write_table(const FindingsTable *table, const StudyTables *study, const char *folder, Error *error) {
-    char path[PATH_MAX], *text = NULL;
-    size_t size;
-    if (!file_path(path, sizeof path, error, "%s/findings/%s.csv", folder, table->layout.name)) return false;
-    const FindingsFile file = {&table->layout, memory_stream(&text, &size), error};
-    if (file.out == NULL) return error_memory(error, path);
-    csv_header_print(file.out, file.layout);
-    bool written = table->write(&file, study);
-    const bool whole = !ferror(file.out);
-    if ((fclose(file.out) != 0 || !whole) && written) written = error_memory(error, path);
-    written = written && file_write(path, text, size, error);
-    free(text);
-    return written;
-}
-
-bool findings_write(const char *folder, Error *error) {
-    static const FindingsTable *const tables[] = {
-        &findings_summary, &findings_targets,  &findings_paper_table1, &findings_factors, &findings_definitions,
-        &findings_laws,    &findings_transfer, &findings_aims,         &findings_claims,  &findings_systems};
-    StudyTables study;
-    char path[PATH_MAX];
-    if (!file_path(path, sizeof path, error, "%s/findings", folder) || !study_tables_read(&study, folder, error))
-        return false;
-    bool written = file_make_directory(path, error);
-    for (size_t i = 0; written && i < sizeof tables / sizeof *tables; i++)
-        written = write_table(tables[i], &study, folder, error);
-    study_tables_free(&study);
-    return written;
+    return csv_row_print(file->out, &file->table->layout, row, file->error);
 }
 
 /* Counts and extremes over all networks and runs. */
@@ -164,7 +135,8 @@ static bool write_summary(const FindingsFile *file, const StudyTables *study) {
 }
 
 static const CsvColumn findings_summary_columns[] = {FINDINGS_TEXT(SummaryRow, key), FINDINGS_TEXT(SummaryRow, value)};
-const FindingsTable findings_summary = FINDINGS_TABLE("summary", findings_summary_columns, SummaryRow, write_summary);
+static const FindingsTable findings_summary =
+    FINDINGS_TABLE("summary", findings_summary_columns, SummaryRow, write_summary);
 
 /* The study's aims, and the paper's claims about factors. */
 
@@ -232,7 +204,7 @@ static const CsvColumn aim_columns[] = {FINDINGS_TEXT(AimRow, kind),       FINDI
                                         FINDINGS_NUMBER(AimRow, aim),      FINDINGS_TEXT(AimRow, network),
                                         FINDINGS_NUMBER(AimRow, measured), FINDINGS_NUMBER(AimRow, free),
                                         FINDINGS_TEXT(AimRow, verdict),    FINDINGS_NUMBER(AimRow, missed_by)};
-const FindingsTable findings_aims = FINDINGS_TABLE("aims", aim_columns, AimRow, write_aims);
+static const FindingsTable findings_aims = FINDINGS_TABLE("aims", aim_columns, AimRow, write_aims);
 
 /* The paper's claims that a choice of a factor lowers the error. */
 
@@ -300,7 +272,8 @@ static bool write_claims(const FindingsFile *file, const StudyTables *study) {
 static const CsvColumn findings_claims_columns[] = {
     FINDINGS_TEXT(FactorClaim, factor), FINDINGS_NUMBER(FactorClaim, with), FINDINGS_NUMBER(FactorClaim, without),
     FINDINGS_TEXT(FactorClaim, verdict)};
-const FindingsTable findings_claims = FINDINGS_TABLE("claims", findings_claims_columns, FactorClaim, write_claims);
+static const FindingsTable findings_claims =
+    FINDINGS_TABLE("claims", findings_claims_columns, FactorClaim, write_claims);
 
 /* Networks that differ from the baseline in one factor. */
 
@@ -357,7 +330,7 @@ static const CsvColumn factor_columns[] = {
     FINDINGS_TEXT(FactorRow, factor), FINDINGS_COUNT(FactorRow, networks), FINDINGS_COUNT(FactorRow, passed),
     FINDINGS_TEXT(FactorRow, best),   FINDINGS_NUMBER(FactorRow, ratio),   FINDINGS_NUMBER(FactorRow, baseline_ratio),
     FINDINGS_TEXT(FactorRow, verdict)};
-const FindingsTable findings_factors = FINDINGS_TABLE("factors", factor_columns, FactorRow, write_factors);
+static const FindingsTable findings_factors = FINDINGS_TABLE("factors", factor_columns, FactorRow, write_factors);
 
 /* The systems that the paper cites: how many of their claims hold. */
 
@@ -399,4 +372,31 @@ static bool write_systems(const FindingsFile *file, const StudyTables *study) {
 static const CsvColumn findings_systems_columns[] = {FINDINGS_TEXT(SystemRow, system),
                                                      FINDINGS_COUNT(SystemRow, claims), FINDINGS_COUNT(SystemRow, yes),
                                                      FINDINGS_COUNT(SystemRow, partly), FINDINGS_COUNT(SystemRow, no)};
-const FindingsTable findings_systems = FINDINGS_TABLE("systems", findings_systems_columns, SystemRow, write_systems);
+static const FindingsTable findings_systems =
+    FINDINGS_TABLE("systems", findings_systems_columns, SystemRow, write_systems);
+
+static bool write_rows(void *context, FILE *out, Error *error) {
+    FindingsFile *file = context;
+    file->out = out;
+    file->error = error;
+    csv_header_print(out, &file->table->layout);
+    return file->table->write(file, file->study);
+}
+
+bool findings_write(const char *folder, Error *error) {
+    static const FindingsTable *const tables[] = {
+        &findings_summary, &findings_targets,  &findings_paper_table1, &findings_factors, &findings_definitions,
+        &findings_laws,    &findings_transfer, &findings_aims,         &findings_claims,  &findings_systems};
+    StudyTables study;
+    char path[PATH_MAX];
+    if (!file_path(path, sizeof path, error, "%s/findings", folder) || !study_tables_read(&study, folder, error))
+        return false;
+    bool written = file_make_directory(path, error);
+    for (size_t i = 0; written && i < sizeof tables / sizeof *tables; i++) {
+        FindingsFile file = {.table = tables[i], .study = &study};
+        written = file_path(path, sizeof path, error, "%s/findings/%s.csv", folder, tables[i]->layout.name) &&
+                  text_write(path, write_rows, &file, error);
+    }
+    study_tables_free(&study);
+    return written;
+}

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The study's tables read again, and the findings with rows of their own: targets, transfer, laws, definitions. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "learning/pair_training.h"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Errors and times of a memory on launches that it has not learned. */
+/* The study of hybrid: errors and times of a memory on launches that it has not learned, while it learns others. */
 #include "base/base.h"
 #include "base/csv.h"
+#include "base/file.h"
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "learning/hybrid_training.h"
@@ -10,6 +11,7 @@
 #include "methods/tabulation.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
+#include "paper/report_internal.h"
 #include "scenes/scenes.h"
 #include "studies/chart.h"
 
@@ -17,47 +19,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef struct HybridTimes HybridTimes;
-
-/* As in HybridRow; NAN where no step is answered, or none is not. */
-typedef struct HybridMeasures {
-    double error, error_95;
-    double us_answer, us_solve, us_question, us_step, us_step_solve;
-} HybridMeasures;
-
 /* The launches have numbers from UNLEARNED on, which no learning reaches. */
 enum { TIMED = 20, QUICK_TIMED = 4, REPETITIONS = 9, QUICK_REPETITIONS = 3, UNLEARNED = 2 * TABULATION_LAUNCHES_MAX };
 
-struct HybridTimes {
+/* What is measured at each row of a learning. */
+typedef struct HybridTimes {
     const Scene *scene;
     LaunchSteps *runs;
-    int steps, launches, repetitions;
+    int steps, launches, repetitions; /* steps: of each launch, from the first touch */
     uint64_t seed;
-};
-
-/* The scene must outlive it; steps: of each launch, from the first touch. NULL with error set. */
-static HybridTimes *hybrid_times_create(const Scene *scene, int steps, uint64_t seed, bool quick, Error *error) {
-    HybridTimes *times = calloc(1, sizeof *times);
-    if (times == NULL) {
-        error_memory(error, "hybrid");
-        return NULL;
-    }
-    *times = (HybridTimes){.scene = scene,
-                           .runs = launch_steps_create(scene, error),
-                           .steps = steps,
-                           .launches = quick ? QUICK_TIMED : TIMED,
-                           .repetitions = quick ? QUICK_REPETITIONS : REPETITIONS,
-                           .seed = seed};
-    if (times->runs != NULL) return times;
-    free(times);
-    return NULL;
-}
-
-static void hybrid_times_destroy(HybridTimes *times) {
-    if (times == NULL) return;
-    launch_steps_destroy(times->runs);
-    free(times);
-}
+} HybridTimes;
 
 /* The rivals: hybrid, and interior by itself. */
 enum { RIVALS = 2 };
@@ -123,7 +94,7 @@ static bool pass(Measuring *measuring, int repetition, int64_t overhead, Error *
 /* NAN for 0, by which nothing is divided. */
 static double or_nan(int count) { return count > 0 ? (double)count : (double)NAN; }
 
-static void summarise(Measuring *measuring, HybridMeasures *measures) {
+static void summarise(Measuring *measuring, HybridRow *row) {
     const int repetitions = measuring->times->repetitions, count = measuring->asked.count;
     double sums[2][RIVALS] = {{0}}; /* of steps that are not answered, and that are */
     for (int i = 0; i < count; i++)
@@ -131,13 +102,13 @@ static void summarise(Measuring *measuring, HybridMeasures *measures) {
             sums[measuring->asked.items[i].entry >= 0][r] +=
                 statistics_quantile(measuring->values + (i * RIVALS + r) * repetitions, repetitions, 0.5);
     const double answers = or_nan(measuring->answers), others = or_nan(count - measuring->answers), all = or_nan(count);
-    *measures = (HybridMeasures){.error = statistics_mean(measuring->errors, measuring->answers),
-                                 .error_95 = statistics_quantile(measuring->errors, measuring->answers, 0.95),
-                                 .us_answer = sums[1][0] / answers,
-                                 .us_solve = sums[1][1] / answers,
-                                 .us_question = fmax(sums[0][0] - sums[0][1], 0) / others,
-                                 .us_step = (sums[0][0] + sums[1][0]) / all,
-                                 .us_step_solve = (sums[0][1] + sums[1][1]) / all};
+    row->error = statistics_mean(measuring->errors, measuring->answers);
+    row->error_95 = statistics_quantile(measuring->errors, measuring->answers, 0.95);
+    row->us_answer = sums[1][0] / answers;
+    row->us_solve = sums[1][1] / answers;
+    row->us_question = fmax(sums[0][0] - sums[0][1], 0) / others;
+    row->us_step = (sums[0][0] + sums[1][0]) / all;
+    row->us_step_solve = (sums[0][1] + sums[1][1]) / all;
 }
 
 static bool measure(Measuring *measuring, Error *error) {
@@ -150,15 +121,15 @@ static bool measure(Measuring *measuring, Error *error) {
 }
 
 /* Runs some launches with the memory, then solves each step with an impact in turns by hybrid and by interior:near=0.001,
-   with medians over repetitions. turned: with a random rotation and spin. */
-static bool hybrid_measure(HybridTimes *times, const Tabulation *memory, bool turned, HybridMeasures *measures,
-                           Error *error) {
+   with medians over repetitions. Fills the row's error and error_95 of answers and us_answer to us_step_solve; NAN where no
+   step is answered, or none is not. */
+static bool hybrid_measure(const HybridTimes *times, const Tabulation *memory, HybridRow *row, Error *error) {
     Measuring measuring = {.times = times};
     const bool ok = hybrid_make(&measuring.rivals[0], memory, NULL, error) &&
                     hybrid_make(&measuring.rivals[1], NULL, NULL, error) &&
-                    run_launches(&measuring, memory, turned, error) && reserve(&measuring, memory, error) &&
+                    run_launches(&measuring, memory, row->turned != 0, error) && reserve(&measuring, memory, error) &&
                     measure(&measuring, error);
-    if (ok) summarise(&measuring, measures);
+    if (ok) summarise(&measuring, row);
     for (int r = 0; r < RIVALS; r++) {
         if (measuring.rivals[r].state != NULL) measuring.rivals[r].kind->destroy(measuring.rivals[r].state);
         free(measuring.solutions[r].velocities);
@@ -185,8 +156,7 @@ enum {
 static const int checkpoints[] = {TABULATION_FIRST, 100, 200, 300, 400, 500, 600, 700, 800, 900, 1000};
 enum { CHECKPOINTS = sizeof checkpoints / sizeof *checkpoints };
 
-#define HYBRID_NUMBER(member) \
-    { #member, CSV_OPTIONAL, .offset = offsetof(HybridRow, member), .minimum = -1e9, .maximum = 1e9 }
+#define NUMBER(member) CSV_MEMBER(HybridRow, member, CSV_OPTIONAL, .minimum = -1e9, .maximum = 1e9)
 
 static const CsvColumn columns[] = {
     {"scene", CSV_WORD, .offset = offsetof(HybridRow, scene), .words = paper_scene_names},
@@ -196,20 +166,20 @@ static const CsvColumn columns[] = {
     {"launches", CSV_NUMBER, .offset = offsetof(HybridRow, launches), .minimum = 1, .maximum = TABULATION_LAUNCHES_MAX},
     {"share", CSV_OPTIONAL, .offset = offsetof(HybridRow, share), .maximum = 1},
     {"share_all", CSV_OPTIONAL, .offset = offsetof(HybridRow, share_all), .maximum = 1},
-    HYBRID_NUMBER(error),
-    HYBRID_NUMBER(error_95),
-    HYBRID_NUMBER(us_answer),
-    HYBRID_NUMBER(us_solve),
-    HYBRID_NUMBER(us_question),
-    HYBRID_NUMBER(us_step),
-    HYBRID_NUMBER(us_step_solve),
-    HYBRID_NUMBER(online_error),
-    HYBRID_NUMBER(online_us),
-    HYBRID_NUMBER(entries),
-    HYBRID_NUMBER(kib),
-    HYBRID_NUMBER(learning_ms),
-    HYBRID_NUMBER(saved_ms),
-    HYBRID_NUMBER(paid),
+    NUMBER(error),
+    NUMBER(error_95),
+    NUMBER(us_answer),
+    NUMBER(us_solve),
+    NUMBER(us_question),
+    NUMBER(us_step),
+    NUMBER(us_step_solve),
+    NUMBER(online_error),
+    NUMBER(online_us),
+    NUMBER(entries),
+    NUMBER(kib),
+    NUMBER(learning_ms),
+    NUMBER(saved_ms),
+    NUMBER(paid),
 };
 const CsvLayout hybrid_layout =
     CSV_LAYOUT("system_hybrid", columns, HybridRow, .min_rows = 1, .max_rows = HYBRID_ROWS_MAX);
@@ -235,7 +205,7 @@ typedef struct Run {
     const Scene *scene;
     FILE *lines;
     int launches, change;
-    HybridTimes *times;
+    HybridTimes times;
     TabulationLaunch since[LAUNCHES]; /* [count] since the last row */
     int count;
     double learned, saved; /* s */
@@ -255,7 +225,7 @@ static bool is_checkpoint(const Run *run, int launch) {
 static double or_zero(double x) { return isnan(x) ? 0 : x; }
 
 /* Adds up the launches since the last row, in seconds. */
-static void account(Run *run, const HybridMeasures *measures, HybridRow *row) {
+static void account(Run *run, HybridRow *row) {
     int64_t steps = 0;
     int asked = 0, answered = 0;
     for (int i = 0; i < run->count; i++) {
@@ -264,8 +234,8 @@ static void account(Run *run, const HybridMeasures *measures, HybridRow *row) {
         asked += launch->asked;
         answered += launch->answered;
         run->learned += launch->learning;
-        run->saved += 1e-6 * launch->answered * or_zero(measures->us_solve - measures->us_answer) -
-                      1e-6 * (launch->asked - launch->answered) * or_zero(measures->us_question) - launch->learning;
+        run->saved += 1e-6 * launch->answered * or_zero(row->us_solve - row->us_answer) -
+                      1e-6 * (launch->asked - launch->answered) * or_zero(row->us_question) - launch->learning;
         if (run->saved < 0)
             run->paid = NAN;
         else if (isnan(run->paid))
@@ -277,21 +247,13 @@ static void account(Run *run, const HybridMeasures *measures, HybridRow *row) {
 }
 
 static bool add_row(Run *run, const TabulationLaunch *launch, Error *error) {
-    HybridMeasures measures;
     HybridRow row = {.scene = run->learning->scene,
                      .tolerance = (double)run->learning->tolerance,
                      .changes = run->learning->changes,
                      .turned = run->learning->changes && launch->number > run->change,
                      .launches = launch->number};
-    if (!hybrid_measure(run->times, launch->memory, row.turned != 0, &measures, error)) return false;
-    account(run, &measures, &row);
-    row.error = measures.error;
-    row.error_95 = measures.error_95;
-    row.us_answer = measures.us_answer;
-    row.us_solve = measures.us_solve;
-    row.us_question = measures.us_question;
-    row.us_step = measures.us_step;
-    row.us_step_solve = measures.us_step_solve;
+    if (!hybrid_measure(&run->times, launch->memory, &row, error)) return false;
+    account(run, &row);
     row.online_error = run->online_steps > 0 ? run->online_error / run->online_steps : (double)NAN;
     row.online_us = run->online_steps > 0 ? 1e6 * run->online_seconds / run->online_steps : (double)NAN;
     run->online_error = run->online_seconds = run->online_steps = 0;
@@ -342,9 +304,8 @@ static bool learn(Run *run, const Progress *progress, Error *error) {
 static bool write_learning(const SystemStudy *study, int index, FILE *lines, const Progress *progress, Error *error) {
     const Learning *learning = &learnings[index];
     char path[CSV_PATH_SIZE];
-    if (snprintf(path, sizeof path, "%s/%s.yaml", study->scenes, paper_scene_names[learning->scene]) >=
-        (int)sizeof path)
-        return error_input(error, study->scenes, "the name is too long");
+    if (!file_path(path, sizeof path, error, "%s/%s.yaml", study->scenes, paper_scene_names[learning->scene]))
+        return false;
     Scene *scene = scene_read(path, error);
     Run *run = scene != NULL ? calloc(1, sizeof *run) : NULL;
     if (run == NULL) {
@@ -354,18 +315,23 @@ static bool write_learning(const SystemStudy *study, int index, FILE *lines, con
     *run = (Run){.study = study, .learning = learning, .scene = scene, .lines = lines, .paid = NAN};
     run->launches = study->quick ? QUICK_LAUNCHES : LAUNCHES;
     run->change = study->quick ? QUICK_CHANGE : CHANGE;
-    run->times = hybrid_times_create(scene, learning->steps, study->seed, study->quick, error);
-    const bool online = learning->online && !study->quick;
-    if (online) run->online = online_net_create(study->seed, error);
-    const bool ok = run->times != NULL && (run->online != NULL || !online) && learn(run, progress, error);
+    run->times = (HybridTimes){.scene = scene,
+                               .runs = launch_steps_create(scene, error),
+                               .steps = learning->steps,
+                               .launches = study->quick ? QUICK_TIMED : TIMED,
+                               .repetitions = study->quick ? QUICK_REPETITIONS : REPETITIONS,
+                               .seed = study->seed};
+    bool ok = run->times.runs != NULL;
+    if (ok && learning->online && !study->quick) ok = (run->online = online_net_create(study->seed, error)) != NULL;
+    ok = ok && learn(run, progress, error);
     online_net_destroy(run->online);
-    hybrid_times_destroy(run->times);
+    launch_steps_destroy(run->times.runs);
     free(run);
     scene_destroy(scene);
     return ok;
 }
 
-const SystemPart hybrid_parts[] = {
+static const SystemPart parts[] = {
     {"single", .weight = 2, .quick_weight = 0.1, .index = 0, .write = write_learning, .timed = true},
     {"stack", .weight = 20, .quick_weight = 0.2, .index = 1, .write = write_learning, .timed = true},
     {"pyramid", .weight = 4, .quick_weight = 0.2, .index = 2, .write = write_learning, .timed = true},
@@ -376,3 +342,10 @@ const SystemPart hybrid_parts[] = {
     {"stack-narrow", .weight = 7, .quick_weight = 0.2, .index = 7, .write = write_learning, .timed = true},
     {"stack-wide", .weight = 7, .quick_weight = 0.2, .index = 8, .write = write_learning, .timed = true},
     {0}};
+
+const PaperSystem system_hybrid = {.name = "hybrid",
+                                   .methods = SYSTEM_METHODS("hybrid", "hybrid:net=off"),
+                                   .table = &hybrid_layout,
+                                   .parts = parts,
+                                   .claims = hybrid_claims,
+                                   .plot = plot_hybrid};

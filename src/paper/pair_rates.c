@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Rates of right predictions of a network, of the constant predictor and of the engine with fewer sweeps. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -11,9 +12,7 @@
 #include "studies/chart.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 const char *const rate_definition_names[RATE_DEFINITIONS + 1] = {"range", "absolute", "bodies"};
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The whole study: its sizes and aims, what its parts share, and its tables from the parts. */
 #include "paper/paper.h"
 
 #include "base/base.h"

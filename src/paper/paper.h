@@ -29,9 +29,7 @@ typedef enum PaperData {
     PAPER_DATA
 } PaperData;
 
-extern const char *const paper_data_names[PAPER_DATA];
-
-/* Words are those of training.h. Zero-initialised members are the baseline's: swept, labels by the engine, relative,
+/* Words are those of learning/pair_training.h. Zero-initialised members are the baseline's: swept, labels by the engine, relative,
    pair, sigmoid, mse. */
 typedef struct PaperNetwork {
     const char *name, *factor, *value; /* value: of the factor in which it differs from the baseline */
@@ -115,7 +113,7 @@ typedef struct SystemScoreRow {
     double momentum_error; /* N s: momentum created per step (ContactSolution), mean */
     double fallback_share; /* 0 to 1: steps with discarded outputs, beyond training, or solved by sweeps */
     double us_step;        /* microseconds per step of a held-out launch, everything counted: the whole step; of
-                                    methods without contacts their own work (no_contacts in method_description.h) */
+                                    methods without contacts their own work (no_contacts in its description) */
     double us_step_engine; /* of the engine, measured in turns with it */
 } SystemScoreRow;
 
@@ -160,8 +158,6 @@ bool system_strips_draw(const struct PaperSystem *const *systems, const char *sc
 typedef enum ClaimHolds { CLAIM_NO, CLAIM_PARTLY, CLAIM_YES } ClaimHolds;
 enum { CLAIM_HOLDS = CLAIM_YES + 1, CLAIM_TEXT_SIZE = 400 };
 
-extern const char *const claim_holds_words[CLAIM_HOLDS + 1]; /* no, partly, yes */
-
 typedef struct ClaimRow {
     const char *system, *claim, *source, *measured, *figure; /* at most CLAIM_TEXT_SIZE bytes each, one line */
     int holds;                                               /* ClaimHolds */
@@ -169,14 +165,16 @@ typedef struct ClaimRow {
 
 extern const CsvLayout claim_layout;
 
-/* What a system's claims are judged from, and where they go. */
+/* What a system's claims are judged from besides its table, and where they go. */
 typedef struct Claims {
     const char *system;           /* its name */
-    const char *folder;           /* of the study: its table is in folder/system_NAME.csv */
     const SystemScoreRow *scores; /* [score_count] of all systems and rivals (system_score_find) */
     int score_count;
     FILE *lines; /* claim_state() writes to it */
 } Claims;
+
+/* Judges a claim from the system's table and states it. False with error set. */
+typedef bool ClaimRule(const Claims *claims, const CsvTable *table, Error *error);
 
 typedef struct Claim {
     const char
@@ -199,39 +197,38 @@ ClaimHolds claim_in_cases(int holding, int cases);
 
 /* Writes folder/systems.csv from the systems' tables and folder/system_scores.csv. systems: ended by NULL. ERROR_INPUT
    where a table is missing or damaged, with path:line:column, or a text is too long. */
-struct PaperSystem;
 bool system_claims_write(const struct PaperSystem *const *systems, const char *folder, Error *error);
+
+/* Those of one system, from folder/system_NAME.csv. */
+bool system_claims_state(const struct PaperSystem *system, const char *folder, Claims *claims, Error *error);
 
 /* The systems that the paper cites, as parts of its study. Each system is one constant PaperSystem: the methods that are
    scored, the study that measures its claims, the rules that judge them, and its figure. To add a system NAME:
 
-   1. Write NAME_study.c, NAME_claims.c and their header NAME_study.h in this folder, and define there
+   1. Write NAME.c, its row and layout in paper_internal.h, its rules in claims.c, its plot in plots_systems.c:
 
-        static const CsvLayout table = CSV_LAYOUT("system_NAME", columns, NameRow, .min_rows = 1, .max_rows = 5000);
+        const CsvLayout NAME_layout = CSV_LAYOUT("system_NAME", columns, NameRow, .min_rows = 1, .max_rows = 5000);
         static const SystemPart parts[] = {
             {"launches-stack", .weight = 20, .quick_weight = 0.3, .index = 1, .write = write_launches}, ..., {0}};
 
         const PaperSystem system_NAME = {.name = "NAME",
                                          .methods = SYSTEM_METHODS("NAME", "NAME:net=off"),
-                                         .table = &table,
+                                         .table = &NAME_layout,
                                          .parts = parts,
-                                         .claim = claim,
+                                         .claims = NAME_claims,
                                          .plot = plot_NAME};
 
-      A part writes rows of the table with piece_tables_print(lines, &table, -1, &row, error) (studies/chart.h). It is kept
-      when it is done, and done once: a study that was cut off continues with the next part. So a part should take some
+      A part writes rows of the table with piece_tables_print(lines, &NAME_layout, -1, &row, error) (studies/chart.h). It is
+      kept when it is done, and done once: a study that was cut off continues with the next part. So a part should take some
       seconds. The whole study of one system takes at most 90 s on two idle cores, the quick one 2 s; the quick one measures
       everything that claims need, with less. A part may use all threads (base/machine.h); times are measured on one
       (studies/chart.h), by parts that say so (timed).
-   2. Write figures/plot_NAME.c, which draws folder/system_NAME.csv (figures/plot_parts.h). It becomes
-      figures/system-NAME.png and .svg.
-   3. Add a line to SYSTEMS below; the room of its training to those that paper may include from (src/layers.txt), if the
+   2. Add a line to SYSTEMS below; the room of its training to those that paper may include from (src/layers.txt), if the
       study trains; and to tests: tests/paper/figures/system_NAME.csv with all that the figure can show, its names to
       `tables` and `figures` in tests/paper/test_plots.c, tests/paper/test_NAME_study.c, the table's layout to the end of
-      `layouts` in tests/fuzz/fuzz_csv.c (declared in NAME_study.h then).
+      `layouts` in tests/fuzz/fuzz_csv.c.
 
-   The rest follows from the list: scores (system_scores.h), the table of claims (system_claims.h), strips
-   (system_strips.h) and the report. */
+   The rest follows from the list: scores, the table of claims, strips, the figure system-NAME and the report. */
 
 /* What the parts of a study share. */
 typedef struct SystemStudy {
@@ -249,6 +246,9 @@ typedef struct SystemPart {
     bool timed; /* its rows have times */
 } SystemPart;
 
+/* Draws a table of the study; width 0: it has no rows to show. */
+typedef bool PlotWrite(const CsvTable *table, PlotPage *page, Error *error);
+
 typedef struct PaperSystem {
     const char *name; /* "sain": in tables, and of files */
     const char *const
@@ -256,9 +256,8 @@ typedef struct PaperSystem {
                                    strips show, then its ablations. In a scene without their network they have no row */
     const CsvLayout *table; /* of system_NAME.csv */
     const SystemPart *parts;
-    /* Reads the system's table from claims->folder and states each claim by claim_state(). False with error set. */
-    bool (*claim)(const Claims *claims, Error *error);
-    bool (*plot)(const char *folder, PlotPage *page, Error *error);
+    ClaimRule *const *claims; /* ended by NULL */
+    PlotWrite *plot;
 } PaperSystem;
 
 #define SYSTEM_METHODS(...) ((const char *const[]){__VA_ARGS__, NULL})

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The tables of the study, and the datasets that its parts train on. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -27,48 +28,48 @@ const char *const paper_law_words[LAW_WORDS + 1] = {
     [LAW_MOMENTUM] = "momentum", [LAW_ENERGY] = "energy", [LAW_APPROACH] = "approach", [LAW_CONE] = "cone",
     [LAW_SET_ALL] = "all",       [LAW_SET_NONE] = "none", [LAW_SET_ENGINE] = "engine"};
 const char *const paper_optimizer_words[PAPER_OPTIMIZERS + 1] = {"adam", "gd", "bfgs", "lm", NULL};
-const char *const paper_phase_words[RATE_PHASES + 1] = {
+static const char *const paper_phase_words[RATE_PHASES + 1] = {
     [PHASE_IMPACT] = "impact", [PHASE_AFTER] = "after", [PHASE_REST] = "rest", [RATE_ALL] = "all"};
 static const char *const start_words[] = {"scratch", "transfer", NULL};
 
 static const CsvColumn score_columns[] = {
-    {"network", CSV_NAME, .offset = offsetof(ScoreRow, network)},
-    {"target", CSV_WORD, .offset = offsetof(ScoreRow, target), .words = pair_target_names},
-    {"optimizer", CSV_WORD, .offset = offsetof(ScoreRow, optimizer), .words = paper_optimizer_words},
-    {"iteration", CSV_NUMBER, .offset = offsetof(ScoreRow, iteration), .maximum = 1e9, .digits = INTEGER_DIGITS},
-    {"test", CSV_OPTIONAL, .offset = offsetof(ScoreRow, test), .maximum = ERROR_MOST},
-    {"train", CSV_OPTIONAL, .offset = offsetof(ScoreRow, train), .maximum = ERROR_MOST},
-    {"constant", CSV_OPTIONAL, .offset = offsetof(ScoreRow, constant), .maximum = ERROR_MOST},
+    CSV_MEMBER(ScoreRow, network, CSV_NAME),
+    CSV_MEMBER(ScoreRow, target, CSV_WORD, .words = pair_target_names),
+    CSV_MEMBER(ScoreRow, optimizer, CSV_WORD, .words = paper_optimizer_words),
+    CSV_MEMBER(ScoreRow, iteration, CSV_NUMBER, .maximum = 1e9, .digits = INTEGER_DIGITS),
+    CSV_MEMBER(ScoreRow, test, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(ScoreRow, train, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(ScoreRow, constant, CSV_OPTIONAL, .maximum = ERROR_MOST),
 };
 
 static const CsvColumn trained_columns[] = {
-    {"network", CSV_NAME, .offset = offsetof(TrainedRow, network)},
-    {"factor", CSV_NAME, .offset = offsetof(TrainedRow, factor)},
-    {"value", CSV_NAME, .offset = offsetof(TrainedRow, value), .quoted = true},
-    {"inputs", CSV_NAME, .offset = offsetof(TrainedRow, inputs)},
-    {"data", CSV_NAME, .offset = offsetof(TrainedRow, data)},
-    {"labels", CSV_NAME, .offset = offsetof(TrainedRow, labels)},
-    {"target", CSV_WORD, .offset = offsetof(TrainedRow, target), .words = pair_target_names},
-    {"layers", CSV_NAME, .offset = offsetof(TrainedRow, layers)},
-    {"hidden", CSV_NAME, .offset = offsetof(TrainedRow, hidden)},
-    {"output", CSV_NAME, .offset = offsetof(TrainedRow, output)},
-    {"scale", CSV_NAME, .offset = offsetof(TrainedRow, scale)},
-    {"optimizer", CSV_NAME, .offset = offsetof(TrainedRow, optimizer)},
-    {"loss", CSV_NAME, .offset = offsetof(TrainedRow, loss)},
-    {"iterations", CSV_OPTIONAL, .offset = offsetof(TrainedRow, iterations), .maximum = 1e9, .digits = INTEGER_DIGITS},
-    {"parameters", CSV_OPTIONAL, .offset = offsetof(TrainedRow, parameters), .maximum = 1e9, .digits = INTEGER_DIGITS},
-    {"test", CSV_OPTIONAL, .offset = offsetof(TrainedRow, test), .maximum = ERROR_MOST},
-    {"train", CSV_OPTIONAL, .offset = offsetof(TrainedRow, train), .maximum = ERROR_MOST},
-    {"constant", CSV_OPTIONAL, .offset = offsetof(TrainedRow, constant), .maximum = ERROR_MOST},
-    {"ratio", CSV_OPTIONAL, .offset = offsetof(TrainedRow, ratio), .maximum = ERROR_MOST},
-    {"accuracy", CSV_OPTIONAL, .offset = offsetof(TrainedRow, accuracy), .maximum = 1},
+    CSV_MEMBER(TrainedRow, network, CSV_NAME),
+    CSV_MEMBER(TrainedRow, factor, CSV_NAME),
+    CSV_MEMBER(TrainedRow, value, CSV_NAME, .quoted = true),
+    CSV_MEMBER(TrainedRow, inputs, CSV_NAME),
+    CSV_MEMBER(TrainedRow, data, CSV_NAME),
+    CSV_MEMBER(TrainedRow, labels, CSV_NAME),
+    CSV_MEMBER(TrainedRow, target, CSV_WORD, .words = pair_target_names),
+    CSV_MEMBER(TrainedRow, layers, CSV_NAME),
+    CSV_MEMBER(TrainedRow, hidden, CSV_NAME),
+    CSV_MEMBER(TrainedRow, output, CSV_NAME),
+    CSV_MEMBER(TrainedRow, scale, CSV_NAME),
+    CSV_MEMBER(TrainedRow, optimizer, CSV_NAME),
+    CSV_MEMBER(TrainedRow, loss, CSV_NAME),
+    CSV_MEMBER(TrainedRow, iterations, CSV_OPTIONAL, .maximum = 1e9, .digits = INTEGER_DIGITS),
+    CSV_MEMBER(TrainedRow, parameters, CSV_OPTIONAL, .maximum = 1e9, .digits = INTEGER_DIGITS),
+    CSV_MEMBER(TrainedRow, test, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(TrainedRow, train, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(TrainedRow, constant, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(TrainedRow, ratio, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(TrainedRow, accuracy, CSV_OPTIONAL, .maximum = 1),
 };
 
 static const CsvColumn rate_columns[] = {
-    {"network", CSV_NAME, .offset = offsetof(RateRow, network)},
-    {"scene", CSV_WORD, .offset = offsetof(RateRow, scene), .words = paper_scene_names},
-    {"definition", CSV_WORD, .offset = offsetof(RateRow, definition), .words = rate_definition_names},
-    {"phase", CSV_WORD, .offset = offsetof(RateRow, phase), .words = paper_phase_words},
+    CSV_MEMBER(RateRow, network, CSV_NAME),
+    CSV_MEMBER(RateRow, scene, CSV_WORD, .words = paper_scene_names),
+    CSV_MEMBER(RateRow, definition, CSV_WORD, .words = rate_definition_names),
+    CSV_MEMBER(RateRow, phase, CSV_WORD, .words = paper_phase_words),
     {"rate", CSV_OPTIONAL, .offset = offsetof(RateRow, share[RATE_NETWORK]), .maximum = 1},
     {"constant", CSV_OPTIONAL, .offset = offsetof(RateRow, share[RATE_CONSTANT]), .maximum = 1},
     {"engine1", CSV_OPTIONAL, .offset = offsetof(RateRow, share[RATE_ENGINE1]), .maximum = 1},
@@ -77,24 +78,22 @@ static const CsvColumn rate_columns[] = {
 };
 
 static const CsvColumn closed_loop_columns[] = {
-    {"network", CSV_NAME, .offset = offsetof(ClosedLoopRow, network)},
-    {"scene", CSV_WORD, .offset = offsetof(ClosedLoopRow, scene), .words = paper_scene_names},
-    {"frames_until_apart", CSV_NUMBER, .offset = offsetof(ClosedLoopRow, frames_until_apart),
-     .maximum = CLOSED_LOOP_FRAMES},
-    {"penetration_max", CSV_OPTIONAL, .offset = offsetof(ClosedLoopRow, penetration_max), .maximum = ERROR_MOST},
-    {"momentum_error", CSV_OPTIONAL, .offset = offsetof(ClosedLoopRow, momentum_error), .maximum = ERROR_MOST},
-    {"energy_ratio", CSV_OPTIONAL, .offset = offsetof(ClosedLoopRow, energy_ratio), .maximum = ERROR_MOST},
-    {"us_step", CSV_OPTIONAL, .offset = offsetof(ClosedLoopRow, us_step), .maximum = TIME_MOST},
-    {"us_step_engine", CSV_OPTIONAL, .offset = offsetof(ClosedLoopRow, us_step_engine), .minimum = 1e-6,
-     .maximum = TIME_MOST},
+    CSV_MEMBER(ClosedLoopRow, network, CSV_NAME),
+    CSV_MEMBER(ClosedLoopRow, scene, CSV_WORD, .words = paper_scene_names),
+    CSV_MEMBER(ClosedLoopRow, frames_until_apart, CSV_NUMBER, .maximum = CLOSED_LOOP_FRAMES),
+    CSV_MEMBER(ClosedLoopRow, penetration_max, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(ClosedLoopRow, momentum_error, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(ClosedLoopRow, energy_ratio, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(ClosedLoopRow, us_step, CSV_OPTIONAL, .maximum = TIME_MOST),
+    CSV_MEMBER(ClosedLoopRow, us_step_engine, CSV_OPTIONAL, .minimum = 1e-6, .maximum = TIME_MOST),
 };
 
 static const CsvColumn law_columns[] = {
-    {"laws", CSV_WORD, .offset = offsetof(LawRow, laws), .words = paper_law_words},
-    {"weight", CSV_OPTIONAL, .offset = offsetof(LawRow, weight), .maximum = 1e12},
-    {"seed", CSV_OPTIONAL, .offset = offsetof(LawRow, seed), .maximum = SEED_MOST, .digits = INTEGER_DIGITS},
-    {"test", CSV_OPTIONAL, .offset = offsetof(LawRow, test), .maximum = ERROR_MOST},
-    {"constant", CSV_OPTIONAL, .offset = offsetof(LawRow, constant), .minimum = 1e-30, .maximum = ERROR_MOST},
+    CSV_MEMBER(LawRow, laws, CSV_WORD, .words = paper_law_words),
+    CSV_MEMBER(LawRow, weight, CSV_OPTIONAL, .maximum = 1e12),
+    CSV_MEMBER(LawRow, seed, CSV_OPTIONAL, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
+    CSV_MEMBER(LawRow, test, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(LawRow, constant, CSV_OPTIONAL, .minimum = 1e-30, .maximum = ERROR_MOST),
     {"momentum", CSV_OPTIONAL, .offset = offsetof(LawRow, violation[LAW_MOMENTUM]), .maximum = ERROR_MOST},
     {"energy", CSV_OPTIONAL, .offset = offsetof(LawRow, violation[LAW_ENERGY]), .maximum = ERROR_MOST},
     {"approach", CSV_OPTIONAL, .offset = offsetof(LawRow, violation[LAW_APPROACH]), .maximum = ERROR_MOST},
@@ -103,16 +102,16 @@ static const CsvColumn law_columns[] = {
 
 static const CsvColumn transfer_columns[] = {
     {"start", CSV_WORD, .offset = offsetof(TransferRow, transfer), .words = start_words},
-    {"seed", CSV_NUMBER, .offset = offsetof(TransferRow, seed), .maximum = SEED_MOST, .digits = INTEGER_DIGITS},
-    {"launches", CSV_NUMBER, .offset = offsetof(TransferRow, launches), .minimum = 1, .maximum = PAPER_MAX_LAUNCHES,
-     .digits = INTEGER_DIGITS},
-    {"error", CSV_OPTIONAL, .offset = offsetof(TransferRow, error), .maximum = 1e6},
-    {"constant", CSV_OPTIONAL, .offset = offsetof(TransferRow, constant), .maximum = 1e6},
+    CSV_MEMBER(TransferRow, seed, CSV_NUMBER, .maximum = SEED_MOST, .digits = INTEGER_DIGITS),
+    CSV_MEMBER(TransferRow, launches, CSV_NUMBER, .minimum = 1, .maximum = PAPER_MAX_LAUNCHES,
+               .digits = INTEGER_DIGITS),
+    CSV_MEMBER(TransferRow, error, CSV_OPTIONAL, .maximum = 1e6),
+    CSV_MEMBER(TransferRow, constant, CSV_OPTIONAL, .maximum = 1e6),
 };
 
 static const CsvColumn fact_columns[] = {
-    {"key", CSV_TEXT, .offset = offsetof(FactRow, key), .maximum = VALUE_SIZE},
-    {"value", CSV_TEXT, .offset = offsetof(FactRow, value), .maximum = VALUE_SIZE},
+    CSV_MEMBER(FactRow, key, CSV_TEXT, .maximum = VALUE_SIZE),
+    CSV_MEMBER(FactRow, value, CSV_TEXT, .maximum = VALUE_SIZE),
 };
 
 #define LAYOUT(name, columns, Row, most) CSV_LAYOUT(name, columns, Row, .min_rows = 1, .max_rows = most)
@@ -149,48 +148,31 @@ static FloatRange range_of(const char *text) {
     return range;
 }
 
-static Dataset *record(const PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
+/* Launches of `count` scenes from `first` on, with bomb_x in this range, if not NULL. */
+static Dataset *record(const PaperDatasets *datasets, int first, int count, const char *bomb_x, DatasetOptions options,
+                       Error *error) {
+    const char *scenes[PAPER_SCENES];
+    for (int i = 0; i < count; i++) scenes[i] = datasets->scenes[first + i];
+    options.scenes = scenes;
+    options.scene_count = count;
+    options.seed = datasets->seed;
+    if (bomb_x != NULL) options.bomb_x = range_of(bomb_x);
+    return dataset_record(&options, NULL, error);
+}
+
+static Dataset *record_for(const PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
     const PaperDataSize *size = datasets->size;
-    const char *const scenes[PAPER_TRAINING_SCENES] = {datasets->scenes[0], datasets->scenes[1]};
-    DatasetOptions options = {.scenes = scenes,
-                              .scene_count = PAPER_TRAINING_SCENES,
-                              .view = network->view,
-                              .target = network->target,
-                              .labels = network->labels,
-                              .seed = datasets->seed};
-    switch (network->data) {
-    case DATA_RANDOM: options.random = size->random; break;
-    case DATA_MIXED:
-        options.bomb_x = range_of(size->mixed);
-        options.random = size->mixed_random;
-        break;
-    case DATA_FINE: options.bomb_x = range_of(size->fine); break;
-    case DATA_FINEST: options.bomb_x = range_of(size->finest); break;
-    case DATA_PAPER: options.bomb_x = range_of(size->paper); break;
-    default: options.bomb_x = range_of(size->swept); break;
-    }
+    DatasetOptions options = {.view = network->view, .target = network->target, .labels = network->labels};
+    const char *const ranges[PAPER_DATA] = {[DATA_SWEPT] = size->swept,
+                                            [DATA_MIXED] = size->mixed,
+                                            [DATA_FINE] = size->fine,
+                                            [DATA_FINEST] = size->finest,
+                                            [DATA_PAPER] = size->paper};
+    if (network->data == DATA_RANDOM) options.random = size->random;
+    if (network->data == DATA_MIXED) options.random = size->mixed_random;
     if (network->target == TARGET_IMPULSE)
         options.every = network->data == DATA_FINEST ? size->finest_every : size->impulse_every;
-    return dataset_record(&options, NULL, error);
-}
-
-/* Launches of one scene, with the target pair. The caller destroys it. */
-static Dataset *paper_scene_dataset(const PaperDatasets *datasets, int scene, const char *bomb_x, Error *error) {
-    const char *const scenes[1] = {datasets->scenes[scene]};
-    const DatasetOptions options = {
-        .scenes = scenes, .scene_count = 1, .bomb_x = range_of(bomb_x), .seed = datasets->seed};
-    return dataset_record(&options, NULL, error);
-}
-
-/* The same for the sweep of both training scenes, with the pairs' context (dataset.h). */
-static Dataset *paper_context_dataset(const PaperDatasets *datasets, Error *error) {
-    const char *const scenes[PAPER_TRAINING_SCENES] = {datasets->scenes[0], datasets->scenes[1]};
-    const DatasetOptions options = {.scenes = scenes,
-                                    .scene_count = PAPER_TRAINING_SCENES,
-                                    .bomb_x = range_of(datasets->size->swept),
-                                    .context = true,
-                                    .seed = datasets->seed};
-    return dataset_record(&options, NULL, error);
+    return record(datasets, 0, PAPER_TRAINING_SCENES, ranges[network->data], options, error);
 }
 
 const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
@@ -204,7 +186,7 @@ const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *networ
         error_input(error, "study", "more than %d datasets", PAPER_DATASETS_MAX);
         return NULL;
     }
-    Dataset *dataset = record(datasets, network, error);
+    Dataset *dataset = record_for(datasets, network, error);
     if (dataset == NULL) return NULL;
     datasets->items[datasets->count++] =
         (StoredDataset){network->data, network->labels, network->view, network->target, dataset};
@@ -219,7 +201,9 @@ void paper_outlook_free(PaperOutlook *outlook) {
 bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Error *error) {
     PaperLaws *part = context;
     PaperOutlook *outlook = part->outlook;
-    if (outlook->laws == NULL) outlook->laws = paper_context_dataset(outlook->datasets, error);
+    if (outlook->laws == NULL) /* with the pairs' context */
+        outlook->laws = record(outlook->datasets, 0, PAPER_TRAINING_SCENES, outlook->datasets->size->swept,
+                               (DatasetOptions){.context = true}, error);
     if (outlook->laws == NULL) return false;
     LawResult result;
     const LawStudy *study = &part->study;
@@ -241,7 +225,7 @@ bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, 
     PaperOutlook *outlook = part->outlook;
     for (int i = 0; i < 3; i++) {
         if (outlook->scenes[i] == NULL)
-            outlook->scenes[i] = paper_scene_dataset(outlook->datasets, i, outlook->bomb_x[i], error);
+            outlook->scenes[i] = record(outlook->datasets, i, 1, outlook->bomb_x[i], (DatasetOptions){0}, error);
         if (outlook->scenes[i] == NULL) return false;
     }
     const TransferData data = {outlook->scenes[0], outlook->scenes[1], outlook->scenes[2]};

@@ -16,13 +16,12 @@
 
 #include <stdio.h>
 
-/* The study of gns: how far its runs are from those that it was trained on, by rounds of messages and with noise or without;
+/* gns: how far its runs are from those that it was trained on, by rounds of messages and with noise or without;
    how the shapes of boxes last; large piles; what the paper's own size costs. */
 
 /* What a row of system_gns.csv is about. */
 typedef enum GnsMeasure { GNS_ROLLOUT, GNS_LARGE, GNS_COST } GnsMeasure;
 enum { GNS_MEASURES = GNS_COST + 1, GNS_MAX_ROWS = 1000 };
-extern const char *const gns_measure_words[GNS_MEASURES + 1]; /* rollout, large, cost */
 
 /* NAN where a number is not applicable. */
 typedef struct GnsRow {
@@ -51,13 +50,11 @@ extern const GnsVariant gns_variants[GNS_VARIANTS];
 
 extern const CsvLayout gns_table_layout;
 
-/* States the claims from the table. */
-bool gns_claims(const Claims *claims, Error *error);
+extern ClaimRule *const gns_claims[];
 
 /* A run of gns beside the run of the method that made its training data. */
 
 enum { GNS_TIMES = 9 };
-extern const double gns_times[GNS_TIMES]; /* s after the bomb's launch, rising */
 
 typedef struct GnsRollout {
     int boxes;               /* that move, with the bomb */
@@ -95,8 +92,7 @@ extern const CsvLayout subspace_study_layout;
 /* The offline engine of the claims: the converged solution of each step. */
 #define SUBSPACE_STUDY_OFFLINE "reference"
 
-/* States the claims (PaperSystem.claim). */
-bool subspace_claim(const Claims *claims, Error *error);
+extern ClaimRule *const subspace_claims[];
 
 /* The row of a method in a scene of paper_scene_names, or NULL. */
 const SubspaceStudyRow *subspace_study_find(const SubspaceStudyRow *rows, int count, int scene, const char *method);
@@ -105,8 +101,6 @@ const SubspaceStudyRow *subspace_study_find(const SubspaceStudyRow *rows, int co
    stack and of the settled pyramid. */
 
 typedef enum SainScene { SAIN_STACK, SAIN_PYRAMID, SAIN_SCENES } SainScene;
-
-extern const char *const sain_scene_words[SAIN_SCENES + 1]; /* scene files without .yaml */
 
 /* A training, scored on one scene. RMS velocity errors of all bodies that touch another, m/s. */
 typedef struct SainRow {
@@ -129,7 +123,7 @@ SainNumber sain_error, sain_engine_error, sain_constant_error;
 /* The most launches of any row. */
 int sain_most_launches(const CsvTable *table);
 
-bool sain_claims_state(const Claims *claims, Error *error);
+extern ClaimRule *const sain_claims[];
 
 /* What the memory of hybrid learns over the launches, what it costs and what it saves. */
 
@@ -165,10 +159,7 @@ typedef struct HybridRow {
 
 extern const CsvLayout hybrid_layout;
 
-/* Parts of the study, ended by a name of NULL. */
-extern const SystemPart hybrid_parts[];
-
-bool hybrid_claim(const Claims *claims, Error *error);
+extern ClaimRule *const hybrid_claims[];
 
 /* Training with laws of physics in the loss, and the engine's own violations of these laws: the paper's outlook. */
 
@@ -209,7 +200,7 @@ typedef struct Launched {
 bool launched_begin(Launched *launched, const char *path, int count, Error *error);
 void launched_free(Launched *launched);
 
-/* Rates and closed-loop runs of the networks in one scene, as parts of the study (paper_plan.h). */
+/* Rates and closed-loop runs of the networks in one scene, as parts of the study. */
 
 typedef struct PaperScoring {
     int scene;                    /* of paper_scene_names */
@@ -257,7 +248,7 @@ bool transfer_study_run(const TransferData *data, const TransferStudy *study, Tr
                         const Progress *progress, Error *error);
 
 /* Rates of right predictions. The paper does not define its "successful prediction rate" (section 4: 60 to 91%), so
-   this measures three definitions of it, on steps sampled from the engine's runs (frozen.h). Each rate is beside those
+   this measures three definitions of it, on steps sampled from the engine's runs. Each rate is beside those
    of the constant predictor and of the engine with fewer sweeps:
 
      range     both components of a pair's change of relative velocity are within 5% of their range in the engine's
@@ -423,8 +414,6 @@ extern const char *const paper_law_words[LAW_WORDS + 1];
 
 enum { PAPER_OPTIMIZERS = 4 };
 extern const char *const paper_optimizer_words[PAPER_OPTIMIZERS + 1]; /* adam, gd, bfgs, lm */
-
-extern const char *const paper_phase_words[RATE_PHASES + 1]; /* impact, after, rest, all */
 
 /* table1.csv: mean squared errors of normalised outputs during a training. */
 typedef struct ScoreRow {

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The parts of the study, in the order in which they are done. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"

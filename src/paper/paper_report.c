@@ -220,49 +220,47 @@ bool html_page_write(const HtmlPage *page, FILE *out, Error *error) {
     return markdown_memory_run(html_page_write_markdown, &writing, error);
 }
 
-/* A file that is written into memory first. */
-typedef struct Text {
-    FILE *out;
-    char *data;
+/* The text that `write` writes, to be freed. NULL with error set where it fails; `what` is without memory. */
+static char *text_print(TextWrite *write, void *context, size_t *size, const char *what, Error *error) {
+    char *text = NULL;
+    FILE *out = memory_stream(&text, size);
+    if (out == NULL) return error_memory(error, what), NULL;
+    bool written = write(context, out, error);
+    const bool whole = !ferror(out);
+    if ((fclose(out) != 0 || !whole) && written) written = error_memory(error, what);
+    if (written) return text;
+    free(text);
+    return NULL;
+}
+
+bool text_write(const char *path, TextWrite *write, void *context, Error *error) {
     size_t size;
-} Text;
-
-static bool text_begin(Text *text, Error *error) {
-    text->out = memory_stream(&text->data, &text->size);
-    return text->out != NULL || error_memory(error, "report");
+    char *text = text_print(write, context, &size, path, error);
+    const bool written = text != NULL && file_write(path, text, size, error);
+    free(text);
+    return written;
 }
 
-static bool text_end(Text *text, Error *error) {
-    const bool whole = !ferror(text->out);
-    return (fclose(text->out) == 0 && whole) || error_memory(error, "report");
+static bool fill_markdown(void *folder, FILE *out, Error *error) {
+    return template_fill((const char *)paper_report_md_in, folder, "findings/summary.csv", out, error);
 }
 
-static bool write_markdown(Text *markdown, const char *folder, Error *error) {
-    if (!text_begin(markdown, error)) return false;
-    const bool filled =
-        template_fill((const char *)paper_report_md_in, folder, "findings/summary.csv", markdown->out, error);
-    return text_end(markdown, error) && filled;
-}
+static bool fill_html(void *page, FILE *out, Error *error) { return html_page_write(page, out, error); }
 
-static bool write_html(const Text *markdown, Text *html, const char *folder, Error *error) {
-    if (!text_begin(html, error)) return false;
-    const HtmlPage page = {markdown->data, (const char *)paper_report_css, folder};
-    const bool written = html_page_write(&page, html->out, error);
-    return text_end(html, error) && written;
-}
-
-static bool store(const Text *text, const char *folder, const char *name, Error *error) {
+static bool store(const char *text, size_t size, const char *folder, const char *name, Error *error) {
     char path[PATH_MAX];
-    return file_path(path, sizeof path, error, "%s/%s", folder, name) &&
-           file_write(path, text->data, text->size, error);
+    return file_path(path, sizeof path, error, "%s/%s", folder, name) && file_write(path, text, size, error);
 }
 
 bool paper_report_write(const char *folder, Error *error) {
-    Text markdown = {NULL, NULL, 0}, html = {NULL, NULL, 0};
-    const bool written = findings_write(folder, error) && write_markdown(&markdown, folder, error) &&
-                         write_html(&markdown, &html, folder, error) && store(&markdown, folder, "report.md", error) &&
-                         store(&html, folder, "report.html", error);
-    free(markdown.data);
-    free(html.data);
+    size_t size = 0, html_size = 0;
+    if (!findings_write(folder, error)) return false;
+    char *markdown = text_print(fill_markdown, (void *)folder, &size, "report", error);
+    HtmlPage page = {markdown, (const char *)paper_report_css, folder};
+    char *html = markdown != NULL ? text_print(fill_html, &page, &html_size, "report", error) : NULL;
+    const bool written = html != NULL && store(markdown, size, folder, "report.md", error) &&
+                         store(html, html_size, folder, "report.html", error);
+    free(markdown);
+    free(html);
     return written;
 }

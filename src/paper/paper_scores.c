@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Transfer, laws in the loss, and the scores of the study's networks in a scene. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"

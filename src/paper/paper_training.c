@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The networks of the study, each trained, scored and stored. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -17,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const paper_data_names[PAPER_DATA] = {
+static const char *const paper_data_names[PAPER_DATA] = {
     "swept", "random", "mixed", "swept finely", "swept most finely", "swept as in the paper"};
 
 #define SEARCHED(form) \
@@ -169,13 +170,11 @@ static double change_of(const Dataset *dataset, int64_t row, int outputs, int k)
     return (double)(outputs == count ? changes[k] : changes[k + 3] - changes[k]);
 }
 
-static bool held_out(const Dataset *dataset, int64_t row) { return dataset->launch_test[dataset->launch[row]] != 0; }
-
 static void find_ranges(const Dataset *dataset, int outputs, double range[PAIR_CHANGES]) {
     for (int k = 0; k < outputs; k++) {
         double least = INFINITY, most = -INFINITY;
         for (int64_t row = 0; row < dataset->rows; row++) {
-            if (held_out(dataset, row)) continue;
+            if (dataset_is_test(dataset, row)) continue;
             least = fmin(least, change_of(dataset, row, outputs, k));
             most = fmax(most, change_of(dataset, row, outputs, k));
         }
@@ -191,7 +190,7 @@ bool paper_accuracy(const Network *network, const Dataset *dataset, double *accu
     find_ranges(dataset, outputs, range);
     int64_t rows = 0, right = 0;
     for (int64_t row = 0; row < dataset->rows; row++) {
-        if (!held_out(dataset, row)) continue;
+        if (!dataset_is_test(dataset, row)) continue;
         network_predict(network, dataset->inputs + row * inputs, scratch, output);
         bool near = true;
         for (int k = 0; k < outputs; k++)

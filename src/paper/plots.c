@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Three definitions of a right prediction side by side; impacts above, rest below. */
+/* The plots of the study: rates of right predictions, losses, laws; and the drawing of all plots. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -17,31 +17,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const paper_scene_titles[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid, settled"};
+
+/* Three definitions of a right prediction side by side; impacts above, rest below. */
+
 enum {
     DEFINITIONS = RATE_DEFINITIONS,
-    PLOT_RATES_NETWORKS = 4,
+    RATED = 4, /* networks */
     SWEEPS = 3,
-    ENGINES = PLOT_RATES_NETWORKS,
-    PLOT_RATES_CONSTANT = ENGINES + SWEEPS,
+    ENGINES = RATED,
+    RATES_CONSTANT = ENGINES + SWEEPS,
     BAND,
-    PLOT_RATES_SERIES
+    RATES_SERIES
 };
 
-enum { PHASES_SHOWN = 2, PLOT_RATES_PANELS = PHASES_SHOWN * DEFINITIONS };
+enum { PHASES_SHOWN = 2 };
 static const int phases[PHASES_SHOWN] = {PHASE_IMPACT, PHASE_REST};
-static const char *const plot_rates_networks[PLOT_RATES_NETWORKS] = {"baseline", "target-net", "target-impulse",
-                                                                     "contact-net"};
-
-static const PlotGrid plot_rates_grid = {.width = FIGURE_PAGE_WIDTH,
-                                         .height = 105.5,
-                                         .left = 13.5,
-                                         .right = 2,
-                                         .bottom = 20.5,
-                                         .top = 6,
-                                         .columns = DEFINITIONS,
-                                         .rows = PHASES_SHOWN,
-                                         .gap = 4,
-                                         .row_gap = 5};
+static const char *const rated[RATED] = {"baseline", "target-net", "target-impulse", "contact-net"};
 
 /* The paper's prediction rates, %. */
 static const double paper_least = 60, paper_most = 91;
@@ -54,17 +46,16 @@ typedef struct Rates {
 
 static int find_network(const char *name) {
     int i = 0;
-    while (i < PLOT_RATES_NETWORKS && strcmp(plot_rates_networks[i], name) != 0) i++;
+    while (i < RATED && strcmp(rated[i], name) != 0) i++;
     return i;
 }
 
-static void plot_rates_panel_of(const void *of, int panel, PlotPanel *out) {
+static void rates_panel(const void *of, int panel, PlotPanel *out) {
     static const char *const titles[DEFINITIONS] = {"Within 5% of the output's range", "Within 0.1 m/s",
                                                     "Bodies right, by the reference"};
     static const char *const labels[PHASES_SHOWN] = {"Right at impacts (%)", "Right at rest (%)"};
     const Rates *rates = of;
     const int phase = panel / DEFINITIONS;
-    out->box = plot_grid_box(&plot_rates_grid, panel);
     out->title = phase == 0 ? titles[panel] : NULL;
     out->x = plot_linear_axis(-0.5, PAPER_SCENES - 0.5, phase == 0 ? NULL : "");
     out->x.ticks = &rates->scenes;
@@ -72,17 +63,17 @@ static void plot_rates_panel_of(const void *of, int panel, PlotPanel *out) {
     out->y.ticks = &rates->shares;
 }
 
-static PlotLook plot_rates_look_of(const void *of, int series) {
+static PlotLook rates_look(const void *of, int series) {
     static const char *const engines[SWEEPS] = {"engine, 1 sweep", "engine, 4 sweeps", "engine, 10 sweeps"};
     (void)of;
-    if (series < PLOT_RATES_NETWORKS) {
-        PlotLook look = plot_look(series, plot_rates_networks[series]);
+    if (series < RATED) {
+        PlotLook look = plot_look(series, rated[series]);
         look.stems = true;
         look.line = 2.5;
         return look;
     }
     if (series == BAND) return (PlotLook){.name = "the paper's 60 to 91%", .style = {.colour = 0xE4E4E4}, .band = true};
-    const bool constant = series == PLOT_RATES_CONSTANT;
+    const bool constant = series == RATES_CONSTANT;
     return (PlotLook){.name = constant ? "predicting the mean" : engines[series - ENGINES],
                       .style = {.symbol = constant ? PLOT_LEVEL : PLOT_PLUS + series - ENGINES,
                                 .colour = constant ? 0x000000 : PLOT_GREY},
@@ -91,26 +82,23 @@ static PlotLook plot_rates_look_of(const void *of, int series) {
 }
 
 /* Networks are side by side within their scene; each has its own constant predictor and engine. */
-static bool plot_rates_point_of(const void *of, int panel, int series, int i, PlotPoint *out) {
+static bool rates_point(const void *of, int panel, int series, int i, PlotPoint *out) {
     const Rates *rates = of;
     const RateRow *row = &rates->rows[i];
-    if (series == BAND) {
-        *out = (PlotPoint){i == 0 ? -INFINITY : INFINITY, i == 0 ? paper_least : paper_most, 0};
-        return i < 2;
-    }
+    if (series == BAND) return plot_level(out, i, i == 0 ? paper_least : paper_most);
     if (row->definition != panel % DEFINITIONS || row->phase != phases[panel / DEFINITIONS]) return false;
     const int network = find_network(row->network);
-    const int share = series < PLOT_RATES_NETWORKS    ? RATE_NETWORK
-                      : series == PLOT_RATES_CONSTANT ? RATE_CONSTANT
-                                                      : RATE_ENGINE1 + series - ENGINES;
-    *out = (PlotPoint){row->scene + 0.2 * (network - (PLOT_RATES_NETWORKS - 1) / 2.0), 100 * row->share[share], 0};
-    return series >= PLOT_RATES_NETWORKS || network == series;
+    const int share = series < RATED             ? RATE_NETWORK
+                      : series == RATES_CONSTANT ? RATE_CONSTANT
+                                                 : RATE_ENGINE1 + series - ENGINES;
+    *out = (PlotPoint){row->scene + 0.2 * (network - (RATED - 1) / 2.0), 100 * row->share[share], 0};
+    return series >= RATED || network == series;
 }
 
 static void keep_shown(Rates *rates, RateRow *rows, int count) {
     rates->rows = rows;
     for (int i = 0; i < count; i++) {
-        if (find_network(rows[i].network) == PLOT_RATES_NETWORKS) continue;
+        if (find_network(rows[i].network) == RATED) continue;
         if (rows[i].phase == PHASE_IMPACT || rows[i].phase == PHASE_REST) rows[rates->count++] = rows[i];
     }
 }
@@ -125,65 +113,43 @@ static void make_ticks(Rates *rates) {
     }
 }
 
-static bool plot_rates(const char *folder, PlotPage *page, Error *error) {
-    static const char caption[] =
-        "Share of right predictions in each scene by three definitions, at impacts and at rest. Beside each network: "
-        "the constant predictor (bar) and the engine with 1, 4 and 10 sweeps (crosses). Grey band: the paper's 60 to "
-        "91%.";
+static bool plot_rates(const CsvTable *table, PlotPage *page, Error *error) {
     Rates rates = {0};
-    CsvTable table;
-    if (!csv_table_read_from(&table, folder, &paper_rate_layout, error)) return false;
-    keep_shown(&rates, table.rows, table.count);
+    keep_shown(&rates, table->rows, table->count);
     make_ticks(&rates);
-    const PlotSpec spec = {.of = &rates,
-                           .width = plot_rates_grid.width,
-                           .height = plot_rates_grid.height,
-                           .panels = PLOT_RATES_PANELS,
-                           .series = PLOT_RATES_SERIES,
-                           .rows = rates.count,
-                           .panel = plot_rates_panel_of,
-                           .look = plot_rates_look_of,
-                           .point = plot_rates_point_of,
-                           .legend_columns = PLOT_RATES_NETWORKS,
-                           .legend_left = plot_rates_grid.left,
-                           .legend_top = 6 + LEGEND_ROW,
-                           .caption = caption};
-    const bool drawn = rates.count == 0 || plot_draw(page, &spec, folder, error);
-    csv_table_free(&table);
-    return drawn;
+    const PlotSpec spec = {
+        .of = &rates,
+        .grid = {FIGURE_PAGE_WIDTH, 105.5, 13.5, 2, 20.5, 6, DEFINITIONS, PHASES_SHOWN, .gap = 4, .row_gap = 5},
+        .panels = PHASES_SHOWN * DEFINITIONS,
+        .series = RATES_SERIES,
+        .rows = rates.count,
+        .panel = rates_panel,
+        .look = rates_look,
+        .point = rates_point,
+        .legend_columns = RATED,
+        .legend_left = 13.5,
+        .legend_top = 6 + LEGEND_ROW,
+        .caption = "Share of right predictions in each scene by three definitions, at impacts and at rest. Beside each "
+                   "network: the constant predictor (bar) and the engine with 1, 4 and 10 sweeps (crosses). Grey band: "
+                   "the paper's 60 to 91%."};
+    return rates.count == 0 || plot_draw(page, &spec, table->csv.path, error);
 }
 
 /* Three panels, one per target: the paper does not state which of them its Table 1 is about. */
 
-enum {
-    PLOT_LOSS_PANELS = 3,
-    PLOT_LOSS_NETWORKS = 12,
-    PUBLISHED = PAPER_OPTIMIZERS,
-    PLOT_LOSS_CONSTANT,
-    PLOT_LOSS_SERIES
-};
+enum { LOSS_PANELS = 3, LOSS_NETWORKS = 12, PUBLISHED = PAPER_OPTIMIZERS, LOSS_CONSTANT, LOSS_SERIES };
 
 /* The networks that differ from the baseline only in target or optimizer: one of each pair. */
-static const char *const plot_loss_networks[PLOT_LOSS_NETWORKS] = {
+static const char *const loss_networks[LOSS_NETWORKS] = {
     "baseline", "target-net", "target-impulse", "optimizer-gd", "optimizer-bfgs", "optimizer-lm",
     "net-gd",   "net-bfgs",   "net-lm",         "impulse-gd",   "impulse-bfgs",   "impulse-lm"};
-
-static const PlotGrid plot_loss_grid = {.width = FIGURE_PAGE_WIDTH,
-                                        .height = 72,
-                                        .left = 13.5,
-                                        .right = 2,
-                                        .bottom = 17.5,
-                                        .top = 6,
-                                        .columns = PLOT_LOSS_PANELS,
-                                        .rows = 1,
-                                        .gap = 4.5};
 
 /* Limits of the axis: a training that diverged would squeeze the others. */
 static const double least_error = 1e-8, most_error = 10;
 
 static bool is_shown(const ScoreRow *row) {
-    for (int i = 0; i < PLOT_LOSS_NETWORKS; i++)
-        if (strcmp(row->network, plot_loss_networks[i]) == 0) return row->target < PLOT_LOSS_PANELS;
+    for (int i = 0; i < LOSS_NETWORKS; i++)
+        if (strcmp(row->network, loss_networks[i]) == 0) return row->target < LOSS_PANELS;
     return false;
 }
 
@@ -199,9 +165,9 @@ typedef struct Loss {
     int count;
 } Loss;
 
-static void plot_loss_panel_of(const void *of, int panel, PlotPanel *out) {
-    static const char *const titles[PLOT_LOSS_PANELS] = {"Pair: change by its own impulses",
-                                                         "Net: change by all impulses", "Impulse: change in one sweep"};
+static void loss_panel(const void *of, int panel, PlotPanel *out) {
+    static const char *const titles[LOSS_PANELS] = {"Pair: change by its own impulses", "Net: change by all impulses",
+                                                    "Impulse: change in one sweep"};
     const Loss *loss = of;
     PlotRange x = plot_range(), y = plot_range();
     for (int i = 0; i < PUBLISHED_SCORES; i++)
@@ -211,16 +177,15 @@ static void plot_loss_panel_of(const void *of, int panel, PlotPanel *out) {
         plot_range_include(&y, loss->rows[i].test);
         plot_range_include(&y, loss->rows[i].constant);
     }
-    out->box = plot_grid_box(&plot_loss_grid, panel);
     out->title = titles[panel];
     out->x = plot_range_axis(x, 1, 1e6, true, "Training iteration");
     out->y = plot_range_axis(y, least_error, most_error, false, panel == 0 ? "Mean squared error" : NULL);
 }
 
-static PlotLook plot_loss_look_of(const void *of, int series) {
+static PlotLook loss_look(const void *of, int series) {
     static const char *const optimizers[] = {"Adam", "gradient descent", "BFGS", "Levenberg-Marquardt"};
     (void)of;
-    if (series == PLOT_LOSS_CONSTANT) return plot_look_dashed("predicting the mean");
+    if (series == LOSS_CONSTANT) return plot_look_dashed("predicting the mean");
     if (series < PAPER_OPTIMIZERS) return plot_look(series, optimizers[series]);
     PlotLook look = plot_look(7, "the paper's Table 1");
     look.style.colour = look.style.ink = 0x000000;
@@ -235,13 +200,10 @@ static double constant_of(const Loss *loss, int panel) {
     return NAN;
 }
 
-static bool plot_loss_point_of(const void *of, int panel, int series, int i, PlotPoint *out) {
+static bool loss_point(const void *of, int panel, int series, int i, PlotPoint *out) {
     const Loss *loss = of;
     const ScoreRow *row = &loss->rows[i];
-    if (series == PLOT_LOSS_CONSTANT) {
-        *out = (PlotPoint){i == 0 ? -INFINITY : INFINITY, constant_of(loss, panel), 0};
-        return i < 2;
-    }
+    if (series == LOSS_CONSTANT) return plot_level(out, i, constant_of(loss, panel));
     if (series == PUBLISHED) {
         if (i < PUBLISHED_SCORES) *out = (PlotPoint){published_scores[i].iteration, published_scores[i].test, 0};
         return i < PUBLISHED_SCORES;
@@ -251,52 +213,38 @@ static bool plot_loss_point_of(const void *of, int panel, int series, int i, Plo
     return row->target == panel && row->optimizer == series;
 }
 
-static bool plot_loss(const char *folder, PlotPage *page, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, folder, &paper_score_layout, error)) return false;
-    ScoreRow *rows = table.rows;
+static bool plot_loss(const CsvTable *table, PlotPage *page, Error *error) {
+    ScoreRow *rows = table->rows;
     Loss loss = {.rows = rows};
-    for (int i = 0; i < table.count; i++)
+    for (int i = 0; i < table->count; i++)
         if (is_shown(&rows[i])) rows[loss.count++] = rows[i];
     if (loss.count > 0) qsort(rows, (size_t)loss.count, sizeof *rows, compare_rows);
     const PlotSpec spec = {
         .of = &loss,
-        .width = plot_loss_grid.width,
-        .height = plot_loss_grid.height,
-        .panels = PLOT_LOSS_PANELS,
-        .series = PLOT_LOSS_SERIES,
+        .grid = {FIGURE_PAGE_WIDTH, 72, 13.5, 2, 17.5, 6, LOSS_PANELS, 1, .gap = 4.5},
+        .panels = LOSS_PANELS,
+        .series = LOSS_SERIES,
         .rows = loss.count + PUBLISHED_SCORES,
-        .panel = plot_loss_panel_of,
-        .look = plot_loss_look_of,
-        .point = plot_loss_point_of,
+        .panel = loss_panel,
+        .look = loss_look,
+        .point = loss_point,
         .legend_columns = 3,
-        .legend_left = plot_loss_grid.left,
+        .legend_left = 13.5,
         .legend_top = 6,
         .caption = "Mean squared error of the normalised outputs on test rows over training iterations (0: before "
                    "training), for each reading of the target. Dashed: the constant predictor. The paper's own errors "
                    "are in each panel, as the paper does not state which target they are for."};
-    const bool drawn = loss.count == 0 || plot_draw(page, &spec, folder, error);
-    csv_table_free(&table);
-    return drawn;
+    return loss.count == 0 || plot_draw(page, &spec, table->csv.path, error);
 }
 
 /* Laws in the loss: the test error on the left, the violation of each law on the right. */
 
 /* Panels: the error, then each law. Series: all laws and each law alone; the reference. */
-enum { ERROR_PANEL, PLOT_LAWS_PANELS = 1 + LAWS, REFERENCE = LAW_SET_ALL + 1, PLOT_LAWS_SERIES };
+enum { ERROR_PANEL, LAW_PANELS = 1 + LAWS, REFERENCE = LAW_SET_ALL + 1, LAW_SERIES };
 
-/* mm */
-static const double height = 97, left = 13.5, error_width = 56, bottom = 17.8, top = 6;
-static const PlotGrid small = {.width = FIGURE_PAGE_WIDTH,
-                               .height = 97,
-                               .left = 84,
-                               .right = 3,
-                               .bottom = 17.8,
-                               .top = 6,
-                               .columns = 2,
-                               .rows = LAWS / 2,
-                               .gap = 10,
-                               .row_gap = 7.5};
+/* The panels of the laws; the one of the error is as high as all of them. */
+static const PlotGrid law_grid = {FIGURE_PAGE_WIDTH, 97, 84, 3, 17.8, 6, 2, LAWS / 2, .gap = 10, .row_gap = 7.5};
+static const double error_left = 13.5, error_width = 56; /* mm */
 
 /* Limits of violations; and the lowest one shown, as a share of the highest. */
 static const double least_violation = 1e-12, most_violation = 1e12, share_shown = 1e-6;
@@ -338,22 +286,23 @@ static PlotAxis axis_of(const CsvTable *table, int panel) {
     return axis;
 }
 
-static void plot_laws_panel_of(const void *of, int panel, PlotPanel *out) {
-    static const char *const titles[PLOT_LAWS_PANELS] = {"Error", "Momentum (kg m/s)", "Energy (J)", "Approach (m/s)",
-                                                         "Friction cone (N s)"};
+static void laws_panel(const void *of, int panel, PlotPanel *out) {
+    static const char *const titles[LAW_PANELS] = {"Error", "Momentum (kg m/s)", "Energy (J)", "Approach (m/s)",
+                                                   "Friction cone (N s)"};
     const CsvTable *table = of;
     const LawRow *rows = table->rows;
     PlotRange weights = plot_range();
     for (int i = 0; i < table->count; i++)
         if (rows[i].laws <= LAW_SET_ALL) plot_range_include(&weights, rows[i].weight);
-    out->box = panel == ERROR_PANEL ? (PlotBox){left, bottom, error_width, height - bottom - top}
-                                    : plot_grid_box(&small, panel - 1);
+    out->box = panel == ERROR_PANEL ? (PlotBox){error_left, law_grid.bottom, error_width,
+                                                law_grid.height - law_grid.bottom - law_grid.top}
+                                    : plot_grid_box(&law_grid, panel - 1);
     out->title = titles[panel];
     out->x = plot_range_axis(weights, 1e-9, 1e9, true, panel == 1 || panel == 2 ? NULL : "Weight in the loss");
     out->y = axis_of(table, panel);
 }
 
-static PlotLook plot_laws_look_of(const void *of, int series) {
+static PlotLook laws_look(const void *of, int series) {
     static const char *const names[] = {"momentum", "energy", "approach", "friction cone", "all four laws"};
     (void)of;
     if (series == REFERENCE) return plot_look_dashed("predicting the mean / the engine");
@@ -373,102 +322,94 @@ static double reference_of(const CsvTable *table, int panel) {
 }
 
 /* Each line begins with the networks without laws, at weight 0. */
-static bool plot_laws_point_of(const void *of, int panel, int series, int i, PlotPoint *out) {
+static bool laws_point(const void *of, int panel, int series, int i, PlotPoint *out) {
     const CsvTable *table = of;
     const LawRow *row = (const LawRow *)table->rows + i;
-    if (series == REFERENCE) {
-        *out = (PlotPoint){i == 0 ? -INFINITY : INFINITY, reference_of(table, panel), 0};
-        return i < 2;
-    }
+    if (series == REFERENCE) return plot_level(out, i, reference_of(table, panel));
     const bool none = row->laws == LAW_SET_NONE;
     *out = (PlotPoint){none ? 0 : row->weight, measure(row, panel), isnan(row->seed) ? 0 : row->seed};
     return is_in(series, panel) && is_used(table, series) && (none || row->laws == series);
 }
 
-static bool plot_laws(const char *folder, PlotPage *page, Error *error) {
-    CsvTable table;
+static bool plot_laws(const CsvTable *table, PlotPage *page, Error *error) {
     bool used = false;
-    if (!csv_table_read_from(&table, folder, &paper_law_layout, error)) return false;
     const PlotSpec spec = {
-        .of = &table,
-        .width = small.width,
-        .height = height,
-        .panels = PLOT_LAWS_PANELS,
-        .series = PLOT_LAWS_SERIES,
-        .rows = table.count,
-        .panel = plot_laws_panel_of,
-        .look = plot_laws_look_of,
-        .point = plot_laws_point_of,
+        .of = table,
+        .grid = law_grid,
+        .panels = LAW_PANELS,
+        .series = LAW_SERIES,
+        .rows = table->count,
+        .panel = laws_panel,
+        .look = laws_look,
+        .point = laws_point,
         .legend_columns = 3,
-        .legend_left = left,
+        .legend_left = error_left,
         .legend_top = 6.2,
         .caption =
             "Laws of physics in the loss, over their weight (0: without). Left: test error over that of the "
             "constant predictor. Right: mean violation of each law on the test rows, with only that law and with "
             "all four; dashed: the engine's own solution. Thin: one seed each; thick: their median."};
-    for (int line = 0; line <= LAW_SET_ALL; line++) used |= is_used(&table, line);
-    const bool drawn = !used || plot_draw(page, &spec, folder, error);
-    csv_table_free(&table);
-    return drawn;
+    for (int line = 0; line <= LAW_SET_ALL; line++) used |= is_used(table, line);
+    return !used || plot_draw(page, &spec, table->csv.path, error);
 }
 
-/* All tables are read before the first plot is drawn. */
-
+/* A plot in progress. All tables are read before the first picture is written. */
 typedef struct Plot {
-    const char *name;
-    bool (*write)(const char *folder, PlotPage *page, Error *error);
+    char name[64];
+    const CsvLayout *layout;
+    PlotWrite *write;
     PlotPage page;
 } Plot;
 
 static const Plot results[] = {
-    {.name = "loss", .write = plot_loss},   {.name = "factors", .write = plot_factors},
-    {.name = "rates", .write = plot_rates}, {.name = "closed-loop", .write = plot_closed_loop},
-    {.name = "laws", .write = plot_laws},   {.name = "transfer", .write = plot_transfer},
+    {.name = "loss", .layout = &paper_score_layout, .write = plot_loss},
+    {.name = "factors", .layout = &paper_trained_layout, .write = plot_factors},
+    {.name = "rates", .layout = &paper_rate_layout, .write = plot_rates},
+    {.name = "closed-loop", .layout = &paper_closed_loop_layout, .write = plot_closed_loop},
+    {.name = "laws", .layout = &paper_law_layout, .write = plot_laws},
+    {.name = "transfer", .layout = &paper_transfer_layout, .write = plot_transfer},
 };
 
-enum { RESULTS = sizeof results / sizeof *results, NAME_SIZE = 64 };
+enum { RESULTS = sizeof results / sizeof *results };
 
-/* The plots in progress: of the results, then of the systems. */
-typedef struct Plots {
-    int count;
-    Plot *items;              /* [count] */
-    char (*names)[NAME_SIZE]; /* [count] of the systems' */
-} Plots;
-
-static bool plots_begin(Plots *plots, Error *error) {
+/* Those of the results, then those of the systems. */
+static Plot *make_plots(int *count) {
     int systems = 0;
     while (paper_systems[systems] != NULL) systems++;
-    plots->items = calloc(RESULTS + (size_t)systems, sizeof *plots->items);
-    plots->names = calloc(RESULTS + (size_t)systems, sizeof *plots->names);
-    if (plots->items == NULL || plots->names == NULL) return error_memory(error, "figures");
-    plots->count = RESULTS + systems;
-    memcpy(plots->items, results, sizeof results);
+    Plot *plots = calloc(RESULTS + (size_t)systems, sizeof *plots);
+    if (plots == NULL) return NULL;
+    memcpy(plots, results, sizeof results);
     for (int i = 0; i < systems; i++) {
-        char *name = plots->names[i];
-        snprintf(name, NAME_SIZE, "system-%s", paper_systems[i]->name);
-        plots->items[RESULTS + i] = (Plot){.name = name, .write = paper_systems[i]->plot};
+        Plot *plot = &plots[RESULTS + i];
+        snprintf(plot->name, sizeof plot->name, "system-%s", paper_systems[i]->name);
+        plot->layout = paper_systems[i]->table;
+        plot->write = paper_systems[i]->plot;
     }
-    return true;
+    *count = RESULTS + systems;
+    return plots;
 }
 
-static void plots_end(Plots *plots) {
-    for (int i = 0; i < plots->count; i++) plot_page_free(&plots->items[i].page);
-    free(plots->items);
-    free(plots->names);
+static bool make_page(Plot *plot, const char *folder, Error *error) {
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, plot->layout, error)) return false;
+    const bool made = plot->write(&table, &plot->page, error);
+    csv_table_free(&table);
+    return made;
 }
 
 bool plots_draw(const char *folder, const Progress *progress, Error *error) {
-    Plots plots = {0};
     char path[PATH_MAX];
-    bool done = file_path(path, sizeof path, error, "%s/figures", folder) && plots_begin(&plots, error);
-    for (int i = 0; done && i < plots.count; i++) done = plots.items[i].write(folder, &plots.items[i].page, error);
+    int count = 0;
+    if (!file_path(path, sizeof path, error, "%s/figures", folder)) return false;
+    Plot *plots = make_plots(&count);
+    bool done = plots != NULL || error_memory(error, "figures");
+    for (int i = 0; done && i < count; i++) done = make_page(&plots[i], folder, error);
     done = done && file_make_directory(path, error);
-    for (int i = 0; done && i < plots.count; i++) {
-        Plot *plot = &plots.items[i];
-        done = progress_report(progress, i, plots.count) ||
-               error_interrupted(error, path, "stopped; the tables are finished");
-        done = done && plot_page_write(&plot->page, path, "", plot->name, error);
-    }
-    plots_end(&plots);
+    for (int i = 0; done && i < count; i++)
+        done = (progress_report(progress, i, count) ||
+                error_interrupted(error, path, "stopped; the tables are finished")) &&
+               plot_page_write(&plots[i].page, path, "", plots[i].name, error);
+    for (int i = 0; i < count; i++) plot_page_free(&plots[i].page);
+    free(plots);
     return done;
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Two panels: the error of sain and its ablations over the number of launches of the stack, on the stack and on the
-   settled pyramid. */
+/* The plots of the systems that the paper cites. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "figures/sketch.h"
@@ -13,63 +12,52 @@
 #include <math.h>
 #include <string.h>
 
-enum { PLOT_SAIN_ENGINE = RELATION_FORMS, CONSTANT, PLOT_SAIN_SERIES };
+/* Two panels: the error of sain and its ablations over the number of launches of the stack, on the stack and on the
+   settled pyramid. */
 
-static const PlotGrid plot_sain_grid = {.width = FIGURE_PAGE_WIDTH,
-                                        .height = 68,
-                                        .left = 14,
-                                        .right = 2,
-                                        .bottom = 22,
-                                        .top = 7,
-                                        .columns = SAIN_SCENES,
-                                        .rows = 1,
-                                        .gap = 14};
+enum { SAIN_ENGINE = RELATION_FORMS, SAIN_CONSTANT, SAIN_SERIES };
 
-static PlotLook plot_sain_look_of(const void *of, int series) {
+static PlotLook sain_look(const void *of, int series) {
     static const char *const names[RELATION_FORMS] = {"sain", "engine=off: network alone", "engine=shuffled"};
     (void)of;
-    if (series == PLOT_SAIN_ENGINE) return plot_look_dashed("engine alone, 10 sweeps");
-    if (series == CONSTANT) return plot_look_thin(plot_look(RELATION_FORMS, "mean correction"));
+    if (series == SAIN_ENGINE) return plot_look_dashed("engine alone, 10 sweeps");
+    if (series == SAIN_CONSTANT) return plot_look_thin(plot_look(RELATION_FORMS, "mean correction"));
     return plot_look(series, names[series]);
 }
 
 /* Row i: 2^i launches. */
-static bool plot_sain_point_of(const void *of, int panel, int series, int i, PlotPoint *out) {
-    SainNumber *const number = series == PLOT_SAIN_ENGINE ? sain_engine_error
-                               : series == CONSTANT       ? sain_constant_error
-                                                          : sain_error;
+static bool sain_point(const void *of, int panel, int series, int i, PlotPoint *out) {
+    SainNumber *const number = series == SAIN_ENGINE     ? sain_engine_error
+                               : series == SAIN_CONSTANT ? sain_constant_error
+                                                         : sain_error;
     const RelationForm form = series < RELATION_FORMS ? (RelationForm)series : RELATION_ENGINE;
     *out = (PlotPoint){1 << i, sain_median(of, (SainScene)panel, form, 1 << i, number), 0};
     return 1 << i <= SAIN_MAX_LAUNCHES;
 }
 
-static void plot_sain_panel_of(const void *of, int panel, PlotPanel *out) {
+static void sain_panel(const void *of, int panel, PlotPanel *out) {
     static const char *const titles[SAIN_SCENES] = {"stack, held-out launches", "settled pyramid, never trained on"};
     PlotPoint point;
     double most = 1e-6;
-    for (int series = 0; series < PLOT_SAIN_SERIES; series++)
-        for (int i = 0; plot_sain_point_of(of, panel, series, i, &point); i++)
+    for (int series = 0; series < SAIN_SERIES; series++)
+        for (int i = 0; sain_point(of, panel, series, i, &point); i++)
             most = fmax(most, point.y); /* of a number and NAN, the number */
-    out->box = plot_grid_box(&plot_sain_grid, panel);
     out->title = titles[panel];
     out->x = plot_linear_axis(0.8, 1.25 * sain_most_launches(of), "Launches of the stack");
     out->x.scale = PLOT_DOUBLING;
     out->y = plot_linear_axis(0, most * 1.08, panel == 0 ? "RMS velocity error (m/s)" : "");
 }
 
-bool plot_sain(const char *folder, PlotPage *page, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, folder, &sain_layout, error)) return false;
+bool plot_sain(const CsvTable *table, PlotPage *page, Error *error) {
     const PlotSpec spec = {
-        .of = &table,
-        .width = plot_sain_grid.width,
-        .height = plot_sain_grid.height,
+        .of = table,
+        .grid = {FIGURE_PAGE_WIDTH, 68, 14, 2, 22, 7, SAIN_SCENES, 1, .gap = 14},
         .panels = SAIN_SCENES,
-        .series = PLOT_SAIN_SERIES,
+        .series = SAIN_SERIES,
         .rows = 31,
-        .panel = plot_sain_panel_of,
-        .look = plot_sain_look_of,
-        .point = plot_sain_point_of,
+        .panel = sain_panel,
+        .look = sain_look,
+        .point = sain_point,
         .legend_columns = 3,
         .legend_left = 6,
         .legend_top = 8,
@@ -77,35 +65,29 @@ bool plot_sain(const char *folder, PlotPage *page, Error *error) {
             "Velocity error at the impacts of held-out launches, over the number of launches of the stack that "
             "sain and its ablations were trained on: left on the stack, right on the settled pyramid, which none "
             "of them has seen. Medians over seeds."};
-    const bool drawn = plot_draw(page, &spec, folder, error);
-    csv_table_free(&table);
-    return drawn;
+    return plot_draw(page, &spec, table->csv.path, error);
 }
 
 /* A panel for each scene: distance from the offline engine's runs over the time of a step. Subspace with its floor and its
    linear term, and the engines that it replaces. */
-
-/* mm */
-static const double panel_height = 38, row_gap = 14, plot_subspace_bottom = 23.5, plot_subspace_top = 6;
 
 enum { COLUMNS = 2 };
 
 /* m: below this a distance is rounding; the runs were recorded by interior, whose own distance is 0. */
 static const double least_distance = 1e-4;
 
-typedef enum Series { NETWORK, LINEAR, FLOOR, PLOT_SUBSPACE_ENGINE, INTERIOR, CONVERGED, LOOKS } Series;
+typedef enum Series { NETWORK, LINEAR, FLOOR, ENGINE, INTERIOR, CONVERGED, LOOKS } Series;
 
 static const char *const engines[LOOKS] = {
-    [PLOT_SUBSPACE_ENGINE] = "engine", [INTERIOR] = SUBSPACE_OFFLINE, [CONVERGED] = SUBSPACE_STUDY_OFFLINE};
+    [ENGINE] = "engine", [INTERIOR] = SUBSPACE_OFFLINE, [CONVERGED] = SUBSPACE_STUDY_OFFLINE};
 
-typedef struct PlotSubspacePicture {
+typedef struct Distances {
     const SubspaceStudyRow *rows;
     int count, panels;
     int scenes[PAPER_SCENES]; /* [panels] that have rows */
-    PlotGrid grid;
-} PlotSubspacePicture;
+} Distances;
 
-static PlotLook plot_subspace_look_of(const void *of, int series) {
+static PlotLook subspace_look(const void *of, int series) {
     static const char *const names[LOOKS] = {"subspace, with 8, 32 and 128 components", "its linear term alone",
                                              "floor: what the components lose",         "engine",
                                              "interior, which recorded the runs",       "converged solution"};
@@ -120,30 +102,28 @@ static double distance_of(const SubspaceStudyRow *row, int series) {
     return fmax(series == LINEAR ? row->linear_rms : series == FLOOR ? row->floor_rms : row->rms, least_distance);
 }
 
-static bool plot_subspace_point_of(const void *of, int panel, int series, int i, PlotPoint *out) {
-    const PlotSubspacePicture *picture = of;
+static bool subspace_point(const void *of, int panel, int series, int i, PlotPoint *out) {
+    const Distances *picture = of;
     const SubspaceStudyRow *row = &picture->rows[i];
     *out = (PlotPoint){row->us_step, distance_of(row, series), 0};
     return row->scene == picture->scenes[panel];
 }
 
-static void plot_subspace_panel_of(const void *of, int panel, PlotPanel *out) {
-    static const char *const titles[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid, settled"};
-    const PlotSubspacePicture *picture = of;
+static void subspace_panel(const void *of, int panel, PlotPanel *out) {
+    const Distances *picture = of;
     PlotRange time = plot_range(), distance = plot_range();
     for (int i = 0; i < picture->count; i++) {
         plot_range_include(&time, picture->rows[i].us_step);
         for (int series = 0; series < LOOKS; series++)
             plot_range_include(&distance, distance_of(&picture->rows[i], series));
     }
-    out->box = plot_grid_box(&picture->grid, panel);
-    out->title = titles[picture->scenes[panel]];
+    out->title = paper_scene_titles[picture->scenes[panel]];
     out->x = plot_range_axis(time, 1e-3, 1e6, false, "Time of a step (µs)");
     out->y = plot_range_axis(distance, least_distance, 1e3, false, panel % COLUMNS == 0 ? "Distance (m)" : NULL);
 }
 
 /* The scenes with rows, in the order of the paper. */
-static void find_scenes(PlotSubspacePicture *picture) {
+static void find_scenes(Distances *picture) {
     for (int scene = 0; scene < PAPER_SCENES; scene++) {
         bool found = false;
         for (int i = 0; i < picture->count; i++) found |= picture->rows[i].scene == scene;
@@ -151,50 +131,34 @@ static void find_scenes(PlotSubspacePicture *picture) {
     }
 }
 
-bool plot_subspace(const char *folder, PlotPage *page, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, folder, &subspace_study_layout, error)) return false;
-    PlotSubspacePicture picture = {.rows = table.rows, .count = table.count};
+bool plot_subspace(const CsvTable *table, PlotPage *page, Error *error) {
+    const double panel_height = 38, row_gap = 14, bottom = 23.5, top = 6; /* mm */
+    Distances picture = {.rows = table->rows, .count = table->count};
     find_scenes(&picture);
     const int rows = (picture.panels + COLUMNS - 1) / COLUMNS;
-    const double height = plot_subspace_bottom + rows * (panel_height + row_gap) - row_gap + plot_subspace_top;
-    picture.grid = (PlotGrid){FIGURE_PAGE_WIDTH, height,  13,   3, plot_subspace_bottom,
-                              plot_subspace_top, COLUMNS, rows, 4, row_gap};
+    const double height = bottom + rows * (panel_height + row_gap) - row_gap + top;
     const PlotSpec spec = {
         .of = &picture,
-        .width = FIGURE_PAGE_WIDTH,
-        .height = height,
+        .grid = {FIGURE_PAGE_WIDTH, height, 13, 3, bottom, top, COLUMNS, rows, 4, row_gap},
         .panels = picture.panels,
         .series = LOOKS,
         .rows = picture.count,
-        .panel = plot_subspace_panel_of,
-        .look = plot_subspace_look_of,
-        .point = plot_subspace_point_of,
+        .panel = subspace_panel,
+        .look = subspace_look,
+        .point = subspace_point,
         .legend_columns = 2,
-        .legend_left = picture.grid.left,
+        .legend_left = 13,
         .legend_top = 10,
         .caption =
             "subspace on held-out launches: distance of positions from the offline engine's runs (RMS over "
             "bodies and frames) over the time of a step. With it: its linear term alone, the floor (the recorded "
             "poses reduced to the components), and engines, whose time is the whole step. 0.0001 m: at most."};
-    const bool drawn = picture.panels == 0 || plot_draw(page, &spec, folder, error);
-    csv_table_free(&table);
-    return drawn;
+    return picture.panels == 0 || plot_draw(page, &spec, table->csv.path, error);
 }
 
 /* Three panels over the launches, a line for each scene: share answered, time of a step, time saved. */
 
-enum { PLOT_HYBRID_PANELS = 3, CHANGING = PAPER_SCENES, GUIDE = 2 * PAPER_SCENES, PLOT_HYBRID_SERIES };
-
-static const PlotGrid plot_hybrid_grid = {.width = FIGURE_PAGE_WIDTH,
-                                          .height = 62,
-                                          .left = 12,
-                                          .right = 3,
-                                          .bottom = 19,
-                                          .top = 6,
-                                          .columns = PLOT_HYBRID_PANELS,
-                                          .rows = 1,
-                                          .gap = 13};
+enum { HYBRID_PANELS = 3, CHANGING = PAPER_SCENES, GUIDE = 2 * PAPER_SCENES, HYBRID_SERIES };
 
 /* Ratios beyond these are drawn at the edge. */
 static const double least_ratio = 1e-3, most_ratio = 1e3;
@@ -225,14 +189,13 @@ static void find_range(Learnings *all) {
     if (all->change >= all->most) all->change = NAN;
 }
 
-static void plot_hybrid_panel_of(const void *of, int panel, PlotPanel *out) {
-    static const char *const titles[PLOT_HYBRID_PANELS] = {"Answered", "Time", "Return of learning"};
-    static const char *const labels[PLOT_HYBRID_PANELS] = {"Impact steps answered (%)", "Step time / interior's",
-                                                           "Saved / spent on learning"};
+static void hybrid_panel(const void *of, int panel, PlotPanel *out) {
+    static const char *const titles[HYBRID_PANELS] = {"Answered", "Time", "Return of learning"};
+    static const char *const labels[HYBRID_PANELS] = {"Impact steps answered (%)", "Step time / interior's",
+                                                      "Saved / spent on learning"};
     const Learnings *all = of;
     PlotRange range = {1, 1};
     for (int i = 0; i < all->count; i++) plot_range_include(&range, value_of(&all->rows[i], panel));
-    out->box = plot_grid_box(&plot_hybrid_grid, panel);
     out->title = titles[panel];
     out->x = plot_linear_axis(0, all->most * 1.03, "Launches");
     out->y = panel == 0 ? plot_linear_axis(0, 100, labels[0])
@@ -240,65 +203,55 @@ static void plot_hybrid_panel_of(const void *of, int panel, PlotPanel *out) {
 }
 
 /* The scenes; thin: the same where the family changes. */
-static PlotLook plot_hybrid_look_of(const void *of, int series) {
-    static const char *const names[PAPER_SCENES] = {"single", "stack", "pyramid", "pyramid, settled"};
+static PlotLook hybrid_look(const void *of, int series) {
     (void)of;
     if (series == GUIDE) return plot_look_dashed(NULL);
-    return series < CHANGING ? plot_look(series, names[series]) : plot_look_thin(plot_look(series - CHANGING, NULL));
+    return series < CHANGING ? plot_look(series, paper_scene_titles[series])
+                             : plot_look_thin(plot_look(series - CHANGING, NULL));
 }
 
 /* Of the guide: a ratio of 1, and the launch after which the family changes. */
-static bool plot_hybrid_point_of(const void *of, int panel, int series, int i, PlotPoint *out) {
+static bool hybrid_point(const void *of, int panel, int series, int i, PlotPoint *out) {
     const Learnings *all = of;
     const HybridRow *row = &all->rows[i];
-    if (series == GUIDE) {
-        const double end = i == 0 ? -INFINITY : INFINITY;
-        *out = panel == 0 ? (PlotPoint){all->change, end, 0} : (PlotPoint){end, 1, 0};
-        return i < 2;
-    }
+    if (series == GUIDE) return panel == 0 ? plot_upright(out, i, all->change) : plot_level(out, i, 1);
     if (series >= CHANGING && panel > 0) return false;
     *out = (PlotPoint){row->launches, value_of(row, panel), 0};
     return row->scene == series % PAPER_SCENES && row->changes == (series >= CHANGING) &&
            fabs(row->tolerance - standard_tolerance) < 1e-6;
 }
 
-bool plot_hybrid(const char *folder, PlotPage *page, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, folder, &hybrid_layout, error)) return false;
-    Learnings all = {.rows = table.rows, .count = table.count};
+bool plot_hybrid(const CsvTable *table, PlotPage *page, Error *error) {
+    Learnings all = {.rows = table->rows, .count = table->count};
     find_range(&all);
     const PlotSpec spec = {
         .of = &all,
-        .width = plot_hybrid_grid.width,
-        .height = plot_hybrid_grid.height,
-        .panels = PLOT_HYBRID_PANELS,
-        .series = PLOT_HYBRID_SERIES,
+        .grid = {FIGURE_PAGE_WIDTH, 62, 12, 3, 19, 6, HYBRID_PANELS, 1, .gap = 13},
+        .panels = HYBRID_PANELS,
+        .series = HYBRID_SERIES,
         .rows = all.count,
-        .panel = plot_hybrid_panel_of,
-        .look = plot_hybrid_look_of,
-        .point = plot_hybrid_point_of,
+        .panel = hybrid_panel,
+        .look = hybrid_look,
+        .point = hybrid_point,
         .legend_columns = PAPER_SCENES,
-        .legend_left = plot_hybrid_grid.left,
+        .legend_left = 12,
         .legend_top = 4.5,
         .caption = "A memory of impacts that grows from launch to launch. Left: share of the steps with an impact that "
                    "it answers. Middle: time of such a step, answered or not, over that of interior:near=0.001, on "
                    "launches not learned. Right: time that answers have saved so far over the time that learning took "
                    "(dashed: it has paid). Thin: bombs turn and spin from the vertical line on."};
-    const bool drawn = plot_draw(page, &spec, folder, error);
-    csv_table_free(&table);
-    return drawn;
+    return plot_draw(page, &spec, table->csv.path, error);
 }
 
 /* gns: the error of rollouts over time for each way of training, one panel a scene; and how shapes deform without
    projection. */
 
-enum { SCENES = 3, PLOT_GNS_PANELS = SCENES + 1, SHAPES = SCENES };
+enum { SCENES = 3, GNS_PANELS = SCENES + 1, SHAPES = SCENES };
 
 static const char *const scenes[SCENES] = {"single", "stack", "pyramid_settled"};
 
-/* mm */
-static const double height = 66, left = 13.5, right = 2, gap = 9.5, shape_gap = 6, plot_gns_bottom = 22,
-                    plot_gns_top = 6;
+static const PlotGrid gns_grid = {FIGURE_PAGE_WIDTH, 66, 13.5, 2, 22, 6, GNS_PANELS, 1, .gap = 9.5};
+static const double shape_gap = 6; /* mm: the shapes' own axis has a label */
 
 /* m: limits of what is shown. */
 static const double least_shown = 1e-3, most_shown = 1e3;
@@ -331,15 +284,14 @@ static PlotAxis make_axis(const Figure *figure, bool shape, const char *label) {
     return plot_range_axis(range, least_shown, most_shown, false, label);
 }
 
-static void plot_gns_panel_of(const void *of, int panel, PlotPanel *out) {
-    static const char *const titles[PLOT_GNS_PANELS] = {"Single box", "Stack", "Settled pyramid", "Shape, rigid=off"};
+static void gns_panel(const void *of, int panel, PlotPanel *out) {
+    static const char *const titles[GNS_PANELS] = {"Single box", "Stack", "Settled pyramid", "Shape, rigid=off"};
     const Figure *figure = of;
-    const double width = (FIGURE_PAGE_WIDTH - left - right - (PLOT_GNS_PANELS - 1) * gap - shape_gap) / PLOT_GNS_PANELS;
     const bool shape = panel == SCENES;
-    double at = left + (shape ? shape_gap : 0); /* the shapes' own axis has a label */
-    if (!shape && !has_rows(figure, scenes[panel])) return;
-    for (int before = 0; before < panel; before++) at += has_rows(figure, scenes[before]) ? width + gap : 0;
-    out->box = (PlotBox){at, plot_gns_bottom, width, height - plot_gns_bottom - plot_gns_top};
+    const double width = out->box.width - shape_gap / GNS_PANELS;
+    out->box.left = gns_grid.left + (shape ? shape_gap : 0);
+    out->box.width = !shape && !has_rows(figure, scenes[panel]) ? 0 : width;
+    for (int i = 0; i < panel; i++) out->box.left += has_rows(figure, scenes[i]) ? width + gns_grid.gap : 0;
     out->title = titles[panel];
     out->x = plot_linear_axis(0, figure->last * 1.03, "Time after the launch (s)");
     out->y = make_axis(figure, shape,
@@ -349,7 +301,7 @@ static void plot_gns_panel_of(const void *of, int panel, PlotPanel *out) {
 }
 
 /* Variants, then the scenes of the last panel. */
-static PlotLook plot_gns_look_of(const void *of, int series) {
+static PlotLook gns_look(const void *of, int series) {
     static const char *const names[GNS_VARIANTS + SHAPES] = {"M = 5",
                                                              "M = 2",
                                                              "M = 1",
@@ -362,7 +314,7 @@ static PlotLook plot_gns_look_of(const void *of, int series) {
     return plot_look(series, names[series]);
 }
 
-static bool plot_gns_point_of(const void *of, int panel, int series, int i, PlotPoint *out) {
+static bool gns_point(const void *of, int panel, int series, int i, PlotPoint *out) {
     const GnsRow *row = &((const Figure *)of)->rows[i];
     const bool shape = panel == SCENES;
     if (shape != (series >= GNS_VARIANTS)) return false;
@@ -371,22 +323,19 @@ static bool plot_gns_point_of(const void *of, int panel, int series, int i, Plot
     return shows(row, scene, shape ? GNS_NOT_RIGID : series);
 }
 
-bool plot_gns(const char *folder, PlotPage *page, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, folder, &gns_table_layout, error)) return false;
-    Figure figure = {table.rows, table.count, 0};
-    for (int i = 0; i < table.count; i++)
+bool plot_gns(const CsvTable *table, PlotPage *page, Error *error) {
+    Figure figure = {table->rows, table->count, 0};
+    for (int i = 0; i < table->count; i++)
         if (figure.rows[i].measure == GNS_ROLLOUT) figure.last = fmax(figure.last, figure.rows[i].seconds);
     const PlotSpec spec = {
         .of = &figure,
-        .width = FIGURE_PAGE_WIDTH,
-        .height = height,
-        .panels = PLOT_GNS_PANELS,
+        .grid = gns_grid,
+        .panels = GNS_PANELS,
         .series = GNS_VARIANTS + SHAPES,
         .rows = figure.count,
-        .panel = plot_gns_panel_of,
-        .look = plot_gns_look_of,
-        .point = plot_gns_point_of,
+        .panel = gns_panel,
+        .look = gns_look,
+        .point = gns_point,
         .legend_columns = 4,
         .legend_left = 3,
         .legend_top = 6,
@@ -394,7 +343,5 @@ bool plot_gns(const char *folder, PlotPage *page, Error *error) {
                    "method that the network was taught by, over the time after the launch, by rounds of messages M, "
                    "without noise in training, and without projection back to rigid boxes (rigid=off). Right: distance "
                    "of the particles from the rigid box that fits them best, rigid=off. Held-out launches."};
-    const bool drawn = !(figure.last > 0) || plot_draw(page, &spec, folder, error);
-    csv_table_free(&table);
-    return drawn;
+    return !(figure.last > 0) || plot_draw(page, &spec, table->csv.path, error);
 }

@@ -14,6 +14,13 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* A text of the report is complete in memory before it becomes a file. */
+
+typedef bool TextWrite(void *context, FILE *out, Error *error);
+
+/* Writes to a file what `write` writes. False with error set where it fails, or memory is short. */
+bool text_write(const char *path, TextWrite *write, void *context, Error *error);
+
 /* A Markdown text as one HTML5 page that needs no other file, for phones, screens and paper. */
 
 typedef struct HtmlPage {
@@ -30,7 +37,6 @@ bool html_page_write(const HtmlPage *page, FILE *out, Error *error);
 /* report.md.in and report.css, built into the program (paper/sources.cmake). Each ends in a 0. */
 
 extern const unsigned char paper_report_md_in[], paper_report_css[];
-extern const size_t paper_report_md_in_size, paper_report_css_size;
 
 /* Fills a Markdown template with values from CSV files. Its tags:
 
@@ -65,37 +71,11 @@ typedef struct Illustration {
 
 extern const Illustration illustration_loop, illustration_narrow_phase, illustration_data, illustration_scenes;
 
-/* The launches in figure 3, and the training row that it shows from one of them. */
+/* The plots of report.h, from their tables. The page's width stays 0 if a table has no rows to show. False with error set
+   if memory is short. Those of the systems that the paper cites are in paper.h. */
+PlotWrite plot_factors, plot_closed_loop, plot_transfer, plot_sain, plot_hybrid, plot_gns, plot_subspace;
 
-/* Every 10th launch of the paper's sweep (3.3) is shown. The row is from the launch where the bomb hits the edge of the
-   highest box, pushes it down and turns it. */
-enum { SWEEP_LAUNCHES = 201, SWEEP_SHOWN_EVERY = 10, SWEEP_ROW_LAUNCH = 120 };
-
-/* x of launch i, m */
-float sweep_x(int i);
-
-/* The pair of the bomb and a movable box, at the bomb's first touch. */
-typedef struct SweepRow {
-    int step, bodies[2], bomb;
-    Box boxes[2];
-    float inputs[PAIR_INPUTS], changes[PAIR_CHANGES]; /* pair_inputs() with PAIR_RELATIVE; pair_changes() */
-} SweepRow;
-
-/* Runs the launches shown to their end, and draws the bomb's path up to its first touch over the scene's initial state.
-   *rows: touching pairs, summed over all steps. ERROR_INPUT if the launch of the row touches no box. */
-bool sweep_draw(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error);
-
-/* The plots of plots.h, each in plot_NAME.c. They read their table from the folder and write the page. The page's width
-   stays 0 if the table has no rows to show. False with error set if the table is missing or damaged. */
-bool plot_factors(const char *folder, PlotPage *page, Error *error);
-bool plot_closed_loop(const char *folder, PlotPage *page, Error *error);
-bool plot_transfer(const char *folder, PlotPage *page, Error *error);
-
-/* Of the systems that the paper cites (paper/paper.h). */
-bool plot_sain(const char *folder, PlotPage *page, Error *error);
-bool plot_hybrid(const char *folder, PlotPage *page, Error *error);
-bool plot_gns(const char *folder, PlotPage *page, Error *error);
-bool plot_subspace(const char *folder, PlotPage *page, Error *error);
+extern const char *const paper_scene_titles[PAPER_SCENES]; /* of paper_scene_names, for readers */
 
 /* A run of the engine, step by step, for figures that need a step's contact problem. */
 
@@ -194,14 +174,9 @@ typedef struct TransferCounts {
 
 TransferCounts transfer_counts(const StudyTables *study);
 
-/* The tables of findings.h, one function each. */
+/* The tables of findings, one function each. */
 
-/* Where a table's rows go. */
-typedef struct FindingsFile {
-    const CsvLayout *layout;
-    FILE *out;
-    Error *error;
-} FindingsFile;
+typedef struct FindingsFile FindingsFile;
 
 /* False with error set for numbers that are infinite. */
 bool findings_add(const FindingsFile *file, const void *row);
@@ -212,16 +187,22 @@ typedef struct FindingsTable {
     bool (*write)(const FindingsFile *file, const StudyTables *study);
 } FindingsTable;
 
-extern const FindingsTable findings_summary, findings_targets, findings_paper_table1, findings_factors,
-    findings_definitions, findings_laws, findings_transfer, findings_aims, findings_claims, findings_systems;
+/* A table that is being written. */
+struct FindingsFile {
+    const FindingsTable *table;
+    const StudyTables *study;
+    FILE *out;
+    Error *error;
+};
+
+/* In findings_tables.c; the others are in findings.c. */
+extern const FindingsTable findings_targets, findings_paper_table1, findings_definitions, findings_laws,
+    findings_transfer;
 
 /* Columns of a row with members of these names; a text, a count, a number that may be NAN. */
-#define FINDINGS_TEXT(Row, member) \
-    { #member, CSV_TEXT, .offset = offsetof(Row, member) }
-#define FINDINGS_COUNT(Row, member) \
-    { #member, CSV_INTEGER, .offset = offsetof(Row, member) }
-#define FINDINGS_NUMBER(Row, member) \
-    { #member, CSV_OPTIONAL, .offset = offsetof(Row, member), .digits = 9 }
+#define FINDINGS_TEXT(Row, member) CSV_MEMBER(Row, member, CSV_TEXT)
+#define FINDINGS_COUNT(Row, member) CSV_MEMBER(Row, member, CSV_INTEGER)
+#define FINDINGS_NUMBER(Row, member) CSV_MEMBER(Row, member, CSV_OPTIONAL, .digits = 9)
 
 /* An initialiser of a FindingsTable. */
 #define FINDINGS_TABLE(name, columns, Row, write) \

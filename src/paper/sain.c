@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The study of sain: trainings on few launches of the stack, scored on held-out ones of two scenes. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/machine.h"
@@ -13,7 +14,6 @@
 #include "scenes/scenes.h"
 #include "studies/chart.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { SEEDS = 3, STEPS = 500, QUICK_STEPS = 40, BATCH = 256, PATH_SIZE = 4096 };
@@ -23,7 +23,8 @@ static const int held_out[SAIN_SCENES] = {24, 5}, quick_held_out[SAIN_SCENES] = 
 
 static const double first_rate = 0.003;
 
-const char *const sain_scene_words[SAIN_SCENES + 1] = {"stack", "pyramid_settled", NULL};
+/* Scene files without .yaml. */
+static const char *const sain_scene_words[SAIN_SCENES + 1] = {"stack", "pyramid_settled", NULL};
 
 static const CsvColumn columns[] = {
     {"scene", CSV_WORD, offsetof(SainRow, scene), .words = sain_scene_words, .key = true},
@@ -153,11 +154,6 @@ double sain_engine_error(const SainRow *row) { return row->engine; }
 
 double sain_constant_error(const SainRow *row) { return row->constant; }
 
-static int compare(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double sain_median(const CsvTable *table, SainScene scene, RelationForm form, int launches, SainNumber *of) {
     enum { MOST = 64 };
     const SainRow *rows = table->rows;
@@ -166,9 +162,7 @@ double sain_median(const CsvTable *table, SainScene scene, RelationForm form, in
     for (int i = 0; i < table->count && count < MOST; i++)
         if (rows[i].scene == (int)scene && rows[i].form == (int)form && rows[i].launches == launches)
             numbers[count++] = of(&rows[i]);
-    if (count == 0) return (double)NAN;
-    qsort(numbers, (size_t)count, sizeof *numbers, compare);
-    return (numbers[(count - 1) / 2] + numbers[count / 2]) / 2;
+    return statistics_quantile(numbers, count, 0.5);
 }
 
 int sain_most_launches(const CsvTable *table) {
@@ -189,5 +183,5 @@ const PaperSystem system_sain = {.name = "sain",
                                      SYSTEM_METHODS("sain", "sain:engine=off", "sain:engine=shuffled", "sain:net=off"),
                                  .table = &sain_layout,
                                  .parts = parts,
-                                 .claim = sain_claims_state,
+                                 .claims = sain_claims,
                                  .plot = plot_sain};

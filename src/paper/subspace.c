@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The study of subspace: errors and times of its sizes beside those of the engines that it replaces. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -153,8 +154,7 @@ const SubspaceStudyRow *subspace_study_find(const SubspaceStudyRow *rows, int co
 }
 
 #define MOST 1e30
-#define COLUMN(kind, member, ...) \
-    { #member, kind, .offset = offsetof(SubspaceStudyRow, member), __VA_ARGS__ }
+#define COLUMN(kind, member, ...) CSV_MEMBER(SubspaceStudyRow, member, kind, __VA_ARGS__)
 
 static const CsvColumn columns[] = {
     COLUMN(CSV_WORD, scene, .words = paper_scene_names, .key = true),
@@ -185,5 +185,5 @@ const PaperSystem system_subspace = {
     .methods = SYSTEM_METHODS("subspace", "subspace:net=off", "subspace:components=8", "subspace:components=128"),
     .table = &subspace_study_layout,
     .parts = parts,
-    .claim = subspace_claim,
+    .claims = subspace_claims,
     .plot = plot_subspace};

@@ -24,7 +24,7 @@ typedef struct BorderAxis {
 
 /* The rows of a study's panel, one per method, from the top. */
 typedef struct BorderRows {
-    const BorderTable *table;
+    const CsvTable *table;
     Sketch *sketch;
     const BorderRow *study; /* any row of the study */
     const PlotPanel *panel; /* placed */
@@ -61,13 +61,13 @@ static PlotAxis with_margins(double least, double most, double width) {
 }
 
 /* The axis of the study of row `first`, `width` mm long; its label is not set in `axis`. */
-static BorderAxis border_axis(const BorderTable *table, int first, double width) {
+static BorderAxis border_axis(const CsvTable *table, int first, double width) {
     BorderAxis axis = {0};
     double least = INFINITY, most = -INFINITY;
     int falling = 0;
     for (int i = first; i < table->count; i++) {
-        const BorderRow *row = &table->rows[i];
-        if (strcmp(row->study, table->rows[first].study) != 0) continue;
+        const BorderRow *row = border_row(table, i);
+        if (strcmp(row->study, border_row(table, first)->study) != 0) continue;
         least = fmin(least, fmin(row->holds_at, row->fails_at));
         most = fmax(most, fmax(row->holds_at, row->fails_at));
         falling += (row->fails_at < row->holds_at) - (row->fails_at > row->holds_at);
@@ -79,7 +79,7 @@ static BorderAxis border_axis(const BorderTable *table, int first, double width)
     }
     axis.axis = with_margins(least, most, width);
     axis.falling = falling > 0;
-    stability_axis_text(axis.label, table->rows[first].parameter, table->rows[first].unit);
+    stability_axis_text(axis.label, border_row(table, first)->parameter, border_row(table, first)->unit);
     return axis;
 }
 
@@ -101,7 +101,7 @@ static double place_of(const BorderRows *rows, double value) { return plot_axis_
 static double far_end(const BorderRows *rows, const BorderRow *row, bool low) {
     double end = low ? rows->panel->x.from : rows->panel->x.to, from = place_of(rows, row->holds_at);
     for (int i = 0; i < rows->table->count; i++) {
-        const BorderRow *other = &rows->table->rows[i];
+        const BorderRow *other = border_row(rows->table, i);
         if (other == row || !border_same_study(other, row) || !border_same_method(other, row)) continue;
         double place = place_of(rows, other->holds_at);
         if (low ? place <= from && place > end : place >= from && place < end) end = place;
@@ -155,13 +155,13 @@ static void draw_sign(const BorderRows *rows, const BorderRow *row, double y) {
 
 static double height_of(const BorderRows *rows, const BorderRow *row) {
     int i = 0;
-    while (!border_same_method(&rows->table->rows[rows->methods[i]], row)) i++;
+    while (!border_same_method(border_row(rows->table, rows->methods[i]), row)) i++;
     return plot_axis_place(&rows->panel->y, i);
 }
 
 static void draw_each(const BorderRows *rows, void (*put)(const BorderRows *, const BorderRow *, double)) {
     for (int i = 0; i < rows->table->count; i++) {
-        const BorderRow *row = &rows->table->rows[i];
+        const BorderRow *row = border_row(rows->table, i);
         if (border_same_study(row, rows->study)) put(rows, row, height_of(rows, row));
     }
 }
@@ -191,7 +191,7 @@ static const double left = 33, right = 2, gap = 3.5, title_room = 5.5, axis_room
 enum { LEGEND_COLUMNS = 5 };
 
 typedef struct Borders {
-    const BorderTable *table;
+    const CsvTable *table;
     Sketch *sketch;
     int study_count, method_count;
     int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* first row of each */
@@ -202,25 +202,25 @@ typedef struct Borders {
 } Borders;
 
 /* Adds row i if it is the first of its study or method. False if there are too many. */
-static bool add_first(const BorderTable *table, int i, bool (*same)(const BorderRow *, const BorderRow *), int *firsts,
+static bool add_first(const CsvTable *table, int i, bool (*same)(const BorderRow *, const BorderRow *), int *firsts,
                       int *count, int most) {
     for (int k = 0; k < *count; k++)
-        if (same(&table->rows[firsts[k]], &table->rows[i])) return true;
+        if (same(border_row(table, firsts[k]), border_row(table, i))) return true;
     if (*count == most) return false;
     firsts[(*count)++] = i;
     return true;
 }
 
 static bool gather(Borders *borders, Error *error) {
-    const BorderTable *table = borders->table;
+    const CsvTable *table = borders->table;
     for (int i = 0; i < table->count; i++) {
         if (!add_first(table, i, border_same_study, borders->studies, &borders->study_count, BORDERS_MAX_STUDIES))
-            return csv_table_error(&table->csv, i, 0, error, "more than %d studies: too many for a figure",
+            return csv_table_error(table, i, 0, error, "more than %d studies: too many for a figure",
                                    BORDERS_MAX_STUDIES);
         if (!add_first(table, i, border_same_method, borders->methods, &borders->method_count, BORDERS_MAX_METHODS))
-            return csv_table_error(&table->csv, i, 0, error, "more than %d methods: too many for a figure",
+            return csv_table_error(table, i, 0, error, "more than %d methods: too many for a figure",
                                    BORDERS_MAX_METHODS);
-        if (!verdict_holds((Verdict)table->rows[i].verdict)) borders->used[table->rows[i].verdict] = true;
+        if (!verdict_holds((Verdict)border_row(table, i)->verdict)) borders->used[border_row(table, i)->verdict] = true;
     }
     return true;
 }
@@ -253,7 +253,7 @@ static void draw_rows(const Borders *borders, const PlotPanel *panel, bool named
     const Pen guide = pen_line(0xE2E2E2, 0.6, NULL);
     const double points = 7;
     for (int method = 0; method < borders->method_count; method++) {
-        const BorderRow *row = &borders->table->rows[borders->methods[method]];
+        const BorderRow *row = border_row(borders->table, borders->methods[method]);
         const double y = plot_axis_place(&panel->y, method);
         char text[STABILITY_TEXT_SIZE];
         sketch_line(borders->sketch, (Point){panel->x.from, y}, (Point){panel->x.to, y}, &guide);
@@ -265,7 +265,7 @@ static void draw_rows(const Borders *borders, const PlotPanel *panel, bool named
 
 static void draw_panel(const Borders *borders, int study) {
     static const PlotTicks none;
-    const BorderRow *first = &borders->table->rows[borders->studies[study]];
+    const BorderRow *first = border_row(borders->table, borders->studies[study]);
     PlotPanel panel = {.box = plot_grid_box(&borders->grid, study)};
     BorderAxis axis = border_axis(borders->table, borders->studies[study], panel.box.width);
     char title[STABILITY_TEXT_SIZE];
@@ -299,7 +299,7 @@ static void draw_legend(const Borders *borders) {
     draw_samples(borders, &place, verdict_draw_legend(borders->sketch, borders->used, &place));
 }
 
-bool stability_borders_write(const BorderTable *table, PlotPage *page, Error *error) {
+bool stability_borders_write(const CsvTable *table, PlotPage *page, Error *error) {
     static const char caption[] =
         "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a method "
         "fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at the far "

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The speed-accuracy study: its scenes, their pieces, and chart.csv from what the pieces stored. */
 #include "studies/chart.h"
 
 #include "base/base.h"
@@ -67,6 +68,24 @@ void scene_study_end(SceneStudy *study) {
 Scene scene_study_launch(const SceneStudy *study, int launch) {
     return launch_scene(study->scene, &study->launches[launch]);
 }
+
+/* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene after
+   scene. */
+
+/* A scene and its pieces: a launch each, the last one is of the times. */
+typedef struct ChartScene {
+    SceneStudy study;
+    int64_t first;
+    double launch_weight, times_weight; /* of pieces */
+    int working;                        /* launches that are being scored */
+} ChartScene;
+
+/* chart_plan_free(), also after a failure. */
+typedef struct ChartPlan {
+    ChartScene *scenes; /* [count] */
+    int count;
+    PiecePlan plan;
+} ChartPlan;
 
 /* Seconds of one core per step of a body: of the converged run, of a method with the solutions that it is scored against, and
    of a method whose times are measured. */
@@ -169,6 +188,10 @@ static void chart_plan_free(ChartPlan *plan) {
     free(plan->scenes);
     *plan = (ChartPlan){0};
 }
+
+/* chart.csv from the pieces. */
+
+enum { ROWS_EACH = PROTOCOLS * PHASES };
 
 /* Methods are put together in groups that take about this much, so that a launch is read a few times only. */
 enum { GROUP_BYTES = 64 << 20 };
@@ -307,13 +330,18 @@ typedef struct Run {
     char (*cpus)[CPU_NAME_SIZE]; /* [scenes of the plan] */
 } Run;
 
-/* A missing network is an error only of the method that needs it. */
-static bool add_scene_to_key(StudyKey *key, const char *path, Error *error) {
+bool study_key_add_scene(StudyKey *key, const char *path, Error *error) {
     Scene *scene = scene_read(path, error);
     if (scene == NULL) return false;
     for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
     scene_destroy(scene);
     return study_key_add_file(key, path, error);
+}
+
+bool study_do(Pieces *pieces, const char *folder, const StudyKey *key, const PiecesRun *run, const PiecePlan *plan,
+              const Progress *progress, Error *error) {
+    return pieces_open(pieces, folder, false, key, run, error) &&
+           (pieces->mode != PIECES_WHOLE || folder_reserve(folder, error)) && pieces_do(pieces, plan, progress, error);
 }
 
 /* Hashes everything that determines the result: the program, the options and the files. */
@@ -328,7 +356,7 @@ static bool find_key(const SpeedAccuracyOptions *options, StudyKey *key, Error *
     study_key_add(key, &launches->bomb_x.step, sizeof launches->bomb_x.step);
     if (launches->table != NULL && !study_key_add_file(key, launches->table, error)) return false;
     for (int i = 0; i < options->scene_count; i++)
-        if (!add_scene_to_key(key, options->scenes[i], error)) return false;
+        if (!study_key_add_scene(key, options->scenes[i], error)) return false;
     return true;
 }
 
@@ -368,15 +396,6 @@ static bool finish(Run *run, const Pieces *pieces, Error *error) {
            options->draw(options, run->scenes, pieces->key, error) && pieces_end(pieces, error);
 }
 
-/* Shards share a folder; a whole study has it to itself. */
-static bool do_pieces(Run *run, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
-    const SpeedAccuracyOptions *options = run->options;
-    if (!pieces_open(pieces, options->folder, false, key, options->run, error)) return false;
-    if (pieces->mode == PIECES_WHOLE && !folder_reserve(options->folder, error)) return false;
-    return pieces_do(pieces, &run->plan.plan, progress, error) &&
-           (pieces->mode == PIECES_SHARD || finish(run, pieces, error));
-}
-
 bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, const Progress *progress,
                         SpeedAccuracyScene *scenes, Error *error) {
     Run run = {.options = options, .scenes = scenes};
@@ -385,7 +404,9 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, con
         return false;
     const bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders,
                                     &options->launches, speed_accuracy_size(options->quick), error) &&
-                    find_key(options, &key, error) && do_pieces(&run, pieces, &key, progress, error);
+                    find_key(options, &key, error) &&
+                    study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
+                    (pieces->mode == PIECES_SHARD || finish(&run, pieces, error));
     pieces->plan = NULL;
     chart_plan_free(&run.plan);
     study_key_free(&key);

@@ -16,8 +16,6 @@
 
 /* stability.html: the maps of a study as tables, whose cells link to pages of runs. */
 
-extern const char stability_css[]; /* page/stability.css */
-
 /* Writes folder/stability.html from maps.csv and map_pages.csv (studies/stability.h) there. */
 bool stability_html_write(const char *folder, Error *error);
 
@@ -39,19 +37,23 @@ bool converged_step_solve(ConvergedStep *converged, const ContactProblem *proble
 
 /* Log of a run, for comparison with another run of the same launch. */
 
+typedef struct LoggedFrame {
+    double energy;      /* J: mechanical energy of all dynamic bodies */
+    double penetration; /* m: deepest contact of the step; 0 without contacts */
+    Phase phase;        /* of the step */
+    Vec2 bomb;          /* m: the bomb's position; 0 before it is there */
+} LoggedFrame;
+
 /* Zero-initialise; arrays grow and are reused. Bodies exclude the bomb. */
 typedef struct RunLog {
     int bodies, frames;          /* frames: index of the last logged frame */
     int touch;                   /* first step in which the bomb touches; 0: none */
     int launch_frame, end_frame; /* the bomb's frame, and 5 s later: displaced boxes are counted between them */
     Vec2 *position;              /* [frames + 1, bodies] m */
-    double *energy;              /* [frames + 1] J: mechanical energy of all dynamic bodies */
-    double *penetration;         /* [frames + 1] m: deepest contact of the step; 0 without contacts */
-    Phase *phase;                /* [frames + 1] of each step */
-    Vec2 *bomb;                  /* [frames + 1] m: the bomb's position; 0 before it is there */
+    LoggedFrame *at;             /* [frames + 1] */
     double momentum_error;       /* N s: momentum created by steps (ContactSolution), sum */
     int fallen_back;             /* steps with discarded outputs, beyond training or solved by sweeps */
-    size_t position_capacity, energy_capacity, penetration_capacity, phase_capacity, bomb_capacity;
+    size_t position_capacity, at_capacity;
 } RunLog;
 
 void run_log_free(RunLog *log);
@@ -86,7 +88,7 @@ typedef struct StepPlace {
 typedef struct StepScores {
     int count;
     double *error;    /* [count] m/s, RMS over the dynamic bodies */
-    double *share;    /* [count] share of bodies that are right (solution_error.h) */
+    double *share;    /* [count] share of bodies that are right (methods/reference.h) */
     StepPlace *place; /* [count] */
     size_t error_capacity, share_capacity, place_capacity;
 } StepScores;
@@ -108,12 +110,8 @@ typedef struct Rollout {
     World *world;
     ConvergedStep converged;
     RunLog log;
-    int solves, unconverged; /* reference solves; those with a residual above SOLVE_CONVERGED */
+    int solves, unconverged; /* reference solves; those with a residual above 1 mm/s */
 } Rollout;
-
-/* m/s, far below the differences between methods. Only states that a bad method made explode, and steps without a
-   solution (methods/reference.h), do not reach it. */
-#define SOLVE_CONVERGED 1e-3
 
 void rollout_free(Rollout *rollout);
 
@@ -181,18 +179,10 @@ typedef struct ChartRow {
     const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
 } ChartRow;
 
+/* The header is exact, but that the last column, cpu, may be missing. Refused: a median time outside its quartiles. */
 extern const CsvLayout chart_layout;
 
-typedef struct ChartTable {
-    CsvTable csv;
-    int count;
-    const ChartRow *rows; /* [count] */
-} ChartTable;
-
-/* Reads a chart. Refused, as "path:line:column: error: reason": what csv_table_read() refuses (the header is exact; the
-   last column, cpu, may be missing), and a median time outside its quartiles. On failure nothing is to be freed. */
-bool chart_csv_read(ChartTable *table, const char *path, Error *error);
-void chart_csv_free(ChartTable *table);
+static inline const ChartRow *chart_row(const CsvTable *table, int i) { return (const ChartRow *)table->rows + i; }
 
 /* The methods that a study compares, each with some settings. */
 
@@ -306,32 +296,10 @@ typedef struct WorstLaunch {
 bool worst_launch_find(const SceneStudy *study, const Method *method, WorstLaunch worst[PHASES],
                        const Progress *progress, Error *error);
 
-/* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene after
-   scene. */
-
-/* A scene and its pieces: a launch each, the last one is of the times. */
-typedef struct ChartScene {
-    SceneStudy study;
-    int64_t first;
-    double launch_weight, times_weight; /* of pieces */
-    int working;                        /* launches that are being scored */
-} ChartScene;
-
-/* chart_plan_free(), also after a failure. */
-typedef struct ChartPlan {
-    ChartScene *scenes; /* [count] */
-    int count;
-    PiecePlan plan;
-} ChartPlan;
-
-/* chart.csv from the pieces of the study. */
-
-enum { ROWS_EACH = PROTOCOLS * PHASES };
-
 /* What the pieces of a scene say about its reference solves. */
 typedef struct SceneSolves {
     double frozen_residual;      /* m/s: largest residual of those of frozen steps */
-    int64_t solves, unconverged; /* those in closed loop; those with a residual above SOLVE_CONVERGED (rollout.h) */
+    int64_t solves, unconverged; /* those in closed loop; those with a residual above 1 mm/s */
 } SceneSolves;
 
 /* The speed-accuracy study: every method in every scene, on held-out launches.
@@ -353,7 +321,7 @@ typedef struct SpeedAccuracyOptions {
     const char *folder;   /* created if missing */
     bool pages;           /* for draw() */
     const PiecesRun *run; /* whole, a shard, or a merge */
-    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result (study_key.h). */
+    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result. */
     bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, uint64_t key,
                  Error *error);
 } SpeedAccuracyOptions;
@@ -368,6 +336,13 @@ struct SpeedAccuracyScene {
 
 /* Of the studies. */
 const StudySize *speed_accuracy_size(bool quick);
+
+/* Hashes a scene's file and its networks. A missing network is an error only of the method that needs it. */
+bool study_key_add_scene(StudyKey *key, const char *path, Error *error);
+
+/* Opens the pieces of a study in its folder and does them. Shards share a folder; a whole study has it to itself. */
+bool study_do(Pieces *pieces, const char *folder, const StudyKey *key, const PiecesRun *run, const PiecePlan *plan,
+              const Progress *progress, Error *error);
 
 /* Does the pieces of the study, then writes folder/chart.csv, fills scenes[scene_count] and draws; a shard does its pieces
    only. An interrupted study continues if options, files and program are the same. ERROR_INPUT for an invalid option,
@@ -398,11 +373,9 @@ bool piece_tables_write(const Pieces *pieces, const char *folder, const CsvLayou
 
 enum { CLOSED_LOOP_FRAMES = 600 };
 
-#define CLOSED_LOOP_APART 0.1 /* m */
-
 /* A run of one launch beside others of the same launch. */
 typedef struct LaunchLoop {
-    double frames_engine; /* first frame in which a body is more than CLOSED_LOOP_APART from its place in the engine's
+    double frames_engine;    /* first frame in which a body is more than 0.1 m from its place in the engine's
                                 run; the scene's frames: never */
     double frames_converged; /* the same of the converged run; NAN without one */
     double moved;            /* boxes that moved more than 0.5 m in the 5 s after the launch */
@@ -533,8 +506,6 @@ typedef struct LaunchPage {
 extern const CsvLayout launch_page_layout;
 
 /* chart.html: the charts of a study; their points, and a table of them, link to pages of runs. */
-
-extern const char chart_css[]; /* page/chart.css */
 
 /* Writes folder/chart.html from chart.csv, chart_pages.csv (studies/chart.h) and the charts' .svg files there. Without a
    script: a picture with links above its points, which a table repeats for the keyboard. */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The data of a chart of one scene: its lines, its marks, and what is left out. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "figures/sketch.h"
@@ -60,16 +61,16 @@ static int find_line(const Chart *chart, const char *key) {
     return i;
 }
 
-static bool add_lines(Chart *chart, const ChartTable *table, const char *path, Error *error) {
+static bool add_lines(Chart *chart, const CsvTable *table, const char *path, Error *error) {
     const MethodDescription *methods[CHART_MAX_LINES];
     PlotStyle styles[CHART_MAX_LINES];
     char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
     for (int i = 0; i < table->count; i++) {
-        name_row(&table->rows[i], key, label);
+        name_row(chart_row(table, i), key, label);
         if (find_line(chart, key) < chart->line_count) continue;
         if (chart->line_count == CHART_MAX_LINES)
             return error_input(error, path, "a chart can show at most %d methods", CHART_MAX_LINES);
-        const MethodDescription *method = methods[chart->line_count] = method_describe(table->rows[i].method);
+        const MethodDescription *method = methods[chart->line_count] = method_describe(chart_row(table, i)->method);
         ChartLine *line = &chart->lines[chart->line_count++];
         strcpy(line->key, key);
         chart_plain(line->name, key);
@@ -172,22 +173,22 @@ static void fit_axes(Chart *chart) {
 }
 
 /* Adds a scene's closed-loop rows. Rows of a method that lost the scene are only counted. */
-static void add_rows(Chart *chart, const ChartTable *table, const char *scene, ChartRow *rows, bool *on_front) {
+static void add_rows(Chart *chart, const CsvTable *table, const char *scene, ChartRow *rows, bool *on_front) {
     int count = 0;
     for (int i = 0; i < table->count; i++) {
         char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
-        if (panel_of(&table->rows[i], scene) < 0) continue;
-        name_row(&table->rows[i], key, label);
-        if (chart_row_lost(table->rows, table->count, &table->rows[i]))
+        if (panel_of(chart_row(table, i), scene) < 0) continue;
+        name_row(chart_row(table, i), key, label);
+        if (chart_row_lost(table->rows, table->count, chart_row(table, i)))
             chart->lines[find_line(chart, key)].lost++;
         else
-            rows[count++] = table->rows[i];
+            rows[count++] = *chart_row(table, i);
     }
     pareto_mark(rows, count, on_front);
     for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene));
 }
 
-static bool add_marks(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error) {
+static bool add_marks(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error) {
     bool *on_front = malloc((size_t)table->count * sizeof *on_front);
     ChartRow *rows = malloc((size_t)table->count * sizeof *rows);
     bool room = on_front != NULL && rows != NULL;
@@ -206,7 +207,7 @@ static bool add_marks(Chart *chart, const ChartTable *table, const char *scene, 
     return room || error_memory(error, path);
 }
 
-bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error) {
+bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error) {
     *chart = (Chart){.us_least = INFINITY, .error_least = INFINITY};
     chart_times_note(chart->times, table->rows, table->count);
     chart_make_plain(chart->times);

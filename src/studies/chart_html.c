@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pages of studies: charts and maps whose points and cells link to pages of runs. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -11,9 +12,52 @@
 #include "studies/stability.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+extern const char chart_css[], stability_css[]; /* page/, embedded */
+
+static void begin_page(FILE *out, const char *title, const char *style) {
+    house_page_begin(out, title, style);
+    fprintf(out, "<header><h1>%s</h1></header>\n<p class=\"soft\">", title);
+}
+
+/* Begins a part of the page with its heading, without the heading's end. */
+static void begin_section(FILE *out, const char *name) {
+    fputs("<section class=\"panel\" aria-label=\"", out);
+    html_put(out, name);
+    fputs("\">\n<h2>", out);
+    html_put(out, name);
+}
+
+/* A region that can be scrolled, also by the keyboard. */
+static void begin_region(FILE *out, const char *style, const char *label, const char *of) {
+    fprintf(out, "<div class=\"%s\" tabindex=\"0\" role=\"region\" aria-label=\"%s", style, label);
+    html_put(out, of);
+    fputs("\">\n", out);
+}
+
+/* page: at this place in each row of the table. */
+static void put_left_out(FILE *out, const CsvTable *table, size_t page, size_t row_size, const char *what) {
+    int count = 0;
+    for (int i = 0; i < table->count; i++)
+        count += **(const char *const *)((const char *)table->rows + (size_t)i * row_size + page) == '\0';
+    if (count > 0) fprintf(out, "<p class=\"odd\">Without a page for lack of room: %d %s.</p>\n", count, what);
+}
+
+/* failed: set by `put`, with the error. */
+static bool write_page(const char *path, void (*put)(FILE *out, const void *html), const void *html, const bool *failed,
+                       Error *error) {
+    size_t size = 0;
+    char *text = file_print(put, html, &size);
+    const bool written = (text != NULL || error_memory(error, path)) && !*failed && file_write(path, text, size, error);
+    free(text);
+    return written;
+}
+
+/* stability.html */
 
 /* A letter for each verdict: colours alone would not do. */
 static const char letters[VERDICT_LOOKS] = {
@@ -23,7 +67,7 @@ static const char letters[VERDICT_LOOKS] = {
 };
 
 typedef struct StabilityHtml {
-    MapTable maps;
+    CsvTable maps;
     CsvTable table; /* of MapPage */
     const MapPage *pages;
     MapPanels *map; /* the current one */
@@ -93,16 +137,13 @@ static void put_map(FILE *out, const StabilityHtml *html) {
     char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
-    fputs("<section class=\"panel\" aria-label=\"", out);
-    html_put(out, map->first->map);
-    fputs("\">\n<h2>", out);
-    html_put(out, map->first->map);
+    begin_section(out, map->first->map);
     fputs("</h2>\n<p>Across: ", out);
     html_put(out, x);
     fputs("; up: ", out);
     html_put(out, y);
-    fputs(".</p>\n<div class=\"maps scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Maps of each method\">\n",
-          out);
+    fputs(".</p>\n", out);
+    begin_region(out, "maps scroll", "Maps of each method", "");
     for (int panel = 0; panel < map->panel_count; panel++) put_panel(out, html, panel);
     fputs("</div>\n</section>\n", out);
 }
@@ -117,24 +158,15 @@ static void put_key(FILE *out) {
     fputs("<li><b class=\"page\">F</b> with a frame: opens a page</li>\n</ul>\n", out);
 }
 
-static int stability_html_count_left_out(const StabilityHtml *html) {
-    int count = 0;
-    for (int i = 0; i < html->table.count; i++) count += html->pages[i].page[0] == '\0';
-    return count;
-}
-
-static void stability_html_put_html(FILE *out, const void *context) {
+static void put_stability(FILE *out, const void *context) {
     StabilityHtml *html = (StabilityHtml *)context; /* where it fails is noted */
-    house_page_begin(out, "Stability", stability_css);
-    fprintf(
-        out,
-        "<header><h1>Stability</h1></header>\n"
-        "<p class=\"soft\">Each cell is a run and its verdict. Up to %d failing cells of a method beside cells that "
-        "hold open a page: it plays the run beside that of the first method that holds there, at the moment and at "
-        "the body that decided the verdict.</p>\n",
-        MAP_PAGES_EACH);
-    const int left_out = stability_html_count_left_out(html);
-    if (left_out > 0) fprintf(out, "<p class=\"odd\">Without a page for lack of room: %d cells.</p>\n", left_out);
+    begin_page(out, "Stability", stability_css);
+    fprintf(out,
+            "Each cell is a run and its verdict. Up to %d failing cells of a method beside cells that hold open a "
+            "page: it plays the run beside that of the first method that holds there, at the moment and at the body "
+            "that decided the verdict.</p>\n",
+            MAP_PAGES_EACH);
+    put_left_out(out, &html->table, offsetof(MapPage, page), sizeof(MapPage), "cells");
     put_key(out);
     for (int row = 0; row < html->maps.count && !html->failed;) {
         html->failed = !map_panels_gather(html->map, &html->maps, &row, html->error);
@@ -146,24 +178,24 @@ static void stability_html_put_html(FILE *out, const void *context) {
 bool stability_html_write(const char *folder, Error *error) {
     char path[CSV_PATH_SIZE];
     StabilityHtml html = {.error = error};
-    if (!file_path(path, sizeof path, error, "%s/stability.html", folder) || !map_table_read(&html.maps, folder, error))
+    if (!file_path(path, sizeof path, error, "%s/stability.html", folder) ||
+        !csv_table_read_from(&html.maps, folder, &map_layout, error))
         return false;
     bool done = csv_table_read_from(&html.table, folder, &map_page_layout, error);
     html.pages = html.table.rows;
     html.map = malloc(sizeof *html.map);
-    size_t size = 0;
-    char *text = done && html.map != NULL ? file_print(stability_html_put_html, &html, &size) : NULL;
-    if (done && text == NULL) done = error_memory(error, path);
-    done = done && !html.failed && file_write(path, text, size, error);
-    free(text);
+    if (done && html.map == NULL) done = error_memory(error, path);
+    done = done && write_page(path, put_stability, &html, &html.failed, error);
     free(html.map);
     csv_table_free(&html.table);
-    map_table_free(&html.maps);
+    csv_table_free(&html.maps);
     return done;
 }
 
+/* chart.html */
+
 typedef struct ChartHtml {
-    ChartTable chart;
+    CsvTable chart;
     CsvTable table; /* of LaunchPage */
     const LaunchPage *pages;
     const char *csv; /* path of the chart's table */
@@ -186,7 +218,7 @@ static const LaunchPage *find_page(const ChartHtml *html, const char *scene, con
 
 static const ChartRow *find_row(const ChartHtml *html, const LaunchPage *page) {
     for (int i = 0; i < html->chart.count; i++) {
-        const ChartRow *row = &html->chart.rows[i];
+        const ChartRow *row = chart_row(&html->chart, i);
         if (row->protocol == PROTOCOL_CLOSED && same_point(page, row->scene, row->method, row->setting, row->phase))
             return row;
     }
@@ -209,9 +241,8 @@ static void put_point(FILE *out, const Chart *chart, int panel, const ChartMark 
 }
 
 static void put_figure(FILE *out, const ChartHtml *html, const Chart *chart, const char *scene) {
-    fputs("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Chart of ", out);
-    html_put(out, scene);
-    fputs("\">\n<figure>\n<img src=\"chart-", out);
+    begin_region(out, "scroll", "Chart of ", scene);
+    fputs("<figure>\n<img src=\"chart-", out);
     html_put_address(out, scene);
     fprintf(out, ".svg\" width=\"%.0f\" height=\"%.0f\" alt=\"Velocity error over solver time for each method in ",
             10 * CHART_WIDTH, 10 * CHART_HEIGHT);
@@ -265,9 +296,8 @@ static void put_method(FILE *out, const ChartHtml *html, const LaunchPage *page)
 
 /* A row for each method and setting. Rows of both phases follow each other. */
 static void put_table(FILE *out, const ChartHtml *html, const char *scene) {
-    fputs("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Points of ", out);
-    html_put(out, scene);
-    fputs("\">\n<table>\n<thead><tr><th rowspan=\"2\" scope=\"col\">Method</th>"
+    begin_region(out, "scroll", "Points of ", scene);
+    fputs("<table>\n<thead><tr><th rowspan=\"2\" scope=\"col\">Method</th>"
           "<th rowspan=\"2\" scope=\"col\">Setting</th>",
           out);
     for (int p = 0; p < CHART_PANELS; p++)
@@ -289,21 +319,15 @@ static void put_table(FILE *out, const ChartHtml *html, const char *scene) {
     fputs("</tbody>\n</table>\n</div>\n", out);
 }
 
-static void put_heading(FILE *out, const char *scene, int launches) {
-    fputs("<section class=\"panel\" aria-label=\"", out);
-    html_put(out, scene);
-    fputs("\">\n<h2>", out);
-    html_put(out, scene);
-    fprintf(out, ", %d launches</h2>\n", launches);
-}
-
 static void put_scene(FILE *out, ChartHtml *html, const ChartRow *first) {
     Chart chart;
     if (chart_scene_untimed(html->chart.rows, html->chart.count, first->scene)) {
-        put_heading(out, first->scene, first->launches);
+        begin_section(out, first->scene);
+        fprintf(out, ", %d launches</h2>\n", first->launches);
         fputs("<p>Without a chart: its times were measured on another processor.</p>\n", out);
     } else if (chart_gather(&chart, &html->chart, first->scene, html->csv, html->error)) {
-        put_heading(out, first->scene, chart.launches);
+        begin_section(out, first->scene);
+        fprintf(out, ", %d launches</h2>\n", chart.launches);
         put_figure(out, html, &chart, first->scene);
         chart_free(&chart);
     } else {
@@ -316,25 +340,17 @@ static void put_scene(FILE *out, ChartHtml *html, const ChartRow *first) {
 
 static bool is_first(const ChartHtml *html, int row) {
     int first = 0;
-    while (strcmp(html->chart.rows[first].scene, html->chart.rows[row].scene) != 0) first++;
+    while (strcmp(chart_row(&html->chart, first)->scene, chart_row(&html->chart, row)->scene) != 0) first++;
     return first == row;
 }
 
-static int count_left_out(const ChartHtml *html) {
-    int count = 0;
-    for (int i = 0; i < html->table.count; i++) count += html->pages[i].page[0] == '\0';
-    return count;
-}
-
-static void put_html(FILE *out, const void *context) {
+static void put_chart(FILE *out, const void *context) {
     ChartHtml *html = (ChartHtml *)context; /* where it fails is noted */
     char times[CHART_TIMES_SIZE];
-    house_page_begin(out, "Speed and accuracy", chart_css);
-    fputs("<header><h1>Speed and accuracy</h1></header>\n"
-          "<p class=\"soft\">Each point opens a page that plays the launch that was worst for it, beside the converged "
-          "run, at "
-          "the step with the largest error. Errors are means over all launches, of velocities against the converged "
-          "solution of the same step; of a step, over its bodies.</p>\n",
+    begin_page(out, "Speed and accuracy", chart_css);
+    fputs("Each point opens a page that plays the launch that was worst for it, beside the converged run, at the step "
+          "with the largest error. Errors are means over all launches, of velocities against the converged solution of "
+          "the same step; of a step, over its bodies.</p>\n",
           out);
     chart_times_note(times, html->chart.rows, html->chart.count);
     if (times[0] != '\0') {
@@ -342,10 +358,9 @@ static void put_html(FILE *out, const void *context) {
         html_put(out, times);
         fputs("</p>\n", out);
     }
-    const int left_out = count_left_out(html);
-    if (left_out > 0) fprintf(out, "<p class=\"odd\">Without a page for lack of room: %d points.</p>\n", left_out);
+    put_left_out(out, &html->table, offsetof(LaunchPage, page), sizeof(LaunchPage), "points");
     for (int i = 0; i < html->chart.count; i++)
-        if (!html->failed && is_first(html, i)) put_scene(out, html, &html->chart.rows[i]);
+        if (!html->failed && is_first(html, i)) put_scene(out, html, chart_row(&html->chart, i));
     house_page_end(out);
 }
 
@@ -353,16 +368,13 @@ bool chart_html_write(const char *folder, Error *error) {
     char csv[CSV_PATH_SIZE], path[CSV_PATH_SIZE];
     ChartHtml html = {.csv = csv, .error = error};
     if (!csv_table_path(csv, folder, &chart_layout, error) ||
-        !file_path(path, sizeof path, error, "%s/chart.html", folder) || !chart_csv_read(&html.chart, csv, error))
+        !file_path(path, sizeof path, error, "%s/chart.html", folder) ||
+        !csv_table_read(&html.chart, csv, &chart_layout, error))
         return false;
     bool done = csv_table_read_from(&html.table, folder, &launch_page_layout, error);
     html.pages = html.table.rows;
-    size_t size = 0;
-    char *text = done ? file_print(put_html, &html, &size) : NULL;
-    if (done && text == NULL) done = error_memory(error, path);
-    done = done && !html.failed && file_write(path, text, size, error);
-    free(text);
+    done = done && write_page(path, put_chart, &html, &html.failed, error);
     csv_table_free(&html.table);
-    chart_csv_free(&html.chart);
+    csv_table_free(&html.chart);
     return done;
 }

@@ -123,7 +123,7 @@ typedef struct BestRival {
     CurveReach reach; /* CURVE_BEFORE without a rival */
 } BestRival;
 
-/* Every method's error next to the error that its best rival (rival_curves.h) has in the same time: equal_time.csv for
+/* Every method's error next to the error that its best rival has in the same time: equal_time.csv for
    each setting at the time that it takes, equal_time_methods.csv for each method at one time for all in a scene. */
 
 typedef struct EqualTimeRow {
@@ -257,7 +257,7 @@ typedef struct Chart {
    there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
    them are left out, and counted in their line. False with error set if nothing remains, or for more than
    CHART_MAX_LINES lines. */
-bool chart_gather(Chart *chart, const ChartTable *table, const char *scene, const char *path, Error *error);
+bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error);
 void chart_free(Chart *chart);
 
 /* Replaces characters that names do not have (csv_plain_length), or that the font lacks, by '?'. */
@@ -266,37 +266,9 @@ void chart_make_plain(char *text);
 /* Copies a text, made plain and truncated to fit. */
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text);
 
-/* The layout of a chart, in mm from the page's lower left corner: two panels side by side and a legend below. */
-
+/* mm */
 #define CHART_WIDTH FIGURE_PAGE_WIDTH
 #define CHART_HEIGHT 100.0
-#define LEFT_MARGIN 16.5
-#define RIGHT_MARGIN 3.5 /* half of "1000" below an axis that ends there */
-#define FOOT_ROW 3.4
-
-#define LABEL_POINTS 6.5
-#define RING_RADIUS 2.2 /* mm: around a setting as shipped */
-
-enum { CHART_NOTES = 4 };
-
-typedef struct ChartNote {
-    char text[SKETCH_TEXT_SIZE]; /* one line */
-} ChartNote;
-
-typedef struct ChartLayout {
-    const Chart *chart;
-    PlotPanel panels[CHART_PANELS];
-    int columns, rows; /* of the legend */
-    double legend_top; /* mm, middle of the first row */
-    int foot_rows;     /* notes below the legend, from the bottom */
-    ChartNote notes[CHART_NOTES];
-} ChartLayout;
-
-/* Computes columns and rows of the legend, and the notes below it. */
-void chart_lay_out_legend(ChartLayout *layout);
-
-void chart_draw_legend(const ChartLayout *layout, Sketch *sketch);
-
 /* Where a mark is drawn: shares of the page's width and height, from its upper left corner. */
 void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top);
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Charts of speed against accuracy: legend, labels of marks, lines and the Pareto front. */
 #include "base/base.h"
 #include "base/file.h"
 #include "figures/sketch.h"
@@ -10,8 +11,159 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The layout of a chart, in mm from the page's lower left corner: two panels side by side and a legend below. */
+
+#define LEFT_MARGIN 16.5
+#define RIGHT_MARGIN 3.5 /* half of "1000" below an axis that ends there */
+#define FOOT_ROW 3.4
+
+#define LABEL_POINTS 6.5
+#define RING_RADIUS 2.2 /* mm: around a setting as shipped */
+
+enum { CHART_NOTES = 4 };
+
+typedef struct ChartNote {
+    char text[SKETCH_TEXT_SIZE]; /* one line */
+} ChartNote;
+
+typedef struct ChartLayout {
+    const Chart *chart;
+    PlotPanel panels[CHART_PANELS];
+    int columns, rows; /* of the legend */
+    double legend_top; /* mm, middle of the first row */
+    int foot_rows;     /* notes below the legend, from the bottom */
+    ChartNote notes[CHART_NOTES];
+} ChartLayout;
+
+/* The legend and its notes. */
+
+static const char front_name[] = "Pareto front of solvers";
+
+static bool is_drawn(const ChartLine *line) { return line->marks[0] + line->marks[1] > 0; }
+
+static void append(ChartNote *note, const char *format, ...) PRINTF_LIKE(2, 3);
+static void append(ChartNote *note, const char *format, ...) {
+    const size_t length = strlen(note->text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(note->text + length, sizeof note->text - length, format, arguments);
+    va_end(arguments);
+}
+
+/* Lists the lines with a nonzero counter (at `offset` in ChartLine), as far as there is room. */
+static void write_counts(ChartNote *note, const Chart *chart, const char *why, size_t offset) {
+    enum { ROOM = 52 };
+    const char *separator = why;
+    size_t length = 0;
+    for (int i = 0; i < chart->line_count; i++) {
+        const ChartLine *line = &chart->lines[i];
+        int count;
+        memcpy(&count, (const char *)line + offset, sizeof count);
+        if (count == 0) continue;
+        length += strlen(line->name) + 6;
+        if (length > ROOM) {
+            append(note, " and others. ");
+            return;
+        }
+        append(note, "%s%s (%d)", separator, line->name, count);
+        separator = ", ";
+    }
+    if (separator != why) append(note, ". ");
+}
+
+/* "0.14 to 0.28 m/s"; one number if both are equal. */
+static void write_range(ChartNote *note, const double range[2], const char *unit) {
+    append(note, range[0] < 100 ? "%.2g" : "%.0f", range[0]);
+    if (range[1] > range[0]) append(note, range[1] < 100 ? " to %.2g" : " to %.0f", range[1]);
+    append(note, " %s", unit);
+}
+
+static void write_times(ChartNote *note, const Chart *chart) { append(note, "%s", chart->times); }
+
+static void write_beyond(ChartNote *note, const Chart *chart) {
+    const char *separator = "Beyond the axes: ";
+    for (int i = 0; i < chart->line_count; i++) {
+        const ChartLine *line = &chart->lines[i];
+        if (line->beyond == 0) continue;
+        append(note, "%s%s (", separator, line->name);
+        write_range(note, line->beyond_us, "µs,");
+        append(note, " ");
+        if (line->beyond_error[1] <= PARETO_RESOLUTION) append(note, "below ");
+        write_range(note, line->beyond_error, "m/s)");
+        separator = ", ";
+    }
+}
+
+static void write_no_push_out(ChartNote *note, const Chart *chart) {
+    const char *separator = "";
+    for (int i = 0; i < chart->line_count; i++) {
+        if (!chart->lines[i].no_push_out || !is_drawn(&chart->lines[i])) continue;
+        append(note, "%s%s", separator, chart->lines[i].name);
+        separator = ", ";
+    }
+    if (separator[0] != '\0')
+        append(note, ": error against the solution without the velocity that pushes overlapping boxes apart.");
+}
+
+static void write_all_counts(ChartNote *note, const Chart *chart) {
+    write_counts(note, chart, "Unstable before the impact: ", offsetof(ChartLine, lost));
+    write_counts(note, chart, "Without time or error: ", offsetof(ChartLine, left_out));
+    if (chart->floored > 0) append(note, "Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
+}
+
+/* From the bottom; those with nothing to say have no row. */
+static void write_notes(ChartLayout *layout) {
+    static void (*const notes[CHART_NOTES])(ChartNote *, const Chart *) = {write_all_counts, write_no_push_out,
+                                                                           write_beyond, write_times};
+    for (int i = 0; i < CHART_NOTES; i++) {
+        ChartNote *note = &layout->notes[layout->foot_rows];
+        note->text[0] = '\0';
+        notes[i](note, layout->chart);
+        text_fit(note->text, sizeof note->text, LABEL_POINTS, CHART_WIDTH - LEFT_MARGIN - 1);
+        layout->foot_rows += note->text[0] != '\0';
+    }
+}
+
+/* Computes columns and rows of the legend, and the notes below it. */
+static void lay_out_legend(ChartLayout *layout) {
+    double longest = type_width(front_name, LEGEND_POINTS);
+    int entries = 1;
+    for (int i = 0; i < layout->chart->line_count; i++) {
+        const ChartLine *line = &layout->chart->lines[i];
+        if (!is_drawn(line)) continue;
+        longest = fmax(longest, type_width(line->name, LEGEND_POINTS));
+        entries++;
+    }
+    const double room = CHART_WIDTH - LEFT_MARGIN;
+    layout->columns = (int)(room / (LEGEND_SAMPLE + LEGEND_GAP + longest + 1));
+    if (layout->columns < 1) layout->columns = 1;
+    layout->rows = (entries + layout->columns - 1) / layout->columns;
+    /* The fewest columns for this number of rows: the legend fills its width. */
+    layout->columns = (entries + layout->rows - 1) / layout->rows;
+    write_notes(layout);
+}
+
+static void draw_legend(const ChartLayout *layout, Sketch *sketch) {
+    PlotLook looks[CHART_MAX_LINES + 1];
+    int count = 0;
+    for (int i = 0; i < layout->chart->line_count; i++) {
+        const ChartLine *line = &layout->chart->lines[i];
+        if (!is_drawn(line)) continue;
+        const bool joined = line->marks[0] > 1 || line->marks[1] > 1;
+        looks[count++] = (PlotLook){.name = line->name, .style = line->style, .line = joined ? 1.6 : 0, .marks = true};
+    }
+    looks[count++] = (PlotLook){.name = front_name, .style = {.colour = PARETO_COLOUR}, .line = 6};
+    plot_legend(sketch, looks, count, layout->columns, LEFT_MARGIN, layout->legend_top);
+    for (int i = 0; i < layout->foot_rows; i++)
+        plot_text(sketch, (Point){LEFT_MARGIN, FOOT_ROW * (i + 0.5)}, TEXT_LEFT, LABEL_POINTS, layout->notes[i].text);
+}
+
+/* Labels of marks. */
 
 static const double label_height = LABEL_POINTS * MM_PER_POINT * 0.9;
 
@@ -121,7 +273,7 @@ static void draw_labels(Labels *labels) {
 }
 
 /* Draws the labels of a panel's marks: at both ends of each line, where there is room. False if out of memory. */
-static bool chart_draw_labels(const ChartLayout *layout, int panel, Sketch *sketch) {
+static bool draw_panel_labels(const ChartLayout *layout, int panel, Sketch *sketch) {
     const PlotPanel *plot = &layout->panels[panel];
     const PageBox frame = {plot->x.from + 0.5, plot->y.from + 0.5, plot->x.to - 0.5, plot->y.to - 0.5};
     Labels *labels = calloc(1, sizeof *labels);
@@ -141,7 +293,7 @@ const char *const chart_panel_titles[CHART_PANELS] = {"Impact frames", "The 60 f
 
 static ChartLayout chart_lay_out(const Chart *chart) {
     ChartLayout layout = {.chart = chart};
-    chart_lay_out_legend(&layout);
+    lay_out_legend(&layout);
     layout.legend_top = FOOT_ROW * layout.foot_rows + LEGEND_ROW * (layout.rows - 0.5) + 0.5;
     const PlotGrid grid = {.width = CHART_WIDTH,
                            .height = CHART_HEIGHT,
@@ -240,12 +392,12 @@ static bool draw_chart(const ChartLayout *layout, const char *title, Sketch *ske
         whole = draw_front(panel, plot, sketch) && draw_lines(layout->chart, panel, plot, sketch) && whole;
         draw_rings(panel, plot, sketch);
         plot_panel_draw(sketch, plot);
-        whole = chart_draw_labels(layout, p, sketch) && whole;
+        whole = draw_panel_labels(layout, p, sketch) && whole;
     }
     const TextStyle style = {7.5, TEXT_RIGHT, 0x505050, 0, false};
     sketch_text(sketch, (Point){layout->panels[CHART_PANELS - 1].x.to, CHART_HEIGHT - top_margin + 2.5}, &style, "%s",
                 title);
-    chart_draw_legend(layout, sketch);
+    draw_legend(layout, sketch);
     return whole;
 }
 
@@ -273,14 +425,14 @@ bool chart_plot(const char *csv_path, const char *scene, const char *folder, Err
     char stem[PATH_MAX];
     if (!check_name(csv_path, scene, error)) return false;
     if (!file_path(stem, sizeof stem, error, "%s/chart-%s", folder, scene)) return false;
-    ChartTable table;
-    if (!chart_csv_read(&table, csv_path, error)) return false;
+    CsvTable table;
+    if (!csv_table_read(&table, csv_path, &chart_layout, error)) return false;
     Chart chart;
     bool drawn = chart_gather(&chart, &table, scene, csv_path, error);
     if (drawn) {
         drawn = draw(&chart, scene, stem, error);
         chart_free(&chart);
     }
-    chart_csv_free(&table);
+    csv_table_free(&table);
     return drawn;
 }

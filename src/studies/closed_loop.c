@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Runs in closed loop: their logs and measures, the scores of their steps, a method beside the engine. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -10,15 +11,13 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const double apart_distance = 0.1; /* m */
 static const double moved_distance = 0.5; /* m: half a box */
 static const double moved_after = 5;      /* s */
 
 void run_log_free(RunLog *log) {
     free(log->position);
-    free(log->energy);
-    free(log->penetration);
-    free(log->phase);
-    free(log->bomb);
+    free(log->at);
     *log = (RunLog){0};
 }
 
@@ -31,10 +30,7 @@ bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
     double end = log->launch_frame + moved_after / (double)scene->dt;
     log->end_frame = end < scene->frames ? (int)lround(end) : scene->frames;
     if (!array_reserve((void **)&log->position, &log->position_capacity, rows * (size_t)log->bodies, sizeof(Vec2)) ||
-        !array_reserve((void **)&log->energy, &log->energy_capacity, rows, sizeof(double)) ||
-        !array_reserve((void **)&log->penetration, &log->penetration_capacity, rows, sizeof(double)) ||
-        !array_reserve((void **)&log->phase, &log->phase_capacity, rows, sizeof(Phase)) ||
-        !array_reserve((void **)&log->bomb, &log->bomb_capacity, rows, sizeof(Vec2)))
+        !array_reserve((void **)&log->at, &log->at_capacity, rows, sizeof *log->at))
         return false;
     run_log_step(log, scene, world, 0, PHASE_REST);
     return true;
@@ -49,17 +45,18 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
     if (phase == PHASE_IMPACT && log->touch == 0) log->touch = frame;
     for (int i = 0; i < log->bodies; i++)
         log->position[(size_t)frame * (size_t)log->bodies + (size_t)i] = world_bodies(world)[i].position;
-    log->energy[frame] = world_energy(world, scene->gravity);
-    log->penetration[frame] = world_penetration(world);
-    log->phase[frame] = phase;
-    log->bomb[frame] = world_body_count(world) > log->bodies ? world_bodies(world)[log->bodies].position : vec2(0, 0);
+    log->at[frame] = (LoggedFrame){
+        .energy = world_energy(world, scene->gravity),
+        .penetration = world_penetration(world),
+        .phase = phase,
+        .bomb = world_body_count(world) > log->bodies ? world_bodies(world)[log->bodies].position : vec2(0, 0)};
     log->momentum_error += (double)world_solution(world)->momentum_error;
     log->fallen_back += fell_back(&world_solution(world)->fallbacks);
 }
 
 static double distance_apart(const RunLog *log, const RunLog *other, int frame) {
     const size_t row = (size_t)frame * (size_t)log->bodies;
-    double apart = vec2_distance(log->bomb[frame], other->bomb[frame]);
+    double apart = vec2_distance(log->at[frame].bomb, other->at[frame].bomb);
     for (int i = 0; i < log->bodies; i++)
         apart = fmax(apart, vec2_distance(log->position[row + (size_t)i], other->position[row + (size_t)i]));
     return apart;
@@ -100,11 +97,11 @@ RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene
     int frames[PHASES] = {0}, last = log->frames < converged->frames ? log->frames : converged->frames;
     double energy[PHASES] = {0};
     for (int frame = 1; frame <= last; frame++) {
-        Phase phase = log->phase[frame];
-        energy[phase] += log->energy[frame] - converged->energy[frame];
+        Phase phase = log->at[frame].phase;
+        energy[phase] += log->at[frame].energy - converged->at[frame].energy;
         frames[phase]++;
-        if (log->penetration[frame] > measures.penetration[phase])
-            measures.penetration[phase] = log->penetration[frame];
+        if (log->at[frame].penetration > measures.penetration[phase])
+            measures.penetration[phase] = log->at[frame].penetration;
     }
     for (int phase = 0; phase < PHASES; phase++) {
         measures.energy[phase] = frames[phase] > 0 ? energy[phase] / frames[phase] : NAN;
@@ -150,12 +147,16 @@ void rollout_free(Rollout *rollout) {
     *rollout = (Rollout){0};
 }
 
+/* m/s, far below the differences between methods. Only states that a bad method made explode, and steps without a
+   solution (methods/reference.h), do not reach it. */
+static const double solve_converged = 1e-3;
+
 static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
     const ContactProblem *problem = world_problem(rollout->world);
     const Reference *reference = &rollout->converged.reference;
     if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
     rollout->solves++;
-    rollout->unconverged += reference->residual > SOLVE_CONVERGED;
+    rollout->unconverged += reference->residual > solve_converged;
     if (step_scores_add(scores, frame, problem, world_solution(rollout->world)->velocities, reference->velocities))
         return true;
     return error_memory(error, "study");
@@ -209,10 +210,10 @@ bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Err
 
 static void measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
     const int launch = scene->bomb.frame < log->frames ? scene->bomb.frame : log->frames;
-    result->energy_put_in = result->energy_most = log->energy[launch];
+    result->energy_put_in = result->energy_most = log->at[launch].energy;
     for (int frame = 1; frame <= log->frames; frame++) {
-        result->penetration = fmax(result->penetration, log->penetration[frame]);
-        if (frame > launch) result->energy_most = fmax(result->energy_most, log->energy[frame]);
+        result->penetration = fmax(result->penetration, log->at[frame].penetration);
+        if (frame > launch) result->energy_most = fmax(result->energy_most, log->at[frame].energy);
     }
 }
 
@@ -224,9 +225,9 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
     if (!ok) return false;
     const RunLog *log = &rollout->log;
     const int frames = launched->frames;
-    *result = (LaunchLoop){.frames_engine = run_log_apart(log, engine, CLOSED_LOOP_APART, frames),
+    *result = (LaunchLoop){.frames_engine = run_log_apart(log, engine, apart_distance, frames),
                            .frames_converged = converged != NULL
-                                                   ? (double)run_log_apart(log, converged, CLOSED_LOOP_APART, frames)
+                                                   ? (double)run_log_apart(log, converged, apart_distance, frames)
                                                    : (double)NAN,
                            .moved = run_log_moved(log, launched),
                            .momentum_error = log->momentum_error,

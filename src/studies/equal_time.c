@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Errors at equal time: the curves of rivals, and the tables in which each method stands beside its best rival. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "methods/methods.h"
@@ -103,12 +104,9 @@ static const char *const phase_words[] = {"impact", "after", NULL};
 static const char *const statistic_words[] = {"mean", "median", "p95", NULL};
 static const char *const reach_words[] = {"before", "within", "beyond", NULL};
 
-#define NUMBER(Row, member) \
-    { #member, CSV_OPTIONAL, .offset = offsetof(Row, member), .maximum = INFINITY }
-#define TEXT(Row, member, size, is_key) \
-    { #member, CSV_TEXT, .offset = offsetof(Row, member), .maximum = (size)-1, .key = (is_key) }
-#define WORD(Row, member, list, is_key) \
-    { #member, CSV_WORD, .offset = offsetof(Row, member), .words = (list), .key = (is_key) }
+#define NUMBER(Row, member) CSV_MEMBER(Row, member, CSV_OPTIONAL, .maximum = INFINITY)
+#define TEXT(Row, member, size, is_key) CSV_MEMBER(Row, member, CSV_TEXT, .maximum = (size)-1, .key = (is_key))
+#define WORD(Row, member, list, is_key) CSV_MEMBER(Row, member, CSV_WORD, .words = (list), .key = (is_key))
 
 static const CsvColumn columns[] = {
     TEXT(EqualTimeRow, scene, CHART_NAME_SIZE, true),
@@ -116,7 +114,7 @@ static const CsvColumn columns[] = {
     TEXT(EqualTimeRow, setting, CHART_SETTING_SIZE, true),
     WORD(EqualTimeRow, phase, phase_words, true),
     WORD(EqualTimeRow, statistic, statistic_words, true),
-    {"launches", CSV_INTEGER, .offset = offsetof(EqualTimeRow, launches), .maximum = INT_MAX},
+    CSV_MEMBER(EqualTimeRow, launches, CSV_INTEGER, .maximum = INT_MAX),
     NUMBER(EqualTimeRow, us_solver),
     NUMBER(EqualTimeRow, error),
     TEXT(EqualTimeRow, rival, CHART_FAMILY_SIZE, false),

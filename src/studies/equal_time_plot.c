@@ -278,11 +278,12 @@ static bool has_ratio(const EqualTimeGrid *grid) {
 }
 
 bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Error *error) {
-    ChartTable chart;
+    CsvTable chart;
     EqualTime table;
     char path[CSV_PATH_SIZE], methods[CSV_PATH_SIZE];
     if (!csv_table_path(path, folder, &equal_time_layout, error) ||
-        !csv_table_path(methods, folder, &equal_methods_layout, error) || !chart_csv_read(&chart, chart_csv, error))
+        !csv_table_path(methods, folder, &equal_methods_layout, error) ||
+        !csv_table_read(&chart, chart_csv, &chart_layout, error))
         return false;
     EqualTimeGrid *grid = malloc(sizeof *grid);
     bool ok = grid != NULL || error_memory(error, path);
@@ -300,6 +301,6 @@ bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Err
         equal_time_free(&table);
     }
     free(grid);
-    chart_csv_free(&chart);
+    csv_table_free(&chart);
     return ok;
 }

@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The pieces of a chart: the launch that is worst for a method, launches scored by all methods, the tables that pieces make,
+   and the times of a scene. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
@@ -21,32 +23,26 @@
 /* Phases with points: impact and after. */
 static const char *const phase_words[] = {"impact", "after", NULL};
 
-#define TEXT(member, size) \
-    { #member, CSV_TEXT, .offset = offsetof(LaunchPage, member), .maximum = (size)-1 }
-#define COUNT(member, least) \
-    { #member, CSV_INTEGER, .offset = offsetof(LaunchPage, member), .minimum = least, .maximum = INT_MAX }
-#define NUMBER(member, kind, most)                                                                                    \
-    {                                                                                                                 \
-#member, kind, .offset = offsetof(LaunchPage, member), .minimum = -(double)(most), .maximum = (double)(most), \
-                       .digits = 9                                                                                    \
-    }
-#define ERROR(member) \
-    { #member, CSV_NUMBER, .offset = offsetof(LaunchPage, member), .maximum = INFINITY }
+#define TEXT(member, size) CSV_MEMBER(LaunchPage, member, CSV_TEXT, .maximum = (size)-1)
+#define COUNT(member, least) CSV_MEMBER(LaunchPage, member, CSV_INTEGER, .minimum = least, .maximum = INT_MAX)
+#define NUMBER(member, kind) \
+    CSV_MEMBER(LaunchPage, member, kind, .minimum = -INFINITY, .maximum = INFINITY, .digits = 9)
+#define ERROR(member) CSV_MEMBER(LaunchPage, member, CSV_NUMBER, .maximum = INFINITY)
 
 static const CsvColumn columns[] = {
     TEXT(scene, CHART_NAME_SIZE),
     TEXT(method, CHART_NAME_SIZE),
     TEXT(setting, CHART_SETTING_SIZE),
-    {"phase", CSV_WORD, .offset = offsetof(LaunchPage, phase), .words = phase_words},
+    CSV_MEMBER(LaunchPage, phase, CSV_WORD, .words = phase_words),
     COUNT(launch, 1),
-    NUMBER(x, CSV_FLOAT, INFINITY),
-    NUMBER(rotation, CSV_FLOAT, INFINITY),
-    NUMBER(spin, CSV_FLOAT, INFINITY),
-    NUMBER(mass, CSV_FLOAT, INFINITY),
+    NUMBER(x, CSV_FLOAT),
+    NUMBER(rotation, CSV_FLOAT),
+    NUMBER(spin, CSV_FLOAT),
+    NUMBER(mass, CSV_FLOAT),
     COUNT(launch_frame, 0),
     ERROR(error_worst),
     ERROR(error),
-    NUMBER(time, CSV_NUMBER, INFINITY),
+    NUMBER(time, CSV_NUMBER),
     COUNT(frame, 0),
     COUNT(body, -1),
     TEXT(page, CSV_PATH_SIZE),

@@ -7,7 +7,6 @@
 #include "base/file.h"
 #include "base/machine.h"
 #include "runs/pieces.h"
-#include "scenes/scenes.h"
 #include "studies/chart.h"
 #include "studies/stability_internal.h"
 
@@ -136,57 +135,6 @@ static void stability_plan_free(StabilityPlan *plan) {
     *plan = (StabilityPlan){0};
 }
 
-/* Inserts a value into a sorted list, if it is new. False if the list is full. */
-static bool insert(double values[MAP_MAX_VALUES], int *count, double value) {
-    int at = 0;
-    while (at < *count && values[at] < value) at++;
-    if (at < *count && values[at] == value) return true;
-    if (*count == MAP_MAX_VALUES) return false;
-    memmove(values + at + 1, values + at, (size_t)(*count - at) * sizeof *values);
-    values[at] = value;
-    ++*count;
-    return true;
-}
-
-static int find(const double *values, double value) {
-    int i = 0;
-    while (values[i] != value) i++;
-    return i;
-}
-
-static bool gather_values(MapPanels *map, const MapTable *table, int first, int end, Error *error) {
-    for (int i = first; i < end; i++)
-        if (!insert(map->x, &map->x_count, table->cells[i].x) || !insert(map->y, &map->y_count, table->cells[i].y))
-            return csv_table_error(&table->csv, i, 0, error, "more than %d values of a parameter", MAP_MAX_VALUES);
-    return true;
-}
-
-static bool gather_looks(MapPanels *map, const MapTable *table, int first, int end, Error *error) {
-    memset(map->looks, LOOK_MISSING, sizeof map->looks);
-    for (int i = first; i < end; i++) {
-        const MapCell *cell = &table->cells[i];
-        if (i == first || !map_cell_same_method(cell - 1, cell)) {
-            if (map->panel_count == MAP_MAX_METHODS)
-                return csv_table_error(&table->csv, i, 0, error, "more than %d methods: too many for a figure",
-                                       MAP_MAX_METHODS);
-            map->methods[map->panel_count++] = cell;
-        }
-        unsigned char *look = &map->looks[map->panel_count - 1][find(map->x, cell->x)][find(map->y, cell->y)];
-        if (*look != LOOK_MISSING)
-            return csv_table_error(&table->csv, i, 0, error, "the cell appears twice (%s %g, %s %g)", cell->x_parameter,
-                                   cell->x, cell->y_parameter, cell->y);
-        *look = (unsigned char)cell->verdict;
-    }
-    return true;
-}
-
-bool map_panels_gather(MapPanels *map, const MapTable *table, int *row, Error *error) {
-    int first = *row;
-    *map = (MapPanels){.first = &table->cells[first]};
-    while (*row < table->count && strcmp(table->cells[*row].map, map->first->map) == 0) ++*row;
-    return gather_values(map, table, first, *row, error) && gather_looks(map, table, first, *row, error);
-}
-
 /* clang-format off */
 /* from, to, points */
 #define LINEAR(...) \
@@ -312,15 +260,9 @@ static bool know_names(const StabilityOptions *options, Error *error) {
     return true;
 }
 
-/* Hashes the scene and its networks. A missing network is an error only of the method that needs it. */
-static bool add_scene_to_key(const StabilityPlace *place, StudyKey *key, Error *error) {
+static bool add_place_to_key(const StabilityPlace *place, StudyKey *key, Error *error) {
     char path[STABILITY_PATH_SIZE];
-    if (!stability_path(path, place, error)) return false;
-    Scene *scene = scene_read(path, error);
-    if (scene == NULL) return false;
-    for (int i = 0; i < scene->network_count; i++) study_key_add_file(key, scene->networks[i].path, &(Error){0});
-    scene_destroy(scene);
-    return study_key_add_file(key, path, error);
+    return stability_path(path, place, error) && study_key_add_scene(key, path, error);
 }
 
 /* Hashes a range that is not in the program. */
@@ -334,14 +276,14 @@ static void add_scan_to_key(const char *name, const char *parameter, const Borde
 static bool add_study_to_key(const Run *run, const StabilityStudy *study, StudyKey *key, Error *error) {
     const StabilityPlace place = {run->options->scenes, study->scene, study->file};
     add_scan_to_key(study->name, study->parameter, &study->scan, key);
-    return add_scene_to_key(&place, key, error);
+    return add_place_to_key(&place, key, error);
 }
 
 static bool add_map_to_key(const Run *run, const StabilityMap *map, StudyKey *key, Error *error) {
     const StabilityPlace place = {run->options->scenes, map->scene, map->file};
     add_scan_to_key(map->name, map->x.parameter, &map->x.scan, key);
     add_scan_to_key(map->name, map->y.parameter, &map->y.scan, key);
-    return add_scene_to_key(&place, key, error);
+    return add_place_to_key(&place, key, error);
 }
 
 /* Hashes everything that determines the result: the program, the options, the scenes. */
@@ -372,15 +314,6 @@ static bool finish(const Run *run, const Pieces *pieces, Error *error) {
            pieces_end(pieces, error);
 }
 
-/* Shards share a folder; a whole study has it to itself. */
-static bool do_pieces(Run *run, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
-    const StabilityOptions *options = run->options;
-    if (!pieces_open(pieces, options->folder, false, key, options->run, error)) return false;
-    if (pieces->mode == PIECES_WHOLE && !folder_reserve(options->folder, error)) return false;
-    return pieces_do(pieces, &run->plan.plan, progress, error) &&
-           (pieces->mode == PIECES_SHARD || finish(run, pieces, error));
-}
-
 static bool begin(Run *run, const StabilityOptions *options, Error *error) {
     *run = (Run){.options = options};
     return know_names(options, error) && contenders_parse(&run->methods, options->methods, STUDY_STABILITY, error) &&
@@ -399,8 +332,9 @@ static void end(Run *run) {
 bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error) {
     Run run;
     StudyKey key = {0};
-    const bool ok =
-        begin(&run, options, error) && find_key(&run, &key, error) && do_pieces(&run, pieces, &key, progress, error);
+    const bool ok = begin(&run, options, error) && find_key(&run, &key, error) &&
+                    study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
+                    (pieces->mode == PIECES_SHARD || finish(&run, pieces, error));
     pieces->plan = NULL;
     study_key_free(&key);
     end(&run);

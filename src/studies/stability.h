@@ -277,30 +277,13 @@ typedef struct RunRow {
     int not_finite, outside_cone, beyond_training, by_sweeps; /* fallbacks.csv: as in NetworkFallbacks */
 } RunRow;
 
+/* Refused: a map whose name is not a file name, maps (or methods of a map) whose rows are not together, and more than
+   STABILITY_MAX_PANELS methods of maps; rows that give a study another parameter, and verdicts that contradict their
+   values: a method that fails somewhere cannot hold, and one that does not apply has no values. */
 extern const CsvLayout map_layout, border_layout, refusal_layout, rest_layout, fallback_layout;
 
-typedef struct MapTable {
-    CsvTable csv;
-    int count;
-    const MapCell *cells; /* [count] */
-} MapTable;
-
-typedef struct BorderTable {
-    CsvTable csv;
-    int count;
-    const BorderRow *rows; /* [count] */
-} BorderTable;
-
-/* Reads folder/maps.csv; without rows there are no cells. Refused, as "path:line:column: error: reason": what
-   csv_table_read() refuses, a map whose name is not a file name, maps (or methods of a map) whose rows are not
-   together, and more than STABILITY_MAX_PANELS methods of maps. */
-bool map_table_read(MapTable *table, const char *folder, Error *error);
-void map_table_free(MapTable *table);
-
-/* Reads folder/stability.csv. Refused likewise: rows that give a study another parameter, and verdicts that contradict
-   their values: a method that fails somewhere cannot hold, and one that does not apply has no values. */
-bool border_table_read(BorderTable *table, const char *folder, Error *error);
-void border_table_free(BorderTable *table);
+static inline const MapCell *map_cell(const CsvTable *table, int i) { return (const MapCell *)table->rows + i; }
+static inline const BorderRow *border_row(const CsvTable *table, int i) { return (const BorderRow *)table->rows + i; }
 
 bool border_same_method(const BorderRow *a, const BorderRow *b);
 bool border_same_study(const BorderRow *a, const BorderRow *b);
@@ -337,7 +320,7 @@ typedef struct StabilityOptions {
     const char *names[STABILITY_MAX_NAMES];
     const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
     const PiecesRun *run;    /* whole, a shard, or a merge */
-    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables (study_key.h). */
+    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables. */
     bool (*draw)(void *context, uint64_t key, Error *error);
     void *draw_context;
 } StabilityOptions;
@@ -367,10 +350,7 @@ typedef struct MapPanels {
 
 /* Gathers the map whose rows start at *row and advances *row past them. ERROR_INPUT, with path:line:column: a repeated
    cell, more than MAP_MAX_VALUES values or MAP_MAX_METHODS methods. */
-bool map_panels_gather(MapPanels *map, const MapTable *table, int *row, Error *error);
-
-/* Writes the figure and its caption. All cells have the same size; ticks show their values. */
-void map_panels_write(const MapPanels *map, PlotPage *page);
+bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *error);
 
 /* The figures of a stability study, drawn from its tables. */
 
@@ -412,4 +392,4 @@ typedef struct MapPlace {
 int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_EACH]);
 
 /* The row of a cell; NULL: none. */
-const MapCell *map_panels_cell(const MapPanels *map, const MapTable *table, int panel, MapPlace place);
+const MapCell *map_panels_cell(const MapPanels *map, const CsvTable *table, int panel, MapPlace place);

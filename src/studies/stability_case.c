@@ -1,150 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* One run of a stability study: its scene, how it is judged, the converged run beside it; and maps, which have such a run in
+   each cell. */
 #include "base/base.h"
-#include "base/csv.h"
 #include "base/file.h"
 #include "base/machine.h"
-#include "engine/engine.h"
-#include "figures/sketch.h"
 #include "methods/methods.h"
 #include "runs/runs.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
-#include "studies/chart_internal.h"
+#include "studies/chart.h"
 #include "studies/stability.h"
+#include "studies/stability_internal.h"
 
-#include <ctype.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {
-    snprintf(method, MAP_METHOD_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
-}
-
-void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell) {
-    static const char folder[] = "clips/";
-    char method[MAP_METHOD_SIZE];
-    map_cell_method(method, cell);
-    snprintf(name, MAP_CLIP_SIZE, "%s%s-%s-%.4g_%.4g", folder, cell->map, method, cell->x, cell->y);
-    file_name_clean(name + strlen(folder));
-}
-
-bool map_cell_same_method(const MapCell *a, const MapCell *b) {
-    return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
-}
-
-static bool is_file_name(const char *name) {
-    for (const char *c = name; *c != '\0'; c++)
-        if (!isalnum((unsigned char)*c) && *c != '_' && *c != '-') return false;
-    return name[0] != '\0';
-}
-
-static bool same_axes(const MapCell *a, const MapCell *b) {
-    return strcmp(a->x_parameter, b->x_parameter) == 0 && strcmp(a->x_unit, b->x_unit) == 0 &&
-           strcmp(a->y_parameter, b->y_parameter) == 0 && strcmp(a->y_unit, b->y_unit) == 0;
-}
-
-/* Row i is the first of a map, or of a method of one: neither may have appeared before. */
-static bool check_first(const MapTable *table, int i, bool new_map, Error *error) {
-    const MapCell *cell = &table->cells[i];
-    if (new_map && !is_file_name(cell->map))
-        return csv_table_error(&table->csv, i, 0, error, "map: '%s' is not a file name", cell->map);
-    for (int k = 0; k < i; k++) {
-        if (strcmp(table->cells[k].map, cell->map) != 0) continue;
-        if (new_map)
-            return csv_table_error(&table->csv, i, 0, error, "the rows of map '%s' are not together", cell->map);
-        if (map_cell_same_method(&table->cells[k], cell))
-            return csv_table_error(&table->csv, i, 0, error, "the rows of this method of map '%s' are not together",
-                                   cell->map);
-    }
-    return true;
-}
-
-static bool check_cells(const MapTable *table, Error *error) {
-    int firsts = 0;
-    for (int i = 0; i < table->count; i++) {
-        const MapCell *cell = &table->cells[i], *last = i > 0 ? cell - 1 : cell;
-        bool new_map = i == 0 || strcmp(last->map, cell->map) != 0;
-        if (!new_map && !same_axes(last, cell))
-            return csv_table_error(&table->csv, i, 0, error, "the parameters differ from those of the row before");
-        if (!new_map && map_cell_same_method(last, cell)) continue;
-        if (++firsts > STABILITY_MAX_PANELS)
-            return csv_table_error(&table->csv, i, 0, error, "more than %d methods of maps", STABILITY_MAX_PANELS);
-        if (!check_first(table, i, new_map, error)) return false;
-    }
-    return true;
-}
-
-bool map_table_read(MapTable *table, const char *folder, Error *error) {
-    *table = (MapTable){.count = 0};
-    if (!csv_table_read_from(&table->csv, folder, &map_layout, error)) return false;
-    table->cells = table->csv.rows;
-    table->count = table->csv.count;
-    if (check_cells(table, error)) return true;
-    map_table_free(table);
-    return false;
-}
-
-void map_table_free(MapTable *table) {
-    csv_table_free(&table->csv);
-    *table = (MapTable){.count = 0};
-}
-
-/* The parameter of a study is that of its first row. */
-static bool check_border(const BorderTable *table, int i, Error *error) {
-    const BorderRow *row = &table->rows[i], *first = table->rows;
-    while (strcmp(first->study, row->study) != 0) first++;
-    if (strcmp(first->parameter, row->parameter) != 0 || strcmp(first->unit, row->unit) != 0)
-        return csv_table_error(&table->csv, i, 0, error, "the study '%s' had another parameter before", row->study);
-    const char *verdict = verdict_words[row->verdict];
-    bool holds = !isnan(row->holds_at), fails = !isnan(row->fails_at);
-    if (row->verdict == LOOK_NOT_APPLICABLE)
-        return (!holds && !fails) || csv_table_error(&table->csv, i, 0, error, "'%s' cannot have values", verdict);
-    if (!verdict_holds((Verdict)row->verdict)) return true;
-    return (holds && !fails) || csv_table_error(&table->csv, i, 0, error, "'%s' contradicts the values", verdict);
-}
-
-bool border_table_read(BorderTable *table, const char *folder, Error *error) {
-    *table = (BorderTable){.count = 0};
-    if (!csv_table_read_from(&table->csv, folder, &border_layout, error)) return false;
-    table->rows = table->csv.rows;
-    table->count = table->csv.count;
-    for (int i = 0; i < table->count; i++) {
-        if (check_border(table, i, error)) continue;
-        border_table_free(table);
-        return false;
-    }
-    return true;
-}
-
-void border_table_free(BorderTable *table) {
-    csv_table_free(&table->csv);
-    *table = (BorderTable){.count = 0};
-}
-
-bool border_same_method(const BorderRow *a, const BorderRow *b) {
-    return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
-}
-
-bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
-
-void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
-                           const char *setting) {
-    char whole[CSV_NAME_SIZE + STABILITY_SETTING_SIZE];
-    snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
-    method_name(text, STABILITY_TEXT_SIZE, whole);
-    chart_make_plain(text);
-    text_fit(text, STABILITY_TEXT_SIZE, points, most);
-}
-
-/* Words instead of the names of tables. */
-void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit) {
-    snprintf(text, STABILITY_TEXT_SIZE, unit[0] != '\0' ? "%s (%s)" : "%s", parameter, unit);
-    for (char *c = text; *c != '\0'; c++)
-        if (*c == '_') *c = ' ';
-    text[0] = (char)toupper((unsigned char)text[0]);
-}
 
 static const float shift = 1e-6f; /* m */
 
@@ -256,4 +126,150 @@ void converged_runs_free(ConvergedRuns *runs) {
     }
     free(runs->runs);
     *runs = (ConvergedRuns){0};
+}
+
+/* A map. */
+
+typedef struct Run {
+    const GridContext *context;
+    int first, cells;         /* of the piece */
+    VerdictReading *readings; /* [cells, methods] */
+    RunCounter counter;
+} Run;
+
+static StabilityPlace place_of(const StabilityGrid *grid) {
+    return (StabilityPlace){grid->scenes, grid->map->scene, grid->map->file};
+}
+
+static Scene *read_scene(const StabilityGrid *grid, const SceneSetting *settings, int count, Error *error) {
+    const StabilityPlace place = place_of(grid);
+    return stability_scene(&place, settings, count, error);
+}
+
+static Scene *scene_at(const StabilityGrid *grid, double x, double y, Error *error) {
+    SceneSetting settings[2] = {{.value = x}, {.value = y}};
+    snprintf(settings[0].name, sizeof settings[0].name, "%s", grid->map->x.parameter);
+    snprintf(settings[1].name, sizeof settings[1].name, "%s", grid->map->y.parameter);
+    return read_scene(grid, settings, 2, error);
+}
+
+static bool judge_scene(Run *run, int i, const Scene *scene, const EnergyLog *converged, Error *error) {
+    const GridContext *context = run->context;
+    const StabilityMap *map = context->grid->map;
+    const StabilityPlace place = place_of(context->grid);
+    const VerdictRun judged = stability_verdict_run(&place, scene, map->stands, converged);
+    for (int m = 0; m < context->method_count; m++)
+        if (!verdict_run(&run->readings[i * context->method_count + m], scene, &context->methods[m]->method, &judged,
+                         error) ||
+            !run_counter_add(&run->counter, map->name, error))
+            return false;
+    return true;
+}
+
+static bool judge_cell(void *piece, int i, Error *error) {
+    Run *run = piece;
+    const GridContext *context = run->context;
+    const int cell = run->first + i;
+    EnergyLog converged = {0};
+    Scene *scene =
+        scene_at(context->grid, context->x[cell % context->x_count], context->y[cell / context->x_count], error);
+    bool ok =
+        scene != NULL && converged_run_once(&converged, scene, error) && judge_scene(run, i, scene, &converged, error);
+    energy_log_free(&converged);
+    scene_destroy(scene);
+    return ok;
+}
+
+static bool write_cell(const Run *run, int i, int m, FILE *results, Error *error) {
+    const GridContext *context = run->context;
+    const StabilityMap *map = context->grid->map;
+    const Contender *method = context->methods[m];
+    const VerdictReading *reading = &run->readings[i * context->method_count + m];
+    const int cell = run->first + i;
+    const MapCell row = {.map = map->name,
+                         .method = method->name,
+                         .setting = method->setting,
+                         .x_parameter = map->x.parameter,
+                         .x_unit = stability_unit(context->typical, map->x.parameter),
+                         .x = context->x[cell % context->x_count],
+                         .y_parameter = map->y.parameter,
+                         .y_unit = stability_unit(context->typical, map->y.parameter),
+                         .y = context->y[cell / context->x_count],
+                         .verdict = (int)reading->verdict,
+                         .frame = reading->frame,
+                         .body = reading->body,
+                         .value = reading->value,
+                         .unit = reading->unit};
+    return piece_tables_print(results, &map_layout, (int)(method - context->grid->methods->items), &row, error);
+}
+
+/* Tests the first and the last cell. False with error set if the system fails. */
+static bool find_whether_it_applies(const GridContext *context, const Method *method, bool *applies, Error *error) {
+    Error reason = {0};
+    *applies = true;
+    for (int i = 0; *applies && i < 2; i++) {
+        Scene *scene = scene_at(context->grid, context->x[i * (context->x_count - 1)],
+                                context->y[i * (context->y_count - 1)], &reason);
+        *applies = scene != NULL && stability_applies(method, scene, &reason);
+        scene_destroy(scene);
+    }
+    if (reason.kind == ERROR_SYSTEM) *error = reason;
+    return reason.kind != ERROR_SYSTEM;
+}
+
+static bool add_method(GridContext *context, const Contender *contender, Error *error) {
+    const Method *method = &contender->method;
+    bool applies;
+    if (method->kind->description->role == METHOD_REFERENCE) return true;
+    if (context->grid->map->iterations && !stability_takes_iterations(method)) return true;
+    if (!find_whether_it_applies(context, method, &applies, error)) return false;
+    if (applies) context->methods[context->method_count++] = contender;
+    return true;
+}
+
+static int axis_values(const StabilityAxis *axis, bool quick, double values[BORDER_POINTS_MAX]) {
+    BorderScan scan = axis->scan;
+    if (quick) scan.points = axis->quick_points;
+    return border_scan_values(&scan, values);
+}
+
+int stability_grid_cells(const StabilityMap *map, bool quick) {
+    double values[BORDER_POINTS_MAX];
+    return axis_values(&map->x, quick, values) * axis_values(&map->y, quick, values);
+}
+
+bool stability_grid_begin(GridContext *context, const StabilityGrid *grid, Error *error) {
+    *context = (GridContext){.grid = grid, .typical = read_scene(grid, NULL, 0, error)};
+    if (context->typical == NULL) return false;
+    context->x_count = axis_values(&grid->map->x, grid->quick, context->x);
+    context->y_count = axis_values(&grid->map->y, grid->quick, context->y);
+    context->methods = malloc((size_t)grid->methods->count * sizeof *context->methods);
+    if (context->methods == NULL) return error_memory(error, grid->map->name);
+    for (int i = 0; i < grid->methods->count; i++)
+        if (!add_method(context, &grid->methods->items[i], error)) return false;
+    return true;
+}
+
+void stability_grid_end(GridContext *context) {
+    free(context->methods);
+    scene_destroy(context->typical);
+    *context = (GridContext){0};
+}
+
+bool stability_grid_write(const GridContext *context, int first, int end, FILE *results, const Progress *progress,
+                          Error *error) {
+    const int cells = end - first, methods = context->method_count;
+    const char *name = context->grid->map->name;
+    if (methods == 0) return true;
+    Run run = {.context = context,
+               .first = first,
+               .cells = cells,
+               .readings = malloc((size_t)methods * (size_t)cells * sizeof *run.readings),
+               .counter = {.progress = progress, .expected = (double)cells * methods}};
+    const ParallelWork work = {judge_cell, &run};
+    bool ok = (run.readings != NULL || error_memory(error, name)) && parallel_for(&work, cells, name, NULL, error);
+    for (int m = 0; ok && m < methods; m++)
+        for (int i = 0; ok && i < cells; i++) ok = write_cell(&run, i, m, results, error);
+    free(run.readings);
+    return ok;
 }

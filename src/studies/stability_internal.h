@@ -21,7 +21,7 @@ enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
    values beyond the bar are undecided, it is at the far end. An arrow marks a method that holds over the whole range, a
    cross one that never holds. ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or
    BORDERS_MAX_STUDIES studies. */
-bool stability_borders_write(const BorderTable *table, PlotPage *page, Error *error);
+bool stability_borders_write(const CsvTable *table, PlotPage *page, Error *error);
 
 /* One stability map: the verdict of every method in every cell of a grid. */
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The axes of a map: one place for each value, whatever the distance of the values. */
+/* The figures of a stability study. A map has one place for each value, whatever the distance of the values. */
+#include "base/base.h"
 #include "base/csv.h"
+#include "base/machine.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pixels/png.h"
@@ -8,11 +10,64 @@
 #include "runs/verdict.h"
 #include "studies/chart_internal.h"
 #include "studies/stability.h"
+#include "studies/stability_internal.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+/* Inserts a value into a sorted list, if it is new. False if the list is full. */
+static bool insert(double values[MAP_MAX_VALUES], int *count, double value) {
+    int at = 0;
+    while (at < *count && values[at] < value) at++;
+    if (at < *count && values[at] == value) return true;
+    if (*count == MAP_MAX_VALUES) return false;
+    memmove(values + at + 1, values + at, (size_t)(*count - at) * sizeof *values);
+    values[at] = value;
+    ++*count;
+    return true;
+}
+
+static int find(const double *values, double value) {
+    int i = 0;
+    while (values[i] != value) i++;
+    return i;
+}
+
+static bool gather_values(MapPanels *map, const CsvTable *table, int first, int end, Error *error) {
+    for (int i = first; i < end; i++)
+        if (!insert(map->x, &map->x_count, map_cell(table, i)->x) ||
+            !insert(map->y, &map->y_count, map_cell(table, i)->y))
+            return csv_table_error(table, i, 0, error, "more than %d values of a parameter", MAP_MAX_VALUES);
+    return true;
+}
+
+static bool gather_looks(MapPanels *map, const CsvTable *table, int first, int end, Error *error) {
+    memset(map->looks, LOOK_MISSING, sizeof map->looks);
+    for (int i = first; i < end; i++) {
+        const MapCell *cell = map_cell(table, i);
+        if (i == first || !map_cell_same_method(cell - 1, cell)) {
+            if (map->panel_count == MAP_MAX_METHODS)
+                return csv_table_error(table, i, 0, error, "more than %d methods: too many for a figure",
+                                       MAP_MAX_METHODS);
+            map->methods[map->panel_count++] = cell;
+        }
+        unsigned char *look = &map->looks[map->panel_count - 1][find(map->x, cell->x)][find(map->y, cell->y)];
+        if (*look != LOOK_MISSING)
+            return csv_table_error(table, i, 0, error, "the cell appears twice (%s %g, %s %g)", cell->x_parameter,
+                                   cell->x, cell->y_parameter, cell->y);
+        *look = (unsigned char)cell->verdict;
+    }
+    return true;
+}
+
+bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *error) {
+    int first = *row;
+    *map = (MapPanels){.first = map_cell(table, first)};
+    while (*row < table->count && strcmp(map_cell(table, *row)->map, map->first->map) == 0) ++*row;
+    return gather_values(map, table, first, *row, error) && gather_looks(map, table, first, *row, error);
+}
 
 /* mm */
 static const double number_height = 3, number_points = 7.5, least_between_ticks = 1.2;
@@ -85,25 +140,6 @@ static PlotAxis map_axis(PlotTicks *ticks, bool across, const double *values, in
     return axis;
 }
 
-#define TEXT(member, size) \
-    { #member, CSV_TEXT, .offset = offsetof(MapPage, member), .maximum = (size)-1 }
-#define NAME(member) \
-    { #member, CSV_NAME, .offset = offsetof(MapPage, member) }
-#define NUMBER(member) \
-    { #member, CSV_NUMBER, .offset = offsetof(MapPage, member), .minimum = -INFINITY, .maximum = INFINITY, .digits = 9 }
-#define COUNT(member, least) \
-    { #member, CSV_INTEGER, .offset = offsetof(MapPage, member), .minimum = least, .maximum = INT_MAX }
-
-static const CsvColumn columns[] = {
-    NAME(map),       NAME(method),    TEXT(setting, STABILITY_SETTING_SIZE),
-    NUMBER(x),       NUMBER(y),       NUMBER(time),
-    COUNT(frame, 0), COUNT(body, -1), TEXT(page, CSV_PATH_SIZE),
-    COUNT(bytes, 0),
-};
-
-const CsvLayout map_page_layout =
-    CSV_LAYOUT("map_pages", columns, MapPage, .max_rows = STABILITY_MAX_CELLS, .header = CSV_EXACT);
-
 static bool fails(const MapPanels *map, int panel, int x, int y) {
     const int look = map->looks[panel][x][y];
     return look < VERDICTS && !verdict_holds((Verdict)look);
@@ -134,8 +170,8 @@ int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_
     return chosen;
 }
 
-const MapCell *map_panels_cell(const MapPanels *map, const MapTable *table, int panel, MapPlace place) {
-    const MapCell *cell = map->methods[panel], *end = table->cells + table->count;
+const MapCell *map_panels_cell(const MapPanels *map, const CsvTable *table, int panel, MapPlace place) {
+    const MapCell *cell = map->methods[panel], *end = map_cell(table, table->count);
     for (; cell < end && strcmp(cell->map, map->first->map) == 0 && map_cell_same_method(cell, map->methods[panel]);
          cell++)
         if (cell->x == map->x[place.x] && cell->y == map->y[place.y]) return cell;
@@ -384,10 +420,53 @@ static void write_caption(const MapPanels *map, char caption[PLOT_CAPTION_SIZE])
         map->first->map, x, y);
 }
 
-void map_panels_write(const MapPanels *map, PlotPage *page) {
+/* The figure and its caption. All cells have the same size; ticks show their values. */
+static void write_map(const MapPanels *map, PlotPage *page) {
     const Layout layout = lay_out(map, &page->sketch);
     sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
     draw_legend(&layout);
     write_caption(map, page->caption);
+}
+
+static bool go_on(int done, int total, const char *folder, const Progress *progress, Error *error) {
+    return progress_report(progress, done, total) ||
+           error_interrupted(error, folder, "stopped; the tables are finished");
+}
+
+/* Gathers every map and, if `draw`, draws it. A first pass without drawing detects errors before anything is drawn. */
+static bool process_maps(const CsvTable *table, const char *folder, bool draw, const Progress *progress, Error *error) {
+    MapPanels *map = malloc(sizeof *map);
+    bool ok = map != NULL || error_memory(error, folder);
+    for (int row = 0; ok && row < table->count;) {
+        ok = go_on(row, table->count, folder, progress, error) && map_panels_gather(map, table, &row, error);
+        if (!ok || !draw) continue;
+        PlotPage page = {0};
+        write_map(map, &page);
+        ok = plot_page_write(&page, folder, "map-", map->first->map, error);
+        plot_page_free(&page);
+    }
+    free(map);
+    return ok;
+}
+
+static bool draw_borders(const CsvTable *table, const char *folder, const Progress *progress, Error *error) {
+    if (table->count == 0) return true;
+    PlotPage page = {0};
+    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, &page, error) &&
+              plot_page_write(&page, folder, "", "borders", error);
+    plot_page_free(&page);
+    return ok;
+}
+
+bool stability_figures_write(const char *folder, const Progress *progress, Error *error) {
+    CsvTable maps = {0};
+    CsvTable borders = {0};
+    bool ok = csv_table_read_from(&borders, folder, &border_layout, error) &&
+              csv_table_read_from(&maps, folder, &map_layout, error) &&
+              process_maps(&maps, folder, false, NULL, error) && draw_borders(&borders, folder, progress, error) &&
+              process_maps(&maps, folder, true, progress, error);
+    csv_table_free(&maps);
+    csv_table_free(&borders);
+    return ok;
 }

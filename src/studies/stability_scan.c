@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A stability study along one parameter: the borders of each method, its refusals and its runs. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "methods/methods.h"

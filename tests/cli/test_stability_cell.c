@@ -61,7 +61,7 @@ static void what_is_no_cell_is_refused(void **state) {
     assert_int_equal(strlen(cell.method), METHOD_TEXT_SIZE - 1);
 }
 
-static MapTable table;
+static CsvTable table;
 
 static int read_table(void **state) {
     (void)state;
@@ -72,13 +72,13 @@ static int read_table(void **state) {
                                       "b,engine,,h,,10.05,i,,1,settles,9,1,1,J\n";
     Error error = {0};
     assert_ok(file_write_soon(temporary_path("maps.csv"), text, strlen(text), &error), error);
-    assert_ok(map_table_read(&table, temporary_folder, &error), error);
+    assert_ok(csv_table_read_from(&table, temporary_folder, &map_layout, &error), error);
     return 0;
 }
 
 static int free_table(void **state) {
     (void)state;
-    map_table_free(&table);
+    csv_table_free(&table);
     return 0;
 }
 
@@ -90,7 +90,7 @@ static void expect_row(const char *text, int row, const char *message) {
     const MapCell *found = stability_cell_find(&table, &cell, &error);
     if (row >= 0) {
         assert_ok(found != NULL, error);
-        assert_int_equal(found - table.cells, row);
+        assert_int_equal(found - map_cell(&table, 0), row);
     } else {
         assert_null(found);
         assert_error(error, ERROR_INPUT, message);
@@ -115,9 +115,9 @@ static void the_nearest_cell_within_a_percent_is_found(void **state) {
 
 static void the_first_method_that_holds_there_is_the_holder(void **state) {
     (void)state;
-    assert_ptr_equal(stability_cell_holder(&table, &table.cells[0]), &table.cells[4]);
-    assert_null(stability_cell_holder(&table, &table.cells[1])); /* in map b only */
-    assert_null(stability_cell_holder(&table, &table.cells[2]));
+    assert_ptr_equal(stability_cell_holder(&table, map_cell(&table, 0)), map_cell(&table, 4));
+    assert_null(stability_cell_holder(&table, map_cell(&table, 1))); /* in map b only */
+    assert_null(stability_cell_holder(&table, map_cell(&table, 2)));
 }
 
 int main(void) {

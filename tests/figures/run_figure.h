@@ -35,6 +35,19 @@ static inline int count_texts(const Sketch *sketch, const char *words) {
     return count;
 }
 
+/* The sketch has each of these texts once. */
+#define assert_texts(sketch, ...)                                                                             \
+    do {                                                                                                      \
+        const char *const texts_[] = {__VA_ARGS__};                                                           \
+        for (size_t text_ = 0; text_ < sizeof texts_ / sizeof *texts_; text_++)                               \
+            if (count_texts(sketch, texts_[text_]) != 1) fail_msg("\"%s\" is not there once", texts_[text_]); \
+    } while (0)
+
+static inline void free_drawn(Sketch *sketch, Trajectory *const *runs, int count) {
+    sketch_free(sketch);
+    for (int i = 0; i < count; i++) trajectory_destroy(runs[i]);
+}
+
 static inline int count_marks(const Sketch *sketch, SketchMarkKind kind) {
     int count = 0;
     for (size_t i = 0; i < sketch->mark_count; i++) count += sketch->marks[i].kind == kind;

@@ -11,7 +11,6 @@ enum { FRAMES = 61, IMPACT = 30 };
 static Trajectory *runs[3];
 
 static int make(void **state) {
-    (void)state;
     static const char *const methods[] = {"engine", "momentum:k=20", "pair-net:network=nets/my_net.npz"};
     Error error = {0};
     for (int i = 0; i < 3; i++) {
@@ -26,7 +25,6 @@ static int make(void **state) {
 }
 
 static int destroy(void **state) {
-    (void)state;
     for (int i = 0; i < 3; i++) trajectory_destroy(runs[i]);
     return 0;
 }
@@ -34,7 +32,6 @@ static int destroy(void **state) {
 static void print_text(FILE *out, const void *text) { latex_text(out, text); }
 
 static void every_character_stands_for_itself(void **state) {
-    (void)state;
     static const char *const cases[][2] = {{"stack", "stack"},
                                            {"two_boxes", "two\\_boxes"},
                                            {"100% & $5 #1 {x}", "100\\% \\& \\$5 \\#1 \\{x\\}"},
@@ -91,7 +88,6 @@ static FigureSpec at_times(int count, double first, double second, double third)
 }
 
 static void a_strip_names_times_and_rows(void **state) {
-    (void)state;
     assert_caption("strip", at_times(3, 0.1, 0.25, 1),
                    "The " SCENE " at 0.1, 0.25 and 1~s, a column each. Rows from top to bottom: " ENGINE ", " MOMENTUM
                    " and \\texttt{pair-net:network=my\\_net.npz} (neural network for pairs).");
@@ -107,7 +103,6 @@ static void a_strip_names_times_and_rows(void **state) {
 }
 
 static void one_moment_is_named(void **state) {
-    (void)state;
     const char *const text =
         "Contacts of the " SCENE " at 0.483~s: contact points, normals and impulses of the next step. ";
     char wanted[600];
@@ -118,7 +113,6 @@ static void one_moment_is_named(void **state) {
 }
 
 static void a_divergence_names_the_first_run_and_the_impact(void **state) {
-    (void)state;
     assert_caption("divergence", spec_of(runs, 2),
                    "Runs of the " SCENE " by " MOMENTUM
                    ": largest distance of a body from its position in the run by " ENGINE
@@ -126,14 +120,12 @@ static void a_divergence_names_the_first_run_and_the_impact(void **state) {
 }
 
 static void a_strobe_names_its_moments(void **state) {
-    (void)state;
     assert_caption("strobe", at_times(1, 0.25, 0.5, 0.75),
                    "One run of the " SCENE
                    " at 0.25, 0.5 and 0.75~s in one picture; earlier moments are paler. Method: " ENGINE ".");
 }
 
 static void a_network_has_its_layers(void **state) {
-    (void)state;
     FigureSpec spec = {.width = FIGURE_PAGE_WIDTH,
                        .points = FIGURE_POINTS,
                        .dpi = 100,
@@ -144,7 +136,6 @@ static void a_network_has_its_layers(void **state) {
 
 /* The poses of the pair are made to touch as the contact says. */
 static void a_narrow_phase_names_the_pair(void **state) {
-    (void)state;
     *run_position(runs[0], IMPACT - 1, BOMB_BODY) = vec2(-2, 1.7F);
     assert_caption(
         "narrow-phase", spec_of(runs, 1),

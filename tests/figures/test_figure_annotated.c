@@ -42,7 +42,6 @@ static int gather_arrows(const Sketch *sketch, Point vectors[8], Point tails[8])
 }
 
 static void arrows_are_the_impulses_of_the_step_that_follows(void **state) {
-    (void)state;
     Trajectory *run = run_with_contacts();
     FigureSpec spec = spec_of(&run, 1);
     Sketch sketch;
@@ -68,12 +67,10 @@ static void arrows_are_the_impulses_of_the_step_that_follows(void **state) {
     assert_near(tails[1].x - tails[0].x, scale * 4, 1e-6);
     assert_near(tails[1].y - tails[0].y, scale * 1, 1e-6);
     assert_near(tails[2].y - tails[0].y, 0, 1e-6);
-    sketch_free(&sketch);
-    trajectory_destroy(run);
+    free_drawn(&sketch, &run, 1);
 }
 
 static void a_moment_without_impulses_has_points(void **state) {
-    (void)state;
     Trajectory *run = run_make("engine", 3);
     add(run, 2, GROUND_BODY, FIRST_BOX, vec2(-2.5f, 0), 0, 0);
     add(run, 2, GROUND_BODY, FIRST_BOX, vec2(-2.5f, 0), NAN, 0);
@@ -83,10 +80,8 @@ static void a_moment_without_impulses_has_points(void **state) {
     Point vectors[8], tails[8];
     draw_kind(&sketch, "annotated", &spec);
     assert_int_equal(gather_arrows(&sketch, vectors, tails), 0);
-    assert_int_equal(count_texts(&sketch, "all impulses are 0"), 1);
-    assert_int_equal(count_texts(&sketch, "0"), 1);
-    sketch_free(&sketch);
-    trajectory_destroy(run);
+    assert_texts(&sketch, "all impulses are 0", "0");
+    free_drawn(&sketch, &run, 1);
 }
 
 /* The middle of the i-th ring: they are drawn in the order of their impulses, the smallest first. */
@@ -130,7 +125,6 @@ static bool is_led(const Sketch *sketch, Point point, const PageBox *box) {
 /* Six contacts within a few millimetres, as where a bomb strikes: every number is there, apart from all others and from all
    rings, and at the end of a line from its contact, or clearly nearest to it. */
 static void crowded_numbers_lead_to_their_contacts(void **state) {
-    (void)state;
     enum { CONTACTS = 6 };
     Trajectory *run = run_make("engine", 2);
     for (int i = 0; i < CONTACTS; i++)
@@ -165,7 +159,6 @@ static void crowded_numbers_lead_to_their_contacts(void **state) {
 
 /* A hundred points in one place: some numbers are left out, and the title states it. */
 static void numbers_without_room_are_left_out(void **state) {
-    (void)state;
     Trajectory *run = run_make("engine", 2);
     for (int i = 0; i < 100; i++) add(run, 1, GROUND_BODY, FIRST_BOX, vec2(-2.5f + 0.001f * (float)i, 0), 0.1f, 0);
     add(run, 1, GROUND_BODY, SECOND_BOX, vec2(2, 0), 3, 0);
@@ -180,12 +173,10 @@ static void numbers_without_room_are_left_out(void **state) {
     assert_true(written > 1 && written < 40);
     assert_int_equal(count_texts(&sketch, line), 1);
     assert_int_equal(count_texts(&sketch, "3.00"), 1);
-    sketch_free(&sketch);
-    trajectory_destroy(run);
+    free_drawn(&sketch, &run, 1);
 }
 
 static void what_cannot_be_shown_is_refused(void **state) {
-    (void)state;
     Trajectory *without = run_make("engine", 5), *run = run_with_contacts();
     FigureSpec spec = spec_of(&without, 1);
     expect_kind_refused("annotated", &spec, "a.npz: error: the run has no contacts with an impulse");

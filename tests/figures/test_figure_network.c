@@ -32,7 +32,6 @@ static const char *write_small(const char *inputs) {
 }
 
 static void every_weight_is_a_line_the_strongest_last(void **state) {
-    (void)state;
     const FigureSpec spec = spec_for(write_small("dx dy spin"));
     Sketch sketch;
     draw_kind(&sketch, "network", &spec);
@@ -58,7 +57,6 @@ static void every_weight_is_a_line_the_strongest_last(void **state) {
 }
 
 static void inputs_without_names_have_numbers(void **state) {
-    (void)state;
     const FigureSpec spec = spec_for(write_small("dx dy"));
     Sketch sketch;
     draw_kind(&sketch, "network", &spec);
@@ -74,7 +72,6 @@ static double grey(uint32_t colour) {
 }
 
 static void colours_tell_sign_and_size(void **state) {
-    (void)state;
     assert_int_equal(weight_colour(0), 0xFFFFFF);
     assert_int_equal(weight_colour(1), 0x004C80);
     assert_int_equal(weight_colour(-1), 0xE69F00);
@@ -87,7 +84,6 @@ static void colours_tell_sign_and_size(void **state) {
 }
 
 static void wide_layers_are_matrices(void **state) {
-    (void)state;
     Error error = {0};
     Network *network = network_create(1, (const int[]){50, 2}, &error);
     network->weights[0][0] = 2, network->weights[0][50 + 49] = -1;
@@ -112,7 +108,6 @@ static void wide_layers_are_matrices(void **state) {
 
 /* 37 weights share a pixel: the largest is shown, which is the first, not the last. */
 static void of_weights_in_a_pixel_the_largest_shows(void **state) {
-    (void)state;
     Error error = {0};
     Network *network = network_create(1, (const int[]){4096, 1}, &error);
     for (int i = 0; i < 4096; i++) network->weights[0][i] = 0.25f;
@@ -132,7 +127,6 @@ static void of_weights_in_a_pixel_the_largest_shows(void **state) {
 }
 
 static void the_networks_that_ship_are_shown(void **state) {
-    (void)state;
     static const struct {
         const char *path, *title;
         int pictures;
@@ -154,7 +148,6 @@ static void the_networks_that_ship_are_shown(void **state) {
 }
 
 static void damaged_files_are_refused(void **state) {
-    (void)state;
     Error error = {0};
     size_t size;
     char *whole = file_read(NETWORKS "pair-net.npz", 1 << 20, &size, &error);

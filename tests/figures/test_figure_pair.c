@@ -31,7 +31,6 @@ static Trajectory *run_touching(void) {
 }
 
 static void the_pairs_own_numbers_are_written(void **state) {
-    (void)state;
     Trajectory *run = run_touching();
     FigureSpec spec = spec_of(&run, 1);
     for (int column = 0; column < 2; column++) {
@@ -56,7 +55,6 @@ static void the_pairs_own_numbers_are_written(void **state) {
 /* Typical pairs of runs, with any normal: after the rotation the normal points up out of the reference box, and
    depths and distances are unchanged. */
 static void turning_changes_no_length(void **state) {
-    (void)state;
     int turned = 0;
     for (int i = 0; i < 200; i++) {
         const float angle = 0.11f * (float)i, way = 0.37f * (float)i;
@@ -89,7 +87,6 @@ static void turning_changes_no_length(void **state) {
 }
 
 static void what_cannot_be_shown_is_refused(void **state) {
-    (void)state;
     Trajectory *run = run_touching(), *without = run_make("engine", 3);
     FigureSpec spec = spec_of(&without, 1);
     expect_kind_refused("narrow-phase", &spec, "a.npz: error: no two dynamic bodies touch");

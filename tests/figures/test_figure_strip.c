@@ -6,7 +6,6 @@
 #include "pictures/mesa.h"
 
 static void every_run_has_a_row_and_every_moment_a_column(void **state) {
-    (void)state;
     Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 31)};
     FigureSpec spec = spec_of(runs, 2);
     spec.time_count = 3;
@@ -14,11 +13,7 @@ static void every_run_has_a_row_and_every_moment_a_column(void **state) {
     Sketch sketch;
     draw_kind(&sketch, "strip", &spec);
     assert_int_equal(count_marks(&sketch, MARK_IMAGE), 6);
-    assert_int_equal(count_texts(&sketch, "0.00 s"), 1);
-    assert_int_equal(count_texts(&sketch, "0.10 s"), 1);
-    assert_int_equal(count_texts(&sketch, "0.50 s"), 1);
-    assert_int_equal(count_texts(&sketch, "engine"), 1);
-    assert_int_equal(count_texts(&sketch, "pair-net"), 1);
+    assert_texts(&sketch, "0.00 s", "0.10 s", "0.50 s", "engine", "pair-net");
     /* Rows in the order of runs, columns in the order of moments, all of equal size, without overlap and inside the
        page. */
     const SketchMark *first = nth_mark(&sketch, MARK_IMAGE, 0);
@@ -31,29 +26,21 @@ static void every_run_has_a_row_and_every_moment_a_column(void **state) {
         assert_true(mark->at.x > 0 && mark->at.x + mark->width < sketch.width);
     }
     assert_near(sketch.width, FIGURE_PAGE_WIDTH, 0);
-    sketch_free(&sketch);
-    trajectory_destroy(runs[0]);
-    trajectory_destroy(runs[1]);
+    free_drawn(&sketch, runs, 2);
 }
 
 static void moments_go_from_the_first_frame_to_the_last_of_the_shortest_run(void **state) {
-    (void)state;
     Trajectory *runs[] = {run_make("engine", 121), run_make("engine", 61)};
     FigureSpec spec = spec_of(runs, 2);
     spec.moments = 3;
     Sketch sketch;
     draw_kind(&sketch, "strip", &spec);
-    assert_int_equal(count_texts(&sketch, "0.00 s"), 1);
-    assert_int_equal(count_texts(&sketch, "0.50 s"), 1);
-    assert_int_equal(count_texts(&sketch, "1.00 s"), 1);
-    sketch_free(&sketch);
-    trajectory_destroy(runs[0]);
-    trajectory_destroy(runs[1]);
+    assert_texts(&sketch, "0.00 s", "0.50 s", "1.00 s");
+    free_drawn(&sketch, runs, 2);
 }
 
 /* The window covers the dynamic bodies: the bomb falls from 5.6 m, the boxes stand on the ground, 6 m wide in all. */
 static void the_window_holds_what_moves(void **state) {
-    (void)state;
     Trajectory *run = run_make("engine", 3);
     FigureSpec spec = spec_of(&run, 1);
     spec.moments = 1;
@@ -63,13 +50,11 @@ static void the_window_holds_what_moves(void **state) {
     double turned = 0.5 * (2 * cos(0.2) + sin(0.2)), bomb = 0.75 * (cos(0.2) + sin(0.2));
     double wide = 2 + turned + 2.5 + 0.8, low = 0.5 - 0.5 * (cos(0.2) + 2 * sin(0.2)), high = 5.6 + bomb - low + 0.8;
     assert_near((double)mark->image->height / mark->image->width, high / wide, 0.01);
-    sketch_free(&sketch);
-    trajectory_destroy(run);
+    free_drawn(&sketch, &run, 1);
 }
 
 /* A page of a given height: its cells fill it, and the window is wider than the bodies. */
 static void a_given_height_is_filled(void **state) {
-    (void)state;
     Trajectory *runs[] = {run_make("engine", 3), run_make("engine", 3)};
     FigureSpec spec = spec_of(runs, 2);
     spec.moments = 3, spec.height = 60;
@@ -80,14 +65,11 @@ static void a_given_height_is_filled(void **state) {
     const SketchMark *first = nth_mark(&sketch, MARK_IMAGE, 0), *last = nth_mark(&sketch, MARK_IMAGE, 2);
     assert_true(last->at.x + last->width > sketch.width - 1);
     assert_true(first->image->width > first->image->height);
-    sketch_free(&sketch);
-    trajectory_destroy(runs[0]);
-    trajectory_destroy(runs[1]);
+    free_drawn(&sketch, runs, 2);
 }
 
 /* Only what is asked for sets the window: the boxes stand near the ground, the bomb falls from 5.6 m. */
 static void the_bodies_in_question_set_the_window(void **state) {
-    (void)state;
     Trajectory *run = run_make("engine", 3);
     *run_position(run, 2, SECOND_BOX) = vec2(-50, 3);
     FigureSpec spec = spec_of(&run, 1);
@@ -107,7 +89,6 @@ static void the_bodies_in_question_set_the_window(void **state) {
 }
 
 static void who_has_left_is_counted(void **state) {
-    (void)state;
     Trajectory *runs[] = {run_make("engine", 3), run_make("pair-net", 3)};
     *run_position(runs[1], 2, FIRST_BOX) = vec2(-50, 3);
     *run_position(runs[1], 2, BOMB_BODY) = vec2(1e30f, -1e30f);
@@ -116,9 +97,7 @@ static void who_has_left_is_counted(void **state) {
     Sketch sketch;
     draw_kind(&sketch, "strip", &spec);
     assert_int_equal(count_texts(&sketch, "2 out of view"), 1);
-    sketch_free(&sketch);
-    trajectory_destroy(runs[0]);
-    trajectory_destroy(runs[1]);
+    free_drawn(&sketch, runs, 2);
 }
 
 static double row_height(const Sketch *sketch) {
@@ -128,7 +107,6 @@ static double row_height(const Sketch *sketch) {
 
 /* Whatever the width of the page, the method's name is there as a whole, and so are settings that have room. */
 static void the_name_of_a_method_never_disappears(void **state) {
-    (void)state;
     Trajectory *run = run_make("momentum:k=20", 61);
     FigureSpec spec = spec_of(&run, 1);
     for (int moments = 2; moments <= 12; moments += 5)
@@ -149,7 +127,6 @@ static void the_name_of_a_method_never_disappears(void **state) {
 }
 
 static void long_settings_are_cut_to_their_row(void **state) {
-    (void)state;
     Trajectory *run = run_make("pair-net:network=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz", 61);
     FigureSpec spec = spec_of(&run, 1);
     spec.moments = 6;
@@ -160,12 +137,10 @@ static void long_settings_are_cut_to_their_row(void **state) {
     assert_memory_equal(settings, "network=a-", 10);
     assert_non_null(strstr(settings, "\xE2\x80\xA6"));
     assert_true(type_width(settings, spec.points) <= row_height(&sketch));
-    sketch_free(&sketch);
-    trajectory_destroy(run);
+    free_drawn(&sketch, &run, 1);
 }
 
 static void what_cannot_be_shown_is_refused(void **state) {
-    (void)state;
     Error error = {0};
     Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 11)};
     FigureSpec spec = spec_of(runs, 2);

@@ -17,7 +17,6 @@ static void assert_same(WorldWindow a, WorldWindow b) {
 
 /* The box is in the middle in the frames before, and far away in the last one shown. */
 static void a_body_that_has_flown_off_changes_nothing(void **state) {
-    (void)state;
     Trajectory *run = run_make("engine", 12);
     const FigureSpec spec = spec_of(&run, 1);
     for (int frame = 0; frame < 12; frame++) *run_position(run, frame, FIRST_BOX) = vec2(0, 0.5F);
@@ -30,7 +29,6 @@ static void a_body_that_has_flown_off_changes_nothing(void **state) {
 }
 
 static void a_view_is_that_of_the_spec_or_of_another_run(void **state) {
-    (void)state;
     Trajectory *runs[] = {run_make("engine", 12), run_make("engine", 4)};
     run_position(runs[1], 0, FIRST_BOX)->x = -9;
     FigureSpec spec = spec_of(runs, 1);

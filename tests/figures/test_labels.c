@@ -12,7 +12,6 @@ static LabelField *field_10_by_10(void) {
 }
 
 static void labels_go_where_nothing_is(void **state) {
-    (void)state;
     LabelField *field = field_10_by_10();
     PageBox box;
     /* The right is preferred, then left, above, below. */
@@ -30,7 +29,6 @@ static void labels_go_where_nothing_is(void **state) {
 }
 
 static void labels_stay_inside_the_frame(void **state) {
-    (void)state;
     LabelField *field = field_10_by_10();
     PageBox box;
     assert_true(label_place(field, 9, 9.5, 0.5, 2, 1, false, &box));
@@ -40,7 +38,6 @@ static void labels_stay_inside_the_frame(void **state) {
 }
 
 static void only_what_must_be_there_crosses_a_line(void **state) {
-    (void)state;
     LabelField *field = field_10_by_10();
     PageBox box;
     for (int i = 0; i <= 20; i++) label_add_segment(field, (Segment){0, 0.5 * i, 10, 0.5 * i});

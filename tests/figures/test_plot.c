@@ -9,7 +9,6 @@
 #include <math.h>
 
 static void an_axis_has_room_for_its_values(void **state) {
-    (void)state;
     PlotAxis axis = plot_log_axis(1, 1000, "");
     assert_true(axis.low < 1 && axis.low > 0.5 && axis.high > 1000 && axis.high < 2000);
     /* One value has a decade around it. */
@@ -27,7 +26,6 @@ static void an_axis_has_room_for_its_values(void **state) {
 }
 
 static void an_axis_holds_what_is_drawn(void **state) {
-    (void)state;
     bool beyond = false;
     PlotRange range = plot_range();
     const double values[] = {NAN, 0, -1, INFINITY, 10, 2000, 1e30};
@@ -76,7 +74,6 @@ static PlotAxis log_from(double low, double high) {
 }
 
 static void short_axes_have_ticks_at_1_2_5(void **state) {
-    (void)state;
     expect_numbers(log_from(4.5, 22), 50, true, 4, "5 10 20 ");
     expect_numbers(log_from(4.5, 22), 6, true, 6, "10 "); /* no room for three */
     PlotAxis powers = log_from(4.5, 22);
@@ -85,7 +82,6 @@ static void short_axes_have_ticks_at_1_2_5(void **state) {
 }
 
 static void long_axes_have_ticks_at_decades(void **state) {
-    (void)state;
     /* 0.008, 0.009; 8 each in the three decades; 10 is the last but 2 to 9 */
     expect_numbers(log_from(0.008, 12), 50, true, 2 + 3 * 8, "0.01 0.1 1 10 ");
     expect_numbers(log_from(0.008, 12), 10, true, 0 + 2, "0.01 1 ");
@@ -93,7 +89,6 @@ static void long_axes_have_ticks_at_decades(void **state) {
 
 /* Of 40 decades, as of 4, only as many have numbers as fit; 0 has its own tick, the others begin after it. */
 static void ticks_have_room(void **state) {
-    (void)state;
     for (int decades = 4; decades <= 40; decades += 36) {
         int minor, named = 0;
         const PlotAxis axis = plot_range_axis((PlotRange){pow(10, -decades), 1}, 1e-50, 1, true, "");
@@ -107,7 +102,6 @@ static void ticks_have_room(void **state) {
 }
 
 static void linear_ticks_are_round_and_do_not_touch(void **state) {
-    (void)state;
     expect_numbers(plot_linear_axis(0, 1.3, ""), 60, true, 0, "0.0 0.2 0.4 0.6 0.8 1.0 1.2 ");
     expect_numbers(plot_linear_axis(0, 1030, ""), 45, true, 0, "0 200 400 600 800 1000 ");
     expect_numbers(plot_linear_axis(0, 1030, ""), 10, true, 0, "0 1000 ");
@@ -130,7 +124,6 @@ typedef struct Table {
 
 static void panel_of(const void *of, int panel, PlotPanel *out) {
     (void)of, (void)panel;
-    out->box = (PlotBox){10, 10, 80, 80};
     out->x = plot_linear_axis(0, 8, "Across");
     out->y = plot_linear_axis(0, 8, "Up");
 }
@@ -146,8 +139,7 @@ static bool point_of(const void *of, int panel, int series, int row, PlotPoint *
 static void draw_table(PlotPage *page, const Table *table) {
     Error error = {0};
     const PlotSpec spec = {.of = table,
-                           .width = 100,
-                           .height = 100,
+                           .grid = {100, 100, 10, 10, 10, 10, 1, 1, 0, 0},
                            .panels = 1,
                            .series = table->series,
                            .rows = table->rows,
@@ -200,7 +192,6 @@ static PlotLook line_look(uint32_t colour, const char *name) {
 
 /* Three values, then four: the middle one, and the mean of the middle two; below it a thin line for each seed. */
 static void the_median_is_in_the_middle_of_the_seeds(void **state) {
-    (void)state;
     Table table = {.rows = 7,
                    .series = 1,
                    .looks = {line_look(0x112233, "seeds")},
@@ -218,7 +209,6 @@ static void the_median_is_in_the_middle_of_the_seeds(void **state) {
 
 /* NaN is no point, a series without points has no place in the legend, and lines are interrupted between groups. */
 static void series_are_drawn_as_they_look(void **state) {
-    (void)state;
     const PlotLook stems = {.name = "stems", .style = {.colour = 0x445566}, .line = 1, .marks = true, .stems = true};
     const PlotLook band = {.name = "band", .style = {.colour = 0x778899}, .band = true};
     Table table = {.rows = 4,
@@ -246,7 +236,6 @@ static void series_are_drawn_as_they_look(void **state) {
 
 /* From the first series, which is on top, to the last; but those above come after all others. */
 static void the_first_series_is_on_top(void **state) {
-    (void)state;
     Table table = {.rows = 2, .series = 3};
     for (int i = 0; i < 3; i++) {
         table.looks[i] = line_look(0x100000u + (uint32_t)i, NULL);
@@ -262,7 +251,6 @@ static void the_first_series_is_on_top(void **state) {
 
 /* All look equally large: each area is near that of a circle; crosses reach as far. */
 static void marks_have_one_size(void **state) {
-    (void)state;
     for (int symbol = 0; symbol < METHOD_SYMBOLS; symbol++) {
         Sketch sketch;
         double area = 0;
@@ -284,7 +272,6 @@ static void marks_have_one_size(void **state) {
 
 /* The number of a custom tick may have two lines; an axis without a label has none. */
 static void ticks_are_drawn_as_given(void **state) {
-    (void)state;
     static PlotTicks ticks;
     Sketch sketch;
     PlotPanel panel = {.box = {10, 10, 80, 80}, .x = plot_linear_axis(0, 8, ""), .y = plot_linear_axis(0, 8, NULL)};
@@ -307,7 +294,6 @@ static void ticks_are_drawn_as_given(void **state) {
 }
 
 static void powers_are_as_wide_as_they_say(void **state) {
-    (void)state;
     static const TextAlign aligns[] = {TEXT_LEFT, TEXT_CENTER, TEXT_RIGHT};
     for (int i = 0; i < 3; i++) {
         Sketch sketch;

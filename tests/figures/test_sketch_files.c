@@ -39,7 +39,6 @@ static double covered(Sketch *sketch) {
 static const Pen black = {0, 1, NO_COLOUR, 0, NULL};
 
 static void areas_are_those_of_geometry(void **state) {
-    (void)state;
     Sketch sketch;
     sketch_begin(&sketch, 20, 10);
     sketch_dot(&sketch, (Point){10.03, 5.02}, 4, &black); /* of 36 corners */
@@ -59,7 +58,6 @@ static void areas_are_those_of_geometry(void **state) {
 
 /* Areas of winding number 2 count once, and a line that turns back is still drawn. */
 static void overlaps_count_once(void **state) {
-    (void)state;
     Sketch sketch;
     sketch_begin(&sketch, 10, 10);
     const Point twice[] = {{2, 2}, {6, 2}, {6, 6}, {2, 6}, {2, 2}, {6, 2}, {6, 6}, {2, 6}};
@@ -84,7 +82,6 @@ static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
 }
 
 static void shapes_lie_at_their_place_and_colour(void **state) {
-    (void)state;
     Sketch sketch;
     sketch_begin(&sketch, 10, 10);
     sketch_rectangle(&sketch, (Point){2, 1}, (Point){5, 6}, &(Pen){0x204060, 1, NO_COLOUR, 0, NULL});
@@ -105,7 +102,6 @@ static void shapes_lie_at_their_place_and_colour(void **state) {
 }
 
 static void a_picture_of_its_places_size_keeps_its_pixels(void **state) {
-    (void)state;
     Error error = {0};
     Sketch sketch;
     Image *picture = image_create(20, 10, &error);
@@ -132,7 +128,6 @@ static void find_ink(const Image *image, double *left, double *right) {
 }
 
 static void words_are_as_wide_as_they_say(void **state) {
-    (void)state;
     const double points = 20, end = 15;
     double left, right;
     Sketch sketch;
@@ -171,7 +166,6 @@ static void draw_something(Sketch *sketch) {
 
 /* With and without a white page, in every format. The hashes are equal on Debian 12 and 13. */
 static void a_sketch_has_the_same_bytes_everywhere(void **state) {
-    (void)state;
     static const struct {
         const char *name;
         uint64_t on_white, transparent;
@@ -201,7 +195,6 @@ static void a_sketch_has_the_same_bytes_everywhere(void **state) {
 
 /* Text is text, in a font that the file brings; or outlines, without the font. */
 static void an_svg_has_its_words(void **state) {
-    (void)state;
     Error error = {0};
     Sketch sketch;
     size_t size;
@@ -245,7 +238,6 @@ static void expect_printed(const char *program, const char *path, const char *wa
 }
 
 static void an_svg_of_outlines_needs_no_font(void **state) {
-    (void)state;
     Error error = {0};
     Sketch sketch;
     size_t size;
@@ -264,7 +256,6 @@ static void an_svg_of_outlines_needs_no_font(void **state) {
 
 /* In an SVG an area is a link, whose texts cannot end it; in the other formats it is nothing. */
 static void a_link_is_in_an_svg_only(void **state) {
-    (void)state;
     Error error = {0};
     char *data[2][SKETCH_FORMATS];
     size_t size[2][SKETCH_FORMATS];
@@ -294,7 +285,6 @@ static void a_link_is_in_an_svg_only(void **state) {
 
 /* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
 static void a_pdf_is_read_as_it_is_seen(void **state) {
-    (void)state;
     Error error = {0};
     Sketch sketch;
     sketch_begin(&sketch, 100, 40);
@@ -312,7 +302,6 @@ static void a_pdf_is_read_as_it_is_seen(void **state) {
 
 /* Every entry of the table points to its object, and the file contains no date or path. */
 static void a_pdf_has_a_valid_object_table(void **state) {
-    (void)state;
     Error error = {0};
     Sketch sketch;
     size_t size;
@@ -352,7 +341,6 @@ static void expect_refused(const char *path, double width, double dpi, const cha
 }
 
 static void what_cannot_be_written_is_refused(void **state) {
-    (void)state;
     expect_refused(temporary_path("a.gif"), 10, 300, "the name of a figure must end in .png, .svg or .pdf");
     expect_refused("png", 10, 300, "png: error: the name of a figure must end in");
     expect_refused(".d.png/figure", 10, 300, "the name of a figure must end in");
@@ -363,7 +351,6 @@ static void what_cannot_be_written_is_refused(void **state) {
 
 /* Runs can reach any coordinate; those far from the page are not drawn. */
 static void invalid_coordinates_draw_nothing(void **state) {
-    (void)state;
     static const double nowhere[] = {NAN, INFINITY, -INFINITY, 1e30};
     Sketch sketch;
     sketch_begin(&sketch, 10, 10);

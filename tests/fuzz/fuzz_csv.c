@@ -56,16 +56,6 @@ static void check_table(const CsvTable *table, const CsvLayout *layout) {
     csv_table_free(&again);
 }
 
-static void read_chart(const char *path) {
-    ChartTable table;
-    Error error = {0};
-    fuzz_begin();
-    const bool ok = chart_csv_read(&table, path, &error);
-    fuzz_end(ok, &error, path);
-    if (ok) check_table(&table.csv, &chart_layout);
-    if (ok) chart_csv_free(&table);
-}
-
 /* The first byte chooses the table: 'a' is a chart. */
 void fuzz_tables(const uint8_t *data, size_t size) {
     static const CsvLayout *const layouts[] = {&chart_layout,
@@ -93,7 +83,6 @@ void fuzz_tables(const uint8_t *data, size_t size) {
     if (size == 0 || data[0] < 'a' || data[0] >= 'a' + LAYOUTS) return;
     const CsvLayout *layout = layouts[data[0] - 'a'];
     const char *path = fuzz_file("table.csv", data + 1, size - 1);
-    if (layout == &chart_layout) read_chart(path);
     CsvTable table;
     Error error = {0};
     fuzz_begin();

@@ -37,7 +37,6 @@ static void expect_without(const char *markdown, const char *unwanted) {
 }
 
 static void headings_make_title_and_contents(void **state) {
-    (void)state;
     expect_within("# A & *b*\n", "<title>A &amp; b</title>");
     expect_within("# A\n\n## B\n\n## `c` & d\n",
                   "<ol>\n<li><a href=\"#part-1\">B</a></li>\n<li><a href=\"#part-2\">c &amp; d</a></li>\n</ol>");
@@ -46,14 +45,12 @@ static void headings_make_title_and_contents(void **state) {
 }
 
 static void tables_can_be_scrolled(void **state) {
-    (void)state;
     expect_within("### B\n\n| a | b |\n|---|---:|\n| 1 | \\| |\n",
                   "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"B\">\n<table>");
     expect_within("| a | b |\n|---|---:|\n| 1 | \\| |\n", "<td style=\"text-align: right\">|</td>");
 }
 
 static void pictures_are_embedded(void **state) {
-    (void)state;
     (void)temporary_path("");
     write_picture("a.png");
     expect_within("![\"x\" & y](a.png)\n\n**Figure 1.** z\n\nbehind\n",
@@ -71,7 +68,6 @@ static void pictures_are_embedded(void **state) {
 }
 
 static void html_in_the_text_is_left_out(void **state) {
-    (void)state;
     expect_without("<script>alert(1)</script>\n", "<script");
     expect_without("a <b>c</b>\n", "<b>");
     expect_without("[a](javascript:alert)\n", "javascript");

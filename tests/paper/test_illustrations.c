@@ -17,7 +17,6 @@
 #define SCENES SOURCE_DIR "/scenes"
 
 static int draw_all(void **state) {
-    (void)state;
     Error error = {0};
     temporary_path(""); /* makes the folder */
     if (illustrations_draw(SCENES, temporary_folder, &error)) return 0;
@@ -35,7 +34,6 @@ static char *read_file(const char *name, const char *ending, size_t *size) {
 }
 
 static void every_figure_is_a_picture_a_drawing_and_a_caption(void **state) {
-    (void)state;
     int count = 0;
     for (; illustration_names[count] != NULL; count++) {
         const char *name = illustration_names[count];
@@ -65,7 +63,6 @@ static void expect_texts(const char *name, const char *const *texts) {
 }
 
 static void drawings_say_what_they_show(void **state) {
-    (void)state;
     expect_texts("loop", (const char *const[]){"Broad phase", "Narrow phase", "Gravity", "Contact problem",
                                                "Constraint solving", "Neural network, in place of the solver",
                                                "Integration", "first touch", NULL});
@@ -92,7 +89,6 @@ static Trajectory *run_to(const char *path, int step) {
 }
 
 static void the_loop_counts_what_the_run_has(void **state) {
-    (void)state;
     size_t size;
     int step, pairs, candidates, touching, points, warm;
     char *caption = read_file("loop", "txt", &size);
@@ -137,7 +133,6 @@ static Box box_in(const Trajectory *run, int frame, int body) {
 }
 
 static void the_collision_shown_is_the_engines(void **state) {
-    (void)state;
     size_t size;
     int a, b, step, least, deep[2];
     double x, y;
@@ -193,7 +188,6 @@ static Box moved(const Box *a, const Box *b, Vec2 axis, double way) {
    or of a nearly equal one (clearly_better() in engine/box.c). Its points are as deep as that, or less deep where
    clipping has cut the deepest corner off. */
 static void the_smallest_overlap_separates_the_boxes(void **state) {
-    (void)state;
     const double slack = 1e-4;
     uint32_t seed = 1;
     int touching = 0, as_deep = 0;
@@ -225,7 +219,6 @@ static void the_smallest_overlap_separates_the_boxes(void **state) {
 }
 
 static void the_row_shown_is_the_datasets(void **state) {
-    (void)state;
     static const char *const scenes[] = {SCENES "/stack.yaml"};
     const DatasetOptions options = {.scenes = scenes, .scene_count = 1, .bomb_x = {-5, 0.5, 21}, .seed = 1};
     size_t size;
@@ -265,7 +258,6 @@ static void the_row_shown_is_the_datasets(void **state) {
 }
 
 static void the_same_run_gives_the_same_files(void **state) {
-    (void)state;
     static const char *const endings[] = {"png", "svg"};
     Error error = {0};
     Scene *scenes[ILLUSTRATION_SCENES] = {[SCENE_STACK] = scene_read(SCENES "/stack.yaml", &error)};
@@ -324,7 +316,6 @@ static void expect_refused(const char *scenes, const char *message) {
     "1]}\n"
 
 static void scenes_that_show_nothing_are_refused(void **state) {
-    (void)state;
     expect_refused(temporary_path("nowhere"), "/nowhere/single.yaml");
     expect_refused(folder_with("pyramid.yaml", GROUND_AND_BOX),
                    "/pyramid.yaml: error: the scene has no bomb to launch");

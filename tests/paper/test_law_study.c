@@ -25,7 +25,6 @@ static LawResult run(const Dataset *dataset, const char *laws, double weight, ui
 
 /* The engine's impulses are equal and opposite and within the cone, by construction. */
 static void the_engine_keeps_what_it_keeps(void **state) {
-    (void)state;
     Error error = {0};
     Dataset *dataset = record(true);
     LawResult labels;
@@ -38,7 +37,6 @@ static void the_engine_keeps_what_it_keeps(void **state) {
 }
 
 static void a_heavy_law_is_broken_less(void **state) {
-    (void)state;
     Dataset *dataset = record(true);
     const LawResult none = run(dataset, "none", 10, 1), cone = run(dataset, "cone", 10, 1),
                     again = run(dataset, "cone", 10, 1), other = run(dataset, "cone", 10, 2);
@@ -56,7 +54,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 static void what_is_not_whole_does_not_count(void **state) {
-    (void)state;
     Error error = {0};
     LawResult result;
     Dataset *dataset = record(true), *without = record(false);

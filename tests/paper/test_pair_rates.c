@@ -52,7 +52,6 @@ static PairRates measure(const char *path, const Scene *scene, const SnapshotLis
 }
 
 static void the_engine_agrees_with_itself(void **state) {
-    (void)state;
     Scene *scene = read_stack();
     SnapshotList *list = sample_stack(scene);
     PairRates rates = measure(NULL, scene, list);
@@ -71,7 +70,6 @@ static void the_engine_agrees_with_itself(void **state) {
 }
 
 static void a_contact_net_that_says_nothing_is_the_warm_start(void **state) {
-    (void)state;
     Scene *scene = read_stack();
     SnapshotList *list = sample_stack(scene);
     const PairRates warm = measure(NULL, scene, list);
@@ -87,7 +85,6 @@ static void a_contact_net_that_says_nothing_is_the_warm_start(void **state) {
 
 /* For every target: such a network has the rates of its constant predictor. */
 static void a_network_that_predicts_the_mean_has_the_constants_rates(void **state) {
-    (void)state;
     static const struct {
         PairView view;
         PairTarget target;
@@ -119,7 +116,6 @@ static void a_network_that_predicts_the_mean_has_the_constants_rates(void **stat
 
 /* all = (impact + 20 after + 60 rest) / (their counts, weighted alike): a value between its parts. */
 static void all_lies_between_the_phases(void **state) {
-    (void)state;
     Scene *scene = read_stack();
     SnapshotList *list = sample_stack(scene);
     const PairRates rates = measure(NULL, scene, list);

@@ -29,7 +29,6 @@ static void find_factors(const PaperNetwork *a, const PaperNetwork *b, char *fac
 }
 
 static void one_factor_is_varied_at_a_time(void **state) {
-    (void)state;
     const PaperNetwork baseline = paper_network(0);
     int checked = 0;
     assert_string_equal(baseline.name, "baseline");
@@ -50,7 +49,6 @@ static void one_factor_is_varied_at_a_time(void **state) {
 }
 
 static void names_are_file_names_and_differ(void **state) {
-    (void)state;
     for (int i = 0; i < paper_network_count; i++) {
         assert_int_equal(strspn(paper_networks[i].name, "abcdefghijklmnopqrstuvwxyz0123456789-"),
                          strlen(paper_networks[i].name));
@@ -61,7 +59,6 @@ static void names_are_file_names_and_differ(void **state) {
 /* The first width is that of the view, the last one that the target has a meaning for; the best have at most 500
    parameters. */
 static void layers_fit_views_and_targets(void **state) {
-    (void)state;
     for (int i = 0; i < paper_network_count; i++) {
         const PaperNetwork network = paper_network(i);
         int parameters = 0, before = 0;

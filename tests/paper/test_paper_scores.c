@@ -53,7 +53,6 @@ static int count_lines(const char *table, const char *beginning) {
 }
 
 static void threads_rate_alike(void **state) {
-    (void)state;
     char one[TABLE_SIZE], three[TABLE_SIZE];
     write_table(paper_rates_write, 1, one);
     write_table(paper_rates_write, 3, three);
@@ -66,7 +65,6 @@ static void threads_rate_alike(void **state) {
 }
 
 static void threads_close_the_loop_alike(void **state) {
-    (void)state;
     char one[TABLE_SIZE], three[TABLE_SIZE];
     write_table(paper_closed_loop_write, 1, one);
     write_table(paper_closed_loop_write, 3, three);
@@ -79,7 +77,6 @@ static void threads_close_the_loop_alike(void **state) {
 
 /* A thread that has yet to be created would be too late for the few pieces. */
 static int start_threads(void **state) {
-    (void)state;
     int running = 0;
 #pragma omp parallel num_threads(3) reduction(+ : running)
     running++;

@@ -12,7 +12,6 @@ static PaperDatasets datasets = {.size = &size, .seed = 1};
 static PaperTraining training = {.datasets = &datasets, .seed = 1};
 
 static int begin(void **state) {
-    (void)state;
     Error error = {0};
     static char folder[256];
     assert_ok(paper_datasets_begin(&datasets, SOURCE_DIR "/scenes", &size, 1, &error), error);
@@ -23,7 +22,6 @@ static int begin(void **state) {
 }
 
 static int end(void **state) {
-    (void)state;
     paper_datasets_free(&datasets);
     return 0;
 }
@@ -55,7 +53,6 @@ static bool train(int most, Limit *limit, Error *error) {
 }
 
 static void a_training_that_is_stopped_leaves_no_network(void **state) {
-    (void)state;
     Error error = {0};
     Limit limit;
     assert_ok(train(1 << 20, &limit, &error), error);
@@ -72,7 +69,6 @@ static void a_training_that_is_stopped_leaves_no_network(void **state) {
 }
 
 static void lines_know_their_network(void **state) {
-    (void)state;
     Error error = {0};
     char *lines = NULL;
     size_t used;
@@ -96,7 +92,6 @@ static void lines_know_their_network(void **state) {
 }
 
 static void without_memory_there_is_no_accuracy(void **state) {
-    (void)state;
     Error error = {0};
     const Dataset *dataset = paper_dataset(&datasets, &training.network, &error);
     Network *network = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);

@@ -90,7 +90,6 @@ static bool tells_of_values_beyond(const char *figure) {
 }
 
 static void all_are_drawn(void **state) {
-    (void)state;
     start_afresh();
     draw();
     for (int i = 0; i < TABLES; i++) {
@@ -121,7 +120,6 @@ static void all_are_drawn(void **state) {
 }
 
 static void the_same_tables_give_the_same_files(void **state) {
-    (void)state;
     static const char *const endings[] = {"png", "svg", "txt"};
     char *data[2][3];
     size_t size[2][3];
@@ -159,7 +157,6 @@ static void expect_refused(const char *table, const char *text, const char *mess
 #define TRANSFER "start,seed,launches,error,constant\n"
 
 static void tables_out_of_order_are_refused_with_their_place(void **state) {
-    (void)state;
     expect_refused("table1", "network,target\nbaseline,pair\n",
                    "table1.csv:1:1: error: the column 'optimizer' is missing");
     expect_refused("table1", TABLE1 "baseline,pair,adam,ten,1,1,1\n",
@@ -209,7 +206,6 @@ static void write_many(const char *table, const char *header, const char *line, 
 }
 
 static void too_many_lines_are_refused(void **state) {
-    (void)state;
     static const struct {
         const char *table, *header, *line, *message;
         int most;
@@ -232,7 +228,6 @@ static void too_many_lines_are_refused(void **state) {
 }
 
 static void a_missing_table_is_refused(void **state) {
-    (void)state;
     for (int i = 0; i < TABLES; i++) {
         Error error = {0};
         start_afresh();
@@ -245,7 +240,6 @@ static void a_missing_table_is_refused(void **state) {
 }
 
 static void figures_without_rows_are_left_out(void **state) {
-    (void)state;
     static const struct {
         const char *table, *figure, *text;
     } cases[] = {{"table1", "loss", TABLE1 "best-pair,pair,adam,0,1,1,1\nbaseline,points,adam,0,1,1,1\n"},
@@ -263,7 +257,6 @@ static void figures_without_rows_are_left_out(void **state) {
 
 /* One line each, of nothing, of zeros and numbers next to it, of large ones. */
 static void odd_numbers_are_drawn(void **state) {
-    (void)state;
     static const struct {
         const char *number, *rate, *divisor, *needed, *launches;
     } cases[] = {{"", "", "", "0", "3"},

@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* paper/systems: the study of sain, and its claims on made-up tables. */
-#include "testing.h"
+#include "tables.h"
 
 #include "paper/paper_internal.h"
 #include "studies/chart.h"
 
 #include <math.h>
-#include <unistd.h>
 
 /* The same part twice: the same rows, one for each form and scene. */
 static void a_part_is_repeatable(void **state) {
-    (void)state;
     static char texts[2][2048];
     const SystemStudy study = {SOURCE_DIR "/scenes", true, 1};
     for (int run = 0; run < 2; run++) {
@@ -29,7 +27,7 @@ static void a_part_is_repeatable(void **state) {
 }
 
 /* Errors of the forms: proportional to `on` and so on, in each scene and for each number of launches. */
-static void write_table(const char *path, double on, double off, double shuffled) {
+static void expect_verdicts_of(double on, double off, double shuffled, const char *verdicts) {
     const double errors[RELATION_FORMS] = {on, off, shuffled};
     SainRow rows[RELATION_FORMS * SAIN_SCENES * 2];
     int count = 0;
@@ -38,40 +36,17 @@ static void write_table(const char *path, double on, double off, double shuffled
         for (int form = 0; form < RELATION_FORMS; form++)
             for (int scene = 0; scene < SAIN_SCENES; scene++)
                 rows[count++] = (SainRow){scene, form, launches, 1, errors[form], 2, 3};
-    assert_ok(csv_table_write(path, &sain_layout, rows, count, &error), error);
-}
-
-static void assert_verdicts(const char *expected) {
-    char path[600], text[4096] = "", found[64] = "";
-    Error error = {0};
-    FILE *lines = tmpfile();
-    snprintf(path, sizeof path, "%s", temporary_path("system_sain.csv"));
-    *strrchr(path, '/') = '\0';
-    const Claims claims = {"sain", path, NULL, 0, lines};
-    assert_ok(sain_claims_state(&claims, &error), error);
-    rewind(lines);
-    assert_true(fread(text, 1, sizeof text - 1, lines) > 0);
-    fclose(lines);
-    for (char *line = strtok(text, "\n"); line != NULL; line = strtok(NULL, "\n")) {
-        strncat(found, strrchr(line, ',') + 1, 8);
-        strcat(found, " ");
-    }
-    assert_string_equal(found, expected);
+    assert_ok(csv_table_write(temporary_path("system_sain.csv"), &sain_layout, rows, count, &error), error);
+    expect_verdicts(&system_sain, verdicts);
 }
 
 static void verdicts_follow_from_the_table(void **state) {
-    (void)state;
-    const char *path = temporary_path("system_sain.csv");
-    write_table(path, 1, 2, 3);
-    assert_verdicts("yes yes yes yes ");
-    write_table(path, 1.99, 1, 3);
-    assert_verdicts("no yes partly partly ");
-    write_table(path, 5, 4, 4);
-    assert_verdicts("no no no no ");
+    expect_verdicts_of(1, 2, 3, "yes yes yes yes");
+    expect_verdicts_of(1.99, 1, 3, "no yes partly partly");
+    expect_verdicts_of(5, 4, 4, "no no no no");
 }
 
 static void medians_leave_out_other_rows(void **state) {
-    (void)state;
     SainRow rows[] = {{SAIN_STACK, RELATION_ENGINE, 4, 1, 3, 0, 0},
                       {SAIN_STACK, RELATION_ENGINE, 4, 2, 1, 0, 0},
                       {SAIN_STACK, RELATION_ENGINE, 4, 3, 2, 0, 0},

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The frame of the systems that the paper cites, tried on a system made for this test: interior with other limits. */
-#include "testing.h"
+#include "tables.h"
 
-#include "base/file.h"
-#include "paper/paper.h"
 #include "sanitized.h"
 #include "studies/chart.h"
 
@@ -30,38 +28,28 @@ static bool write_part(const SystemStudy *study, int index, FILE *lines, const P
 
 static const SystemPart parts[] = {{"one", 1, 1, 1, write_part, false}, {"ten", 1, 1, 10, write_part, false}, {0}};
 
-/* From the table and from the scores. */
-static bool claim(const Claims *claims, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, claims->folder, &double_table, error)) return false;
-    const DoubleRow *rows = table.rows;
-    const SystemScoreRow *score = system_score_find(claims->scores, claims->score_count, "interior:near=0.01", 1);
-    const Claim error_falls = {"The error falls, \"always\"", "A paper, section 1", "error",
-                               claim_at_most(rows[1].error, 5, 10)},
-                quick = {"It is quick", "A paper, section 2", "time", claim_at_most(score->us_step, 1e9, 1e9)};
-    const bool stated = claim_state(claims, &error_falls, error, "%.3g m/s", rows[1].error) &&
-                        claim_state(claims, &quick, error, "below %g s, %.1f s, %g s", 1e3, (double)NAN, -(double)NAN);
-    csv_table_free(&table);
-    return stated;
+static bool claim_error(const Claims *claims, const CsvTable *table, Error *error) {
+    const DoubleRow *rows = table->rows;
+    const Claim claim = {"The error falls, \"always\"", "A paper, section 1", "error",
+                         claim_at_most(rows[1].error, 5, 10)};
+    return claim_state(claims, &claim, error, "%.3g m/s", rows[1].error);
 }
 
-static bool plot(const char *folder, PlotPage *page, Error *error) {
-    (void)folder, (void)page, (void)error;
-    return true;
+static bool claim_time(const Claims *claims, const CsvTable *table, Error *error) {
+    const SystemScoreRow *score = system_score_find(claims->scores, claims->score_count, "interior:near=0.01", 1);
+    const Claim claim = {"It is quick", "A paper, section 2", "time", claim_at_most(score->us_step, 1e9, 1e9)};
+    (void)table;
+    return claim_state(claims, &claim, error, "below %g s, %.1f s, %g s", 1e3, (double)NAN, -(double)NAN);
 }
+
+static ClaimRule *const claims_double[] = {claim_error, claim_time, NULL};
 
 static const PaperSystem system_double = {.name = "double",
                                           .methods = SYSTEM_METHODS("interior:near=0.01", "interior:near=0.5"),
                                           .table = &double_table,
                                           .parts = parts,
-                                          .claim = claim,
-                                          .plot = plot};
+                                          .claims = claims_double};
 static const PaperSystem *const systems[] = {&system_double, NULL};
-
-static const char *folder(void) {
-    temporary_path(""); /* makes it */
-    return temporary_folder;
-}
 
 static const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .seed = 1};
 
@@ -102,7 +90,6 @@ static void write_study(void) {
 }
 
 static void parts_and_scores_are_done_once(void **state) {
-    (void)state;
     remove_temporary_folder();
     temporary_folder[0] = '\0';
     parts_written = 0;
@@ -131,7 +118,6 @@ static const SystemScoreRow *score(const CsvTable *scores, const char *method) {
 }
 
 static void scores_are_those_of_runs_beside_the_engine_s(void **state) {
-    (void)state;
     Error error = {0};
     CsvTable scores;
     write_study();
@@ -151,7 +137,6 @@ static void scores_are_those_of_runs_beside_the_engine_s(void **state) {
 }
 
 static void claims_follow_from_tables_and_scores(void **state) {
-    (void)state;
     Error error = {0};
     CsvTable claims;
     write_study();
@@ -168,24 +153,14 @@ static void claims_follow_from_tables_and_scores(void **state) {
 }
 
 static void rules_have_two_limits(void **state) {
-    (void)state;
-    assert_int_equal(claim_at_least(3, 3, 2), CLAIM_YES);
-    assert_int_equal(claim_at_least(2.9, 3, 2), CLAIM_PARTLY);
-    assert_int_equal(claim_at_least(1.9, 3, 2), CLAIM_NO);
-    assert_int_equal(claim_at_most(3, 3, 4), CLAIM_YES);
-    assert_int_equal(claim_at_most(4, 3, 4), CLAIM_PARTLY);
-    assert_int_equal(claim_at_most(4.1, 3, 4), CLAIM_NO);
-    assert_int_equal(claim_at_least((double)NAN, 3, 2), CLAIM_NO);
-    assert_int_equal(claim_at_most((double)NAN, 3, 4), CLAIM_NO);
-    assert_int_equal(claim_in_cases(0, 3), CLAIM_NO);
-    assert_int_equal(claim_in_cases(1, 3), CLAIM_PARTLY);
-    assert_int_equal(claim_in_cases(3, 3), CLAIM_YES);
+    static const double least[] = {3, 2.9, 1.9, (double)NAN}, most[] = {3, 4, 4.1, (double)NAN};
+    static const ClaimHolds holds[] = {CLAIM_YES, CLAIM_PARTLY, CLAIM_NO, CLAIM_NO};
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(claim_at_least(least[i], 3, 2), holds[i]);
+        assert_int_equal(claim_at_most(most[i], 3, 4), holds[i]);
+        assert_int_equal(claim_in_cases(i, 3), i == 0 ? CLAIM_NO : i == 3 ? CLAIM_YES : CLAIM_PARTLY);
+    }
     assert_int_equal(claim_in_cases(0, 0), CLAIM_NO);
-}
-
-static void write_text(const char *name, const char *text) {
-    Error error = {0};
-    assert_ok(file_write(temporary_path(name), text, strlen(text), &error), error);
 }
 
 static void refuse(const char *message) {
@@ -194,7 +169,6 @@ static void refuse(const char *message) {
 }
 
 static void damaged_tables_are_refused(void **state) {
-    (void)state;
     write_study();
     write_text("system_double.csv", "launches,error\n1,0.5\n10,-5\n");
     refuse("system_double.csv:3:4: error: ");
@@ -208,7 +182,6 @@ static void damaged_tables_are_refused(void **state) {
 
 /* What the table could not hold is refused when it is written. */
 static void a_text_that_cannot_be_read_back_is_refused(void **state) {
-    (void)state;
     char text[CLAIM_TEXT_SIZE + 2];
     memset(text, 'x', sizeof text - 1);
     text[sizeof text - 1] = '\0';
@@ -233,7 +206,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 static void strips_are_refused_or_stopped(void **state) {
-    (void)state;
     Error error = {0};
     const Progress progress = {stop, NULL};
     assert_false(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), &progress, &error));
@@ -244,7 +216,6 @@ static void strips_are_refused_or_stopped(void **state) {
 /* The engine and the system, in this order. Not under sanitizers: in a process with the threads of OpenMP and of Mesa, the
    search for leaks crashes in one of a hundred runs. They watch strips and pages in other tests. */
 static void a_page_plays_the_runs_of_the_strips(void **state) {
-    (void)state;
     Error error = {0};
 #ifdef SANITIZED
     skip();

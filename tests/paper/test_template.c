@@ -27,7 +27,6 @@ static void expect_filled(const char *template, const char *expected) {
 }
 
 static void values_are_filled_in(void **state) {
-    (void)state;
     expect_filled("no tag\n", "no tag\n");
     expect_filled("a {{runs}}, {{scene}} {{none}}\n", "a 12, stack –\n");
     expect_filled("{{share number}} {{share percent}} {{share score}} {{big number}} {{big score}}",
@@ -40,7 +39,6 @@ static void values_are_filled_in(void **state) {
 }
 
 static void rows_are_repeated(void **state) {
-    (void)state;
     expect_filled("{{each runs.csv}}\n- {{network}} {{frames}}\n{{end}}\nend\n",
                   "- baseline 600\n- baseline 5\n- other –\nend\n");
     expect_filled("{{each empty.csv}}\n- {{scene}}\n{{end}}\nend\n", "end\n");
@@ -50,7 +48,6 @@ static void rows_are_repeated(void **state) {
 }
 
 static void rows_are_filtered(void **state) {
-    (void)state;
     expect_filled("{{each runs.csv scene=stack}}{{network}} {{end}}", "baseline other ");
     expect_filled("{{each runs.csv scene=stack network=other}}{{network}} {{end}}", "other ");
     expect_filled("{{each runs.csv scene=sing|stack}}{{network}} {{end}}", "baseline other ");
@@ -73,7 +70,6 @@ static void expect_refused(const char *template, const char *message) {
 }
 
 static void wrong_tags_are_refused(void **state) {
-    (void)state;
     expect_refused("{{unknown}}", "no value has this name: 'unknown'");
     expect_refused("{{unknown number}}", "no value has this name: 'unknown'");
     expect_refused("{{runs/unknown number}}", "no value has this name: 'unknown'");

@@ -43,7 +43,6 @@ static double constant_by_hand(const Dataset *dataset) {
 }
 
 static void errors_stand_beside_the_constant(void **state) {
-    (void)state;
     Error error = {0};
     Dataset *pyramid = record(single, PAIR_CONTACT), *drawn = dataset_draw_subset(pyramid, 2, 3, &error);
     assert_ok(drawn != NULL, error);
@@ -62,7 +61,6 @@ static void errors_stand_beside_the_constant(void **state) {
 /* After 0 iterations, a network with transfer differs from one from scratch only by its normalisation, which is that of
    its first stage. It does not differ if that stage had the same rows. */
 static void the_first_stage_decides_the_units(void **state) {
-    (void)state;
     Error error = {0};
     Dataset *elsewhere = record(single, PAIR_RELATIVE), *pyramid = record(stack, PAIR_RELATIVE);
     Dataset *drawn = dataset_draw_subset(pyramid, 2, 5, &error);
@@ -81,7 +79,6 @@ static void the_first_stage_decides_the_units(void **state) {
 
 /* By any view; the same again, and something else for each way of getting there. */
 static void stages_follow_each_other(void **state) {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         const PairView view = i == 0 ? PAIR_RELATIVE : PAIR_CONTACT;
         Dataset *first = record(single, view), *pyramid = record(stack, view);
@@ -105,7 +102,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 static void what_cannot_be_run_is_refused(void **state) {
-    (void)state;
     Dataset *pyramid = record(stack, PAIR_RELATIVE), *other = record(single, PAIR_RAW);
     const TransferData data = {pyramid, pyramid, pyramid}, mixed = {other, pyramid, pyramid};
     TransferResult result;

@@ -165,5 +165,5 @@ int main(int argc, char **argv) {
         write_all();
         return 0;
     }
-    return run_all_tests(NULL, NULL);
+    return _cmocka_run_group_tests("tests", tests_of_file, test_count, NULL, NULL);
 }

@@ -48,6 +48,18 @@ static inline void draw(void) {
     "def expect(found, wanted, what):\n"                                                                    \
     "    assert found == wanted, (what, found, wanted)\n"
 
+/* Runs a program with these functions on the figures. */
+static inline void check_svg(const char *format, ...) PRINTF_LIKE(1, 2);
+static inline void check_svg(const char *format, ...) {
+    char program[8192];
+    va_list arguments;
+    strcpy(program, SVG_FUNCTIONS);
+    va_start(arguments, format);
+    vsnprintf(program + strlen(program), sizeof program - strlen(program), format, arguments);
+    va_end(arguments);
+    run_python(program, temporary_folder);
+}
+
 /* Nothing is drawn of an invalid table. */
 static inline void expect_refused(const char *maps, const char *borders, const char *message) {
     Error error = {0};

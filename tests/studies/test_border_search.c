@@ -36,30 +36,33 @@ static BorderList search(const BorderScan *scan, Made *made) {
     return list;
 }
 
-static void assert_border(const BorderList *list, int i, double holds_at, double fails_at, Verdict verdict) {
-    assert_true(i < list->count);
-    const Border *border = &list->items[i];
-    assert_true(isnan(holds_at) == isnan(border->holds_at) && isnan(fails_at) == isnan(border->fails_at));
-    if (!isnan(holds_at)) assert_near(border->holds_at, holds_at, 0);
-    if (!isnan(fails_at)) assert_near(border->fails_at, fails_at, 0);
-    assert_int_equal(border->verdict, verdict);
+/* These borders and no others. */
+#define expect_borders(scan, made, ...) \
+    check_borders(scan, made, (const Border[]){__VA_ARGS__}, sizeof((const Border[]){__VA_ARGS__}) / sizeof(Border))
+
+static void check_borders(const BorderScan *scan, Made *made, const Border *expected, size_t count) {
+    const BorderList list = search(scan, made);
+    assert_int_equal(list.count, count);
+    for (size_t i = 0; i < count; i++) {
+        const Border *found = &list.items[i];
+        assert_true(found->holds_at == expected[i].holds_at || (isnan(found->holds_at) && isnan(expected[i].holds_at)));
+        assert_true(found->fails_at == expected[i].fails_at || (isnan(found->fails_at) && isnan(expected[i].fails_at)));
+        assert_int_equal(found->verdict, expected[i].verdict);
+    }
 }
 
-static const BorderScan heights = {.from = 2, .to = 40, .points = 10, .whole = true};
+static const BorderScan heights = {.from = 2, .to = 40, .points = 10, .whole = true},
+                        backwards = {.from = 2, .to = 40, .points = 10, .whole = true, .fails_low = true};
 
 static void one_border_is_found_to_the_unit(void **state) {
-    (void)state;
     for (int first = 3; first <= 40; first++) {
         Made made = {.from = {first}, .to = {99}, .intervals = 1, .failing_seed = -1, .how = VERDICT_FALLS};
-        BorderList list = search(&heights, &made);
-        assert_int_equal(list.count, 1);
-        assert_border(&list, 0, first - 1, first, VERDICT_FALLS);
+        expect_borders(&heights, &made, {first - 1, first, VERDICT_FALLS});
         assert_true(made.calls <= 10 + 3 + 4 + 6); /* scan, bisection of a step of 5, seeds, two values beside */
     }
 }
 
 static void linear_is_found_to_a_hundredth_of_the_range(void **state) {
-    (void)state;
     const BorderScan scan = {.from = 0, .to = 0.6, .points = 7};
     Made made = {.from = {0.2345}, .to = {1}, .intervals = 1, .failing_seed = -1, .how = VERDICT_FALLS};
     BorderList list = search(&scan, &made);
@@ -71,16 +74,13 @@ static void linear_is_found_to_a_hundredth_of_the_range(void **state) {
 
 /* Iterations: fails at low values, holds from 17. 16 and 17 are neighbours, although their ratio is 1.06. */
 static void logarithmic_is_found_to_a_factor(void **state) {
-    (void)state;
     const BorderScan counts = {
         .from = 1, .to = 100, .points = 8, .logarithmic = true, .whole = true, .fails_low = true};
     const BorderScan ratios = {.from = 1, .to = 1000, .points = 10, .logarithmic = true};
     Made few = {.from = {0}, .to = {16}, .intervals = 1, .failing_seed = -1, .how = VERDICT_SINKS};
     Made heavy = {.from = {77.7}, .to = {1e9}, .intervals = 1, .failing_seed = -1, .how = VERDICT_FALLS};
-    BorderList list = search(&counts, &few);
-    assert_int_equal(list.count, 1);
-    assert_border(&list, 0, 17, 16, VERDICT_SINKS);
-    list = search(&ratios, &heavy);
+    expect_borders(&counts, &few, {17, 16, VERDICT_SINKS});
+    const BorderList list = search(&ratios, &heavy);
     assert_int_equal(list.count, 1);
     assert_true(list.items[0].holds_at < 77.7 && list.items[0].fails_at >= 77.7);
     assert_true(list.items[0].fails_at <= 1.05 * list.items[0].holds_at);
@@ -88,54 +88,29 @@ static void logarithmic_is_found_to_a_factor(void **state) {
 
 /* Holds to 9, fails from 10 to 20, holds to 30, fails from 31. */
 static void all_borders_are_listed(void **state) {
-    (void)state;
     Made made = {.from = {10, 31}, .to = {20, 99}, .intervals = 2, .failing_seed = -1, .how = VERDICT_FALLS};
-    BorderList list = search(&heights, &made);
-    assert_int_equal(list.count, 3);
-    assert_border(&list, 0, 9, 10, VERDICT_FALLS);
-    assert_border(&list, 1, 21, 20, VERDICT_FALLS);
-    assert_border(&list, 2, 30, 31, VERDICT_FALLS);
-    BorderScan backwards = heights;
-    backwards.fails_low = true;
-    list = search(&backwards, &made);
-    assert_int_equal(list.count, 3);
-    assert_border(&list, 0, 30, 31, VERDICT_FALLS);
-    assert_border(&list, 2, 9, 10, VERDICT_FALLS);
+    expect_borders(&heights, &made, {9, 10, VERDICT_FALLS}, {21, 20, VERDICT_FALLS}, {30, 31, VERDICT_FALLS});
+    expect_borders(&backwards, &made, {30, 31, VERDICT_FALLS}, {21, 20, VERDICT_FALLS}, {9, 10, VERDICT_FALLS});
 }
 
 /* Holds to 21 except at 20, which a scan of ..., 19, 23, ... and a bisection at 21 miss. */
 static void a_hole_beside_a_border_is_found(void **state) {
-    (void)state;
     Made made = {.from = {20, 22}, .to = {20, 99}, .intervals = 2, .failing_seed = -1, .how = VERDICT_FALLS};
-    BorderList list = search(&heights, &made);
-    assert_int_equal(list.count, 3);
-    assert_border(&list, 0, 19, 20, VERDICT_FALLS);
-    assert_border(&list, 1, 21, 20, VERDICT_FALLS);
-    assert_border(&list, 2, 21, 22, VERDICT_FALLS);
+    expect_borders(&heights, &made, {19, 20, VERDICT_FALLS}, {21, 20, VERDICT_FALLS}, {21, 22, VERDICT_FALLS});
 }
 
 static void without_a_border_there_is_one_side(void **state) {
-    (void)state;
     Made holds = {.failing_seed = -1, .how = VERDICT_FALLS};
     Made fails = {.from = {0}, .to = {99}, .intervals = 1, .failing_seed = -1, .how = VERDICT_TUNNELS};
-    BorderScan backwards = heights;
-    backwards.fails_low = true;
-    BorderList list = search(&heights, &holds);
-    assert_int_equal(list.count, 1);
-    assert_border(&list, 0, 40, NAN, VERDICT_CREEPS);
-    list = search(&backwards, &holds);
-    assert_border(&list, 0, 2, NAN, VERDICT_CREEPS);
-    list = search(&heights, &fails);
-    assert_int_equal(list.count, 1);
-    assert_border(&list, 0, NAN, 2, VERDICT_TUNNELS);
-    list = search(&backwards, &fails);
-    assert_border(&list, 0, NAN, 40, VERDICT_TUNNELS);
+    expect_borders(&heights, &holds, {40, NAN, VERDICT_CREEPS});
+    expect_borders(&backwards, &holds, {2, NAN, VERDICT_CREEPS});
+    expect_borders(&heights, &fails, {NAN, 2, VERDICT_TUNNELS});
+    expect_borders(&backwards, &fails, {NAN, 40, VERDICT_TUNNELS});
     assert_int_equal(holds.calls, 2 * 10);
 }
 
 /* Holds to 14 and fails from 20; between them, one of three seeds explodes. */
 static void undecided_values_are_no_side_of_a_border(void **state) {
-    (void)state;
     for (int seed = 0; seed < BORDER_SEEDS; seed++) {
         Made made = {.from = {20},
                      .to = {99},
@@ -144,42 +119,27 @@ static void undecided_values_are_no_side_of_a_border(void **state) {
                      .undecided_to = 19,
                      .failing_seed = seed,
                      .how = VERDICT_FALLS};
-        BorderList list = search(&heights, &made);
-        assert_int_equal(list.count, 1);
-        assert_border(&list, 0, 14, 20, VERDICT_FALLS);
+        expect_borders(&heights, &made, {14, 20, VERDICT_FALLS});
     }
 }
 
 /* From 33 on only the first seed explodes. */
 static void undecided_values_at_the_end_are_reported(void **state) {
-    (void)state;
     Made made = {.undecided_from = 33, .undecided_to = 99, .failing_seed = 0, .how = VERDICT_FALLS};
-    BorderList list = search(&heights, &made);
-    assert_int_equal(list.count, 1);
-    assert_border(&list, 0, 32, NAN, VERDICT_EXPLODES);
+    expect_borders(&heights, &made, {32, NAN, VERDICT_EXPLODES});
     made =
         (Made){.from = {8}, .to = {12}, .intervals = 1, .undecided_from = 33, .undecided_to = 99, .how = VERDICT_FALLS};
-    list = search(&heights, &made);
-    assert_int_equal(list.count, 3);
-    assert_border(&list, 1, 13, 12, VERDICT_FALLS);
-    assert_border(&list, 2, 32, NAN, VERDICT_EXPLODES);
+    expect_borders(&heights, &made, {7, 8, VERDICT_FALLS}, {13, 12, VERDICT_FALLS}, {32, NAN, VERDICT_EXPLODES});
 }
 
 /* From 19 to 26 only the first seed explodes; all other values hold. */
 static void undecided_values_in_the_middle_end_what_holds(void **state) {
-    (void)state;
     Made made = {.undecided_from = 19, .undecided_to = 26, .failing_seed = 0, .how = VERDICT_FALLS};
-    BorderList list = search(&heights, &made);
-    assert_int_equal(list.count, 1);
-    assert_border(&list, 0, 18, NAN, VERDICT_EXPLODES);
-    BorderScan backwards = heights;
-    backwards.fails_low = true;
-    list = search(&backwards, &made);
-    assert_border(&list, 0, 27, NAN, VERDICT_EXPLODES);
+    expect_borders(&heights, &made, {18, NAN, VERDICT_EXPLODES});
+    expect_borders(&backwards, &made, {27, NAN, VERDICT_EXPLODES});
 }
 
 static void values_are_rounded_as_in_tables(void **state) {
-    (void)state;
     double values[BORDER_POINTS_MAX];
     const BorderScan few = {.from = 1, .to = 4, .points = 9, .logarithmic = true, .whole = true};
     assert_int_equal(border_scan_values(&few, values), 4);
@@ -191,7 +151,6 @@ static void values_are_rounded_as_in_tables(void **state) {
 }
 
 static void a_failing_evaluation_ends_the_search(void **state) {
-    (void)state;
     Error error = {0};
     BorderList list;
     Made made = {.how = VERDICTS};

@@ -45,7 +45,6 @@ static char *write_page(const ChartRow *rows, int count) {
 }
 
 static void the_page_names_the_processor(void **state) {
-    (void)state;
     const ChartRow rows[] = {make_row("single", "engine", "Quick & <Co>"), make_row("stack", "engine", "Quick & <Co>")};
     char *text = write_page(rows, 2);
     assert_non_null(strstr(text, "<p class=\"soft\">Times measured on Quick &amp; &lt;Co&gt;.</p>"));
@@ -55,7 +54,6 @@ static void the_page_names_the_processor(void **state) {
 }
 
 static void a_scene_without_times_has_no_chart(void **state) {
-    (void)state;
     const ChartRow rows[] = {make_row("single", "engine", "AMD"), make_row("stack", "engine", "")};
     char *text = write_page(rows, 2);
     assert_non_null(strstr(text, "Times measured on AMD. Those of other processors are left out."));
@@ -68,7 +66,6 @@ static void a_scene_without_times_has_no_chart(void **state) {
 }
 
 static void old_tables_name_no_processor(void **state) {
-    (void)state;
     ChartRow rows[] = {make_row("single", "engine", "AMD")};
     rows[0].cpu = "";
     char *text = write_page(rows, 1);

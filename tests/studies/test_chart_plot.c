@@ -32,7 +32,6 @@ static char *read_drawn(const char *scene, const char *ending, size_t *size) {
 }
 
 static void three_files_are_drawn(void **state) {
-    (void)state;
     Error error = {0};
     assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
     size_t size;
@@ -63,7 +62,6 @@ static void three_files_are_drawn(void **state) {
 }
 
 static void the_same_table_gives_the_same_files(void **state) {
-    (void)state;
     static const char *const endings[] = {"png", "svg", "pdf"};
     Error error = {0};
     size_t size[2][3];
@@ -100,7 +98,6 @@ static void expect_refused(const char *lines, const char *scene, const char *mes
 }
 
 static void tables_without_a_mark_are_refused(void **state) {
-    (void)state;
     static const char none[] = "rows.csv: error: no row of the scene 'single' in closed loop has a time and an error";
     expect_refused("stack,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "single", none);
     expect_refused("single,engine,k=10,frozen,impact,40,5,4,6,,,1,,,,,,,,\n"
@@ -119,7 +116,6 @@ static void tables_without_a_mark_are_refused(void **state) {
 }
 
 static void one_mark_and_one_panel_are_enough(void **state) {
-    (void)state;
     Error error = {0};
     assert_ok(
         chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &error),
@@ -129,7 +125,6 @@ static void one_mark_and_one_panel_are_enough(void **state) {
 
 /* A note names the methods whose errors have another target. Without such methods the chart has no note. */
 static void a_target_without_push_out_is_noted(void **state) {
-    (void)state;
     Error error = {0};
     static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
@@ -150,7 +145,6 @@ static void a_target_without_push_out_is_noted(void **state) {
 
 /* The maximum number of methods, with the longest names and settings. */
 static void a_full_chart_is_drawn(void **state) {
-    (void)state;
     Error error = {0};
     char lines[20000] = "";
     for (int i = 0; i < CHART_MAX_LINES * 5; i++)
@@ -162,7 +156,6 @@ static void a_full_chart_is_drawn(void **state) {
 
 /* A table may have any texts: what is drawn of them is text. */
 static void names_stay_texts(void **state) {
-    (void)state;
     static const char *const names[] = {"'; x='",         "</text><script>", "&amp;",
                                         "`touch victim`", "\xc3\x28'\\",     "%s %d %n"};
     char *lines = NULL;
@@ -189,7 +182,6 @@ static void names_stay_texts(void **state) {
 }
 
 static void texts_become_plain(void **state) {
-    (void)state;
     char plain[CHART_TEXT_SIZE];
     chart_plain(plain, "engine, warm=off (k=10)");
     assert_string_equal(plain, "engine, warm=off (k=10)");
@@ -206,21 +198,29 @@ static void texts_become_plain(void **state) {
     assert_string_equal(plain, "012345678901234567890123456789012345...");
 }
 
-static void marks_are_gathered_by_line_and_time(void **state) {
-    (void)state;
+/* The chart of the stack; its marks name texts of the table. */
+static Chart gather(CsvTable *table, const char *lines) {
     Error error = {0};
-    ChartTable table;
-    assert_ok(chart_csv_read(&table,
-                             write_rows("single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
-                                        "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,,\n"
-                                        "stack,engine,k=10,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
-                                        "stack,engine,k=5,closed,impact,39,2,2,2,,,3,,,,,,,,\n"
-                                        "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,,\n"
-                                        "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,,\n"),
-                             &error),
-              error);
     Chart chart;
-    assert_ok(chart_gather(&chart, &table, "stack", "rows.csv", &error), error);
+    const char *path = write_rows(lines);
+    assert_ok(csv_table_read(table, path, &chart_layout, &error), error);
+    assert_ok(chart_gather(&chart, table, "stack", path, &error), error);
+    return chart;
+}
+
+static void free_chart(Chart *chart, CsvTable *table) {
+    chart_free(chart);
+    csv_table_free(table);
+}
+
+static void marks_are_gathered_by_line_and_time(void **state) {
+    CsvTable table;
+    Chart chart = gather(&table, "single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+                                 "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,,\n"
+                                 "stack,engine,k=10,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                 "stack,engine,k=5,closed,impact,39,2,2,2,,,3,,,,,,,,\n"
+                                 "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,,\n"
+                                 "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,,\n");
     assert_int_equal(chart.line_count, 2);
     assert_string_equal(chart.lines[0].name, "engine");
     assert_string_equal(chart.lines[1].name, "momentum:warm=off");
@@ -237,25 +237,19 @@ static void marks_are_gathered_by_line_and_time(void **state) {
     assert_true(!impact->marks[1].on_front && impact->marks[1].shipped);
     assert_string_equal(impact->marks[2].label, "k=7,b=0.5");
     assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
-    chart_free(&chart);
-    chart_csv_free(&table);
+    free_chart(&chart, &table);
 }
 
 /* A baseline a thousand times faster would push the methods that compete into a corner. */
 static void the_axes_show_what_competes(void **state) {
-    (void)state;
     Error error = {0};
-    ChartTable table;
-    const char *path = write_rows("stack,engine,k=5,closed,impact,40,20,19,21,,,1,,,,,,,,\n"
-                                  "stack,engine,k=100,closed,impact,40,200,190,210,,,0.1,,,,,,,,\n"
-                                  "stack,playback,launches=25,closed,impact,40,0.2,0.1,0.3,,,0.05,,,,,,,,\n"
-                                  "stack,playback,launches=100,closed,after,40,0.4,0.3,0.5,,,0.01,,,,,,,,\n"
-                                  "stack,constant,,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
-                                  "stack,reference,,closed,impact,40,400,390,410,,,0,,,,,,,,\n");
-    assert_ok(chart_csv_read(&table, path, &error), error);
-    Chart chart;
-    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
-    chart_csv_free(&table);
+    CsvTable table;
+    Chart chart = gather(&table, "stack,engine,k=5,closed,impact,40,20,19,21,,,1,,,,,,,,\n"
+                                 "stack,engine,k=100,closed,impact,40,200,190,210,,,0.1,,,,,,,,\n"
+                                 "stack,playback,launches=25,closed,impact,40,0.2,0.1,0.3,,,0.05,,,,,,,,\n"
+                                 "stack,playback,launches=100,closed,after,40,0.4,0.3,0.5,,,0.01,,,,,,,,\n"
+                                 "stack,constant,,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                 "stack,reference,,closed,impact,40,400,390,410,,,0,,,,,,,,\n");
     assert_true(chart.us_least == 4 && chart.us_most == 210); /* the constant is near */
     assert_true(chart.error_least == 0.1 && chart.error_most == 3);
     assert_int_equal(chart.panels[0].count, 3);
@@ -265,8 +259,8 @@ static void the_axes_show_what_competes(void **state) {
     assert_int_equal(playback->beyond, 2);
     assert_true(playback->beyond_us[0] == 0.2 && playback->beyond_us[1] == 0.4);
     assert_true(playback->beyond_error[0] == 0.01 && playback->beyond_error[1] == 0.05);
-    chart_free(&chart);
-    assert_ok(chart_plot(path, "stack", folder(), &error), error);
+    free_chart(&chart, &table);
+    assert_ok(chart_plot(temporary_path("rows.csv"), "stack", folder(), &error), error);
     size_t size;
     char *svg = read_drawn("stack", "svg", &size);
     assert_non_null(strstr(svg, "Beyond the axes: playback (0.2 to 0.4 µs, 0.01 to 0.05 m/s), "
@@ -276,7 +270,6 @@ static void the_axes_show_what_competes(void **state) {
 
 /* Methods keep their colour, whichever others are in the chart; all lines differ. */
 static void a_method_has_one_style_in_all_charts(void **state) {
-    (void)state;
     const MethodDescription *engine = method_describe("engine"), *momentum = method_describe("momentum");
     PlotStyle one[2], other[CHART_MAX_LINES];
     plot_method_styles((const MethodDescription *[]){momentum, engine}, 2, one);
@@ -295,20 +288,15 @@ static void a_method_has_one_style_in_all_charts(void **state) {
 
 /* One mark by the stopping rule between two of a fixed number of sweeps would bend their line. */
 static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
-    (void)state;
-    Error error = {0};
-    ChartTable table;
-    const char *path = write_rows("stack,momentum,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
-                                  "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
-                                  "stack,momentum,\"k=5,near=0.1\",closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
-                                  "stack,momentum,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
-                                  "stack,scene-net,,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
-                                  "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n"
-                                  "stack,momentum,\"near=0.5,more=96\",closed,impact,40,6,6,6,,,1,,,,,,,,\n"
-                                  "stack,scene-net,more=96,closed,impact,40,6,6,6,,,1,,,,,,,,\n");
-    assert_ok(chart_csv_read(&table, path, &error), error);
-    Chart chart;
-    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    CsvTable table;
+    Chart chart = gather(&table, "stack,momentum,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
+                                 "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
+                                 "stack,momentum,\"k=5,near=0.1\",closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
+                                 "stack,momentum,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                 "stack,scene-net,,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                 "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n"
+                                 "stack,momentum,\"near=0.5,more=96\",closed,impact,40,6,6,6,,,1,,,,,,,,\n"
+                                 "stack,scene-net,more=96,closed,impact,40,6,6,6,,,1,,,,,,,,\n");
     assert_int_equal(chart.line_count, 3);
     assert_string_equal(chart.lines[0].name, "momentum");
     assert_string_equal(chart.lines[1].name, "momentum:near");
@@ -316,26 +304,19 @@ static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
     assert_int_equal(chart.lines[0].marks[0], 2);
     for (int i = 1; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 3);
     assert_string_equal(chart.panels[0].marks[3].label, "k=5,near=0.1");
-    chart_free(&chart);
-    chart_csv_free(&table);
+    free_chart(&chart, &table);
 }
 
 /* Two names that are equal where they are truncated. */
 static void truncated_names_stay_distinct(void **state) {
-    (void)state;
-    Error error = {0};
-    ChartTable table;
-    const char *path = write_rows(
-        "stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
-        "stack,a-name-of-more-than-forty-characters-which-ends-in-2,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n");
-    assert_ok(chart_csv_read(&table, path, &error), error);
-    Chart chart;
-    assert_ok(chart_gather(&chart, &table, "stack", path, &error), error);
+    CsvTable table;
+    Chart chart = gather(
+        &table, "stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+                "stack,a-name-of-more-than-forty-characters-which-ends-in-2,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n");
     assert_int_equal(chart.line_count, 2);
     assert_string_equal(chart.lines[0].name, "a-name-of-more-than-forty-characters...");
     assert_string_equal(chart.lines[1].name, chart.lines[0].name);
-    chart_free(&chart);
-    chart_csv_free(&table);
+    free_chart(&chart, &table);
 }
 
 int main(void) {

@@ -26,7 +26,6 @@ static ClosedLoop run(const char *text, const Scene *scene) {
 
 /* The engine conserves momentum; friction and inelastic impacts only dissipate energy. */
 static void the_engine_equals_itself(void **state) {
-    (void)state;
     Scene *scene = read_scene("single");
     ClosedLoop result = run("engine", scene);
     assert_near(result.frames_until_apart, CLOSED_LOOP_FRAMES, 0);
@@ -38,7 +37,6 @@ static void the_engine_equals_itself(void **state) {
 
 /* With one sweep and no warm start a stack of ten sinks. */
 static void a_poor_method_diverges_from_the_engine(void **state) {
-    (void)state;
     Scene *scene = read_scene("stack");
     ClosedLoop poor = run("engine:k=1,warm=off", scene), same = run("engine", scene);
     assert_true(poor.frames_until_apart > 1 && poor.frames_until_apart < 100);
@@ -48,7 +46,6 @@ static void a_poor_method_diverges_from_the_engine(void **state) {
 
 /* The energy that a late bomb brings is not counted as created by the method. */
 static void energy_counts_from_the_bomb_on(void **state) {
-    (void)state;
     Scene *scene = read_scene("single");
     scene->bomb.frame = 30;
     ClosedLoop result = run("engine", scene);
@@ -58,7 +55,6 @@ static void energy_counts_from_the_bomb_on(void **state) {
 
 /* The interior method is close to the converged run of the stack for longer than to the engine's. */
 static void runs_are_compared_with_the_engine_and_with_the_converged_run(void **state) {
-    (void)state;
     Error error = {0};
     Scene *scene = read_scene("stack");
     scene->frames = 60;
@@ -82,7 +78,6 @@ static void runs_are_compared_with_the_engine_and_with_the_converged_run(void **
 }
 
 static void both_methods_are_timed(void **state) {
-    (void)state;
     Error error = {0};
     Scene *scene = read_scene("stack");
     scene->frames = 60;

@@ -18,7 +18,6 @@ static void assert_contender(const ContenderList *list, int i, const char *name,
 }
 
 static void a_comma_separates_methods_or_settings(void **state) {
-    (void)state;
     ContenderList list = parse("engine:k=3,warm=off,momentum:k=20,constant,engine:k=3");
     assert_int_equal(list.count, 4);
     assert_contender(&list, 0, "engine", "k=3,warm=off");
@@ -30,7 +29,6 @@ static void a_comma_separates_methods_or_settings(void **state) {
 }
 
 static void a_name_alone_stands_for_all_its_settings(void **state) {
-    (void)state;
     ContenderList engine = parse("engine"), both = parse("engine,momentum"), all = parse(NULL);
     assert_contender(&engine, 0, "engine", "k=1");
     assert_true(engine.count > 4);
@@ -44,7 +42,6 @@ static void a_name_alone_stands_for_all_its_settings(void **state) {
 
 /* The engine as shipped is the mark that all others are held to. */
 static void the_engine_as_shipped_is_always_there(void **state) {
-    (void)state;
     for (int quick = 0; quick < 2; quick++) {
         Error error = {0};
         ContenderList list;
@@ -64,7 +61,6 @@ static void refuse(const char *text, const char *reason) {
 }
 
 static void bad_lists_are_refused(void **state) {
-    (void)state;
     refuse("engin", "method: error: 'engin' is not a method");
     refuse("engine,", "is not a method");
     refuse("", "is not a method");
@@ -78,7 +74,6 @@ static void bad_lists_are_refused(void **state) {
 }
 
 static void a_method_without_its_network_is_left_out(void **state) {
-    (void)state;
     Error error = {0};
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     assert_ok(scene != NULL, error);
@@ -106,7 +101,6 @@ static bool has_twin(const ContenderList *list, const Contender *run) {
 
 /* The ablation that must stand beside it. */
 static void every_learned_method_has_its_twin_in_every_study(void **state) {
-    (void)state;
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
         Error error = {0};
         ContenderList all;
@@ -120,7 +114,6 @@ static void every_learned_method_has_its_twin_in_every_study(void **state) {
 
 /* Learned: it competes and needs a network. */
 static void every_learned_method_names_its_twin(void **state) {
-    (void)state;
     int learned = 0;
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         const MethodDescription *method = kind->description;
@@ -132,7 +125,6 @@ static void every_learned_method_names_its_twin(void **state) {
 
 /* What is left out is reported. */
 static void every_method_runs_or_is_left_out(void **state) {
-    (void)state;
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
         Error error = {0};
         ContenderList all;

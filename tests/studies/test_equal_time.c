@@ -20,10 +20,10 @@ static const char chart[] = IMPACT("engine", "k=10", "4", "2", "1", "4") IMPACT(
     IMPACT("reference", "", "2", "0.0001", "0.0001", "0.0001") IMPACT("playback", "", "1", "0.01", "0.01", "0.01")
         IMPACT("block", "k=5", "1", "0.01", "0.01", "0.01") DRIFT("block", "k=5", "0.6") DRIFT("engine", "k=10", "0.4");
 
-static ChartTable read_chart(void) {
-    ChartTable table;
+static CsvTable read_chart(void) {
+    CsvTable table;
     Error error = {0};
-    assert_ok(chart_csv_read(&table, write_chart(chart), &error), error);
+    assert_ok(csv_table_read(&table, write_chart(chart), &chart_layout, &error), error);
     return table;
 }
 
@@ -54,9 +54,8 @@ static void assert_same(double found, double value) {
 }
 
 static void every_setting_meets_its_best_rival_at_its_time(void **state) {
-    (void)state;
     static const double factors[] = {1, 0.5, 2};
-    ChartTable rows = read_chart();
+    CsvTable rows = read_chart();
     EqualTime table;
     Error error = {0};
     /* The line of logarithms from (8, 0.8) to (20, 0.2), at 10 and at 16. */
@@ -80,12 +79,11 @@ static void every_setting_meets_its_best_rival_at_its_time(void **state) {
         assert_same(row->time_momentum_20, want->time_momentum_20);
     }
     equal_time_free(&table);
-    chart_csv_free(&rows);
+    csv_table_free(&rows);
 }
 
 /* At 20 microseconds, the time of momentum with 50 sweeps. */
 static void methods_are_compared_at_one_time(void **state) {
-    (void)state;
     static const struct {
         const char *method, *rival;
         double error, ratio;
@@ -94,7 +92,7 @@ static void methods_are_compared_at_one_time(void **state) {
         {"scene-net", "interior", 0.1, 10},   {"scene-net:net=off", "interior", 0.5, 50},
         {"interior", "momentum", 0.01, 0.05}, {"block", "interior", NAN, NAN}, /* lost the scene */
     };
-    ChartTable rows = read_chart();
+    CsvTable rows = read_chart();
     EqualTime table;
     Error error = {0};
     assert_ok(equal_time_make(&table, rows.rows, rows.count, &error), error);
@@ -109,7 +107,7 @@ static void methods_are_compared_at_one_time(void **state) {
         assert_same(row->ratio, methods[i].ratio);
     }
     equal_time_free(&table);
-    chart_csv_free(&rows);
+    csv_table_free(&rows);
 }
 
 int main(void) {

@@ -14,7 +14,6 @@ static const char *folder(void) {
 }
 
 static void learned_methods_stand_beside_their_twins(void **state) {
-    (void)state;
     Error error = {0};
     bool drawn = false;
     assert_ok(equal_time_plot(SAMPLE, folder(), &drawn, &error), error);
@@ -32,7 +31,6 @@ static void learned_methods_stand_beside_their_twins(void **state) {
 }
 
 static void tables_and_three_formats_are_written(void **state) {
-    (void)state;
     static const char *const files[] = {"equal_time.csv", "equal_time_methods.csv", "equal_time.png", "equal_time.pdf"};
     static const char *const begins[] = {"scene,method,setting,phase,statistic,launches,us_solver,error,rival,",
                                          "scene,method,us_solver,reach,error,rival,rival_error,ratio\n", "\x89PNG",
@@ -50,14 +48,13 @@ static void tables_and_three_formats_are_written(void **state) {
 
 /* One method alone has no rival: there are tables, but no figure. */
 static void a_method_without_rivals_has_no_figure(void **state) {
-    (void)state;
     Error error = {0};
     bool drawn = true;
     const char *path = temporary_path("alone.csv");
-    ChartTable chart;
-    assert_ok(chart_csv_read(&chart, SAMPLE, &error), error);
+    CsvTable chart;
+    assert_ok(csv_table_read(&chart, SAMPLE, &chart_layout, &error), error);
     assert_ok(csv_table_write(path, &chart_layout, chart.rows, 1, &error), error);
-    chart_csv_free(&chart);
+    csv_table_free(&chart);
     assert_ok(equal_time_plot(path, folder(), &drawn, &error), error);
     assert_false(drawn);
 }

@@ -12,7 +12,6 @@ enum { POINTS = 4 };
 static double power_law(double us) { return 3 * pow(us, -1.7); }
 
 static void points_on_a_power_law_give_it_exactly(void **state) {
-    (void)state;
     CurvePoint points[POINTS] = {{40, 0}, {2, 0}, {7, 0}, {100, 0}};
     for (int i = 0; i < POINTS; i++) points[i].error = power_law(points[i].us);
     assert_int_equal(error_curve_front(points, POINTS), POINTS);
@@ -25,7 +24,6 @@ static void points_on_a_power_law_give_it_exactly(void **state) {
 }
 
 static void a_curve_has_no_error_before_its_quickest_setting_and_keeps_its_last(void **state) {
-    (void)state;
     const CurvePoint points[] = {{2, 0.5}, {8, 0.125}};
     CurveReach reach;
     assert_true(isnan(error_curve_at(points, 2, 1.999, &reach)));
@@ -40,7 +38,6 @@ static void a_curve_has_no_error_before_its_quickest_setting_and_keeps_its_last(
 }
 
 static void settings_that_another_beats_are_no_corners(void **state) {
-    (void)state;
     CurvePoint points[] = {{9, 0.3}, {3, 0.2}, {1, 0.5}, {3, 0.4}, {4, 0.2}, {8, 0.1}};
     const CurvePoint expected[] = {{1, 0.5}, {3, 0.2}, {8, 0.1}};
     assert_int_equal(error_curve_front(points, 6), 3);

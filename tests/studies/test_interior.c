@@ -4,52 +4,34 @@
 
 #include "engine/uniform.h"
 
-static VerdictReading judge(const Scene *scene, const char *text, bool stands, const EnergyLog *converged) {
-    Error error = {0};
-    Method method;
-    VerdictReading reading;
-    assert_ok(method_parse(&method, text, &error), error);
-    const VerdictRun run = beside(scene, stands, converged);
-    assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
-    return reading;
-}
-
-static Scene *read_scene(const char *name, const SceneSetting *settings, int count) {
-    Error error = {0};
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/stability/%s.yaml", SOURCE_DIR, name);
-    Scene *scene = scene_read_with(path, settings, count, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
-
-static void converge(EnergyLog *log, const Scene *scene) {
-    Error error = {0};
-    Method reference;
-    assert_ok(method_parse(&reference, "reference", &error), error);
-    assert_ok(energy_log_run(log, scene, &reference, &error), error);
-}
-
 typedef struct Case {
     const char *scene;
-    SceneSetting settings[2];
+    SceneSetting settings[3];
     int count;
 } Case;
 
-static Verdict verdict_of(const Case *the, const char *method) {
-    Scene *scene = read_scene(the->scene, the->settings, the->count);
+/* The verdict on a method in the scene, beside its converged run. */
+static VerdictReading judge(const Case *the, const char *text, bool stands) {
+    Error error = {0};
+    char path[512];
+    Method method, reference;
     EnergyLog converged = {0};
-    converge(&converged, scene);
-    assert_true(scene->frames == (int)lroundf(60 / scene->dt));
-    const Verdict verdict = judge(scene, method, true, &converged).verdict;
+    VerdictReading reading;
+    snprintf(path, sizeof path, "%s/scenes/stability/%s.yaml", SOURCE_DIR, the->scene);
+    Scene *scene = scene_read_with(path, the->settings, the->count, &error);
+    assert_ok(scene != NULL && method_parse(&method, text, &error) && method_parse(&reference, "reference", &error),
+              error);
+    assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
+    assert_true(!stands || scene->frames == (int)lroundf(60 / scene->dt));
+    const VerdictRun run = beside(scene, stands, &converged);
+    assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
     energy_log_free(&converged);
     scene_destroy(scene);
-    return verdict;
+    return reading;
 }
 
 /* The engine with ten sweeps fails in each. */
 static void what_the_engine_loses_settles(void **state) {
-    (void)state;
     static const Case cases[] = {{"stack_height", {{"height", 40}}, 1},
                                  {"stack_cold", {{"height", 20}}, 1},
                                  {"heavy_on_one", {{"ratio", 1000}}, 1},
@@ -63,7 +45,8 @@ static void what_the_engine_loses_settles(void **state) {
                                  {"arch", {{"friction", 0.2}}, 1},
                                  {"card_house", {{"friction", 0.28}}, 1}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        const Verdict engine = verdict_of(&cases[i], "engine:k=10"), interior = verdict_of(&cases[i], "interior");
+        const Verdict engine = judge(&cases[i], "engine:k=10", true).verdict,
+                      interior = judge(&cases[i], "interior", true).verdict;
         if (verdict_holds(engine) || interior != VERDICT_SETTLES)
             fail_msg("%s: engine %s, interior %s", cases[i].scene, verdict_name(engine), verdict_name(interior));
     }
@@ -71,38 +54,25 @@ static void what_the_engine_loses_settles(void **state) {
 
 /* No more is held than can stand. The house needs a friction of 0.27: the reference falls below. */
 static void a_card_house_without_enough_friction_falls(void **state) {
-    (void)state;
     const Case house = {"card_house", {{"friction", 0.25}}, 1};
-    assert_int_equal(verdict_of(&house, "interior"), VERDICT_FALLS);
+    assert_verdict(judge(&house, "interior", true), VERDICT_FALLS);
 }
 
 /* Impulses that push overlapping boxes apart must not be used as a warm start. */
 static void an_overlapping_stack_does_not_explode(void **state) {
-    (void)state;
-    Scene *scene = read_scene("overlap", NULL, 0);
-    EnergyLog converged = {0};
-    converge(&converged, scene);
-    assert_verdict(judge(scene, "interior", false, &converged), VERDICT_SETTLES);
-    energy_log_free(&converged);
-    scene_destroy(scene);
+    assert_verdict(judge(&(Case){.scene = "overlap"}, "interior", false), VERDICT_SETTLES);
 }
 
 static void assert_strike_does_not_explode(float x, float spin, float mass) {
-    const SceneSetting settings[] = {{"x", (double)x}, {"spin", (double)spin}, {"mass", (double)mass}};
-    Scene *scene = read_scene("random_bombs", settings, 3);
-    EnergyLog converged = {0};
-    converge(&converged, scene);
-    const VerdictReading reading = judge(scene, "interior", false, &converged);
+    const Case strike = {"random_bombs", {{"x", (double)x}, {"spin", (double)spin}, {"mass", (double)mass}}, 3};
+    const VerdictReading reading = judge(&strike, "interior", false);
     if (reading.verdict >= VERDICT_EXPLODES)
         fail_msg("x %g, spin %g, mass %g: %g J", (double)x, (double)spin, (double)mass, reading.value);
-    energy_log_free(&converged);
-    scene_destroy(scene);
 }
 
 /* A box that is hit may slide, tip or fly: neither the impulses that would hold it in place nor those of the impact
    itself are a valid warm start for the next step. */
 static void stacks_that_bombs_strike_do_not_explode(void **state) {
-    (void)state;
     uint32_t seed = 1;
     assert_strike_does_not_explode(0, 10, 50);
     for (int trial = 0; trial < 15; trial++) {

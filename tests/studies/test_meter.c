@@ -8,7 +8,6 @@
 #include <sched.h>
 
 static void time_does_not_go_back(void **state) {
-    (void)state;
     int64_t last = meter_time();
     for (int i = 0; i < 1000; i++) {
         int64_t now = meter_time();
@@ -19,13 +18,11 @@ static void time_does_not_go_back(void **state) {
 }
 
 static void no_work_takes_no_negative_time(void **state) {
-    (void)state;
     assert_int_equal(meter_without(30, 20), 10);
     assert_int_equal(meter_without(20, 30), 0);
 }
 
 static void a_thread_is_pinned_to_one_core_and_let_go(void **state) {
-    (void)state;
     cpu_set_t before, pinned, after;
     assert_int_equal(sched_getaffinity(0, sizeof before, &before), 0);
     meter_pin();
@@ -38,7 +35,6 @@ static void a_thread_is_pinned_to_one_core_and_let_go(void **state) {
 
 /* Where instructions can be counted: a longer loop takes more. */
 static void instructions_grow_with_the_work(void **state) {
-    (void)state;
     if (!meter_open_instructions()) skip();
     int64_t counts[2];
     for (int k = 0; k < 2; k++) {

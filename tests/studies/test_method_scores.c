@@ -62,7 +62,6 @@ static void assert_whole(const MethodScores *scores, int method) {
 }
 
 static void launches_are_put_together(void **state) {
-    (void)state;
     MethodScores scores[METHODS] = {0};
     for (int launch = 0; launch < LAUNCHES; launch++) {
         size_t size;
@@ -106,7 +105,6 @@ static bool are_read(const char *bytes, size_t size, int methods) {
 }
 
 static void damaged_results_are_refused(void **state) {
-    (void)state;
     size_t size;
     char *bytes = write_launch(0, &size);
     assert_true(are_read(bytes, size, METHODS));

@@ -44,7 +44,6 @@ static void assert_table(const char *folder, const char *name, const char *expec
 }
 
 static void rows_have_the_order_of_pieces_and_sections(void **state) {
-    (void)state;
     Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("tables"));
@@ -59,7 +58,6 @@ static void rows_have_the_order_of_pieces_and_sections(void **state) {
 }
 
 static void lines_of_no_table_are_refused(void **state) {
-    (void)state;
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("foreign"));
     static const char *const wrong[] = {"b:1\n", "a1\n",    "a/0:1\n", "a/-2:1\n", "a/x:1\n",
@@ -73,7 +71,6 @@ static void lines_of_no_table_are_refused(void **state) {
 }
 
 static void a_row_is_a_line_with_the_tables_name(void **state) {
-    (void)state;
     Error error = {0};
     char *text = NULL;
     size_t size;

@@ -30,7 +30,6 @@ static void free_scores(StepScores scores[PHASES]) {
 }
 
 static void the_reference_has_no_error(void **state) {
-    (void)state;
     Error error = {0};
     Scene *scene = read_scene("stack");
     Stepper *stepper = make_stepper(scene, "reference");
@@ -50,7 +49,6 @@ static void the_reference_has_no_error(void **state) {
 
 /* 6 impact frames, 60 frames after; every frame is in exactly one phase. */
 static void every_frame_is_in_one_phase(void **state) {
-    (void)state;
     Error error = {0};
     Scene *scene = read_scene("single");
     scene->frames = 200;
@@ -62,9 +60,9 @@ static void every_frame_is_in_one_phase(void **state) {
     assert_int_equal(scores[PHASE_IMPACT].count, 6);
     assert_int_equal(scores[PHASE_AFTER].count, 60);
     assert_int_equal(scores[PHASE_REST].count, 200 - 66);
-    assert_int_equal(rollout.log.phase[rollout.log.touch - 1], PHASE_REST);
-    assert_int_equal(rollout.log.phase[rollout.log.touch + 65], PHASE_AFTER);
-    assert_int_equal(rollout.log.phase[rollout.log.touch + 66], PHASE_REST);
+    assert_int_equal(rollout.log.at[rollout.log.touch - 1].phase, PHASE_REST);
+    assert_int_equal(rollout.log.at[rollout.log.touch + 65].phase, PHASE_AFTER);
+    assert_int_equal(rollout.log.at[rollout.log.touch + 66].phase, PHASE_REST);
     free_scores(scores);
     rollout_free(&rollout);
     stepper_destroy(stepper);
@@ -88,7 +86,6 @@ static double frozen_error(const SnapshotList *list, const Scene *scene, const c
 
 /* More sweeps give a smaller error; no warm start, or noise, a larger one. */
 static void methods_rank_as_expected_on_frozen_steps(void **state) {
-    (void)state;
     Error error = {0};
     Scene *scene = read_scene("stack");
     SnapshotList list = {0};
@@ -107,7 +104,6 @@ static void methods_rank_as_expected_on_frozen_steps(void **state) {
 
 /* The engine's frozen steps are those of its closed loop, so the errors are the same. */
 static void frozen_steps_of_the_engine_are_its_own(void **state) {
-    (void)state;
     Error error = {0};
     Scene *scene = read_scene("pyramid_settled");
     SnapshotList list = {0};
@@ -186,7 +182,6 @@ static void assert_errors(const Scene *scene, Stepper *stepper, double expected,
 /* A box 60 mm in the ground: position correction pushes it out at 0.2 (60 mm - 10 mm) / dt = 0.6 m/s. That is the error
    of a method that keeps velocity 0, but not if its description has no_push_out, nor without position correction. */
 static void push_out_counts_for_methods_that_have_it(void **state) {
-    (void)state;
     BodyDef bodies[] = {{.fixed = true, .size = {200, 20}, .position = {0, -10}, .friction = 0.2f},
                         {.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.44f}}};
     Scene scene = {.name = "overlap",

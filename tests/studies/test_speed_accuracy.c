@@ -68,7 +68,6 @@ static void change_processor(const char *cpu) {
 }
 
 static void times_of_other_processors_are_refused_or_left_out(void **state) {
-    (void)state;
     Error error;
     const PiecesRun merge = {.merge = true}, first = {.merge = true, .times_first = true};
     do_shards();
@@ -80,13 +79,13 @@ static void times_of_other_processors_are_refused_or_left_out(void **state) {
     assert_ok(run_study(&first, &error), error);
     assert_true(drawn == 2 && timed[0] && !timed[1]);
 
-    ChartTable table;
+    CsvTable table;
     char note[CHART_TIMES_SIZE], cpu[CPU_NAME_SIZE], wanted[CHART_TIMES_SIZE];
     cpu_name(cpu);
-    assert_ok(chart_csv_read(&table, temporary_path("chart.csv"), &error), error);
+    assert_ok(csv_table_read(&table, temporary_path("chart.csv"), &chart_layout, &error), error);
     int with = 0, without = 0;
     for (int i = 0; i < table.count; i++) {
-        const ChartRow *row = &table.rows[i];
+        const ChartRow *row = chart_row(&table, i);
         assert_int_equal(row->cpu[0] != '\0', !isnan(row->us_solver));
         if (strcmp(row->scene, "stack") == 0) {
             assert_true(isnan(row->us_solver) && isnan(row->us_solver_q1) && isnan(row->us_step));
@@ -102,7 +101,7 @@ static void times_of_other_processors_are_refused_or_left_out(void **state) {
     chart_times_note(note, table.rows, table.count);
     snprintf(wanted, sizeof wanted, "Times measured on %s. Those of other processors are left out.", cpu);
     assert_string_equal(note, wanted);
-    chart_csv_free(&table);
+    csv_table_free(&table);
 }
 
 int main(void) {

@@ -3,62 +3,50 @@
 #include "stability_drawn.h"
 
 static void borders_are_drawn_as_in_the_table(void **state) {
-    (void)state;
     start_afresh(MAPS ONE_CELL,
                  BORDERS "height,engine,k=10,height,boxes,10,11,falls\nheight,momentum,,height,boxes,15,16,falls\n"
                          "height,momentum,,height,boxes,20,19,sinks\nheight,nncg,,height,boxes,40,,settles\n"
                          "height,pair-net,,height,boxes,,2,explodes\nheight,scene-net,,height,boxes,,,not applicable\n"
                          "time_step,engine,k=10,rate,Hz,60,50,falls\ntime_step,nncg,,rate,Hz,20,,creeps\n");
     draw();
-    char program[4096];
-    snprintf(program, sizeof program,
-             "%ssvg = read('borders')\n"
-             "expect(count(svg, '#A3CBE5'), 4 + 2 + 2, 'bars')\n"
-             "expect(count(svg, '#%06X'), 3 + 1, 'falls')\nexpect(count(svg, '#%06X'), 1 + 1, 'explodes')\n"
-             "expect(count(svg, '#%06X'), 1 + 1, 'sinks')\n"
-             "for text in ('Time step', 'Rate (Hz)', 'engine:k=10', 'never holds', 'not applicable'):\n"
-             "    expect(texts(svg).count(text), 1, text)\n",
-             SVG_FUNCTIONS, verdict_looks[VERDICT_FALLS].fill, verdict_looks[VERDICT_EXPLODES].fill,
-             verdict_looks[VERDICT_SINKS].fill);
-    run_python(program, temporary_folder);
+    check_svg("svg = read('borders')\n"
+              "expect(count(svg, '#A3CBE5'), 4 + 2 + 2, 'bars')\n"
+              "expect(count(svg, '#%06X'), 3 + 1, 'falls')\nexpect(count(svg, '#%06X'), 1 + 1, 'explodes')\n"
+              "expect(count(svg, '#%06X'), 1 + 1, 'sinks')\n"
+              "for text in ('Time step', 'Rate (Hz)', 'engine:k=10', 'never holds', 'not applicable'):\n"
+              "    expect(texts(svg).count(text), 1, text)\n",
+              verdict_looks[VERDICT_FALLS].fill, verdict_looks[VERDICT_EXPLODES].fill,
+              verdict_looks[VERDICT_SINKS].fill);
 }
 
 /* A method that holds to 15, fails from 16 to 19, holds from 20 to 25 and fails from 26: no bar where it fails. The
    other method holds throughout; its bar shows the panel's width. */
 static void bars_end_at_the_next_border(void **state) {
-    (void)state;
     start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,15,16,falls\na,engine,,h,,20,19,sinks\na,engine,,h,,25,26,falls\n"
                                         "a,nncg,,h,,30,,settles\n");
     draw();
-    run_python(SVG_FUNCTIONS "ends = [[bar[0], bar[2]] for bar in areas(read('borders'), '#A3CBE5')][:4]\n"
-                             "left, right = ends[3]\n"
-                             "expect(ends[1], ends[2], 'both bars of what holds from 20 to 25')\n"
-                             "assert left == ends[0][0] < ends[0][1] < ends[1][0] < ends[1][1] < right, ends\n",
-               temporary_folder);
+    check_svg("ends = [[bar[0], bar[2]] for bar in areas(read('borders'), '#A3CBE5')][:4]\n"
+              "left, right = ends[3]\n"
+              "expect(ends[1], ends[2], 'both bars of what holds from 20 to 25')\n"
+              "assert left == ends[0][0] < ends[0][1] < ends[1][0] < ends[1][1] < right, ends\n");
 }
 
 /* Undecided beyond 30 to the end of the range: the bar ends there and the tile is at the far end, which is the left one
    if smaller values are harder. All values of b are undecided. */
 static void undecided_values_have_no_bar(void **state) {
-    (void)state;
     start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,30,,falls\na,nncg,,h,,20,40,sinks\nb,engine,,r,,,,falls\n"
                                         "b,nncg,,r,,60,50,sinks\nc,engine,,r,,60,,falls\nc,nncg,,r,,80,50,sinks\n");
     draw();
-    char program[2048];
-    snprintf(program, sizeof program,
-             "%sdef ends(colour): return [[area[0], area[2]] for area in areas(read('borders'), colour)]\n"
-             "bars, falls, sinks = ends('#A3CBE5'), ends('#EE9A2E'), ends('#CF6414')\n"
-             "expect(len(bars), 2 + 1 + 2 + 2, 'bars and their samples')\n"
-             "assert bars[0][1] < falls[0][0] and bars[0][0] == bars[1][0], (bars, falls)\n"
-             "assert sinks[0][1] <= falls[0][0], 'the far end is beyond the last value'\n"
-             "assert falls[2][1] < sinks[2][0] + 0.4 < bars[3][0] < bars[4][0], (bars, falls, sinks)\n",
-             SVG_FUNCTIONS);
-    run_python(program, temporary_folder);
+    check_svg("def ends(colour): return [[area[0], area[2]] for area in areas(read('borders'), colour)]\n"
+              "bars, falls, sinks = ends('#A3CBE5'), ends('#EE9A2E'), ends('#CF6414')\n"
+              "expect(len(bars), 2 + 1 + 2 + 2, 'bars and their samples')\n"
+              "assert bars[0][1] < falls[0][0] and bars[0][0] == bars[1][0], (bars, falls)\n"
+              "assert sinks[0][1] <= falls[0][0], 'the far end is beyond the last value'\n"
+              "assert falls[2][1] < sinks[2][0] + 0.4 < bars[3][0] < bars[4][0], (bars, falls, sinks)\n");
 }
 
 /* Only rows without values; one value; zero and negative values; forty decades. */
 static void unusual_ranges_are_drawn(void **state) {
-    (void)state;
     static const char *const rows[] = {"a,engine,,x,,,,not applicable\n", "a,engine,,x,,0,,settles\n",
                                        "a,engine,,x,m,-5,-5,falls\n",     "a,engine,,x,,1e-20,1e20,falls\n",
                                        "a,engine,,x,,-1e30,1e30,falls\n", "a,engine,,x,,3,3.0000001,falls\n"};
@@ -71,7 +59,6 @@ static void unusual_ranges_are_drawn(void **state) {
 }
 
 static void invalid_borders_are_refused_with_their_place(void **state) {
-    (void)state;
     static const struct {
         const char *rows, *message;
     } cases[] = {
@@ -99,7 +86,6 @@ static char *read_file(const char *name, size_t *size) {
 }
 
 static void the_same_tables_give_the_same_files(void **state) {
-    (void)state;
     static const char *const names[] = {"map-grid.png", "map-grid.svg", "map-grid.txt",
                                         "borders.png",  "borders.svg",  "borders.txt"};
     char *maps = make_map(2, 4, 4), *data[2][6];
@@ -120,7 +106,6 @@ static void the_same_tables_give_the_same_files(void **state) {
 
 /* Borders without maps, and maps without borders. */
 static void a_table_without_rows_has_no_figure(void **state) {
-    (void)state;
     start_afresh(MAPS, BORDERS ONE_BORDER);
     draw();
     assert_int_equal(access(temporary_path("borders.png"), R_OK), 0);

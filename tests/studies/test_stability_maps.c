@@ -6,99 +6,84 @@
 
 /* One cell of each verdict, and one sample in the legend. */
 static void each_verdict_has_its_tile(void **state) {
-    (void)state;
-    char *maps = make_map(1, 3, 3), program[4096];
+    char *maps = make_map(1, 3, 3);
     start_afresh(maps, BORDERS ONE_BORDER);
     free(maps);
     draw();
-    size_t used = (size_t)snprintf(program, sizeof program, "%ssvg = read('map-grid')\n", SVG_FUNCTIONS);
     for (int look = 0; look < VERDICTS; look++)
-        used += (size_t)snprintf(program + used, sizeof program - used, "expect(count(svg, '#%06X'), 2, '%s')\n",
-                                 verdict_looks[look].fill, verdict_looks[look].name);
-    snprintf(program + used, sizeof program - used,
-             "for text in ('settles', 'non-finite', 'not applicable', 'Height (boxes)', 'Ratio', 'engine:k=0'):\n"
-             "    expect(texts(svg).count(text), 1, text)\n"
-             "assert 'not run' not in texts(svg)\n");
-    run_python(program, temporary_folder);
+        check_svg("expect(count(read('map-grid'), '#%06X'), 2, '%s')\n", verdict_looks[look].fill,
+                  verdict_looks[look].name);
+    check_svg("svg = read('map-grid')\n"
+              "for text in ('settles', 'non-finite', 'not applicable', 'Height (boxes)', 'Ratio', 'engine:k=0'):\n"
+              "    expect(texts(svg).count(text), 1, text)\n"
+              "assert 'not run' not in texts(svg)\n");
 }
 
 /* Two edges: between two cells side by side, and between two cells one above the other, with a gap in their values.
    Missing and not applicable cells have no edges. */
 static void the_border_separates_holding_from_failing(void **state) {
-    (void)state;
     start_afresh(MAPS "m,engine,,a,,1,b,,1,settles,,,,\nm,engine,,a,,2,b,,1,sways,,,,\nm,engine,,a,,3,b,,1,falls,,,,\n"
                       "m,engine,,a,,1,b,,2,creeps,,,,\nm,engine,,a,,3,b,,2,sinks,,,,\n"
                       "m,engine,,a,,1,b,,5,explodes,,,,\nm,engine,,a,,2,b,,5,not applicable,,,,\n",
                  BORDERS ONE_BORDER);
     draw();
-    run_python(SVG_FUNCTIONS "svg = read('map-m')\n"
-                             "expect(count(svg, '#000000'), 2 + 1, 'edges and their sample')\n"
-                             "for text in ('not run', 'not applicable', 'border of holding'):\n"
-                             "    expect(texts(svg).count(text), 1, text)\n",
-               temporary_folder);
+    check_svg("svg = read('map-m')\n"
+              "expect(count(svg, '#000000'), 2 + 1, 'edges and their sample')\n"
+              "for text in ('not run', 'not applicable', 'border of holding'):\n"
+              "    expect(texts(svg).count(text), 1, text)\n");
 }
 
 /* Every cell that was run has one link, over its tile. */
 static void cells_link_to_their_clips(void **state) {
-    (void)state;
     start_afresh(
         MAPS "m,engine,\"k=4,warm=off\",a,,1,b,,0.5,falls,,,,\nm,engine,\"k=4,warm=off\",a,,2e3,b,,0.5,settles,,,,\n"
              "m,engine,\"k=4,warm=off\",a,,1,b,,7,not applicable,,,,\n",
         BORDERS ONE_BORDER);
     draw();
-    run_python(
-        SVG_FUNCTIONS
+    check_svg(
         "svg = read('map-m')\n"
         "root, space = tree.fromstring(svg), '{http://www.w3.org/2000/svg}'\n"
         "for fill, x, verdict in (('#EE9A2E', '1', 'falls'), ('#EAF3FA', '2000', 'settles')):\n"
         "    link = [a for a in root.iter(space + 'a') if a.find(space + 'title').text ==\n"
-        "            'm:engine:k=4,warm=off:%s,0.5 %s' % (x, verdict)][0]\n"
+        "            'm:engine:k=4,warm=off:%%s,0.5 %%s' %% (x, verdict)][0]\n"
         "    target = link.get('{http://www.w3.org/1999/xlink}href')\n"
-        "    expect(target, 'clips/m-engine_k=4_warm=off-%s_0.5.mp4' % x, 'target')\n"
+        "    expect(target, 'clips/m-engine_k=4_warm=off-%%s_0.5.mp4' %% x, 'target')\n"
         "    at = [float(link.find(space + 'rect').get(k)) for k in ('x', 'y', 'width', 'height')]\n"
         "    place = [at[0], at[1], at[0] + at[2], at[1] + at[3]]\n"
         "    assert all(abs(a - b) < 0.1 for a, b in zip(place, areas(svg, fill)[0])), (place, areas(svg, fill))\n"
-        "expect(len(list(root.iter(space + 'a'))), 2, 'links')\n",
-        temporary_folder);
+        "expect(len(list(root.iter(space + 'a'))), 2, 'links')\n");
 }
 
 /* A path of 119 bytes, and characters that are special in SVG; 128 bytes are too many. */
 static void settings_may_be_paths(void **state) {
-    (void)state;
-    char setting[200], maps[1024], borders[1024], program[2048];
+    char setting[200], maps[1024], borders[1024];
     snprintf(setting, sizeof setting, "network=%0*d/<it's>/net.npz", 103, 0);
     snprintf(maps, sizeof maps, MAPS "m,pair-net,%s,a,,1,b,,2,falls,,,,\n", setting);
     snprintf(borders, sizeof borders, BORDERS "stack,pair-net,%s,height,boxes,10,11,falls\n", setting);
     start_afresh(maps, borders);
     draw();
-    snprintf(program, sizeof program,
-             "%ssvg = read('map-m')\n"
-             "expect('m:pair-net:network=' + 103 * '0' + '/?it?s?/net.npz:1,2 falls' in svg, True, 'link')\n"
-             "expect(texts(svg).count('pair-net:network=net.npz'), 1, 'title')\n"
-             "expect(texts(read('borders')).count('pair-net:network=net.npz'), 1, 'label')\n",
-             SVG_FUNCTIONS);
-    run_python(program, temporary_folder);
+    check_svg("svg = read('map-m')\n"
+              "expect('m:pair-net:network=' + 103 * '0' + '/?it?s?/net.npz:1,2 falls' in svg, True, 'link')\n"
+              "expect(texts(svg).count('pair-net:network=net.npz'), 1, 'title')\n"
+              "expect(texts(read('borders')).count('pair-net:network=net.npz'), 1, 'label')\n");
     snprintf(maps, sizeof maps, MAPS "m,pair-net,%0128d,a,,1,b,,2,falls,,,,\n", 0);
     expect_refused(maps, BORDERS ONE_BORDER, "maps.csv:2:12: error: setting: '");
 }
 
 /* For any order of the rows and any distances of the values: ascending, one tic each. */
 static void axes_name_their_values(void **state) {
-    (void)state;
     start_afresh(MAPS "m,engine,,rate,Hz,480,b_c,,1,falls,,,,\nm,engine,,rate,Hz,20,b_c,,1,falls,,,,\n"
                       "m,engine,,rate,Hz,30.5,b_c,,0.125,falls,,,,\nm,engine,,rate,Hz,20,b_c,,-7,falls,,,,\n",
                  BORDERS ONE_BORDER);
     draw();
-    run_python(SVG_FUNCTIONS "found = texts(read('map-m'))\n"
-                             "at = [found.index(text) for text in ('-7', '0.125', '1', '20', '30.5', '480')]\n"
-                             "assert at == sorted(at), found\n"
-                             "assert 'Rate (Hz)' in found and 'B c' in found, found\n",
-               temporary_folder);
+    check_svg("found = texts(read('map-m'))\n"
+              "at = [found.index(text) for text in ('-7', '0.125', '1', '20', '30.5', '480')]\n"
+              "assert at == sorted(at), found\n"
+              "assert 'Rate (Hz)' in found and 'B c' in found, found\n");
 }
 
 /* mm, in 8 points: a letter is 1.6 mm wide on average. */
 static void titles_are_cut_in_the_settings(void **state) {
-    (void)state;
     static const struct {
         const char *method, *setting, *text;
         double most;
@@ -119,27 +104,23 @@ static void titles_are_cut_in_the_settings(void **state) {
 }
 
 static void many_methods_and_large_grids_are_drawn(void **state) {
-    (void)state;
     static const struct { int methods, across, up; } cases[] = {{24, 3, 2}, {2, 1, 1}, {5, 2, 60}, {10, 8, 10}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char *maps = make_map(cases[i].methods, cases[i].across, cases[i].up), program[1024];
+        char *maps = make_map(cases[i].methods, cases[i].across, cases[i].up);
         start_afresh(maps, BORDERS ONE_BORDER);
         free(maps);
         draw();
         int cells = cases[i].across * cases[i].up;
-        snprintf(program, sizeof program,
-                 "%ssvg = read('map-grid')\nexpect(count(svg, '#%06X'), %d, 'settles')\n"
-                 "expect(sum(t.startswith('engine:k=') for t in texts(svg)), %d, 'panels')\n",
-                 SVG_FUNCTIONS, verdict_looks[0].fill,
-                 cases[i].methods * ((cells + LOOK_MISSING - 1) / LOOK_MISSING) + 1, cases[i].methods);
-        run_python(program, temporary_folder);
+        check_svg("svg = read('map-grid')\nexpect(count(svg, '#%06X'), %d, 'settles')\n"
+                  "expect(sum(t.startswith('engine:k=') for t in texts(svg)), %d, 'panels')\n",
+                  verdict_looks[0].fill, cases[i].methods * ((cells + LOOK_MISSING - 1) / LOOK_MISSING) + 1,
+                  cases[i].methods);
     }
 }
 
 #define START "stack,engine,,a,,1,b,,"
 
 static void invalid_maps_are_refused_with_their_place(void **state) {
-    (void)state;
     static const struct {
         const char *rows, *message;
     } cases[] = {
@@ -170,7 +151,6 @@ static void invalid_maps_are_refused_with_their_place(void **state) {
 }
 
 static void maps_too_large_are_refused(void **state) {
-    (void)state;
     char *methods = make_map(25, 1, 1), *values = make_map(1, 1, 129);
     expect_refused(methods, BORDERS ONE_BORDER, "maps.csv:26:1: error: more than 24 methods");
     expect_refused(values, BORDERS ONE_BORDER, "maps.csv:130:1: error: more than 128 values");

@@ -63,7 +63,6 @@ static void dominoes(void **state) { (void)state, check_template("dominoes"); }
 
 /* "With 10 iterations it falls." */
 static void the_arch_needs_its_iterations(void **state) {
-    (void)state;
     Error error = {0};
     EnergyLog converged = {0};
     Method reference, engine;

@@ -21,7 +21,6 @@ static bool goes_through(float angle, Vec2 from, Vec2 to) {
 }
 
 static void tunnelling_goes_through_a_static_box(void **state) {
-    (void)state;
     const float quarter = 1.57079633f, eighth = 0.785398163f;
     /* Upright: the slab is 8..12 x 4..6. */
     assert_true(goes_through(0, vec2(10, 9), vec2(10, -5)));
@@ -60,7 +59,6 @@ static bool comes_out(Vec2 at) {
 }
 
 static void a_body_that_is_pushed_out_again_did_not_tunnel(void **state) {
-    (void)state;
     assert_false(comes_out(vec2(10, 6.01f)));
     assert_true(comes_out(vec2(10, 3.99f)));
     assert_true(comes_out(vec2(12.01f, 5)));
@@ -68,7 +66,6 @@ static void a_body_that_is_pushed_out_again_did_not_tunnel(void **state) {
 
 /* 2 m in 1/60 s. */
 static void tunnelling_reports_the_speed(void **state) {
-    (void)state;
     Trial trial;
     trial_begin(&trial);
     trial.bodies[0].size.y = 0.25f;
@@ -96,7 +93,6 @@ static VerdictReading run_with_energy(double own, double converged, double avail
 }
 
 static void exploding_exceeds_the_runs_own_bound_and_the_converged_run(void **state) {
-    (void)state;
     assert_verdict(run_with_energy(0.99, 0, 100), VERDICT_SETTLES);
     assert_reading(run_with_energy(1.01, 0, 100), VERDICT_EXPLODES, 1, 101, 1.01, 1e-5, "J");
     assert_reading(run_with_energy(1.01, -3, 100), VERDICT_EXPLODES, 1, 101, 1.01, 1e-5, "J");
@@ -122,7 +118,6 @@ static VerdictReading run_with_hop(int later) {
 }
 
 static void a_hop_may_be_a_second_late_or_early(void **state) {
-    (void)state;
     assert_verdict(run_with_hop(60), VERDICT_SETTLES);
     assert_verdict(run_with_hop(-60), VERDICT_SETTLES);
     assert_reading(run_with_hop(61), VERDICT_EXPLODES, 1, 561, 3, 1e-5, "J");
@@ -131,7 +126,6 @@ static void a_hop_may_be_a_second_late_or_early(void **state) {
 
 /* The converged run falls and has no energy left; this one still stands. */
 static void a_box_that_still_stands_has_gained_no_energy(void **state) {
-    (void)state;
     Trial trial;
     trial_begin(&trial);
     for (int i = 10; i <= TRIAL_FRAMES; i++) trial.energy[i] = -95;
@@ -155,7 +149,6 @@ static VerdictReading run_with_dip(int frames) {
 
 /* Seconds end at frames 60, 120, ...: a dip of 30 + 60 frames covers a whole one. */
 static void energy_that_returns_within_a_second_was_not_lost(void **state) {
-    (void)state;
     assert_true(run_with_dip(60).verdict < VERDICT_EXPLODES);
     assert_true(run_with_dip(89).verdict < VERDICT_EXPLODES);
     assert_reading(run_with_dip(90), VERDICT_EXPLODES, 1, 121, 25, 1e-4, "J");
@@ -184,7 +177,6 @@ static VerdictReading run_with_bomb(double before, double given) {
 
 /* The bomb adds 5 J of kinetic and 5 J of potential energy to the 5 or 25 J before. */
 static void the_energy_of_a_bomb_counts(void **state) {
-    (void)state;
     assert_true(run_with_bomb(0, 5.99).verdict < VERDICT_EXPLODES);
     assert_reading(run_with_bomb(0, 6.01), VERDICT_EXPLODES, 1, 151, 1.01, 1e-4, "J");
     assert_true(run_with_bomb(20, 25.99).verdict < VERDICT_EXPLODES);
@@ -193,7 +185,6 @@ static void the_energy_of_a_bomb_counts(void **state) {
 
 /* The upper one of two boxes is removed, with 15 J: the lower one must not gain them. */
 static void a_removed_body_takes_its_energy_along(void **state) {
-    (void)state;
     for (int side = 0; side < 2; side++) {
         Trial trial;
         trial_begin(&trial);
@@ -210,7 +201,6 @@ static void a_removed_body_takes_its_energy_along(void **state) {
 }
 
 static void nan_and_infinity_are_non_finite(void **state) {
-    (void)state;
     for (int i = 0; i < 12; i++) {
         Trial trial;
         trial_begin(&trial);
@@ -227,7 +217,6 @@ static void nan_and_infinity_are_non_finite(void **state) {
 }
 
 static void a_failed_step_is_non_finite(void **state) {
-    (void)state;
     Trial trial;
     trial_begin(&trial);
     trial.bodies[1].velocity = vec2(-3, 4);
@@ -240,7 +229,6 @@ static void a_failed_step_is_non_finite(void **state) {
 
 /* All verdicts from creeping on apply, one after the other; each is worse than those before. */
 static void the_worst_verdict_counts_with_its_first_frame(void **state) {
-    (void)state;
     Trial trial;
     trial_begin(&trial);
     trial_go(&trial, 1100);
@@ -268,7 +256,6 @@ static void the_worst_verdict_counts_with_its_first_frame(void **state) {
 }
 
 static void verdicts_have_names(void **state) {
-    (void)state;
     const char *const names[VERDICTS] = {"settles", "sways",   "creeps",   "falls",
                                          "sinks",   "tunnels", "explodes", "non-finite"};
     for (int i = 0; i < VERDICTS; i++) {
@@ -278,7 +265,6 @@ static void verdicts_have_names(void **state) {
 }
 
 static void a_converged_run_that_is_shorter_is_refused(void **state) {
-    (void)state;
     Error error = {0};
     Trial trial;
     trial_begin(&trial);

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The tables of the stability study: names and texts of their rows, what they may hold, their layouts. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+#include "studies/chart_internal.h"
+#include "studies/stability.h"
+
+#include <ctype.h>
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {
+    snprintf(method, MAP_METHOD_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
+}
+
+void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell) {
+    static const char folder[] = "clips/";
+    char method[MAP_METHOD_SIZE];
+    map_cell_method(method, cell);
+    snprintf(name, MAP_CLIP_SIZE, "%s%s-%s-%.4g_%.4g", folder, cell->map, method, cell->x, cell->y);
+    file_name_clean(name + strlen(folder));
+}
+
+bool map_cell_same_method(const MapCell *a, const MapCell *b) {
+    return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
+}
+
+bool border_same_method(const BorderRow *a, const BorderRow *b) {
+    return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
+}
+
+bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
+
+void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
+                           const char *setting) {
+    char whole[CSV_NAME_SIZE + STABILITY_SETTING_SIZE];
+    snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
+    method_name(text, STABILITY_TEXT_SIZE, whole);
+    chart_make_plain(text);
+    text_fit(text, STABILITY_TEXT_SIZE, points, most);
+}
+
+/* Words instead of the names of tables. */
+void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit) {
+    snprintf(text, STABILITY_TEXT_SIZE, unit[0] != '\0' ? "%s (%s)" : "%s", parameter, unit);
+    for (char *c = text; *c != '\0'; c++)
+        if (*c == '_') *c = ' ';
+    text[0] = (char)toupper((unsigned char)text[0]);
+}
+
+static bool is_file_name(const char *name) {
+    for (const char *c = name; *c != '\0'; c++)
+        if (!isalnum((unsigned char)*c) && *c != '_' && *c != '-') return false;
+    return name[0] != '\0';
+}
+
+static bool same_axes(const MapCell *a, const MapCell *b) {
+    return strcmp(a->x_parameter, b->x_parameter) == 0 && strcmp(a->x_unit, b->x_unit) == 0 &&
+           strcmp(a->y_parameter, b->y_parameter) == 0 && strcmp(a->y_unit, b->y_unit) == 0;
+}
+
+/* Row i is the first of a map, or of a method of one: neither may have appeared before. */
+static bool check_first(const CsvTable *table, int i, bool new_map, Error *error) {
+    const MapCell *cell = map_cell(table, i);
+    if (new_map && !is_file_name(cell->map))
+        return csv_table_error(table, i, 0, error, "map: '%s' is not a file name", cell->map);
+    for (int k = 0; k < i; k++) {
+        if (strcmp(map_cell(table, k)->map, cell->map) != 0) continue;
+        if (new_map) return csv_table_error(table, i, 0, error, "the rows of map '%s' are not together", cell->map);
+        if (map_cell_same_method(map_cell(table, k), cell))
+            return csv_table_error(table, i, 0, error, "the rows of this method of map '%s' are not together",
+                                   cell->map);
+    }
+    return true;
+}
+
+static bool check_cells(const CsvTable *table, Error *error) {
+    int firsts = 0;
+    for (int i = 0; i < table->count; i++) {
+        const MapCell *cell = map_cell(table, i), *last = i > 0 ? cell - 1 : cell;
+        bool new_map = i == 0 || strcmp(last->map, cell->map) != 0;
+        if (!new_map && !same_axes(last, cell))
+            return csv_table_error(table, i, 0, error, "the parameters differ from those of the row before");
+        if (!new_map && map_cell_same_method(last, cell)) continue;
+        if (++firsts > STABILITY_MAX_PANELS)
+            return csv_table_error(table, i, 0, error, "more than %d methods of maps", STABILITY_MAX_PANELS);
+        if (!check_first(table, i, new_map, error)) return false;
+    }
+    return true;
+}
+
+/* The parameter of a study is that of its first row. */
+static bool check_border(const CsvTable *table, int i, Error *error) {
+    const BorderRow *row = border_row(table, i), *first = table->rows;
+    while (strcmp(first->study, row->study) != 0) first++;
+    if (strcmp(first->parameter, row->parameter) != 0 || strcmp(first->unit, row->unit) != 0)
+        return csv_table_error(table, i, 0, error, "the study '%s' had another parameter before", row->study);
+    const char *verdict = verdict_words[row->verdict];
+    bool holds = !isnan(row->holds_at), fails = !isnan(row->fails_at);
+    if (row->verdict == LOOK_NOT_APPLICABLE)
+        return (!holds && !fails) || csv_table_error(table, i, 0, error, "'%s' cannot have values", verdict);
+    if (!verdict_holds((Verdict)row->verdict)) return true;
+    return (holds && !fails) || csv_table_error(table, i, 0, error, "'%s' contradicts the values", verdict);
+}
+
+static bool check_borders(const CsvTable *table, Error *error) {
+    bool whole = true;
+    for (int i = 0; whole && i < table->count; i++) whole = check_border(table, i, error);
+    return whole;
+}
+
+#define LARGEST 1e30
+
+enum { REASON_SIZE = 2048, VALUE_DIGITS = 9, REST_DIGITS = 4 };
+
+#define TEXT(Row, member, size) CSV_MEMBER(Row, member, CSV_TEXT, .maximum = (size)-1)
+#define NAME(Row, member) CSV_MEMBER(Row, member, CSV_NAME)
+#define VERDICT(Row) CSV_MEMBER(Row, verdict, CSV_WORD, .words = verdict_words)
+#define NUMBER(Row, member, sort, least, most, count) \
+    CSV_MEMBER(Row, member, sort, .minimum = least, .maximum = most, .digits = count)
+#define COUNT(Row, member, least) NUMBER(Row, member, CSV_INTEGER, least, INT_MAX, 0)
+
+static const CsvColumn map_columns[] = {
+    NAME(MapCell, map),
+    NAME(MapCell, method),
+    TEXT(MapCell, setting, STABILITY_SETTING_SIZE),
+    NAME(MapCell, x_parameter),
+    NAME(MapCell, x_unit),
+    NUMBER(MapCell, x, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
+    NAME(MapCell, y_parameter),
+    NAME(MapCell, y_unit),
+    NUMBER(MapCell, y, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
+    VERDICT(MapCell),
+    NUMBER(MapCell, frame, CSV_OPTIONAL, 0, SCENE_MAX_FRAMES, VALUE_DIGITS),
+    NUMBER(MapCell, body, CSV_OPTIONAL, -1, SCENE_MAX_BODIES, VALUE_DIGITS),
+    NUMBER(MapCell, value, CSV_OPTIONAL, -LARGEST, LARGEST, 0),
+    NAME(MapCell, unit),
+};
+
+/* The columns that these tables begin with. */
+#define METHOD_COLUMNS(Row) NAME(Row, study), NAME(Row, method), TEXT(Row, setting, STABILITY_SETTING_SIZE)
+#define PARAMETER_COLUMNS(Row) METHOD_COLUMNS(Row), NAME(Row, parameter), NAME(Row, unit)
+
+static const CsvColumn border_columns[] = {
+    PARAMETER_COLUMNS(BorderRow),
+    NUMBER(BorderRow, holds_at, CSV_OPTIONAL, -LARGEST, LARGEST, VALUE_DIGITS),
+    NUMBER(BorderRow, fails_at, CSV_OPTIONAL, -LARGEST, LARGEST, VALUE_DIGITS),
+    VERDICT(BorderRow),
+};
+
+static const CsvColumn refusal_columns[] = {METHOD_COLUMNS(RefusalRow), TEXT(RefusalRow, reason, REASON_SIZE)};
+
+static const CsvColumn rest_columns[] = {
+    PARAMETER_COLUMNS(RunRow),
+    NUMBER(RunRow, value, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
+    VERDICT(RunRow),
+    COUNT(RunRow, steps, 0),
+    NUMBER(RunRow, drift, CSV_OPTIONAL, 0, LARGEST, REST_DIGITS),
+    NUMBER(RunRow, energy, CSV_OPTIONAL, -LARGEST, LARGEST, REST_DIGITS),
+};
+
+static const CsvColumn fallback_columns[] = {
+    PARAMETER_COLUMNS(RunRow),      NUMBER(RunRow, value, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
+    COUNT(RunRow, steps, 0),        COUNT(RunRow, not_finite, 0),
+    COUNT(RunRow, outside_cone, 0), COUNT(RunRow, beyond_training, 0),
+    COUNT(RunRow, by_sweeps, 0),
+};
+
+static const CsvColumn page_columns[] = {
+    NAME(MapPage, map),
+    NAME(MapPage, method),
+    TEXT(MapPage, setting, STABILITY_SETTING_SIZE),
+    NUMBER(MapPage, x, CSV_NUMBER, -INFINITY, INFINITY, VALUE_DIGITS),
+    NUMBER(MapPage, y, CSV_NUMBER, -INFINITY, INFINITY, VALUE_DIGITS),
+    NUMBER(MapPage, time, CSV_NUMBER, -INFINITY, INFINITY, VALUE_DIGITS),
+    COUNT(MapPage, frame, 0),
+    COUNT(MapPage, body, -1),
+    TEXT(MapPage, page, CSV_PATH_SIZE),
+    COUNT(MapPage, bytes, 0),
+};
+
+const CsvLayout map_layout =
+    CSV_LAYOUT("maps", map_columns, MapCell, .max_rows = STABILITY_MAX_CELLS, .check = check_cells);
+const CsvLayout border_layout =
+    CSV_LAYOUT("stability", border_columns, BorderRow, .max_rows = STABILITY_MAX_BORDERS, .check = check_borders);
+const CsvLayout refusal_layout = CSV_LAYOUT("refusals", refusal_columns, RefusalRow, .max_rows = STABILITY_MAX_RUNS);
+const CsvLayout rest_layout = CSV_LAYOUT("rest", rest_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
+const CsvLayout fallback_layout = CSV_LAYOUT("fallbacks", fallback_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
+const CsvLayout map_page_layout =
+    CSV_LAYOUT("map_pages", page_columns, MapPage, .max_rows = STABILITY_MAX_CELLS, .header = CSV_EXACT);
