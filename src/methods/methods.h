@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 /* What lists, charts, studies and captions know of a method. A field left zero has a sensible default: a name and a
-   summary are enough to begin with. */
+   summary are enough to begin with; methods/method_looks also wants a caption and a look. */
 
 /* What a method's results are compared for. */
 typedef enum MethodRole {
@@ -20,8 +20,8 @@ typedef enum MethodRole {
     METHOD_REFERENCE /* the converged solution: errors of other methods are measured against it */
 } MethodRole;
 
-/* By its colour a reader finds a method again in all pictures (methods/methods.h). They differ with all common kinds of
-   colour blindness. The palettes are in pictures/theme.c and figures/sketch_plot.c. */
+/* By its colour a reader finds a method again in all pictures. They differ with all common kinds of colour blindness.
+   The palettes are in pictures/theme.c and figures/sketch_plot.c. */
 typedef enum MethodColour {
     METHOD_NO_COLOUR, /* any that is left */
     METHOD_BLUE,
@@ -68,8 +68,8 @@ typedef struct MethodDescription {
     bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
                             that it is scored against have none of position correction either */
     bool no_contacts;   /* it moves bodies without contacts: collision detection in its step serves measurement and
-                            pictures only, so that its time is that between step_solving_begins() and step_solving_ends()
-                            (methods/methods.h), not the whole step's */
+                            pictures only, so that its time is that between step_solving_begins() and
+                            step_solving_ends(), not the whole step's */
     bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
     bool needs_network; /* runs only if the setting `network` or the scene names a file */
     const char *twin;   /* of a learned method: its ablation, as on the command line ("sain:net=off"); it takes the same
@@ -83,7 +83,7 @@ typedef struct MethodDescription {
 } MethodDescription;
 
 /* The interface that every contact solver implements: a constant struct of functions, listed once in
-   methods/methods.h. */
+   METHODS below. */
 
 typedef struct ContactSolverKind {
     MethodDescription description;
@@ -102,9 +102,9 @@ typedef struct ContactSolver {
 /* The list of methods. To add a contact solver, write one file in this folder that defines solver_NAME, and add one
    line SOLVER(NAME) here. */
 
-/* In the order of lists and charts. SOLVER(x) is solver_x of this folder; STEPPING(x) is stepping_x of simulate/, for
-   methods that need more than one solver call in a step (methods/methods.h). New methods go to the end: lines of a
-   chart get their colours in this order. */
+/* In the order of lists and charts. SOLVER(x) is solver_x and STEPPING(x) stepping_x of this folder, the latter for
+   methods that need more than one solver call in a step. New methods go to the end: lines of a chart get their colours in
+   this order. */
 #define METHODS(SOLVER, STEPPING) \
     SOLVER(engine)                \
     SOLVER(over_relaxation)       \
@@ -165,13 +165,12 @@ typedef struct SteppingKind {
     void (*destroy)(void *state);
 } SteppingKind;
 
-/* Listed in methods/methods.h. */
 #define STEPPING_DECLARED(name) extern const SteppingKind stepping_##name;
 METHODS(METHOD_OMITTED, STEPPING_DECLARED)
 #undef STEPPING_DECLARED
 
 /* A method: how a scene is advanced by one step. Most methods are a contact solver in the standard step; the others are
-   steppers (stepping.h). */
+   steppers. */
 
 enum { METHOD_TEXT_SIZE = 128 };
 
@@ -185,7 +184,7 @@ typedef struct MethodKind {
 /* The registry, in the order of lists and charts; ended by a NULL description. */
 extern const MethodKind method_kinds[];
 
-/* An entry for each line of the list METHODS (methods/methods.h). */
+/* An entry for each line of the list METHODS. */
 #define METHOD_KIND_SOLVER(name) {&solver_##name.description, &solver_##name, NULL},
 #define METHOD_KIND_STEPPING(name) {&stepping_##name.description, NULL, &stepping_##name},
 
@@ -231,8 +230,8 @@ bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error
 
 /* How methods are named and told apart in all pictures: captions, legends, charts and figures.
 
-   The name is the method's text as on the command line ("momentum:k=20"), without the folders of its files. The colour is
-   the one that its description states (methods/methods.h), unless another run of the picture has it. */
+   The name is the method's text as on the command line ("momentum:k=20"), without the folders of its files. The colour
+   is the one that its description states, unless another run of the picture has it. */
 
 /* Copies a method's text without the folders of its files, which differ between machines. Returns its length. */
 size_t method_name(char *name, size_t size, const char *text);
