@@ -40,7 +40,7 @@ CsvShown csv_show(const char *text);
 /* Writes a field, in quotes if it needs them or `quoted` is set. */
 void csv_put(FILE *file, const char *text, bool quoted);
 
-/* Rows of structs, read from and written to CSV files (base/csv.h). The module that writes a file declares its layout
+/* Rows of structs, read from and written to CSV files. The module that writes a file declares its layout
    once, as a constant beside the row's struct; writers and readers share it:
 
      typedef struct RateRow {

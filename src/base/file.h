@@ -29,7 +29,7 @@ static inline void stream_put(FILE *stream, const void *items, size_t size, size
    is reserved. */
 bool folder_reserve(const char *folder, Error *error);
 
-/* Reading and writing whole files. The path "-" is standard input or output (base/file.h). */
+/* Reading and writing whole files. The path "-" is standard input or output. */
 
 /* Sets an error from errno after a file could not be opened: ERROR_INPUT, unless the system lacks memory or file
    descriptors, or the disk fails. Returns false. */

@@ -52,7 +52,7 @@ bool json_read_error(const JsonReader *reader, Error *error, const char *format,
 
 /* Writes JSON (RFC 8259) as a stream, UTF-8 only.
 
-   jansson, which reads JSON here (base/json.h), cannot write these files: it puts either everything or nothing on
+   jansson, which reads JSON here, cannot write these files: it puts either everything or nothing on
    lines of its own, where a line is a record here (manifest.json grows by a line for each picture, and what a killed
    program left is compared line by line); it prints 0.1 with 17 digits; and it does not escape '<', which would end the
    script that results.json is part of in report.html. */

@@ -180,7 +180,7 @@ void temporary_close(TemporaryFile *temporary) {
     errno = cause;
 }
 
-/* Temporary files of killed processes of this machine, and reservations (file_reserve.h) that nobody has locked. */
+/* Temporary files of killed processes of this machine, and reservations (base/file.h) that nobody has locked. */
 
 enum { REMEMBERED = 16 };
 

@@ -329,7 +329,8 @@ static bool take_event(Builder *builder, const yaml_event_t *event, Error *error
     }
 }
 
-/* A text without end, or a key without colon, is shown where it begins. source.c has refused what libyaml's reader would. */
+/* A text without end, or a key without colon, is shown where it begins. Reading the source has refused what libyaml's
+   reader would. */
 static bool syntax_error(const Builder *builder, const yaml_parser_t *parser, Error *error) {
     const Source *source = &builder->tree->source;
     if (parser->error == YAML_MEMORY_ERROR) return error_memory(error, source->path);

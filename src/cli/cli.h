@@ -61,8 +61,8 @@ bool time_left_estimate(const TimeLeft *left, double time, double part, double *
 /* "8 s", "6 min 40 s" or "2 h 10 min": no digits that an estimate does not have. */
 void time_left_text(double seconds, char text[TIME_LEFT_TEXT_SIZE]);
 
-/* A progress bar on a terminal, lines of text elsewhere; with the time left once it is known (cli/cli.h).
-   A signal requests the work to stop (interrupt.h). Work of less than a second shows nothing. There is one bar at a time. */
+/* A progress bar on a terminal, lines of text elsewhere; with the time left once it is known. A signal requests the
+   work to stop. Work of less than a second shows nothing. There is one bar at a time. */
 
 /* Replaces the bar before it, and returns what the work reports to. Signals that are held stay so. */
 const Progress *progress_bar_begin(const char *what);

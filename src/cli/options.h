@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The command line of a command. One table states each option's name, help, type and the member of the command's
    Options that gets its value. What is not given keeps the value that the member had. argp writes the help and finds
-   the options. Every command has -q and -v besides (notes.h). */
+   the options. Every command has -q and -v besides (cli/cli.h). */
 #pragma once
 #include "base/base.h"
 #include "scenes/scenes.h"

@@ -149,7 +149,7 @@ typedef struct SortAndSweep {
 void sort_and_sweep_free(SortAndSweep *sweep);
 bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *bounds, const bool *fixed, int count);
 
-/* How deep boxes overlap, by separating axes in double. For what a scene places, not for contacts: manifold.h prefers
+/* How deep boxes overlap, by separating axes in double. For what a scene places, not for contacts: a manifold prefers
    the face of the last step to the axis of the smallest overlap. */
 
 /* The smallest overlap of two boxes along the axes of their faces, m; negative: they are apart by that much along one.

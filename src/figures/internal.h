@@ -150,8 +150,7 @@ void caption_scene(FILE *out, const FigureSpec *spec);
 /* " at 0.5, 0.6 and 0.8~s"; many moments by their number, the first and the last. */
 void caption_times(FILE *out, const FigureSpec *spec);
 
-/* A polygon rasteriser with antialiasing by scan-line coverage. Pixels, y down.
-   Why our own: sketch_formats.h. */
+/* A polygon rasteriser with antialiasing by scan-line coverage. Pixels, y down. */
 
 typedef struct RasterEdge {
     double x0, y0, x1, y1; /* y0 < y1 */

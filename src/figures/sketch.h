@@ -75,7 +75,7 @@ double plot_tick_width(const PlotTick *tick, double points);
 /* As many ticks at round numbers as have room for numbers of this size. across: along the page's width. */
 void plot_ticks_choose(PlotTicks *ticks, const PlotAxis *axis, double points, bool across);
 
-/* A page of boxes, lines, arrows and text, recorded as a list and then written as PNG, SVG or PDF (sketch_files.h).
+/* A page of boxes, lines, arrows and text, recorded as a list and then written as PNG, SVG or PDF.
    Lengths in mm from the page's lower left corner. Later marks are above earlier ones; pictures are below and arrows
    and text above all else. */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The objects of a PDF file and of its font. Why our own: sketch_formats.h. */
+/* The objects of a PDF file and of its font. */
 #include "base/base.h"
 #include "base/file.h"
 #include "figures/internal.h"

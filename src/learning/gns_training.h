@@ -12,8 +12,8 @@
 
 #include <stdint.h>
 
-/* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix of
-   gns_net.h's.
+/* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix
+   of the paper that nets/kinds.h names.
 
    Noise: a random walk of each particle's velocities, with the standard deviation `noise` in the newest; positions move by
    its sum. The target is the acceleration from the noisy velocity to the true next one, less a tenth of what would undo the
@@ -68,8 +68,8 @@ bool gns_example_make(GnsExample *example, const GnsExamples *examples, uint64_t
 /* All boxes of a frame, without noise and targets: for times of a step. */
 bool gns_example_frame(GnsExample *example, const GnsRuns *runs, int launch, int frame);
 
-/* Trains the network of gns on single steps of recorded launches (gns_examples.h) by Adam with a falling rate. Source:
-   gns_net.h. */
+/* Trains the network of gns on single steps of recorded launches by Adam with a falling rate. Source:
+   nets/kinds.h. */
 
 #define GNS_PAPER_STEPS 20e6 /* gradient steps of the paper, appendix B */
 #define GNS_PAPER_BATCH 2    /* examples in each */

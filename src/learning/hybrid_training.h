@@ -111,7 +111,7 @@ typedef struct TabulationLaunch {
     int number;               /* from 1 */
     int64_t steps;            /* that it ran with the bomb */
     int asked, answered;      /* of these */
-    int grown, added, full;   /* lessons (entry_fit.h) */
+    int grown, added, full;   /* lessons */
     int checked;              /* answers compared with the converged solution */
     double error;             /* m/s: sum of their errors */
     double learning;          /* s: processor time of copies of steps, fits, growth and checks */

@@ -68,7 +68,7 @@ const Optimizer optimizer_gd = {"gd", "gradient descent with a fixed rate", gd_m
    J^T J from J for 10-10-2, a seventh for 10-8-8-6. Two cores, 10^6 rows of 10-10-2: 0.8 s; OpenBLAS's dsyrk on blocks
    of J: 2.2 s. */
 
-/* As in loss.c, but each chunk holds a matrix. */
+/* As in learning/pair_laws.c, but each chunk holds a matrix. */
 enum { MAX_CHUNKS = 32, MAX_MATRIX_NUMBERS = 1 << 24 };
 
 typedef struct Chunk {

@@ -159,8 +159,8 @@ static bool loss_kind_parse(LossKind *kind, const TrainingOptions *options, Erro
     return true;
 }
 
-/* NULL words take the defaults of training.h. ERROR_INPUT: an unknown word, or output targets outside the range of the
-   output activation. */
+/* NULL words take the defaults of learning/pair_training.h. ERROR_INPUT: an unknown word, or output targets outside the
+   range of the output activation. */
 static bool network_config_parse(NetworkConfig *config, const TrainingOptions *options, Error *error) {
     bool two = options->widths[options->layers] == 2;
     int hidden = ACTIVATION_SIGMOID, output = two ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;

@@ -33,7 +33,7 @@ typedef struct Law {
     const char *name, *unit, *summary;
     /* Returns the violation, >= 0. slope[PAIR_CHANGES] is its gradient, valid if the violation is above 0. */
     double (*violation)(const LawPair *pair, const double change[PAIR_CHANGES], double slope[PAIR_CHANGES]);
-    /* The size of the change in the law's unit; normalises the violation (laws.h). */
+    /* The size of the change in the law's unit; normalises the violation. */
     double (*size)(const LawPair *pair, const double change[PAIR_CHANGES]);
 } Law;
 
@@ -55,7 +55,7 @@ bool law_weights_parse(const char *text, LawNumbers *weights, Error *error);
 /* Sets one weight for the law of this name, for "all" or for "none". ERROR_INPUT: another name. */
 bool law_weights_named(const char *laws, double weight, LawNumbers *weights, Error *error);
 
-/* Physics-informed loss terms for networks with six outputs (the paper's outlook). Each law (law_terms.h) of weight w
+/* Physics-informed loss terms for networks with six outputs (the paper's outlook). Each law of weight w
    adds
 
        w * mean(excess^2) / scale
@@ -110,8 +110,8 @@ typedef struct TrainingOptions {
     const char *hidden;            /* activation of the hidden layers: sigmoid, tanh, relu */
     const char *output_activation; /* sigmoid, linear; NULL: sigmoid for two outputs, linear for six */
     const char *scale;             /* of outputs: minmax, standard; NULL: minmax with sigmoid, standard with linear */
-    const char *loss;              /* mse, smooth-l1 (loss.h) */
-    LawNumbers laws;               /* weights of the laws in the loss (laws.h) */
+    const char *loss;              /* mse, smooth-l1 (learning/pair_training_internal.h) */
+    LawNumbers laws;               /* weights of the laws in the loss */
     /* Called at iterations 0, 10, 50, 100, 1000, 2000, 5000, 10000, ... and the last one; may be NULL. */
     void (*on_score)(void *context, const TrainingScore *score);
     void *context;

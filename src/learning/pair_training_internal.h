@@ -7,7 +7,7 @@
 #include "learning/pair_training.h"
 #include "nets/nets.h"
 
-/* Dataset rows prepared for training: normalised inputs and targets, in the block layout of network_gradient.h. */
+/* Dataset rows prepared for training: normalised inputs and targets, in the block layout of nets/nets.h. */
 
 typedef struct Samples {
     int64_t rows, blocks; /* the last block is padded with zeros */
@@ -129,7 +129,7 @@ bool trainer_visit(Trainer *trainer, const double *parameters, double train_loss
    rows. */
 bool training_check(const Dataset *dataset, const TrainingOptions *options, Error *error);
 
-/* Parses the option words of training.h: activations, output scaling and loss. */
+/* Parses the option words of learning/pair_training.h: activations, output scaling and loss. */
 
 typedef struct NetworkConfig {
     Activation hidden, output;

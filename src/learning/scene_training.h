@@ -169,7 +169,7 @@ typedef struct SceneTraining {
     void (*on_score)(void *context, const SceneNetScore *score);
     void *context;
     SceneNetVerdict *verdict; /* on the network that is returned; or NULL */
-    const Pieces *recorded;   /* what the first round runs is read from these (scene_recording.h); or NULL */
+    const Pieces *recorded;   /* what the first round runs is read from these; or NULL */
 } SceneTraining;
 
 /* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN

@@ -72,7 +72,7 @@ bool principal_fit(const SparseRows *rows, uint64_t seed, Projection *projection
        loss = impulse_weight * mean over present slots of smooth L1((impulse - reference impulse) / scale)
             + velocity_weight * sqrt(e^2 + 0.01^2)
 
-   e is the RMS velocity error (solution_error.h) after the sweeps, differentiated through them
+   e is the RMS velocity error (methods/reference.h) after the sweeps, differentiated through them
    (learning/scene_training.h): the quantity to minimise. The impulse loss brings the impulses into a range from which
    the sweeps can converge. */
 
@@ -128,7 +128,7 @@ bool slot_rollout(const SlotRollout *rollout, SlotSamples *samples, const Progre
    Gradients Through Stochastic Neurons for Conditional Computation" (2013), 4. */
 
 typedef struct SlotFit {
-    double impulse_weight; /* of the impulse loss (slot_loss.h) */
+    double impulse_weight; /* of the impulse loss */
     int impulse_epochs;    /* initial epochs with the impulse loss only */
     int epochs;            /* in total */
     double rate;           /* initial learning rate */

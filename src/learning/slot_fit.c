@@ -309,7 +309,7 @@ static double impulse_loss(const SlotNetwork *network, const SlotSample *sample,
     return sum;
 }
 
-/* The squared error summed over the dynamic bodies, weighted as in solution_error.h, and half its derivative. */
+/* The squared error summed over the dynamic bodies, weighted as in methods/reference.h, and half its derivative. */
 static double velocity_error(const SlotSample *sample, const double *velocities, double *by_velocity, int *counted) {
     double sum = 0;
     *counted = 0;

@@ -63,7 +63,7 @@ static inline const float *window_state(const WindowData *data, int launch, int 
 /* Least squares of z' = a z + b z_before over all rows, for each component by itself. linear[2, count] */
 void window_linear(const WindowData *data, double *linear);
 
-/* Writes the linear term and a network of two hidden layers (window_fit.h has the order of its parameters), with the scales
+/* Writes the linear term and a network of two hidden layers (in the order of window_fit_shape()), with the scales
    in its weights, to a predictor of the same sizes. */
 void window_scales_store(const WindowData *data, const WindowScales *scales, const double *parameters,
                          SubspacePredictor *predictor);

@@ -124,7 +124,7 @@ static bool large_islands_solve(const LargeIslands *large, Momentum *momentum, f
    Elsewhere sweeps with momentum make the start: each saves as much of an iteration as it costs.
 
    Fails by its time: an iteration costs as much as 5 sweeps on scenes/stack and as 12 on scenes/pyramid_settled, and
-   more beyond some hundred bodies, so large islands are left to sweeps (large_islands.h). An impact takes about four
+   more beyond some hundred bodies, so large islands are left to sweeps. An impact takes about four
    iterations to 0.02 m/s and two more to 0.001 m/s, but ten to thirty from poor impulses of the step before, or where
    friction jams a pile. */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Projected successive over-relaxation: sequential impulses (sequential_impulses.c) with every increment scaled by
+/* Projected successive over-relaxation: sequential impulses (methods/sweeps_scalar.c) with every increment scaled by
    omega,
 
        Pn' = max(Pn + omega mass_n (bias - vn), 0),   Pt' = clamp(Pt - omega mass_t vt, -mu Pn', mu Pn')

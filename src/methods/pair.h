@@ -48,7 +48,7 @@ BodyVelocity pair_moment_others(const PairMoment *moment, const ContactProblem *
                       change of relative velocity that they make), both arms; then a's share of the inverse masses, and
                       1 where there is a second point (0, and zeros for the point, where not)
      neighbours   32: the same, and of a, then of b, velocity (2) and spin (1): what other pairs would change next if
-                      each contact were alone (pair_moment.h), and what has changed since the step began */
+                      each contact were alone, and what has changed since the step began */
 typedef enum PairView {
     PAIR_RELATIVE,
     PAIR_RAW,

@@ -372,8 +372,8 @@ const ContactSolverKind solver_contact_net = {
     .solve = pair_solver_solve,
     .destroy = pair_solver_destroy};
 
-/* Sequential impulses (sequential_impulses.c) written as a network of rectifiers, relu(x) = max(x, 0). With m = mu Pn'
-   and w = Pt - mass_t vt,
+/* Sequential impulses (methods/sweeps_scalar.c) written as a network of rectifiers, relu(x) = max(x, 0). With m = mu
+   Pn' and w = Pt - mass_t vt,
 
        Pn' = relu(Pn - mass_n (vn - bias)),   Pt' = -m + relu(w + m) - relu(w - m)
 

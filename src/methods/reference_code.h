@@ -60,8 +60,8 @@ static double polish(Reference *r, double aim, double ahead) {
 /* Interior points with a sparse direct solve over the bodies (methods/block_lu.h), run to the end.
 
    1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
-      sliding) are those of a solution, a linear solve finds it (reference_active.h): nearly always at rest.
-   2. Else the central path is followed to the solution (reference_path.h), also where it turns back (reference_arc.h).
+      sliding) are those of a solution, a linear solve finds it: nearly always at rest.
+   2. Else the central path is followed to the solution, also where it turns back (reference_path.h).
    3. If the path is lost, again from another distance and with another stiffness.
 
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend

@@ -29,7 +29,7 @@ struct ReferenceGroup {
     Vec4 gap, slip;                       /* m/s: velocities along the rows, normal: minus the bias */
     ReferencePoint now;                   /* of the interior point */
     Vec4 missing_normal, missing_tangent; /* m/s: gap - z and slip - (q - p) */
-    Vec4 over_z, dn, dt, s, rn, rt;       /* linear system, see reference_newton.c */
+    Vec4 over_z, dn, dt, s, rn, rt;       /* linear system, see methods/reference_newton.h */
     Vec4 wanted_n, wanted_p, wanted_q;    /* wanted changes of the products l z, u p, w q */
     ReferencePoint step, along;           /* directions */
 };
@@ -58,13 +58,13 @@ static inline Vec4 reference_clamp(Vec4 x, Vec4 limit) {
     return reference_choose((ReferenceMask)(low < limit), low, limit);
 }
 
-/* reference_load.c: the problem; then the warm start or the given impulses as `normal` and `tangent`. */
+/* methods/reference_point.c: the problem; then the warm start or the given impulses as `normal` and `tangent`. */
 bool reference_load(Reference *r, const ContactProblem *problem);
 void reference_start(Reference *r, const ContactProblem *problem, const ContactImpulse *start);
 void reference_store(Reference *r, const ContactProblem *problem);
 
 /* The solve, and the residual of `normal` and `tangent`, compiled for several instruction sets with the same bits:
-   reference_run.h. */
+   methods/reference_code.h. */
 typedef struct ReferenceKernels {
     void (*run)(Reference *r);
     double (*residual)(Reference *r);

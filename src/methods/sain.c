@@ -119,7 +119,7 @@ bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, R
 
 /* Files of sain: .npz with version, kind ("sain"), command, and as float32 for each form F = on, off, shuffled:
    F_pair_weights and F_body_weights, weights and biases of the relation and the object network, each as one vector
-   (network_gradient.h); offsets and scales of their inputs, F_pair_offset, F_pair_scale, F_body_offset, F_body_scale;
+   (nets/nets.h); offsets and scales of their inputs, F_pair_offset, F_pair_scale, F_body_offset, F_body_scale;
    ranges, F_pair_low, F_pair_high, F_body_low, F_body_high; F_limit. */
 
 #define KIND "sain"

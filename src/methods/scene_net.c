@@ -182,12 +182,12 @@ static void scene_prediction_make(ScenePrediction *prediction, const SlotNetwork
 /* A network for the impacts of one scene. It sees all bodies and contacts at once and predicts where the impulses will
    end; a few sweeps then correct the prediction. Sweeps alone carry a shock through a stack one contact per sweep.
 
-   The network is used only if the residual of the warm start (residual.h) reaches the gate and the step resembles the
-   training data: the same mass of the bomb, and all inputs within their range. All other steps are solved as by
-   momentum (momentum.c). The residual after the sweeps correlates with the error, also on held-out launches: so few
-   sweeps follow at first, and more if the residual is still large. Impulses act on both bodies alike and sweeps clamp
-   them to their cones, so momentum is conserved whatever the network predicts. Source: a warm start by a network for
-   the whole problem, as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization
+   The network is used only if the residual of the warm start (methods/solvers.h) reaches the gate and the step
+   resembles the training data: the same mass of the bomb, and all inputs within their range. All other steps are solved
+   as by momentum (momentum.c). The residual after the sweeps correlates with the error, also on held-out launches: so
+   few sweeps follow at first, and more if the residual is still large. Impulses act on both bodies alike and sweeps
+   clamp them to their cones, so momentum is conserved whatever the network predicts. Source: a warm start by a network
+   for the whole problem, as in Sambharya, Hall, Amos, Stellato, "Learning to Warm-Start Fixed-Point Optimization
    Algorithms" (2024), which also trains through the iterations that follow. Fails on other scenes, which have other
    slots; it refuses them. */
 

@@ -75,7 +75,7 @@ bool relation_answer(RelationAnswers *answers, const RelationNetwork *network, R
 bool sain_make(ContactSolver *solver, const RelationNetwork *network, RelationForm form, Error *error);
 
 /* The stopping rule of the iterative methods: after the first k sweeps, blocks of 8 follow while the residual
-   (residual.h) is at least `near`, up to `more` sweeps. Most steps need few sweeps and an impact needs many, so the rule
+   is at least `near`, up to `more` sweeps. Most steps need few sweeps and an impact needs many, so the rule
    spends them where they are needed. Fails where the residual is small and the error is not: an error that is spread
    over a whole stack leaves each contact close to its target. */
 
@@ -227,7 +227,7 @@ typedef struct PairSolver {
 PairSolver *pair_solver_create(const char *name, const Settings *chosen, Error *error);
 void pair_solver_destroy(void *state);
 
-/* Solves the step with the network, as its target requires: pair_net.c and contact_net.c. */
+/* Solves the step with the network, as its target requires: methods/pair_net.c. */
 bool pair_solver_solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error);
 
 /* The residual of the impulses in a set of sweeps: how far contacts are from their target velocities. After the warm

@@ -33,7 +33,7 @@ float box_particles_distance(const Vec2 *particles, Vec2 size, const BodyPose *p
 double plane_angle(double cosine, double sine);
 
 /* What the network of gns sees: particles as nodes, and an edge each way between two that are nearer than the radius.
-   Source: gns_net.h.
+   Source: nets/kinds.h.
 
    Inputs of a node: the particle's last GNS_HISTORY velocities, oldest first, over the unit of velocity (10 numbers); 1 for
    the bomb, else 0; the way to the nearest static box: its distance over the radius, at most 1, and its direction times 1

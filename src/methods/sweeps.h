@@ -98,12 +98,12 @@ static inline int colours_take(uint64_t *taken, const ContactProblem *problem, c
 /* Fills colours->visits. False when memory is short. */
 bool colours_order(Colours *colours, const ContactProblem *problem);
 
-/* Vectorised sweeps over contacts, with the bits of the scalar reference implementation (sequential_impulses.c).
+/* Vectorised sweeps over contacts, with the bits of the scalar reference implementation (methods/sweeps_scalar.c).
 
-   Contacts that share no moving body commute exactly. sweeps_schedule.c sorts the visits of several sweeps into levels
+   Contacts that share no moving body commute exactly. methods/sweeps.c sorts the visits of several sweeps into levels
    of independent visits, and a level is solved in the lanes of a vector, one pair of bodies per lane (sweeps_lanes.h).
    For few contacts, or on a processor without such vectors, visits run one by one on the same packed records. Visits
-   follow the order of the problem's contacts, which is the engine's, or colours (colours.h): fewer levels, other bits.
+   follow the order of the problem's contacts, which is the engine's, or colours: fewer levels, other bits.
 
    Exact as long as all numbers are finite; sweeps_end() returns false otherwise. */
 
@@ -221,7 +221,7 @@ void sweeps_free(Sweeps *sweeps);
    when memory is short. */
 bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation);
 
-/* The same with visits in the order of colours (colours.h): faster, with other bits. With warm start, without
+/* The same with visits in the order of colours: faster, with other bits. With warm start, without
    relaxation. */
 bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem);
 
@@ -295,7 +295,7 @@ static inline float contact_clamp(float value, float low, float high) {
     return low > capped ? low : capped;
 }
 
-/* Internal functions of sweeps.c and sweeps_load.c. */
+/* Internal functions of sweeps.c. */
 
 enum { SWEEPS_AT_ONCE = 16 }; /* sweeps in one schedule, which is run repeatedly */
 

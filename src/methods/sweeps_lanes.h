@@ -2,8 +2,8 @@
 /* The sweep kernel over the lanes of a vector. Included once by the file of each instruction set, which defines the
    vector type Lanes, LANES of them, TARGET and the operations used here.
 
-   The operations of sequential_impulses.c, with three exceptions that have the same bits for finite numbers: x - y for
-   x + -y, the tangent's components written out, and no change of the velocity of a static body. */
+   The operations of methods/sweeps_scalar.c, with three exceptions that have the same bits for finite numbers: x - y
+   for x + -y, the tangent's components written out, and no change of the velocity of a static body. */
 #include "methods/sweeps.h"
 
 /* Velocities of the bodies at one end of the pairs, one pair per lane. */

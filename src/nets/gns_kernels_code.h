@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The code of gns_kernels.h; included once by each gns_kernels_*.c, which defines ROWS_AT_ONCE: as many rows as have their
-   sums in registers. Every sum runs over its items in rising order. */
+/* The code of nets/kernels.h; included once by each gns_kernels_*.c, which defines ROWS_AT_ONCE: as many rows as have
+   their sums in registers. Every sum runs over its items in rising order. */
 #include "nets/kernels.h"
 
 #include <math.h>

@@ -50,7 +50,7 @@ typedef struct Kernels {
     /* Rows first to first + count - 1, at most TILE_ROWS, of a batch: network_predict_batch(). */
     void (*predict)(const Network *network, const float *inputs, float *scratch, float *outputs, int rows, int first,
                     int count);
-    /* network_gradient.h */
+    /* network_forward() and those after it (nets/nets.h) */
     void (*forward)(NetworkBlock *block, const double *parameters);
     void (*backward)(NetworkBlock *block, const double *parameters);
     void (*backward_to_inputs)(const NetworkBlock *block, const double *parameters, double *slopes);
@@ -84,7 +84,7 @@ void packed_rows_free(PackedRows *packed);
 /* Rounds rows[count, width] of finite numbers to the nearest steps. */
 void packed_rows_fill(PackedRows *packed, const float *rows);
 
-/* The loops of a network with sparse inputs (slot_network.h). A matrix has one row per possible input, and only the
+/* The loops of a network with sparse inputs (nets/kinds.h). A matrix has one row per possible input, and only the
    rows of inputs that are present are read. Memory traffic dominates, so rows are packed into bytes. Compiled once for
    each instruction set from row_kernels_code.h, with the same operations in the same order, so all have the same
    bits. */
@@ -103,7 +103,7 @@ typedef struct RowKernels {
     void (*multiply)(float *products, const PackedRows *rows, const int32_t *index, const float *vector, int count);
     /* rows[index[i]] += numbers[i] * vector[width] */
     void (*spread)(float *rows, int width, const int32_t *index, const float *numbers, const float *vector, int count);
-    /* numbers[i] = tanh(numbers[i]), as in activation.h */
+    /* numbers[i] = tanh(numbers[i]), as in nets/nets.h */
     void (*apply_tanh)(float *numbers, int count);
 } RowKernels;
 

@@ -22,7 +22,7 @@
 enum {
     GNS_VERSION = 1,
     GNS_HISTORY = 5,      /* past velocities of a particle (paper) */
-    GNS_NODE_INPUTS = 14, /* gns_graph.h */
+    GNS_NODE_INPUTS = 14, /* methods/steppers.h */
     GNS_EDGE_INPUTS = 5,
     GNS_OUTPUTS = 2,
     GNS_WIDTH_STEP = 16,
@@ -190,7 +190,7 @@ static inline float turn_angle(float sine, float cosine, float before) {
     return angle + 6.28318531f * turns;
 }
 
-/* A state in the subspace, and its step (subspace_net.h has the equations). */
+/* A state in the subspace, and its step. */
 
 typedef struct Subspace {
     const SubspaceNet *net; /* outlives it */
@@ -230,8 +230,8 @@ void subspace_reconstruct(Subspace *subspace);
        h1 = tanh(W1 x + b1),   h2 = tanh(W2 h1 + b2)
        (dPn, dPt) of slot s = scale[s] (W3 h2 + b3)[s]
 
-   Only the rows of present slots are read. Inference uses rows rounded to bytes (packed_rows.h); training and files use
-   the float rows. Sums run in a fixed order (row_kernels.h), for the same bits on every machine. */
+   Only the rows of present slots are read. Inference uses rows rounded to bytes (nets/kernels.h); training and files
+   use the float rows. Sums run in a fixed order (nets/kernels.h), for the same bits on every machine. */
 
 enum {
     SLOT_NETWORK_VERSION = 2,

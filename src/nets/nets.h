@@ -118,7 +118,7 @@ bool file_floats_read(NpzFile *file, const FileFloats *list, int count, Error *e
 /* Fully connected networks: layers, normalisation, files, and inference with the same bits on every machine.
 
    Numbers are float32. A layer's sums run over the inputs in rising order, without BLAS and without fused multiply-add;
-   activations are those of activation.h. */
+   activations are those above. */
 
 enum { NETWORK_VERSION = 3, NETWORK_MAX_LAYERS = 8, NETWORK_MAX_WIDTH = 4096, NETWORK_TEXT_SIZE = 512 };
 

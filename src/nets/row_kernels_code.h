@@ -5,7 +5,7 @@
 #include <immintrin.h>
 #include <string.h>
 
-/* The code of row_kernels.h; included once by each row_kernels_*.c, which defines VECTOR_BYTES. */
+/* The code of nets/kernels.h; included once by each row_kernels_*.c, which defines VECTOR_BYTES. */
 #if VECTOR_BYTES > 16
 #endif
 

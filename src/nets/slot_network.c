@@ -176,7 +176,7 @@ void slot_network_predict(const SlotNetwork *network, const float *inputs, const
 }
 
 /* Slot network files: .npz with version, kind ("scene-net"), scene, command, body_count, bomb, sweeps, slot_a, slot_b,
-   slot_feature [slots], and as float32, with the shapes of slot_network.h: P_rows and P_centre of the projections P =
+   slot_feature [slots], and as float32, with the shapes of nets/kinds.h: P_rows and P_centre of the projections P =
    bomb_state, state, present, warm; L_rows and L_biases of the layers L = first, second, last; scale, cap, low,
    high, gate, bomb_inv_mass, factors[sweeps]. */
 

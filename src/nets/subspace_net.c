@@ -97,7 +97,7 @@ const SubspacePredictor *subspace_net_choose(const SubspaceNet *net, int compone
 }
 
 /* Subspace files: .npz with version, kind ("subspace"), scene, command, physics, sizes (bodies, hidden, frames_before),
-   predictors (components of each), and as float32, with the shapes of subspace_net.h: rest, basis, low, high, before,
+   predictors (components of each), and as float32, with the shapes of nets/kinds.h: rest, basis, low, high, before,
    and of predictor i linear_i, first_rows_i, first_biases_i, second_..., last_.... */
 
 enum {

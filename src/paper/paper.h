@@ -31,8 +31,8 @@ typedef enum PaperData {
 
 extern const char *const paper_data_names[PAPER_DATA];
 
-/* Words are those of training.h. Zero-initialised members are the baseline's: swept, labels by the engine, relative,
-   pair, sigmoid, mse. */
+/* Words are those of learning/pair_training.h. Zero-initialised members are the baseline's: swept, labels by the
+   engine, relative, pair, sigmoid, mse. */
 typedef struct PaperNetwork {
     const char *name, *factor, *value; /* value: of the factor in which it differs from the baseline */
     PaperData data;
@@ -115,7 +115,7 @@ typedef struct SystemScoreRow {
     double momentum_error; /* N s: momentum created per step (ContactSolution), mean */
     double fallback_share; /* 0 to 1: steps with discarded outputs, beyond training, or solved by sweeps */
     double us_step;        /* microseconds per step of a held-out launch, everything counted: the whole step; of
-                                    methods without contacts their own work (no_contacts in method_description.h) */
+                                    methods without contacts their own work (no_contacts in methods/methods.h) */
     double us_step_engine; /* of the engine, measured in turns with it */
 } SystemScoreRow;
 
@@ -205,7 +205,7 @@ bool system_claims_write(const struct PaperSystem *const *systems, const char *f
 /* The systems that the paper cites, as parts of its study. Each system is one constant PaperSystem: the methods that are
    scored, the study that measures its claims, the rules that judge them, and its figure. To add a system NAME:
 
-   1. Write NAME_study.c, NAME_claims.c and their header NAME_study.h in this folder, and define there
+   1. Write NAME.c in this folder (declarations: paper_internal.h), and define there
 
         static const CsvLayout table = CSV_LAYOUT("system_NAME", columns, NameRow, .min_rows = 1, .max_rows = 5000);
         static const SystemPart parts[] = {
@@ -223,15 +223,14 @@ bool system_claims_write(const struct PaperSystem *const *systems, const char *f
       seconds. The whole study of one system takes at most 90 s on two idle cores, the quick one 2 s; the quick one measures
       everything that claims need, with less. A part may use all threads (base/machine.h); times are measured on one
       (studies/chart.h), by parts that say so (timed).
-   2. Write figures/plot_NAME.c, which draws folder/system_NAME.csv (figures/plot_parts.h). It becomes
-      figures/system-NAME.png and .svg.
+   2. In plots_systems.c write plot_NAME(), which draws folder/system_NAME.csv (declaration: report_internal.h). It
+      becomes figures/system-NAME.png and .svg.
    3. Add a line to SYSTEMS below; the room of its training to those that paper may include from (src/layers.txt), if the
       study trains; and to tests: tests/paper/figures/system_NAME.csv with all that the figure can show, its names to
       `tables` and `figures` in tests/paper/test_plots.c, tests/paper/test_NAME_study.c, the table's layout to the end of
-      `layouts` in tests/fuzz/fuzz_csv.c (declared in NAME_study.h then).
+      `layouts` in tests/fuzz/fuzz_csv.c.
 
-   The rest follows from the list: scores (system_scores.h), the table of claims (system_claims.h), strips
-   (system_strips.h) and the report. */
+   The rest follows from the list: scores, the table of claims, strips and the report. */
 
 /* What the parts of a study share. */
 typedef struct SystemStudy {
@@ -282,7 +281,7 @@ bool system_part_write(void *context, FILE *lines, const Progress *progress, Err
 
 /* The whole study of Avatavului, Ifrim, Voncila (2023), from seed to tables: networks trained in every reading of the
    paper, one factor at a time; their rates of right predictions; their runs in place of the solver; laws of physics in
-   the loss; transfer learning; the systems that the paper cites (paper/paper.h). */
+   the loss; transfer learning; the systems that the paper cites. */
 
 typedef struct PaperOptions {
     const char *scenes; /* folder of single.yaml, stack.yaml, pyramid.yaml, pyramid_settled.yaml */

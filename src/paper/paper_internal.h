@@ -135,9 +135,9 @@ bool sain_claims_state(const Claims *claims, Error *error);
 
 enum { HYBRID_ROWS_MAX = 500 };
 
-/* system_hybrid.csv: a learning (tabulation_training/) at some number of launches. Shares are of the launches since the row
-   before, each answered by the memory as it was before the launch. Errors and times are of launches that it has not
-   learned, by the memory so far. NAN where nothing was answered. */
+/* system_hybrid.csv: a learning (learning/hybrid_training.h) at some number of launches. Shares are of the launches
+   since the row before, each answered by the memory as it was before the launch. Errors and times are of launches that
+   it has not learned, by the memory so far. NAN where nothing was answered. */
 typedef struct HybridRow {
     int scene;        /* of paper_scene_names */
     double tolerance; /* m/s */
@@ -209,7 +209,7 @@ typedef struct Launched {
 bool launched_begin(Launched *launched, const char *path, int count, Error *error);
 void launched_free(Launched *launched);
 
-/* Rates and closed-loop runs of the networks in one scene, as parts of the study (paper_plan.h). */
+/* Rates and closed-loop runs of the networks in one scene, as parts of the study. */
 
 typedef struct PaperScoring {
     int scene;                    /* of paper_scene_names */
@@ -257,8 +257,8 @@ bool transfer_study_run(const TransferData *data, const TransferStudy *study, Tr
                         const Progress *progress, Error *error);
 
 /* Rates of right predictions. The paper does not define its "successful prediction rate" (section 4: 60 to 91%), so
-   this measures three definitions of it, on steps sampled from the engine's runs (frozen.h). Each rate is beside those
-   of the constant predictor and of the engine with fewer sweeps:
+   this measures three definitions of it, on steps sampled from the engine's runs (studies/chart.h). Each rate is beside
+   those of the constant predictor and of the engine with fewer sweeps:
 
      range     both components of a pair's change of relative velocity are within 5% of their range in the engine's
                sampled steps

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The report of the paper's study (Avatavului, Ifrim, Voncila 2023): report.md.in of this folder, filled in
-   (template.h). */
+   (paper/report_internal.h). */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"

@@ -85,8 +85,8 @@ typedef struct SweepRow {
    *rows: touching pairs, summed over all steps. ERROR_INPUT if the launch of the row touches no box. */
 bool sweep_draw(Sketch *sketch, const View *view, const Scene *scene, SweepRow *row, int *rows, Error *error);
 
-/* The plots of plots.h, each in plot_NAME.c. They read their table from the folder and write the page. The page's width
-   stays 0 if the table has no rows to show. False with error set if the table is missing or damaged. */
+/* The plots of paper/report.h. They read their table from the folder and write the page. The page's width stays 0 if
+   the table has no rows to show. False with error set if the table is missing or damaged. */
 bool plot_factors(const char *folder, PlotPage *page, Error *error);
 bool plot_closed_loop(const char *folder, PlotPage *page, Error *error);
 bool plot_transfer(const char *folder, PlotPage *page, Error *error);
@@ -194,7 +194,7 @@ typedef struct TransferCounts {
 
 TransferCounts transfer_counts(const StudyTables *study);
 
-/* The tables of findings.h, one function each. */
+/* The tables of the findings, one function each. */
 
 /* Where a table's rows go. */
 typedef struct FindingsFile {

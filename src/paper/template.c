@@ -38,7 +38,8 @@ static void template_write_text(FILE *out, const char *text) {
         escape(out, csv_show(text).text);
 }
 
-/* format: "number", "percent", "score" (template.h); false for any other. A dash for NaN and infinite values. */
+/* format: "number", "percent", "score" (paper/report_internal.h); false for any other. A dash for NaN and infinite
+   values. */
 static bool template_write_number(FILE *out, double value, const char *format) {
     const bool percent = strcmp(format, "percent") == 0, score = strcmp(format, "score") == 0;
     if (!isfinite(value))

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* In units of the picture's shorter side, as in layout.c. */
+/* In units of the picture's shorter side, as in pictures/picture.c. */
 static const double HEAD = 0.075, HEAD_LINE = 0.095, SUBHEAD = 0.036, ROW = 0.036, CELL = 0.030, LINE = 0.072;
 static const double WIDTH = 0.78; /* relative to the picture's width */
 

@@ -45,7 +45,7 @@ typedef struct CameraFrame {
 
 CameraFrame camera_frame(const Trajectory *run);
 
-/* Shows the view that the run's scene sets, otherwise what stands and what strikes it (framing.h). */
+/* Shows the view that the run's scene sets, otherwise what stands and what strikes it. */
 Camera camera_fit(const Trajectory *run, int width, int height);
 
 /* What a sequence shows besides the bodies, and how. All zero: panels side by side, light theme. */
@@ -109,7 +109,7 @@ typedef struct BodyColors {
     { 0xB5371B, 0x5E1606, 0xFFE9DF }
 static const BodyColors BOMB = BOMB_COLORS;
 
-/* The colours of a whole picture, 0xRRGGBB: light as in style.h, or dark. */
+/* The colours of a whole picture, 0xRRGGBB: light as above, or dark. */
 
 typedef struct Theme {
     uint32_t page, panel, frame, grid, grid_strong, ink, ink_soft, ground, ground_line;

@@ -27,14 +27,14 @@ typedef struct RenderResult {
     PictureHashes *hashes; /* [last - first + 1]; freed by the caller */
 } RenderResult;
 
-/* Writes directory/frame_000000.png, ...: the moments (moments.h) of the longest of 1 to 6 runs, or of the selected
-   frames, numbered from the first one; a shorter run shows its last frame. Without slow motion, hold and cards, file
-   k is frame k. manifest.json (manifest.h) describes the pictures. Child processes draw, so the caller's environment
-   and threads are unaffected. Progress counts pictures; if it cancels, the pictures in progress are finished and the
-   error is "stopped" (ERROR_INTERRUPTED). `result` may be NULL.
-   If that is the whole run, frames of an earlier sequence that would remain beside these are removed (stale.h).
-   options->resume keeps the pictures of an earlier call, even one that was killed, whose files are unchanged, and
-   draws all others. If that call had other runs or options or was another version, it draws all. */
+/* Writes directory/frame_000000.png, ...: the moments of the longest of 1 to 6 runs, or of the selected frames,
+   numbered from the first one; a shorter run shows its last frame. Without slow motion, hold and cards, file k is frame
+   k. manifest.json (pictures/render_internal.h) describes the pictures. Child processes draw, so the caller's
+   environment and threads are unaffected. Progress counts pictures; if it cancels, the pictures in progress are
+   finished and the error is "stopped" (ERROR_INTERRUPTED). `result` may be NULL. If that is the whole run, frames of an
+   earlier sequence that would remain beside these are removed (pictures/manifest_files.c). options->resume keeps the
+   pictures of an earlier call, even one that was killed, whose files are unchanged, and draws all others. If that call
+   had other runs or options or was another version, it draws all. */
 bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
                      RenderResult *result, const Progress *progress, Error *error);
 
@@ -57,14 +57,15 @@ bool render_study(const Trajectory *const *panels, int panel_count, const Render
 typedef struct Renderer Renderer;
 
 /* Draws single frames in this process; only width, height and context of the options are used. The trajectories must
-   outlive the renderer. Sets Mesa's environment variables (context.c). */
+   outlive the renderer. Sets Mesa's environment variables (pixels/gl_context.c). */
 Renderer *renderer_create(const Trajectory *const *panels, int panel_count, const RenderOptions *options, Error *error);
 
 /* Draws a frame; the image must have the renderer's size. */
 bool renderer_draw(Renderer *renderer, int frame, Image *image, Error *error);
 void renderer_destroy(Renderer *renderer);
 
-/* Converts a PNG sequence to a video: H.264, VP9 and GIF by ffmpeg, or raw frames (y4m.h) for other programs. */
+/* Converts a PNG sequence to a video: H.264, VP9 and GIF by ffmpeg, or raw frames (pictures/render_internal.h) for
+   other programs. */
 
 typedef struct VideoOptions {
     const char *directory;       /* of frame_000000.png ... */
@@ -139,7 +140,8 @@ typedef struct StillShot {
 
 typedef struct Still Still;
 
-/* For images of this size, each side 1 .. RENDER_SIDE_MAX pixels. Sets Mesa's environment variables (context.c). */
+/* For images of this size, each side 1 .. RENDER_SIDE_MAX pixels. Sets Mesa's environment variables
+   (pixels/gl_context.c). */
 Still *still_create(int width, int height, Error *error);
 void still_destroy(Still *still);
 

@@ -33,11 +33,11 @@ void frame_texts_fill(FrameTexts *texts, const Picture *picture, Moment moment);
 void frame_part_text(char *text, size_t size, Moment moment);
 
 /* manifest.json lists a sequence: what was drawn (version, runs, look, order), where in the pictures it is
-   (manifest_view.h) and, one line per file, the frame it shows, the runs' state hashes there (trajectory_frame_hash), the
-   hash of its pixels (image_hash) and of its bytes.
-   No dates and no paths: the same runs and options give the same bytes. During drawing it is a journal,
-   manifest.json.part, with a line per finished picture, so that a later call can resume after a kill. Neither file
-   is trusted: a line is used only if all but its two hashes equals the expected line. */
+   (pictures/manifest.c) and, one line per file, the frame it shows, the runs' state hashes there
+   (trajectory_frame_hash), the hash of its pixels (image_hash) and of its bytes. No dates and no paths: the same runs
+   and options give the same bytes. During drawing it is a journal, manifest.json.part, with a line per finished
+   picture, so that a later call can resume after a kill. Neither file is trusted: a line is used only if all but its
+   two hashes equals the expected line. */
 
 typedef struct Manifest {
     const Picture *picture;
@@ -65,7 +65,7 @@ void manifest_recall(Manifest *manifest, char *why, size_t size);
 bool manifest_check(const Manifest *manifest, Error *error);
 
 /* Starts the journal with the known pictures and removes a manifest of other pictures; if the sequence is a whole run,
-   also the frames of an earlier one that would remain (stale.h). Errors of manifest_check(), too. */
+   also the frames of an earlier one that would remain (pictures/manifest_files.c). Errors of manifest_check(), too. */
 bool manifest_begin(Manifest *manifest, bool whole, Error *error);
 
 /* Records a finished picture; without a journal, in memory alone. */

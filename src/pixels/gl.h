@@ -151,8 +151,8 @@ uint8_t *drawing_add_bitmap(Drawing *drawing, size_t size, uint32_t *bitmap);
 /* Adds the shapes and glyphs of `from`, except its static shapes, clipped to the rows top <= y < bottom. */
 void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom);
 
-/* The glyphs of the most common characters as bitmaps, which tools/make_atlas.c embeds in the binary: the fonts of font/ in
-   FONT_SIZES sizes. Others are drawn when they are needed (glyph_bitmap.h). */
+/* The glyphs of the most common characters as bitmaps, which tools/make_atlas.c embeds in the binary: the fonts of
+   font/ in FONT_SIZES sizes. Others are drawn when they are needed (pixels/internal.h). */
 
 enum { FONT_FACES = 2, FONT_SIZES = 24, FONT_GLYPHS = 106 };
 
@@ -217,7 +217,7 @@ void canvas_destroy(Canvas *canvas);
 bool canvas_paint(Canvas *canvas, const Drawing *drawing, uint32_t background, const bool *changed, Image *image,
                   Error *error);
 
-/* Lines, dots and arrows, all made of drawing.h's shape, which is pixel-exact on every machine. Pixels, y down. */
+/* Lines, dots and arrows, all made of one shape (Shape), which is pixel-exact on every machine. Pixels, y down. */
 
 /* A line with round caps. */
 void stroke_line(Drawing *drawing, Point from, Point to, double thickness, uint32_t color, const Rect *clip);

@@ -138,7 +138,7 @@ bool png_expand(const PngLayout *layout, const uint8_t *row, uint8_t *rgba);
 
 bool png_same_layout(const PngLayout *a, const PngLayout *b);
 
-/* Decodes common PNG files (png_rows.h). False: nothing is decoded, and libpng has to. */
+/* Decodes common PNG files. False: nothing is decoded, and libpng has to. */
 
 bool png_fast_decode(const uint8_t *data, size_t size, int64_t max_pixels, Image **image);
 

@@ -152,7 +152,7 @@ uint64_t image_hash_next(const Image *image, const bool *changed, uint64_t *rows
 /* Encodes pictures of one size, one after another, to PNG files in memory: 8-bit RGB, alpha is dropped. */
 
 typedef enum PngEffort {
-    PNG_FAST, /* for frames; see idat.h */
+    PNG_FAST, /* for frames; see pixels/internal.h */
     PNG_SMALL /* libpng, all filters, highest level: about 50 times slower */
 } PngEffort;
 

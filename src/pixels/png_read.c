@@ -292,7 +292,7 @@ typedef struct Decoder {
     int64_t max_pixels;
     Image *image;
     uint8_t *row;      /* 16-bit samples */
-    bool memory_short; /* png_memory.h */
+    bool memory_short; /* pixels/internal.h */
     Error *error;
 } Decoder;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes PNG files with libpng; the pixels are compressed by libpng or by idat.c. */
+/* Writes PNG files with libpng; the pixels are compressed by libpng or by pixels/png_rows.c. */
 #include "base/base.h"
 #include "base/file.h"
 #include "pixels/internal.h"
@@ -20,7 +20,7 @@ struct PngEncoder {
     png_infop info;
     uint8_t *data;
     size_t size, capacity;
-    bool memory_short; /* also of libpng (png_memory.h) */
+    bool memory_short; /* also of libpng (pixels/internal.h) */
     char problem[256];
 };
 

@@ -40,7 +40,7 @@ typedef struct Typeface {
 extern const Typeface type_regular, type_semibold;
 extern const int type_units, type_glyph_count; /* units per em */
 
-/* Glyphs with an index below this are in the small font file, too (pixels/type.h), under the same index. */
+/* Glyphs with an index below this are in the small font file, too, under the same index. */
 extern const unsigned type_small_count;
 
 /* NULL if the font lacks the character. */

@@ -94,11 +94,11 @@ bool rules_draw_masks(const Rules *rules, const char *name, const Image *expecte
    name in both folders and by the "State" texts in the pictures. Without either the cause is unknown. */
 
 typedef struct RegressionOptions {
-    Tolerance tolerance; /* replaces what the rules give */
-    const char *rules;   /* a file (regression/regression.h); NULL: RULES_NAME in the expected folder, if it is there */
-    const Mask *mask;    /* for all frames, beside the masks of the rules; or NULL */
-    int64_t max_pixels;  /* of a picture; larger ones are refused before decompression */
-    bool flat;           /* without subfolders */
+    Tolerance tolerance;  /* replaces what the rules give */
+    const char *rules;    /* a file; NULL: RULES_NAME in the expected folder, if it is there */
+    const Mask *mask;     /* for all frames, beside the masks of the rules; or NULL */
+    int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
+    bool flat;            /* without subfolders */
     bool strict_metadata; /* files that display differently fail (regression/compare.h) */
 } RegressionOptions;
 

@@ -34,7 +34,7 @@ typedef struct ApprovalRequest {
 bool approve(const ApprovalRequest *request, Approval *approval, Error *error);
 
 /* The report of a comparison: report.html, a self-contained page; junit.xml and results.tap for CI; results.json for
-   programs and for approval (approve.h). Beside it run-NAME.html, a page that plays both runs (pictures/player.h), for each
+   programs and for approval. Beside it run-NAME.html, a page that plays both runs (pictures/player.h), for each
    trajectory that differs. */
 
 /* Default limit for the pictures in a report: a browser opens this size in a second or two. */

@@ -258,7 +258,7 @@ static double rounded(double flip) {
     return isfinite(flip) ? strtod(text, NULL) : NAN;
 }
 
-/* At most IMAGE_REGIONS_MAX; a frame must stay one line below the limit of json_read.h. */
+/* At most IMAGE_REGIONS_MAX; a frame must stay one line below the limit of base/json.h. */
 static void regression_json_write_regions(JsonWriter *json, const RegressionFrame *frame) {
     const FrameChanges *changes = frame->changes;
     json_put_int(json, "region_count", changes == NULL ? 0 : changes->regions.count);

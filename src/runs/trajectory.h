@@ -141,7 +141,7 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
 /* Largest distance (m) between the bodies of two trajectories in one frame, for bodies that exist in both. */
 double trajectory_distance(const Trajectory *a, const Trajectory *b, int frame);
 
-/* Runs for other programs. CSV: csv_run.h. */
+/* Runs for other programs. */
 
 /* One object, without what is unknown: README.md lists its keys. */
 bool json_run_write(const Trajectory *run, const char *path, Error *error);

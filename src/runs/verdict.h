@@ -96,9 +96,9 @@ enum { VERDICT_CREEP_SECONDS = 10, VERDICT_CREEP_FROM = 10 };
 #define VERDICT_SINK_TIME 1.0
 
 /* Explodes: the energy exceeds its bounds (verdict_watch_step) by more than VERDICT_ENERGY_SHARE of the energy
-   available (energy_balance.h) in the converged run or, without one, in this run, taken as at least
-   VERDICT_LEAST_AVAILABLE (J): otherwise rounding would make a scene at rest explode. The bounds use intervals of VERDICT_ENERGY_TIME (s): an impact stores energy in
-   penetration and releases it in far less time. */
+   available in the converged run or, without one, in this run, taken as at least VERDICT_LEAST_AVAILABLE (J): otherwise
+   rounding would make a scene at rest explode. The bounds use intervals of VERDICT_ENERGY_TIME (s): an impact stores
+   energy in penetration and releases it in far less time. */
 #define VERDICT_ENERGY_SHARE 0.01
 #define VERDICT_ENERGY_TIME 1.0
 #define VERDICT_LEAST_AVAILABLE 1.0

@@ -14,7 +14,7 @@
 extern const Range range_size, range_mass, range_position, range_angle, range_speed, range_spin, range_friction,
     range_gravity, range_dt, range_rate;
 
-/* float; float32 nearest to the decimal, a fraction such as 1/60, or a chain (chain.h). */
+/* float; float32 nearest to the decimal, a fraction such as 1/60, or a chain. */
 FieldParser field_number;
 /* Vec2: a list of two numbers. */
 FieldParser field_vector;
@@ -85,7 +85,7 @@ typedef struct Parameters {
     int count;
     SceneParameter items[SCENE_MAX_PARAMETERS];
     int nodes[SCENE_MAX_PARAMETERS]; /* of their names */
-    bool used[SCENE_MAX_PARAMETERS]; /* a number of the file uses it (chain.h) */
+    bool used[SCENE_MAX_PARAMETERS]; /* a number of the file uses it */
 } Parameters;
 
 /* Reads the tree's parameters, wherever the key is; a scene may have none. */

@@ -43,7 +43,7 @@ enum {
 #define SCENE_MIN_DT 1e-5f      /* s */
 #define SCENE_MAX_DT 1.0f       /* s */
 
-/* A number of the bomb: what the scene runs with, and the ends of its launches (launch.h); from = value = to if all
+/* A number of the bomb: what the scene runs with, and the ends of its launches; from = value = to if all
    launches have the same. */
 typedef struct SceneSpan {
     float value, from, to;
@@ -106,7 +106,7 @@ typedef struct Scene {
 } Scene;
 
 /* NULL with error set: "path:line:column: error: what", the line of the file, a caret below. Takes at most 0.1 s and 20
-   MB for any file: the limits are in source.h and yaml_tree.h. Only long thin boxes whose bounds all overlap take
+   MB for any file: the limits are in base/yaml.h. Only long thin boxes whose bounds all overlap take
    longer to check, 0.7 s for 10,000. The format is described at the head of scenes/pyramid_settled.yaml. */
 Scene *scene_read(const char *path, Error *error);
 

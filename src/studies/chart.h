@@ -86,7 +86,7 @@ typedef struct StepPlace {
 typedef struct StepScores {
     int count;
     double *error;    /* [count] m/s, RMS over the dynamic bodies */
-    double *share;    /* [count] share of bodies that are right (solution_error.h) */
+    double *share;    /* [count] share of bodies that are right (methods/reference.h) */
     StepPlace *place; /* [count] */
     size_t error_capacity, share_capacity, place_capacity;
 } StepScores;
@@ -331,7 +331,7 @@ enum { ROWS_EACH = PROTOCOLS * PHASES };
 /* What the pieces of a scene say about its reference solves. */
 typedef struct SceneSolves {
     double frozen_residual;      /* m/s: largest residual of those of frozen steps */
-    int64_t solves, unconverged; /* those in closed loop; those with a residual above SOLVE_CONVERGED (rollout.h) */
+    int64_t solves, unconverged; /* those in closed loop; those with a residual above SOLVE_CONVERGED */
 } SceneSolves;
 
 /* The speed-accuracy study: every method in every scene, on held-out launches.
@@ -353,7 +353,7 @@ typedef struct SpeedAccuracyOptions {
     const char *folder;   /* created if missing */
     bool pages;           /* for draw() */
     const PiecesRun *run; /* whole, a shard, or a merge */
-    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result (study_key.h). */
+    /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result (runs/pieces.h). */
     bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, uint64_t key,
                  Error *error);
 } SpeedAccuracyOptions;
@@ -413,8 +413,8 @@ typedef struct LaunchLoop {
     int steps, fallen_back;  /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
 } LaunchLoop;
 
-/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch; converged may
-   be NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch (studies/chart.h). */
+/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch; converged
+   may be NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch. */
 bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
                         const RunLog *converged, LaunchLoop *result, Error *error);
 
@@ -536,7 +536,7 @@ extern const CsvLayout launch_page_layout;
 
 extern const char chart_css[]; /* page/chart.css */
 
-/* Writes folder/chart.html from chart.csv, chart_pages.csv (studies/chart.h) and the charts' .svg files there. Without a
+/* Writes folder/chart.html from chart.csv, chart_pages.csv and the charts' .svg files there. Without a
    script: a picture with links above its points, which a table repeats for the keyboard. */
 bool chart_html_write(const char *folder, Error *error);
 
@@ -549,10 +549,10 @@ bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Err
 
 /* Charts of speed against accuracy, drawn from chart.csv. */
 
-/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path (studies/chart.h). x: solver time per
-   step; y: mean velocity error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed loop.
-   One mark per setting, one line per method, and the Pareto front (studies/chart_internal.h) as a staircase behind. 174 x 100
-   mm, a paper's page width; colours and symbols are distinguishable in grey and with colour blindness. The folder
-   must exist. ERROR_INPUT for an invalid table, a scene without marks, or a scene name that is not a file name.
-   Each file appears complete or not at all. */
+/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path. x: solver time per step; y: mean velocity
+   error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed loop. One mark per setting, one
+   line per method, and the Pareto front (studies/chart_internal.h) as a staircase behind. 174 x 100 mm, a paper's page
+   width; colours and symbols are distinguishable in grey and with colour blindness. The folder must exist. ERROR_INPUT
+   for an invalid table, a scene without marks, or a scene name that is not a file name. Each file appears complete or
+   not at all. */
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, Error *error);

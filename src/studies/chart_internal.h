@@ -123,7 +123,7 @@ typedef struct BestRival {
     CurveReach reach; /* CURVE_BEFORE without a rival */
 } BestRival;
 
-/* Every method's error next to the error that its best rival (rival_curves.h) has in the same time: equal_time.csv for
+/* Every method's error next to the error that its best rival has in the same time: equal_time.csv for
    each setting at the time that it takes, equal_time_methods.csv for each method at one time for all in a scene. */
 
 typedef struct EqualTimeRow {
@@ -185,7 +185,7 @@ void pareto_mark(const ChartRow *rows, int count, bool *on_front);
 /* A piece of the speed-accuracy study: a launch of a scene with all methods, which share its converged run and its frozen
    steps. */
 
-/* Scores all contenders of the study on the launch, in parallel, and writes the scores (studies/chart_internal.h). Called from
+/* Scores all contenders of the study on the launch, in parallel, and writes the scores. Called from
    several threads at once, it uses one thread each. */
 bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Progress *progress, Error *error);
 
@@ -253,7 +253,7 @@ typedef struct Chart {
 /* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
-   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (studies/chart_internal.h) are drawn
+   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION are drawn
    there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
    them are left out, and counted in their line. False with error set if nothing remains, or for more than
    CHART_MAX_LINES lines. */

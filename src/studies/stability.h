@@ -337,7 +337,7 @@ typedef struct StabilityOptions {
     const char *names[STABILITY_MAX_NAMES];
     const StabilityOwn *own; /* the studies of a scene file instead of the table's; NULL: the table's */
     const PiecesRun *run;    /* whole, a shard, or a merge */
-    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables (study_key.h). */
+    /* Draws the tables in the folder; NULL: nothing is drawn. The key is of what determines the tables. */
     bool (*draw)(void *context, uint64_t key, Error *error);
     void *draw_context;
 } StabilityOptions;
@@ -374,9 +374,8 @@ void map_panels_write(const MapPanels *map, PlotPage *page);
 
 /* The figures of a stability study, drawn from its tables. */
 
-/* Reads folder/stability.csv and folder/maps.csv (studies/stability.h) and draws, as .png, .svg
-   and a caption .txt of one line,
-     map-NAME   one per map: a panel per method, a tile per cell (studies/stability.h); in the .svg, tiles link to
+/* Reads folder/stability.csv and folder/maps.csv and draws, as .png, .svg and a caption .txt of one line,
+     map-NAME   one per map: a panel per method, a tile per cell; in the .svg, tiles link to
                 the cells' clips, whether these exist or not
      borders    how far each method holds in each study (studies/stability_internal.h)
    into the folder. Readable for the colour-blind, in grey and in black and white. The same tables give the same files.

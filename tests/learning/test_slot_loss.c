@@ -216,7 +216,7 @@ static void both_have_the_gradient_of_differences(void **state) {
     assert_gradient(0.4, 2, hand_tuned);
 }
 
-/* The error is that of solution_error.h; the loss is nearly quadratic for small errors. */
+/* The error is that of methods/reference.h; the loss is nearly quadratic for small errors. */
 static void the_error_is_that_of_the_studies(void **state) {
     (void)state;
     Trial trial;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The plain kernels are the loops that row_kernels.h tells of, and those of every instruction set have their bits.
+/* The plain kernels are the loops that nets/kernels.h tells of, and those of every instruction set have their bits.
    Arrays have the size that they need and no number more, so that the sanitizers see a step beyond them; they begin at
    no multiple of a register's size. */
 #include "testing.h"

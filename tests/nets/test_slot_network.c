@@ -141,7 +141,7 @@ static void run_layer(const SlotLayer *layer, const double *in, double *out) {
     }
 }
 
-/* The formula at the head of slot_network.h, for every slot of the network. */
+/* The formula at the head of SlotNetwork (nets/kinds.h), for every slot of the network. */
 static void predict(const SlotNetwork *network, const SlotView *view, double inputs[INPUTS],
                     double outputs[2 * FIVE_SLOTS]) {
     double first[HIDDEN], second[HIDDEN];
