@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 /* What lists, charts, studies and captions know of a method. A field left zero has a sensible default: a name and a
-   summary are enough to begin with. */
+   summary are enough to begin with; methods/method_looks also wants a caption and a look. */
 
 /* What a method's results are compared for. */
 typedef enum MethodRole {

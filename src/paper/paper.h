@@ -281,7 +281,7 @@ bool system_part_write(void *context, FILE *lines, const Progress *progress, Err
 
 /* The whole study of Avatavului, Ifrim, Voncila (2023), from seed to tables: networks trained in every reading of the
    paper, one factor at a time; their rates of right predictions; their runs in place of the solver; laws of physics in
-   the loss; transfer learning; the systems that the paper cites (paper/paper.h). */
+   the loss; transfer learning; the systems that the paper cites. */
 
 typedef struct PaperOptions {
     const char *scenes; /* folder of single.yaml, stack.yaml, pyramid.yaml, pyramid_settled.yaml */

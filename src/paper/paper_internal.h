@@ -129,9 +129,9 @@ extern ClaimRule *const sain_claims[];
 
 enum { HYBRID_ROWS_MAX = 500 };
 
-/* system_hybrid.csv: a learning (tabulation_training/) at some number of launches. Shares are of the launches since the row
-   before, each answered by the memory as it was before the launch. Errors and times are of launches that it has not
-   learned, by the memory so far. NAN where nothing was answered. */
+/* system_hybrid.csv: a learning (learning/hybrid_training.h) at some number of launches. Shares are of the launches
+   since the row before, each answered by the memory as it was before the launch. Errors and times are of launches that
+   it has not learned, by the memory so far. NAN where nothing was answered. */
 typedef struct HybridRow {
     int scene;        /* of paper_scene_names */
     double tolerance; /* m/s */

@@ -20,7 +20,7 @@ typedef struct StepObserver {
     void *context;
 } StepObserver;
 
-typedef struct Recorder Recorder; /* runs/runs.h */
+typedef struct Recorder Recorder; /* below */
 
 /* Who follows a run, in this order; zero-initialise what is left out. */
 typedef struct RunWatch {
@@ -42,7 +42,7 @@ bool simulate_watched(const Scene *scene, const Method *method, const RunWatch *
 /* The same with one observer. */
 bool simulate_observed(const Scene *scene, const Method *method, const StepObserver *observer, Error *error);
 
-/* Runs the scene and records it in memory (runs/runs.h records to files). NULL with error set for the same
+/* Runs the scene and records it in memory (a Recorder also records to files). NULL with error set for the same
    reasons, or if memory is short. */
 Trajectory *simulate(const Scene *scene, const Method *method, const Progress *progress, Error *error);
 

@@ -386,8 +386,8 @@ typedef struct LaunchLoop {
     int steps, fallen_back;  /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
 } LaunchLoop;
 
-/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch; converged may
-   be NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch (studies/chart.h). */
+/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch; converged
+   may be NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch. */
 bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
                         const RunLog *converged, LaunchLoop *result, Error *error);
 
@@ -520,10 +520,10 @@ bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Err
 
 /* Charts of speed against accuracy, drawn from chart.csv. */
 
-/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path (studies/chart.h). x: solver time per
-   step; y: mean velocity error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed loop.
-   One mark per setting, one line per method, and the Pareto front (studies/chart_internal.h) as a staircase behind. 174 x 100
-   mm, a paper's page width; colours and symbols are distinguishable in grey and with colour blindness. The folder
-   must exist. ERROR_INPUT for an invalid table, a scene without marks, or a scene name that is not a file name.
-   Each file appears complete or not at all. */
+/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path. x: solver time per step; y: mean velocity
+   error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed loop. One mark per setting, one
+   line per method, and the Pareto front (studies/chart_internal.h) as a staircase behind. 174 x 100 mm, a paper's page
+   width; colours and symbols are distinguishable in grey and with colour blindness. The folder must exist. ERROR_INPUT
+   for an invalid table, a scene without marks, or a scene name that is not a file name. Each file appears complete or
+   not at all. */
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, Error *error);

@@ -185,7 +185,7 @@ void pareto_mark(const ChartRow *rows, int count, bool *on_front);
 /* A piece of the speed-accuracy study: a launch of a scene with all methods, which share its converged run and its frozen
    steps. */
 
-/* Scores all contenders of the study on the launch, in parallel, and writes the scores (studies/chart_internal.h). Called from
+/* Scores all contenders of the study on the launch, in parallel, and writes the scores. Called from
    several threads at once, it uses one thread each. */
 bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Progress *progress, Error *error);
 
@@ -253,7 +253,7 @@ typedef struct Chart {
 /* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
-   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION (studies/chart_internal.h) are drawn
+   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION are drawn
    there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
    them are left out, and counted in their line. False with error set if nothing remains, or for more than
    CHART_MAX_LINES lines. */

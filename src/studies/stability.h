@@ -354,9 +354,8 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
 
 /* The figures of a stability study, drawn from its tables. */
 
-/* Reads folder/stability.csv and folder/maps.csv (studies/stability.h) and draws, as .png, .svg
-   and a caption .txt of one line,
-     map-NAME   one per map: a panel per method, a tile per cell (studies/stability.h); in the .svg, tiles link to
+/* Reads folder/stability.csv and folder/maps.csv and draws, as .png, .svg and a caption .txt of one line,
+     map-NAME   one per map: a panel per method, a tile per cell; in the .svg, tiles link to
                 the cells' clips, whether these exist or not
      borders    how far each method holds in each study (studies/stability_internal.h)
    into the folder. Readable for the colour-blind, in grey and in black and white. The same tables give the same files.
