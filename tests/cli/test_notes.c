@@ -41,15 +41,13 @@ static char *print_all(NoteLevel level) {
     return text;
 }
 
-static void quiet_prints_nothing(void **state) {
-    (void)state;
+TEST(quiet_prints_nothing) {
     char *text = print_all(NOTES_QUIET);
     assert_string_equal(text, "");
     free(text);
 }
 
-static void notes_and_progress_are_printed(void **state) {
-    (void)state;
+TEST(notes_and_progress_are_printed) {
     char *text = print_all(NOTES_NORMAL);
     assert_non_null(strstr(text, "work: 100%"));
     assert_non_null(strstr(text, "\ntwinbox: note: 1 is a note\n"));
@@ -58,8 +56,7 @@ static void notes_and_progress_are_printed(void **state) {
     free(text);
 }
 
-static void verbose_prints_all(void **state) {
-    (void)state;
+TEST(verbose_prints_all) {
     char *text = print_all(NOTES_VERBOSE);
     assert_non_null(strstr(text, "work: 100%"));
     assert_non_null(strstr(text, "\ntwinbox: note: 1 is a note\ntwinbox: 2 is printed only with -v\n"
@@ -68,9 +65,4 @@ static void verbose_prints_all(void **state) {
     free(text);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(quiet_prints_nothing),
-                                       cmocka_unit_test(notes_and_progress_are_printed),
-                                       cmocka_unit_test(verbose_prints_all)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -53,8 +53,7 @@ static PageSet begin(void) {
 }
 
 /* 48 bytes a frame: 8 MB are 174,762 frames. What is not asked for does not count. */
-static void a_long_run_has_every_second_frame(void **state) {
-    (void)state;
+TEST(a_long_run_has_every_second_frame) {
     const PageSet set = begin();
     const struct {
         int frames;
@@ -114,8 +113,7 @@ static bool write_part(void *context, int part, FILE *lines, const Progress *pro
 }
 
 /* An interrupted set continues with the part that it was at, and counts the pages of those before it. */
-static void pages_are_counted_once(void **state) {
-    (void)state;
+TEST(pages_are_counted_once) {
     Work work = {.fails = true};
     for (int round = 0; round < 2; round++) {
         Error error = {0};
@@ -139,8 +137,7 @@ static void pages_are_counted_once(void **state) {
     free(text);
 }
 
-static void beyond_the_limit_pages_are_left_out(void **state) {
-    (void)state;
+TEST(beyond_the_limit_pages_are_left_out) {
     PageSet set = begin();
     char link[PAGE_LINK_SIZE];
     set.bytes = PAGE_SET_MAX_BYTES - 1;
@@ -157,11 +154,4 @@ static void beyond_the_limit_pages_are_left_out(void **state) {
     assert_string_equal(link, "");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_long_run_has_every_second_frame),
-        cmocka_unit_test(pages_are_counted_once),
-        cmocka_unit_test(beyond_the_limit_pages_are_left_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

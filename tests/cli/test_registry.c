@@ -64,16 +64,14 @@ static void assert_table_has(bool (*command)(int, char **, Error *), char **argv
     free(table);
 }
 
-static void methods_lists_it(void **state) {
-    (void)state;
+TEST(methods_lists_it) {
     char *printed = run_command(command_methods, (char *[]){"twinbox methods", NULL});
     assert_non_null(strstr(printed, "\nof-test           a solver that only a test has\n"));
     assert_non_null(strstr(printed, "engine"));
     free(printed);
 }
 
-static void every_study_has_it(void **state) {
-    (void)state;
+TEST(every_study_has_it) {
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
         Error error = {0};
         ContenderList list;
@@ -86,8 +84,7 @@ static void every_study_has_it(void **state) {
     }
 }
 
-static void a_chart_scores_it(void **state) {
-    (void)state;
+TEST(a_chart_scores_it) {
     char folder[256];
     snprintf(folder, sizeof folder, "%s", temporary_path("chart"));
     char *arguments[] = {"twinbox chart",
@@ -101,8 +98,7 @@ static void a_chart_scores_it(void **state) {
     assert_table_has(command_chart, arguments, temporary_path("chart/chart.csv"), "\nsingle,of-test,,frozen,impact,5,");
 }
 
-static void a_border_is_found_for_it(void **state) {
-    (void)state;
+TEST(a_border_is_found_for_it) {
     char folder[256];
     snprintf(folder, sizeof folder, "%s", temporary_path("stability"));
     char *arguments[] = {"twinbox stability", "--scenes",   SOURCE_DIR "/scenes", "-o",      folder,
@@ -111,8 +107,7 @@ static void a_border_is_found_for_it(void **state) {
                      "\nbomb_speed,of-test,,speed,m/s,");
 }
 
-static void its_fallbacks_are_counted(void **state) {
-    (void)state;
+TEST(its_fallbacks_are_counted) {
     char folder[256];
     snprintf(folder, sizeof folder, "%s", temporary_path("fallbacks"));
     char *study[] = {"twinbox stability", "--scenes",   SOURCE_DIR "/scenes", "-o",      folder,
@@ -132,8 +127,7 @@ static void its_fallbacks_are_counted(void **state) {
     free(printed);
 }
 
-static void a_picture_has_its_caption(void **state) {
-    (void)state;
+TEST(a_picture_has_its_caption) {
     Error error = {0};
     Picture picture;
     Trajectory *run = run_make("of-test", 2);
@@ -149,10 +143,4 @@ static void a_picture_has_its_caption(void **state) {
     trajectory_destroy(run);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(methods_lists_it),          cmocka_unit_test(every_study_has_it),
-        cmocka_unit_test(a_chart_scores_it),         cmocka_unit_test(a_border_is_found_for_it),
-        cmocka_unit_test(its_fallbacks_are_counted), cmocka_unit_test(a_picture_has_its_caption)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

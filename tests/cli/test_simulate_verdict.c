@@ -6,8 +6,7 @@
 #include "base/file.h"
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step; no scene file may have that speed. */
-static void a_run_that_overflows_has_a_verdict(void **state) {
-    (void)state;
+TEST(a_run_that_overflows_has_a_verdict) {
     Error error = {0};
     BodyDef body = {.size = {1, 1}, .mass = 1, .position = {0, 1}, .velocity = {3e38f, 0}};
     const Scene scene = {.name = "fast",
@@ -38,8 +37,7 @@ static void a_run_that_overflows_has_a_verdict(void **state) {
     simulate_verdict_free(&verdict);
 }
 
-static void other_failures_have_none(void **state) {
-    (void)state;
+TEST(other_failures_have_none) {
     Error error = {0};
     const Scene scene = {.name = "empty", .dt = 1.0f / 60.0f, .frames = 1};
     SimulateVerdict verdict;
@@ -49,8 +47,4 @@ static void other_failures_have_none(void **state) {
     simulate_verdict_free(&verdict);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_run_that_overflows_has_a_verdict),
-                                       cmocka_unit_test(other_failures_have_none)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

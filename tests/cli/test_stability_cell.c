@@ -7,8 +7,7 @@
 
 #define HEADER "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit\n"
 
-static void a_cell_has_a_map_a_method_and_two_numbers(void **state) {
-    (void)state;
+TEST(a_cell_has_a_map_a_method_and_two_numbers) {
     static const struct {
         const char *text, *map, *method;
         double x, y;
@@ -25,8 +24,7 @@ static void a_cell_has_a_map_a_method_and_two_numbers(void **state) {
     }
 }
 
-static void what_is_no_cell_is_refused(void **state) {
-    (void)state;
+TEST(what_is_no_cell_is_refused) {
     char map[300], method[300];
     snprintf(map, sizeof map, "%0*d:engine:1,2", CSV_NAME_SIZE, 1);
     snprintf(method, sizeof method, "a:%0*d:1,2", METHOD_TEXT_SIZE, 1);
@@ -97,8 +95,7 @@ static void expect_row(const char *text, int row, const char *message) {
     }
 }
 
-static void the_nearest_cell_within_a_percent_is_found(void **state) {
-    (void)state;
+TEST(the_nearest_cell_within_a_percent_is_found) {
     expect_row("a:engine:10,1", 0, NULL);
     expect_row("a:engine:10.02,1", 0, NULL);
     expect_row("a:engine:10.03,1", 1, NULL);
@@ -113,19 +110,10 @@ static void the_nearest_cell_within_a_percent_is_found(void **state) {
                "map a has no method engine:k=5; its methods: engine, engine:k=4, momentum, nncg");
 }
 
-static void the_first_method_that_holds_there_is_the_holder(void **state) {
-    (void)state;
+TEST(the_first_method_that_holds_there_is_the_holder) {
     assert_ptr_equal(stability_cell_holder(&table, map_cell(&table, 0)), map_cell(&table, 4));
     assert_null(stability_cell_holder(&table, map_cell(&table, 1))); /* in map b only */
     assert_null(stability_cell_holder(&table, map_cell(&table, 2)));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cell_has_a_map_a_method_and_two_numbers),
-        cmocka_unit_test(what_is_no_cell_is_refused),
-        cmocka_unit_test(the_nearest_cell_within_a_percent_is_found),
-        cmocka_unit_test(the_first_method_that_holds_there_is_the_holder),
-    };
-    return cmocka_run_group_tests(tests, read_table, free_table);
-}
+RUN_TESTS(read_table, free_table)

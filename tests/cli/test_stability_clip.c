@@ -25,8 +25,7 @@ static bool make_clip(const char *cell, int rate, Error *error) {
 static bool there_is(const char *name) { return access(temporary_path(name), R_OK) == 0; }
 
 /* 20 Hz: frames 0 to 4, and those of three seconds. */
-static void a_clip_goes_on_for_three_seconds(void **state) {
-    (void)state;
+TEST(a_clip_goes_on_for_three_seconds) {
     Error error = {0};
     assert_ok(make_clip("m:engine:20,2", 20, &error), error);
     assert_true(there_is("clips/m-engine-20_2.mp4") && there_is("clips/m-engine-20_2/frame_000064.png"));
@@ -34,8 +33,7 @@ static void a_clip_goes_on_for_three_seconds(void **state) {
 }
 
 /* 480 Hz: every eighth frame, up to step 2 + 3 * 480. */
-static void no_more_than_sixty_frames_a_second_are_drawn(void **state) {
-    (void)state;
+TEST(no_more_than_sixty_frames_a_second_are_drawn) {
     Error error = {0};
     assert_ok(make_clip("m:momentum:480,2", 480, &error), error);
     assert_true(there_is("clips/m-momentum-480_2/frame_000180.png"));
@@ -43,8 +41,7 @@ static void no_more_than_sixty_frames_a_second_are_drawn(void **state) {
 }
 
 /* The run that leaves the finite numbers in step 3 ends with frame 2; one that holds goes on beside it. */
-static void what_is_no_more_finite_ends_before(void **state) {
-    (void)state;
+TEST(what_is_no_more_finite_ends_before) {
     Error error = {0};
     assert_ok(make_clip("m:nncg:20,2", 20, &error), error);
     assert_true(there_is("clips/m-nncg-20_2/frame_000063.png"));
@@ -54,8 +51,7 @@ static void what_is_no_more_finite_ends_before(void **state) {
     assert_false(there_is("clips/m-nncg-20_3/frame_000003.png"));
 }
 
-static void what_cannot_be_shown_is_refused(void **state) {
-    (void)state;
+TEST(what_cannot_be_shown_is_refused) {
     static const struct {
         const char *cell, *message;
     } cases[] = {{"m:engine", "'m:engine' is not MAP:METHOD:X,Y"},
@@ -70,12 +66,4 @@ static void what_cannot_be_shown_is_refused(void **state) {
                    "map m has no scene");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_clip_goes_on_for_three_seconds),
-        cmocka_unit_test(no_more_than_sixty_frames_a_second_are_drawn),
-        cmocka_unit_test(what_is_no_more_finite_ends_before),
-        cmocka_unit_test(what_cannot_be_shown_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -11,6 +11,7 @@ enum { FRAMES = 61, IMPACT = 30 };
 static Trajectory *runs[3];
 
 static int make(void **state) {
+    (void)state;
     static const char *const methods[] = {"engine", "momentum:k=20", "pair-net:network=nets/my_net.npz"};
     Error error = {0};
     for (int i = 0; i < 3; i++) {
@@ -25,13 +26,14 @@ static int make(void **state) {
 }
 
 static int destroy(void **state) {
+    (void)state;
     for (int i = 0; i < 3; i++) trajectory_destroy(runs[i]);
     return 0;
 }
 
 static void print_text(FILE *out, const void *text) { latex_text(out, text); }
 
-static void every_character_stands_for_itself(void **state) {
+TEST(every_character_stands_for_itself) {
     static const char *const cases[][2] = {{"stack", "stack"},
                                            {"two_boxes", "two\\_boxes"},
                                            {"100% & $5 #1 {x}", "100\\% \\& \\$5 \\#1 \\{x\\}"},
@@ -87,7 +89,7 @@ static FigureSpec at_times(int count, double first, double second, double third)
     return spec;
 }
 
-static void a_strip_names_times_and_rows(void **state) {
+TEST(a_strip_names_times_and_rows) {
     assert_caption("strip", at_times(3, 0.1, 0.25, 1),
                    "The " SCENE " at 0.1, 0.25 and 1~s, a column each. Rows from top to bottom: " ENGINE ", " MOMENTUM
                    " and \\texttt{pair-net:network=my\\_net.npz} (neural network for pairs).");
@@ -102,7 +104,7 @@ static void a_strip_names_times_and_rows(void **state) {
     assert_caption("strip", many, "The " SCENE " at 11 moments from 0 to 1~s, by " ENGINE ".");
 }
 
-static void one_moment_is_named(void **state) {
+TEST(one_moment_is_named) {
     const char *const text =
         "Contacts of the " SCENE " at 0.483~s: contact points, normals and impulses of the next step. ";
     char wanted[600];
@@ -112,20 +114,20 @@ static void one_moment_is_named(void **state) {
     assert_caption("annotated", spec_of(runs, 2), wanted);
 }
 
-static void a_divergence_names_the_first_run_and_the_impact(void **state) {
+TEST(a_divergence_names_the_first_run_and_the_impact) {
     assert_caption("divergence", spec_of(runs, 2),
                    "Runs of the " SCENE " by " MOMENTUM
                    ": largest distance of a body from its position in the run by " ENGINE
                    ", over time. The dashed vertical line marks the impact of the bomb at 0.50~s.");
 }
 
-static void a_strobe_names_its_moments(void **state) {
+TEST(a_strobe_names_its_moments) {
     assert_caption("strobe", at_times(1, 0.25, 0.5, 0.75),
                    "One run of the " SCENE
                    " at 0.25, 0.5 and 0.75~s in one picture; earlier moments are paler. Method: " ENGINE ".");
 }
 
-static void a_network_has_its_layers(void **state) {
+TEST(a_network_has_its_layers) {
     FigureSpec spec = {.width = FIGURE_PAGE_WIDTH,
                        .points = FIGURE_POINTS,
                        .dpi = 100,
@@ -135,7 +137,7 @@ static void a_network_has_its_layers(void **state) {
 }
 
 /* The poses of the pair are made to touch as the contact says. */
-static void a_narrow_phase_names_the_pair(void **state) {
+TEST(a_narrow_phase_names_the_pair) {
     *run_position(runs[0], IMPACT - 1, BOMB_BODY) = vec2(-2, 1.7F);
     assert_caption(
         "narrow-phase", spec_of(runs, 1),
@@ -144,15 +146,4 @@ static void a_narrow_phase_names_the_pair(void **state) {
         "the normal. Method: " ENGINE ".");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_character_stands_for_itself),
-        cmocka_unit_test(a_strip_names_times_and_rows),
-        cmocka_unit_test(one_moment_is_named),
-        cmocka_unit_test(a_divergence_names_the_first_run_and_the_impact),
-        cmocka_unit_test(a_strobe_names_its_moments),
-        cmocka_unit_test(a_network_has_its_layers),
-        cmocka_unit_test(a_narrow_phase_names_the_pair),
-    };
-    return cmocka_run_group_tests(tests, make, destroy);
-}
+RUN_TESTS(make, destroy)

@@ -41,7 +41,7 @@ static int gather_arrows(const Sketch *sketch, Point vectors[8], Point tails[8])
     return count;
 }
 
-static void arrows_are_the_impulses_of_the_step_that_follows(void **state) {
+TEST(arrows_are_the_impulses_of_the_step_that_follows) {
     Trajectory *run = run_with_contacts();
     FigureSpec spec = spec_of(&run, 1);
     Sketch sketch;
@@ -70,7 +70,7 @@ static void arrows_are_the_impulses_of_the_step_that_follows(void **state) {
     free_drawn(&sketch, &run, 1);
 }
 
-static void a_moment_without_impulses_has_points(void **state) {
+TEST(a_moment_without_impulses_has_points) {
     Trajectory *run = run_make("engine", 3);
     add(run, 2, GROUND_BODY, FIRST_BOX, vec2(-2.5f, 0), 0, 0);
     add(run, 2, GROUND_BODY, FIRST_BOX, vec2(-2.5f, 0), NAN, 0);
@@ -124,7 +124,7 @@ static bool is_led(const Sketch *sketch, Point point, const PageBox *box) {
 
 /* Six contacts within a few millimetres, as where a bomb strikes: every number is there, apart from all others and from all
    rings, and at the end of a line from its contact, or clearly nearest to it. */
-static void crowded_numbers_lead_to_their_contacts(void **state) {
+TEST(crowded_numbers_lead_to_their_contacts) {
     enum { CONTACTS = 6 };
     Trajectory *run = run_make("engine", 2);
     for (int i = 0; i < CONTACTS; i++)
@@ -158,7 +158,7 @@ static void crowded_numbers_lead_to_their_contacts(void **state) {
 }
 
 /* A hundred points in one place: some numbers are left out, and the title states it. */
-static void numbers_without_room_are_left_out(void **state) {
+TEST(numbers_without_room_are_left_out) {
     Trajectory *run = run_make("engine", 2);
     for (int i = 0; i < 100; i++) add(run, 1, GROUND_BODY, FIRST_BOX, vec2(-2.5f + 0.001f * (float)i, 0), 0.1f, 0);
     add(run, 1, GROUND_BODY, SECOND_BOX, vec2(2, 0), 3, 0);
@@ -176,7 +176,7 @@ static void numbers_without_room_are_left_out(void **state) {
     free_drawn(&sketch, &run, 1);
 }
 
-static void what_cannot_be_shown_is_refused(void **state) {
+TEST(what_cannot_be_shown_is_refused) {
     Trajectory *without = run_make("engine", 5), *run = run_with_contacts();
     FigureSpec spec = spec_of(&without, 1);
     expect_kind_refused("annotated", &spec, "a.npz: error: the run has no contacts with an impulse");
@@ -196,13 +196,4 @@ static void what_cannot_be_shown_is_refused(void **state) {
     trajectory_destroy(run);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(arrows_are_the_impulses_of_the_step_that_follows),
-        cmocka_unit_test(a_moment_without_impulses_has_points),
-        cmocka_unit_test(crowded_numbers_lead_to_their_contacts),
-        cmocka_unit_test(numbers_without_room_are_left_out),
-        cmocka_unit_test(what_cannot_be_shown_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

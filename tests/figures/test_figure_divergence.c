@@ -27,7 +27,7 @@ static const SketchMark *longest_line(const Sketch *sketch) {
     return longest;
 }
 
-static void growth_by_a_factor_is_a_straight_line(void **state) {
+TEST(growth_by_a_factor_is_a_straight_line) {
     Trajectory *runs[] = {run_make("engine", 61), run_apart()};
     FigureSpec spec = spec_of(runs, 2);
     Sketch sketch;
@@ -45,7 +45,7 @@ static void growth_by_a_factor_is_a_straight_line(void **state) {
     free_drawn(&sketch, runs, 2);
 }
 
-static void a_plot_places_decades_evenly(void **state) {
+TEST(a_plot_places_decades_evenly) {
     PlotPanel plot = {.box = {10, 20, 60, 40}, .x = plot_linear_axis(0, 2, ""), .y = plot_log_axis(1e-6, 1e2, "")};
     plot_panel_place(&plot);
     const double decade = plot_place(&plot, 0, 1e-3).y - plot_place(&plot, 0, 1e-4).y;
@@ -71,7 +71,7 @@ static Trajectory *simulate_stack(const char *method_name, float bomb_shift, int
 
 /* The band starts with a micrometre, rounded to float32 at the body's position, and every moment has an upper and a
    lower end. */
-static void the_band_begins_with_the_shift(void **state) {
+TEST(the_band_begins_with_the_shift) {
     Trajectory *runs[] = {simulate_stack("engine", 0, 40), simulate_stack("engine", 0.5f, 40)};
     FigureSpec spec = spec_of(runs, 2);
     spec.scene = STACK;
@@ -95,7 +95,7 @@ static void the_band_begins_with_the_shift(void **state) {
     free_drawn(&sketch, runs, 2);
 }
 
-static void what_cannot_be_shown_is_refused(void **state) {
+TEST(what_cannot_be_shown_is_refused) {
     Trajectory *runs[] = {run_make("engine", 11), run_make("engine", 11)};
     FigureSpec spec = spec_of(runs, 2);
     expect_kind_refused("divergence", &spec, "b.npz: error: never diverges from a.npz");
@@ -117,12 +117,4 @@ static void what_cannot_be_shown_is_refused(void **state) {
     trajectory_destroy(changed[1]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(growth_by_a_factor_is_a_straight_line),
-        cmocka_unit_test(a_plot_places_decades_evenly),
-        cmocka_unit_test(the_band_begins_with_the_shift),
-        cmocka_unit_test(what_cannot_be_shown_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

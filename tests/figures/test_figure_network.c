@@ -31,7 +31,7 @@ static const char *write_small(const char *inputs) {
     return path;
 }
 
-static void every_weight_is_a_line_the_strongest_last(void **state) {
+TEST(every_weight_is_a_line_the_strongest_last) {
     const FigureSpec spec = spec_for(write_small("dx dy spin"));
     Sketch sketch;
     draw_kind(&sketch, "network", &spec);
@@ -56,7 +56,7 @@ static void every_weight_is_a_line_the_strongest_last(void **state) {
     sketch_free(&sketch);
 }
 
-static void inputs_without_names_have_numbers(void **state) {
+TEST(inputs_without_names_have_numbers) {
     const FigureSpec spec = spec_for(write_small("dx dy"));
     Sketch sketch;
     draw_kind(&sketch, "network", &spec);
@@ -71,7 +71,7 @@ static double grey(uint32_t colour) {
     return 0.299 * (colour >> 16 & 255) + 0.587 * (colour >> 8 & 255) + 0.114 * (colour & 255);
 }
 
-static void colours_tell_sign_and_size(void **state) {
+TEST(colours_tell_sign_and_size) {
     assert_int_equal(weight_colour(0), 0xFFFFFF);
     assert_int_equal(weight_colour(1), 0x004C80);
     assert_int_equal(weight_colour(-1), 0xE69F00);
@@ -83,7 +83,7 @@ static void colours_tell_sign_and_size(void **state) {
     }
 }
 
-static void wide_layers_are_matrices(void **state) {
+TEST(wide_layers_are_matrices) {
     Error error = {0};
     Network *network = network_create(1, (const int[]){50, 2}, &error);
     network->weights[0][0] = 2, network->weights[0][50 + 49] = -1;
@@ -107,7 +107,7 @@ static void wide_layers_are_matrices(void **state) {
 }
 
 /* 37 weights share a pixel: the largest is shown, which is the first, not the last. */
-static void of_weights_in_a_pixel_the_largest_shows(void **state) {
+TEST(of_weights_in_a_pixel_the_largest_shows) {
     Error error = {0};
     Network *network = network_create(1, (const int[]){4096, 1}, &error);
     for (int i = 0; i < 4096; i++) network->weights[0][i] = 0.25f;
@@ -126,7 +126,7 @@ static void of_weights_in_a_pixel_the_largest_shows(void **state) {
     sketch_free(&sketch);
 }
 
-static void the_networks_that_ship_are_shown(void **state) {
+TEST(the_networks_that_ship_are_shown) {
     static const struct {
         const char *path, *title;
         int pictures;
@@ -147,7 +147,7 @@ static void the_networks_that_ship_are_shown(void **state) {
         }
 }
 
-static void damaged_files_are_refused(void **state) {
+TEST(damaged_files_are_refused) {
     Error error = {0};
     size_t size;
     char *whole = file_read(NETWORKS "pair-net.npz", 1 << 20, &size, &error);
@@ -166,15 +166,4 @@ static void damaged_files_are_refused(void **state) {
     expect_kind_refused("network", &spec, "the names of inputs and outputs leave");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_weight_is_a_line_the_strongest_last),
-        cmocka_unit_test(inputs_without_names_have_numbers),
-        cmocka_unit_test(colours_tell_sign_and_size),
-        cmocka_unit_test(wide_layers_are_matrices),
-        cmocka_unit_test(of_weights_in_a_pixel_the_largest_shows),
-        cmocka_unit_test(the_networks_that_ship_are_shown),
-        cmocka_unit_test(damaged_files_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

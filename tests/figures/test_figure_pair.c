@@ -30,7 +30,7 @@ static Trajectory *run_touching(void) {
     return run;
 }
 
-static void the_pairs_own_numbers_are_written(void **state) {
+TEST(the_pairs_own_numbers_are_written) {
     Trajectory *run = run_touching();
     FigureSpec spec = spec_of(&run, 1);
     for (int column = 0; column < 2; column++) {
@@ -54,7 +54,7 @@ static void the_pairs_own_numbers_are_written(void **state) {
 
 /* Typical pairs of runs, with any normal: after the rotation the normal points up out of the reference box, and
    depths and distances are unchanged. */
-static void turning_changes_no_length(void **state) {
+TEST(turning_changes_no_length) {
     int turned = 0;
     for (int i = 0; i < 200; i++) {
         const float angle = 0.11f * (float)i, way = 0.37f * (float)i;
@@ -86,7 +86,7 @@ static void turning_changes_no_length(void **state) {
     assert_true(turned > 150);
 }
 
-static void what_cannot_be_shown_is_refused(void **state) {
+TEST(what_cannot_be_shown_is_refused) {
     Trajectory *run = run_touching(), *without = run_make("engine", 3);
     FigureSpec spec = spec_of(&without, 1);
     expect_kind_refused("narrow-phase", &spec, "a.npz: error: no two dynamic bodies touch");
@@ -107,11 +107,4 @@ static void what_cannot_be_shown_is_refused(void **state) {
     trajectory_destroy(without);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_pairs_own_numbers_are_written),
-        cmocka_unit_test(turning_changes_no_length),
-        cmocka_unit_test(what_cannot_be_shown_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

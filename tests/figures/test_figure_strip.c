@@ -5,7 +5,7 @@
 #include "pixels/type.h"
 #include "pictures/mesa.h"
 
-static void every_run_has_a_row_and_every_moment_a_column(void **state) {
+TEST(every_run_has_a_row_and_every_moment_a_column) {
     Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 31)};
     FigureSpec spec = spec_of(runs, 2);
     spec.time_count = 3;
@@ -29,7 +29,7 @@ static void every_run_has_a_row_and_every_moment_a_column(void **state) {
     free_drawn(&sketch, runs, 2);
 }
 
-static void moments_go_from_the_first_frame_to_the_last_of_the_shortest_run(void **state) {
+TEST(moments_go_from_the_first_frame_to_the_last_of_the_shortest_run) {
     Trajectory *runs[] = {run_make("engine", 121), run_make("engine", 61)};
     FigureSpec spec = spec_of(runs, 2);
     spec.moments = 3;
@@ -40,7 +40,7 @@ static void moments_go_from_the_first_frame_to_the_last_of_the_shortest_run(void
 }
 
 /* The window covers the dynamic bodies: the bomb falls from 5.6 m, the boxes stand on the ground, 6 m wide in all. */
-static void the_window_holds_what_moves(void **state) {
+TEST(the_window_holds_what_moves) {
     Trajectory *run = run_make("engine", 3);
     FigureSpec spec = spec_of(&run, 1);
     spec.moments = 1;
@@ -54,7 +54,7 @@ static void the_window_holds_what_moves(void **state) {
 }
 
 /* A page of a given height: its cells fill it, and the window is wider than the bodies. */
-static void a_given_height_is_filled(void **state) {
+TEST(a_given_height_is_filled) {
     Trajectory *runs[] = {run_make("engine", 3), run_make("engine", 3)};
     FigureSpec spec = spec_of(runs, 2);
     spec.moments = 3, spec.height = 60;
@@ -69,7 +69,7 @@ static void a_given_height_is_filled(void **state) {
 }
 
 /* Only what is asked for sets the window: the boxes stand near the ground, the bomb falls from 5.6 m. */
-static void the_bodies_in_question_set_the_window(void **state) {
+TEST(the_bodies_in_question_set_the_window) {
     Trajectory *run = run_make("engine", 3);
     *run_position(run, 2, SECOND_BOX) = vec2(-50, 3);
     FigureSpec spec = spec_of(&run, 1);
@@ -88,7 +88,7 @@ static void the_bodies_in_question_set_the_window(void **state) {
     trajectory_destroy(run);
 }
 
-static void who_has_left_is_counted(void **state) {
+TEST(who_has_left_is_counted) {
     Trajectory *runs[] = {run_make("engine", 3), run_make("pair-net", 3)};
     *run_position(runs[1], 2, FIRST_BOX) = vec2(-50, 3);
     *run_position(runs[1], 2, BOMB_BODY) = vec2(1e30f, -1e30f);
@@ -106,7 +106,7 @@ static double row_height(const Sketch *sketch) {
 }
 
 /* Whatever the width of the page, the method's name is there as a whole, and so are settings that have room. */
-static void the_name_of_a_method_never_disappears(void **state) {
+TEST(the_name_of_a_method_never_disappears) {
     Trajectory *run = run_make("momentum:k=20", 61);
     FigureSpec spec = spec_of(&run, 1);
     for (int moments = 2; moments <= 12; moments += 5)
@@ -126,7 +126,7 @@ static void the_name_of_a_method_never_disappears(void **state) {
     trajectory_destroy(run);
 }
 
-static void long_settings_are_cut_to_their_row(void **state) {
+TEST(long_settings_are_cut_to_their_row) {
     Trajectory *run = run_make("pair-net:network=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz", 61);
     FigureSpec spec = spec_of(&run, 1);
     spec.moments = 6;
@@ -140,7 +140,7 @@ static void long_settings_are_cut_to_their_row(void **state) {
     free_drawn(&sketch, &run, 1);
 }
 
-static void what_cannot_be_shown_is_refused(void **state) {
+TEST(what_cannot_be_shown_is_refused) {
     Error error = {0};
     Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 11)};
     FigureSpec spec = spec_of(runs, 2);
@@ -159,17 +159,4 @@ static void what_cannot_be_shown_is_refused(void **state) {
     trajectory_destroy(runs[1]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_run_has_a_row_and_every_moment_a_column),
-        cmocka_unit_test(moments_go_from_the_first_frame_to_the_last_of_the_shortest_run),
-        cmocka_unit_test(the_window_holds_what_moves),
-        cmocka_unit_test(a_given_height_is_filled),
-        cmocka_unit_test(the_bodies_in_question_set_the_window),
-        cmocka_unit_test(who_has_left_is_counted),
-        cmocka_unit_test(the_name_of_a_method_never_disappears),
-        cmocka_unit_test(long_settings_are_cut_to_their_row),
-        cmocka_unit_test(what_cannot_be_shown_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -27,7 +27,7 @@ static int alpha_at(const Image *image, double x, double y) {
     return image->pixels[4 * (row * image->width + column) + 3];
 }
 
-static void earlier_is_paler(void **state) {
+TEST(earlier_is_paler) {
     Trajectory *run = run_rolling();
     FigureSpec spec = spec_of(&run, 1);
     spec.time_count = 3;
@@ -47,7 +47,7 @@ static void earlier_is_paler(void **state) {
     free_drawn(&sketch, &run, 1);
 }
 
-static void the_bombs_way_is_drawn_and_timed(void **state) {
+TEST(the_bombs_way_is_drawn_and_timed) {
     Trajectory *run = run_make("engine", 21);
     FigureSpec spec = spec_of(&run, 1);
     spec.time_count = 3;
@@ -75,7 +75,7 @@ static void the_bombs_way_is_drawn_and_timed(void **state) {
     free_drawn(&sketch, &run, 1);
 }
 
-static void moments_are_as_many_as_asked_for(void **state) {
+TEST(moments_are_as_many_as_asked_for) {
     Trajectory *run = run_make("engine", 21);
     FigureSpec spec = spec_of(&run, 1);
     Sketch sketch;
@@ -91,11 +91,4 @@ static void moments_are_as_many_as_asked_for(void **state) {
     trajectory_destroy(run);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(earlier_is_paler),
-        cmocka_unit_test(the_bombs_way_is_drawn_and_timed),
-        cmocka_unit_test(moments_are_as_many_as_asked_for),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

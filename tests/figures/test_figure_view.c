@@ -16,7 +16,7 @@ static void assert_same(WorldWindow a, WorldWindow b) {
 }
 
 /* The box is in the middle in the frames before, and far away in the last one shown. */
-static void a_body_that_has_flown_off_changes_nothing(void **state) {
+TEST(a_body_that_has_flown_off_changes_nothing) {
     Trajectory *run = run_make("engine", 12);
     const FigureSpec spec = spec_of(&run, 1);
     for (int frame = 0; frame < 12; frame++) *run_position(run, frame, FIRST_BOX) = vec2(0, 0.5F);
@@ -28,7 +28,7 @@ static void a_body_that_has_flown_off_changes_nothing(void **state) {
     trajectory_destroy(run);
 }
 
-static void a_view_is_that_of_the_spec_or_of_another_run(void **state) {
+TEST(a_view_is_that_of_the_spec_or_of_another_run) {
     Trajectory *runs[] = {run_make("engine", 12), run_make("engine", 4)};
     run_position(runs[1], 0, FIRST_BOX)->x = -9;
     FigureSpec spec = spec_of(runs, 1);
@@ -44,8 +44,4 @@ static void a_view_is_that_of_the_spec_or_of_another_run(void **state) {
     for (int i = 0; i < 2; i++) trajectory_destroy(runs[i]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_body_that_has_flown_off_changes_nothing),
-                                       cmocka_unit_test(a_view_is_that_of_the_spec_or_of_another_run)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

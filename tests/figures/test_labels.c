@@ -11,7 +11,7 @@ static LabelField *field_10_by_10(void) {
     return field;
 }
 
-static void labels_go_where_nothing_is(void **state) {
+TEST(labels_go_where_nothing_is) {
     LabelField *field = field_10_by_10();
     PageBox box;
     /* The right is preferred, then left, above, below. */
@@ -28,7 +28,7 @@ static void labels_go_where_nothing_is(void **state) {
     free(field);
 }
 
-static void labels_stay_inside_the_frame(void **state) {
+TEST(labels_stay_inside_the_frame) {
     LabelField *field = field_10_by_10();
     PageBox box;
     assert_true(label_place(field, 9, 9.5, 0.5, 2, 1, false, &box));
@@ -37,7 +37,7 @@ static void labels_stay_inside_the_frame(void **state) {
     free(field);
 }
 
-static void only_what_must_be_there_crosses_a_line(void **state) {
+TEST(only_what_must_be_there_crosses_a_line) {
     LabelField *field = field_10_by_10();
     PageBox box;
     for (int i = 0; i <= 20; i++) label_add_segment(field, (Segment){0, 0.5 * i, 10, 0.5 * i});
@@ -49,11 +49,4 @@ static void only_what_must_be_there_crosses_a_line(void **state) {
     free(field);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(labels_go_where_nothing_is),
-        cmocka_unit_test(labels_stay_inside_the_frame),
-        cmocka_unit_test(only_what_must_be_there_crosses_a_line),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-static void an_axis_has_room_for_its_values(void **state) {
+TEST(an_axis_has_room_for_its_values) {
     PlotAxis axis = plot_log_axis(1, 1000, "");
     assert_true(axis.low < 1 && axis.low > 0.5 && axis.high > 1000 && axis.high < 2000);
     /* One value has a decade around it. */
@@ -25,7 +25,7 @@ static void an_axis_has_room_for_its_values(void **state) {
     assert_near(plot_axis_place(&axis, -4), 20, 1e-12);
 }
 
-static void an_axis_holds_what_is_drawn(void **state) {
+TEST(an_axis_holds_what_is_drawn) {
     bool beyond = false;
     PlotRange range = plot_range();
     const double values[] = {NAN, 0, -1, INFINITY, 10, 2000, 1e30};
@@ -73,7 +73,7 @@ static PlotAxis log_from(double low, double high) {
     return (PlotAxis){.scale = PLOT_LOG, .low = low, .high = high, .least = low};
 }
 
-static void short_axes_have_ticks_at_1_2_5(void **state) {
+TEST(short_axes_have_ticks_at_1_2_5) {
     expect_numbers(log_from(4.5, 22), 50, true, 4, "5 10 20 ");
     expect_numbers(log_from(4.5, 22), 6, true, 6, "10 "); /* no room for three */
     PlotAxis powers = log_from(4.5, 22);
@@ -81,14 +81,14 @@ static void short_axes_have_ticks_at_1_2_5(void **state) {
     expect_numbers(powers, 50, true, 4, "5e0 1e1 2e1 ");
 }
 
-static void long_axes_have_ticks_at_decades(void **state) {
+TEST(long_axes_have_ticks_at_decades) {
     /* 0.008, 0.009; 8 each in the three decades; 10 is the last but 2 to 9 */
     expect_numbers(log_from(0.008, 12), 50, true, 2 + 3 * 8, "0.01 0.1 1 10 ");
     expect_numbers(log_from(0.008, 12), 10, true, 0 + 2, "0.01 1 ");
 }
 
 /* Of 40 decades, as of 4, only as many have numbers as fit; 0 has its own tick, the others begin after it. */
-static void ticks_have_room(void **state) {
+TEST(ticks_have_room) {
     for (int decades = 4; decades <= 40; decades += 36) {
         int minor, named = 0;
         const PlotAxis axis = plot_range_axis((PlotRange){pow(10, -decades), 1}, 1e-50, 1, true, "");
@@ -101,7 +101,7 @@ static void ticks_have_room(void **state) {
     }
 }
 
-static void linear_ticks_are_round_and_do_not_touch(void **state) {
+TEST(linear_ticks_are_round_and_do_not_touch) {
     expect_numbers(plot_linear_axis(0, 1.3, ""), 60, true, 0, "0.0 0.2 0.4 0.6 0.8 1.0 1.2 ");
     expect_numbers(plot_linear_axis(0, 1030, ""), 45, true, 0, "0 200 400 600 800 1000 ");
     expect_numbers(plot_linear_axis(0, 1030, ""), 10, true, 0, "0 1000 ");
@@ -191,7 +191,7 @@ static PlotLook line_look(uint32_t colour, const char *name) {
 }
 
 /* Three values, then four: the middle one, and the mean of the middle two; below it a thin line for each seed. */
-static void the_median_is_in_the_middle_of_the_seeds(void **state) {
+TEST(the_median_is_in_the_middle_of_the_seeds) {
     Table table = {.rows = 7,
                    .series = 1,
                    .looks = {line_look(0x112233, "seeds")},
@@ -208,7 +208,7 @@ static void the_median_is_in_the_middle_of_the_seeds(void **state) {
 }
 
 /* NaN is no point, a series without points has no place in the legend, and lines are interrupted between groups. */
-static void series_are_drawn_as_they_look(void **state) {
+TEST(series_are_drawn_as_they_look) {
     const PlotLook stems = {.name = "stems", .style = {.colour = 0x445566}, .line = 1, .marks = true, .stems = true};
     const PlotLook band = {.name = "band", .style = {.colour = 0x778899}, .band = true};
     Table table = {.rows = 4,
@@ -235,7 +235,7 @@ static void series_are_drawn_as_they_look(void **state) {
 }
 
 /* From the first series, which is on top, to the last; but those above come after all others. */
-static void the_first_series_is_on_top(void **state) {
+TEST(the_first_series_is_on_top) {
     Table table = {.rows = 2, .series = 3};
     for (int i = 0; i < 3; i++) {
         table.looks[i] = line_look(0x100000u + (uint32_t)i, NULL);
@@ -250,7 +250,7 @@ static void the_first_series_is_on_top(void **state) {
 }
 
 /* All look equally large: each area is near that of a circle; crosses reach as far. */
-static void marks_have_one_size(void **state) {
+TEST(marks_have_one_size) {
     for (int symbol = 0; symbol < METHOD_SYMBOLS; symbol++) {
         Sketch sketch;
         double area = 0;
@@ -271,7 +271,7 @@ static void marks_have_one_size(void **state) {
 }
 
 /* The number of a custom tick may have two lines; an axis without a label has none. */
-static void ticks_are_drawn_as_given(void **state) {
+TEST(ticks_are_drawn_as_given) {
     static PlotTicks ticks;
     Sketch sketch;
     PlotPanel panel = {.box = {10, 10, 80, 80}, .x = plot_linear_axis(0, 8, ""), .y = plot_linear_axis(0, 8, NULL)};
@@ -293,7 +293,7 @@ static void ticks_are_drawn_as_given(void **state) {
     sketch_free(&sketch);
 }
 
-static void powers_are_as_wide_as_they_say(void **state) {
+TEST(powers_are_as_wide_as_they_say) {
     static const TextAlign aligns[] = {TEXT_LEFT, TEXT_CENTER, TEXT_RIGHT};
     for (int i = 0; i < 3; i++) {
         Sketch sketch;
@@ -310,20 +310,4 @@ static void powers_are_as_wide_as_they_say(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_axis_has_room_for_its_values),
-        cmocka_unit_test(an_axis_holds_what_is_drawn),
-        cmocka_unit_test(short_axes_have_ticks_at_1_2_5),
-        cmocka_unit_test(long_axes_have_ticks_at_decades),
-        cmocka_unit_test(ticks_have_room),
-        cmocka_unit_test(linear_ticks_are_round_and_do_not_touch),
-        cmocka_unit_test(the_median_is_in_the_middle_of_the_seeds),
-        cmocka_unit_test(series_are_drawn_as_they_look),
-        cmocka_unit_test(the_first_series_is_on_top),
-        cmocka_unit_test(marks_have_one_size),
-        cmocka_unit_test(ticks_are_drawn_as_given),
-        cmocka_unit_test(powers_are_as_wide_as_they_say),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -38,7 +38,7 @@ static double covered(Sketch *sketch) {
 
 static const Pen black = {0, 1, NO_COLOUR, 0, NULL};
 
-static void areas_are_those_of_geometry(void **state) {
+TEST(areas_are_those_of_geometry) {
     Sketch sketch;
     sketch_begin(&sketch, 20, 10);
     sketch_dot(&sketch, (Point){10.03, 5.02}, 4, &black); /* of 36 corners */
@@ -57,7 +57,7 @@ static void areas_are_those_of_geometry(void **state) {
 }
 
 /* Areas of winding number 2 count once, and a line that turns back is still drawn. */
-static void overlaps_count_once(void **state) {
+TEST(overlaps_count_once) {
     Sketch sketch;
     sketch_begin(&sketch, 10, 10);
     const Point twice[] = {{2, 2}, {6, 2}, {6, 6}, {2, 6}, {2, 2}, {6, 2}, {6, 6}, {2, 6}};
@@ -81,7 +81,7 @@ static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
     if (found != rgba) fail_msg("pixel (%d, %d) is %08x, not %08x", x, y, found, rgba);
 }
 
-static void shapes_lie_at_their_place_and_colour(void **state) {
+TEST(shapes_lie_at_their_place_and_colour) {
     Sketch sketch;
     sketch_begin(&sketch, 10, 10);
     sketch_rectangle(&sketch, (Point){2, 1}, (Point){5, 6}, &(Pen){0x204060, 1, NO_COLOUR, 0, NULL});
@@ -101,7 +101,7 @@ static void shapes_lie_at_their_place_and_colour(void **state) {
     sketch_free(&sketch);
 }
 
-static void a_picture_of_its_places_size_keeps_its_pixels(void **state) {
+TEST(a_picture_of_its_places_size_keeps_its_pixels) {
     Error error = {0};
     Sketch sketch;
     Image *picture = image_create(20, 10, &error);
@@ -127,7 +127,7 @@ static void find_ink(const Image *image, double *left, double *right) {
             if (pixel(image, x, y)[0] < 128) *left = fmin(*left, x / 10.0), *right = fmax(*right, (x + 1) / 10.0);
 }
 
-static void words_are_as_wide_as_they_say(void **state) {
+TEST(words_are_as_wide_as_they_say) {
     const double points = 20, end = 15;
     double left, right;
     Sketch sketch;
@@ -165,7 +165,7 @@ static void draw_something(Sketch *sketch) {
 }
 
 /* With and without a white page, in every format. The hashes are equal on Debian 12 and 13. */
-static void a_sketch_has_the_same_bytes_everywhere(void **state) {
+TEST(a_sketch_has_the_same_bytes_everywhere) {
     static const struct {
         const char *name;
         uint64_t on_white, transparent;
@@ -194,7 +194,7 @@ static void a_sketch_has_the_same_bytes_everywhere(void **state) {
 }
 
 /* Text is text, in a font that the file brings; or outlines, without the font. */
-static void an_svg_has_its_words(void **state) {
+TEST(an_svg_has_its_words) {
     Error error = {0};
     Sketch sketch;
     size_t size;
@@ -237,7 +237,7 @@ static void expect_printed(const char *program, const char *path, const char *wa
     free(printed);
 }
 
-static void an_svg_of_outlines_needs_no_font(void **state) {
+TEST(an_svg_of_outlines_needs_no_font) {
     Error error = {0};
     Sketch sketch;
     size_t size;
@@ -255,7 +255,7 @@ static void an_svg_of_outlines_needs_no_font(void **state) {
 }
 
 /* In an SVG an area is a link, whose texts cannot end it; in the other formats it is nothing. */
-static void a_link_is_in_an_svg_only(void **state) {
+TEST(a_link_is_in_an_svg_only) {
     Error error = {0};
     char *data[2][SKETCH_FORMATS];
     size_t size[2][SKETCH_FORMATS];
@@ -284,7 +284,7 @@ static void a_link_is_in_an_svg_only(void **state) {
 }
 
 /* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
-static void a_pdf_is_read_as_it_is_seen(void **state) {
+TEST(a_pdf_is_read_as_it_is_seen) {
     Error error = {0};
     Sketch sketch;
     sketch_begin(&sketch, 100, 40);
@@ -301,7 +301,7 @@ static void a_pdf_is_read_as_it_is_seen(void **state) {
 }
 
 /* Every entry of the table points to its object, and the file contains no date or path. */
-static void a_pdf_has_a_valid_object_table(void **state) {
+TEST(a_pdf_has_a_valid_object_table) {
     Error error = {0};
     Sketch sketch;
     size_t size;
@@ -340,7 +340,7 @@ static void expect_refused(const char *path, double width, double dpi, const cha
     sketch_free(&sketch);
 }
 
-static void what_cannot_be_written_is_refused(void **state) {
+TEST(what_cannot_be_written_is_refused) {
     expect_refused(temporary_path("a.gif"), 10, 300, "the name of a figure must end in .png, .svg or .pdf");
     expect_refused("png", 10, 300, "png: error: the name of a figure must end in");
     expect_refused(".d.png/figure", 10, 300, "the name of a figure must end in");
@@ -350,7 +350,7 @@ static void what_cannot_be_written_is_refused(void **state) {
 }
 
 /* Runs can reach any coordinate; those far from the page are not drawn. */
-static void invalid_coordinates_draw_nothing(void **state) {
+TEST(invalid_coordinates_draw_nothing) {
     static const double nowhere[] = {NAN, INFINITY, -INFINITY, 1e30};
     Sketch sketch;
     sketch_begin(&sketch, 10, 10);
@@ -365,21 +365,4 @@ static void invalid_coordinates_draw_nothing(void **state) {
     assert_near(covered(&sketch), 0, 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(areas_are_those_of_geometry),
-        cmocka_unit_test(overlaps_count_once),
-        cmocka_unit_test(shapes_lie_at_their_place_and_colour),
-        cmocka_unit_test(a_picture_of_its_places_size_keeps_its_pixels),
-        cmocka_unit_test(words_are_as_wide_as_they_say),
-        cmocka_unit_test(a_sketch_has_the_same_bytes_everywhere),
-        cmocka_unit_test(an_svg_has_its_words),
-        cmocka_unit_test(an_svg_of_outlines_needs_no_font),
-        cmocka_unit_test(a_link_is_in_an_svg_only),
-        cmocka_unit_test(a_pdf_is_read_as_it_is_seen),
-        cmocka_unit_test(a_pdf_has_a_valid_object_table),
-        cmocka_unit_test(what_cannot_be_written_is_refused),
-        cmocka_unit_test(invalid_coordinates_draw_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

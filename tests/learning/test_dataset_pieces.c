@@ -47,8 +47,7 @@ static void same_file(DatasetOptions options, const char *name) {
     dataset_destroy(dataset);
 }
 
-static void pieces_give_the_file_of_memory(void **state) {
-    (void)state;
+TEST(pieces_give_the_file_of_memory) {
     same_file(options_for((DatasetOptions){.target = TARGET_PAIR, .context = true}), "pair.npz");
     same_file(options_for((DatasetOptions){.target = TARGET_PAIR, .every = 7}), "every.npz");
     same_file(options_for((DatasetOptions){.target = TARGET_NET, .view = PAIR_RAW, .labels = DATASET_BY_REFERENCE}),
@@ -63,8 +62,7 @@ static bool stop(void *context, double done, double total) {
     return false;
 }
 
-static void a_merge_that_is_stopped_writes_nothing(void **state) {
-    (void)state;
+TEST(a_merge_that_is_stopped_writes_nothing) {
     Error error = {0};
     DatasetPieces pieces;
     Pieces done;
@@ -82,8 +80,7 @@ static void a_merge_that_is_stopped_writes_nothing(void **state) {
 }
 
 /* Rows of other launches, and half a row. */
-static void damaged_rows_are_refused(void **state) {
-    (void)state;
+TEST(damaged_rows_are_refused) {
     Error error = {0};
     DatasetPieces pieces;
     const DatasetOptions options = options_for((DatasetOptions){.target = TARGET_PAIR});
@@ -108,11 +105,4 @@ static void damaged_rows_are_refused(void **state) {
     dataset_pieces_free(&pieces);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pieces_give_the_file_of_memory),
-        cmocka_unit_test(a_merge_that_is_stopped_writes_nothing),
-        cmocka_unit_test(damaged_rows_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -85,8 +85,7 @@ static void check_gradient(Case made) {
 }
 
 /* With these numbers no row is within a step of a rectifier's kink, so the tolerance need not allow for one. */
-static void gradient_of_the_loss_is_the_finite_difference(void **state) {
-    (void)state;
+TEST(gradient_of_the_loss_is_the_finite_difference) {
     const Activation hidden[] = {ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
     for (int h = 0; h < 3; h++) {
         const int widths[] = {10, 5, 2};
@@ -97,8 +96,7 @@ static void gradient_of_the_loss_is_the_finite_difference(void **state) {
 }
 
 /* Errors are on both sides of the threshold of 0.3. */
-static void gradient_of_the_smooth_loss_is_the_finite_difference(void **state) {
-    (void)state;
+TEST(gradient_of_the_smooth_loss_is_the_finite_difference) {
     const int widths[] = {10, 5, 2};
     for (int scale = 0; scale < 2; scale++) {
         Case made = make_case_of(make_taught_dataset(FEW_ROWS), LOSS_SMOOTH_L1, 2, widths, ACTIVATION_TANH,
@@ -114,8 +112,7 @@ static void gradient_of_the_smooth_loss_is_the_finite_difference(void **state) {
 }
 
 /* Each law alone with mse, and all laws with smooth-l1. */
-static void gradient_of_the_laws_is_the_finite_difference(void **state) {
-    (void)state;
+TEST(gradient_of_the_laws_is_the_finite_difference) {
     const int widths[] = {10, 4, 6};
     for (int law = 0; law <= LAWS; law++) {
         Error error = {0};
@@ -131,8 +128,7 @@ static void gradient_of_the_laws_is_the_finite_difference(void **state) {
     }
 }
 
-static void squared_residuals_sum_to_the_loss(void **state) {
-    (void)state;
+TEST(squared_residuals_sum_to_the_loss) {
     Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
     size_t count = residual_count(&made);
     double *residuals = numbers(count), sum = 0;
@@ -185,8 +181,7 @@ static void check_gauss_newton(int layers, const int *widths, Activation hidden,
     free_case(&made);
 }
 
-static void gauss_newton_is_that_of_the_jacobian(void **state) {
-    (void)state;
+TEST(gauss_newton_is_that_of_the_jacobian) {
     const Activation sigmoid = ACTIVATION_SIGMOID, linear = ACTIVATION_LINEAR;
     check_gauss_newton(1, (const int[]){10, 2}, sigmoid, sigmoid, SCALE_MINMAX);
     check_gauss_newton(2, (const int[]){10, 3, 2}, sigmoid, sigmoid, SCALE_MINMAX);
@@ -195,8 +190,7 @@ static void gauss_newton_is_that_of_the_jacobian(void **state) {
 }
 
 /* J^T u must also be the same if J^T J is not requested. */
-static void sums_do_not_depend_on_threads(void **state) {
-    (void)state;
+TEST(sums_do_not_depend_on_threads) {
     Case made = make_case(2, (const int[]){10, 5, 2}, ACTIVATION_SIGMOID, ACTIVATION_SIGMOID, SCALE_MINMAX);
     size_t size = (size_t)made.count;
     double *u = numbers(residual_count(&made)), *gradient = numbers(2 * size), *jtu = numbers(2 * size);
@@ -222,14 +216,4 @@ static void sums_do_not_depend_on_threads(void **state) {
     free_case(&made);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gradient_of_the_loss_is_the_finite_difference),
-        cmocka_unit_test(gradient_of_the_smooth_loss_is_the_finite_difference),
-        cmocka_unit_test(gradient_of_the_laws_is_the_finite_difference),
-        cmocka_unit_test(squared_residuals_sum_to_the_loss),
-        cmocka_unit_test(gauss_newton_is_that_of_the_jacobian),
-        cmocka_unit_test(sums_do_not_depend_on_threads),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

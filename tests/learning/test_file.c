@@ -49,8 +49,7 @@ static Dataset *written_and_read(const Dataset *dataset) {
     return read;
 }
 
-static void files_keep_every_bit(void **state) {
-    (void)state;
+TEST(files_keep_every_bit) {
     Dataset dataset = example();
     dataset.target = TARGET_IMPULSE;
     dataset.labels = DATASET_BY_REFERENCE;
@@ -76,8 +75,7 @@ static void files_keep_every_bit(void **state) {
 }
 
 /* View and target define the width of rows. */
-static void widths_are_those_of_view_and_target(void **state) {
-    (void)state;
+TEST(widths_are_those_of_view_and_target) {
     static float wide[ROWS * PAIR_INPUTS_MAX], points[ROWS * PAIR_POINT_CHANGES];
     for (int i = 0; i < ROWS * PAIR_INPUTS_MAX; i++) wide[i] = 0.5f * (float)i;
     for (int i = 0; i < ROWS * PAIR_POINT_CHANGES; i++) points[i] = -(float)i;
@@ -95,8 +93,7 @@ static void widths_are_those_of_view_and_target(void **state) {
     }
 }
 
-static void the_most_and_longest_scene_names_are_kept(void **state) {
-    (void)state;
+TEST(the_most_and_longest_scene_names_are_kept) {
     Dataset dataset = example();
     dataset.scene_count = DATASET_MAX_SCENES;
     for (int s = 0; s < DATASET_MAX_SCENES; s++) {
@@ -121,8 +118,7 @@ static Dataset example_with_context(void) {
     return dataset;
 }
 
-static void a_context_is_kept_where_there_is_one(void **state) {
-    (void)state;
+TEST(a_context_is_kept_where_there_is_one) {
     const Dataset with = example_with_context();
     Dataset *read = written_and_read(&with);
     assert_non_null(read->context);
@@ -147,15 +143,13 @@ static const char *write_example(const Dataset *dataset) {
     return path;
 }
 
-static void every_array_is_needed_and_checked(void **state) {
-    (void)state;
+TEST(every_array_is_needed_and_checked) {
     const Dataset dataset = example();
     assert_file_is_checked(is_read, write_example(&dataset), "dataset", DATASET_VERSION);
 }
 
 /* One number of the example with a context is bad. */
-static void numbers_out_of_range_are_refused(void **state) {
-    (void)state;
+TEST(numbers_out_of_range_are_refused) {
     const struct {
         int32_t *index;
         float *number;
@@ -185,8 +179,7 @@ static void numbers_out_of_range_are_refused(void **state) {
     }
 }
 
-static void splits_and_names_out_of_range_are_refused(void **state) {
-    (void)state;
+TEST(splits_and_names_out_of_range_are_refused) {
     static const struct {
         uint8_t test[LAUNCHES];
         int rows, launches;
@@ -209,8 +202,7 @@ static void splits_and_names_out_of_range_are_refused(void **state) {
     }
 }
 
-static void words_that_do_not_fit_are_refused(void **state) {
-    (void)state;
+TEST(words_that_do_not_fit_are_refused) {
     static const struct {
         const char *name, *word, *text;
     } cases[] = {{"view", "sideways", "view: a word that is not known"},
@@ -235,16 +227,4 @@ static void words_that_do_not_fit_are_refused(void **state) {
     free_arrays(&more);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(files_keep_every_bit),
-        cmocka_unit_test(widths_are_those_of_view_and_target),
-        cmocka_unit_test(a_context_is_kept_where_there_is_one),
-        cmocka_unit_test(the_most_and_longest_scene_names_are_kept),
-        cmocka_unit_test(every_array_is_needed_and_checked),
-        cmocka_unit_test(numbers_out_of_range_are_refused),
-        cmocka_unit_test(splits_and_names_out_of_range_are_refused),
-        cmocka_unit_test(words_that_do_not_fit_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -8,8 +8,7 @@
 
 /* The bias corrections cancel the decay: with equal slopes every step has the length of the rate, less epsilon over the
    slope of it: 4e-8 here. */
-static void equal_slopes_make_steps_of_the_rate(void **state) {
-    (void)state;
+TEST(equal_slopes_make_steps_of_the_rate) {
     enum { STEPS = 50 };
     const double slopes[2] = {3, -0.25}, rate = 0.01;
     Adam adam;
@@ -24,8 +23,7 @@ static void equal_slopes_make_steps_of_the_rate(void **state) {
 }
 
 /* f(x) = (x - 3)^2 / 2 */
-static void finds_a_minimum(void **state) {
-    (void)state;
+TEST(finds_a_minimum) {
     Adam adam;
     Error error = {0};
     assert_ok(adam_create(&adam, 1, 0.99, &error), error);
@@ -40,8 +38,7 @@ static void finds_a_minimum(void **state) {
     adam_free(&adam);
 }
 
-static void slopes_are_shortened_and_never_nan(void **state) {
-    (void)state;
+TEST(slopes_are_shortened_and_never_nan) {
     double fine[2] = {0.3, -0.4}, longer[2] = {3, -4}, bad[2] = {1, NAN};
     assert_true(slopes_limit(fine, 2, 1) && fine[0] == 0.3 && fine[1] == -0.4);
     assert_true(slopes_limit(longer, 2, 1));
@@ -110,8 +107,7 @@ static bool stop_at(void *context, double done, double total) {
     return go_on(NULL, done, total) && --*(int *)context > 0;
 }
 
-static void a_training_writes_reports_and_ends(void **state) {
-    (void)state;
+TEST(a_training_writes_reports_and_ends) {
     Toy toy;
     Error error = {0};
     const char *path = temporary_path("whole.part");
@@ -128,8 +124,7 @@ static void a_training_writes_reports_and_ends(void **state) {
 }
 
 /* At each of its reports in turn, again and again. */
-static void interruptions_leave_no_trace(void **state) {
-    (void)state;
+TEST(interruptions_leave_no_trace) {
     Toy whole, parts;
     Error error = {0};
     assert_ok(train(&whole, temporary_path("whole.part"), "train", &all, &error), error);
@@ -155,8 +150,7 @@ static void interruptions_leave_no_trace(void **state) {
     fit_free(&whole.fit);
 }
 
-static void a_failing_step_ends_the_training(void **state) {
-    (void)state;
+TEST(a_failing_step_ends_the_training) {
     Toy toy;
     Error error = {0};
     const char *path = temporary_path("fails.part");
@@ -170,8 +164,7 @@ static void a_failing_step_ends_the_training(void **state) {
     fit_free(&toy.fit);
 }
 
-static void another_command_begins_again(void **state) {
-    (void)state;
+TEST(another_command_begins_again) {
     Toy toy;
     Error error = {0};
     const char *path = temporary_path("other.part");
@@ -182,8 +175,7 @@ static void another_command_begins_again(void **state) {
     fit_free(&toy.fit);
 }
 
-static void damaged_states_are_refused(void **state) {
-    (void)state;
+TEST(damaged_states_are_refused) {
     bool found;
     Error error = {0};
     const char *path = temporary_path("net.npz.part");
@@ -209,12 +201,4 @@ static void damaged_states_are_refused(void **state) {
     fit_free(&fit);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_slopes_make_steps_of_the_rate), cmocka_unit_test(finds_a_minimum),
-        cmocka_unit_test(slopes_are_shortened_and_never_nan),  cmocka_unit_test(a_training_writes_reports_and_ends),
-        cmocka_unit_test(interruptions_leave_no_trace),        cmocka_unit_test(a_failing_step_ends_the_training),
-        cmocka_unit_test(another_command_begins_again),        cmocka_unit_test(damaged_states_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -128,8 +128,7 @@ static void check_mlp(Trial *trial, const GnsMlp *mlp, const char *what) {
     check_array(trial, mlp->offset, mlp->outputs, what);
 }
 
-static void it_is_the_slope_of_the_forward_pass(void **state) {
-    (void)state;
+TEST(it_is_the_slope_of_the_forward_pass) {
     static Trial trial;
     for (int width = 16; width <= 32; width += 16) {
         begin(&trial, width, width == 16 ? 2 : 1);
@@ -146,7 +145,4 @@ static void it_is_the_slope_of_the_forward_pass(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_is_the_slope_of_the_forward_pass)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -45,8 +45,7 @@ static bool train(void *context, const char *path, const Progress *progress, Err
     return ok;
 }
 
-static void same_bits_for_any_threads_and_interruptions(void **state) {
-    (void)state;
+TEST(same_bits_for_any_threads_and_interruptions) {
     Error error = {0};
     GnsNet whole, parts;
     const int threads = omp_get_max_threads();
@@ -81,8 +80,7 @@ static void release(Recorded *recorded) {
 
 /* A velocity plus its target acceleration and gravity is the true next velocity less a tenth of what the noise moved the
    particle by, per step. */
-static void targets_lead_to_the_true_velocity(void **state) {
-    (void)state;
+TEST(targets_lead_to_the_true_velocity) {
     static Recorded clean, noisy;
     record(&clean, 0);
     record(&noisy, 0.2f);
@@ -115,8 +113,7 @@ static void targets_lead_to_the_true_velocity(void **state) {
 
 /* In free flight the target of a box's centre is 0, from the first step on: before it exists, a body flies with its start
    velocity. */
-static void free_flight_has_no_target(void **state) {
-    (void)state;
+TEST(free_flight_has_no_target) {
     static Recorded clean;
     record(&clean, 0);
     int flights = 0;
@@ -134,9 +131,4 @@ static void free_flight_has_no_target(void **state) {
     release(&clean);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bits_for_any_threads_and_interruptions),
-                                       cmocka_unit_test(targets_lead_to_the_true_velocity),
-                                       cmocka_unit_test(free_flight_has_no_target)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -7,8 +7,7 @@
 
 #include <math.h>
 
-static void two_by_two_in_closed_form(void **state) {
-    (void)state;
+TEST(two_by_two_in_closed_form) {
     double matrix[4] = {2, 1, 1, 2}, values[2], vectors[4];
     assert_true(jacobi_eigenvectors(matrix, 2, values, vectors));
     assert_near(values[0], 3, 1e-15);
@@ -19,8 +18,7 @@ static void two_by_two_in_closed_form(void **state) {
 }
 
 /* Of a sum of few outer products, so that most values are 0, as of poses at rest. */
-static void a_large_matrix_is_taken_apart(void **state) {
-    (void)state;
+TEST(a_large_matrix_is_taken_apart) {
     enum { SIZE = 40, RANK = 12 };
     static double matrix[SIZE * SIZE], copy[SIZE * SIZE], vectors[SIZE * SIZE], values[SIZE];
     uint32_t seed = 5;
@@ -44,8 +42,4 @@ static void a_large_matrix_is_taken_apart(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(two_by_two_in_closed_form),
-                                       cmocka_unit_test(a_large_matrix_is_taken_apart)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

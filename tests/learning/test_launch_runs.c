@@ -7,8 +7,7 @@
 #include <math.h>
 
 /* Frames before the bomb have none. */
-static void poses_are_those_of_single_runs(void **state) {
-    (void)state;
+TEST(poses_are_those_of_single_runs) {
     enum { LAUNCHES = 3 };
     Error error = {0};
     Method method;
@@ -40,8 +39,7 @@ static void poses_are_those_of_single_runs(void **state) {
     scene_destroy(scene);
 }
 
-static void too_many_are_refused(void **state) {
-    (void)state;
+TEST(too_many_are_refused) {
     Error error = {0};
     Method method;
     LaunchRuns runs;
@@ -57,10 +55,4 @@ static void too_many_are_refused(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(poses_are_those_of_single_runs),
-        cmocka_unit_test(too_many_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -25,8 +25,7 @@ static void check(const LawPair *pair, const double change[PAIR_CHANGES], const 
     }
 }
 
-static void violations_of_known_collisions(void **state) {
-    (void)state;
+TEST(violations_of_known_collisions) {
     const LawPair pair = collision();
     /* No change: still approaching at 3 m/s. */
     check(&pair, (const double[]){0, 0, 0, 0, 0, 0}, (const double[]){0, 0, 3, 0});
@@ -49,8 +48,7 @@ static void violations_of_known_collisions(void **state) {
 }
 
 /* The box is a wall: it gains no momentum or energy, and its change is ignored. */
-static void static_bodies_are_ignored(void **state) {
-    (void)state;
+TEST(static_bodies_are_ignored) {
     const float context[PAIR_CONTEXT] = {[CONTEXT_INV_MASS_A] = 0.5f,
                                          [CONTEXT_INV_INERTIA_A] = 2,
                                          [CONTEXT_NORMAL] = 1,
@@ -73,16 +71,14 @@ static void static_bodies_are_ignored(void **state) {
 }
 
 /* 4 N s; -6 J; 3 m/s less approach. */
-static void sizes_are_those_of_the_change(void **state) {
-    (void)state;
+TEST(sizes_are_those_of_the_change) {
     const LawPair pair = collision();
     const double change[] = {-2, 0, 0, 1, 0, 0}, expected[LAWS] = {4, -6, 3, 4};
     for (int law = 0; law < LAWS; law++) assert_near(laws_known[law].size(&pair, change), expected[law], 1e-6);
 }
 
 /* Away from kinks, which random numbers do not hit, a central difference is exact to the curvature times 1e-12. */
-static void slopes_are_finite_differences(void **state) {
-    (void)state;
+TEST(slopes_are_finite_differences) {
     const double step = 1e-6;
     uint32_t sequence = 29;
     int violated[LAWS] = {0};
@@ -115,8 +111,7 @@ static void assert_no_weights(const char *text, const char *message) {
     assert_refused(law_weights_parse(text, &weights, &error), message);
 }
 
-static void weights_are_parsed(void **state) {
-    (void)state;
+TEST(weights_are_parsed) {
     Error error = {0};
     LawNumbers weights;
     assert_true(law_weights_parse("cone=1,momentum=0.1", &weights, &error));
@@ -139,10 +134,4 @@ static void weights_are_parsed(void **state) {
     assert_no_weights("energy=1e39", "energy: '1e39' is not a number of 0 or more");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(violations_of_known_collisions), cmocka_unit_test(static_bodies_are_ignored),
-        cmocka_unit_test(sizes_are_those_of_the_change), cmocka_unit_test(slopes_are_finite_differences),
-        cmocka_unit_test(weights_are_parsed)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

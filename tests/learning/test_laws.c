@@ -49,8 +49,7 @@ static double added(const Dataset *dataset, const Network *network, const char *
     return sum / rows / PAIR_CHANGES;
 }
 
-static void predicting_the_labels_adds_nothing(void **state) {
-    (void)state;
+TEST(predicting_the_labels_adds_nothing) {
     Dataset *dataset = make_pushed_dataset(ROWS);
     /* Labels that violate every law, as with position correction and other pairs. */
     for (int r = 0; r < ROWS; r += 2)
@@ -63,8 +62,7 @@ static void predicting_the_labels_adds_nothing(void **state) {
 }
 
 /* Predictions that are multiples of the label: the violations are known multiples of the labels' own size. */
-static void a_weight_of_one_makes_the_labels_own_size_one(void **state) {
-    (void)state;
+TEST(a_weight_of_one_makes_the_labels_own_size_one) {
     Dataset *dataset = make_pushed_dataset(ROWS);
     for (int r = 0; r < ROWS; r++) { /* no static bodies, no spin */
         float *context = dataset->context + r * PAIR_CONTEXT, *change = dataset->changes + r * PAIR_CHANGES;
@@ -98,8 +96,7 @@ static void a_weight_of_one_makes_the_labels_own_size_one(void **state) {
 }
 
 /* A prediction of 0 changes no velocity: approaching pairs violate `approach`; no other law is violated. */
-static void violations_are_measured_on_the_test_rows(void **state) {
-    (void)state;
+TEST(violations_are_measured_on_the_test_rows) {
     Error error = {0};
     Dataset *dataset = make_pushed_dataset(ROWS);
     Network *network = make_constant(dataset);
@@ -144,8 +141,7 @@ static Network *train(const Dataset *dataset, const char *laws, int iterations, 
     return network;
 }
 
-static void a_law_in_the_loss_is_violated_less(void **state) {
-    (void)state;
+TEST(a_law_in_the_loss_is_violated_less) {
     Error error = {0};
     Dataset *dataset = make_pushed_dataset(ROWS);
     TrainingScore score;
@@ -164,8 +160,7 @@ static void a_law_in_the_loss_is_violated_less(void **state) {
 }
 
 /* Scores exclude the laws, so that networks with and without them can be compared. */
-static void scores_exclude_the_laws(void **state) {
-    (void)state;
+TEST(scores_exclude_the_laws) {
     Error error = {0};
     Dataset *dataset = make_pushed_dataset(ROWS);
     TrainingScore with, without, again;
@@ -183,13 +178,4 @@ static void scores_exclude_the_laws(void **state) {
     dataset_destroy(dataset);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(predicting_the_labels_adds_nothing),
-        cmocka_unit_test(a_weight_of_one_makes_the_labels_own_size_one),
-        cmocka_unit_test(violations_are_measured_on_the_test_rows),
-        cmocka_unit_test(a_law_in_the_loss_is_violated_less),
-        cmocka_unit_test(scores_exclude_the_laws),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -7,8 +7,7 @@
 #include <math.h>
 
 /* The first ONLINE_FIRST steps make the network; trained on one step again and again, it fits it. */
-static void a_step_that_comes_back_is_learned(void **state) {
-    (void)state;
+TEST(a_step_that_comes_back_is_learned) {
     Error error = {0};
     AskedSteps asked = {0};
     Scene *scene = shipped_scene("single");
@@ -39,7 +38,4 @@ static void a_step_that_comes_back_is_learned(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_step_that_comes_back_is_learned)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -160,8 +160,7 @@ static Table make_random(int rows, int columns, double falloff, bool sparse) {
     return table;
 }
 
-static void directions_of_known_variance_are_found(void **state) {
-    (void)state;
+TEST(directions_of_known_variance_are_found) {
     /* Mean (7, -1); variance 4 along (3, 4) / 5 and 1/4 along (4, -3) / 5. */
     Table table = make_table(4, 2);
     for (int i = 0; i < 4; i++) {
@@ -175,8 +174,7 @@ static void directions_of_known_variance_are_found(void **state) {
     assert_near(projection.centre[1], 7 * 1.6 + 1.2, 1e-5);
 }
 
-static void components_are_white_and_the_strongest(void **state) {
-    (void)state;
+TEST(components_are_white_and_the_strongest) {
     Table table = make_random(400, 40, 0.9, true);
     gsl_vector *all = eigenvalues(&table);
     const int counts[] = {40, 8};
@@ -189,8 +187,7 @@ static void components_are_white_and_the_strongest(void **state) {
     gsl_vector_free(all);
 }
 
-static void a_flat_spectrum_is_nearly_captured(void **state) {
-    (void)state;
+TEST(a_flat_spectrum_is_nearly_captured) {
     Table table = make_random(400, 60, 1, true);
     gsl_vector *all = eigenvalues(&table);
     Projection projection = fit(&table, 8, 1);
@@ -205,8 +202,7 @@ static void a_flat_spectrum_is_nearly_captured(void **state) {
 }
 
 /* Integers, so that nothing is rounded: twelve columns depend on three hidden numbers. */
-static void components_beyond_the_rank_are_0(void **state) {
-    (void)state;
+TEST(components_beyond_the_rank_are_0) {
     Table table = make_table(200, 12), few = make_table(5, 12), narrow = make_table(200, 3);
     gsl_rng *generator = gsl_rng_alloc(gsl_rng_mt19937);
     for (int i = 0; i < 200; i++) {
@@ -229,8 +225,7 @@ static void components_beyond_the_rank_are_0(void **state) {
 }
 
 /* Two independent columns, one with a deviation (and its square as variance) that is `weak` times the other's. */
-static void components_too_weak_for_float_are_0(void **state) {
-    (void)state;
+TEST(components_too_weak_for_float_are_0) {
     const float weak[] = {1e-4F, 1e-6F};
     for (int rank = 2; rank >= 1; rank--) {
         Table table = make_table(4, 2);
@@ -241,8 +236,7 @@ static void components_too_weak_for_float_are_0(void **state) {
 }
 
 /* Independent deviations 1/2 and 1/4, at most 1e-6 of the mean. */
-static void a_large_mean_costs_no_digits(void **state) {
-    (void)state;
+TEST(a_large_mean_costs_no_digits) {
     Table table = make_table(1000, 2);
     for (int i = 0; i < 1000; i++)
         add_row(&table, (float[]){1e6F + (i % 2 == 0 ? 0.5F : -0.5F), -1e6F + (i % 4 < 2 ? 0.25F : -0.25F)}, true);
@@ -252,8 +246,7 @@ static void a_large_mean_costs_no_digits(void **state) {
 }
 
 /* Rounding must not be taken for variance. */
-static void equal_rows_have_no_components(void **state) {
-    (void)state;
+TEST(equal_rows_have_no_components) {
     Table table = make_table(1000, 10);
     for (int i = 0; i < 1000; i++) {
         float numbers[10];
@@ -264,8 +257,7 @@ static void equal_rows_have_no_components(void **state) {
     assert_white(&table, &projection, 0, 0);
 }
 
-static void constant_columns_contribute_nothing(void **state) {
-    (void)state;
+TEST(constant_columns_contribute_nothing) {
     Table table = make_table(1000, 3), faint = make_table(1000, 3);
     for (int i = 0; i < 1000; i++) {
         add_row(&table, (float[]){0.1F, i % 5 == 0, 1e6F}, true);
@@ -279,8 +271,7 @@ static void constant_columns_contribute_nothing(void **state) {
     assert_white(&faint, &projection, 0, 0);
 }
 
-static void same_seed_same_bits(void **state) {
-    (void)state;
+TEST(same_seed_same_bits) {
     Table sparse = make_random(300, 40, 0.99, true), dense = make_random(300, 40, 0.99, false);
     assert_true(sparse.begin[300] < dense.begin[300]);
     const int threads = omp_get_max_threads();
@@ -295,8 +286,7 @@ static void same_seed_same_bits(void **state) {
 }
 
 /* In double, where the order of sums would show. */
-static void sums_do_not_depend_on_threads(void **state) {
-    (void)state;
+TEST(sums_do_not_depend_on_threads) {
     enum { COLUMNS = 40, WIDTH = 2 * DIRECTIONS_BLOCK };
     Table table = make_random(300, COLUMNS, 0.99, true);
     double directions[COLUMNS * WIDTH], images[2][COLUMNS * WIDTH];
@@ -314,8 +304,7 @@ static void sums_do_not_depend_on_threads(void **state) {
     assert_memory_equal(images[0], images[1], sizeof images[0]);
 }
 
-static void the_largest_number_is_positive(void **state) {
-    (void)state;
+TEST(the_largest_number_is_positive) {
     Table table = make_random(300, 40, 0.9, true);
     Projection projection = fit(&table, 32, 1);
     for (int c = 0; c < 32; c++) {
@@ -335,8 +324,7 @@ static void refuse(const SparseRows *rows, int from, const char *text) {
     for (int i = 0; i < 2 * from; i++) assert_true(isnan(projection.rows[i]));
 }
 
-static void invalid_rows_are_refused(void **state) {
-    (void)state;
+TEST(invalid_rows_are_refused) {
     const int64_t begin[] = {0, 2, 4};
     const int32_t column[] = {1, 0, 2, 0}, below[] = {1, 0, -1, 0}, beyond[] = {1, 0, 3, 0}, twice[] = {1, 0, 2, 2};
     const float value[] = {1, 2, 3, 4}, unknown[] = {1, 2, 3, NAN}, endless[] = {INFINITY, 2, 3, 4};
@@ -349,20 +337,4 @@ static void invalid_rows_are_refused(void **state) {
     refuse(&(SparseRows){2, 3, begin, column, value}, 4, "for a projection of 4 to 2");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(directions_of_known_variance_are_found),
-        cmocka_unit_test(components_are_white_and_the_strongest),
-        cmocka_unit_test(a_flat_spectrum_is_nearly_captured),
-        cmocka_unit_test(components_beyond_the_rank_are_0),
-        cmocka_unit_test(components_too_weak_for_float_are_0),
-        cmocka_unit_test(a_large_mean_costs_no_digits),
-        cmocka_unit_test(equal_rows_have_no_components),
-        cmocka_unit_test(constant_columns_contribute_nothing),
-        cmocka_unit_test(same_seed_same_bits),
-        cmocka_unit_test(sums_do_not_depend_on_threads),
-        cmocka_unit_test(the_largest_number_is_positive),
-        cmocka_unit_test(invalid_rows_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, free_all);
-}
+RUN_TESTS(NULL, free_all)

@@ -22,8 +22,7 @@ static Dataset *record(DatasetOptions options) {
 }
 
 /* The visits of a pair in all sweeps of a step, and its warm start, are what its impulses changed in the step. */
-static void visits_add_up_to_the_pairs_change(void **state) {
-    (void)state;
+TEST(visits_add_up_to_the_pairs_change) {
     Dataset *pair = record((DatasetOptions){.target = TARGET_PAIR});
     Dataset *visits = record((DatasetOptions){.target = TARGET_IMPULSE});
     assert_true(visits->rows == 10 * pair->rows);
@@ -50,8 +49,7 @@ static void visits_add_up_to_the_pairs_change(void **state) {
 }
 
 /* Row k of a thinned launch is row 3 k of the whole one. */
-static void thinned_rows_are_rows_of_the_whole(void **state) {
-    (void)state;
+TEST(thinned_rows_are_rows_of_the_whole) {
     Dataset *all = record((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT});
     Dataset *some = record((DatasetOptions){.target = TARGET_IMPULSE, .view = PAIR_CONTACT, .every = 3});
     const size_t in = 20 * sizeof(float), out = PAIR_CHANGES * sizeof(float);
@@ -72,8 +70,7 @@ static void thinned_rows_are_rows_of_the_whole(void **state) {
 }
 
 /* Where a body is in one pair only, what all impulses changed of it is what that pair's did. */
-static void net_is_pair_where_there_is_one_pair(void **state) {
-    (void)state;
+TEST(net_is_pair_where_there_is_one_pair) {
     Dataset *pair = record((DatasetOptions){.target = TARGET_PAIR});
     Dataset *net = record((DatasetOptions){.target = TARGET_NET});
     assert_true(pair->rows == net->rows);
@@ -96,8 +93,7 @@ static void net_is_pair_where_there_is_one_pair(void **state) {
 }
 
 /* At rest the engine has converged and equals the reference; at impacts it does not. */
-static void the_reference_labels_what_the_engine_met(void **state) {
-    (void)state;
+TEST(the_reference_labels_what_the_engine_met) {
     Dataset *engine = record((DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET});
     Dataset *reference = record(
         (DatasetOptions){.scenes = both, .scene_count = 2, .target = TARGET_NET, .labels = DATASET_BY_REFERENCE});
@@ -117,8 +113,7 @@ static void the_reference_labels_what_the_engine_met(void **state) {
 
 /* The ground is static, the box has 200 kg, the bomb 50. What an impulse at the middle of the points does to a body is
    what it did, but for how it was shared among the points. */
-static void contexts_tell_what_made_the_changes(void **state) {
-    (void)state;
+TEST(contexts_tell_what_made_the_changes) {
     Dataset *plain = record((DatasetOptions){0}), *dataset = record((DatasetOptions){.context = true});
     assert_null(plain->context);
     assert_non_null(dataset->context);
@@ -147,8 +142,7 @@ static void contexts_tell_what_made_the_changes(void **state) {
     dataset_destroy(plain);
 }
 
-static void random_launches_lie_in_their_ranges(void **state) {
-    (void)state;
+TEST(random_launches_lie_in_their_ranges) {
     Dataset *a = record((DatasetOptions){.random = 50, .seed = 3}),
             *b = record((DatasetOptions){.random = 50, .seed = 3});
     Dataset *c = record((DatasetOptions){.random = 50, .seed = 4});
@@ -179,8 +173,7 @@ static bool is_on_the_ground_alone(const Dataset *dataset, int64_t row) {
 
 /* At the end of the run: what the warm start brings is what gravity takes, g dt of both points together, so that
    nothing approaches and next to nothing is left to do. */
-static void a_box_at_rest_shows_its_warm_start(void **state) {
-    (void)state;
+TEST(a_box_at_rest_shows_its_warm_start) {
     enum { WIDTH = 20, POINT = 9 }; /* numbers of a point: vn vt bias pn pt and arms */
     Dataset *dataset = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_POINTS});
     assert_int_equal(dataset_inputs(dataset), WIDTH);
@@ -201,8 +194,7 @@ static void a_box_at_rest_shows_its_warm_start(void **state) {
 }
 
 /* The neighbours' view is the contact's, and twelve numbers more, of which six are 0 where there are no neighbours. */
-static void neighbours_are_seen_beside_the_contact(void **state) {
-    (void)state;
+TEST(neighbours_are_seen_beside_the_contact) {
     Dataset *contact = record((DatasetOptions){.view = PAIR_CONTACT, .target = TARGET_NET});
     Dataset *wide = record((DatasetOptions){.view = PAIR_NEIGHBOURS, .target = TARGET_NET});
     assert_true(contact->rows == wide->rows && dataset_inputs(wide) == 32);
@@ -230,8 +222,7 @@ static void refuse(DatasetOptions options, const char *text) {
     assert_refused(dataset_record(&options, NULL, &error), text);
 }
 
-static void what_cannot_be_recorded_is_refused(void **state) {
-    (void)state;
+TEST(what_cannot_be_recorded_is_refused) {
     refuse((DatasetOptions){.random = 4}, "4 launches per scene; expected at least 5");
     refuse((DatasetOptions){.random = DATASET_MAX_LAUNCHES + 1}, "at most 100000");
     refuse((DatasetOptions){.random = 5, .target = TARGET_IMPULSE, .labels = DATASET_BY_REFERENCE},
@@ -243,15 +234,4 @@ static void what_cannot_be_recorded_is_refused(void **state) {
     refuse((DatasetOptions){.random = 5, .target = TARGET_NET, .context = true}, "the target net has none");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(visits_add_up_to_the_pairs_change),
-                                       cmocka_unit_test(thinned_rows_are_rows_of_the_whole),
-                                       cmocka_unit_test(net_is_pair_where_there_is_one_pair),
-                                       cmocka_unit_test(the_reference_labels_what_the_engine_met),
-                                       cmocka_unit_test(a_box_at_rest_shows_its_warm_start),
-                                       cmocka_unit_test(neighbours_are_seen_beside_the_contact),
-                                       cmocka_unit_test(contexts_tell_what_made_the_changes),
-                                       cmocka_unit_test(random_launches_lie_in_their_ranges),
-                                       cmocka_unit_test(what_cannot_be_recorded_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -10,8 +10,7 @@ static void refuse(const Dataset *dataset, TrainingOptions options, const char *
     assert_refused(training_run(dataset, &options, NULL, &error), text);
 }
 
-static void invalid_options_are_refused(void **state) {
-    (void)state;
+TEST(invalid_options_are_refused) {
     static const struct {
         const char *optimizer;
         int iterations, layers, widths[3];
@@ -52,8 +51,7 @@ static void invalid_options_are_refused(void **state) {
 }
 
 /* The change of b relative to a overflows float32. */
-static void infinite_loss_is_an_error(void **state) {
-    (void)state;
+TEST(infinite_loss_is_an_error) {
     Dataset *dataset = make_taught_dataset(100);
     dataset->changes[0] = -FLT_MAX, dataset->changes[3] = FLT_MAX;
     for (int i = 0; optimizers[i] != NULL; i++) refuse(dataset, small(optimizers[i]->name, 3), "iteration 0");
@@ -61,8 +59,7 @@ static void infinite_loss_is_an_error(void **state) {
 }
 
 /* Words, the weight of a law, and the outputs. */
-static void options_that_contradict_each_other_are_refused(void **state) {
-    (void)state;
+TEST(options_that_contradict_each_other_are_refused) {
     static const struct {
         const char *optimizer, *hidden, *activation, *scale, *loss;
         double cone;
@@ -112,8 +109,7 @@ static void options_that_contradict_each_other_are_refused(void **state) {
 }
 
 /* A start network keeps its activations and output scaling. */
-static void options_that_contradict_the_start_network_are_refused(void **state) {
-    (void)state;
+TEST(options_that_contradict_the_start_network_are_refused) {
     Error error = {0};
     Dataset *dataset = make_taught_dataset(100);
     TrainingOptions options = small("adam", 1);
@@ -140,8 +136,7 @@ static void options_that_contradict_the_start_network_are_refused(void **state) 
 
 /* Ten equal inputs: the loss of a linear layer has curvature 10 along their sum, so a step of gradient descent at rate
    1/2 multiplies the distance from the minimum by -4. From 1 it exceeds the largest float, 2^128, in about 64 steps. */
-static void divergence_names_its_iteration(void **state) {
-    (void)state;
+TEST(divergence_names_its_iteration) {
     Error error = {0};
     Dataset *dataset = make_taught_dataset(100);
     for (int i = 0; i < 100 * PAIR_INPUTS; i++) dataset->inputs[i] = dataset->inputs[i / PAIR_INPUTS * PAIR_INPUTS];
@@ -164,13 +159,4 @@ static void divergence_names_its_iteration(void **state) {
     dataset_destroy(dataset);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(invalid_options_are_refused),
-        cmocka_unit_test(options_that_contradict_each_other_are_refused),
-        cmocka_unit_test(options_that_contradict_the_start_network_are_refused),
-        cmocka_unit_test(divergence_names_its_iteration),
-        cmocka_unit_test(infinite_loss_is_an_error),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -53,8 +53,7 @@ static void clear(Any *any) {
     free(any->weights);
 }
 
-static void slopes_are_finite_differences(void **state) {
-    (void)state;
+TEST(slopes_are_finite_differences) {
     static Any any;
     Error error = {0};
     RelationLoss loss = {0};
@@ -83,7 +82,4 @@ static void slopes_are_finite_differences(void **state) {
     clear(&any);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(slopes_are_finite_differences)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -36,8 +36,7 @@ static void assert_same(const RelationNetworks *a, const RelationNetworks *b) {
     }
 }
 
-static void an_interrupted_training_has_the_same_bits(void **state) {
-    (void)state;
+TEST(an_interrupted_training_has_the_same_bits) {
     Error error = {0};
     RelationNetworks whole, resumed;
     scene = shipped_scene("single");
@@ -49,7 +48,4 @@ static void an_interrupted_training_has_the_same_bits(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(an_interrupted_training_has_the_same_bits)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

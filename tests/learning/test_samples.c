@@ -47,8 +47,7 @@ static Dataset *small_dataset(void) {
 }
 
 /* Relative change x: 0, 1, 2, 3 -> 0, 1/3, 2/3, 1; the test row's 6 -> 2. y is constant. */
-static void two_outputs_are_relative_and_min_max(void **state) {
-    (void)state;
+TEST(two_outputs_are_relative_and_min_max) {
     Case made = make_case(small_dataset(), 2, SCALE_MINMAX);
     const Samples *train = made.train, *test = made.test;
     assert_true(train->rows == 4 && test->rows == 1 && train->blocks == 1);
@@ -60,8 +59,7 @@ static void two_outputs_are_relative_and_min_max(void **state) {
 }
 
 /* Input 0, 2, 4, 6 has mean 3 and deviation sqrt 5; the test row must not count. */
-static void inputs_are_standardised_by_the_rows_trained_on(void **state) {
-    (void)state;
+TEST(inputs_are_standardised_by_the_rows_trained_on) {
     Case made = make_case(small_dataset(), 2, SCALE_MINMAX);
     const Samples *train = made.train, *test = made.test;
     for (int r = 0; r < 4; r++) assert_near(train->x[r], (2 * r - 3) / sqrt(5), 1e-6);
@@ -72,8 +70,7 @@ static void inputs_are_standardised_by_the_rows_trained_on(void **state) {
     free_case(&made);
 }
 
-static void six_outputs_are_all_changes_standardised(void **state) {
-    (void)state;
+TEST(six_outputs_are_all_changes_standardised) {
     Dataset *dataset = make_dataset(1000);
     uint32_t sequence = 5;
     for (int i = 0; i < 1000 * PAIR_CHANGES; i++)
@@ -94,8 +91,7 @@ static void six_outputs_are_all_changes_standardised(void **state) {
 }
 
 /* A normalised target, set as the bias of a linear layer, is returned by network_predict() as the original change. */
-static void normalisation_is_undone_by_prediction(void **state) {
-    (void)state;
+TEST(normalisation_is_undone_by_prediction) {
     Dataset *dataset = make_dataset(50);
     uint32_t sequence = 9;
     for (int i = 0; i < 50 * PAIR_CHANGES; i++) dataset->changes[i] = 3 + next_number(&sequence);
@@ -115,8 +111,7 @@ static void normalisation_is_undone_by_prediction(void **state) {
 
 /* The mean squared error of the constant 1/2 is 5/36 on 0, 1/3, 2/3, 1 and 9/4 on the test row's 2; the other output is
    exact. */
-static void the_constant_predictor_has_the_variance(void **state) {
-    (void)state;
+TEST(the_constant_predictor_has_the_variance) {
     Case made = make_case(small_dataset(), 2, SCALE_MINMAX);
     const Samples *train = made.train, *test = made.test;
     double mean[2];
@@ -129,8 +124,7 @@ static void the_constant_predictor_has_the_variance(void **state) {
 
 /* Changes of 0, 1, 2, 3 m/s, scaled by 1/3; the errors of the constant are 0.1, 0.9, 1.9, 2.9 m/s. Up to 0.3 m/s the
    loss is the square, beyond it 0.6 |e| - 0.09; in the network's units a ninth of that. */
-static void the_smooth_loss_is_linear_beyond_its_threshold(void **state) {
-    (void)state;
+TEST(the_smooth_loss_is_linear_beyond_its_threshold) {
     Error error = {0};
     Case made = make_case(small_dataset(), 2, SCALE_MINMAX);
     const Samples *train = made.train;
@@ -154,8 +148,7 @@ static void the_smooth_loss_is_linear_beyond_its_threshold(void **state) {
 
 /* A network of zeros predicts 1/2 through its sigmoid: its loss is that of the constant, also over many chunks and a
    partly filled block. */
-static void loss_of_a_constant_network_is_that_of_the_constant(void **state) {
-    (void)state;
+TEST(loss_of_a_constant_network_is_that_of_the_constant) {
     const double parameters[22] = {0}, half[2] = {0.5, 0.5};
     Case made = make_case(make_taught_dataset(10007), 2, SCALE_MINMAX);
     assert_int_equal(network_parameter_count(made.network), 22);
@@ -165,15 +158,4 @@ static void loss_of_a_constant_network_is_that_of_the_constant(void **state) {
     free_case(&made);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_outputs_are_relative_and_min_max),
-        cmocka_unit_test(inputs_are_standardised_by_the_rows_trained_on),
-        cmocka_unit_test(six_outputs_are_all_changes_standardised),
-        cmocka_unit_test(normalisation_is_undone_by_prediction),
-        cmocka_unit_test(the_constant_predictor_has_the_variance),
-        cmocka_unit_test(the_smooth_loss_is_linear_beyond_its_threshold),
-        cmocka_unit_test(loss_of_a_constant_network_is_that_of_the_constant),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

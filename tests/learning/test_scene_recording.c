@@ -25,8 +25,7 @@ static void assert_equal_samples(const SlotSamples *samples, const SlotSamples *
     }
 }
 
-static void shards_record_what_the_training_runs(void **state) {
-    (void)state;
+TEST(shards_record_what_the_training_runs) {
     Error error = {0};
     Scene *scene = shipped_scene("stack");
     SceneRecording recording;
@@ -66,8 +65,7 @@ static bool is_refused(const char *bytes, size_t size, int bodies) {
     return !read;
 }
 
-static void damaged_samples_are_refused(void **state) {
-    (void)state;
+TEST(damaged_samples_are_refused) {
     Error error = {0};
     SlotSamples samples = labelled_impacts(2), read = {0};
     char *bytes = NULL;
@@ -92,10 +90,4 @@ static void damaged_samples_are_refused(void **state) {
     slot_samples_free(&read);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shards_record_what_the_training_runs),
-        cmocka_unit_test(damaged_samples_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -34,8 +34,7 @@ static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *pr
     return scene_training_run(scene, &training, progress, error);
 }
 
-static void the_network_is_for_its_scene_and_the_same_for_any_threads(void **state) {
-    (void)state;
+TEST(the_network_is_for_its_scene_and_the_same_for_any_threads) {
     Error error = {0};
     Scene *scene = shipped_scene("stack");
     Scores scores[2];
@@ -83,8 +82,7 @@ static bool stop_share(void *context, double done, double total) {
 }
 
 /* Stopped in the first fit, in the labels after it, in the second fit. */
-static void a_stopped_training_keeps_the_rounds_so_far(void **state) {
-    (void)state;
+TEST(a_stopped_training_keeps_the_rounds_so_far) {
     Scene *scene = shipped_scene("stack");
     static const double at[] = {0.27, 0.67, 0.87};
     for (int i = 0; i < 3; i++) {
@@ -102,8 +100,7 @@ static void a_stopped_training_keeps_the_rounds_so_far(void **state) {
     scene_destroy(scene);
 }
 
-static void a_training_stopped_before_the_first_network_fails(void **state) {
-    (void)state;
+TEST(a_training_stopped_before_the_first_network_fails) {
     Error error = {0};
     Scene *scene = shipped_scene("stack");
     Scores scores;
@@ -113,8 +110,7 @@ static void a_training_stopped_before_the_first_network_fails(void **state) {
     scene_destroy(scene);
 }
 
-static void a_scene_without_a_bomb_is_refused(void **state) {
-    (void)state;
+TEST(a_scene_without_a_bomb_is_refused) {
     Error error = {0};
     Scene *scene = shipped_scene("stack");
     Scores scores;
@@ -123,12 +119,4 @@ static void a_scene_without_a_bomb_is_refused(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_network_is_for_its_scene_and_the_same_for_any_threads),
-        cmocka_unit_test(a_stopped_training_keeps_the_rounds_so_far),
-        cmocka_unit_test(a_training_stopped_before_the_first_network_fails),
-        cmocka_unit_test(a_scene_without_a_bomb_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

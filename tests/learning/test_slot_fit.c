@@ -48,8 +48,7 @@ static double mean_error(const SlotNetwork *network, const SlotSamples *samples)
     return sum / samples->count;
 }
 
-static void a_few_samples_are_learned(void **state) {
-    (void)state;
+TEST(a_few_samples_are_learned) {
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     const double before = mean_error(network, &samples);
@@ -68,8 +67,7 @@ static void a_few_samples_are_learned(void **state) {
 }
 
 /* Only the velocity loss has a gradient with respect to the factors. */
-static void factors_change_only_if_learned(void **state) {
-    (void)state;
+TEST(factors_change_only_if_learned) {
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     for (int s = 1; s < SWEEPS; s++) network->factors[s] = 0.5f;
@@ -83,8 +81,7 @@ static void factors_change_only_if_learned(void **state) {
 }
 
 /* Adam's first step has the size of the rate for every parameter with a gradient. */
-static void the_first_step_has_the_size_of_the_rate(void **state) {
-    (void)state;
+TEST(the_first_step_has_the_size_of_the_rate) {
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     float *before = malloc(network->parameter_count * sizeof *before);
@@ -103,8 +100,7 @@ static void the_first_step_has_the_size_of_the_rate(void **state) {
 }
 
 /* Enough samples to fill all parts of a batch and to need more than one batch. */
-static void same_bits_for_any_number_of_threads(void **state) {
-    (void)state;
+TEST(same_bits_for_any_number_of_threads) {
     SlotSamples samples[2];
     SlotNetwork *networks[2];
     const int threads = omp_get_max_threads();
@@ -120,8 +116,7 @@ static void same_bits_for_any_number_of_threads(void **state) {
     for (int i = 0; i < 2; i++) end(&samples[i], networks[i]);
 }
 
-static void a_loss_of_nan_is_an_error_naming_the_epoch(void **state) {
-    (void)state;
+TEST(a_loss_of_nan_is_an_error_naming_the_epoch) {
     Error error = {0};
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
@@ -143,8 +138,7 @@ static bool stop_after_three(void *context, double done, double total) {
     return done < 3;
 }
 
-static void a_stopped_fit_keeps_its_parameters(void **state) {
-    (void)state;
+TEST(a_stopped_fit_keeps_its_parameters) {
     Error error = {0};
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
@@ -161,15 +155,7 @@ static void a_stopped_fit_keeps_its_parameters(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_few_samples_are_learned),
-        cmocka_unit_test(factors_change_only_if_learned),
-        cmocka_unit_test(the_first_step_has_the_size_of_the_rate),
-        cmocka_unit_test(same_bits_for_any_number_of_threads),
-        cmocka_unit_test(a_loss_of_nan_is_an_error_naming_the_epoch),
-        cmocka_unit_test(a_stopped_fit_keeps_its_parameters),
-    };
     /* With so little work, two threads would mostly wait for each other. */
     omp_set_num_threads(1);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return _cmocka_run_group_tests("tests", tests_of_file, test_count, NULL, NULL);
 }

@@ -200,25 +200,17 @@ static void assert_gradient(double impulse_weight, double velocity_weight, const
     end(&trial);
 }
 
-static void impulse_loss_has_the_gradient_of_differences(void **state) {
-    (void)state;
-    assert_gradient(1, 0, hand_tuned);
-}
+TEST(impulse_loss_has_the_gradient_of_differences) { assert_gradient(1, 0, hand_tuned); }
 
-static void velocity_loss_has_the_gradient_of_differences(void **state) {
-    (void)state;
+TEST(velocity_loss_has_the_gradient_of_differences) {
     assert_gradient(0, 1, no_momentum);
     assert_gradient(0, 1, hand_tuned);
 }
 
-static void both_have_the_gradient_of_differences(void **state) {
-    (void)state;
-    assert_gradient(0.4, 2, hand_tuned);
-}
+TEST(both_have_the_gradient_of_differences) { assert_gradient(0.4, 2, hand_tuned); }
 
 /* The error is that of solution_error(); the loss is nearly quadratic for small errors. */
-static void the_error_is_that_of_the_studies(void **state) {
-    (void)state;
+TEST(the_error_is_that_of_the_studies) {
     Trial trial;
     begin(&trial);
     for (int i = 0; i < trial.samples.count; i++) {
@@ -238,8 +230,7 @@ static void the_error_is_that_of_the_studies(void **state) {
 }
 
 /* With outputs of 0 the impulses are those of the base. */
-static void impulse_loss_is_a_mean_over_slots(void **state) {
-    (void)state;
+TEST(impulse_loss_is_a_mean_over_slots) {
     Trial trial;
     int linear = 0, quadratic = 0;
     begin(&trial);
@@ -268,13 +259,4 @@ static void impulse_loss_is_a_mean_over_slots(void **state) {
     end(&trial);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(impulse_loss_has_the_gradient_of_differences),
-        cmocka_unit_test(velocity_loss_has_the_gradient_of_differences),
-        cmocka_unit_test(both_have_the_gradient_of_differences),
-        cmocka_unit_test(the_error_is_that_of_the_studies),
-        cmocka_unit_test(impulse_loss_is_a_mean_over_slots),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

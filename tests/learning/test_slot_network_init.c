@@ -45,8 +45,7 @@ static bool is_below(const Slot *x, const Slot *y) {
     return x->b != y->b ? x->b < y->b : x->feature < y->feature;
 }
 
-static void slots_are_contacts_of_at_least_three_samples(void **state) {
-    (void)state;
+TEST(slots_are_contacts_of_at_least_three_samples) {
     int left_out = 0, known = 0;
     for (int i = 0; i < samples.count; i++)
         for (int k = 0; k < samples.items[i].problem.contact_count; k++) {
@@ -67,8 +66,7 @@ static void slots_are_contacts_of_at_least_three_samples(void **state) {
     assert_int_equal(network->bomb, samples.items[0].problem.marked);
 }
 
-static void caps_are_the_largest_warm_impulses_at_the_touch(void **state) {
-    (void)state;
+TEST(caps_are_the_largest_warm_impulses_at_the_touch) {
     int capped = 0, larger_later = 0;
     for (int i = 0; i < network->slot_count; i++) {
         const Slot *slot = &network->slots[i];
@@ -87,8 +85,7 @@ static void caps_are_the_largest_warm_impulses_at_the_touch(void **state) {
 }
 
 /* mean(sqrt(|goal - base|))^2 + 0.05 N s. */
-static void scales_are_how_far_the_goal_is(void **state) {
-    (void)state;
+TEST(scales_are_how_far_the_goal_is) {
     for (int i = 0; i < network->slot_count; i++) {
         const Slot *slot = &network->slots[i];
         double sum = 0;
@@ -108,8 +105,7 @@ static void scales_are_how_far_the_goal_is(void **state) {
 }
 
 /* Components of each projection are white up to the rounding of its packed rows; those beyond its rank are 0. */
-static void inputs_have_mean_0_and_variance_1_or_0(void **state) {
-    (void)state;
+TEST(inputs_have_mean_0_and_variance_1_or_0) {
     int moving = 0;
     for (int c = 0; c < slot_network_inputs(network); c++) {
         double sum = 0, squares = 0;
@@ -128,16 +124,14 @@ static void inputs_have_mean_0_and_variance_1_or_0(void **state) {
 }
 
 /* Otherwise the network could not know where the bomb struck. */
-static void every_launch_has_different_inputs(void **state) {
-    (void)state;
+TEST(every_launch_has_different_inputs) {
     for (int i = 0; i < samples.count; i++)
         for (int k = 0; k < i; k++)
             assert_memory_not_equal(samples.items[i].inputs, samples.items[k].inputs,
                                     (size_t)slot_network_inputs(network) * sizeof(float));
 }
 
-static void initial_outputs_are_near_0(void **state) {
-    (void)state;
+TEST(initial_outputs_are_near_0) {
     float first[SLOT_WIDTH_MAX], second[SLOT_WIDTH_MAX], outputs[200];
     double sum = 0;
     int count = 0;
@@ -168,8 +162,7 @@ static bool same_parameters(const SlotNetwork *a, const SlotNetwork *b) {
     return memcmp(a->parameters, b->parameters, a->parameter_count * sizeof(float)) == 0;
 }
 
-static void same_seed_same_bits(void **state) {
-    (void)state;
+TEST(same_seed_same_bits) {
     const int threads = omp_get_max_threads();
     omp_set_num_threads(threads == 1 ? 2 : 1);
     SlotNetwork *same = make_again(1), *other = make_again(2);
@@ -182,8 +175,7 @@ static void same_seed_same_bits(void **state) {
     slot_network_destroy(other);
 }
 
-static void samples_without_slots_are_refused(void **state) {
-    (void)state;
+TEST(samples_without_slots_are_refused) {
     Error error = {0};
     SlotSamples few = {0};
     assert_refused(slot_network_from_samples(&few, &small_widths, 1, &error),
@@ -195,16 +187,4 @@ static void samples_without_slots_are_refused(void **state) {
     slot_samples_free(&few);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slots_are_contacts_of_at_least_three_samples),
-        cmocka_unit_test(caps_are_the_largest_warm_impulses_at_the_touch),
-        cmocka_unit_test(scales_are_how_far_the_goal_is),
-        cmocka_unit_test(inputs_have_mean_0_and_variance_1_or_0),
-        cmocka_unit_test(every_launch_has_different_inputs),
-        cmocka_unit_test(initial_outputs_are_near_0),
-        cmocka_unit_test(same_seed_same_bits),
-        cmocka_unit_test(samples_without_slots_are_refused),
-    };
-    return cmocka_run_group_tests(tests, begin, end);
-}
+RUN_TESTS(begin, end)

@@ -18,8 +18,7 @@ static void assert_same_samples(const SlotSamples *a, const SlotSamples *b) {
     }
 }
 
-static void same_bits_for_any_number_of_threads(void **state) {
-    (void)state;
+TEST(same_bits_for_any_number_of_threads) {
     SlotSamples samples[2] = {{0}};
     const int threads = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
@@ -31,8 +30,7 @@ static void same_bits_for_any_number_of_threads(void **state) {
     for (int i = 0; i < 2; i++) slot_samples_free(&samples[i]);
 }
 
-static void samples_are_appended_in_the_order_of_launch_and_step(void **state) {
-    (void)state;
+TEST(samples_are_appended_in_the_order_of_launch_and_step) {
     SlotSamples samples = {0};
     record_impacts(&samples, LAUNCHES, 0);
     const int count = samples.count;
@@ -84,8 +82,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
     return found;
 }
 
-static void samples_are_the_steps_with_a_large_residual(void **state) {
-    (void)state;
+TEST(samples_are_the_steps_with_a_large_residual) {
     Error error = {0};
     SlotSamples samples = {0};
     ContactSolver solver;
@@ -111,8 +108,7 @@ static bool no_solver(void *context, ContactSolver *solver, Error *error) {
     return error_input(error, "solver", "not available");
 }
 
-static void a_solver_that_cannot_be_made_is_an_error(void **state) {
-    (void)state;
+TEST(a_solver_that_cannot_be_made_is_an_error) {
     Error error = {0};
     Scene *scene = shipped_scene("stack");
     Launch launch = launch_of(scene);
@@ -124,12 +120,4 @@ static void a_solver_that_cannot_be_made_is_an_error(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bits_for_any_number_of_threads),
-        cmocka_unit_test(samples_are_appended_in_the_order_of_launch_and_step),
-        cmocka_unit_test(samples_are_the_steps_with_a_large_residual),
-        cmocka_unit_test(a_solver_that_cannot_be_made_is_an_error),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

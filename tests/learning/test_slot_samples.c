@@ -6,8 +6,7 @@
 
 enum { LAUNCHES = 4 };
 
-static void a_sample_is_a_copy(void **state) {
-    (void)state;
+TEST(a_sample_is_a_copy) {
     ProblemBody bodies[2] = {{.inv_mass = 1}, {.inv_mass = 2}};
     ContactPoint contact = {.a = 0, .b = 1, .feature = 5};
     const ContactProblem problem = {
@@ -33,8 +32,7 @@ static void a_sample_is_a_copy(void **state) {
 }
 
 /* A launch without impacts has no samples; an impact may have no contacts. */
-static void empty_samples_can_be_moved(void **state) {
-    (void)state;
+TEST(empty_samples_can_be_moved) {
     SlotSamples samples = {0}, none = {0};
     const ProblemBody body = {.inv_mass = 1};
     assert_true(slot_samples_move(&samples, &none));
@@ -45,8 +43,7 @@ static void empty_samples_can_be_moved(void **state) {
     slot_samples_free(&none);
 }
 
-static void labels_are_the_references(void **state) {
-    (void)state;
+TEST(labels_are_the_references) {
     Error error = {0};
     const int threads = omp_get_max_threads();
     Reference reference = {0};
@@ -76,8 +73,7 @@ static bool stop(void *context, double done, double total) {
     return false;
 }
 
-static void only_samples_from_the_given_index_are_labelled(void **state) {
-    (void)state;
+TEST(only_samples_from_the_given_index_are_labelled) {
     Error error = {0};
     SlotSamples samples = {0};
     record_impacts(&samples, LAUNCHES, 0);
@@ -92,8 +88,7 @@ static void only_samples_from_the_given_index_are_labelled(void **state) {
     slot_samples_free(&samples);
 }
 
-static void inputs_are_those_of_the_network(void **state) {
-    (void)state;
+TEST(inputs_are_those_of_the_network) {
     Error error = {0};
     SlotSamples shaped = labelled_impacts(LAUNCHES), samples = {0};
     SlotNetwork *network = network_for(&shaped);
@@ -111,13 +106,4 @@ static void inputs_are_those_of_the_network(void **state) {
     slot_samples_free(&shaped);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sample_is_a_copy),
-        cmocka_unit_test(empty_samples_can_be_moved),
-        cmocka_unit_test(labels_are_the_references),
-        cmocka_unit_test(only_samples_from_the_given_index_are_labelled),
-        cmocka_unit_test(inputs_are_those_of_the_network),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

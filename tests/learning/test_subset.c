@@ -47,8 +47,7 @@ static unsigned check_rows(const Dataset *subset) {
 
 static const unsigned held_out = 1u << 3 | 1u << 8 | 1u << 13 | 1u << 18;
 
-static void a_subset_has_the_rows_of_its_launches(void **state) {
-    (void)state;
+TEST(a_subset_has_the_rows_of_its_launches) {
     for (int context = 0; context < 2; context++) {
         Error error = {0};
         Dataset *dataset = make_dataset(context == 1);
@@ -77,8 +76,7 @@ static int count_bits(unsigned bits) {
 }
 
 /* More launches contain fewer; another seed draws others; 19 launches have rows, 4 of them held out. */
-static void launches_are_drawn_by_the_seed(void **state) {
-    (void)state;
+TEST(launches_are_drawn_by_the_seed) {
     Dataset *dataset = make_dataset(false);
     unsigned last = held_out, first_of_seed[3];
     for (int count = 1; count <= 15; count++) {
@@ -101,8 +99,7 @@ static void launches_are_drawn_by_the_seed(void **state) {
     dataset_destroy(dataset);
 }
 
-static void what_would_leave_nothing_is_refused(void **state) {
-    (void)state;
+TEST(what_would_leave_nothing_is_refused) {
     Dataset *dataset = make_dataset(false);
     Error error = {0};
     assert_refused(dataset_subset(dataset, (const bool[LAUNCHES]){[3] = true, [19] = true}, &error),
@@ -113,9 +110,4 @@ static void what_would_leave_nothing_is_refused(void **state) {
     dataset_destroy(dataset);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_subset_has_the_rows_of_its_launches),
-                                       cmocka_unit_test(launches_are_drawn_by_the_seed),
-                                       cmocka_unit_test(what_would_leave_nothing_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -27,8 +27,7 @@ static bool train(void *context, const char *path, const Progress *progress, Err
 }
 
 /* A report for each launch that is recorded, then one before each epoch. */
-static void the_bits_do_not_depend_on_threads_or_interruptions(void **state) {
-    (void)state;
+TEST(the_bits_do_not_depend_on_threads_or_interruptions) {
     Error error = {0};
     SubspaceNet *one, *two;
     scene = short_scene();
@@ -46,8 +45,7 @@ static void the_bits_do_not_depend_on_threads_or_interruptions(void **state) {
 }
 
 /* All of them are kept, so nothing is lost but the rounding of floats; the first state lies one step before. */
-static void rows_are_the_recorded_poses(void **state) {
-    (void)state;
+TEST(rows_are_the_recorded_poses) {
     Error error = {0};
     Launch launches[2];
     PoseRows rows;
@@ -75,8 +73,7 @@ static void rows_are_the_recorded_poses(void **state) {
     scene_destroy(scene);
 }
 
-static void too_few_frames_are_refused(void **state) {
-    (void)state;
+TEST(too_few_frames_are_refused) {
     Error error = {0};
     scene = short_scene();
     scene->frames = 20;
@@ -85,9 +82,4 @@ static void too_few_frames_are_refused(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_bits_do_not_depend_on_threads_or_interruptions),
-                                       cmocka_unit_test(rows_are_the_recorded_poses),
-                                       cmocka_unit_test(too_few_frames_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

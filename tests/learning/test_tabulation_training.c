@@ -63,8 +63,7 @@ static void assert_same_memory(const Tabulation *a, const Tabulation *b) {
     assert_memory_equal(a->impulses, b->impulses, a->impulse_count * sizeof *a->impulses);
 }
 
-static void familiar_impacts_are_answered_within_the_tolerance(void **state) {
-    (void)state;
+TEST(familiar_impacts_are_answered_within_the_tolerance) {
     Scene *scene = shipped_scene("single");
     Counts counts;
     const TabulationTraining training = training_of(&counts);
@@ -81,8 +80,7 @@ static void familiar_impacts_are_answered_within_the_tolerance(void **state) {
 }
 
 /* Each ends where the memory has no room for one more entry. */
-static void the_limit_holds_and_is_reported(void **state) {
-    (void)state;
+TEST(the_limit_holds_and_is_reported) {
     Scene *scene = shipped_scene("single");
     Counts counts;
     TabulationTraining training = training_of(&counts);
@@ -95,8 +93,7 @@ static void the_limit_holds_and_is_reported(void **state) {
     scene_destroy(scene);
 }
 
-static void an_interrupted_learning_is_continued_with_the_same_bits(void **state) {
-    (void)state;
+TEST(an_interrupted_learning_is_continued_with_the_same_bits) {
     Scene *scene = shipped_scene("single");
     Counts counts;
     TabulationTraining training = training_of(&counts);
@@ -139,8 +136,7 @@ static void assert_same_run(Trajectory *a, Trajectory *b) {
 }
 
 /* net=off and an empty memory solve every step to convergence; a memory gives the same run each time, and another one. */
-static void the_method_without_its_memory_is_its_twin(void **state) {
-    (void)state;
+TEST(the_method_without_its_memory_is_its_twin) {
     Error error = {0};
     Scene *scene = shipped_scene("single");
     Counts counts;
@@ -170,10 +166,4 @@ static void the_method_without_its_memory_is_its_twin(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(familiar_impacts_are_answered_within_the_tolerance),
-                                       cmocka_unit_test(the_limit_holds_and_is_reported),
-                                       cmocka_unit_test(an_interrupted_learning_is_continued_with_the_same_bits),
-                                       cmocka_unit_test(the_method_without_its_memory_is_its_twin)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

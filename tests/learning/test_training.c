@@ -64,8 +64,7 @@ static void check_learns(const char *optimizer, int iterations, double factor) {
     dataset_destroy(dataset);
 }
 
-static void every_optimizer_learns_a_networks_outputs(void **state) {
-    (void)state;
+TEST(every_optimizer_learns_a_networks_outputs) {
     check_learns("adam", 1000, 100);
     check_learns("bfgs", 200, 100);
     check_learns("lm", 20, 100);
@@ -74,8 +73,7 @@ static void every_optimizer_learns_a_networks_outputs(void **state) {
 
 /* Without a hidden layer and with linear outputs the loss is quadratic. Its minimum is 0 here, up to the rounding of
    targets to float32; Levenberg-Marquardt reaches it in a few steps and then stops without an error. */
-static void linear_problems_are_solved(void **state) {
-    (void)state;
+TEST(linear_problems_are_solved) {
     Dataset *dataset = make_dataset(1000);
     for (int i = 0; i < 1000 * PAIR_CHANGES; i++) {
         const float *x = dataset->inputs + i / PAIR_CHANGES * PAIR_INPUTS;
@@ -101,8 +99,7 @@ static void linear_problems_are_solved(void **state) {
     dataset_destroy(dataset);
 }
 
-static void networks_name_their_inputs_and_outputs(void **state) {
-    (void)state;
+TEST(networks_name_their_inputs_and_outputs) {
     Dataset *dataset = make_taught_dataset(100);
     Scores scores;
     Network *two = train(dataset, small("adam", 0), &scores);
@@ -125,8 +122,7 @@ static bool same_numbers(const Network *a, const Network *b) {
 
 /* No hidden layer, weights 0, inputs and outputs of mean 0: d loss / d bias = 2/6 bias for each of the six outputs, so
    a step at rate 1/2 leaves 5/6 of it. */
-static void gradient_descent_steps_at_its_rate(void **state) {
-    (void)state;
+TEST(gradient_descent_steps_at_its_rate) {
     Dataset *dataset = make_dataset(1000);
     uint32_t sequence = 9;
     for (int i = 0; i < 1000 * PAIR_CHANGES; i++) dataset->changes[i] = next_number(&sequence);
@@ -144,8 +140,7 @@ static void gradient_descent_steps_at_its_rate(void **state) {
     dataset_destroy(dataset);
 }
 
-static void options_set_activations_and_scaling(void **state) {
-    (void)state;
+TEST(options_set_activations_and_scaling) {
     Dataset *dataset = make_taught_dataset(100);
     const char *const hidden[] = {"sigmoid", "tanh", "relu"};
     const Activation expected[] = {ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
@@ -175,8 +170,7 @@ static void options_set_activations_and_scaling(void **state) {
 }
 
 /* Glorot: |weight| <= limit, variance limit^2 / 3; biases 0. */
-static void first_weights_are_glorots(void **state) {
-    (void)state;
+TEST(first_weights_are_glorots) {
     Dataset *dataset = make_taught_dataset(100);
     Scores scores;
     TrainingOptions options = small("adam", 0);
@@ -198,8 +192,7 @@ static void first_weights_are_glorots(void **state) {
 }
 
 /* Enough rows for several threads. */
-static void same_seed_same_bits(void **state) {
-    (void)state;
+TEST(same_seed_same_bits) {
     Dataset *dataset = make_taught_dataset(6000);
     Scores scores;
     const char *const names[] = {"adam", "bfgs", "gd", "lm"};
@@ -229,8 +222,7 @@ static void same_seed_same_bits(void **state) {
     dataset_destroy(dataset);
 }
 
-static void scores_are_reported_as_in_the_papers_table(void **state) {
-    (void)state;
+TEST(scores_are_reported_as_in_the_papers_table) {
     Dataset *dataset = make_taught_dataset(100);
     Scores scores;
     const int expected[] = {0, 10, 50, 100, 1000, 2000, 5000, 5001};
@@ -250,8 +242,7 @@ static bool stop_at(void *context, double done, double total) {
     return done < *(const int *)context;
 }
 
-static void stopped_training_returns_the_best_so_far(void **state) {
-    (void)state;
+TEST(stopped_training_returns_the_best_so_far) {
     Dataset *dataset = make_taught_dataset(500);
     const char *const names[] = {"adam", "bfgs", "gd", "lm"};
     for (int i = 0; i < 4; i++) {
@@ -273,8 +264,7 @@ static void stopped_training_returns_the_best_so_far(void **state) {
 }
 
 /* Adam overshoots with a wide network; the returned network never gets worse with more iterations. */
-static void training_returns_the_best_and_not_the_last(void **state) {
-    (void)state;
+TEST(training_returns_the_best_and_not_the_last) {
     Dataset *dataset = make_taught_dataset(500);
     double best = INFINITY;
     int overshot = 0;
@@ -298,8 +288,7 @@ static void training_returns_the_best_and_not_the_last(void **state) {
     dataset_destroy(dataset);
 }
 
-static void training_continues_from_a_start_network(void **state) {
-    (void)state;
+TEST(training_continues_from_a_start_network) {
     Dataset *dataset = make_taught_dataset(500), *wider = make_taught_dataset(500);
     for (int i = 0; i < 500 * PAIR_INPUTS; i++) wider->inputs[i] *= 2;
     Scores scores;
@@ -320,19 +309,4 @@ static void training_continues_from_a_start_network(void **state) {
     dataset_destroy(dataset);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_optimizer_learns_a_networks_outputs),
-        cmocka_unit_test(linear_problems_are_solved),
-        cmocka_unit_test(networks_name_their_inputs_and_outputs),
-        cmocka_unit_test(gradient_descent_steps_at_its_rate),
-        cmocka_unit_test(options_set_activations_and_scaling),
-        cmocka_unit_test(first_weights_are_glorots),
-        cmocka_unit_test(same_seed_same_bits),
-        cmocka_unit_test(scores_are_reported_as_in_the_papers_table),
-        cmocka_unit_test(stopped_training_returns_the_best_so_far),
-        cmocka_unit_test(training_returns_the_best_and_not_the_last),
-        cmocka_unit_test(training_continues_from_a_start_network),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -70,8 +70,7 @@ static bool frame_equals_scalar(void *context, int frame, const World *world, Er
     return true;
 }
 
-static void sweeps_match_the_scalar_reference_implementation(void **state) {
-    (void)state;
+TEST(sweeps_match_the_scalar_reference_implementation) {
     Unrolled unrolled = {0};
     observe_scene("single", frame_equals_scalar, &unrolled);
     observe_scene("stack", frame_equals_scalar, &unrolled);
@@ -80,8 +79,7 @@ static void sweeps_match_the_scalar_reference_implementation(void **state) {
 }
 
 /* Random problems have warm impulses outside the cone; the scalar reference implementation needs them projected. */
-static void the_start_is_projected_into_the_cone(void **state) {
-    (void)state;
+TEST(the_start_is_projected_into_the_cone) {
     uint32_t seed = 1;
     int outside = 0;
     Unrolled unrolled = {0};
@@ -213,15 +211,13 @@ static bool derive_impact(void *context, int frame, const World *world, Error *e
     return true;
 }
 
-static void derivatives_match_differences_at_an_impact_of_the_stack(void **state) {
-    (void)state;
+TEST(derivatives_match_differences_at_an_impact_of_the_stack) {
     bool met = false;
     observe_scene("stack", derive_impact, &met);
     assert_true(met);
 }
 
-static void derivatives_match_differences_on_random_problems(void **state) {
-    (void)state;
+TEST(derivatives_match_differences_on_random_problems) {
     uint32_t seed = 5;
     for (int run = 0; run < 8; run++) {
         RandomProblem random;
@@ -231,8 +227,7 @@ static void derivatives_match_differences_on_random_problems(void **state) {
 }
 
 /* Impulses change velocities by W J^T, so the derivative is J W by_velocity; computed here from the problem itself. */
-static void without_sweeps_the_derivative_is_that_of_an_impulse(void **state) {
-    (void)state;
+TEST(without_sweeps_the_derivative_is_that_of_an_impulse) {
     uint32_t seed = 9;
     RandomProblem random;
     make_random(&random, &seed, 10, 0.2f, 1);
@@ -264,8 +259,7 @@ static void without_sweeps_the_derivative_is_that_of_an_impulse(void **state) {
 }
 
 /* A pulling start is clamped to 0, so neither of its impulses has an effect. */
-static void a_start_that_pulls_has_no_effect(void **state) {
-    (void)state;
+TEST(a_start_that_pulls_has_no_effect) {
     uint32_t seed = 15;
     RandomProblem random;
     double by_start[NUMBERS_MAX];
@@ -279,8 +273,7 @@ static void a_start_that_pulls_has_no_effect(void **state) {
 }
 
 /* Impulses are equal and opposite: without static bodies, no start and no factor changes the sum of m v. */
-static void total_momentum_is_conserved(void **state) {
-    (void)state;
+TEST(total_momentum_is_conserved) {
     uint32_t seed = 11;
     RandomProblem random;
     double by_start[NUMBERS_MAX], by_factors[SWEEPS] = {0}, mass[3 * BODIES_MAX] = {0};
@@ -298,8 +291,7 @@ static void total_momentum_is_conserved(void **state) {
 }
 
 /* Earlier, larger problems and earlier backward passes do not change the result. */
-static void a_reused_work_space_gives_the_same_bits(void **state) {
-    (void)state;
+TEST(a_reused_work_space_gives_the_same_bits) {
     uint32_t seed = 13;
     RandomProblem large, small;
     double by_start[2][NUMBERS_MAX];
@@ -321,14 +313,4 @@ static void a_reused_work_space_gives_the_same_bits(void **state) {
     free_case(&given);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sweeps_match_the_scalar_reference_implementation),
-                                       cmocka_unit_test(the_start_is_projected_into_the_cone),
-                                       cmocka_unit_test(derivatives_match_differences_at_an_impact_of_the_stack),
-                                       cmocka_unit_test(derivatives_match_differences_on_random_problems),
-                                       cmocka_unit_test(without_sweeps_the_derivative_is_that_of_an_impulse),
-                                       cmocka_unit_test(a_start_that_pulls_has_no_effect),
-                                       cmocka_unit_test(total_momentum_is_conserved),
-                                       cmocka_unit_test(a_reused_work_space_gives_the_same_bits)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

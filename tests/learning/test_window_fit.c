@@ -40,8 +40,7 @@ static WindowFit *fit_of(Case *c) {
 }
 
 /* sin(w s + p) = 2 cos(w) sin(w (s - 1) + p) - sin(w (s - 2) + p) */
-static void the_linear_term_of_a_swing(void **state) {
-    (void)state;
+TEST(the_linear_term_of_a_swing) {
     static Case c;
     make(&c);
     window_linear(&c.data, c.linear);
@@ -52,8 +51,7 @@ static void the_linear_term_of_a_swing(void **state) {
 }
 
 /* With a linear term that is off, so that errors are not small and some states are clamped. */
-static void slopes_are_differences(void **state) {
-    (void)state;
+TEST(slopes_are_differences) {
     static Case c;
     make(&c);
     for (int k = 0; k < COMPONENTS; k++) c.linear[k] = 1.7, c.linear[COMPONENTS + k] = -0.7;
@@ -77,8 +75,7 @@ static void slopes_are_differences(void **state) {
 }
 
 /* Of one prediction, by the network of the training with its scales. */
-static void the_stored_predictor_is_the_trained_one(void **state) {
-    (void)state;
+TEST(the_stored_predictor_is_the_trained_one) {
     static Case c;
     Error error = {0};
     make(&c);
@@ -123,9 +120,4 @@ static void the_stored_predictor_is_the_trained_one(void **state) {
     window_fit_destroy(fit);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_linear_term_of_a_swing),
-                                       cmocka_unit_test(slopes_are_differences),
-                                       cmocka_unit_test(the_stored_predictor_is_the_trained_one)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -26,8 +26,7 @@ static void assert_close(float found, long double exact, float x) {
 }
 
 /* Every 997th float from the smallest to past the end of both functions, of both signs. */
-static void float_stays_within_three_last_places(void **state) {
-    (void)state;
+TEST(float_stays_within_three_last_places) {
     for (uint32_t bits = 1; from_bits(bits) < 100; bits += 997)
         for (int sign = 0; sign < 2; sign++) {
             float x = sign ? -from_bits(bits) : from_bits(bits);
@@ -37,8 +36,7 @@ static void float_stays_within_three_last_places(void **state) {
         }
 }
 
-static void double_is_relatively_exact(void **state) {
-    (void)state;
+TEST(double_is_relatively_exact) {
     for (int i = -60000; i <= 60000; i++) {
         double x = i * 0.0115 + 1e-5, y = i * 5e-4 + 1e-9;
         long double s = 1 / (1 + expl(-(long double)x)), t = tanhl(y);
@@ -47,8 +45,7 @@ static void double_is_relatively_exact(void **state) {
     }
 }
 
-static void exponential_stays_within_its_last_places(void **state) {
-    (void)state;
+TEST(exponential_stays_within_its_last_places) {
     double before = 0;
     for (int i = -700000; i <= 700000; i++) {
         const double y = i * 1e-3, found = exponential(y);
@@ -64,8 +61,7 @@ static void exponential_stays_within_its_last_places(void **state) {
 }
 
 /* Double after double, where the power of two changes: odd multiples of ln 2 / 2. */
-static void exponential_never_falls(void **state) {
-    (void)state;
+TEST(exponential_never_falls) {
     for (int k = -1999; k < 2000; k += 2) {
         double y = k * 0.34657359027997264;
         for (int i = 0; i < 500; i++) y = nextafter(y, -INFINITY);
@@ -81,8 +77,7 @@ static void exponential_never_falls(void **state) {
 
 /* Float after float, where the power of two changes and where the functions end: multiples of ln 2 / 2. The sigmoid
    never falls; tanh, a quotient of two rounded numbers, may by its error. */
-static void sigmoid_never_falls(void **state) {
-    (void)state;
+TEST(sigmoid_never_falls) {
     const float steps[] = {0.34657359f, 1.0397208f, 4.5054566f, 17.0f, 60.3f, 87.0f, 88.376f, 88.8f};
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         uint32_t middle;
@@ -96,8 +91,7 @@ static void sigmoid_never_falls(void **state) {
     }
 }
 
-static void limits_are_exact(void **state) {
-    (void)state;
+TEST(limits_are_exact) {
     const float huge[] = {89, 1000, 1e7f, 1e20f, FLT_MAX, INFINITY};
     for (size_t i = 0; i < sizeof huge / sizeof huge[0]; i++) {
         float x = huge[i];
@@ -112,8 +106,7 @@ static void limits_are_exact(void **state) {
     assert_true(isnan(sigmoid_float(NAN)) && isnan(tanh_float(NAN)) && isnan(sigmoid(NAN)) && isnan(tangent(NAN)));
 }
 
-static void tanh_is_odd(void **state) {
-    (void)state;
+TEST(tanh_is_odd) {
     for (int i = 0; i < 10000; i++) {
         float x = (float)i * 1.7e-3f;
         assert_true(tanh_float(-x) == -tanh_float(x) && tangent(-(double)x) == -tangent((double)x));
@@ -122,8 +115,7 @@ static void tanh_is_odd(void **state) {
 
 /* What these functions gave when the test was written, on x86-64 by gcc 12 and clang 14 at -O0 to -O3: a compiler or
    processor that contracts, reorders or widens an operation gives other bits, of the small terms in one value of many. */
-static void bits_are_the_same_everywhere(void **state) {
-    (void)state;
+TEST(bits_are_the_same_everywhere) {
     uint64_t hash = FNV1A64_START;
     for (uint32_t bits = 0x30000000; from_bits(bits) < 90; bits += 1009) {
         float x = from_bits(bits);
@@ -135,8 +127,7 @@ static void bits_are_the_same_everywhere(void **state) {
     if (hash != UINT64_C(0x56d302c2ba7cf664)) fail_msg("hash of all values: %016llx", (unsigned long long)hash);
 }
 
-static void relu_keeps_nan_and_the_sign_of_zero(void **state) {
-    (void)state;
+TEST(relu_keeps_nan_and_the_sign_of_zero) {
     assert_true(relu_float(2.5f) == 2.5f && relu_float(-2.5f) == 0 && relu(2.5) == 2.5 && relu(-2.5) == 0);
     assert_true(relu_float(INFINITY) == INFINITY && relu_float(-INFINITY) == 0);
     assert_true(isnan(relu_float(NAN)) && isnan(relu((double)NAN)));
@@ -144,17 +135,4 @@ static void relu_keeps_nan_and_the_sign_of_zero(void **state) {
     assert_true(!signbit(relu_float(-FLT_MIN)) && !signbit(relu(-1e-300)));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(float_stays_within_three_last_places),
-        cmocka_unit_test(double_is_relatively_exact),
-        cmocka_unit_test(exponential_stays_within_its_last_places),
-        cmocka_unit_test(exponential_never_falls),
-        cmocka_unit_test(sigmoid_never_falls),
-        cmocka_unit_test(limits_are_exact),
-        cmocka_unit_test(tanh_is_odd),
-        cmocka_unit_test(relu_keeps_nan_and_the_sign_of_zero),
-        cmocka_unit_test(bits_are_the_same_everywhere),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -27,8 +27,7 @@ static bool is_read(const char *path, Error *error) {
     return network != NULL;
 }
 
-static void files_keep_every_bit(void **state) {
-    (void)state;
+TEST(files_keep_every_bit) {
     Error error = {0};
     Network *network = example(), *read = network_read(write_network(network), &error);
     assert_ok(read != NULL, error);
@@ -46,15 +45,13 @@ static void files_keep_every_bit(void **state) {
     network_destroy(network);
 }
 
-static void every_array_is_needed_and_checked(void **state) {
-    (void)state;
+TEST(every_array_is_needed_and_checked) {
     Network *network = example();
     assert_file_is_checked(is_read, write_network(network), "network", NETWORK_VERSION);
     network_destroy(network);
 }
 
-static void numbers_out_of_range_are_refused(void **state) {
-    (void)state;
+TEST(numbers_out_of_range_are_refused) {
     Network *network = example();
     struct {
         float *number, bad;
@@ -73,8 +70,7 @@ static void numbers_out_of_range_are_refused(void **state) {
     network_destroy(network);
 }
 
-static void sizes_and_words_that_do_not_fit_are_refused(void **state) {
-    (void)state;
+TEST(sizes_and_words_that_do_not_fit_are_refused) {
     static const int32_t negative[] = {2, -1}, zero[] = {0, 1}, huge[] = {2, INT32_MAX},
                          many[10] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, wider[] = {3, 1}, deeper[] = {2, 1, 1};
     static const struct {
@@ -98,8 +94,7 @@ static void sizes_and_words_that_do_not_fit_are_refused(void **state) {
     network_destroy(network);
 }
 
-static void every_activation_has_its_word(void **state) {
-    (void)state;
+TEST(every_activation_has_its_word) {
     Error error = {0};
     const Activation all[] = {ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
     Network *network = make_network(4, (const int[]){2, 2, 2, 2, 2}, all);
@@ -115,13 +110,4 @@ static void every_activation_has_its_word(void **state) {
     network_destroy(network);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(files_keep_every_bit),
-        cmocka_unit_test(every_array_is_needed_and_checked),
-        cmocka_unit_test(numbers_out_of_range_are_refused),
-        cmocka_unit_test(sizes_and_words_that_do_not_fit_are_refused),
-        cmocka_unit_test(every_activation_has_its_word),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

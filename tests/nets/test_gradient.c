@@ -101,8 +101,7 @@ static void check_gradient(int layers, const int *widths, const Activation *acti
 }
 
 /* Each input is shifted in one row. */
-static void slopes_of_the_inputs_are_the_finite_difference(void **state) {
-    (void)state;
+TEST(slopes_of_the_inputs_are_the_finite_difference) {
     const int widths[] = {3, 5, 2};
     const Activation activations[] = {ACTIVATION_TANH, ACTIVATION_LINEAR};
     const double step = 1e-5;
@@ -128,8 +127,7 @@ static void slopes_of_the_inputs_are_the_finite_difference(void **state) {
     free_case(&made);
 }
 
-static void backward_is_the_finite_difference(void **state) {
-    (void)state;
+TEST(backward_is_the_finite_difference) {
     const Activation linear = ACTIVATION_LINEAR, sigmoid = ACTIVATION_SIGMOID, tangent = ACTIVATION_TANH,
                      relu = ACTIVATION_RELU;
     check_gradient(1, (const int[]){3, 2}, (const Activation[]){linear});
@@ -146,8 +144,7 @@ static void backward_is_the_finite_difference(void **state) {
 }
 
 /* Where a sum is exactly 0, the slope taken is 0. */
-static void the_rectifiers_slope_at_its_kink_is_zero(void **state) {
-    (void)state;
+TEST(the_rectifiers_slope_at_its_kink_is_zero) {
     Case made = make_case(2, (const int[]){2, 2, 1}, (const Activation[]){ACTIVATION_RELU, ACTIVATION_LINEAR});
     double gradient[16] = {0};
     for (int p = 0; p < 6; p++) made.parameters[p] = 0; /* weights and biases of the hidden layer */
@@ -157,8 +154,7 @@ static void the_rectifiers_slope_at_its_kink_is_zero(void **state) {
     free_case(&made);
 }
 
-static void gradients_add_up(void **state) {
-    (void)state;
+TEST(gradients_add_up) {
     Case made = make_case(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
     double once[64] = {0}, twice[64] = {0};
     assert_true(made.count <= 64);
@@ -170,8 +166,7 @@ static void gradients_add_up(void **state) {
 }
 
 /* Training and inference are the same function, one in double, the other in float32. */
-static void forward_agrees_with_predict(void **state) {
-    (void)state;
+TEST(forward_agrees_with_predict) {
     Case made = make_case(3, (const int[]){4, 6, 5, 2},
                           (const Activation[]){ACTIVATION_TANH, ACTIVATION_SIGMOID, ACTIVATION_LINEAR});
     for (int p = 0; p < made.count; p++) made.parameters[p] = (double)made.network->weights[0][p];
@@ -185,8 +180,7 @@ static void forward_agrees_with_predict(void **state) {
     free_case(&made);
 }
 
-static void dot_sums_every_row_once(void **state) {
-    (void)state;
+TEST(dot_sums_every_row_once) {
     double a[BLOCK_ROWS], b[BLOCK_ROWS];
     for (int r = 0; r < BLOCK_ROWS; r++) a[r] = r + 1, b[r] = r;
     /* sum of r^2 + r for r < n = (n - 1) n (n + 1) / 3 */
@@ -202,8 +196,7 @@ static void run_by(const Kernels *kernels, Case *made, double *gradient) {
     kernels->add_gradient(made->block, gradient);
 }
 
-static void all_instruction_sets_give_the_same_bits(void **state) {
-    (void)state;
+TEST(all_instruction_sets_give_the_same_bits) {
     Case made =
         make_case(4, (const int[]){10, 9, 7, 5, 2},
                   (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU, ACTIVATION_LINEAR});
@@ -223,15 +216,4 @@ static void all_instruction_sets_give_the_same_bits(void **state) {
     free_case(&made);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(backward_is_the_finite_difference),
-        cmocka_unit_test(slopes_of_the_inputs_are_the_finite_difference),
-        cmocka_unit_test(the_rectifiers_slope_at_its_kink_is_zero),
-        cmocka_unit_test(gradients_add_up),
-        cmocka_unit_test(forward_agrees_with_predict),
-        cmocka_unit_test(dot_sums_every_row_once),
-        cmocka_unit_test(all_instruction_sets_give_the_same_bits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

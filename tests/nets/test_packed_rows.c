@@ -29,8 +29,7 @@ static PackedRows pack(const float *rows, int count, int width) {
 }
 
 /* Of the row's largest number, which stays itself. */
-static void a_number_moves_by_half_a_step_at_most(void **state) {
-    (void)state;
+TEST(a_number_moves_by_half_a_step_at_most) {
     static float rows[COUNT * WIDTH];
     uint32_t seed = 1;
     fill_rows(rows, &seed);
@@ -48,8 +47,7 @@ static void a_number_moves_by_half_a_step_at_most(void **state) {
     free(packed.units);
 }
 
-static void what_is_packed_already_stays(void **state) {
-    (void)state;
+TEST(what_is_packed_already_stays) {
     static float rows[COUNT * WIDTH];
     uint32_t seed = 2;
     fill_rows(rows, &seed);
@@ -63,8 +61,7 @@ static void what_is_packed_already_stays(void **state) {
 }
 
 /* Nothing at all, next to nothing, and the largest there is. */
-static void the_ends_of_the_range_are_met(void **state) {
-    (void)state;
+TEST(the_ends_of_the_range_are_met) {
     const float rows[4 * 2] = {0, -0.0f, FLT_TRUE_MIN, -FLT_MIN, FLT_MAX, -FLT_MAX, 1, 127};
     const PackedRows packed = pack(rows, 4, 2);
     const int8_t expected[4 * 2] = {0, 0, 0, 0, 127, -127, 1, 127};
@@ -74,11 +71,4 @@ static void the_ends_of_the_range_are_met(void **state) {
     free(packed.units);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_number_moves_by_half_a_step_at_most),
-        cmocka_unit_test(what_is_packed_already_stays),
-        cmocka_unit_test(the_ends_of_the_range_are_met),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -13,8 +13,7 @@ static void predict(const Network *network, const float *input, float *output) {
     free(scratch);
 }
 
-static void a_new_network_is_zero_with_identity_normalisation(void **state) {
-    (void)state;
+TEST(a_new_network_is_zero_with_identity_normalisation) {
     Error error = {0};
     Network *network = network_create(2, (const int[]){3, 5, 2}, &error);
     assert_ok(network != NULL, error);
@@ -28,8 +27,7 @@ static void a_new_network_is_zero_with_identity_normalisation(void **state) {
 }
 
 /* hidden = tanh(2 x - y + 0.25), output = (3 hidden - 1) / 4 + 10 with x, y = (inputs - (1, 2)) * (0.5, 3) */
-static void two_layers_in_closed_form(void **state) {
-    (void)state;
+TEST(two_layers_in_closed_form) {
     Network *network =
         make_network(2, (const int[]){2, 1, 1}, (const Activation[]){ACTIVATION_TANH, ACTIVATION_LINEAR});
     const float numbers[] = {2, -1, 0.25f, 3, -1};
@@ -46,8 +44,7 @@ static void two_layers_in_closed_form(void **state) {
 }
 
 /* weights[j, i] goes from input i to output j. */
-static void weights_are_stored_row_by_row(void **state) {
-    (void)state;
+TEST(weights_are_stored_row_by_row) {
     Network *network = make_network(1, (const int[]){3, 2}, (const Activation[]){ACTIVATION_LINEAR});
     const float numbers[] = {1, 10, 100, 1000, 10000, 100000, 0.5f, 0.25f}, input[3] = {1, 2, 3};
     memcpy(network->weights[0], numbers, sizeof numbers);
@@ -59,8 +56,7 @@ static void weights_are_stored_row_by_row(void **state) {
 
 /* From the bias on, inputs rising, in float32: 0.5 is lost in 1e8, the 1 that comes after it is not. Any
    other order, or a wider sum, gives 0, 0.5 or 1.5. */
-static void sums_start_from_the_bias_and_rise(void **state) {
-    (void)state;
+TEST(sums_start_from_the_bias_and_rise) {
     Network *network = make_network(1, (const int[]){3, 1}, (const Activation[]){ACTIVATION_LINEAR});
     const float numbers[] = {1e8f, -1e8f, 1, 0.5f}, input[3] = {1, 1, 1};
     memcpy(network->weights[0], numbers, sizeof numbers);
@@ -79,8 +75,7 @@ static float activated(Activation activation, float x) {
     return output;
 }
 
-static void layers_apply_their_activation(void **state) {
-    (void)state;
+TEST(layers_apply_their_activation) {
     for (int i = -2000; i <= 2000; i++) {
         float x = (float)i / 128;
         assert_true(activated(ACTIVATION_SIGMOID, x) == sigmoid_float(x));
@@ -161,8 +156,7 @@ static void check_batches(int layers, const int *widths, const Activation *activ
     network_destroy(network);
 }
 
-static void a_batch_has_the_bits_of_single_rows_whatever_the_instructions(void **state) {
-    (void)state;
+TEST(a_batch_has_the_bits_of_single_rows_whatever_the_instructions) {
     const Activation l = ACTIVATION_LINEAR, s = ACTIVATION_SIGMOID, t = ACTIVATION_TANH, r = ACTIVATION_RELU;
     check_batches(2, (const int[]){10, 10, 2}, (const Activation[]){s, s});
     check_batches(3, (const int[]){10, 8, 8, 6}, (const Activation[]){s, s, l});
@@ -172,8 +166,7 @@ static void a_batch_has_the_bits_of_single_rows_whatever_the_instructions(void *
     check_batches(1, (const int[]){1, 1}, (const Activation[]){r});
 }
 
-static void a_copy_has_numbers_of_its_own(void **state) {
-    (void)state;
+TEST(a_copy_has_numbers_of_its_own) {
     Network *network =
         make_network(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH});
     network->output.offset[1] = 5, network->input.scale[2] = 3;
@@ -197,8 +190,7 @@ static void refuse(int layers, const int *widths, const char *text) {
     assert_refused(network_create(layers, widths, &error), text);
 }
 
-static void impossible_shapes_are_refused(void **state) {
-    (void)state;
+TEST(impossible_shapes_are_refused) {
     const int many[] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     refuse(0, (const int[]){3}, "0 layers");
     refuse(9, many, "9 layers");
@@ -207,16 +199,4 @@ static void impossible_shapes_are_refused(void **state) {
     refuse(1, (const int[]){3, 4097}, "width 4097 of layer 1");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_new_network_is_zero_with_identity_normalisation),
-        cmocka_unit_test(two_layers_in_closed_form),
-        cmocka_unit_test(weights_are_stored_row_by_row),
-        cmocka_unit_test(sums_start_from_the_bias_and_rise),
-        cmocka_unit_test(layers_apply_their_activation),
-        cmocka_unit_test(a_batch_has_the_bits_of_single_rows_whatever_the_instructions),
-        cmocka_unit_test(a_copy_has_numbers_of_its_own),
-        cmocka_unit_test(impossible_shapes_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -155,30 +155,21 @@ static void for_all(void (*check)(const RowKernels *kernels, int width, const in
             for (int c = 0; c < COUNTS; c++) check(list[k], widths[w], index, counts[c], &seed);
 }
 
-static void rows_are_added_in_four_sums(void **state) {
-    (void)state;
+TEST(rows_are_added_in_four_sums) {
     for_all(check_add, some);
     for_all(check_add, NULL);
 }
 
-static void floats_are_added_in_four_sums(void **state) {
-    (void)state;
-    for_all(check_combine, NULL);
-}
+TEST(floats_are_added_in_four_sums) { for_all(check_combine, NULL); }
 
-static void rows_are_multiplied_in_lanes_and_halves(void **state) {
-    (void)state;
+TEST(rows_are_multiplied_in_lanes_and_halves) {
     for_all(check_multiply, some);
     for_all(check_multiply, NULL);
 }
 
-static void a_vector_is_spread_over_rows(void **state) {
-    (void)state;
-    for_all(check_spread, some);
-}
+TEST(a_vector_is_spread_over_rows) { for_all(check_spread, some); }
 
-static void every_number_is_bent(void **state) {
-    (void)state;
+TEST(every_number_is_bent) {
     const RowKernels *list[ROW_KERNELS_MAX + 1];
     uint32_t seed = 2;
     row_kernels_list(list);
@@ -193,8 +184,7 @@ static void every_number_is_bent(void **state) {
 }
 
 /* Widest first, plain last, which any processor has. */
-static void the_best_is_the_first(void **state) {
-    (void)state;
+TEST(the_best_is_the_first) {
     const RowKernels *list[ROW_KERNELS_MAX + 1];
     int count = 0;
     row_kernels_list(list);
@@ -204,14 +194,4 @@ static void the_best_is_the_first(void **state) {
     assert_ptr_equal(row_kernels_best(), list[0]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_added_in_four_sums),
-        cmocka_unit_test(floats_are_added_in_four_sums),
-        cmocka_unit_test(rows_are_multiplied_in_lanes_and_halves),
-        cmocka_unit_test(a_vector_is_spread_over_rows),
-        cmocka_unit_test(every_number_is_bent),
-        cmocka_unit_test(the_best_is_the_first),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

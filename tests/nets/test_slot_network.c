@@ -31,8 +31,7 @@ static void make_scene(Scene *scene, uint32_t *seed) {
 }
 
 /* Every pair, in both orders, with every feature that some pair has and some that none has. */
-static void every_slot_is_found_and_no_other(void **state) {
-    (void)state;
+TEST(every_slot_is_found_and_no_other) {
     const uint32_t features[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, UINT32_MAX - 1, UINT32_MAX};
     uint32_t seed = 1;
     SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
@@ -50,8 +49,7 @@ static void every_slot_is_found_and_no_other(void **state) {
     slot_network_destroy(network);
 }
 
-static void a_new_network_is_zero_and_has_its_own_slots(void **state) {
-    (void)state;
+TEST(a_new_network_is_zero_and_has_its_own_slots) {
     Error error = {0};
     Slot slots[FIVE_SLOTS];
     memcpy(slots, five_slots, sizeof slots);
@@ -88,8 +86,7 @@ static void centre(Projection *projection, const int32_t *index, const float *nu
     }
 }
 
-static void what_lies_at_the_centre_projects_to_zero(void **state) {
-    (void)state;
+TEST(what_lies_at_the_centre_projects_to_zero) {
     Scene scene;
     uint32_t seed = 3;
     SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
@@ -152,8 +149,7 @@ static void predict(const SlotNetwork *network, const SlotView *view, double inp
 /* About a hundred additions, each off by at most 2^-24 of a partial sum of a few units. */
 static const double rounding = 1e-5;
 
-static void a_prediction_is_the_formula(void **state) {
-    (void)state;
+TEST(a_prediction_is_the_formula) {
     uint32_t seed = 4;
     SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
     for (int test = 0; test < 20; test++) {
@@ -173,8 +169,7 @@ static void a_prediction_is_the_formula(void **state) {
 }
 
 /* For the same inputs, each alone and in any company. */
-static void a_slot_does_not_mind_the_others(void **state) {
-    (void)state;
+TEST(a_slot_does_not_mind_the_others) {
     Scene scene;
     uint32_t seed = 5;
     SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
@@ -195,8 +190,7 @@ static void a_slot_does_not_mind_the_others(void **state) {
 }
 
 /* A step without contacts. */
-static void no_slots_are_none(void **state) {
-    (void)state;
+TEST(no_slots_are_none) {
     Scene scene;
     uint32_t seed = 6;
     SlotNetwork *network = make_slot_network(&five_shape, five_slots, &seed);
@@ -216,8 +210,7 @@ static void refuse(SlotShape shape, const Slot *slots, const char *text) {
     assert_refused(slot_network_create(&shape, slots, &error), text);
 }
 
-static void shapes_out_of_bounds_are_refused(void **state) {
-    (void)state;
+TEST(shapes_out_of_bounds_are_refused) {
     const SlotShape fine = {3, 2, 1, 16, 16, 16, 16};
     const Slot slot = {0, 1, 0};
 #define REFUSE(member, value, text) \
@@ -244,8 +237,7 @@ static void shapes_out_of_bounds_are_refused(void **state) {
 #undef REFUSE
 }
 
-static void slots_that_do_not_rise_are_refused(void **state) {
-    (void)state;
+TEST(slots_that_do_not_rise_are_refused) {
     const SlotShape three = {4, 0, 3, 16, 16, 16, 16};
     refuse(three, (const Slot[]){{1, 1, 0}, {1, 2, 0}, {1, 3, 0}}, "slot 0");
     refuse(three, (const Slot[]){{1, 0, 0}, {1, 2, 0}, {1, 3, 0}}, "slot 0");
@@ -257,16 +249,4 @@ static void slots_that_do_not_rise_are_refused(void **state) {
     refuse(three, (const Slot[]){{0, 3, 5}, {0, 3, 5}, {1, 3, 0}}, "slot 1");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_slot_is_found_and_no_other),
-        cmocka_unit_test(a_new_network_is_zero_and_has_its_own_slots),
-        cmocka_unit_test(what_lies_at_the_centre_projects_to_zero),
-        cmocka_unit_test(a_prediction_is_the_formula),
-        cmocka_unit_test(a_slot_does_not_mind_the_others),
-        cmocka_unit_test(no_slots_are_none),
-        cmocka_unit_test(shapes_out_of_bounds_are_refused),
-        cmocka_unit_test(slots_that_do_not_rise_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

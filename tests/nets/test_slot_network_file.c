@@ -44,8 +44,7 @@ static SlotNetwork *written_and_read(const SlotNetwork *network) {
     return read;
 }
 
-static void files_keep_every_bit(void **state) {
-    (void)state;
+TEST(files_keep_every_bit) {
     const int sweeps[] = {3, 0, SLOT_SWEEPS_MAX};
     SlotNetwork *network = example();
     for (int i = 0; i < 3; i++) {
@@ -60,8 +59,7 @@ static void files_keep_every_bit(void **state) {
 }
 
 /* Numbers that rise through all of a matrix say where NumPy has each of them. */
-static void numpy_sees_the_shapes(void **state) {
-    (void)state;
+TEST(numpy_sees_the_shapes) {
     Error error = {0};
     SlotNetwork *network = example();
     for (int i = 0; i < 2 * FIVE_SLOTS * 64; i++) network->rows[i] = (float)i;
@@ -117,8 +115,7 @@ static NetArrays two_slots(void) {
     return read_arrays(path);
 }
 
-static void every_array_is_needed_and_checked(void **state) {
-    (void)state;
+TEST(every_array_is_needed_and_checked) {
     Error error = {0};
     SlotNetwork *network = example();
     const char *path = temporary_path("net.npz");
@@ -133,8 +130,7 @@ static void every_array_is_needed_and_checked(void **state) {
     free(bytes);
 }
 
-static void numbers_out_of_range_are_refused(void **state) {
-    (void)state;
+TEST(numbers_out_of_range_are_refused) {
     Error error = {0};
     SlotNetwork *network = example();
     const char *path = temporary_path("bad.npz");
@@ -160,8 +156,7 @@ static void numbers_out_of_range_are_refused(void **state) {
     slot_network_destroy(network);
 }
 
-static void sizes_and_slots_out_of_bounds_are_refused(void **state) {
-    (void)state;
+TEST(sizes_and_slots_out_of_bounds_are_refused) {
     static const int32_t itself[2] = {1, 1}, beyond[2] = {1, 2}, falls[2] = {0, -1};
     static const uint32_t twice[2] = {4, 4};
     static const struct {
@@ -218,8 +213,7 @@ static void refuse_shapes(const Change *changes, size_t count, const char *text)
 }
 
 /* Sizes that agree with each other and are refused all the same, before room is made for what they would need. */
-static void absurd_sizes_are_refused(void **state) {
-    (void)state;
+TEST(absurd_sizes_are_refused) {
     const int64_t many = SLOTS_MAX + 1, wide = SLOT_WIDTH_MAX + ROW_LANES;
     const Change no_slots[] = {{"slot_a", {0}},        {"slot_b", {0}},           {"slot_feature", {0}},
                                {"last_rows", {0, 32}}, {"present_rows", {0, 16}}, {"warm_rows", {0, 16}}},
@@ -239,14 +233,4 @@ static void absurd_sizes_are_refused(void **state) {
     refuse_shapes(endless, 2, "present_rows");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(files_keep_every_bit),
-        cmocka_unit_test(numpy_sees_the_shapes),
-        cmocka_unit_test(every_array_is_needed_and_checked),
-        cmocka_unit_test(numbers_out_of_range_are_refused),
-        cmocka_unit_test(sizes_and_slots_out_of_bounds_are_refused),
-        cmocka_unit_test(absurd_sizes_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

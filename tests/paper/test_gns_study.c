@@ -5,7 +5,7 @@
 #include "paper/paper_internal.h"
 
 /* Without its network gns falls: as its teacher until something touches, and then through the ground, g t^2 / 2. */
-static void without_its_network_boxes_fall_away(void **state) {
+TEST(without_its_network_boxes_fall_away) {
     Error error = {0};
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     assert_ok(scene != NULL, error);
@@ -30,7 +30,7 @@ static void expect_verdicts_of(const char *rows, const char *verdicts) {
     expect_verdicts(&system_gns, verdicts);
 }
 
-static void verdicts_follow_from_the_numbers(void **state) {
+TEST(verdicts_follow_from_the_numbers) {
     expect_verdicts_of(
         "rollout,M = 5,stack,1,11,0.1,0,,,,,\nrollout,M = 2,stack,1,11,0.2,0,,,,,\n"
         "rollout,M = 1,stack,1,11,0.3,0,,,,,\nrollout,without noise,stack,1,11,0.4,0,,,,,\n"
@@ -47,8 +47,4 @@ static void verdicts_follow_from_the_numbers(void **state) {
     expect_verdicts_of("large,M = 5,pyramid,5,67,1,,50,4,9,,\n", "no no no no no");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(without_its_network_boxes_fall_away),
-                                       cmocka_unit_test(verdicts_follow_from_the_numbers)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

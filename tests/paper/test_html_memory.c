@@ -28,7 +28,7 @@ static bool write_page(Error *error) {
     return true;
 }
 
-static void a_page_is_whole_or_memory_is_short(void **state) {
+TEST(a_page_is_whole_or_memory_is_short) {
     Error error = {0};
     Image *image = image_create(5, 3, &error);
     assert_ok(image != NULL && image_write_png(image, temporary_path("a.png"), NULL, 0, &error), error);
@@ -38,7 +38,4 @@ static void a_page_is_whole_or_memory_is_short(void **state) {
     assert_non_null(strstr(whole, "<table>"));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_page_is_whole_or_memory_is_short)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

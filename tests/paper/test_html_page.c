@@ -36,7 +36,7 @@ static void expect_without(const char *markdown, const char *unwanted) {
     free(page);
 }
 
-static void headings_make_title_and_contents(void **state) {
+TEST(headings_make_title_and_contents) {
     expect_within("# A & *b*\n", "<title>A &amp; b</title>");
     expect_within("# A\n\n## B\n\n## `c` & d\n",
                   "<ol>\n<li><a href=\"#part-1\">B</a></li>\n<li><a href=\"#part-2\">c &amp; d</a></li>\n</ol>");
@@ -44,13 +44,13 @@ static void headings_make_title_and_contents(void **state) {
     expect_without("# A\n\n### B\n", "<nav");
 }
 
-static void tables_can_be_scrolled(void **state) {
+TEST(tables_can_be_scrolled) {
     expect_within("### B\n\n| a | b |\n|---|---:|\n| 1 | \\| |\n",
                   "<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"B\">\n<table>");
     expect_within("| a | b |\n|---|---:|\n| 1 | \\| |\n", "<td style=\"text-align: right\">|</td>");
 }
 
-static void pictures_are_embedded(void **state) {
+TEST(pictures_are_embedded) {
     (void)temporary_path("");
     write_picture("a.png");
     expect_within("![\"x\" & y](a.png)\n\n**Figure 1.** z\n\nbehind\n",
@@ -67,19 +67,11 @@ static void pictures_are_embedded(void **state) {
     fclose(out);
 }
 
-static void html_in_the_text_is_left_out(void **state) {
+TEST(html_in_the_text_is_left_out) {
     expect_without("<script>alert(1)</script>\n", "<script");
     expect_without("a <b>c</b>\n", "<b>");
     expect_without("[a](javascript:alert)\n", "javascript");
     expect_within("a &lt;b> & \\*c\\*\n", "<p>a &lt;b&gt; &amp; *c*</p>");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(headings_make_title_and_contents),
-        cmocka_unit_test(tables_can_be_scrolled),
-        cmocka_unit_test(pictures_are_embedded),
-        cmocka_unit_test(html_in_the_text_is_left_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -27,7 +27,7 @@ static CsvTable table_of(FILE *lines) {
 }
 
 /* No limit on times, only on what is true of any. */
-static void a_learning_has_rows_that_fit_together(void **state) {
+TEST(a_learning_has_rows_that_fit_together) {
     Error error = {0};
     const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .quick = true, .seed = 1};
     FILE *lines = tmpfile();
@@ -68,7 +68,7 @@ static void expect_verdicts_of(const HybridRow *like, double share_after, const 
     expect_verdicts(&system_hybrid, verdicts);
 }
 
-static void verdicts_follow_from_the_table(void **state) {
+TEST(verdicts_follow_from_the_table) {
     HybridRow row = {.tolerance = 0.1,
                      .launches = 1000,
                      .share = 0.6,
@@ -95,8 +95,4 @@ static void verdicts_follow_from_the_table(void **state) {
     expect_verdicts_of(&row, 0.1, "no no no no no");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_learning_has_rows_that_fit_together),
-                                       cmocka_unit_test(verdicts_follow_from_the_table)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

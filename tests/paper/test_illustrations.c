@@ -17,6 +17,7 @@
 #define SCENES SOURCE_DIR "/scenes"
 
 static int draw_all(void **state) {
+    (void)state;
     Error error = {0};
     temporary_path(""); /* makes the folder */
     if (illustrations_draw(SCENES, temporary_folder, &error)) return 0;
@@ -33,7 +34,7 @@ static char *read_file(const char *name, const char *ending, size_t *size) {
     return data;
 }
 
-static void every_figure_is_a_picture_a_drawing_and_a_caption(void **state) {
+TEST(every_figure_is_a_picture_a_drawing_and_a_caption) {
     int count = 0;
     for (; illustration_names[count] != NULL; count++) {
         const char *name = illustration_names[count];
@@ -62,7 +63,7 @@ static void expect_texts(const char *name, const char *const *texts) {
     free(svg);
 }
 
-static void drawings_say_what_they_show(void **state) {
+TEST(drawings_say_what_they_show) {
     expect_texts("loop", (const char *const[]){"Broad phase", "Narrow phase", "Gravity", "Contact problem",
                                                "Constraint solving", "Neural network, in place of the solver",
                                                "Integration", "first touch", NULL});
@@ -88,7 +89,7 @@ static Trajectory *run_to(const char *path, int step) {
     return run;
 }
 
-static void the_loop_counts_what_the_run_has(void **state) {
+TEST(the_loop_counts_what_the_run_has) {
     size_t size;
     int step, pairs, candidates, touching, points, warm;
     char *caption = read_file("loop", "txt", &size);
@@ -132,7 +133,7 @@ static Box box_in(const Trajectory *run, int frame, int body) {
     return box_make(run->position[i], run->size[body], run->angle[i]);
 }
 
-static void the_collision_shown_is_the_engines(void **state) {
+TEST(the_collision_shown_is_the_engines) {
     size_t size;
     int a, b, step, least, deep[2];
     double x, y;
@@ -187,7 +188,7 @@ static Box moved(const Box *a, const Box *b, Vec2 axis, double way) {
 /* Moving a box by the smallest overlap separates the two. The engine's normal is along the axis of the smallest overlap,
    or of a nearly equal one (clearly_better() in engine/box.c). Its points are as deep as that, or less deep where
    clipping has cut the deepest corner off. */
-static void the_smallest_overlap_separates_the_boxes(void **state) {
+TEST(the_smallest_overlap_separates_the_boxes) {
     const double slack = 1e-4;
     uint32_t seed = 1;
     int touching = 0, as_deep = 0;
@@ -218,7 +219,7 @@ static void the_smallest_overlap_separates_the_boxes(void **state) {
     assert_in_range(as_deep, touching / 2, touching - 1);
 }
 
-static void the_row_shown_is_the_datasets(void **state) {
+TEST(the_row_shown_is_the_datasets) {
     static const char *const scenes[] = {SCENES "/stack.yaml"};
     const DatasetOptions options = {.scenes = scenes, .scene_count = 1, .bomb_x = {-5, 0.5, 21}, .seed = 1};
     size_t size;
@@ -257,7 +258,7 @@ static void the_row_shown_is_the_datasets(void **state) {
     dataset_destroy(dataset);
 }
 
-static void the_same_run_gives_the_same_files(void **state) {
+TEST(the_same_run_gives_the_same_files) {
     static const char *const endings[] = {"png", "svg"};
     Error error = {0};
     Scene *scenes[ILLUSTRATION_SCENES] = {[SCENE_STACK] = scene_read(SCENES "/stack.yaml", &error)};
@@ -315,7 +316,7 @@ static void expect_refused(const char *scenes, const char *message) {
     "bodies:\n  - {static: true, size: [100, 20], position: [0, -10]}\n  - {mass: 1, size: [1, 1], position: [0, " \
     "1]}\n"
 
-static void scenes_that_show_nothing_are_refused(void **state) {
+TEST(scenes_that_show_nothing_are_refused) {
     expect_refused(temporary_path("nowhere"), "/nowhere/single.yaml");
     expect_refused(folder_with("pyramid.yaml", GROUND_AND_BOX),
                    "/pyramid.yaml: error: the scene has no bomb to launch");
@@ -323,16 +324,4 @@ static void scenes_that_show_nothing_are_refused(void **state) {
                    "stack: error: the bomb touches no box in 5 steps");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_figure_is_a_picture_a_drawing_and_a_caption),
-        cmocka_unit_test(drawings_say_what_they_show),
-        cmocka_unit_test(the_loop_counts_what_the_run_has),
-        cmocka_unit_test(the_collision_shown_is_the_engines),
-        cmocka_unit_test(the_smallest_overlap_separates_the_boxes),
-        cmocka_unit_test(the_row_shown_is_the_datasets),
-        cmocka_unit_test(the_same_run_gives_the_same_files),
-        cmocka_unit_test(scenes_that_show_nothing_are_refused),
-    };
-    return cmocka_run_group_tests(tests, draw_all, NULL);
-}
+RUN_TESTS(draw_all, NULL)

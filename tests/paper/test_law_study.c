@@ -24,7 +24,7 @@ static LawResult run(const Dataset *dataset, const char *laws, double weight, ui
 }
 
 /* The engine's impulses are equal and opposite and within the cone, by construction. */
-static void the_engine_keeps_what_it_keeps(void **state) {
+TEST(the_engine_keeps_what_it_keeps) {
     Error error = {0};
     Dataset *dataset = record(true);
     LawResult labels;
@@ -36,7 +36,7 @@ static void the_engine_keeps_what_it_keeps(void **state) {
     dataset_destroy(dataset);
 }
 
-static void a_heavy_law_is_broken_less(void **state) {
+TEST(a_heavy_law_is_broken_less) {
     Dataset *dataset = record(true);
     const LawResult none = run(dataset, "none", 10, 1), cone = run(dataset, "cone", 10, 1),
                     again = run(dataset, "cone", 10, 1), other = run(dataset, "cone", 10, 2);
@@ -53,7 +53,7 @@ static bool stop(void *context, double done, double total) {
     return done < total / 2;
 }
 
-static void what_is_not_whole_does_not_count(void **state) {
+TEST(what_is_not_whole_does_not_count) {
     Error error = {0};
     LawResult result;
     Dataset *dataset = record(true), *without = record(false);
@@ -68,9 +68,4 @@ static void what_is_not_whole_does_not_count(void **state) {
     dataset_destroy(dataset);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_engine_keeps_what_it_keeps),
-                                       cmocka_unit_test(a_heavy_law_is_broken_less),
-                                       cmocka_unit_test(what_is_not_whole_does_not_count)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

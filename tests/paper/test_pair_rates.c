@@ -51,7 +51,7 @@ static PairRates measure(const char *path, const Scene *scene, const SnapshotLis
     return rates;
 }
 
-static void the_engine_agrees_with_itself(void **state) {
+TEST(the_engine_agrees_with_itself) {
     Scene *scene = read_stack();
     SnapshotList *list = sample_stack(scene);
     PairRates rates = measure(NULL, scene, list);
@@ -69,7 +69,7 @@ static void the_engine_agrees_with_itself(void **state) {
     scene_destroy(scene);
 }
 
-static void a_contact_net_that_says_nothing_is_the_warm_start(void **state) {
+TEST(a_contact_net_that_says_nothing_is_the_warm_start) {
     Scene *scene = read_stack();
     SnapshotList *list = sample_stack(scene);
     const PairRates warm = measure(NULL, scene, list);
@@ -84,7 +84,7 @@ static void a_contact_net_that_says_nothing_is_the_warm_start(void **state) {
 }
 
 /* For every target: such a network has the rates of its constant predictor. */
-static void a_network_that_predicts_the_mean_has_the_constants_rates(void **state) {
+TEST(a_network_that_predicts_the_mean_has_the_constants_rates) {
     static const struct {
         PairView view;
         PairTarget target;
@@ -115,7 +115,7 @@ static void a_network_that_predicts_the_mean_has_the_constants_rates(void **stat
 }
 
 /* all = (impact + 20 after + 60 rest) / (their counts, weighted alike): a value between its parts. */
-static void all_lies_between_the_phases(void **state) {
+TEST(all_lies_between_the_phases) {
     Scene *scene = read_stack();
     SnapshotList *list = sample_stack(scene);
     const PairRates rates = measure(NULL, scene, list);
@@ -131,10 +131,4 @@ static void all_lies_between_the_phases(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_engine_agrees_with_itself),
-                                       cmocka_unit_test(a_contact_net_that_says_nothing_is_the_warm_start),
-                                       cmocka_unit_test(a_network_that_predicts_the_mean_has_the_constants_rates),
-                                       cmocka_unit_test(all_lies_between_the_phases)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

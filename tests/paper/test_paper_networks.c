@@ -28,7 +28,7 @@ static void find_factors(const PaperNetwork *a, const PaperNetwork *b, char *fac
     if (a->iterations != b->iterations) strcat(factors, "iterations ");
 }
 
-static void one_factor_is_varied_at_a_time(void **state) {
+TEST(one_factor_is_varied_at_a_time) {
     const PaperNetwork baseline = paper_network(0);
     int checked = 0;
     assert_string_equal(baseline.name, "baseline");
@@ -48,7 +48,7 @@ static void one_factor_is_varied_at_a_time(void **state) {
     assert_true(checked > 25);
 }
 
-static void names_are_file_names_and_differ(void **state) {
+TEST(names_are_file_names_and_differ) {
     for (int i = 0; i < paper_network_count; i++) {
         assert_int_equal(strspn(paper_networks[i].name, "abcdefghijklmnopqrstuvwxyz0123456789-"),
                          strlen(paper_networks[i].name));
@@ -58,7 +58,7 @@ static void names_are_file_names_and_differ(void **state) {
 
 /* The first width is that of the view, the last one that the target has a meaning for; the best have at most 500
    parameters. */
-static void layers_fit_views_and_targets(void **state) {
+TEST(layers_fit_views_and_targets) {
     for (int i = 0; i < paper_network_count; i++) {
         const PaperNetwork network = paper_network(i);
         int parameters = 0, before = 0;
@@ -73,9 +73,4 @@ static void layers_fit_views_and_targets(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_factor_is_varied_at_a_time),
-                                       cmocka_unit_test(names_are_file_names_and_differ),
-                                       cmocka_unit_test(layers_fit_views_and_targets)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

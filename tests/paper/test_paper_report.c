@@ -83,7 +83,7 @@ static void expect_no_text(const char *text, const char *unwanted) {
 }
 
 /* Expected numbers follow from the tables; comments name the rows. */
-static void numbers_are_computed_from_the_tables(void **state) {
+TEST(numbers_are_computed_from_the_tables) {
     char *text = write_and_read("report.md");
     /* 0.004 is below the paper's rows 0 to 100; a ninth network with the target pair has 1289 parameters. */
     expect_text(text, "| pair | 0.004 | 4 of 6 | 8 | inputs-contact | 20.0% |");
@@ -106,7 +106,7 @@ static void numbers_are_computed_from_the_tables(void **state) {
     free(text);
 }
 
-static void runs_are_counted(void **state) {
+TEST(runs_are_counted) {
     char *text = write_and_read("report.md");
     expect_text(text,
                 "2 of 5 runs stay within 0.1 m of the engine's for 600 frames (10 s). The lowest number of frames is "
@@ -120,7 +120,7 @@ static void runs_are_counted(void **state) {
     free(text);
 }
 
-static void rates_are_beside_those_of_cheaper_predictors(void **state) {
+TEST(rates_are_beside_those_of_cheaper_predictors) {
     char *text = write_and_read("report.md");
     expect_text(text, "| contact-net | stack | all | 70.0% | 35.0% | 72.0% | 70.0% | 90.0% | 100.0% |");
     /* No warm start was rated by this definition. */
@@ -132,7 +132,7 @@ static void rates_are_beside_those_of_cheaper_predictors(void **state) {
     free(text);
 }
 
-static void medians_are_over_seeds(void **state) {
+TEST(medians_are_over_seeds) {
     char *text = write_and_read("report.md");
     expect_text(text, "| none | 0 | 3 | 0.002 | 0.001 | 0.003 | 0.5 | 0.8 | 0.4 | 0.1 | 0.05 |");
     expect_text(text, "| engine | – | 1 | – | – | – | – | 0 | 0.01 | 0.02 | 0 |");
@@ -149,7 +149,7 @@ static void medians_are_over_seeds(void **state) {
     free(text);
 }
 
-static void aims_state_by_how_much_they_are_missed(void **state) {
+TEST(aims_state_by_how_much_they_are_missed) {
     char *text = write_and_read("report.md");
     expect_text(text, "| Test / constant, pair | at most 0.4 | inputs-contact | 0.2 | 1 | reached | – |");
     expect_text(text, "| Test / constant, net | at most 0.4 | net | 0.7 | 1 | missed | 0.3 |");
@@ -161,7 +161,7 @@ static void aims_state_by_how_much_they_are_missed(void **state) {
     free(text);
 }
 
-static void claims_are_judged(void **state) {
+TEST(claims_are_judged) {
     char *text = write_and_read("report.md");
     /* Inputs seen from the contact are neither the paper's relative ones nor raw. */
     expect_text(text, "0.25 with relative inputs, 1.1 with raw ones. The claim holds here.");
@@ -177,7 +177,7 @@ static void claims_are_judged(void **state) {
     free(text);
 }
 
-static void systems_are_beside_their_claims(void **state) {
+TEST(systems_are_beside_their_claims) {
     char *text = write_and_read("report.md");
     expect_text(text, "Claims that hold here: 1 of 4; partly: 1; not: 2.");
     expect_text(
@@ -203,7 +203,7 @@ static void systems_are_beside_their_claims(void **state) {
     free(text);
 }
 
-static void quick_studies_are_marked(void **state) {
+TEST(quick_studies_are_marked) {
     char *text = write_and_read("report.md");
     expect_no_text(text, "quick run");
     free(text);
@@ -213,7 +213,7 @@ static void quick_studies_are_marked(void **state) {
     free(text);
 }
 
-static void texts_stay_texts(void **state) {
+TEST(texts_stay_texts) {
     char *markdown = write_and_read("report.md");
     expect_no_text(markdown, "<script");
     expect_text(markdown, "&lt;script&gt;alert(1)&lt;/script&gt; of a name that is ...");
@@ -224,7 +224,7 @@ static void texts_stay_texts(void **state) {
 }
 
 /* The parser of Python's library knows no closing tag that may be left out; the page leaves out none. */
-static void the_page_is_whole_and_needs_nothing(void **state) {
+TEST(the_page_is_whole_and_needs_nothing) {
     free(write_and_read("report.html"));
     run_python("import base64, html.parser, re, sys\n"
                "page = open(sys.argv[1], encoding='utf-8').read()\n"
@@ -268,7 +268,7 @@ static void the_page_is_whole_and_needs_nothing(void **state) {
                temporary_path("report.html"));
 }
 
-static void the_same_folder_gives_the_same_bytes(void **state) {
+TEST(the_same_folder_gives_the_same_bytes) {
     static const char *const names[] = {"report.md", "report.html"};
     for (int i = 0; i < 2; i++) {
         char *first = write_and_read(names[i]), *second = write_and_read(names[i]);
@@ -291,7 +291,7 @@ static void refuse_table(const char *name, const char *text, const char *message
     expect_refused(message);
 }
 
-static void damaged_tables_are_refused_with_their_place(void **state) {
+TEST(damaged_tables_are_refused_with_their_place) {
     refuse_table("transfer.csv", "start,seed,launches,error,constant\nscratch,1,-1,2,3\n",
                  "transfer.csv:2:11: error: launches: '-1' is less than 1");
     refuse_table("transfer.csv", "start,seed,launches,error,constant\n",
@@ -308,7 +308,7 @@ static void damaged_tables_are_refused_with_their_place(void **state) {
     expect_refused("laws.csv: error: cannot open");
 }
 
-static void a_million_rows_are_refused(void **state) {
+TEST(a_million_rows_are_refused) {
     make_study();
     FILE *file = fopen(temporary_path("study.csv"), "w");
     assert_non_null(file);
@@ -318,7 +318,7 @@ static void a_million_rows_are_refused(void **state) {
     expect_refused("study.csv:5002:1: error: the table has more than 5000 rows");
 }
 
-static void figures_that_miss_or_are_damaged_are_refused(void **state) {
+TEST(figures_that_miss_or_are_damaged_are_refused) {
     make_study();
     remove(temporary_path("figures/scenes.png"));
     expect_refused("figures/scenes.png: error: cannot open");
@@ -339,7 +339,7 @@ static void figures_that_miss_or_are_damaged_are_refused(void **state) {
     expect_refused("figures/loop.txt: error: the caption is empty");
 }
 
-static void few_rows_and_empty_fields_are_a_report_too(void **state) {
+TEST(few_rows_and_empty_fields_are_a_report_too) {
     make_study();
     write_text("networks.csv",
                "network,factor,value,inputs,data,labels,target,layers,hidden,output,scale,optimizer,loss,"
@@ -359,23 +359,4 @@ static void few_rows_and_empty_fields_are_a_report_too(void **state) {
     free(text);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_are_computed_from_the_tables),
-        cmocka_unit_test(runs_are_counted),
-        cmocka_unit_test(rates_are_beside_those_of_cheaper_predictors),
-        cmocka_unit_test(medians_are_over_seeds),
-        cmocka_unit_test(aims_state_by_how_much_they_are_missed),
-        cmocka_unit_test(claims_are_judged),
-        cmocka_unit_test(systems_are_beside_their_claims),
-        cmocka_unit_test(quick_studies_are_marked),
-        cmocka_unit_test(texts_stay_texts),
-        cmocka_unit_test(the_page_is_whole_and_needs_nothing),
-        cmocka_unit_test(the_same_folder_gives_the_same_bytes),
-        cmocka_unit_test(damaged_tables_are_refused_with_their_place),
-        cmocka_unit_test(a_million_rows_are_refused),
-        cmocka_unit_test(figures_that_miss_or_are_damaged_are_refused),
-        cmocka_unit_test(few_rows_and_empty_fields_are_a_report_too),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -52,7 +52,7 @@ static int count_lines(const char *table, const char *beginning) {
     return count;
 }
 
-static void threads_rate_alike(void **state) {
+TEST(threads_rate_alike) {
     char one[TABLE_SIZE], three[TABLE_SIZE];
     write_table(paper_rates_write, 1, one);
     write_table(paper_rates_write, 3, three);
@@ -64,7 +64,7 @@ static void threads_rate_alike(void **state) {
     }
 }
 
-static void threads_close_the_loop_alike(void **state) {
+TEST(threads_close_the_loop_alike) {
     char one[TABLE_SIZE], three[TABLE_SIZE];
     write_table(paper_closed_loop_write, 1, one);
     write_table(paper_closed_loop_write, 3, three);
@@ -77,16 +77,11 @@ static void threads_close_the_loop_alike(void **state) {
 
 /* A thread that has yet to be created would be too late for the few pieces. */
 static int start_threads(void **state) {
+    (void)state;
     int running = 0;
 #pragma omp parallel num_threads(3) reduction(+ : running)
     running++;
     return running > 0 ? 0 : -1;
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads_rate_alike),
-        cmocka_unit_test(threads_close_the_loop_alike),
-    };
-    return cmocka_run_group_tests(tests, start_threads, NULL);
-}
+RUN_TESTS(start_threads, NULL)

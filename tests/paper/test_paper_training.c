@@ -12,6 +12,7 @@ static PaperDatasets datasets = {.size = &size, .seed = 1};
 static PaperTraining training = {.datasets = &datasets, .seed = 1};
 
 static int begin(void **state) {
+    (void)state;
     Error error = {0};
     static char folder[256];
     assert_ok(paper_datasets_begin(&datasets, SOURCE_DIR "/scenes", &size, 1, &error), error);
@@ -22,6 +23,7 @@ static int begin(void **state) {
 }
 
 static int end(void **state) {
+    (void)state;
     paper_datasets_free(&datasets);
     return 0;
 }
@@ -52,7 +54,7 @@ static bool train(int most, Limit *limit, Error *error) {
     return done;
 }
 
-static void a_training_that_is_stopped_leaves_no_network(void **state) {
+TEST(a_training_that_is_stopped_leaves_no_network) {
     Error error = {0};
     Limit limit;
     assert_ok(train(1 << 20, &limit, &error), error);
@@ -68,7 +70,7 @@ static void a_training_that_is_stopped_leaves_no_network(void **state) {
     }
 }
 
-static void lines_know_their_network(void **state) {
+TEST(lines_know_their_network) {
     Error error = {0};
     char *lines = NULL;
     size_t used;
@@ -91,7 +93,7 @@ static void lines_know_their_network(void **state) {
     free(lines);
 }
 
-static void without_memory_there_is_no_accuracy(void **state) {
+TEST(without_memory_there_is_no_accuracy) {
     Error error = {0};
     const Dataset *dataset = paper_dataset(&datasets, &training.network, &error);
     Network *network = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
@@ -106,9 +108,4 @@ static void without_memory_there_is_no_accuracy(void **state) {
     network_destroy(network);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_training_that_is_stopped_leaves_no_network),
-                                       cmocka_unit_test(lines_know_their_network),
-                                       cmocka_unit_test(without_memory_there_is_no_accuracy)};
-    return cmocka_run_group_tests(tests, begin, end);
-}
+RUN_TESTS(begin, end)

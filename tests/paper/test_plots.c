@@ -89,7 +89,7 @@ static bool tells_of_values_beyond(const char *figure) {
     return tells;
 }
 
-static void all_are_drawn(void **state) {
+TEST(all_are_drawn) {
     start_afresh();
     draw();
     for (int i = 0; i < TABLES; i++) {
@@ -119,7 +119,7 @@ static void all_are_drawn(void **state) {
         temporary_folder);
 }
 
-static void the_same_tables_give_the_same_files(void **state) {
+TEST(the_same_tables_give_the_same_files) {
     static const char *const endings[] = {"png", "svg", "txt"};
     char *data[2][3];
     size_t size[2][3];
@@ -156,7 +156,7 @@ static void expect_refused(const char *table, const char *text, const char *mess
 #define LAWS "laws,weight,seed,test,constant,momentum,energy,approach,cone\n"
 #define TRANSFER "start,seed,launches,error,constant\n"
 
-static void tables_out_of_order_are_refused_with_their_place(void **state) {
+TEST(tables_out_of_order_are_refused_with_their_place) {
     expect_refused("table1", "network,target\nbaseline,pair\n",
                    "table1.csv:1:1: error: the column 'optimizer' is missing");
     expect_refused("table1", TABLE1 "baseline,pair,adam,ten,1,1,1\n",
@@ -205,7 +205,7 @@ static void write_many(const char *table, const char *header, const char *line, 
     free(text);
 }
 
-static void too_many_lines_are_refused(void **state) {
+TEST(too_many_lines_are_refused) {
     static const struct {
         const char *table, *header, *line, *message;
         int most;
@@ -227,7 +227,7 @@ static void too_many_lines_are_refused(void **state) {
     draw();
 }
 
-static void a_missing_table_is_refused(void **state) {
+TEST(a_missing_table_is_refused) {
     for (int i = 0; i < TABLES; i++) {
         Error error = {0};
         start_afresh();
@@ -239,7 +239,7 @@ static void a_missing_table_is_refused(void **state) {
     }
 }
 
-static void figures_without_rows_are_left_out(void **state) {
+TEST(figures_without_rows_are_left_out) {
     static const struct {
         const char *table, *figure, *text;
     } cases[] = {{"table1", "loss", TABLE1 "best-pair,pair,adam,0,1,1,1\nbaseline,points,adam,0,1,1,1\n"},
@@ -256,7 +256,7 @@ static void figures_without_rows_are_left_out(void **state) {
 }
 
 /* One line each, of nothing, of zeros and numbers next to it, of large ones. */
-static void odd_numbers_are_drawn(void **state) {
+TEST(odd_numbers_are_drawn) {
     static const struct {
         const char *number, *rate, *divisor, *needed, *launches;
     } cases[] = {{"", "", "", "0", "3"},
@@ -286,14 +286,5 @@ static void odd_numbers_are_drawn(void **state) {
 
 int main(void) {
     temporary_path(""); /* makes the folder */
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_are_drawn),
-        cmocka_unit_test(the_same_tables_give_the_same_files),
-        cmocka_unit_test(tables_out_of_order_are_refused_with_their_place),
-        cmocka_unit_test(too_many_lines_are_refused),
-        cmocka_unit_test(a_missing_table_is_refused),
-        cmocka_unit_test(figures_without_rows_are_left_out),
-        cmocka_unit_test(odd_numbers_are_drawn),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return _cmocka_run_group_tests("tests", tests_of_file, test_count, NULL, NULL);
 }

@@ -8,7 +8,7 @@
 #include <math.h>
 
 /* The same part twice: the same rows, one for each form and scene. */
-static void a_part_is_repeatable(void **state) {
+TEST(a_part_is_repeatable) {
     static char texts[2][2048];
     const SystemStudy study = {SOURCE_DIR "/scenes", true, 1};
     for (int run = 0; run < 2; run++) {
@@ -40,13 +40,13 @@ static void expect_verdicts_of(double on, double off, double shuffled, const cha
     expect_verdicts(&system_sain, verdicts);
 }
 
-static void verdicts_follow_from_the_table(void **state) {
+TEST(verdicts_follow_from_the_table) {
     expect_verdicts_of(1, 2, 3, "yes yes yes yes");
     expect_verdicts_of(1.99, 1, 3, "no yes partly partly");
     expect_verdicts_of(5, 4, 4, "no no no no");
 }
 
-static void medians_leave_out_other_rows(void **state) {
+TEST(medians_leave_out_other_rows) {
     SainRow rows[] = {{SAIN_STACK, RELATION_ENGINE, 4, 1, 3, 0, 0},
                       {SAIN_STACK, RELATION_ENGINE, 4, 2, 1, 0, 0},
                       {SAIN_STACK, RELATION_ENGINE, 4, 3, 2, 0, 0},
@@ -58,9 +58,4 @@ static void medians_leave_out_other_rows(void **state) {
     assert_int_equal(sain_most_launches(&table), 4);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_part_is_repeatable),
-                                       cmocka_unit_test(verdicts_follow_from_the_table),
-                                       cmocka_unit_test(medians_leave_out_other_rows)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -19,7 +19,7 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
 }
 
 /* The part of the single box: the scene has two bodies that move, so one row of eight components, which lose nothing. */
-static void a_scene_has_a_row_for_each_engine_and_size(void **state) {
+TEST(a_scene_has_a_row_for_each_engine_and_size) {
     Pieces done;
     Error error = {0};
     static const CsvLayout *const layout = &subspace_study_layout;
@@ -51,7 +51,7 @@ static void a_scene_has_a_row_for_each_engine_and_size(void **state) {
     "scene,method,components,launches,frames,us_step,rms,frames_near,floor_rms,floor_near,linear_rms,linear_near\n"
 
 /* A stack 400 and 200 times as fast as the converged solution; the errors are 0.05 and 2 m. */
-static void claims_follow_from_the_table(void **state) {
+TEST(claims_follow_from_the_table) {
     static const char *const figures[] = {
         "\"200 to 400 times (converged solution), 10 to 20 times (interior), 5.0 to 10 times (engine)\"",
         "\"0.05 to 2 m; the components alone lose 0.001 to 0.01 m, the engine is 0.5 to 0.5 m away\"",
@@ -69,8 +69,4 @@ static void claims_follow_from_the_table(void **state) {
     expect_verdicts(&system_subspace, "no no no no");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_scene_has_a_row_for_each_engine_and_size),
-                                       cmocka_unit_test(claims_follow_from_the_table)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -89,7 +89,7 @@ static void write_study(void) {
     do_parts(&done, false);
 }
 
-static void parts_and_scores_are_done_once(void **state) {
+TEST(parts_and_scores_are_done_once) {
     remove_temporary_folder();
     temporary_folder[0] = '\0';
     parts_written = 0;
@@ -117,7 +117,7 @@ static const SystemScoreRow *score(const CsvTable *scores, const char *method) {
     return row;
 }
 
-static void scores_are_those_of_runs_beside_the_engine_s(void **state) {
+TEST(scores_are_those_of_runs_beside_the_engine_s) {
     Error error = {0};
     CsvTable scores;
     write_study();
@@ -136,7 +136,7 @@ static void scores_are_those_of_runs_beside_the_engine_s(void **state) {
     csv_table_free(&scores);
 }
 
-static void claims_follow_from_tables_and_scores(void **state) {
+TEST(claims_follow_from_tables_and_scores) {
     Error error = {0};
     CsvTable claims;
     write_study();
@@ -152,7 +152,7 @@ static void claims_follow_from_tables_and_scores(void **state) {
     csv_table_free(&claims);
 }
 
-static void rules_have_two_limits(void **state) {
+TEST(rules_have_two_limits) {
     static const double least[] = {3, 2.9, 1.9, (double)NAN}, most[] = {3, 4, 4.1, (double)NAN};
     static const ClaimHolds holds[] = {CLAIM_YES, CLAIM_PARTLY, CLAIM_NO, CLAIM_NO};
     for (int i = 0; i < 4; i++) {
@@ -168,7 +168,7 @@ static void refuse(const char *message) {
     assert_refused(system_claims_write(systems, folder(), &error), message);
 }
 
-static void damaged_tables_are_refused(void **state) {
+TEST(damaged_tables_are_refused) {
     write_study();
     write_text("system_double.csv", "launches,error\n1,0.5\n10,-5\n");
     refuse("system_double.csv:3:4: error: ");
@@ -181,7 +181,7 @@ static void damaged_tables_are_refused(void **state) {
 }
 
 /* What the table could not hold is refused when it is written. */
-static void a_text_that_cannot_be_read_back_is_refused(void **state) {
+TEST(a_text_that_cannot_be_read_back_is_refused) {
     char text[CLAIM_TEXT_SIZE + 2];
     memset(text, 'x', sizeof text - 1);
     text[sizeof text - 1] = '\0';
@@ -205,7 +205,7 @@ static bool stop(void *context, double done, double total) {
     return false;
 }
 
-static void strips_are_refused_or_stopped(void **state) {
+TEST(strips_are_refused_or_stopped) {
     Error error = {0};
     const Progress progress = {stop, NULL};
     assert_false(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), &progress, &error));
@@ -215,7 +215,7 @@ static void strips_are_refused_or_stopped(void **state) {
 
 /* The engine and the system, in this order. Not under sanitizers: in a process with the threads of OpenMP and of Mesa, the
    search for leaks crashes in one of a hundred runs. They watch strips and pages in other tests. */
-static void a_page_plays_the_runs_of_the_strips(void **state) {
+TEST(a_page_plays_the_runs_of_the_strips) {
     Error error = {0};
 #ifdef SANITIZED
     skip();
@@ -236,16 +236,4 @@ static void a_page_plays_the_runs_of_the_strips(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parts_and_scores_are_done_once),
-        cmocka_unit_test(scores_are_those_of_runs_beside_the_engine_s),
-        cmocka_unit_test(claims_follow_from_tables_and_scores),
-        cmocka_unit_test(rules_have_two_limits),
-        cmocka_unit_test(damaged_tables_are_refused),
-        cmocka_unit_test(a_text_that_cannot_be_read_back_is_refused),
-        cmocka_unit_test(strips_are_refused_or_stopped),
-        cmocka_unit_test(a_page_plays_the_runs_of_the_strips),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -26,7 +26,7 @@ static void expect_filled(const char *template, const char *expected) {
     free(text);
 }
 
-static void values_are_filled_in(void **state) {
+TEST(values_are_filled_in) {
     expect_filled("no tag\n", "no tag\n");
     expect_filled("a {{runs}}, {{scene}} {{none}}\n", "a 12, stack –\n");
     expect_filled("{{share number}} {{share percent}} {{share score}} {{big number}} {{big score}}",
@@ -38,7 +38,7 @@ static void values_are_filled_in(void **state) {
     expect_filled("{{none number}} {{scene percent}} {{runs/none number}} {{runs/0 number}}", "– – – –");
 }
 
-static void rows_are_repeated(void **state) {
+TEST(rows_are_repeated) {
     expect_filled("{{each runs.csv}}\n- {{network}} {{frames}}\n{{end}}\nend\n",
                   "- baseline 600\n- baseline 5\n- other –\nend\n");
     expect_filled("{{each empty.csv}}\n- {{scene}}\n{{end}}\nend\n", "end\n");
@@ -47,7 +47,7 @@ static void rows_are_repeated(void **state) {
     expect_filled("{{each scenes.csv}}{{scene}} {{runs}} {{end}}{{scene}}", "single 12 stack 12 stack");
 }
 
-static void rows_are_filtered(void **state) {
+TEST(rows_are_filtered) {
     expect_filled("{{each runs.csv scene=stack}}{{network}} {{end}}", "baseline other ");
     expect_filled("{{each runs.csv scene=stack network=other}}{{network}} {{end}}", "other ");
     expect_filled("{{each runs.csv scene=sing|stack}}{{network}} {{end}}", "baseline other ");
@@ -69,7 +69,7 @@ static void expect_refused(const char *template, const char *message) {
     assert_error(error, ERROR_INPUT, message);
 }
 
-static void wrong_tags_are_refused(void **state) {
+TEST(wrong_tags_are_refused) {
     expect_refused("{{unknown}}", "no value has this name: 'unknown'");
     expect_refused("{{unknown number}}", "no value has this name: 'unknown'");
     expect_refused("{{runs/unknown number}}", "no value has this name: 'unknown'");
@@ -86,12 +86,4 @@ static void wrong_tags_are_refused(void **state) {
     expect_refused("{{caption missing.txt}}", "missing.txt: error: cannot open");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_are_filled_in),
-        cmocka_unit_test(rows_are_repeated),
-        cmocka_unit_test(rows_are_filtered),
-        cmocka_unit_test(wrong_tags_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -42,7 +42,7 @@ static double constant_by_hand(const Dataset *dataset) {
     return sqrt(squares / (2 * count[1]));
 }
 
-static void errors_stand_beside_the_constant(void **state) {
+TEST(errors_stand_beside_the_constant) {
     Error error = {0};
     Dataset *pyramid = record(single, PAIR_CONTACT), *drawn = dataset_draw_subset(pyramid, 2, 3, &error);
     assert_ok(drawn != NULL, error);
@@ -60,7 +60,7 @@ static void errors_stand_beside_the_constant(void **state) {
 
 /* After 0 iterations, a network with transfer differs from one from scratch only by its normalisation, which is that of
    its first stage. It does not differ if that stage had the same rows. */
-static void the_first_stage_decides_the_units(void **state) {
+TEST(the_first_stage_decides_the_units) {
     Error error = {0};
     Dataset *elsewhere = record(single, PAIR_RELATIVE), *pyramid = record(stack, PAIR_RELATIVE);
     Dataset *drawn = dataset_draw_subset(pyramid, 2, 5, &error);
@@ -78,7 +78,7 @@ static void the_first_stage_decides_the_units(void **state) {
 }
 
 /* By any view; the same again, and something else for each way of getting there. */
-static void stages_follow_each_other(void **state) {
+TEST(stages_follow_each_other) {
     for (int i = 0; i < 2; i++) {
         const PairView view = i == 0 ? PAIR_RELATIVE : PAIR_CONTACT;
         Dataset *first = record(single, view), *pyramid = record(stack, view);
@@ -101,7 +101,7 @@ static bool stop(void *context, double done, double total) {
     return *stages < 2;
 }
 
-static void what_cannot_be_run_is_refused(void **state) {
+TEST(what_cannot_be_run_is_refused) {
     Dataset *pyramid = record(stack, PAIR_RELATIVE), *other = record(single, PAIR_RAW);
     const TransferData data = {pyramid, pyramid, pyramid}, mixed = {other, pyramid, pyramid};
     TransferResult result;
@@ -120,9 +120,4 @@ static void what_cannot_be_run_is_refused(void **state) {
     dataset_destroy(pyramid);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(errors_stand_beside_the_constant), cmocka_unit_test(the_first_stage_decides_the_units),
-        cmocka_unit_test(stages_follow_each_other), cmocka_unit_test(what_cannot_be_run_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

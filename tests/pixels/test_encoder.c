@@ -9,7 +9,7 @@
 
 static uint32_t seed = 1;
 
-static unsigned random_below(unsigned limit) {
+static unsigned any_below(unsigned limit) {
     seed = seed * 1664525 + 1013904223;
     return (unsigned)((uint64_t)(seed >> 8) * limit >> 24);
 }
@@ -27,14 +27,14 @@ static void set_pixel(Image *image, int x, int y, uint32_t rgb) {
     for (int c = 0; c < 3; c++) pixel[c] = (uint8_t)(rgb >> (8 * c));
 }
 
-static uint32_t random_color(void) { return random_below(1u << 24); }
+static uint32_t random_color(void) { return any_below(1u << 24); }
 
 /* Noise; one colour; horizontal and vertical stripes; rectangles; noise in some rows. */
 enum { NOISE, FLAT, ACROSS, DOWN, BOXES, ROUGH, KINDS };
 
 static void fill(Image *image, int kind) {
     uint32_t colors[2] = {random_color(), random_color()};
-    unsigned step = 1 + random_below(200);
+    unsigned step = 1 + any_below(200);
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++) {
             unsigned i = (unsigned)(kind == ACROSS ? y : x) / step;
@@ -45,8 +45,8 @@ static void fill(Image *image, int kind) {
 
 /* A rectangle of one colour; its rows are marked. */
 static void add_box(Image *image, bool *changed) {
-    int left = (int)random_below((unsigned)image->width), top = (int)random_below((unsigned)image->height);
-    int width = (int)random_below(100), height = (int)random_below(20);
+    int left = (int)any_below((unsigned)image->width), top = (int)any_below((unsigned)image->height);
+    int width = (int)any_below(100), height = (int)any_below(20);
     uint32_t color = random_color();
     for (int y = top; y < image->height && y < top + height; y++) {
         changed[y] = true;
@@ -100,10 +100,10 @@ TEST(random_pictures_come_back) {
         const uint8_t *data;
         size_t size;
         bool ignored[64];
-        Image *image = blank_image(1 + (int)random_below(300), 1 + (int)random_below(40));
+        Image *image = blank_image(1 + (int)any_below(300), 1 + (int)any_below(40));
         PngEncoder *encoder = png_encoder_create(image->width, image->height, PNG_FAST, &error);
-        fill(image, (int)random_below(KINDS));
-        for (unsigned box = random_below(9); box > 0; box--) add_box(image, ignored);
+        fill(image, (int)any_below(KINDS));
+        for (unsigned box = any_below(9); box > 0; box--) add_box(image, ignored);
         assert_ok(png_encode(encoder, image, NULL, NULL, 0, &data, &size, &error), error);
         assert_holds(data, size, image);
         png_encoder_destroy(encoder);
@@ -122,7 +122,7 @@ TEST(kept_rows_change_no_byte) {
         const uint8_t *data, *fresh_data;
         size_t size, fresh_size;
         if (frame > 0)
-            for (unsigned box = random_below(3); box > 0; box--) add_box(image, changed);
+            for (unsigned box = any_below(3); box > 0; box--) add_box(image, changed);
         assert_ok(png_encode(encoder, image, frame > 0 ? changed : NULL, NULL, 0, &data, &size, &error), error);
         PngEncoder *fresh = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
         assert_ok(png_encode(fresh, image, NULL, NULL, 0, &fresh_data, &fresh_size, &error), error);

@@ -62,7 +62,7 @@ static uint32_t random_bits(void) {
     return (uint32_t)(random_state >> 33);
 }
 
-static int random_below(int count) { return (int)(random_bits() % (uint32_t)count); }
+static int any_below(int count) { return (int)(random_bits() % (uint32_t)count); }
 
 static double random_between(double low, double high) { return low + (high - low) * random_bits() / 2147483648.0; }
 
@@ -166,9 +166,9 @@ static ChangeSubject subject_of(const Trajectory *run, int body) {
 
 /* A body that exists, of a random panel. */
 static Seed seed_body(Stage *stage) {
-    int panel = random_below(stage->shot->count), body;
+    int panel = any_below(stage->shot->count), body;
     const Trajectory *run = stage->runs[panel];
-    do body = random_below(run->bodies);
+    do body = any_below(run->bodies);
     while (!trajectory_has(run, stage->shot->frame, body));
     return (Seed){.truth = {.subject = subject_of(run, body), .panel = panel + 1, .body = body}};
 }
@@ -177,11 +177,11 @@ static Seed seed_body(Stage *stage) {
 static void seed_movement(Stage *stage, Seed *seed, bool states) {
     int panel = seed->truth.panel - 1, body = seed->truth.body;
     double scale = stage->view.panels[panel].scale, size = exp(random_between(log(1.0 / 16), log(30)));
-    double direction = random_below(2) ? random_between(0, 6.283185307) : 1.5707963268 * random_below(4);
+    double direction = any_below(2) ? random_between(0, 6.283185307) : 1.5707963268 * any_below(4);
     Change *truth = &seed->truth;
     truth->kind = CHANGE_MOVED;
     truth->right = size * cos(direction), truth->up = size * sin(direction);
-    truth->turn = random_below(3) == 0 ? random_between(-0.2, 0.2) : 0;
+    truth->turn = any_below(3) == 0 ? random_between(-0.2, 0.2) : 0;
     draw_moved(stage, panel, body, truth->right / scale, truth->up / scale, truth->turn);
     if (states) {
         Trajectory *actual = trajectory_every(stage->runs[panel], 1, &(Error){0});
@@ -204,9 +204,9 @@ static void seed_colour(Stage *stage, Seed *seed) {
     seed->truth.kind = CHANGE_COLOUR;
     copy_drawing(stage);
     if (shape < 0) return;
-    int part = random_below(stage->moved.shapes[shape].paint[3] > 0 ? 3 : 2);
+    int part = any_below(stage->moved.shapes[shape].paint[3] > 0 ? 3 : 2);
     uint32_t *paint_of = &stage->moved.shapes[shape].paint[part];
-    uint32_t step = random_below(4) == 0 ? 1 : (uint32_t)random_below(120) + 3;
+    uint32_t step = any_below(4) == 0 ? 1 : (uint32_t)any_below(120) + 3;
     for (int shift = 0; shift < 24; shift += 8) {
         uint32_t channel = *paint_of >> shift & 255;
         channel = channel + step < 256 ? channel + step : channel - step;
@@ -223,7 +223,7 @@ static void seed_line(Stage *stage, Seed *seed) {
     if (shape < 0 || stage->moved.shapes[shape].extents[3] == 0) return;
     int32_t *width = &stage->moved.shapes[shape].extents[3];
     int32_t step = (int32_t)(65536 * exp(random_between(log(0.25), log(3))));
-    *width = random_below(2) && *width - step > 16384 ? *width - step : *width + step;
+    *width = any_below(2) && *width - step > 16384 ? *width - step : *width + step;
 }
 
 typedef struct TextRange {
@@ -261,12 +261,12 @@ static void seed_text(Stage *stage, Seed *seed) {
     int count = find_texts(stage, ranges), range = 0;
     copy_drawing(stage);
     if (stage->moved.glyph_count == 0) return;
-    size_t glyph = (size_t)random_below((int)stage->moved.glyph_count);
+    size_t glyph = (size_t)any_below((int)stage->moved.glyph_count);
     while (range < count && glyph >= ranges[range].end) range++;
     if (range == count) return; /* of the timeline's moving part */
     seed->truth = (Change){.subject = ranges[range].subject, .panel = ranges[range].panel};
     GlyphInstance *changed = &stage->moved.glyphs[glyph];
-    switch (random_below(3)) {
+    switch (any_below(3)) {
     case 0: changed->color = 0xC00060; break;
     case 1: changed->box[0] += 1; break;
     default: changed->bitmap += 1;
@@ -329,7 +329,7 @@ TEST(changes_get_their_names) {
         assert_ok(context_make_current(&stage.context, &(Error){0}), (Error){0});
         paint(&stage, &stage.drawing, stage.images[0]);
         for (int end = all * (i + 1) / SHOTS; done < end;) {
-            int kind = random_below(5);
+            int kind = any_below(5);
             Seed seed = seed_change(&stage, kind);
             ImageDifference difference;
             paint(&stage, &stage.moved, stage.images[1]);

@@ -54,7 +54,7 @@ static void check_borders(const BorderScan *scan, Made *made, const Border *expe
 static const BorderScan heights = {.from = 2, .to = 40, .points = 10, .whole = true},
                         backwards = {.from = 2, .to = 40, .points = 10, .whole = true, .fails_low = true};
 
-static void one_border_is_found_to_the_unit(void **state) {
+TEST(one_border_is_found_to_the_unit) {
     for (int first = 3; first <= 40; first++) {
         Made made = {.from = {first}, .to = {99}, .intervals = 1, .failing_seed = -1, .how = VERDICT_FALLS};
         expect_borders(&heights, &made, {first - 1, first, VERDICT_FALLS});
@@ -62,7 +62,7 @@ static void one_border_is_found_to_the_unit(void **state) {
     }
 }
 
-static void linear_is_found_to_a_hundredth_of_the_range(void **state) {
+TEST(linear_is_found_to_a_hundredth_of_the_range) {
     const BorderScan scan = {.from = 0, .to = 0.6, .points = 7};
     Made made = {.from = {0.2345}, .to = {1}, .intervals = 1, .failing_seed = -1, .how = VERDICT_FALLS};
     BorderList list = search(&scan, &made);
@@ -73,7 +73,7 @@ static void linear_is_found_to_a_hundredth_of_the_range(void **state) {
 }
 
 /* Iterations: fails at low values, holds from 17. 16 and 17 are neighbours, although their ratio is 1.06. */
-static void logarithmic_is_found_to_a_factor(void **state) {
+TEST(logarithmic_is_found_to_a_factor) {
     const BorderScan counts = {
         .from = 1, .to = 100, .points = 8, .logarithmic = true, .whole = true, .fails_low = true};
     const BorderScan ratios = {.from = 1, .to = 1000, .points = 10, .logarithmic = true};
@@ -87,19 +87,19 @@ static void logarithmic_is_found_to_a_factor(void **state) {
 }
 
 /* Holds to 9, fails from 10 to 20, holds to 30, fails from 31. */
-static void all_borders_are_listed(void **state) {
+TEST(all_borders_are_listed) {
     Made made = {.from = {10, 31}, .to = {20, 99}, .intervals = 2, .failing_seed = -1, .how = VERDICT_FALLS};
     expect_borders(&heights, &made, {9, 10, VERDICT_FALLS}, {21, 20, VERDICT_FALLS}, {30, 31, VERDICT_FALLS});
     expect_borders(&backwards, &made, {30, 31, VERDICT_FALLS}, {21, 20, VERDICT_FALLS}, {9, 10, VERDICT_FALLS});
 }
 
 /* Holds to 21 except at 20, which a scan of ..., 19, 23, ... and a bisection at 21 miss. */
-static void a_hole_beside_a_border_is_found(void **state) {
+TEST(a_hole_beside_a_border_is_found) {
     Made made = {.from = {20, 22}, .to = {20, 99}, .intervals = 2, .failing_seed = -1, .how = VERDICT_FALLS};
     expect_borders(&heights, &made, {19, 20, VERDICT_FALLS}, {21, 20, VERDICT_FALLS}, {21, 22, VERDICT_FALLS});
 }
 
-static void without_a_border_there_is_one_side(void **state) {
+TEST(without_a_border_there_is_one_side) {
     Made holds = {.failing_seed = -1, .how = VERDICT_FALLS};
     Made fails = {.from = {0}, .to = {99}, .intervals = 1, .failing_seed = -1, .how = VERDICT_TUNNELS};
     expect_borders(&heights, &holds, {40, NAN, VERDICT_CREEPS});
@@ -110,7 +110,7 @@ static void without_a_border_there_is_one_side(void **state) {
 }
 
 /* Holds to 14 and fails from 20; between them, one of three seeds explodes. */
-static void undecided_values_are_no_side_of_a_border(void **state) {
+TEST(undecided_values_are_no_side_of_a_border) {
     for (int seed = 0; seed < BORDER_SEEDS; seed++) {
         Made made = {.from = {20},
                      .to = {99},
@@ -124,7 +124,7 @@ static void undecided_values_are_no_side_of_a_border(void **state) {
 }
 
 /* From 33 on only the first seed explodes. */
-static void undecided_values_at_the_end_are_reported(void **state) {
+TEST(undecided_values_at_the_end_are_reported) {
     Made made = {.undecided_from = 33, .undecided_to = 99, .failing_seed = 0, .how = VERDICT_FALLS};
     expect_borders(&heights, &made, {32, NAN, VERDICT_EXPLODES});
     made =
@@ -133,13 +133,13 @@ static void undecided_values_at_the_end_are_reported(void **state) {
 }
 
 /* From 19 to 26 only the first seed explodes; all other values hold. */
-static void undecided_values_in_the_middle_end_what_holds(void **state) {
+TEST(undecided_values_in_the_middle_end_what_holds) {
     Made made = {.undecided_from = 19, .undecided_to = 26, .failing_seed = 0, .how = VERDICT_FALLS};
     expect_borders(&heights, &made, {18, NAN, VERDICT_EXPLODES});
     expect_borders(&backwards, &made, {27, NAN, VERDICT_EXPLODES});
 }
 
-static void values_are_rounded_as_in_tables(void **state) {
+TEST(values_are_rounded_as_in_tables) {
     double values[BORDER_POINTS_MAX];
     const BorderScan few = {.from = 1, .to = 4, .points = 9, .logarithmic = true, .whole = true};
     assert_int_equal(border_scan_values(&few, values), 4);
@@ -150,7 +150,7 @@ static void values_are_rounded_as_in_tables(void **state) {
     assert_near(values[9], 1000, 0);
 }
 
-static void a_failing_evaluation_ends_the_search(void **state) {
+TEST(a_failing_evaluation_ends_the_search) {
     Error error = {0};
     BorderList list;
     Made made = {.how = VERDICTS};
@@ -158,17 +158,4 @@ static void a_failing_evaluation_ends_the_search(void **state) {
     assert_int_equal(made.calls, 1);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_border_is_found_to_the_unit),
-                                       cmocka_unit_test(linear_is_found_to_a_hundredth_of_the_range),
-                                       cmocka_unit_test(logarithmic_is_found_to_a_factor),
-                                       cmocka_unit_test(all_borders_are_listed),
-                                       cmocka_unit_test(a_hole_beside_a_border_is_found),
-                                       cmocka_unit_test(without_a_border_there_is_one_side),
-                                       cmocka_unit_test(undecided_values_are_no_side_of_a_border),
-                                       cmocka_unit_test(undecided_values_at_the_end_are_reported),
-                                       cmocka_unit_test(undecided_values_in_the_middle_end_what_holds),
-                                       cmocka_unit_test(values_are_rounded_as_in_tables),
-                                       cmocka_unit_test(a_failing_evaluation_ends_the_search)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

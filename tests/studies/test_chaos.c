@@ -33,7 +33,7 @@ static const char bomb[] = "bomb: {x: 0.001, y: 100, frame: 20, size: [1, 1], ma
 
 /* Only the position is shifted and nothing is touched: the distance is the shift, from the body's first frame. If the
    velocity of an aimed bomb were shifted too, its distance would grow by 15e-6 m/s. */
-static void a_shift_in_free_flight_is_constant(void **state) {
+TEST(a_shift_in_free_flight_is_constant) {
     char text[1024];
     Error error = {0};
     for (int with_bomb = 0; with_bomb < 2; with_bomb++) {
@@ -54,7 +54,7 @@ static void a_shift_in_free_flight_is_constant(void **state) {
 }
 
 /* At a position where one ulp is 0.0625 m. */
-static void a_shift_is_at_least_one_float(void **state) {
+TEST(a_shift_is_at_least_one_float) {
     Error error = {0};
     const char *path = write_scene("  - {size: [1, 1], position: [600000, 50], mass: 1, friction: 0}\n");
     Trajectory *run = run_scene(path, "engine");
@@ -66,7 +66,7 @@ static void a_shift_is_at_least_one_float(void **state) {
 }
 
 /* scenes/stack.yaml: the bomb hits in step 41; body 1 touches the ground from step 4. */
-static void a_bomb_that_has_not_hit_is_not_shifted(void **state) {
+TEST(a_bomb_that_has_not_hit_is_not_shifted) {
     Trajectory *run = run_scene(SOURCE_DIR "/scenes/stack.yaml", "engine");
     assert_int_equal(run->bomb, 11);
     int hit = 0;
@@ -85,7 +85,7 @@ static void a_bomb_that_has_not_hit_is_not_shifted(void **state) {
 }
 
 /* The distances are those between the two trajectories. */
-static void distances_are_those_of_the_trajectories(void **state) {
+TEST(distances_are_those_of_the_trajectories) {
     Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "momentum:k=5");
@@ -111,7 +111,7 @@ static void expect_refused(const Trajectory *run, const char *path, int frames, 
     assert_refused(chaos_run(&chaos, path, run, 1, frames, NULL, &error), reason);
 }
 
-static void other_scenes_and_runs_are_detected(void **state) {
+TEST(other_scenes_and_runs_are_detected) {
     Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "engine");
@@ -138,7 +138,7 @@ static bool stop_late(void *context, double done, double total) {
 }
 
 /* A stop must not be taken for a NaN or infinite state. */
-static void a_stop_is_an_error(void **state) {
+TEST(a_stop_is_an_error) {
     Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "engine");
@@ -148,14 +148,4 @@ static void a_stop_is_an_error(void **state) {
     trajectory_destroy(run);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_shift_in_free_flight_is_constant),
-        cmocka_unit_test(a_shift_is_at_least_one_float),
-        cmocka_unit_test(a_bomb_that_has_not_hit_is_not_shifted),
-        cmocka_unit_test(distances_are_those_of_the_trajectories),
-        cmocka_unit_test(other_scenes_and_runs_are_detected),
-        cmocka_unit_test(a_stop_is_an_error),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

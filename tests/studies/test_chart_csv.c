@@ -36,7 +36,7 @@ static ChartRow bare(void) {
                       ""};
 }
 
-static void rows_are_written_in_the_order_of_the_header(void **state) {
+TEST(rows_are_written_in_the_order_of_the_header) {
     Error error = {0};
     const ChartRow rows[] = {full, bare()};
     const char *path = temporary_path("written.csv");
@@ -70,7 +70,7 @@ static void assert_same_row(const ChartRow *found, const ChartRow *expected) {
     assert_string_equal(found->cpu, expected->cpu);
 }
 
-static void written_tables_are_read_back(void **state) {
+TEST(written_tables_are_read_back) {
     Error error = {0};
     ChartRow rows[] = {full, bare(), full};
     rows[2].phase = PHASE_REST;
@@ -93,7 +93,7 @@ static void expect_refused(const char *path, const char *message) {
 }
 
 /* As twinbox wrote them before it named the processor; the column can be the last one only. */
-static void the_processor_may_be_missing(void **state) {
+TEST(the_processor_may_be_missing) {
     Error error = {0};
     CsvTable table;
     assert_ok(csv_table_read(&table, write_chart(GOOD), &chart_layout, &error), error);
@@ -107,7 +107,7 @@ static void the_processor_may_be_missing(void **state) {
 }
 
 /* The kinds of the columns: csv/csv_table. */
-static void broken_tables_are_refused_with_their_place(void **state) {
+TEST(broken_tables_are_refused_with_their_place) {
     static const struct {
         const char *lines, *message;
     } cases[] = {
@@ -134,13 +134,13 @@ static void broken_tables_are_refused_with_their_place(void **state) {
         expect_refused(write_chart(cases[i].lines), cases[i].message);
 }
 
-static void long_names_are_refused(void **state) {
+TEST(long_names_are_refused) {
     char lines[512];
     snprintf(lines, sizeof lines, "%0128d,engine,k=10,closed,impact,40,5,4,6,50,,0.5,,,,,,,,\n", 0);
     expect_refused(write_chart(lines), "...' is longer than 127 bytes");
 }
 
-static void other_headers_are_refused(void **state) {
+TEST(other_headers_are_refused) {
     Error error = {0};
     const char *path = temporary_path("other.csv");
     static const char text[] = "scene,name\na,b\n";
@@ -148,14 +148,4 @@ static void other_headers_are_refused(void **state) {
     expect_refused(path, "other.csv:1:7: error: column 2 must be 'method' (got 'name')");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_are_written_in_the_order_of_the_header),
-        cmocka_unit_test(written_tables_are_read_back),
-        cmocka_unit_test(the_processor_may_be_missing),
-        cmocka_unit_test(broken_tables_are_refused_with_their_place),
-        cmocka_unit_test(long_names_are_refused),
-        cmocka_unit_test(other_headers_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

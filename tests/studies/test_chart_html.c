@@ -44,7 +44,7 @@ static char *write_page(const ChartRow *rows, int count) {
     return text;
 }
 
-static void the_page_names_the_processor(void **state) {
+TEST(the_page_names_the_processor) {
     const ChartRow rows[] = {make_row("single", "engine", "Quick & <Co>"), make_row("stack", "engine", "Quick & <Co>")};
     char *text = write_page(rows, 2);
     assert_non_null(strstr(text, "<p class=\"soft\">Times measured on Quick &amp; &lt;Co&gt;.</p>"));
@@ -53,7 +53,7 @@ static void the_page_names_the_processor(void **state) {
     free(text);
 }
 
-static void a_scene_without_times_has_no_chart(void **state) {
+TEST(a_scene_without_times_has_no_chart) {
     const ChartRow rows[] = {make_row("single", "engine", "AMD"), make_row("stack", "engine", "")};
     char *text = write_page(rows, 2);
     assert_non_null(strstr(text, "Times measured on AMD. Those of other processors are left out."));
@@ -65,7 +65,7 @@ static void a_scene_without_times_has_no_chart(void **state) {
     free(text);
 }
 
-static void old_tables_name_no_processor(void **state) {
+TEST(old_tables_name_no_processor) {
     ChartRow rows[] = {make_row("single", "engine", "AMD")};
     rows[0].cpu = "";
     char *text = write_page(rows, 1);
@@ -73,11 +73,4 @@ static void old_tables_name_no_processor(void **state) {
     free(text);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_page_names_the_processor),
-        cmocka_unit_test(a_scene_without_times_has_no_chart),
-        cmocka_unit_test(old_tables_name_no_processor),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -31,7 +31,7 @@ static char *read_drawn(const char *scene, const char *ending, size_t *size) {
     return data;
 }
 
-static void three_files_are_drawn(void **state) {
+TEST(three_files_are_drawn) {
     Error error = {0};
     assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
     size_t size;
@@ -61,7 +61,7 @@ static void three_files_are_drawn(void **state) {
         drawn_file("pyramid_settled", "svg"));
 }
 
-static void the_same_table_gives_the_same_files(void **state) {
+TEST(the_same_table_gives_the_same_files) {
     static const char *const endings[] = {"png", "svg", "pdf"};
     Error error = {0};
     size_t size[2][3];
@@ -97,7 +97,7 @@ static void expect_refused(const char *lines, const char *scene, const char *mes
     assert_int_equal(access(drawn_file("single", "png"), F_OK), -1);
 }
 
-static void tables_without_a_mark_are_refused(void **state) {
+TEST(tables_without_a_mark_are_refused) {
     static const char none[] = "rows.csv: error: no row of the scene 'single' in closed loop has a time and an error";
     expect_refused("stack,engine,k=10,closed,impact,40,5,4,6,,,1,,,,,,,,\n", "single", none);
     expect_refused("single,engine,k=10,frozen,impact,40,5,4,6,,,1,,,,,,,,\n"
@@ -115,7 +115,7 @@ static void tables_without_a_mark_are_refused(void **state) {
     expect_refused(many, "single", "at most 32 methods");
 }
 
-static void one_mark_and_one_panel_are_enough(void **state) {
+TEST(one_mark_and_one_panel_are_enough) {
     Error error = {0};
     assert_ok(
         chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &error),
@@ -124,7 +124,7 @@ static void one_mark_and_one_panel_are_enough(void **state) {
 }
 
 /* A note names the methods whose errors have another target. Without such methods the chart has no note. */
-static void a_target_without_push_out_is_noted(void **state) {
+TEST(a_target_without_push_out_is_noted) {
     Error error = {0};
     static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
@@ -144,7 +144,7 @@ static void a_target_without_push_out_is_noted(void **state) {
 }
 
 /* The maximum number of methods, with the longest names and settings. */
-static void a_full_chart_is_drawn(void **state) {
+TEST(a_full_chart_is_drawn) {
     Error error = {0};
     char lines[20000] = "";
     for (int i = 0; i < CHART_MAX_LINES * 5; i++)
@@ -155,7 +155,7 @@ static void a_full_chart_is_drawn(void **state) {
 }
 
 /* A table may have any texts: what is drawn of them is text. */
-static void names_stay_texts(void **state) {
+TEST(names_stay_texts) {
     static const char *const names[] = {"'; x='",         "</text><script>", "&amp;",
                                         "`touch victim`", "\xc3\x28'\\",     "%s %d %n"};
     char *lines = NULL;
@@ -181,7 +181,7 @@ static void names_stay_texts(void **state) {
                drawn_file("hostile", "svg"));
 }
 
-static void texts_become_plain(void **state) {
+TEST(texts_become_plain) {
     char plain[CHART_TEXT_SIZE];
     chart_plain(plain, "engine, warm=off (k=10)");
     assert_string_equal(plain, "engine, warm=off (k=10)");
@@ -213,7 +213,7 @@ static void free_chart(Chart *chart, CsvTable *table) {
     csv_table_free(table);
 }
 
-static void marks_are_gathered_by_line_and_time(void **state) {
+TEST(marks_are_gathered_by_line_and_time) {
     CsvTable table;
     Chart chart = gather(&table, "single,engine,k=5,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
                                  "stack,momentum,\"warm=off,k=7,b=0.5\",closed,impact,40,4,3,6,,,2,,,,,,,,\n"
@@ -241,7 +241,7 @@ static void marks_are_gathered_by_line_and_time(void **state) {
 }
 
 /* A baseline a thousand times faster would push the methods that compete into a corner. */
-static void the_axes_show_what_competes(void **state) {
+TEST(the_axes_show_what_competes) {
     Error error = {0};
     CsvTable table;
     Chart chart = gather(&table, "stack,engine,k=5,closed,impact,40,20,19,21,,,1,,,,,,,,\n"
@@ -269,7 +269,7 @@ static void the_axes_show_what_competes(void **state) {
 }
 
 /* Methods keep their colour, whichever others are in the chart; all lines differ. */
-static void a_method_has_one_style_in_all_charts(void **state) {
+TEST(a_method_has_one_style_in_all_charts) {
     const MethodDescription *engine = method_describe("engine"), *momentum = method_describe("momentum");
     PlotStyle one[2], other[CHART_MAX_LINES];
     plot_method_styles((const MethodDescription *[]){momentum, engine}, 2, one);
@@ -287,7 +287,7 @@ static void a_method_has_one_style_in_all_charts(void **state) {
 }
 
 /* One mark by the stopping rule between two of a fixed number of sweeps would bend their line. */
-static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
+TEST(runs_with_a_stopping_rule_are_a_line_of_their_own) {
     CsvTable table;
     Chart chart = gather(&table, "stack,momentum,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
                                  "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
@@ -308,7 +308,7 @@ static void runs_with_a_stopping_rule_are_a_line_of_their_own(void **state) {
 }
 
 /* Two names that are equal where they are truncated. */
-static void truncated_names_stay_distinct(void **state) {
+TEST(truncated_names_stay_distinct) {
     CsvTable table;
     Chart chart = gather(
         &table, "stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
@@ -319,21 +319,4 @@ static void truncated_names_stay_distinct(void **state) {
     free_chart(&chart, &table);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(three_files_are_drawn),
-        cmocka_unit_test(the_same_table_gives_the_same_files),
-        cmocka_unit_test(tables_without_a_mark_are_refused),
-        cmocka_unit_test(one_mark_and_one_panel_are_enough),
-        cmocka_unit_test(a_target_without_push_out_is_noted),
-        cmocka_unit_test(a_full_chart_is_drawn),
-        cmocka_unit_test(names_stay_texts),
-        cmocka_unit_test(texts_become_plain),
-        cmocka_unit_test(marks_are_gathered_by_line_and_time),
-        cmocka_unit_test(the_axes_show_what_competes),
-        cmocka_unit_test(a_method_has_one_style_in_all_charts),
-        cmocka_unit_test(runs_with_a_stopping_rule_are_a_line_of_their_own),
-        cmocka_unit_test(truncated_names_stay_distinct),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -25,7 +25,7 @@ static ClosedLoop run(const char *text, const Scene *scene) {
 }
 
 /* The engine conserves momentum; friction and inelastic impacts only dissipate energy. */
-static void the_engine_equals_itself(void **state) {
+TEST(the_engine_equals_itself) {
     Scene *scene = read_scene("single");
     ClosedLoop result = run("engine", scene);
     assert_near(result.frames_until_apart, CLOSED_LOOP_FRAMES, 0);
@@ -36,7 +36,7 @@ static void the_engine_equals_itself(void **state) {
 }
 
 /* With one sweep and no warm start a stack of ten sinks. */
-static void a_poor_method_diverges_from_the_engine(void **state) {
+TEST(a_poor_method_diverges_from_the_engine) {
     Scene *scene = read_scene("stack");
     ClosedLoop poor = run("engine:k=1,warm=off", scene), same = run("engine", scene);
     assert_true(poor.frames_until_apart > 1 && poor.frames_until_apart < 100);
@@ -45,7 +45,7 @@ static void a_poor_method_diverges_from_the_engine(void **state) {
 }
 
 /* The energy that a late bomb brings is not counted as created by the method. */
-static void energy_counts_from_the_bomb_on(void **state) {
+TEST(energy_counts_from_the_bomb_on) {
     Scene *scene = read_scene("single");
     scene->bomb.frame = 30;
     ClosedLoop result = run("engine", scene);
@@ -54,7 +54,7 @@ static void energy_counts_from_the_bomb_on(void **state) {
 }
 
 /* The interior method is close to the converged run of the stack for longer than to the engine's. */
-static void runs_are_compared_with_the_engine_and_with_the_converged_run(void **state) {
+TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
     Error error = {0};
     Scene *scene = read_scene("stack");
     scene->frames = 60;
@@ -77,7 +77,7 @@ static void runs_are_compared_with_the_engine_and_with_the_converged_run(void **
     scene_destroy(scene);
 }
 
-static void both_methods_are_timed(void **state) {
+TEST(both_methods_are_timed) {
     Error error = {0};
     Scene *scene = read_scene("stack");
     scene->frames = 60;
@@ -93,10 +93,4 @@ static void both_methods_are_timed(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_engine_equals_itself), cmocka_unit_test(a_poor_method_diverges_from_the_engine),
-        cmocka_unit_test(energy_counts_from_the_bomb_on), cmocka_unit_test(both_methods_are_timed),
-        cmocka_unit_test(runs_are_compared_with_the_engine_and_with_the_converged_run)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -17,7 +17,7 @@ static void assert_contender(const ContenderList *list, int i, const char *name,
     assert_string_equal(list->items[i].setting, setting);
 }
 
-static void a_comma_separates_methods_or_settings(void **state) {
+TEST(a_comma_separates_methods_or_settings) {
     ContenderList list = parse("engine:k=3,warm=off,momentum:k=20,constant,engine:k=3");
     assert_int_equal(list.count, 4);
     assert_contender(&list, 0, "engine", "k=3,warm=off");
@@ -28,7 +28,7 @@ static void a_comma_separates_methods_or_settings(void **state) {
     contenders_free(&list);
 }
 
-static void a_name_alone_stands_for_all_its_settings(void **state) {
+TEST(a_name_alone_stands_for_all_its_settings) {
     ContenderList engine = parse("engine"), both = parse("engine,momentum"), all = parse(NULL);
     assert_contender(&engine, 0, "engine", "k=1");
     assert_true(engine.count > 4);
@@ -41,7 +41,7 @@ static void a_name_alone_stands_for_all_its_settings(void **state) {
 }
 
 /* The engine as shipped is the mark that all others are held to. */
-static void the_engine_as_shipped_is_always_there(void **state) {
+TEST(the_engine_as_shipped_is_always_there) {
     for (int quick = 0; quick < 2; quick++) {
         Error error = {0};
         ContenderList list;
@@ -60,7 +60,7 @@ static void refuse(const char *text, const char *reason) {
     assert_refused(contenders_parse(&list, text, STUDY_CHART, &error), reason);
 }
 
-static void bad_lists_are_refused(void **state) {
+TEST(bad_lists_are_refused) {
     refuse("engin", "method: error: 'engin' is not a method");
     refuse("engine,", "is not a method");
     refuse("", "is not a method");
@@ -73,7 +73,7 @@ static void bad_lists_are_refused(void **state) {
     refuse(text, "too long");
 }
 
-static void a_method_without_its_network_is_left_out(void **state) {
+TEST(a_method_without_its_network_is_left_out) {
     Error error = {0};
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     assert_ok(scene != NULL, error);
@@ -100,7 +100,7 @@ static bool has_twin(const ContenderList *list, const Contender *run) {
 }
 
 /* The ablation that must stand beside it. */
-static void every_learned_method_has_its_twin_in_every_study(void **state) {
+TEST(every_learned_method_has_its_twin_in_every_study) {
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
         Error error = {0};
         ContenderList all;
@@ -113,7 +113,7 @@ static void every_learned_method_has_its_twin_in_every_study(void **state) {
 }
 
 /* Learned: it competes and needs a network. */
-static void every_learned_method_names_its_twin(void **state) {
+TEST(every_learned_method_names_its_twin) {
     int learned = 0;
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
         const MethodDescription *method = kind->description;
@@ -124,7 +124,7 @@ static void every_learned_method_names_its_twin(void **state) {
 }
 
 /* What is left out is reported. */
-static void every_method_runs_or_is_left_out(void **state) {
+TEST(every_method_runs_or_is_left_out) {
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
         Error error = {0};
         ContenderList all;
@@ -142,14 +142,4 @@ static void every_method_runs_or_is_left_out(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_comma_separates_methods_or_settings),
-                                       cmocka_unit_test(a_name_alone_stands_for_all_its_settings),
-                                       cmocka_unit_test(every_learned_method_has_its_twin_in_every_study),
-                                       cmocka_unit_test(every_learned_method_names_its_twin),
-                                       cmocka_unit_test(every_method_runs_or_is_left_out),
-                                       cmocka_unit_test(the_engine_as_shipped_is_always_there),
-                                       cmocka_unit_test(bad_lists_are_refused),
-                                       cmocka_unit_test(a_method_without_its_network_is_left_out)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

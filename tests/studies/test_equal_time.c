@@ -53,7 +53,7 @@ static void assert_same(double found, double value) {
         assert_near(found / value, 1, 1e-9);
 }
 
-static void every_setting_meets_its_best_rival_at_its_time(void **state) {
+TEST(every_setting_meets_its_best_rival_at_its_time) {
     static const double factors[] = {1, 0.5, 2};
     CsvTable rows = read_chart();
     EqualTime table;
@@ -83,7 +83,7 @@ static void every_setting_meets_its_best_rival_at_its_time(void **state) {
 }
 
 /* At 20 microseconds, the time of momentum with 50 sweeps. */
-static void methods_are_compared_at_one_time(void **state) {
+TEST(methods_are_compared_at_one_time) {
     static const struct {
         const char *method, *rival;
         double error, ratio;
@@ -110,8 +110,4 @@ static void methods_are_compared_at_one_time(void **state) {
     csv_table_free(&rows);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_setting_meets_its_best_rival_at_its_time),
-                                       cmocka_unit_test(methods_are_compared_at_one_time)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

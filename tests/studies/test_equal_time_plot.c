@@ -13,7 +13,7 @@ static const char *folder(void) {
     return temporary_folder;
 }
 
-static void learned_methods_stand_beside_their_twins(void **state) {
+TEST(learned_methods_stand_beside_their_twins) {
     Error error = {0};
     bool drawn = false;
     assert_ok(equal_time_plot(SAMPLE, folder(), &drawn, &error), error);
@@ -30,7 +30,7 @@ static void learned_methods_stand_beside_their_twins(void **state) {
                temporary_path("equal_time.svg"));
 }
 
-static void tables_and_three_formats_are_written(void **state) {
+TEST(tables_and_three_formats_are_written) {
     static const char *const files[] = {"equal_time.csv", "equal_time_methods.csv", "equal_time.png", "equal_time.pdf"};
     static const char *const begins[] = {"scene,method,setting,phase,statistic,launches,us_solver,error,rival,",
                                          "scene,method,us_solver,reach,error,rival,rival_error,ratio\n", "\x89PNG",
@@ -47,7 +47,7 @@ static void tables_and_three_formats_are_written(void **state) {
 }
 
 /* One method alone has no rival: there are tables, but no figure. */
-static void a_method_without_rivals_has_no_figure(void **state) {
+TEST(a_method_without_rivals_has_no_figure) {
     Error error = {0};
     bool drawn = true;
     const char *path = temporary_path("alone.csv");
@@ -59,9 +59,4 @@ static void a_method_without_rivals_has_no_figure(void **state) {
     assert_false(drawn);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(learned_methods_stand_beside_their_twins),
-                                       cmocka_unit_test(tables_and_three_formats_are_written),
-                                       cmocka_unit_test(a_method_without_rivals_has_no_figure)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -11,7 +11,7 @@ enum { POINTS = 4 };
 /* error = 3 us^-1.7: a straight line in logarithms. */
 static double power_law(double us) { return 3 * pow(us, -1.7); }
 
-static void points_on_a_power_law_give_it_exactly(void **state) {
+TEST(points_on_a_power_law_give_it_exactly) {
     CurvePoint points[POINTS] = {{40, 0}, {2, 0}, {7, 0}, {100, 0}};
     for (int i = 0; i < POINTS; i++) points[i].error = power_law(points[i].us);
     assert_int_equal(error_curve_front(points, POINTS), POINTS);
@@ -23,7 +23,7 @@ static void points_on_a_power_law_give_it_exactly(void **state) {
     }
 }
 
-static void a_curve_has_no_error_before_its_quickest_setting_and_keeps_its_last(void **state) {
+TEST(a_curve_has_no_error_before_its_quickest_setting_and_keeps_its_last) {
     const CurvePoint points[] = {{2, 0.5}, {8, 0.125}};
     CurveReach reach;
     assert_true(isnan(error_curve_at(points, 2, 1.999, &reach)));
@@ -37,18 +37,11 @@ static void a_curve_has_no_error_before_its_quickest_setting_and_keeps_its_last(
     assert_int_equal(reach, CURVE_BEYOND);
 }
 
-static void settings_that_another_beats_are_no_corners(void **state) {
+TEST(settings_that_another_beats_are_no_corners) {
     CurvePoint points[] = {{9, 0.3}, {3, 0.2}, {1, 0.5}, {3, 0.4}, {4, 0.2}, {8, 0.1}};
     const CurvePoint expected[] = {{1, 0.5}, {3, 0.2}, {8, 0.1}};
     assert_int_equal(error_curve_front(points, 6), 3);
     for (int i = 0; i < 3; i++) assert_true(points[i].us == expected[i].us && points[i].error == expected[i].error);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(points_on_a_power_law_give_it_exactly),
-        cmocka_unit_test(a_curve_has_no_error_before_its_quickest_setting_and_keeps_its_last),
-        cmocka_unit_test(settings_that_another_beats_are_no_corners),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

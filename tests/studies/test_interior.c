@@ -31,7 +31,7 @@ static VerdictReading judge(const Case *the, const char *text, bool stands) {
 }
 
 /* The engine with ten sweeps fails in each. */
-static void what_the_engine_loses_settles(void **state) {
+TEST(what_the_engine_loses_settles) {
     static const Case cases[] = {{"stack_height", {{"height", 40}}, 1},
                                  {"stack_cold", {{"height", 20}}, 1},
                                  {"heavy_on_one", {{"ratio", 1000}}, 1},
@@ -53,13 +53,13 @@ static void what_the_engine_loses_settles(void **state) {
 }
 
 /* No more is held than can stand. The house needs a friction of 0.27: the reference falls below. */
-static void a_card_house_without_enough_friction_falls(void **state) {
+TEST(a_card_house_without_enough_friction_falls) {
     const Case house = {"card_house", {{"friction", 0.25}}, 1};
     assert_verdict(judge(&house, "interior", true), VERDICT_FALLS);
 }
 
 /* Impulses that push overlapping boxes apart must not be used as a warm start. */
-static void an_overlapping_stack_does_not_explode(void **state) {
+TEST(an_overlapping_stack_does_not_explode) {
     assert_verdict(judge(&(Case){.scene = "overlap"}, "interior", false), VERDICT_SETTLES);
 }
 
@@ -72,7 +72,7 @@ static void assert_strike_does_not_explode(float x, float spin, float mass) {
 
 /* A box that is hit may slide, tip or fly: neither the impulses that would hold it in place nor those of the impact
    itself are a valid warm start for the next step. */
-static void stacks_that_bombs_strike_do_not_explode(void **state) {
+TEST(stacks_that_bombs_strike_do_not_explode) {
     uint32_t seed = 1;
     assert_strike_does_not_explode(0, 10, 50);
     for (int trial = 0; trial < 15; trial++) {
@@ -81,10 +81,4 @@ static void stacks_that_bombs_strike_do_not_explode(void **state) {
     }
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_the_engine_loses_settles),
-                                       cmocka_unit_test(a_card_house_without_enough_friction_falls),
-                                       cmocka_unit_test(an_overlapping_stack_does_not_explode),
-                                       cmocka_unit_test(stacks_that_bombs_strike_do_not_explode)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

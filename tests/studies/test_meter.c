@@ -7,7 +7,7 @@
 
 #include <sched.h>
 
-static void time_does_not_go_back(void **state) {
+TEST(time_does_not_go_back) {
     int64_t last = meter_time();
     for (int i = 0; i < 1000; i++) {
         int64_t now = meter_time();
@@ -17,12 +17,12 @@ static void time_does_not_go_back(void **state) {
     assert_true(meter_time_overhead() >= 0);
 }
 
-static void no_work_takes_no_negative_time(void **state) {
+TEST(no_work_takes_no_negative_time) {
     assert_int_equal(meter_without(30, 20), 10);
     assert_int_equal(meter_without(20, 30), 0);
 }
 
-static void a_thread_is_pinned_to_one_core_and_let_go(void **state) {
+TEST(a_thread_is_pinned_to_one_core_and_let_go) {
     cpu_set_t before, pinned, after;
     assert_int_equal(sched_getaffinity(0, sizeof before, &before), 0);
     meter_pin();
@@ -34,7 +34,7 @@ static void a_thread_is_pinned_to_one_core_and_let_go(void **state) {
 }
 
 /* Where instructions can be counted: a longer loop takes more. */
-static void instructions_grow_with_the_work(void **state) {
+TEST(instructions_grow_with_the_work) {
     if (!meter_open_instructions()) skip();
     int64_t counts[2];
     for (int k = 0; k < 2; k++) {
@@ -46,9 +46,4 @@ static void instructions_grow_with_the_work(void **state) {
     assert_true(counts[0] >= 1000 && counts[1] > 10 * counts[0]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(time_does_not_go_back), cmocka_unit_test(no_work_takes_no_negative_time),
-        cmocka_unit_test(a_thread_is_pinned_to_one_core_and_let_go), cmocka_unit_test(instructions_grow_with_the_work)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -61,7 +61,7 @@ static void assert_whole(const MethodScores *scores, int method) {
         }
 }
 
-static void launches_are_put_together(void **state) {
+TEST(launches_are_put_together) {
     MethodScores scores[METHODS] = {0};
     for (int launch = 0; launch < LAUNCHES; launch++) {
         size_t size;
@@ -104,7 +104,7 @@ static bool are_read(const char *bytes, size_t size, int methods) {
     return ok;
 }
 
-static void damaged_results_are_refused(void **state) {
+TEST(damaged_results_are_refused) {
     size_t size;
     char *bytes = write_launch(0, &size);
     assert_true(are_read(bytes, size, METHODS));
@@ -137,10 +137,4 @@ static void damaged_results_are_refused(void **state) {
     free(bytes);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(launches_are_put_together),
-        cmocka_unit_test(damaged_results_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

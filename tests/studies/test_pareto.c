@@ -24,13 +24,13 @@ static void check_front(const char *name) {
     csv_table_free(&table);
 }
 
-static void rows_that_nothing_beats_are_on_the_front(void **state) {
+TEST(rows_that_nothing_beats_are_on_the_front) {
     check_front("pareto_overlap.csv"); /* overlapping and touching quartiles, equal errors, equal rows */
     check_front("pareto_missing.csv"); /* rows without time or error neither beat nor count, */
     check_front("pareto_apart.csv");   /* nor do those that solve nothing, or have no error by definition */
 }
 
-static void beating_has_a_direction(void **state) {
+TEST(beating_has_a_direction) {
     CsvTable table = read_table("pareto_overlap.csv");
     const ChartRow *rows = table.rows;
     enum { ENGINE_10 = 1, MOMENTUM = 2, BLOCK = 3, NNCG = 4, SCENE_NET = 5, SUBSTEP_4 = 7, SUBSTEP_8 = 8 };
@@ -45,10 +45,4 @@ static void beating_has_a_direction(void **state) {
     csv_table_free(&table);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_that_nothing_beats_are_on_the_front),
-        cmocka_unit_test(beating_has_a_direction),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -43,7 +43,7 @@ static void assert_table(const char *folder, const char *name, const char *expec
     free(text);
 }
 
-static void rows_have_the_order_of_pieces_and_sections(void **state) {
+TEST(rows_have_the_order_of_pieces_and_sections) {
     Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("tables"));
@@ -57,7 +57,7 @@ static void rows_have_the_order_of_pieces_and_sections(void **state) {
     assert_table(folder, "a", "x\n1\n3\n");
 }
 
-static void lines_of_no_table_are_refused(void **state) {
+TEST(lines_of_no_table_are_refused) {
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("foreign"));
     static const char *const wrong[] = {"b:1\n", "a1\n",    "a/0:1\n", "a/-2:1\n", "a/x:1\n",
@@ -70,7 +70,7 @@ static void lines_of_no_table_are_refused(void **state) {
     }
 }
 
-static void a_row_is_a_line_with_the_tables_name(void **state) {
+TEST(a_row_is_a_line_with_the_tables_name) {
     Error error = {0};
     char *text = NULL;
     size_t size;
@@ -82,9 +82,4 @@ static void a_row_is_a_line_with_the_tables_name(void **state) {
     free(text);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(rows_have_the_order_of_pieces_and_sections),
-                                       cmocka_unit_test(lines_of_no_table_are_refused),
-                                       cmocka_unit_test(a_row_is_a_line_with_the_tables_name)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -29,7 +29,7 @@ static void free_scores(StepScores scores[PHASES]) {
     for (int phase = 0; phase < PHASES; phase++) step_scores_free(&scores[phase]);
 }
 
-static void the_reference_has_no_error(void **state) {
+TEST(the_reference_has_no_error) {
     Error error = {0};
     Scene *scene = read_scene("stack");
     Stepper *stepper = make_stepper(scene, "reference");
@@ -48,7 +48,7 @@ static void the_reference_has_no_error(void **state) {
 }
 
 /* 6 impact frames, 60 frames after; every frame is in exactly one phase. */
-static void every_frame_is_in_one_phase(void **state) {
+TEST(every_frame_is_in_one_phase) {
     Error error = {0};
     Scene *scene = read_scene("single");
     scene->frames = 200;
@@ -85,7 +85,7 @@ static double frozen_error(const SnapshotList *list, const Scene *scene, const c
 }
 
 /* More sweeps give a smaller error; no warm start, or noise, a larger one. */
-static void methods_rank_as_expected_on_frozen_steps(void **state) {
+TEST(methods_rank_as_expected_on_frozen_steps) {
     Error error = {0};
     Scene *scene = read_scene("stack");
     SnapshotList list = {0};
@@ -103,7 +103,7 @@ static void methods_rank_as_expected_on_frozen_steps(void **state) {
 }
 
 /* The engine's frozen steps are those of its closed loop, so the errors are the same. */
-static void frozen_steps_of_the_engine_are_its_own(void **state) {
+TEST(frozen_steps_of_the_engine_are_its_own) {
     Error error = {0};
     Scene *scene = read_scene("pyramid_settled");
     SnapshotList list = {0};
@@ -181,7 +181,7 @@ static void assert_errors(const Scene *scene, Stepper *stepper, double expected,
 
 /* A box 60 mm in the ground: position correction pushes it out at 0.2 (60 mm - 10 mm) / dt = 0.6 m/s. That is the error
    of a method that keeps velocity 0, but not if its description has no_push_out, nor without position correction. */
-static void push_out_counts_for_methods_that_have_it(void **state) {
+TEST(push_out_counts_for_methods_that_have_it) {
     BodyDef bodies[] = {{.fixed = true, .size = {200, 20}, .position = {0, -10}, .friction = 0.2f},
                         {.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.44f}}};
     Scene scene = {.name = "overlap",
@@ -204,11 +204,4 @@ static void push_out_counts_for_methods_that_have_it(void **state) {
     assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_reference_has_no_error),
-                                       cmocka_unit_test(every_frame_is_in_one_phase),
-                                       cmocka_unit_test(methods_rank_as_expected_on_frozen_steps),
-                                       cmocka_unit_test(frozen_steps_of_the_engine_are_its_own),
-                                       cmocka_unit_test(push_out_counts_for_methods_that_have_it)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -41,7 +41,7 @@ static RunLog log_by_hand(Handmade *made) {
                     .at = made->at};
 }
 
-static void equal_runs_have_no_differences(void **state) {
+TEST(equal_runs_have_no_differences) {
     Handmade a, b;
     const Scene scene = scene_by_hand();
     const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
@@ -54,7 +54,7 @@ static void equal_runs_have_no_differences(void **state) {
     assert_near(measures.moved, 0, 0);
 }
 
-static void differences_are_assigned_to_their_phase(void **state) {
+TEST(differences_are_assigned_to_their_phase) {
     Handmade a, b;
     const Scene scene = scene_by_hand();
     const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
@@ -75,7 +75,7 @@ static void differences_are_assigned_to_their_phase(void **state) {
     assert_near(measures.moved, 1, 0);
 }
 
-static void motion_before_the_launch_is_not_counted(void **state) {
+TEST(motion_before_the_launch_is_not_counted) {
     Handmade a, b;
     const Scene scene = scene_by_hand();
     const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
@@ -83,7 +83,7 @@ static void motion_before_the_launch_is_not_counted(void **state) {
     assert_near(run_measures(&log, &converged, &scene).moved, 0, 0);
 }
 
-static void in_a_run_that_ended_early_all_boxes_moved(void **state) {
+TEST(in_a_run_that_ended_early_all_boxes_moved) {
     Handmade a, b;
     const Scene scene = scene_by_hand();
     RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
@@ -97,7 +97,7 @@ static void in_a_run_that_ended_early_all_boxes_moved(void **state) {
     assert_true(isnan(measures.drift));
 }
 
-static void runs_part_where_a_body_or_the_bomb_is_away(void **state) {
+TEST(runs_part_where_a_body_or_the_bomb_is_away) {
     Handmade a, b;
     RunLog log = log_by_hand(&a), other = log_by_hand(&b);
     assert_int_equal(run_log_apart(&log, &other, 0.1, FRAMES), FRAMES); /* never */
@@ -112,7 +112,7 @@ static void runs_part_where_a_body_or_the_bomb_is_away(void **state) {
 }
 
 /* Two steps: one creates 0.5 N s and falls back, the other clamps an impulse to its cone, which is no fallback. */
-static void momentum_and_fallbacks_are_added(void **state) {
+TEST(momentum_and_fallbacks_are_added) {
     Error error = {0};
     BodyDef box = {.size = {1, 1}, .mass = 1};
     const Scene scene = {.dt = 0.5f, .frames = 2, .body_count = 1, .bodies = &box};
@@ -141,7 +141,7 @@ static void momentum_and_fallbacks_are_added(void **state) {
 }
 
 /* A box of 3 kg, 2 m up, at 4 m/s and 6 rad/s: 3 (16 / 2 + 10 2) + 3 (1 + 1) / 12 36 / 2 = 93 J. */
-static void energy_is_kinetic_and_potential(void **state) {
+TEST(energy_is_kinetic_and_potential) {
     Error error = {0};
     BodyDef box = {.size = {1, 1}, .mass = 3, .position = {5, 2}, .velocity = {0, 4}, .angular_velocity = 6};
     Scene scene = {.dt = 0.5f, .frames = 1, .body_count = 1, .bodies = &box, .gravity = {0, -10}};
@@ -154,7 +154,7 @@ static void energy_is_kinetic_and_potential(void **state) {
     world_destroy(world);
 }
 
-static void quantiles_are_interpolated(void **state) {
+TEST(quantiles_are_interpolated) {
     double values[] = {5, 1, 4, 2, 3};
     assert_near(statistics_mean(values, 5), 3, 0);
     assert_near(statistics_quantile(values, 5, 0.5), 3, 0);
@@ -164,14 +164,4 @@ static void quantiles_are_interpolated(void **state) {
     assert_true(isnan(statistics_quantile(values, 0, 0.5)) && isnan(statistics_mean(values, 0)));
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equal_runs_have_no_differences),
-                                       cmocka_unit_test(differences_are_assigned_to_their_phase),
-                                       cmocka_unit_test(motion_before_the_launch_is_not_counted),
-                                       cmocka_unit_test(in_a_run_that_ended_early_all_boxes_moved),
-                                       cmocka_unit_test(runs_part_where_a_body_or_the_bomb_is_away),
-                                       cmocka_unit_test(momentum_and_fallbacks_are_added),
-                                       cmocka_unit_test(energy_is_kinetic_and_potential),
-                                       cmocka_unit_test(quantiles_are_interpolated)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -67,7 +67,7 @@ static void change_processor(const char *cpu) {
     free(results);
 }
 
-static void times_of_other_processors_are_refused_or_left_out(void **state) {
+TEST(times_of_other_processors_are_refused_or_left_out) {
     Error error;
     const PiecesRun merge = {.merge = true}, first = {.merge = true, .times_first = true};
     do_shards();
@@ -104,7 +104,4 @@ static void times_of_other_processors_are_refused_or_left_out(void **state) {
     csv_table_free(&table);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(times_of_other_processors_are_refused_or_left_out)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -28,7 +28,7 @@ static Scene *read_scene(const char *name) {
     return scene;
 }
 
-static void studies_scan_parameters_of_their_scenes(void **state) {
+TEST(studies_scan_parameters_of_their_scenes) {
     for (int i = 0; i < stability_study_count; i++) {
         const StabilityStudy *study = &stability_studies[i];
         Scene *scene = read_scene(study->scene);
@@ -52,7 +52,7 @@ static void studies_scan_parameters_of_their_scenes(void **state) {
 }
 
 /* The first dynamic body, by a micrometre; or the bomb, if it is the only one. */
-static void a_seed_shifts_the_first_dynamic_body(void **state) {
+TEST(a_seed_shifts_the_first_dynamic_body) {
     for (int seed = 0; seed < BORDER_SEEDS; seed++) {
         const float by = seed == 0 ? 0 : seed == 1 ? 1e-6f : -1e-6f;
         Scene *stack = read_scene("stack_height"), *shot = read_scene("bomb_speed");
@@ -75,7 +75,7 @@ static Method method_of(const char *text) {
     return method;
 }
 
-static void methods_that_do_not_apply_have_a_reason(void **state) {
+TEST(methods_that_do_not_apply_have_a_reason) {
     Error error = {0};
     Scene *stack = read_scene("stack_height");
     const Method engine = method_of("engine"), nameless = method_of("scene-net");
@@ -95,7 +95,7 @@ static char *read_table(const char *folder, const char *name) {
 }
 
 /* The stack's network is for ten boxes: with two boxes the first step fails. That must not count as non-finite. */
-static void a_method_that_fits_some_values_only_does_not_apply(void **state) {
+TEST(a_method_that_fits_some_values_only_does_not_apply) {
     Error error = {0};
     const char *folder = temporary_path("network");
     const StabilityOptions options = {.folder = folder,
@@ -111,7 +111,7 @@ static void a_method_that_fits_some_values_only_does_not_apply(void **state) {
     free(refusals);
 }
 
-static void methods_without_k_use_the_scenes_iterations(void **state) {
+TEST(methods_without_k_use_the_scenes_iterations) {
     static const struct {
         const char *method;
         bool takes;
@@ -146,7 +146,7 @@ static bool run_shots(const char *folder, const char *methods, Reports *reports,
 
 /* A box starts with its centre 0.51 m above the top of a slab 0.25 m thick and falls freely for one step. It is then
    pushed out on the nearer side: below, if its centre has passed the slab's. */
-static void a_study_writes_borders_maps_and_refusals(void **state) {
+TEST(a_study_writes_borders_maps_and_refusals) {
     Error error = {0};
     char folder[300];
     Reports reports = {0, -1};
@@ -177,7 +177,7 @@ static void a_study_writes_borders_maps_and_refusals(void **state) {
 }
 
 /* Two boxes stay in place; if a network lifts them off within ten seconds, drift and energy are empty. */
-static void a_study_at_rest_writes_drift_and_energy(void **state) {
+TEST(a_study_at_rest_writes_drift_and_energy) {
     Error error = {0};
     const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
                                   .stands = true, .rests = true};
@@ -211,7 +211,7 @@ static void a_study_at_rest_writes_drift_and_energy(void **state) {
 }
 
 /* Coulomb: a box stands on a slope if and only if its tangent is below the friction. */
-static void a_map_of_slopes_has_its_border_at_the_friction(void **state) {
+TEST(a_map_of_slopes_has_its_border_at_the_friction) {
     Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("slopes"));
@@ -237,7 +237,7 @@ static void a_map_of_slopes_has_its_border_at_the_friction(void **state) {
 }
 
 /* Stopped in the map, the finished study is kept; resumed, it gives the same tables as an uninterrupted run. */
-static void an_interrupted_study_is_resumed(void **state) {
+TEST(an_interrupted_study_is_resumed) {
     Error error = {0};
     char whole[300], cut[300];
     Reports all = {0, -1}, some = {0, -1}, rest = {0, -1};
@@ -259,7 +259,7 @@ static void an_interrupted_study_is_resumed(void **state) {
     }
 }
 
-static void unknown_names_and_methods_are_refused(void **state) {
+TEST(unknown_names_and_methods_are_refused) {
     Error error = {0};
     StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
     assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error),
@@ -272,16 +272,4 @@ static void unknown_names_and_methods_are_refused(void **state) {
     assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error), "nowhere/stability/bomb_speed.yaml");
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(studies_scan_parameters_of_their_scenes),
-                                       cmocka_unit_test(a_seed_shifts_the_first_dynamic_body),
-                                       cmocka_unit_test(methods_that_do_not_apply_have_a_reason),
-                                       cmocka_unit_test(a_method_that_fits_some_values_only_does_not_apply),
-                                       cmocka_unit_test(methods_without_k_use_the_scenes_iterations),
-                                       cmocka_unit_test(a_study_writes_borders_maps_and_refusals),
-                                       cmocka_unit_test(a_study_at_rest_writes_drift_and_energy),
-                                       cmocka_unit_test(a_map_of_slopes_has_its_border_at_the_friction),
-                                       cmocka_unit_test(an_interrupted_study_is_resumed),
-                                       cmocka_unit_test(unknown_names_and_methods_are_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

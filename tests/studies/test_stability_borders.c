@@ -2,7 +2,7 @@
 /* The borders figure, from synthetic tables; and what it has in common with maps. */
 #include "stability_drawn.h"
 
-static void borders_are_drawn_as_in_the_table(void **state) {
+TEST(borders_are_drawn_as_in_the_table) {
     start_afresh(MAPS ONE_CELL,
                  BORDERS "height,engine,k=10,height,boxes,10,11,falls\nheight,momentum,,height,boxes,15,16,falls\n"
                          "height,momentum,,height,boxes,20,19,sinks\nheight,nncg,,height,boxes,40,,settles\n"
@@ -21,7 +21,7 @@ static void borders_are_drawn_as_in_the_table(void **state) {
 
 /* A method that holds to 15, fails from 16 to 19, holds from 20 to 25 and fails from 26: no bar where it fails. The
    other method holds throughout; its bar shows the panel's width. */
-static void bars_end_at_the_next_border(void **state) {
+TEST(bars_end_at_the_next_border) {
     start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,15,16,falls\na,engine,,h,,20,19,sinks\na,engine,,h,,25,26,falls\n"
                                         "a,nncg,,h,,30,,settles\n");
     draw();
@@ -33,7 +33,7 @@ static void bars_end_at_the_next_border(void **state) {
 
 /* Undecided beyond 30 to the end of the range: the bar ends there and the tile is at the far end, which is the left one
    if smaller values are harder. All values of b are undecided. */
-static void undecided_values_have_no_bar(void **state) {
+TEST(undecided_values_have_no_bar) {
     start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,30,,falls\na,nncg,,h,,20,40,sinks\nb,engine,,r,,,,falls\n"
                                         "b,nncg,,r,,60,50,sinks\nc,engine,,r,,60,,falls\nc,nncg,,r,,80,50,sinks\n");
     draw();
@@ -46,7 +46,7 @@ static void undecided_values_have_no_bar(void **state) {
 }
 
 /* Only rows without values; one value; zero and negative values; forty decades. */
-static void unusual_ranges_are_drawn(void **state) {
+TEST(unusual_ranges_are_drawn) {
     static const char *const rows[] = {"a,engine,,x,,,,not applicable\n", "a,engine,,x,,0,,settles\n",
                                        "a,engine,,x,m,-5,-5,falls\n",     "a,engine,,x,,1e-20,1e20,falls\n",
                                        "a,engine,,x,,-1e30,1e30,falls\n", "a,engine,,x,,3,3.0000001,falls\n"};
@@ -58,7 +58,7 @@ static void unusual_ranges_are_drawn(void **state) {
     }
 }
 
-static void invalid_borders_are_refused_with_their_place(void **state) {
+TEST(invalid_borders_are_refused_with_their_place) {
     static const struct {
         const char *rows, *message;
     } cases[] = {
@@ -85,7 +85,7 @@ static char *read_file(const char *name, size_t *size) {
     return data;
 }
 
-static void the_same_tables_give_the_same_files(void **state) {
+TEST(the_same_tables_give_the_same_files) {
     static const char *const names[] = {"map-grid.png", "map-grid.svg", "map-grid.txt",
                                         "borders.png",  "borders.svg",  "borders.txt"};
     char *maps = make_map(2, 4, 4), *data[2][6];
@@ -105,7 +105,7 @@ static void the_same_tables_give_the_same_files(void **state) {
 }
 
 /* Borders without maps, and maps without borders. */
-static void a_table_without_rows_has_no_figure(void **state) {
+TEST(a_table_without_rows_has_no_figure) {
     start_afresh(MAPS, BORDERS ONE_BORDER);
     draw();
     assert_int_equal(access(temporary_path("borders.png"), R_OK), 0);
@@ -117,14 +117,5 @@ static void a_table_without_rows_has_no_figure(void **state) {
 
 int main(void) {
     temporary_path(""); /* makes the folder */
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(borders_are_drawn_as_in_the_table),
-        cmocka_unit_test(bars_end_at_the_next_border),
-        cmocka_unit_test(undecided_values_have_no_bar),
-        cmocka_unit_test(unusual_ranges_are_drawn),
-        cmocka_unit_test(invalid_borders_are_refused_with_their_place),
-        cmocka_unit_test(the_same_tables_give_the_same_files),
-        cmocka_unit_test(a_table_without_rows_has_no_figure),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return _cmocka_run_group_tests("tests", tests_of_file, test_count, NULL, NULL);
 }

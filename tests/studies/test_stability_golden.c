@@ -63,7 +63,7 @@ static bool check_row(void *context, int i, Error *error) {
     return check_side(golden, i, &scan, true, error) && check_side(golden, i, &scan, false, error);
 }
 
-static void borders_are_where_they_were(void **state) {
+TEST(borders_are_where_they_were) {
     Error error = {0};
     Golden golden = {0};
     assert_ok(csv_table_read_from(&golden.table, SOURCE_DIR "/golden", &border_layout, &error), error);
@@ -77,7 +77,4 @@ static void borders_are_where_they_were(void **state) {
     assert_ok(ok, error);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(borders_are_where_they_were)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -5,7 +5,7 @@
 #include "pixels/type.h"
 
 /* One cell of each verdict, and one sample in the legend. */
-static void each_verdict_has_its_tile(void **state) {
+TEST(each_verdict_has_its_tile) {
     char *maps = make_map(1, 3, 3);
     start_afresh(maps, BORDERS ONE_BORDER);
     free(maps);
@@ -21,7 +21,7 @@ static void each_verdict_has_its_tile(void **state) {
 
 /* Two edges: between two cells side by side, and between two cells one above the other, with a gap in their values.
    Missing and not applicable cells have no edges. */
-static void the_border_separates_holding_from_failing(void **state) {
+TEST(the_border_separates_holding_from_failing) {
     start_afresh(MAPS "m,engine,,a,,1,b,,1,settles,,,,\nm,engine,,a,,2,b,,1,sways,,,,\nm,engine,,a,,3,b,,1,falls,,,,\n"
                       "m,engine,,a,,1,b,,2,creeps,,,,\nm,engine,,a,,3,b,,2,sinks,,,,\n"
                       "m,engine,,a,,1,b,,5,explodes,,,,\nm,engine,,a,,2,b,,5,not applicable,,,,\n",
@@ -34,7 +34,7 @@ static void the_border_separates_holding_from_failing(void **state) {
 }
 
 /* Every cell that was run has one link, over its tile. */
-static void cells_link_to_their_clips(void **state) {
+TEST(cells_link_to_their_clips) {
     start_afresh(
         MAPS "m,engine,\"k=4,warm=off\",a,,1,b,,0.5,falls,,,,\nm,engine,\"k=4,warm=off\",a,,2e3,b,,0.5,settles,,,,\n"
              "m,engine,\"k=4,warm=off\",a,,1,b,,7,not applicable,,,,\n",
@@ -55,7 +55,7 @@ static void cells_link_to_their_clips(void **state) {
 }
 
 /* A path of 119 bytes, and characters that are special in SVG; 128 bytes are too many. */
-static void settings_may_be_paths(void **state) {
+TEST(settings_may_be_paths) {
     char setting[200], maps[1024], borders[1024];
     snprintf(setting, sizeof setting, "network=%0*d/<it's>/net.npz", 103, 0);
     snprintf(maps, sizeof maps, MAPS "m,pair-net,%s,a,,1,b,,2,falls,,,,\n", setting);
@@ -71,7 +71,7 @@ static void settings_may_be_paths(void **state) {
 }
 
 /* For any order of the rows and any distances of the values: ascending, one tic each. */
-static void axes_name_their_values(void **state) {
+TEST(axes_name_their_values) {
     start_afresh(MAPS "m,engine,,rate,Hz,480,b_c,,1,falls,,,,\nm,engine,,rate,Hz,20,b_c,,1,falls,,,,\n"
                       "m,engine,,rate,Hz,30.5,b_c,,0.125,falls,,,,\nm,engine,,rate,Hz,20,b_c,,-7,falls,,,,\n",
                  BORDERS ONE_BORDER);
@@ -83,7 +83,7 @@ static void axes_name_their_values(void **state) {
 }
 
 /* mm, in 8 points: a letter is 1.6 mm wide on average. */
-static void titles_are_cut_in_the_settings(void **state) {
+TEST(titles_are_cut_in_the_settings) {
     static const struct {
         const char *method, *setting, *text;
         double most;
@@ -103,7 +103,7 @@ static void titles_are_cut_in_the_settings(void **state) {
     }
 }
 
-static void many_methods_and_large_grids_are_drawn(void **state) {
+TEST(many_methods_and_large_grids_are_drawn) {
     static const struct { int methods, across, up; } cases[] = {{24, 3, 2}, {2, 1, 1}, {5, 2, 60}, {10, 8, 10}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char *maps = make_map(cases[i].methods, cases[i].across, cases[i].up);
@@ -120,7 +120,7 @@ static void many_methods_and_large_grids_are_drawn(void **state) {
 
 #define START "stack,engine,,a,,1,b,,"
 
-static void invalid_maps_are_refused_with_their_place(void **state) {
+TEST(invalid_maps_are_refused_with_their_place) {
     static const struct {
         const char *rows, *message;
     } cases[] = {
@@ -150,7 +150,7 @@ static void invalid_maps_are_refused_with_their_place(void **state) {
                    "maps.csv:1:1: error: the column 'setting' is missing");
 }
 
-static void maps_too_large_are_refused(void **state) {
+TEST(maps_too_large_are_refused) {
     char *methods = make_map(25, 1, 1), *values = make_map(1, 1, 129);
     expect_refused(methods, BORDERS ONE_BORDER, "maps.csv:26:1: error: more than 24 methods");
     expect_refused(values, BORDERS ONE_BORDER, "maps.csv:130:1: error: more than 128 values");
@@ -160,16 +160,5 @@ static void maps_too_large_are_refused(void **state) {
 
 int main(void) {
     temporary_path(""); /* makes the folder */
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_verdict_has_its_tile),
-        cmocka_unit_test(the_border_separates_holding_from_failing),
-        cmocka_unit_test(cells_link_to_their_clips),
-        cmocka_unit_test(settings_may_be_paths),
-        cmocka_unit_test(axes_name_their_values),
-        cmocka_unit_test(titles_are_cut_in_the_settings),
-        cmocka_unit_test(many_methods_and_large_grids_are_drawn),
-        cmocka_unit_test(invalid_maps_are_refused_with_their_place),
-        cmocka_unit_test(maps_too_large_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return _cmocka_run_group_tests("tests", tests_of_file, test_count, NULL, NULL);
 }

@@ -55,14 +55,14 @@ static void check_template(const char *name) {
     scene_destroy(scene);
 }
 
-static void wall(void **state) { (void)state, check_template("wall"); }
-static void stack(void **state) { (void)state, check_template("stack"); }
-static void pyramid(void **state) { (void)state, check_template("pyramid"); }
-static void arch(void **state) { (void)state, check_template("arch"); }
-static void dominoes(void **state) { (void)state, check_template("dominoes"); }
+TEST(wall) { (void)state, check_template("wall"); }
+TEST(stack) { (void)state, check_template("stack"); }
+TEST(pyramid) { (void)state, check_template("pyramid"); }
+TEST(arch) { (void)state, check_template("arch"); }
+TEST(dominoes) { (void)state, check_template("dominoes"); }
 
 /* "With 10 iterations it falls." */
-static void the_arch_needs_its_iterations(void **state) {
+TEST(the_arch_needs_its_iterations) {
     Error error = {0};
     EnergyLog converged = {0};
     Method reference, engine;
@@ -82,9 +82,4 @@ static void the_arch_needs_its_iterations(void **state) {
     scene_destroy(scene);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(wall),     cmocka_unit_test(stack),
-                                       cmocka_unit_test(pyramid),  cmocka_unit_test(arch),
-                                       cmocka_unit_test(dominoes), cmocka_unit_test(the_arch_needs_its_iterations)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

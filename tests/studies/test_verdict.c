@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-static void a_resting_box_settles(void **state) {
+TEST(a_resting_box_settles) {
     Trial trial;
     trial_begin(&trial);
     trial_go(&trial, TRIAL_FRAMES);
@@ -25,7 +25,7 @@ static VerdictReading run_at_speed(double energy, bool second_box) {
     return trial_end(&trial);
 }
 
-static void settling_is_judged_by_mean_kinetic_energy(void **state) {
+TEST(settling_is_judged_by_mean_kinetic_energy) {
     assert_reading(run_at_speed(0.99e-4, false), VERDICT_SETTLES, -1, 1, 0.99e-4, 1e-9, "J");
     assert_reading(run_at_speed(1.01e-4, false), VERDICT_SWAYS, -1, TRIAL_FRAMES, 1.01e-4, 1e-9, "J");
     assert_reading(run_at_speed(1.98e-4, true), VERDICT_SETTLES, -1, 1, 0.99e-4, 1e-9, "J");
@@ -43,7 +43,7 @@ static VerdictReading run_that_moves_until(int frame) {
     return trial_end(&trial);
 }
 
-static void settling_takes_sixty_frames(void **state) {
+TEST(settling_takes_sixty_frames) {
     assert_reading(run_that_moves_until(TRIAL_FRAMES - 60), VERDICT_SETTLES, -1, TRIAL_FRAMES - 59, 0, 0, "J");
     assert_reading(run_that_moves_until(TRIAL_FRAMES - 59), VERDICT_SWAYS, -1, TRIAL_FRAMES - 59, 1.0 / 12, 1e-9, "J");
 }
@@ -60,7 +60,7 @@ static VerdictReading run_with_jump(int frame, float way, bool stands, int bomb)
     return trial_end(&trial);
 }
 
-static void creeping_is_five_centimetres_in_ten_seconds(void **state) {
+TEST(creeping_is_five_centimetres_in_ten_seconds) {
     /* Moved at 15 s, found at 20 s: the first comparison is that of 20 s with 10 s. */
     assert_verdict(run_with_jump(900, 0.0499f, true, -1), VERDICT_SETTLES);
     assert_reading(run_with_jump(900, 0.0501f, true, -1), VERDICT_CREEPS, 1, 1200, 0.0501, 1e-6, "m");
@@ -69,7 +69,7 @@ static void creeping_is_five_centimetres_in_ten_seconds(void **state) {
 }
 
 /* Ten seconds are exactly 600 steps: 0.0501 m in 601 steps would be less than 0.05 m in 600. */
-static void creeping_may_be_even(void **state) {
+TEST(creeping_may_be_even) {
     for (int side = 0; side < 2; side++) {
         Trial trial;
         trial_begin(&trial);
@@ -82,7 +82,7 @@ static void creeping_may_be_even(void **state) {
     }
 }
 
-static void creeping_counts_only_at_the_end_if_nothing_must_stand(void **state) {
+TEST(creeping_counts_only_at_the_end_if_nothing_must_stand) {
     assert_verdict(run_with_jump(900, 1, false, -1), VERDICT_SETTLES);
     assert_verdict(run_with_jump(2999, 1, false, -1), VERDICT_SETTLES); /* 50 s: just before the last ten */
     assert_reading(run_with_jump(3000, 1, false, -1), VERDICT_CREEPS, 1, 3600, 1, 1e-6, "m");
@@ -91,7 +91,7 @@ static void creeping_counts_only_at_the_end_if_nothing_must_stand(void **state) 
 }
 
 /* 3570 frames: seconds are counted back from there, and the last ten begin at 2970. */
-static void the_last_ten_seconds_end_with_the_run(void **state) {
+TEST(the_last_ten_seconds_end_with_the_run) {
     for (int side = 0; side < 2; side++) {
         Trial trial;
         trial_begin(&trial);
@@ -119,7 +119,7 @@ static VerdictReading run_with_pose(float lower, float degrees, bool stands) {
     return trial_end(&trial);
 }
 
-static void falling_is_half_a_side_or_thirty_degrees(void **state) {
+TEST(falling_is_half_a_side_or_thirty_degrees) {
     assert_verdict(run_with_pose(0.499f, 0, true), VERDICT_SETTLES);
     assert_reading(run_with_pose(0.501f, 0, true), VERDICT_FALLS, 1, 2, 0.501, 1e-6, "m");
     assert_verdict(run_with_pose(0, 29.9f, true), VERDICT_SETTLES);
@@ -130,7 +130,7 @@ static void falling_is_half_a_side_or_thirty_degrees(void **state) {
 }
 
 /* Down is the direction of gravity. */
-static void falling_goes_along_gravity(void **state) {
+TEST(falling_goes_along_gravity) {
     for (int side = 0; side < 2; side++) {
         Trial trial;
         trial_begin(&trial);
@@ -143,7 +143,7 @@ static void falling_goes_along_gravity(void **state) {
 }
 
 /* It drops 3 m before its first contact, then 0.1 m per step. */
-static void gaps_may_close_before_a_body_falls(void **state) {
+TEST(gaps_may_close_before_a_body_falls) {
     Trial trial;
     trial_begin(&trial);
     trial.bodies[0].position.y = -20;
@@ -180,7 +180,7 @@ static VerdictReading run_with_depth(float depth, int steps, Vec2 size) {
     return trial_end(&trial);
 }
 
-static void sinking_is_a_second_deeper_than_a_twentieth(void **state) {
+TEST(sinking_is_a_second_deeper_than_a_twentieth) {
     assert_verdict(run_with_depth(0.0499f, 2000, vec2(1, 1)), VERDICT_SETTLES);
     assert_reading(run_with_depth(0.0501f, 60, vec2(1, 1)), VERDICT_SINKS, 1, 60, 0.0501, 1e-6, "m");
     assert_verdict(run_with_depth(0.0501f, 59, vec2(1, 1)), VERDICT_SETTLES);
@@ -193,7 +193,7 @@ static void sinking_is_a_second_deeper_than_a_twentieth(void **state) {
 
 /* The deepest relative to its size: 0.07 m of 1 m, not 0.11 m of 2 m. Of a dynamic and a static body the dynamic
    one. */
-static void sinking_names_the_body(void **state) {
+TEST(sinking_names_the_body) {
     Trial trial;
     trial_begin(&trial);
     trial.count = 4;
@@ -210,7 +210,7 @@ static void sinking_names_the_body(void **state) {
 }
 
 /* dt = 1/20 s: 20 steps are a second, 200 are ten. */
-static void seconds_are_steps_of_the_scene(void **state) {
+TEST(seconds_are_steps_of_the_scene) {
     Trial trial;
     trial_begin(&trial);
     trial.run.dt = 1.0f / 20.0f;
@@ -225,7 +225,7 @@ static void seconds_are_steps_of_the_scene(void **state) {
 }
 
 /* The last body is removed at the end of a step that has a contact of it; another one replaces it, far away. */
-static void bodies_may_be_removed_and_added(void **state) {
+TEST(bodies_may_be_removed_and_added) {
     Trial trial;
     trial_begin(&trial);
     trial.count = 3;
@@ -248,7 +248,7 @@ static void bodies_may_be_removed_and_added(void **state) {
 
 /* 0.5 m up in the first ten seconds, then 0.03 m sideways and 0.04 m up: a drift of 0.05 m, and 1 kg 10 m/s^2 0.04
    m. */
-static void drift_is_counted_after_ten_seconds(void **state) {
+TEST(drift_is_counted_after_ten_seconds) {
     Trial trial;
     trial_begin(&trial);
     trial_go(&trial, 300);
@@ -263,21 +263,4 @@ static void drift_is_counted_after_ten_seconds(void **state) {
     assert_near(after.gained, 0.4, 1e-5);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_resting_box_settles),
-                                       cmocka_unit_test(settling_is_judged_by_mean_kinetic_energy),
-                                       cmocka_unit_test(settling_takes_sixty_frames),
-                                       cmocka_unit_test(creeping_is_five_centimetres_in_ten_seconds),
-                                       cmocka_unit_test(creeping_may_be_even),
-                                       cmocka_unit_test(creeping_counts_only_at_the_end_if_nothing_must_stand),
-                                       cmocka_unit_test(the_last_ten_seconds_end_with_the_run),
-                                       cmocka_unit_test(falling_is_half_a_side_or_thirty_degrees),
-                                       cmocka_unit_test(falling_goes_along_gravity),
-                                       cmocka_unit_test(gaps_may_close_before_a_body_falls),
-                                       cmocka_unit_test(sinking_is_a_second_deeper_than_a_twentieth),
-                                       cmocka_unit_test(sinking_names_the_body),
-                                       cmocka_unit_test(seconds_are_steps_of_the_scene),
-                                       cmocka_unit_test(bodies_may_be_removed_and_added),
-                                       cmocka_unit_test(drift_is_counted_after_ten_seconds)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

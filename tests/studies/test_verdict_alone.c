@@ -20,7 +20,7 @@ static VerdictReading lifted_by(float rise) {
     return trial_end(&trial);
 }
 
-static void energy_may_not_exceed_what_was_brought(void **state) {
+TEST(energy_may_not_exceed_what_was_brought) {
     assert_verdict(lifted_by(0.0009f), VERDICT_SETTLES);
     assert_reading(lifted_by(0.0011f), VERDICT_EXPLODES, -1, 101, 0.011, 1e-5, "J");
 }
@@ -39,12 +39,12 @@ static VerdictReading regains(float rise) {
     return trial_end(&trial);
 }
 
-static void a_little_lost_energy_may_come_back(void **state) {
+TEST(a_little_lost_energy_may_come_back) {
     assert_verdict(regains(0.12f), VERDICT_SETTLES);
     assert_reading(regains(0.13f), VERDICT_EXPLODES, -1, 181, 1.3, 1e-5, "J");
 }
 
-static void an_added_body_brings_its_energy(void **state) {
+TEST(an_added_body_brings_its_energy) {
     Trial trial;
     begin_alone(&trial);
     trial_go(&trial, 100);
@@ -71,7 +71,7 @@ static VerdictReading pushed_apart_at(int frame) {
     return trial_end(&trial);
 }
 
-static void an_overlap_at_the_start_may_add_energy(void **state) {
+TEST(an_overlap_at_the_start_may_add_energy) {
     assert_verdict(pushed_apart_at(30), VERDICT_SETTLES);
     assert_verdict(pushed_apart_at(90), VERDICT_EXPLODES);
 }
@@ -97,7 +97,7 @@ static VerdictReading falls_at(int frame, bool *fallen) {
     return trial_end(&trial);
 }
 
-static void falling_is_judged_until_the_bomb_touches(void **state) {
+TEST(falling_is_judged_until_the_bomb_touches) {
     bool fallen;
     assert_reading(falls_at(15, &fallen), VERDICT_FALLS, 1, 15, 57.2958, 1e-3, "deg");
     assert_verdict(falls_at(25, &fallen), VERDICT_SWAYS);
@@ -117,7 +117,7 @@ static Scene *scene_at(const StabilityStudy *study, double value) {
 }
 
 /* The rule and the table of studies agree on which scenes are meant to stand. */
-static void scenes_without_bomb_and_speed_stand(void **state) {
+TEST(scenes_without_bomb_and_speed_stand) {
     for (int i = 0; i < stability_study_count; i++) {
         Scene *scene = scene_at(&stability_studies[i], stability_studies[i].scan.to);
         if (verdict_run_of(scene).stands != stability_studies[i].stands)
@@ -139,7 +139,7 @@ static void judge_both(const Scene *scene, const char *text, bool stands, const 
 }
 
 /* In three studies, a third of the runs explode, and the verdicts with and without a converged run are the same. */
-static void verdicts_agree_with_those_beside_the_converged_run(void **state) {
+TEST(verdicts_agree_with_those_beside_the_converged_run) {
     static const char *const names[] = {"iterations_cold", "heavy_on_one", "bomb_speed"};
     static const char *const methods[] = {"engine", "momentum:k=10",
                                           "pair-net:network=" SOURCE_DIR "/scenes/networks/pair-net.npz"};
@@ -165,15 +165,4 @@ static void verdicts_agree_with_those_beside_the_converged_run(void **state) {
     assert_int_equal(found[1], 0);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(energy_may_not_exceed_what_was_brought),
-        cmocka_unit_test(a_little_lost_energy_may_come_back),
-        cmocka_unit_test(an_added_body_brings_its_energy),
-        cmocka_unit_test(an_overlap_at_the_start_may_add_energy),
-        cmocka_unit_test(falling_is_judged_until_the_bomb_touches),
-        cmocka_unit_test(scenes_without_bomb_and_speed_stand),
-        cmocka_unit_test(verdicts_agree_with_those_beside_the_converged_run),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

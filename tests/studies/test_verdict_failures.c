@@ -20,7 +20,7 @@ static bool goes_through(float angle, Vec2 from, Vec2 to) {
     return true;
 }
 
-static void tunnelling_goes_through_a_static_box(void **state) {
+TEST(tunnelling_goes_through_a_static_box) {
     const float quarter = 1.57079633f, eighth = 0.785398163f;
     /* Upright: the slab is 8..12 x 4..6. */
     assert_true(goes_through(0, vec2(10, 9), vec2(10, -5)));
@@ -58,14 +58,14 @@ static bool comes_out(Vec2 at) {
     return trial_end(&trial).verdict == VERDICT_TUNNELS;
 }
 
-static void a_body_that_is_pushed_out_again_did_not_tunnel(void **state) {
+TEST(a_body_that_is_pushed_out_again_did_not_tunnel) {
     assert_false(comes_out(vec2(10, 6.01f)));
     assert_true(comes_out(vec2(10, 3.99f)));
     assert_true(comes_out(vec2(12.01f, 5)));
 }
 
 /* 2 m in 1/60 s. */
-static void tunnelling_reports_the_speed(void **state) {
+TEST(tunnelling_reports_the_speed) {
     Trial trial;
     trial_begin(&trial);
     trial.bodies[0].size.y = 0.25f;
@@ -92,7 +92,7 @@ static VerdictReading run_with_energy(double own, double converged, double avail
     return trial_end(&trial);
 }
 
-static void exploding_exceeds_the_runs_own_bound_and_the_converged_run(void **state) {
+TEST(exploding_exceeds_the_runs_own_bound_and_the_converged_run) {
     assert_verdict(run_with_energy(0.99, 0, 100), VERDICT_SETTLES);
     assert_reading(run_with_energy(1.01, 0, 100), VERDICT_EXPLODES, 1, 101, 1.01, 1e-5, "J");
     assert_reading(run_with_energy(1.01, -3, 100), VERDICT_EXPLODES, 1, 101, 1.01, 1e-5, "J");
@@ -117,7 +117,7 @@ static VerdictReading run_with_hop(int later) {
     return trial_end(&trial);
 }
 
-static void a_hop_may_be_a_second_late_or_early(void **state) {
+TEST(a_hop_may_be_a_second_late_or_early) {
     assert_verdict(run_with_hop(60), VERDICT_SETTLES);
     assert_verdict(run_with_hop(-60), VERDICT_SETTLES);
     assert_reading(run_with_hop(61), VERDICT_EXPLODES, 1, 561, 3, 1e-5, "J");
@@ -125,7 +125,7 @@ static void a_hop_may_be_a_second_late_or_early(void **state) {
 }
 
 /* The converged run falls and has no energy left; this one still stands. */
-static void a_box_that_still_stands_has_gained_no_energy(void **state) {
+TEST(a_box_that_still_stands_has_gained_no_energy) {
     Trial trial;
     trial_begin(&trial);
     for (int i = 10; i <= TRIAL_FRAMES; i++) trial.energy[i] = -95;
@@ -148,7 +148,7 @@ static VerdictReading run_with_dip(int frames) {
 }
 
 /* Seconds end at frames 60, 120, ...: a dip of 30 + 60 frames covers a whole one. */
-static void energy_that_returns_within_a_second_was_not_lost(void **state) {
+TEST(energy_that_returns_within_a_second_was_not_lost) {
     assert_true(run_with_dip(60).verdict < VERDICT_EXPLODES);
     assert_true(run_with_dip(89).verdict < VERDICT_EXPLODES);
     assert_reading(run_with_dip(90), VERDICT_EXPLODES, 1, 121, 25, 1e-4, "J");
@@ -176,7 +176,7 @@ static VerdictReading run_with_bomb(double before, double given) {
 }
 
 /* The bomb adds 5 J of kinetic and 5 J of potential energy to the 5 or 25 J before. */
-static void the_energy_of_a_bomb_counts(void **state) {
+TEST(the_energy_of_a_bomb_counts) {
     assert_true(run_with_bomb(0, 5.99).verdict < VERDICT_EXPLODES);
     assert_reading(run_with_bomb(0, 6.01), VERDICT_EXPLODES, 1, 151, 1.01, 1e-4, "J");
     assert_true(run_with_bomb(20, 25.99).verdict < VERDICT_EXPLODES);
@@ -184,7 +184,7 @@ static void the_energy_of_a_bomb_counts(void **state) {
 }
 
 /* The upper one of two boxes is removed, with 15 J: the lower one must not gain them. */
-static void a_removed_body_takes_its_energy_along(void **state) {
+TEST(a_removed_body_takes_its_energy_along) {
     for (int side = 0; side < 2; side++) {
         Trial trial;
         trial_begin(&trial);
@@ -200,7 +200,7 @@ static void a_removed_body_takes_its_energy_along(void **state) {
     }
 }
 
-static void nan_and_infinity_are_non_finite(void **state) {
+TEST(nan_and_infinity_are_non_finite) {
     for (int i = 0; i < 12; i++) {
         Trial trial;
         trial_begin(&trial);
@@ -216,7 +216,7 @@ static void nan_and_infinity_are_non_finite(void **state) {
     }
 }
 
-static void a_failed_step_is_non_finite(void **state) {
+TEST(a_failed_step_is_non_finite) {
     Trial trial;
     trial_begin(&trial);
     trial.bodies[1].velocity = vec2(-3, 4);
@@ -228,7 +228,7 @@ static void a_failed_step_is_non_finite(void **state) {
 }
 
 /* All verdicts from creeping on apply, one after the other; each is worse than those before. */
-static void the_worst_verdict_counts_with_its_first_frame(void **state) {
+TEST(the_worst_verdict_counts_with_its_first_frame) {
     Trial trial;
     trial_begin(&trial);
     trial_go(&trial, 1100);
@@ -255,7 +255,7 @@ static void the_worst_verdict_counts_with_its_first_frame(void **state) {
     assert_verdict(trial_end(&trial), VERDICT_NON_FINITE);
 }
 
-static void verdicts_have_names(void **state) {
+TEST(verdicts_have_names) {
     const char *const names[VERDICTS] = {"settles", "sways",   "creeps",   "falls",
                                          "sinks",   "tunnels", "explodes", "non-finite"};
     for (int i = 0; i < VERDICTS; i++) {
@@ -264,7 +264,7 @@ static void verdicts_have_names(void **state) {
     }
 }
 
-static void a_converged_run_that_is_shorter_is_refused(void **state) {
+TEST(a_converged_run_that_is_shorter_is_refused) {
     Error error = {0};
     Trial trial;
     trial_begin(&trial);
@@ -274,20 +274,4 @@ static void a_converged_run_that_is_shorter_is_refused(void **state) {
     verdict_watch_free(&trial.watch);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tunnelling_goes_through_a_static_box),
-                                       cmocka_unit_test(a_body_that_is_pushed_out_again_did_not_tunnel),
-                                       cmocka_unit_test(tunnelling_reports_the_speed),
-                                       cmocka_unit_test(exploding_exceeds_the_runs_own_bound_and_the_converged_run),
-                                       cmocka_unit_test(a_hop_may_be_a_second_late_or_early),
-                                       cmocka_unit_test(a_box_that_still_stands_has_gained_no_energy),
-                                       cmocka_unit_test(energy_that_returns_within_a_second_was_not_lost),
-                                       cmocka_unit_test(the_energy_of_a_bomb_counts),
-                                       cmocka_unit_test(a_removed_body_takes_its_energy_along),
-                                       cmocka_unit_test(nan_and_infinity_are_non_finite),
-                                       cmocka_unit_test(a_failed_step_is_non_finite),
-                                       cmocka_unit_test(the_worst_verdict_counts_with_its_first_frame),
-                                       cmocka_unit_test(verdicts_have_names),
-                                       cmocka_unit_test(a_converged_run_that_is_shorter_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

@@ -20,7 +20,7 @@ static double luminance(uint32_t rgb) {
 /* CIE 1976 L*, 0 to 100. */
 static double lightness(uint32_t colour) { return 116 * cbrt(luminance(colour)) - 16; }
 
-static void the_worse_the_darker(void **state) {
+TEST(the_worse_the_darker) {
     for (int look = 1; look < VERDICTS; look++) {
         double step = lightness(verdict_looks[look - 1].fill) - lightness(verdict_looks[look].fill);
         if (step < 6) fail_msg("%s is darker than the one before by %g only", verdict_looks[look].name, step);
@@ -30,7 +30,7 @@ static void the_worse_the_darker(void **state) {
 }
 
 /* WCAG 2.1 requires a contrast of 3:1 for graphics. The dot of "settles" is meant to be faint. */
-static void symbols_stand_out_and_differ(void **state) {
+TEST(symbols_stand_out_and_differ) {
     for (int look = VERDICT_SWAYS; look < VERDICTS; look++) {
         double fill = luminance(verdict_looks[look].fill) + 0.05, ink = luminance(verdict_looks[look].ink) + 0.05;
         if (fmax(fill, ink) / fmin(fill, ink) < 3) fail_msg("%s: too little contrast", verdict_looks[look].name);
@@ -41,7 +41,7 @@ static void symbols_stand_out_and_differ(void **state) {
     }
 }
 
-static void looks_are_those_of_the_verdicts(void **state) {
+TEST(looks_are_those_of_the_verdicts) {
     for (int verdict = 0; verdict < VERDICTS; verdict++) {
         assert_string_equal(verdict_looks[verdict].name, verdict_name((Verdict)verdict));
         assert_string_equal(verdict_words[verdict], verdict_name((Verdict)verdict));
@@ -50,11 +50,4 @@ static void looks_are_those_of_the_verdicts(void **state) {
     assert_null(verdict_words[LOOK_MISSING]);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_worse_the_darker),
-        cmocka_unit_test(symbols_stand_out_and_differ),
-        cmocka_unit_test(looks_are_those_of_the_verdicts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)

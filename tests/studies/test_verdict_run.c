@@ -5,7 +5,7 @@
 /* Boxes of 1 kg at 10 m/s^2: 10 J per metre. From 3 m to 1 m, 20 of 30 J are lost. A box is added with 40 J; with both
    at 0, 70 of 70 J are lost. It is removed with 5 J that it had regained: 65 of 65 J are lost then, and 75 at -1 m.
    Lifted to 80 J, the highest level so far, 120 J are lost down to -4 m. */
-static void lost_energy_is_available(void **state) {
+TEST(lost_energy_is_available) {
     Error error = {0};
     EnergyLog log = {0};
     Body bodies[2] = {trial_box, trial_box};
@@ -31,7 +31,7 @@ static void lost_energy_is_available(void **state) {
 
 /* A stack of ten boxes, 1 kg and 10 m/s^2: 0 + 1 + ... + 9 m are 450 J. A bomb of 2 kg is added 9 m above the lowest:
    180 J; one below the lowest adds nothing. */
-static void the_height_of_a_stack_is_available(void **state) {
+TEST(the_height_of_a_stack_is_available) {
     Error error = {0};
     EnergyLog log = {0};
     Body bodies[14];
@@ -97,7 +97,7 @@ static Scene scene_of(BodyDef *bodies, int count, int frames) {
 
 /* Two boxes of 1 kg, the upper one 1 m above the lower. They sink to the slop, 0.01 and 0.02 m, which loses less: at
    most 0.3 J. */
-static void a_stack_of_two_settles(void **state) {
+TEST(a_stack_of_two_settles) {
     BodyDef bodies[] = {{.size = {100, 20}, .fixed = true, .friction = 0.2f, .position = {0, -10}},
                         {.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}},
                         {.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 1.5f}}};
@@ -124,7 +124,7 @@ static Scene shot_at_slab(BodyDef *slab, float speed) {
 }
 
 /* 200 m/s are 3.3 m per step: the next position is 1.8 m below, without a contact. */
-static void a_fast_box_tunnels_through_a_thin_slab(void **state) {
+TEST(a_fast_box_tunnels_through_a_thin_slab) {
     BodyDef slab;
     EnergyLog converged = {0};
     Scene scene = shot_at_slab(&slab, 200);
@@ -140,7 +140,7 @@ static void a_fast_box_tunnels_through_a_thin_slab(void **state) {
 }
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step. */
-static void a_run_that_overflows_is_judged(void **state) {
+TEST(a_run_that_overflows_is_judged) {
     Error error = {0};
     Method method;
     BodyDef slab;
@@ -154,10 +154,4 @@ static void a_run_that_overflows_is_judged(void **state) {
     energy_log_free(&converged);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lost_energy_is_available), cmocka_unit_test(the_height_of_a_stack_is_available),
-        cmocka_unit_test(a_stack_of_two_settles), cmocka_unit_test(a_fast_box_tunnels_through_a_thin_slab),
-        cmocka_unit_test(a_run_that_overflows_is_judged)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+RUN_TESTS(NULL, NULL)
