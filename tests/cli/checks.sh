@@ -21,6 +21,9 @@ fail() {
 # Whether the binary is a sanitizer's, which is up to ten times slower: it runs fewer cases of a kind (sanitized.h).
 sanitized() { grep -q "^TWINBOX_SANITIZE:STRING=." "$(dirname "$twinbox")/CMakeCache.txt" 2>/dev/null; }
 
+# Whether a script ends once it has been through its command's code: by a sanitizer, and by tests/run without --all.
+brief() { [ "${TWINBOX_BRIEF-}" ] || sanitized; }
+
 # run STATUS ARGUMENT...: output goes to out, errors to err; the exit status must be STATUS. Tests run side by side, and a
 # second process that draws takes longer to start than small frames take to draw: one process, unless the test says how many.
 run() {

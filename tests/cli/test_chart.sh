@@ -62,7 +62,7 @@ complains "quick/chart.csv: error: a finished chart is drawn as it is: give only
 run 2 chart nowhere.csv -o again
 complains "nowhere.csv: error:"
 
-! sanitized || finish
+! brief || finish
 few=engine:k=10,momentum:k=20,substepping:substeps=10,pair-net,scene-net
 run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
 without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||

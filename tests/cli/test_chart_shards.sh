@@ -41,7 +41,7 @@ cpu=$(/usr/bin/python3 -c 'import csv; print(next(csv.DictReader(open("three/cha
 [ "$cpu" ] || fail "no processor"
 grep -qF "Times measured on $cpu." three/chart.html || fail "chart.html does not name the processor $cpu"
 
-! sanitized || finish
+! brief || finish
 
 # Times that a merge leaves out: the scene has no chart, and the others say so.
 /usr/bin/python3 - <<'PYTHON'

@@ -22,9 +22,9 @@ sed 's/^frames: .*/frames: 150/' "$scenes/single.yaml" >single.yaml
 sed '/networks:/,$d; s/^frames: .*/frames: 150/' "$scenes/stack.yaml" >stack.yaml
 printf 'x,spin\n-2,1\n-1,0\n0.3,2\n1,0\n2,-1\n4,0\n' >launches.csv
 few=--bomb-x=-5:5:0.4
-! sanitized || few=--bomb-x=-5:5:2
+! brief || few=--bomb-x=-5:5:2
 same pair single.yaml stack.yaml $few --context --random 6
-! sanitized || finish
+! brief || finish
 same net stack.yaml $few --target net --inputs raw --labels reference
 same impulse stack.yaml $few --target impulse --inputs raw-unturned
 same points stack.yaml $few --target points --inputs neighbours --seed 5

@@ -110,7 +110,7 @@ PATH=$folder/empty run 3 render short.npz -o x --size 192x108 --video clip.mp4
 complains "ffmpeg: error: cannot be run"
 [ -e x ] && fail "frames were drawn for a video that cannot be"
 
-! sanitized || finish
+! brief || finish
 
 # Slow motion, hold and cards; all forms of video in one go, y4m into a pipe. From 9 frames
 # before the impact to 36 after it are slow, 30 are held, a card is 120.

@@ -16,7 +16,7 @@ while read -r rate fps; do
     equal "film of $rate Hz at $fps" "$(probe film.mp4 avg_frame_rate,nb_read_frames)" "$fps/1,$((fps + 1))"
 done <<<"20 24
 120 60"
-! sanitized || finish
+! brief || finish
 draw 60.npz -o same
 draw 60.npz -o fitting --fps 60
 for frame in same/frame_*.png; do

@@ -33,7 +33,7 @@ complains "map speed_thickness has no method momentum; its methods: engine"
 run 2 stability --scenes "$scenes" -o one --clip speed_thickness:engine:200,0.1
 complains "there is no map speed_thickness in one/maps.csv; its maps: none"
 
-! sanitized || finish
+! brief || finish
 
 # 10,000 steps at rest.
 run 0 stability --scenes "$scenes" --study at_rest --methods interior,pair-net -o rest

@@ -56,7 +56,7 @@ says " -> slide/clips/slide_slope_friction-engine-0.6_0.05.mp4"
 clip=slide/clips/slide_slope_friction-engine-0.6_0.05
 frames=$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 $clip.mp4)
 equal "frames of the clip" "$frames" "$(ls $clip | grep -c png)"
-! sanitized || finish
+! brief || finish
 
 # A run that is interrupted continues, and another range begins again.
 two="--vary ratio=1:50 --vary friction --methods engine:k=4,engine:k=10,momentum"

@@ -51,7 +51,7 @@ assert max(chosen.values()) == 8, chosen
 PYTHON
 checks=$((checks + 1))
 
-! sanitized || finish
+! brief || finish
 
 # Interrupted while pages are written, it continues with them: those that are done are read, not written again.
 paged="--scenes $scenes -o part --pages --study slope_friction --methods $methods"

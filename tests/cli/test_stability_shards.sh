@@ -28,7 +28,7 @@ same_as_whole three
 run 0 merge three
 same_as_whole three
 
-! sanitized || finish
+! brief || finish
 
 # From another folder, and twice the same shard.
 run 0 stability $few -o three --shard 2/3

@@ -30,7 +30,7 @@ PYTHON
 scene_net="--kind scene-net ../stack.yaml --launches 230 --iterations 1 --width 16"
 same $scene_net --rounds 2
 
-! sanitized || finish
+! brief || finish
 
 # Every width of --smallest reads the same launches.
 smallest="--kind scene-net stack.yaml --launches 12 --iterations 1 --rounds 1 --smallest --within 0.1"

@@ -61,7 +61,7 @@ equal "files of pages beyond the limit" "$(names)" "$kept"
 equal "the older page" "$(<kept.html)" older
 
 # 100,000 frames that do not pack are refused with a step that suffices.
-if ! sanitized; then
+if ! brief; then
     make too_long
     run 2 page too_long.npz -o long.html
     complains "--every"
@@ -72,7 +72,7 @@ if ! sanitized; then
 fi
 
 # Sizes: two runs of ten seconds of the settled pyramid, and what is not data.
-if ! sanitized; then
+if ! brief; then
     for method in engine pair-net; do
         run 0 simulate "$scenes/pyramid_settled.yaml" --frames 600 -m $method -o "pyramid-$method.npz"
     done
@@ -99,7 +99,7 @@ PYTHON
 checks=$((checks + 1))
 
 # The scripts as the page has them, and each as it is written.
-if ! sanitized; then
+if ! brief; then
     command -v node >/dev/null || fail "node is not installed; tests/setup --tests does that"
     for script in begin.js viewer.js "$sources"/src/pictures/player/*.js "$sources"/tests/pictures/*.js; do
         checks=$((checks + 1))
