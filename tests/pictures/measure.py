@@ -95,7 +95,7 @@ class Measured:
         self.checks.equal(f"{what}: bodies in contact", sorted(found), sorted(wanted))
         for other in found.keys() & wanted.keys():
             normal, tangent = wanted[other]
-            # Stored rounded (contact_chunk.h).
+            # Stored rounded (src/pictures/player_pack.c).
             self.checks.near(f"{what}: normal impulse with body {other}", found[other][0], normal,
                              1e-3 + 0.016 * normal)
             self.checks.near(f"{what}: tangent impulse with body {other}", found[other][1], tangent, 1e-3 + normal / 64)

@@ -128,7 +128,7 @@ static bool has_equals(const Image *image, int x, int y) {
     return equal >= 3;
 }
 
-/* The method that antialias.h starts from, for a pixel of a grey picture. */
+/* The method that antialias_mark() starts from, for a pixel of a grey picture. */
 static bool starting_method(const Image *image, const Image *other, int x, int y) {
     int dark_x = x, dark_y = y, light_x = x, light_y = y;
     for (int i = 0; i < 9; i++) {

@@ -1,5 +1,5 @@
-/* The states and contacts of the runs, as state_chunk.h and contact_chunk.h describe them. All scripts are one scope, in
-   the order of player_page.c. */
+/* The states and contacts of the runs, as src/pictures/player_pack.c describes them. All scripts are one scope, in the order
+   of src/CMakeLists.txt. */
 const data = JSON.parse(document.getElementById("data").textContent);
 const COMPONENTS = ["vx", "vy", "omega", "x", "y", "angle"], POSES = 3;
 const CONTACT_KEYS = 3, CONTACT_VALUES = 6, SEARCH = 16, SHARE = 64;
