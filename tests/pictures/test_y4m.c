@@ -15,7 +15,7 @@ static char *stream_of(const uint32_t *pixels, int width, int height, double rat
     Image *image = image_create(width, height, &error);
     assert_ok(image != NULL, error);
     for (int i = 0; i < width * height; i++)
-        for (int c = 0; c < 4; c++) image->pixels[4 * i + c] = c < 3 ? (uint8_t)(pixels[i] >> (16 - 8 * c)) : 255;
+        for (int c = 0; c < 4; c++) image->pixels[4 * i + c] = (uint8_t)(c < 3 ? pixels[i] >> (16 - 8 * c) : 255);
     const char *png = temporary_path("frame_000000.png"), *path = temporary_path("video.y4m");
     assert_ok(image_write_png(image, png, NULL, 0, &error), error);
     image_destroy(image);
