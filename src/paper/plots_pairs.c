@@ -211,7 +211,7 @@ static void transfer_panel(const void *of, int panel, PlotPanel *out) {
 bool plot_transfer(const CsvTable *table, PlotPage *page, Error *error) {
     const PlotSpec spec = {
         .of = table,
-        .grid = {FIGURE_COLUMN_WIDTH, 64, 13, 2, 17.8, 3, 1, 1},
+        .grid = {FIGURE_COLUMN_WIDTH, 64, 13, 2, 17.8, 3, 1, 1, 0, 0},
         .panels = 1,
         .series = TRANSFER_SERIES,
         .rows = table->count,
@@ -307,7 +307,7 @@ bool plot_closed_loop(const CsvTable *table, PlotPage *page, Error *error) {
     const PlotSpec spec = {
         .of = &loop,
         .grid = {FIGURE_PAGE_WIDTH, loop_bottom + loop.lines * loop_height + loop_top, loop_left, loop_right,
-                 loop_bottom, loop_top, PANELS, 1, gap},
+                 loop_bottom, loop_top, PANELS, 1, gap, 0},
         .panels = PANELS,
         .series = LOOP_SERIES,
         .rows = 2 * loop.count,
