@@ -376,7 +376,7 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
 
 static void keep(void *state, const World *world) {
     Avbd *avbd = state;
-    memcpy(avbd->last, avbd->contacts, (size_t)avbd->contact_count * sizeof *avbd->last);
+    for (int i = 0; i < avbd->contact_count; i++) avbd->last[i] = avbd->contacts[i];
     for (int i = 0; i < avbd->body_count; i++) avbd->before[i] = avbd->bodies[i].start;
     step_memory_keep(&avbd->memory, world);
 }

@@ -201,7 +201,7 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
     if (!begin(gns, begun) || (gns->uses_net && !predict(gns))) return error_memory(error, "gns");
     solution->fallbacks.beyond_training += gns->uses_net && gns->graph.beyond;
     memset(solution->velocities, 0, (size_t)problem->body_count * sizeof *solution->velocities);
-    memset(solution->impulses, 0, (size_t)problem->contact_count * sizeof *solution->impulses);
+    for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0};
     for (int i = 0; i < gns->particles.bodies; i++) {
         move_particles(gns, i, begun->step->scene->gravity, problem->dt, &solution->fallbacks);
         end_body(gns, i, problem, solution);
