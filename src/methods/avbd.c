@@ -29,7 +29,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define PENALTY_MIN 1.0f         /* N/m */
 #define PENALTY_MAX 1e9f         /* N/m */
