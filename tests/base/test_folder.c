@@ -113,7 +113,7 @@ TEST_WITH(no_failed_call_shortens_the_list, make_tree, NULL) {
     for (int kind = 0; kind < 3; kind++) {
         int call = 0;
         for (bool failed = true; failed;) {
-            Error error = {0};
+            error = (Error){0};
             FolderList list;
             *countdowns[kind] = ++call;
             failed = !folder_list(&list, below("tree"), is_x, true, &error);

@@ -38,7 +38,6 @@ static void write_all_kinds(FILE *out, const void *context) {
 }
 
 TEST(what_is_written_has_this_form) {
-    Error error = {0};
     size_t size;
     const char *path = temporary_path("kinds.json");
     assert_ok(file_write_text(path, write_all_kinds, NULL, &error), error);

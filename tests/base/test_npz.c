@@ -63,7 +63,6 @@ TEST(written_is_read) {
     assert_true(npz_has(file, "matrix"));
     assert_false(npz_has(file, "matri"));
     int64_t shape[2];
-    Error error = {0};
     assert_ok(npz_shape(file, "matrix", NPZ_FLOAT32, 2, shape, &error), error);
     assert_int_equal(shape[0], 3);
     assert_int_equal(shape[1], 2);
@@ -107,7 +106,6 @@ TEST(mismatches_name_found_and_wanted) {
     char small[13], exact[14];
     assert_false(npz_read_text(file, "name", small, sizeof small, &text));
     assert_error(text, ERROR_INPUT, "'name'");
-    Error error = {0};
     assert_ok(npz_read_text(file, "name", exact, sizeof exact, &error), error);
     npz_close(file);
 }
@@ -117,7 +115,6 @@ TEST(bad_texts_are_not_written) {
         "\xff", "\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         NpzArray array = {"name", NPZ_TEXT, 0, {0}, texts[i]};
-        Error error = {0};
         assert_refused(npz_write(temporary_path("text.npz"), &array, 1, &error),
                        "text.npz: error: cannot store 'name'");
         assert_int_not_equal(access(temporary_path("text.npz"), F_OK), 0);
@@ -159,7 +156,6 @@ TEST(flipped_bytes_are_refused_or_harmless) {
 }
 
 TEST(failed_writes_tell) {
-    Error error = {0};
     assert_false(npz_write(temporary_path("nowhere/x.npz"), arrays, ARRAYS, &error));
     assert_error(error, ERROR_SYSTEM, "nowhere/x.npz: error: cannot write: ");
 }
@@ -178,7 +174,6 @@ static bool is_table(const char *kind, int32_t version, Error *error) {
 }
 
 TEST(kind_and_version_are_checked) {
-    Error error;
     assert_true(is_table("table", 3, &error));
     assert_refused(is_table("chair", 3, &error), "kind.npz: error: not a file of kind 'table'");
     assert_refused(is_table("tables", 3, &error), "kind.npz: error: not a file of kind 'table'");
@@ -192,7 +187,6 @@ TEST(scalars_and_names_are_read) {
                                {"bad", NPZ_TEXT, 0, {0}, "z\33[2J"},
                                {"worse", NPZ_TEXT, 0, {0}, "\x7f"}};
     const char *path = temporary_path("fields.npz");
-    Error error = {0};
     assert_ok(npz_write(path, fields, 4, &error), error);
     NpzFile *file = open_file(path);
     uint64_t found = 0;

@@ -109,7 +109,6 @@ TEST(one_number_is_a_scalar) {
 }
 
 TEST(texts_of_either_order_are_read) {
-    Error error = {0};
     char text[16];
     NpzFile *file = make("np.array('z\\u00e4h', '>U8')");
     npz_convert(file);

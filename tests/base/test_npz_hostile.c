@@ -135,7 +135,6 @@ TEST(a_name_twice_is_refused) {
     const char *path = temporary_path("twice.npz");
     float value = 1;
     NpzArray twins[] = {{"twin1", NPZ_FLOAT32, 0, {0}, &value}, {"twin2", NPZ_FLOAT32, 0, {0}, &value}};
-    Error error = {0};
     assert_ok(npz_write(path, twins, 2, &error), error);
     size_t size;
     char *data = read_whole(path, &size);
@@ -155,7 +154,6 @@ TEST(too_many_arrays_are_refused) {
         many[i] = (NpzArray){names[i], NPZ_UINT8, 0, {0}, &value};
     }
     const char *path = temporary_path("many.npz");
-    Error error = {0};
     assert_ok(npz_write(path, many, 256, &error), error);
     npz_close(open_file(path));
     assert_ok(npz_write(path, many, 257, &error), error);
@@ -170,7 +168,6 @@ static void set_little_endian(char *at, uint32_t value) {
 TEST(small_files_cannot_hold_much) {
     const char *path = temporary_path("claim.npz");
     NpzArray array = {"empty", NPZ_FLOAT32, 1, {0}, NULL};
-    Error error = {0};
     assert_ok(npz_write(path, &array, 1, &error), error);
     size_t size;
     char *data = read_whole(path, &size);
@@ -205,7 +202,6 @@ TEST(what_is_written_is_within_the_budget) {
     enum { SIZE = 64 << 20 };
     const char *path = temporary_path("zeros.npz");
     NpzArray array = {"zeros", NPZ_UINT8, 1, {SIZE}, calloc(SIZE, 1)};
-    Error error = {0};
     assert_ok(npz_write(path, &array, 1, &error), error);
     free((void *)array.data);
     npz_close(open_file(path));
@@ -216,7 +212,6 @@ TEST(all_that_is_read_is_limited) {
     enum { SIZE = 15 << 20 };
     const char *path = temporary_path("again.npz");
     const int64_t shape = SIZE;
-    Error error = {0};
     write_zeros(path, "|u1", SIZE);
     NpzFile *file = open_file(path);
     int read = 0;
@@ -231,7 +226,6 @@ TEST(converted_arrays_count_as_what_they_become) {
     enum { SIZE = 15 << 20 };
     const char *path = temporary_path("converted.npz");
     const int64_t shape = SIZE;
-    Error error = {0};
     write_zeros(path, "|i1", SIZE);
     NpzFile *file = open_file(path);
     npz_convert(file);
@@ -245,7 +239,6 @@ TEST(shapes_are_expected_without_data) {
     const float numbers[6] = {0};
     const NpzArray written[] = {{"a", NPZ_FLOAT32, 2, {3, 2}, numbers}, {"b", NPZ_FLOAT32, 0, {0}, numbers}};
     NpzArray expected[] = {{"b", NPZ_FLOAT32, 0, {0}, NULL}, {"a", NPZ_FLOAT32, 2, {3, 2}, NULL}};
-    Error error = {0};
     assert_ok(npz_write(path, written, 2, &error), error);
     NpzFile *file = open_file(path);
     assert_ok(npz_expect(file, expected, 2, &error), error);

@@ -29,7 +29,6 @@ TEST(numpy_reads_what_is_written) {
         {"nothing", NPZ_TEXT, 0, {0}, ""},
     };
     const char *path = temporary_path("written.npz");
-    Error error = {0};
     assert_ok(npz_write(path, arrays, sizeof arrays / sizeof arrays[0], &error), error);
     run_python("import sys, zipfile, numpy as np\n"
                "f = np.load(sys.argv[1], allow_pickle=False)\n"

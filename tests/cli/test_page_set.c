@@ -116,7 +116,6 @@ static bool write_part(void *context, int part, FILE *lines, const Progress *pro
 TEST(pages_are_counted_once) {
     Work work = {.fails = true};
     for (int round = 0; round < 2; round++) {
-        Error error = {0};
         PageSet set = begin();
         set = (PageSet){.folder = set.folder, .layout = &layout, .parts = 2, .write = write_part, .context = &work};
         work.set = &set;
@@ -129,7 +128,6 @@ TEST(pages_are_counted_once) {
     }
     assert_true(work.done[0] == 1 && work.done[1] == 2);
     size_t size;
-    Error error = {0};
     char *text = file_read(temporary_path("listed.csv"), 10000, &size, &error);
     assert_ok(text != NULL, error);
     assert_string_equal(text, "number,page,bytes\n1,pages/a.html#t=1&body=2,100\n2,pages/a.html#t=5,100\n"

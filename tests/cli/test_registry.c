@@ -73,7 +73,6 @@ TEST(methods_lists_it) {
 
 TEST(every_study_has_it) {
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
-        Error error = {0};
         ContenderList list;
         assert_ok(contenders_parse(&list, NULL, study, &error), error);
         const Contender *last = &list.items[list.count - 1];
@@ -128,7 +127,6 @@ TEST(its_fallbacks_are_counted) {
 }
 
 TEST(a_picture_has_its_caption) {
-    Error error = {0};
     Picture picture;
     Trajectory *run = run_make("of-test", 2);
     const RenderOptions options = draw_panels_defaults(".");

@@ -7,7 +7,6 @@
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step; no scene file may have that speed. */
 TEST(a_run_that_overflows_has_a_verdict) {
-    Error error = {0};
     BodyDef body = {.size = {1, 1}, .mass = 1, .position = {0, 1}, .velocity = {3e38f, 0}};
     const Scene scene = {.name = "fast",
                          .gravity = {0, -10},
@@ -38,7 +37,6 @@ TEST(a_run_that_overflows_has_a_verdict) {
 }
 
 TEST(other_failures_have_none) {
-    Error error = {0};
     const Scene scene = {.name = "empty", .dt = 1.0f / 60.0f, .frames = 1};
     SimulateVerdict verdict;
     assert_ok(simulate_verdict_begin(&verdict, &scene, "engine", &error), error);

@@ -84,7 +84,6 @@ TEST(colours_tell_sign_and_size) {
 }
 
 TEST(wide_layers_are_matrices) {
-    Error error = {0};
     Network *network = network_create(1, (const int[]){50, 2}, &error);
     network->weights[0][0] = 2, network->weights[0][50 + 49] = -1;
     const char *path = temporary_path("wide.npz");
@@ -108,7 +107,6 @@ TEST(wide_layers_are_matrices) {
 
 /* 37 weights share a pixel: the largest is shown, which is the first, not the last. */
 TEST(of_weights_in_a_pixel_the_largest_shows) {
-    Error error = {0};
     Network *network = network_create(1, (const int[]){4096, 1}, &error);
     for (int i = 0; i < 4096; i++) network->weights[0][i] = 0.25f;
     network->weights[0][0] = -1;
@@ -148,7 +146,6 @@ TEST(the_networks_that_ship_are_shown) {
 }
 
 TEST(damaged_files_are_refused) {
-    Error error = {0};
     size_t size;
     char *whole = file_read(NETWORKS "pair-net.npz", 1 << 20, &size, &error);
     assert_ok(whole != NULL, error);

@@ -102,7 +102,6 @@ TEST(shapes_lie_at_their_place_and_colour) {
 }
 
 TEST(a_picture_of_its_places_size_keeps_its_pixels) {
-    Error error = {0};
     Sketch sketch;
     Image *picture = image_create(20, 10, &error);
     for (int i = 0; i < 20 * 10 * 4; i++) picture->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(i * 37);
@@ -174,7 +173,6 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
         {"a.svg", 0x77c28023e196dc9c, 0x59a07ad45902c0cd},
         {"a.pdf", 0x1ec4adee1acfa27e, 0x04ccdd4df6961d22},
     };
-    Error error = {0};
     Sketch sketch;
     draw_something(&sketch);
     for (int i = 0; i < 2 * SKETCH_FORMATS; i++) {
@@ -195,7 +193,6 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
 
 /* Text is text, in a font that the file brings; or outlines, without the font. */
 TEST(an_svg_has_its_words) {
-    Error error = {0};
     Sketch sketch;
     size_t size;
     draw_something(&sketch);
@@ -238,7 +235,6 @@ static void expect_printed(const char *program, const char *path, const char *wa
 }
 
 TEST(an_svg_of_outlines_needs_no_font) {
-    Error error = {0};
     Sketch sketch;
     size_t size;
     draw_something(&sketch);
@@ -256,7 +252,6 @@ TEST(an_svg_of_outlines_needs_no_font) {
 
 /* In an SVG an area is a link, whose texts cannot end it; in the other formats it is nothing. */
 TEST(a_link_is_in_an_svg_only) {
-    Error error = {0};
     char *data[2][SKETCH_FORMATS];
     size_t size[2][SKETCH_FORMATS];
     for (int linked = 0; linked < 2; linked++) {
@@ -285,7 +280,6 @@ TEST(a_link_is_in_an_svg_only) {
 
 /* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
 TEST(a_pdf_is_read_as_it_is_seen) {
-    Error error = {0};
     Sketch sketch;
     sketch_begin(&sketch, 100, 40);
     strcpy(sketch.title, "Distances, 1 µm to ∞");
@@ -302,7 +296,6 @@ TEST(a_pdf_is_read_as_it_is_seen) {
 
 /* Every entry of the table points to its object, and the file contains no date or path. */
 TEST(a_pdf_has_a_valid_object_table) {
-    Error error = {0};
     Sketch sketch;
     size_t size;
     draw_something(&sketch);

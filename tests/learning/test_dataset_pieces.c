@@ -63,7 +63,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(a_merge_that_is_stopped_writes_nothing) {
-    Error error = {0};
     DatasetPieces pieces;
     Pieces done;
     int64_t rows;
@@ -81,7 +80,6 @@ TEST(a_merge_that_is_stopped_writes_nothing) {
 
 /* Rows of other launches, and half a row. */
 TEST(damaged_rows_are_refused) {
-    Error error = {0};
     DatasetPieces pieces;
     const DatasetOptions options = options_for((DatasetOptions){.target = TARGET_PAIR});
     assert_ok(dataset_pieces_make(&pieces, &options, &error), error);

@@ -101,7 +101,6 @@ TEST(gradient_of_the_smooth_loss_is_the_finite_difference) {
     for (int scale = 0; scale < 2; scale++) {
         Case made = make_case_of(make_taught_dataset(FEW_ROWS), LOSS_SMOOTH_L1, 2, widths, ACTIVATION_TANH,
                                  ACTIVATION_LINEAR, scale == 0 ? SCALE_MINMAX : SCALE_STANDARD);
-        Error error = {0};
         Loss *mse = loss_create(made.network, LOSS_MSE, &error);
         assert_ok(mse != NULL, error);
         const double smooth = loss_value(made.loss, made.train, NULL, made.parameters);
@@ -115,7 +114,6 @@ TEST(gradient_of_the_smooth_loss_is_the_finite_difference) {
 TEST(gradient_of_the_laws_is_the_finite_difference) {
     const int widths[] = {10, 4, 6};
     for (int law = 0; law <= LAWS; law++) {
-        Error error = {0};
         LawNumbers weights;
         Case made = make_case_of(make_pushed_dataset(FEW_ROWS), law < LAWS ? LOSS_MSE : LOSS_SMOOTH_L1, 2, widths,
                                  ACTIVATION_TANH, ACTIVATION_LINEAR, law % 2 == 0 ? SCALE_STANDARD : SCALE_MINMAX);

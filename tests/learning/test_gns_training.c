@@ -46,7 +46,6 @@ static bool train(void *context, const char *path, const Progress *progress, Err
 }
 
 TEST(same_bits_for_any_threads_and_interruptions) {
-    Error error = {0};
     GnsNet whole, parts;
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);

@@ -9,7 +9,6 @@
 /* Frames before the bomb have none. */
 TEST(poses_are_those_of_single_runs) {
     enum { LAUNCHES = 3 };
-    Error error = {0};
     Method method;
     Launch launches[LAUNCHES];
     LaunchRuns runs;
@@ -40,7 +39,6 @@ TEST(poses_are_those_of_single_runs) {
 }
 
 TEST(too_many_are_refused) {
-    Error error = {0};
     Method method;
     LaunchRuns runs;
     Scene *scene = shipped_scene("stack");

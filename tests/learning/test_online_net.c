@@ -8,7 +8,6 @@
 
 /* The first ONLINE_FIRST steps make the network; trained on one step again and again, it fits it. */
 TEST(a_step_that_comes_back_is_learned) {
-    Error error = {0};
     AskedSteps asked = {0};
     Scene *scene = shipped_scene("single");
     LaunchSteps *runs = launch_steps_create(scene, &error);

@@ -293,7 +293,6 @@ TEST(sums_do_not_depend_on_threads) {
     for (int i = 0; i < COLUMNS * WIDTH; i++) directions[i] = sin(i);
     const int threads = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
-        Error error = {0};
         SparseCovariance covariance;
         omp_set_num_threads(i + 1);
         assert_ok(sparse_covariance_make(&covariance, &table.sparse, WIDTH, &error), error);

@@ -37,7 +37,6 @@ static void assert_same(const RelationNetworks *a, const RelationNetworks *b) {
 }
 
 TEST(an_interrupted_training_has_the_same_bits) {
-    Error error = {0};
     RelationNetworks whole, resumed;
     scene = shipped_scene("single");
     assert_ok(train(&whole, temporary_path("whole.part"), NULL, &error), error);

@@ -35,7 +35,6 @@ static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *pr
 }
 
 TEST(the_network_is_for_its_scene_and_the_same_for_any_threads) {
-    Error error = {0};
     Scene *scene = shipped_scene("stack");
     Scores scores[2];
     SlotNetwork *networks[2];
@@ -86,7 +85,7 @@ TEST(a_stopped_training_keeps_the_rounds_so_far) {
     Scene *scene = shipped_scene("stack");
     static const double at[] = {0.27, 0.67, 0.87};
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
+        error = (Error){0};
         Scores scores;
         Stop stop = {.at = at[i]};
         SlotNetwork *network = train(scene, &scores, &(Progress){stop_share, &stop}, &error);
@@ -101,7 +100,6 @@ TEST(a_stopped_training_keeps_the_rounds_so_far) {
 }
 
 TEST(a_training_stopped_before_the_first_network_fails) {
-    Error error = {0};
     Scene *scene = shipped_scene("stack");
     Scores scores;
     Stop stop = {.at = 0.1};
@@ -111,7 +109,6 @@ TEST(a_training_stopped_before_the_first_network_fails) {
 }
 
 TEST(a_scene_without_a_bomb_is_refused) {
-    Error error = {0};
     Scene *scene = shipped_scene("stack");
     Scores scores;
     scene->bomb.present = false;

@@ -176,7 +176,6 @@ TEST(same_seed_same_bits) {
 }
 
 TEST(samples_without_slots_are_refused) {
-    Error error = {0};
     SlotSamples few = {0};
     assert_refused(slot_network_from_samples(&few, &small_widths, 1, &error),
                    "no launch has an impact whose residual reaches the gate");

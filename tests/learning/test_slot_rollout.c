@@ -83,7 +83,6 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
 }
 
 TEST(samples_are_the_steps_with_a_large_residual) {
-    Error error = {0};
     SlotSamples samples = {0};
     ContactSolver solver;
     Scene *scene = shipped_scene("stack");
@@ -109,7 +108,6 @@ static bool no_solver(void *context, ContactSolver *solver, Error *error) {
 }
 
 TEST(a_solver_that_cannot_be_made_is_an_error) {
-    Error error = {0};
     Scene *scene = shipped_scene("stack");
     Launch launch = launch_of(scene);
     SlotSamples samples = {0};

@@ -137,7 +137,6 @@ static void assert_same_run(Trajectory *a, Trajectory *b) {
 
 /* net=off and an empty memory solve every step to convergence; a memory gives the same run each time, and another one. */
 TEST(the_method_without_its_memory_is_its_twin) {
-    Error error = {0};
     Scene *scene = shipped_scene("single");
     Counts counts;
     const TabulationTraining training = training_of(&counts);

@@ -108,7 +108,6 @@ TEST(momentum_in_free_flight_is_an_error) {
 
 /* A box that the stepper left in another state, or does not know, begins with a past of constant velocity. */
 TEST(another_world_begins_without_a_past) {
-    Error error = {0};
     const char *net = write_net(0.4f, 1e6f);
     BodyDef bodies[] = {ground, box_at(0, 0.6f), box_at(0.5f, 1.7f)};
     Run fresh, used;
@@ -157,7 +156,6 @@ TEST(states_beyond_training_are_counted) {
 }
 
 TEST(other_networks_are_refused) {
-    Error error = {0};
     Method method;
     BodyDef bodies[] = {ground};
     const Scene scene = scene_of(bodies, 1);

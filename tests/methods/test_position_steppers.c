@@ -176,7 +176,6 @@ static uint64_t state_hash(const World *world) {
 /* What a stepper keeps of one world must not reach another. */
 TEST(a_used_stepper_steps_as_a_new_one) {
     BodyDef bodies[11];
-    Error error = {0};
     const Scene scene = stack_of_ten(bodies);
     for (int m = 0; m < METHOD_COUNT; m++) {
         Stepper *stepper = make_stepper(&scene, methods[m]);
@@ -198,7 +197,6 @@ TEST(a_used_stepper_steps_as_a_new_one) {
    run begins in the state that the last one ended with. */
 TEST(other_worlds_step_without_memory) {
     BodyDef bodies[11];
-    Error error = {0};
     const Scene scene = stack_of_ten(bodies);
     const int first[] = {51, 1}, ahead[] = {10, 0};
     for (int m = 0; m < METHOD_COUNT; m++)

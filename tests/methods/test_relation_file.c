@@ -7,7 +7,6 @@
 #include <math.h>
 
 TEST(a_file_keeps_every_bit) {
-    Error error = {0};
     uint32_t seed = 8;
     RelationNetworks written, read;
     make_relation_networks(&written, &seed, 2);
@@ -37,7 +36,6 @@ static void refuse(const char *path, const char *reason) {
 }
 
 TEST(other_files_are_refused) {
-    Error error = {0};
     const int widths[] = {10, 10, 2};
     Network *pair = network_create(2, widths, &error);
     const char *path = temporary_path("pair.npz");
@@ -47,7 +45,6 @@ TEST(other_files_are_refused) {
 }
 
 TEST(numbers_out_of_range_are_refused) {
-    Error error = {0};
     uint32_t seed = 8;
     RelationNetworks networks;
     const char *path = temporary_path("bad.npz");

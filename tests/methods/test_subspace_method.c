@@ -94,7 +94,6 @@ TEST(another_world_starts_from_its_poses) {
     const Scene other = launch_scene(scene, &launch);
     SubspaceNet *net = subspace_net_by_hand(0);
     const Method method = method_of(net, scene, "subspace");
-    Error error = {0};
     Stepper *both = stepper_create(&method, scene, &error), *alone = stepper_create(&method, scene, &error);
     assert_true(both != NULL && alone != NULL);
     World *first = world_of(scene), *second = world_of(&other), *expected = world_of(&other);
@@ -190,7 +189,6 @@ static void refuse(const Method *method, const Scene *scene, const char *reason)
 
 TEST(what_does_not_fit_is_refused) {
     Scene *scene = scene_named("single");
-    Error error = {0};
     SubspaceNet *net = subspace_net_by_hand(0);
     Method method = method_of(net, scene, "subspace");
     Scene *stack = scene_named("stack");

@@ -60,7 +60,6 @@ TEST(files_keep_every_bit) {
 
 /* Numbers that rise through all of a matrix say where NumPy has each of them. */
 TEST(numpy_sees_the_shapes) {
-    Error error = {0};
     SlotNetwork *network = example();
     for (int i = 0; i < 2 * FIVE_SLOTS * 64; i++) network->rows[i] = (float)i;
     for (int i = 0; i < 24 * 16; i++) network->state.rows[i] = (float)i;
@@ -116,7 +115,6 @@ static NetArrays two_slots(void) {
 }
 
 TEST(every_array_is_needed_and_checked) {
-    Error error = {0};
     SlotNetwork *network = example();
     const char *path = temporary_path("net.npz");
     assert_ok(slot_network_write(network, path, &error), error);
@@ -131,7 +129,6 @@ TEST(every_array_is_needed_and_checked) {
 }
 
 TEST(numbers_out_of_range_are_refused) {
-    Error error = {0};
     SlotNetwork *network = example();
     const char *path = temporary_path("bad.npz");
     struct {

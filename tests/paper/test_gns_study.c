@@ -6,7 +6,6 @@
 
 /* Without its network gns falls: as its teacher until something touches, and then through the ground, g t^2 / 2. */
 TEST(without_its_network_boxes_fall_away) {
-    Error error = {0};
     Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
     assert_ok(scene != NULL, error);
     GnsRollout rollout;

@@ -29,7 +29,6 @@ static bool write_page(Error *error) {
 }
 
 TEST(a_page_is_whole_or_memory_is_short) {
-    Error error = {0};
     Image *image = image_create(5, 3, &error);
     assert_ok(image != NULL && image_write_png(image, temporary_path("a.png"), NULL, 0, &error), error);
     image_destroy(image);

@@ -59,7 +59,6 @@ TEST(pictures_are_embedded) {
     expect_within("![x](a.png)\n\n**Figure 1.** z\n\nbehind\n",
                   "<figcaption><p><strong>Figure 1.</strong> z</p>\n</figcaption></figure>\n<p>behind</p>");
     expect_within("![x](a.png)\n", "<figcaption></figcaption></figure>");
-    Error error = {0};
     FILE *out = fopen("/dev/null", "w");
     assert_non_null(out);
     const HtmlPage page = {"![x](b.png)\n", "", temporary_folder};

@@ -239,7 +239,6 @@ TEST(the_row_shown_is_the_datasets) {
                             &changes[0], &changes[1], &changes[2], &changes[3]),
                      4);
     free(caption);
-    Error error = {0};
     Dataset *dataset = dataset_record(&options, NULL, &error);
     assert_ok(dataset != NULL, error);
     assert_int_equal(rows, dataset->rows);
@@ -260,7 +259,6 @@ TEST(the_row_shown_is_the_datasets) {
 
 TEST(the_same_run_gives_the_same_files) {
     static const char *const endings[] = {"png", "svg"};
-    Error error = {0};
     Scene *scenes[ILLUSTRATION_SCENES] = {[SCENE_STACK] = scene_read(SCENES "/stack.yaml", &error)};
     assert_ok(scenes[SCENE_STACK] != NULL, error);
     Sketch sketch;

@@ -55,7 +55,6 @@ static bool train(int most, Limit *limit, Error *error) {
 }
 
 TEST(a_training_that_is_stopped_leaves_no_network) {
-    Error error = {0};
     Limit limit;
     assert_ok(train(1 << 20, &limit, &error), error);
     assert_int_equal(access(network_path(), F_OK), 0);
@@ -71,7 +70,6 @@ TEST(a_training_that_is_stopped_leaves_no_network) {
 }
 
 TEST(lines_know_their_network) {
-    Error error = {0};
     char *lines = NULL;
     size_t used;
     bool there;
@@ -94,7 +92,6 @@ TEST(lines_know_their_network) {
 }
 
 TEST(without_memory_there_is_no_accuracy) {
-    Error error = {0};
     const Dataset *dataset = paper_dataset(&datasets, &training.network, &error);
     Network *network = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
     double accuracy = -1;

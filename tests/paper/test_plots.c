@@ -218,7 +218,6 @@ TEST(too_many_lines_are_refused) {
          "closed_loop.csv:242:1: error: the table has more than 240 rows", 240},
     };
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
         start_afresh();
         write_many(cases[i].table, cases[i].header, cases[i].line, cases[i].most + 1);
         assert_refused(plots_draw(temporary_folder, NULL, &error), cases[i].message);
@@ -229,7 +228,7 @@ TEST(too_many_lines_are_refused) {
 
 TEST(a_missing_table_is_refused) {
     for (int i = 0; i < TABLES; i++) {
-        Error error = {0};
+        error = (Error){0};
         start_afresh();
         assert_int_equal(remove(table_path(tables[i])), 0);
         assert_false(plots_draw(temporary_folder, NULL, &error));

@@ -123,7 +123,6 @@ TEST(wild_frames_equal_whole_ones) {
 
 /* A single frame drawn in between invalidates the canvas; a frame that does not exist does not. */
 TEST(other_calls_may_come_between) {
-    Error error = {0};
     Trajectory *run = run_make("engine", 6);
     const Trajectory *const panels[] = {run};
     for (int frame = 0; frame < 6; frame++) run_position(run, frame, FIRST_BOX)->y += 1.6F * (float)frame;

@@ -135,7 +135,6 @@ TEST(the_gallery_is_drawn_again) {
     for (int i = 0; i < ENTRIES; i++)
         for (int dark = 0; dark <= (entries[i].dark ? 1 : 0); dark++) {
             char name[NAME_SIZE], path[PATH_MAX];
-            Error error = {0};
             name_entry(name, i, dark);
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
             Image *expected = image_read_png(path, &error);

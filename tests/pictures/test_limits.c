@@ -76,7 +76,6 @@ TEST(the_same_runs_give_the_same_bytes) {
     size_t sizes[2];
     for (int i = 0; i < 2; i++) {
         PlayerResult result;
-        Error error;
         assert_ok(write_page(*state, &(PlayerOptions){.last = -1}, paths[i], &result, &error), error);
         texts[i] = text_of(paths[i], &sizes[i]);
         assert_int_equal(result.bytes, sizes[i]);
@@ -94,7 +93,6 @@ TEST(the_same_runs_give_the_same_bytes) {
 TEST(contacts_are_left_out_first) {
     const char *path = temporary_path("left.html");
     PlayerResult whole, less;
-    Error error;
     size_t size;
     assert_ok(write_page(*state, &(PlayerOptions){.last = -1}, path, &whole, &error), error);
     assert_ok(write_page(*state, &(PlayerOptions){.last = -1, .most_bytes = whole.bytes * 9 / 10}, path, &less, &error),
@@ -111,7 +109,6 @@ TEST(what_is_too_large_is_refused_with_a_way_out) {
     const char *path = temporary_path("refused.html");
     const int64_t most = 500000;
     PlayerResult result;
-    Error error;
     assert_refused(write_page(*state, &(PlayerOptions){.last = -1, .most_bytes = most}, path, &result, &error),
                    "use --every ");
     assert_int_not_equal(access(path, F_OK), 0);
@@ -126,7 +123,6 @@ TEST(what_is_too_large_is_refused_with_a_way_out) {
 TEST(frames_beyond_the_end_are_refused) {
     const char *path = temporary_path("frames.html");
     PlayerResult result;
-    Error error;
     assert_refused(write_page(*state, &(PlayerOptions){.last = FRAMES}, path, &result, &error),
                    "300 is beyond the last frame, 299");
     assert_refused(write_page(*state, &(PlayerOptions){.first = FRAMES, .last = -1}, path, &result, &error),

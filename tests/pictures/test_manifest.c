@@ -191,7 +191,6 @@ static void check_view(const char *directory, bool moving) {
 }
 
 TEST(the_view_leads_to_the_bodies) {
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("moving"));
     options.look.camera = LOOK_BOMB;
     options.width = 4 * WIDTH, options.height = 4 * HEIGHT;
@@ -206,7 +205,6 @@ TEST(the_view_leads_to_the_bodies) {
 }
 
 TEST(the_view_names_the_files_of_the_runs) {
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("named"));
     options.look.show = LOOK_GHOSTS;
     assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
@@ -268,7 +266,7 @@ static bool stop(void *context, double done, double total) {
 
 TEST(a_stopped_sequence_goes_on) {
     for (int at = 1; at < PICTURES; at += 30) {
-        Error error = {0};
+        error = (Error){0};
         RenderOptions options = options_for(temporary_path("stopped"));
         assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, false}}, &error));
         assert_error(error, ERROR_INTERRUPTED, "stopped");
@@ -295,7 +293,6 @@ TEST(a_killed_sequence_goes_on) {
 
 /* A power failure cuts a write: the last line may be partial, and so may pictures. */
 TEST(every_cut_of_the_journal_is_survived) {
-    Error error = {0};
     char journal[600];
     RenderOptions options = options_for(temporary_path("cut"));
     assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){6, false}}, &error));
@@ -326,7 +323,6 @@ TEST(another_sequence_is_redrawn) {
         {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
     char why[256];
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-        Error error = {0};
         char name[16];
         snprintf(name, sizeof name, "other%zu", i);
         RenderOptions options = others[i].options;
@@ -350,7 +346,6 @@ TEST(another_run_is_redrawn) {
     RenderOptions options = options_for(directory);
     options.resume = true;
     RenderResult result;
-    Error error = {0};
     assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
     assert_int_equal(result.kept, 0);
     free(result.hashes);
@@ -400,7 +395,6 @@ TEST(a_manifest_is_not_trusted) {
 /* Files of other programs are not touched. */
 TEST(files_that_are_not_manifests_stay) {
     static const char foreign[] = "{\"name\": \"my own\"}";
-    Error error = {0};
     RenderOptions options = options_for(copied("foreign"));
     for (int again = 0; again < 2; again++) {
         options.resume = again == 1;

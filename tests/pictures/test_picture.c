@@ -69,7 +69,6 @@ static void copy_panel(Image *to, const Image *from, const Rect *rect) {
 TEST_WITH(an_ended_panel_holds_its_last_frame, make, destroy) {
     runs[1]->frames = 6;
     Picture picture;
-    Error error = {0};
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
     assert_int_equal(picture.frames, 12);
     Image *last = draw_in(CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(CONTEXT_AUTO, 2, 640, 360, 9);
@@ -97,7 +96,6 @@ TEST_WITH(an_ended_panel_holds_its_last_frame, make, destroy) {
 
 TEST_WITH(the_largest_distance_of_any_panel_counts, make, destroy) {
     Picture picture;
-    Error error = {0};
     run_position(runs[1], 4, SECOND_BOX)->y += 2;
     run_position(runs[2], 4, FIRST_BOX)->x += 0.5F;
     assert_ok(picture_plan(&picture, panels, 3, 640, 360, &error), error);
@@ -142,7 +140,6 @@ TEST_WITH(hostile_poses_do_no_harm, make, destroy) {
 
 TEST_WITH(bodies_out_of_view_are_counted, make, destroy) {
     Picture picture;
-    Error error = {0};
     *run_position(runs[1], 5, FIRST_BOX) = vec2(-1000, 3);
     *run_position(runs[1], 5, BOMB_BODY) = vec2(0, 3e38F);
     *run_position(runs[1], 5, SECOND_BOX) = vec2(NAN, NAN); /* does not exist */
@@ -191,7 +188,6 @@ TEST_WITH(captions_do_not_jump, make, destroy) {
     panels[0] = runs[0] = run_make("engine", 1010);
     Picture picture;
     Drawing drawing = {0};
-    Error error = {0};
     assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
     int left = 0;
     for (int frame = 0; frame < 1010; frame += 7) {
@@ -222,7 +218,6 @@ TEST_WITH(hostile_names_do_no_harm, make, destroy) {
         memset(runs[0]->method, byte, TRAJECTORY_NAME_SIZE - 1);
         Picture picture;
         Drawing drawing = {0};
-        Error error = {0};
         assert_ok(picture_plan(&picture, panels, 2, 400, 300, &error), error);
         picture_draw(&picture, moment_stored(3), &drawing);
         for (size_t i = 0; i < drawing.glyph_count; i++) {
@@ -236,16 +231,13 @@ TEST_WITH(hostile_names_do_no_harm, make, destroy) {
 TEST_WITH(what_cannot_be_shown_is_refused, make, destroy) {
     static const int sizes[][2] = {{63, 64}, {64, 63}, {8193, 64}, {64, 8193}, {-5, 100}, {0, 0}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        Error error = {0};
         RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1]};
         assert_refused(renderer_create(panels, 1, &options, &error), "must be 64 to 8192 pixels (got");
     }
     RenderOptions options = {.width = 64, .height = 64};
     for (int count = 0; count <= 7; count += 7) {
-        Error error = {0};
         assert_refused(renderer_create(panels, count, &options, &error), "the number of panels must be 1 to 6 (got");
     }
-    Error error = {0};
     runs[1]->dt = 1.0F / 50;
     assert_refused(renderer_create(panels, 2, &options, &error),
                    "panel 2 (pair-net:network=a/b.npz) has time steps of 0.02 s");

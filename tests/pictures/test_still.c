@@ -65,7 +65,6 @@ TEST(alpha_is_coverage) {
 }
 
 TEST(sizes_are_limited) {
-    Error error = {0};
     assert_refused(still_create(RENDER_SIDE_MAX + 1, 10, &error), "(got 8193 x 10)");
     assert_refused(still_create(10, 0, &error), "(got 10 x 0)");
 }

@@ -72,7 +72,6 @@ TEST_WITH(the_header_is_as_high_as_its_title, make, destroy) {
 }
 
 TEST_WITH(too_long_a_title_is_an_error, make, destroy) {
-    Error error = {0};
     char text[2 * sizeof LONG_TITLE];
     snprintf(text, sizeof text, "%.126s %.126s", LONG_TITLE, LONG_TITLE);
     const RenderOptions title = {.width = 640, .height = 360, .title = text},
@@ -117,7 +116,6 @@ TEST_WITH(a_caption_stands_for_the_method, make, destroy) {
 }
 
 TEST(captions_are_checked) {
-    Error error = {0};
     char text[CAPTION_TEXT_SIZE + 1];
     memset(text, 'a', sizeof text);
     text[CAPTION_TEXT_SIZE - 1] = '\0';

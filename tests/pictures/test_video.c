@@ -77,7 +77,6 @@ TEST(each_form_has_all_its_frames_and_the_same_bytes_again) {
     } cases[] = {
         {"a.mp4", 60, 0, FRAMES}, {"a.webm", 60, 0, FRAMES}, {"a.gif", 20, 0, (FRAMES + 2) / 3}}; /* 0.05 s a frame */
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
         int frames, width, height;
         double rate;
         VideoOptions options = options_for(temporary_path(cases[i].name));
@@ -101,7 +100,6 @@ TEST(gifs_keep_a_chosen_rate) {
         double shown;
     } cases[] = {{50, true, 50}, {50, false, 25}, {25, false, 25}, {100, true, 50}, {20, false, 20}, {75, false, 25}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
         int frames, width, height;
         double rate;
         VideoOptions options = options_for(temporary_path("rate.gif"));
@@ -119,7 +117,6 @@ TEST(gifs_are_small) {
     static const int sizes[][4] = {
         {1600, 90, 800, 45}, {90, 1600, 45, 800}, {801, 100, 800, 100}, {800, 60, 800, 60}, {96, 64, 96, 64}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        Error error = {0};
         int frames, width, height;
         double rate;
         const char *directory = temporary_path("large");
@@ -139,7 +136,6 @@ TEST(gifs_are_small) {
 /* No name is taken for a pattern, an option or a URL. */
 TEST(any_file_name_works) {
     static const char *const names[] = {"-y.mp4", "a%03d.gif", "http:x.mp4", "b c'\"$.mp4"};
-    Error error = {0};
     char before[512];
     const char *directory = temporary_path("names");
     assert_ok(file_make_directory(directory, &error), error);
@@ -158,7 +154,6 @@ TEST(a_damaged_frame_makes_no_video) {
     size_t size, other_size;
     const char *path = temporary_path("kept.mp4"), *frame = frame_path(folder, 4);
     char *data = read_whole(frame, &size), *other = read_whole(frame_path(folder, 8), &other_size);
-    Error error = {0};
     Image *small = image_create(8, 8, &error);
     for (int i = 0; i < 4; i++) {
         static const char *const texts[] = {"cannot open", "unexpected end of file", "differ from those drawn",
@@ -208,7 +203,7 @@ TEST(a_video_that_lacks_a_frame_is_removed) {
         {"#!/bin/sh\ncat >/dev/null\n", "ffprobe: error: failed"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
+        error = (Error){0};
         VideoOptions options = options_for(temporary_path("lacking.mp4"));
         pretend("ffmpeg", cases[i].ffmpeg);
         assert_false(video_encode(&options, NULL, &error));
@@ -216,7 +211,6 @@ TEST(a_video_that_lacks_a_frame_is_removed) {
         assert_int_equal(access(options.path, F_OK), -1);
         assert_nothing_left(temporary_folder);
     }
-    Error error = {0};
     VideoOptions options = options_for(temporary_path("lacking.mp4"));
     pretend("ffmpeg", "#!/bin/sh\ncat >/dev/null\necho File too large >&2\n");
     pretend("ffprobe", "#!/bin/sh\necho 8\n");
@@ -226,7 +220,6 @@ TEST(a_video_that_lacks_a_frame_is_removed) {
 }
 
 TEST(missing_programs_are_told) {
-    Error error = {0};
     assert_ok(video_check_programs(&error), error);
     setenv("PATH", temporary_folder, 1);
     assert_false(video_check_programs(&error));
@@ -240,7 +233,6 @@ static bool never(void *context, double done, double total) {
 }
 
 TEST(a_video_can_be_stopped) {
-    Error error = {0};
     VideoOptions options = options_for(temporary_path("stopped.gif"));
     assert_false(video_encode(&options, &(Progress){never, NULL}, &error));
     assert_error(error, ERROR_INTERRUPTED, "stopped");
@@ -257,7 +249,6 @@ static bool kill_oneself(void *context, double done, double total) {
 /* The encoder has no name of a file. */
 TEST(a_killed_program_leaves_nothing) {
     static const char *const names[] = {"killed/a.mp4", "killed/a.gif"};
-    Error error = {0};
     int status;
     assert_ok(file_make_directory(temporary_path("killed"), &error), error);
     for (int i = 0; i < 2; i++) {
@@ -274,7 +265,6 @@ TEST(a_killed_program_leaves_nothing) {
 }
 
 TEST(wrong_names_are_refused) {
-    Error error = {0};
     assert_ok(file_make_directory(temporary_path("folder.mp4"), &error), error);
     assert_ok(file_write(temporary_path("a.y4m"), "", 0, &error), error);
     static const struct {
@@ -300,7 +290,6 @@ TEST(wrong_names_are_refused) {
 }
 
 TEST(y4m_holds_every_frame) {
-    Error error = {0};
     int frames, width, height;
     double rate;
     const char *path = temporary_path("a.y4m");
@@ -313,7 +302,6 @@ TEST(y4m_holds_every_frame) {
 }
 
 TEST(a_reader_that_has_gone_is_told) {
-    Error error = {0};
     int ends[2];
     VideoOptions options = options_for("the pipe");
     assert_int_equal(pipe(ends), 0);

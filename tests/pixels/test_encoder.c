@@ -79,7 +79,6 @@ TEST(every_picture_comes_back) {
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
         for (int kind = 0; kind < KINDS; kind++)
             for (PngEffort effort = PNG_FAST; effort <= PNG_SMALL; effort++) {
-                Error error = {0};
                 const uint8_t *data;
                 size_t size;
                 Image *image = blank_image(sizes[i][0], sizes[i][1]);
@@ -96,7 +95,6 @@ TEST(every_picture_comes_back) {
 
 TEST(random_pictures_come_back) {
     for (int i = 0; i < 400; i++) {
-        Error error = {0};
         const uint8_t *data;
         size_t size;
         bool ignored[64];
@@ -114,7 +112,6 @@ TEST(random_pictures_come_back) {
 /* The bytes equal those of a new encoder, whatever was encoded before. */
 TEST(kept_rows_change_no_byte) {
     enum { WIDTH = 230, HEIGHT = 61 };
-    Error error = {0};
     Image *image = blank_image(WIDTH, HEIGHT);
     PngEncoder *encoder = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
     for (int frame = 0; frame < 200; frame++) {
@@ -135,7 +132,6 @@ TEST(kept_rows_change_no_byte) {
 
 /* Rows not flagged as changed are not read. */
 TEST(only_changed_rows_are_read) {
-    Error error = {0};
     bool none[40] = {false};
     const uint8_t *data;
     size_t size;
@@ -151,7 +147,6 @@ TEST(only_changed_rows_are_read) {
 }
 
 TEST(small_is_smaller) {
-    Error error = {0};
     const uint8_t *data;
     size_t sizes[2];
     bool ignored[400];

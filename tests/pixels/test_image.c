@@ -53,7 +53,6 @@ TEST_WITH(one_bit_changes_the_hash, make, destroy) {
 
 TEST_WITH(the_shape_counts, make, destroy) {
     ImageDifference d;
-    Error error = {0};
     Image *turned = image_create(3, 4, &error);
     image_compare(a, turned, &d);
     assert_false(d.equal);

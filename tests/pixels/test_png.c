@@ -21,7 +21,6 @@ static Image *patterned(int width, int height) {
 TEST(written_pictures_come_back) {
     static const int sizes[][2] = {{1, 1}, {7, 5}, {300, 1}, {1, 300}, {640, 480}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        Error error = {0};
         const char *path = temporary_path("round.png");
         Image *image = patterned(sizes[i][0], sizes[i][1]);
         assert_ok(image_write_png(image, path, NULL, 0, &error), error);
@@ -36,7 +35,6 @@ TEST(written_pictures_come_back) {
 }
 
 TEST(alpha_is_dropped) {
-    Error error = {0};
     const char *path = temporary_path("opaque.png");
     Image *image = patterned(2, 1);
     image->pixels[3] = 7;
@@ -50,7 +48,6 @@ TEST(alpha_is_dropped) {
 }
 
 TEST(texts_come_back) {
-    Error error = {0};
     const char *path = temporary_path("text.png");
     const ImageText texts[] = {{"Scene", "pyramid"}, {"Method", "engine | pr\xC3\xA9"}, {"Empty", ""}};
     char value[64];
@@ -108,7 +105,6 @@ TEST(every_kind_is_read) {
         const PngKind *kind = &kinds[i / 2];
         const char *path = temporary_path("kind.png");
         write_kind(path, kind, i % 2 ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE);
-        Error error = {0};
         Image *image = image_read_png(path, &error);
         assert_ok(image != NULL, error);
         assert_true(image->width == PNG_SIDE && image->height == PNG_SIDE);
@@ -181,7 +177,6 @@ TEST(large_claims_are_refused_before_they_cost) {
 }
 
 TEST(the_limit_of_pixels_is_the_callers) {
-    Error error = {0};
     size_t size;
     uint8_t *data = (uint8_t *)small_file(&size);
     Image *image = image_decode_png(data, size, "small.png", 20, &error);
@@ -212,7 +207,6 @@ TEST(animations_are_refused) {
 
 /* Two pictures that differ in 16 bits but not in 8. */
 TEST(sixteen_bits_count_in_full) {
-    Error error = {0};
     static const PngKind kind = {"rgb 16", PNG_COLOR_TYPE_RGB, 16, false};
     for (int interlace = 0; interlace < 2; interlace++) {
         const char *path = temporary_path("deep.png");
@@ -273,7 +267,6 @@ static void write_text_bomb(const char *path) {
 }
 
 TEST(texts_that_swell_do_no_harm) {
-    Error error = {0};
     const char *path = temporary_path("bomb.png");
     static char value[SWOLLEN];
     write_text_bomb(path);
@@ -286,7 +279,6 @@ TEST(texts_that_swell_do_no_harm) {
 }
 
 TEST(what_is_no_file_is_refused) {
-    Error error = {0};
     assert_refused(image_read_png(temporary_path("missing.png"), &error), "missing.png");
     error = (Error){0};
     assert_null(image_read_png("/", &error));
@@ -294,7 +286,6 @@ TEST(what_is_no_file_is_refused) {
 }
 
 TEST(a_failed_write_is_the_systems_fault) {
-    Error error = {0};
     Image *image = patterned(2, 2);
     assert_false(image_write_png(image, temporary_path("no/such/folder.png"), NULL, 0, &error));
     assert_error(error, ERROR_SYSTEM, "no/such/folder.png");

@@ -82,7 +82,6 @@ static void find_text(Error *error) {
 }
 
 TEST_WITH(no_text_is_called_missing, NULL, unload) {
-    Error error = {0};
     Image *image = image_create(3, 2, &error);
     assert_ok(image != NULL && image_write_png(image, temporary_path("text.png"), &text, 1, &error), error);
     image_destroy(image);

@@ -203,7 +203,6 @@ TEST(single_wrong_pixels_are_detected) {
 
 /* A crisp edge that moves by a whole pixel has no coverage to compare. */
 TEST(an_edge_that_moves_by_a_pixel_differs) {
-    Error error = {0};
     Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
     for (int i = 0; i < SIDE * SIDE; i++) {
         memset(a->pixels + 4 * i, i % SIDE < 20 ? 0 : 255, 4);
@@ -216,7 +215,6 @@ TEST(an_edge_that_moves_by_a_pixel_differs) {
 
 /* What a transparent pixel hides does not matter: premultiplied, (171, 0, 85, 128) lies half way to transparent. */
 TEST(transparent_edges_are_edges) {
-    Error error = {0};
     Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
@@ -234,7 +232,6 @@ TEST(transparent_edges_are_edges) {
 
 /* A reproducible texture without flat areas: each change of brightness counts nearly everywhere. */
 TEST(textures_have_no_edges) {
-    Error error = {0};
     Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
     uint32_t random = 1;
     for (int i = 0; i < 4 * SIDE * SIDE; i++) {
@@ -250,7 +247,6 @@ TEST(textures_have_no_edges) {
 
 /* By one level, or two. */
 TEST(areas_that_become_lighter_differ) {
-    Error error = {0};
     for (int slope = 0; slope <= 2; slope++)
         for (int more = 1; more <= 2; more++) {
             Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
@@ -267,7 +263,6 @@ TEST(areas_that_become_lighter_differ) {
 
 /* Pictures smaller than the windows. */
 TEST(small_pictures_are_compared) {
-    Error error = {0};
     for (int width = 1; width <= 4; width++)
         for (int height = 1; height <= 4; height++) {
             Image *a = image_create(width, height, &error), *b = image_create(width, height, &error);

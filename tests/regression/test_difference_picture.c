@@ -92,7 +92,6 @@ TEST(sixteen_bits_count_in_full) {
 
 /* The header's colours at the ends; only 0 is black. */
 TEST(heat_goes_from_black_to_yellow) {
-    Error error = {0};
     size_t size;
     float values[LEVELS];
     IndexedPng *png = heat_picture(LEVELS, 1, &error);
@@ -114,7 +113,6 @@ TEST(heat_goes_from_black_to_yellow) {
 /* Noise does not shrink: 300 KB are ten parts. */
 TEST(noise_comes_back) {
     enum { WIDTH = 1000, HEIGHT = 300 };
-    Error error = {0};
     Palette palette = {.count = LEVELS};
     size_t size;
     uint32_t seed = 1;
@@ -148,7 +146,6 @@ TEST(ignored_edges_are_blue) {
 
 /* Equal but for one pixel, 24 x 12 and 16 x 20. */
 TEST(what_only_one_picture_has_is_striped) {
-    Error error = {0};
     size_t size;
     Image *a = black(24, 12), *b = black(16, 20);
     ImageDifference difference;

@@ -108,7 +108,6 @@ TEST_WITH(a_larger_shift_looks_larger, make, destroy) {
 
 /* At many pixels per degree, the eye blurs stripes to the grey of equal luminance. */
 TEST_WITH(fine_stripes_vanish_with_distance, make, destroy) {
-    Error error = {0};
     FlipSummary near, far;
     for (int x = 0; x < SIDE; x++) {
         paint(a, x, x + 1, x % 2 ? 0xFFFFFF : 0x000000);
@@ -142,7 +141,6 @@ static uint32_t busy_grey(int x) { return (uint32_t)(x * 37 % 200) * 0x010101; }
 /* Away from the edges, a region has the same values as in a larger picture, which is computed whole. */
 TEST_WITH(the_surroundings_do_not_matter, make, destroy) {
     static float small[SIDE * SIDE], large[SIDE * SIDE * 4];
-    Error error = {0};
     FlipSummary result;
     float *next = large;
     const FlipSink sink = {keep_row, &next};

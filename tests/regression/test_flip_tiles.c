@@ -180,7 +180,6 @@ TEST(the_largest_are_those_of_a_sort) {
     static float values[COUNT];
     for (int order = 0; order < 4; order++)
         for (size_t keep = 1; keep < 2 * COUNT; keep = keep * 3 + 1) {
-            Error error = {0};
             Largest largest;
             uint32_t seed = 7;
             assert_ok(largest_create(&largest, keep, &error), error);

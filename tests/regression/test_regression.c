@@ -221,7 +221,6 @@ TEST_WITH(causes_of_several_frames, make, remove_folders) {
 
 /* A run that has not drawn the pictures gives no names. */
 TEST_WITH(a_run_of_other_pictures, make, remove_folders) {
-    Error error = {0};
     run_position(run, 3, FIRST_BOX)->x += 1;
     Image *image = drawn(3);
     replace_pixels(3, image);
@@ -246,7 +245,6 @@ TEST_WITH(two_frames_swapped, make, remove_folders) {
 
 /* Not visible in any pixel; detected by the run. */
 TEST_WITH(the_last_bit_of_one_body, make, remove_folders) {
-    Error error = {0};
     float *angle = run_angle(run, 4, SECOND_BOX);
     *angle = nextafterf(*angle, 10);
     assert_ok(trajectory_write(run, in(actual, "two_boxes-engine.npz"), &error), error);
@@ -282,7 +280,6 @@ TEST_WITH(both_at_once, make, remove_folders) {
 
 /* A run of another length differs from its end on, a run of other bodies everywhere. */
 TEST_WITH(other_runs_beside_the_frames, make, remove_folders) {
-    Error error = {0};
     Trajectory *other = run_make("engine", 4);
     assert_ok(trajectory_write(other, in(actual, "two_boxes-engine.npz"), &error), error);
     Regression regression = compared();

@@ -125,7 +125,6 @@ TEST_WITH(the_distance_of_a_frame_is_the_largest_of_its_bodies, make, destroy) {
     b->position[2 * EXAMPLE_BODIES + 2].y = NAN;
     assert_true(fabs(trajectory_distance(a, b, 2) - 3) < 1e-6);
     trajectory_destroy(b);
-    Error error = {0};
     b = trajectory_create(EXAMPLE_FRAMES, 1, &error);
     assert_ok(b != NULL, error);
     assert_true(trajectory_distance(a, b, 2) == 0);

@@ -72,7 +72,6 @@ TEST(families_stand_until_the_bomb_strikes) {
         if (strstr(entry->d_name, ".yaml") == NULL) continue;
         Scene *scene = read_family(entry->d_name);
         Launch launches[2];
-        Error error = {0};
         assert_ok(launches_for_scoring(scene, 2, launches, &error), error);
         for (int i = 0; i < runs_of(scene); i++) check_launch(entry->d_name, scene, &launches[i]);
         scene_destroy(scene);

@@ -39,7 +39,6 @@ TEST(written_is_read) {
 /* An empty world of one frame is one, too. */
 TEST(the_smallest_trajectory) {
     const char *path = temporary_path("small.npz");
-    Error error = {0};
     Trajectory *t = trajectory_create(1, 0, &error);
     t->dt = 1;
     write_file(t, path);
@@ -106,7 +105,6 @@ TEST(bad_poses_are_refused) {
 /* A verdict without a body, and no verdict. */
 TEST(a_verdict_may_be_unknown) {
     const char *path = temporary_path("calm.npz");
-    Error error = {0};
     Trajectory *t = example_trajectory();
     trajectory_judge(t, "settles", 0, -1);
     write_file(t, path);
@@ -187,7 +185,6 @@ TEST(bad_contacts_are_refused) {
 
 /* In step 1 the bomb is not there yet. */
 TEST(a_contact_of_an_absent_body_is_refused) {
-    Error error = {0};
     Trajectory *t = trajectory_create(2, 2, &error);
     t->dt = 1;
     t->size[0] = t->size[1] = vec2(1, 1);
@@ -203,7 +200,6 @@ TEST(random_damage_is_refused_or_harmless) {
     const char *path = temporary_path("damaged.npz");
     Trajectory *t = example_trajectory();
     write_file(t, path);
-    Error error = {0};
     size_t size;
     char *data = file_read(path, 1 << 20, &size, &error);
     assert_ok(data != NULL, error);
@@ -242,7 +238,6 @@ TEST(csv_gives_every_float_back) {
     Trajectory *t = example_trajectory();
     /* With 8 digits this float and the next read the same. */
     t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
-    Error error = {0};
     assert_ok(trajectory_write_csv(t, path, &error), error);
     char *text = text_of(path), *line = strtok(text, "\n");
     assert_string_equal(line, "frame,body,x,y,angle,vx,vy,omega");
@@ -269,7 +264,6 @@ TEST(hashes_are_those_of_the_frames) {
     const char *path = temporary_path("run.hashes");
     Trajectory *t = example_trajectory();
     t->fixed[1] = t->fixed[2] = 1;
-    Error error = {0};
     assert_ok(trajectory_write_hashes(t, path, &error), error);
     char *text = text_of(path);
     /* Of no bodies: the start value. */
@@ -291,7 +285,7 @@ TEST(failed_writes_tell) {
                                                                           trajectory_write_hashes};
     Trajectory *t = example_trajectory();
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
+        error = (Error){0};
         assert_false(writers[i](t, temporary_path("nowhere/run"), &error));
         assert_error(error, ERROR_SYSTEM, "nowhere/run: error: cannot write: ");
     }

@@ -77,7 +77,6 @@ TEST(long_and_strange_names_of_files_become_names) {
 }
 
 TEST(a_run_without_velocities_is_written_without) {
-    Error error = {0};
     const char *path = temporary_path("again.npz");
     Trajectory *t = read_changed("run.npz", "");
     assert_ok(trajectory_write(t, path, &error), error);

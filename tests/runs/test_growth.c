@@ -37,7 +37,6 @@ TEST(an_exponential_has_its_rate) {
 
 /* The same by two trajectories, whose floats lie far enough from each other to be fine. */
 TEST(trajectories_that_part_exponentially) {
-    Error error = {0};
     Trajectory *a = trajectory_create(FRAMES, 1, &error), *b = trajectory_create(FRAMES, 1, &error);
     assert_true(a != NULL && b != NULL);
     for (int frame = 0; frame < FRAMES; frame++) {
@@ -124,7 +123,6 @@ TEST(tables) {
                  "frame,time,distance,shifted_distance\n0,0,0,1e-06\n1,0.5,0.125,0.25\n2,1,3e-09,\n");
     expect_table(&(DistanceTable){2, 0.5, of_both, NULL},
                  "frame,time,distance,shifted_distance\n0,0,0,\n1,0.5,0.125,\n");
-    Error error = {0};
     assert_false(distance_table_write(&(DistanceTable){2, 0.5, of_both, NULL}, "/nowhere/distance.csv", &error));
     assert_error(error, ERROR_SYSTEM, "/nowhere/distance.csv");
 }

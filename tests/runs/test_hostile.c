@@ -124,7 +124,6 @@ static bool needs_files(const Method *method, const Scene *scene) {
 /* The reference is held to fewer scenes: it takes its time. */
 TEST(no_method_leaves_the_finite_numbers) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
-        Error error = {0};
         Method method;
         Scene scene;
         BodyDef bodies[BOXES_MAX];
@@ -143,7 +142,6 @@ TEST(no_method_leaves_the_finite_numbers) {
 
 /* So there is something to refuse. */
 TEST(a_step_that_blows_up_is_refused) {
-    Error error = {0};
     Method method;
     Scene scene;
     BodyDef bodies[BOXES_MAX];

@@ -23,7 +23,6 @@ static Scene *read_scene(const char *text, const char *more) {
 
 TEST(bodies_are_where_they_are_when_the_bomb_is_added) {
     Scene *scene = read_scene(falling, "");
-    Error error = {0};
     Launch launch = launch_of(scene);
     launch.x = 0.6f;
     launch.frame = 1; /* the box is still above */
@@ -39,7 +38,6 @@ TEST(bodies_are_where_they_are_when_the_bomb_is_added) {
 /* The first launch that is refused is named by its place in the list, in whatever order their frames come. */
 TEST(the_launch_is_named) {
     Scene *scene = read_scene(falling, "");
-    Error error = {0};
     const Launch own = launch_of(scene);
     Launch launches[] = {own, own, own, own};
     launches[0].x = 0, launches[0].frame = 2; /* still below the box */
@@ -58,7 +56,6 @@ TEST(the_launch_is_named) {
 
 TEST(a_scene_may_allow_it) {
     Scene *scene = read_scene(falling, "overlaps: allowed\n");
-    Error error = {0};
     Launch launch = launch_of(scene);
     launch.x = 0;
     assert_ok(launches_check(scene, &launch, 1, &error), error);
@@ -78,7 +75,6 @@ static Trajectory *run(const char *method_text, float x, Error *error) {
 TEST(runs_are_refused_by_any_method) {
     static const char *const methods[] = {"engine", "momentum", "interior"};
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
         assert_refused(run(methods[i], 0.3f, &error), "the bomb would start 0.7 m inside body 1 in frame 60");
         Trajectory *free_run = run(methods[i], 1.5f, (error = (Error){0}, &error));
         assert_ok(free_run != NULL, error);

@@ -7,7 +7,6 @@
 #include <math.h>
 
 TEST(a_new_trajectory_is_empty) {
-    Error error = {0};
     Trajectory *t = trajectory_create(3, 2, &error);
     assert_ok(t != NULL, error);
     for (int i = 0; i < 6; i++) {
@@ -23,7 +22,6 @@ TEST(a_new_trajectory_is_empty) {
 TEST(too_large_a_trajectory_is_refused) {
     static const int cases[][2] = {{INT32_MAX, INT32_MAX}, {1000001, 10000}, {INT32_MAX, 1}, {1, INT32_MAX}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        Error error = {0};
         assert_refused(trajectory_create(cases[i][0], cases[i][1], &error), "bodies take more than 2 GiB");
     }
 }
@@ -40,7 +38,6 @@ TEST(a_body_is_there_where_its_position_is_finite) {
 /* Steps with 2, 0, 1, 0, ... contacts: every step finds its own. */
 TEST(contacts_are_found_by_step) {
     enum { FRAMES = 50 };
-    Error error = {0};
     Trajectory *t = trajectory_create(FRAMES, 2, &error);
     for (int step = 1; step < FRAMES - 5; step++) {
         for (int i = 0; i < step % 3; i++) {
@@ -85,7 +82,6 @@ TEST(the_hash_is_fnv_of_dynamic_bodies_that_are_there) {
 
 /* In every third of 8 frames, what frame 4 saw is there in frame 6, the last but one; frame 7 is beyond. */
 TEST(a_verdict_keeps_its_place) {
-    Error error = {0};
     const int kept[8] = {0, 1, 1, 1, 2, 2, 2, -1};
     Trajectory *t = trajectory_create(8, 2, &error);
     t->dt = 1;
@@ -118,7 +114,6 @@ TEST(a_long_verdict_is_cut) {
 
 /* Of 8 frames every third: 0, 3 and 6, each with its own state and the contacts of its own step. */
 TEST(every_third_frame_is_the_same_frame) {
-    Error error = {0};
     Trajectory *t = trajectory_create(8, 2, &error);
     strcpy(t->method, "engine");
     t->dt = 0.125F;

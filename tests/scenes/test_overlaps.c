@@ -41,7 +41,6 @@ TEST(overlapping_bodies_are_refused) { CHECK_TABLE(overlaps); }
 TEST(bombs_inside_bodies_are_refused) { CHECK_TABLE(bombs); }
 
 TEST(settings_are_checked_too) {
-    Error error = {0};
     static const char text[] =
         BASE GROUND STACK("5", "$spacing") "parameters:\n  spacing: {value: 1, from: 0.5, to: 2}\n";
     const char *path = write_scene(text, sizeof text - 1);

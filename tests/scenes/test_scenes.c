@@ -281,7 +281,6 @@ TEST(world_has_the_bodies_in_order_and_the_bomb_last) {
 }
 
 TEST(world_has_no_bomb_before_its_frame) {
-    Error error = {.kind = ERROR_NONE};
     Scene *scene = shipped("pyramid_settled");
     World *world = world_of(scene);
     assert_int_equal(world_body_count(world), 67);

@@ -35,7 +35,6 @@ static const char bomb[] = "bomb: {x: 0.001, y: 100, frame: 20, size: [1, 1], ma
    velocity of an aimed bomb were shifted too, its distance would grow by 15e-6 m/s. */
 TEST(a_shift_in_free_flight_is_constant) {
     char text[1024];
-    Error error = {0};
     for (int with_bomb = 0; with_bomb < 2; with_bomb++) {
         snprintf(text, sizeof text, "%s%s", falling, with_bomb ? bomb : "");
         const char *path = write_scene(text);
@@ -55,7 +54,6 @@ TEST(a_shift_in_free_flight_is_constant) {
 
 /* At a position where one ulp is 0.0625 m. */
 TEST(a_shift_is_at_least_one_float) {
-    Error error = {0};
     const char *path = write_scene("  - {size: [1, 1], position: [600000, 50], mass: 1, friction: 0}\n");
     Trajectory *run = run_scene(path, "engine");
     Chaos chaos;
@@ -86,7 +84,6 @@ TEST(a_bomb_that_has_not_hit_is_not_shifted) {
 
 /* The distances are those between the two trajectories. */
 TEST(distances_are_those_of_the_trajectories) {
-    Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "momentum:k=5");
     Scene *scene = scene_read(path, &error);
@@ -112,7 +109,6 @@ static void expect_refused(const Trajectory *run, const char *path, int frames, 
 }
 
 TEST(other_scenes_and_runs_are_detected) {
-    Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "engine");
     expect_refused(run, SOURCE_DIR "/scenes/single.yaml", 20, "single.yaml: error: is not the scene of the run");
@@ -139,7 +135,6 @@ static bool stop_late(void *context, double done, double total) {
 
 /* A stop must not be taken for a NaN or infinite state. */
 TEST(a_stop_is_an_error) {
-    Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "engine");
     Chaos chaos;

@@ -37,7 +37,6 @@ static ChartRow bare(void) {
 }
 
 TEST(rows_are_written_in_the_order_of_the_header) {
-    Error error = {0};
     const ChartRow rows[] = {full, bare()};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &chart_layout, rows, 2, &error), error);
@@ -71,7 +70,6 @@ static void assert_same_row(const ChartRow *found, const ChartRow *expected) {
 }
 
 TEST(written_tables_are_read_back) {
-    Error error = {0};
     ChartRow rows[] = {full, bare(), full};
     rows[2].phase = PHASE_REST;
     rows[2].method = "say \"k\", \\ and 'more'";
@@ -94,7 +92,6 @@ static void expect_refused(const char *path, const char *message) {
 
 /* As twinbox wrote them before it named the processor; the column can be the last one only. */
 TEST(the_processor_may_be_missing) {
-    Error error = {0};
     CsvTable table;
     assert_ok(csv_table_read(&table, write_chart(GOOD), &chart_layout, &error), error);
     assert_string_equal(chart_row(&table, 0)->cpu, "");
@@ -141,7 +138,6 @@ TEST(long_names_are_refused) {
 }
 
 TEST(other_headers_are_refused) {
-    Error error = {0};
     const char *path = temporary_path("other.csv");
     static const char text[] = "scene,name\na,b\n";
     assert_ok(file_write(path, text, strlen(text), &error), error);

@@ -55,7 +55,6 @@ TEST(energy_counts_from_the_bomb_on) {
 
 /* The interior method is close to the converged run of the stack for longer than to the engine's. */
 TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
-    Error error = {0};
     Scene *scene = read_scene("stack");
     scene->frames = 60;
     Method method;
@@ -78,7 +77,6 @@ TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
 }
 
 TEST(both_methods_are_timed) {
-    Error error = {0};
     Scene *scene = read_scene("stack");
     scene->frames = 60;
     const Sampling sampling = {.after = 20, .rest = 20};

@@ -44,7 +44,6 @@ static void assert_table(const char *folder, const char *name, const char *expec
 }
 
 TEST(rows_have_the_order_of_pieces_and_sections) {
-    Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("tables"));
     const char *results[] = {"a:1\n# a:9\nab:2\na:3\n#\n", "",     "# 8\nab:4\n", "a/1:11\na/0:10\nab:5\n",
@@ -63,7 +62,7 @@ TEST(lines_of_no_table_are_refused) {
     static const char *const wrong[] = {"b:1\n", "a1\n",    "a/0:1\n", "a/-2:1\n", "a/x:1\n",
                                         "a:1",   "abc:1\n", ":1\n",    "\n"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        Error error = {0};
+        error = (Error){0};
         const char *results[] = {wrong[i]};
         if (write_tables(folder, results, 1, NULL, 0, &error)) fail_msg("'%s' is taken", wrong[i]);
         assert_int_equal(error.kind, ERROR_SYSTEM);
@@ -71,7 +70,6 @@ TEST(lines_of_no_table_are_refused) {
 }
 
 TEST(a_row_is_a_line_with_the_tables_name) {
-    Error error = {0};
     char *text = NULL;
     size_t size;
     FILE *results = open_memstream(&text, &size);

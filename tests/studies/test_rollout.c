@@ -30,7 +30,6 @@ static void free_scores(StepScores scores[PHASES]) {
 }
 
 TEST(the_reference_has_no_error) {
-    Error error = {0};
     Scene *scene = read_scene("stack");
     Stepper *stepper = make_stepper(scene, "reference");
     Rollout rollout = {0};
@@ -49,7 +48,6 @@ TEST(the_reference_has_no_error) {
 
 /* 6 impact frames, 60 frames after; every frame is in exactly one phase. */
 TEST(every_frame_is_in_one_phase) {
-    Error error = {0};
     Scene *scene = read_scene("single");
     scene->frames = 200;
     Stepper *stepper = make_stepper(scene, "engine");
@@ -86,7 +84,6 @@ static double frozen_error(const SnapshotList *list, const Scene *scene, const c
 
 /* More sweeps give a smaller error; no warm start, or noise, a larger one. */
 TEST(methods_rank_as_expected_on_frozen_steps) {
-    Error error = {0};
     Scene *scene = read_scene("stack");
     SnapshotList list = {0};
     assert_ok(snapshots_add(&list, scene, &few, &error), error);
@@ -104,7 +101,6 @@ TEST(methods_rank_as_expected_on_frozen_steps) {
 
 /* The engine's frozen steps are those of its closed loop, so the errors are the same. */
 TEST(frozen_steps_of_the_engine_are_its_own) {
-    Error error = {0};
     Scene *scene = read_scene("pyramid_settled");
     SnapshotList list = {0};
     StepScores frozen[PHASES] = {0}, closed[PHASES] = {0};

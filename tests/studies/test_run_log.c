@@ -113,7 +113,6 @@ TEST(runs_part_where_a_body_or_the_bomb_is_away) {
 
 /* Two steps: one creates 0.5 N s and falls back, the other clamps an impulse to its cone, which is no fallback. */
 TEST(momentum_and_fallbacks_are_added) {
-    Error error = {0};
     BodyDef box = {.size = {1, 1}, .mass = 1};
     const Scene scene = {.dt = 0.5f, .frames = 2, .body_count = 1, .bodies = &box};
     World *world = scene_world(&scene, &error);
@@ -142,7 +141,6 @@ TEST(momentum_and_fallbacks_are_added) {
 
 /* A box of 3 kg, 2 m up, at 4 m/s and 6 rad/s: 3 (16 / 2 + 10 2) + 3 (1 + 1) / 12 36 / 2 = 93 J. */
 TEST(energy_is_kinetic_and_potential) {
-    Error error = {0};
     BodyDef box = {.size = {1, 1}, .mass = 3, .position = {5, 2}, .velocity = {0, 4}, .angular_velocity = 6};
     Scene scene = {.dt = 0.5f, .frames = 1, .body_count = 1, .bodies = &box, .gravity = {0, -10}};
     World *world = scene_world(&scene, &error);

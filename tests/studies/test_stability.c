@@ -76,7 +76,6 @@ static Method method_of(const char *text) {
 }
 
 TEST(methods_that_do_not_apply_have_a_reason) {
-    Error error = {0};
     Scene *stack = read_scene("stack_height");
     const Method engine = method_of("engine"), nameless = method_of("scene-net");
     assert_true(stability_applies(&engine, stack, &error));
@@ -96,7 +95,6 @@ static char *read_table(const char *folder, const char *name) {
 
 /* The stack's network is for ten boxes: with two boxes the first step fails. That must not count as non-finite. */
 TEST(a_method_that_fits_some_values_only_does_not_apply) {
-    Error error = {0};
     const char *folder = temporary_path("network");
     const StabilityOptions options = {.folder = folder,
                                       .scenes = scenes,
@@ -147,7 +145,6 @@ static bool run_shots(const char *folder, const char *methods, Reports *reports,
 /* A box starts with its centre 0.51 m above the top of a slab 0.25 m thick and falls freely for one step. It is then
    pushed out on the nearer side: below, if its centre has passed the slab's. */
 TEST(a_study_writes_borders_maps_and_refusals) {
-    Error error = {0};
     char folder[300];
     Reports reports = {0, -1};
     snprintf(folder, sizeof folder, "%s", temporary_path("shots"));
@@ -178,7 +175,6 @@ TEST(a_study_writes_borders_maps_and_refusals) {
 
 /* Two boxes stay in place; if a network lifts them off within ten seconds, drift and energy are empty. */
 TEST(a_study_at_rest_writes_drift_and_energy) {
-    Error error = {0};
     const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
                                   .stands = true, .rests = true};
     ContenderList methods;
@@ -212,7 +208,6 @@ TEST(a_study_at_rest_writes_drift_and_energy) {
 
 /* Coulomb: a box stands on a slope if and only if its tangent is below the friction. */
 TEST(a_map_of_slopes_has_its_border_at_the_friction) {
-    Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("slopes"));
     const StabilityOptions options = {.folder = folder,
@@ -238,7 +233,6 @@ TEST(a_map_of_slopes_has_its_border_at_the_friction) {
 
 /* Stopped in the map, the finished study is kept; resumed, it gives the same tables as an uninterrupted run. */
 TEST(an_interrupted_study_is_resumed) {
-    Error error = {0};
     char whole[300], cut[300];
     Reports all = {0, -1}, some = {0, -1}, rest = {0, -1};
     snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
@@ -260,7 +254,6 @@ TEST(an_interrupted_study_is_resumed) {
 }
 
 TEST(unknown_names_and_methods_are_refused) {
-    Error error = {0};
     StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
     assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error),
                    "'luck' is not a study or map; known: stack_height, ");

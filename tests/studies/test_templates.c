@@ -63,7 +63,6 @@ TEST(dominoes) { (void)state, check_template("dominoes"); }
 
 /* "With 10 iterations it falls." */
 TEST(the_arch_needs_its_iterations) {
-    Error error = {0};
     EnergyLog converged = {0};
     Method reference, engine;
     VerdictReading reading;

@@ -149,7 +149,6 @@ TEST(verdicts_agree_with_those_beside_the_converged_run) {
         double values[BORDER_POINTS_MAX];
         const int value_count = border_scan_values(&study->scan, values);
         for (int v = 0; v < value_count; v++) {
-            Error error = {0};
             EnergyLog converged = {0};
             Scene *scene = scene_at(study, values[v]);
             if (scene->frames > 600) scene->frames = 600;
