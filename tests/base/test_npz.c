@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* .npz: arrays come back as they went in, the same arrays give the same bytes, and damaged or hostile files are refused
    (test_npz_hostile.c: files made for harm). test_numpy.c compares with NumPy. */
-#include "testing.h"
+#include "made.h"
 
 #include "files.h"
 #include "base/npz.h"
@@ -23,13 +23,6 @@ enum { ARRAYS = sizeof arrays / sizeof arrays[0] };
 static void write_arrays(const char *path) {
     Error error = {0};
     assert_ok(npz_write(path, arrays, ARRAYS, &error), error);
-}
-
-static NpzFile *open_file(const char *path) {
-    Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
-    return file;
 }
 
 /* 1 where all arrays are read and equal, 0 where something is refused; anything else fails. */
@@ -59,7 +52,7 @@ TEST(written_is_read) {
     const char *path = temporary_path("written.npz");
     write_arrays(path);
     assert_int_equal(read_and_compare(path), 1);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     assert_true(npz_has(file, "matrix"));
     assert_false(npz_has(file, "matri"));
     int64_t shape[2];
@@ -92,7 +85,7 @@ TEST(same_arrays_same_bytes) {
 TEST(mismatches_name_found_and_wanted) {
     const char *path = temporary_path("mismatch.npz");
     write_arrays(path);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     Error missing = {0}, type = {0}, rank = {0}, shape = {0}, text = {0};
     int64_t found[NPZ_MAX_RANK];
     assert_null(npz_read(file, "no", NPZ_FLOAT32, 0, NULL, &missing));
@@ -166,7 +159,7 @@ static bool is_table(const char *kind, int32_t version, Error *error) {
     const char *path = temporary_path("kind.npz");
     *error = (Error){0};
     assert_ok(npz_write(path, head, 2, error), *error);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     assert_string_equal(npz_path(file), path);
     const bool is = npz_check_kind(file, "table", 3, error);
     npz_close(file);
@@ -188,7 +181,7 @@ TEST(scalars_and_names_are_read) {
                                {"worse", NPZ_TEXT, 0, {0}, "\x7f"}};
     const char *path = temporary_path("fields.npz");
     assert_ok(npz_write(path, fields, 4, &error), error);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     uint64_t found = 0;
     char text[16];
     assert_ok(npz_read_scalar(file, "hash", NPZ_UINT64, &found, sizeof found, &error), error);

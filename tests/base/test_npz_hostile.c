@@ -1,18 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that are no .npz, or one made for harm: refused with the reason, before they cost time or memory. */
-#include "testing.h"
+#include "made.h"
 
 #include "files.h"
 #include "base/npz.h"
 
 #include <zip.h>
-
-static NpzFile *open_file(const char *path) {
-    Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
-    return file;
-}
 
 /* A zip of one member with these bytes. */
 static void write_member(const char *path, const char *name, const char *data, size_t size, zip_int32_t method) {
@@ -41,7 +34,7 @@ static void expect_head_refused(const char *dictionary, size_t data_size, const 
     write_member(path, "array.npy", member, 10 + strlen(dictionary) + data_size, ZIP_CM_STORE);
     free(member);
     if (reason == NULL)
-        npz_close(open_file(path));
+        npz_close(npz_of(path));
     else
         expect_refused(path, reason);
 }
@@ -155,7 +148,7 @@ TEST(too_many_arrays_are_refused) {
     }
     const char *path = temporary_path("many.npz");
     assert_ok(npz_write(path, many, 256, &error), error);
-    npz_close(open_file(path));
+    npz_close(npz_of(path));
     assert_ok(npz_write(path, many, 257, &error), error);
     expect_refused(path, "holds 257 arrays; expected 1 to 256");
 }
@@ -192,7 +185,7 @@ static void write_zeros(const char *path, const char *type, size_t size) {
 TEST(more_than_the_budget_is_refused) {
     const char *path = temporary_path("bomb.npz");
     write_zeros(path, "|u1", 16 << 20);
-    npz_close(open_file(path));
+    npz_close(npz_of(path));
     write_zeros(path, "|u1", 64 << 20);
     expect_refused(path, "its arrays take 67108864 bytes; expected at most 3");
     expect_refused(path, "(16 MiB and 256 times the size of the file)");
@@ -204,7 +197,7 @@ TEST(what_is_written_is_within_the_budget) {
     NpzArray array = {"zeros", NPZ_UINT8, 1, {SIZE}, calloc(SIZE, 1)};
     assert_ok(npz_write(path, &array, 1, &error), error);
     free((void *)array.data);
-    npz_close(open_file(path));
+    npz_close(npz_of(path));
 }
 
 /* An array that is read again and again: 15 MiB, three times of which would exceed 16 MiB and 256 times 15 KB. */
@@ -213,7 +206,7 @@ TEST(all_that_is_read_is_limited) {
     const char *path = temporary_path("again.npz");
     const int64_t shape = SIZE;
     write_zeros(path, "|u1", SIZE);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     int read = 0;
     for (void *data; (data = npz_read(file, "zeros", NPZ_UINT8, 1, &shape, &error)) != NULL; read++) free(data);
     npz_close(file);
@@ -227,7 +220,7 @@ TEST(converted_arrays_count_as_what_they_become) {
     const char *path = temporary_path("converted.npz");
     const int64_t shape = SIZE;
     write_zeros(path, "|i1", SIZE);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     npz_convert(file);
     assert_null(npz_read(file, "zeros", NPZ_INT64, 1, &shape, &error));
     npz_close(file);
@@ -240,7 +233,7 @@ TEST(shapes_are_expected_without_data) {
     const NpzArray written[] = {{"a", NPZ_FLOAT32, 2, {3, 2}, numbers}, {"b", NPZ_FLOAT32, 0, {0}, numbers}};
     NpzArray expected[] = {{"b", NPZ_FLOAT32, 0, {0}, NULL}, {"a", NPZ_FLOAT32, 2, {3, 2}, NULL}};
     assert_ok(npz_write(path, written, 2, &error), error);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     assert_ok(npz_expect(file, expected, 2, &error), error);
     expected[1].shape[0] = 2;
     assert_refused(npz_expect(file, expected, 2, &error), "array 'a' has shape (3, 2); expected (2, 2)");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* .npz whose arrays grow: the same bytes as those of whole arrays, however the rows come; large arrays come back, and are
    deflated only where that pays; nothing is left of a stream that is not finished. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "base/npz.h"
@@ -80,8 +80,7 @@ TEST(rows_give_the_bytes_of_the_whole) {
     npz_stream_destroy(stream);
     assert_same_file(path, expected);
 
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
+    NpzFile *file = npz_of(path);
     for (int i = 0; i < ARRAYS; i++) {
         if (row_size[i] == 0) continue;
         void *read = npz_read(file, whole[i].name, whole[i].type, whole[i].rank, whole[i].shape, &error);

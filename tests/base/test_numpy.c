@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NumPy reads what npz_write writes, and npz_read what numpy.savez and savez_compressed write. Needs
    /usr/bin/python3 with NumPy (python3-numpy). */
-#include "testing.h"
+#include "made.h"
 
 #include "base/npz.h"
 #include "python.h"
@@ -70,8 +70,7 @@ static void expect_array(NpzFile *file, const NpzArray *wanted, size_t size) {
 
 static void expect_arrays(const char *path) {
     Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
+    NpzFile *file = npz_of(path);
     expect_array(file, &(NpzArray){"matrix", NPZ_FLOAT32, 2, {3, 2}, matrix}, sizeof matrix);
     expect_array(file, &(NpzArray){"reals", NPZ_FLOAT64, 1, {2}, reals}, sizeof reals);
     expect_array(file, &(NpzArray){"cube", NPZ_INT32, 3, {2, 1, 2}, cube}, sizeof cube);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which failures of a run are verdicts. */
-#include "testing.h"
+#include "made.h"
 
 #include "cli/runs.h"
 #include "base/file.h"
@@ -15,9 +15,8 @@ TEST(a_run_that_overflows_has_a_verdict) {
                          .frames = 100,
                          .body_count = 1,
                          .bodies = &body};
-    Method method;
     SimulateVerdict verdict;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    const Method method = method_named("engine");
     assert_ok(simulate_verdict_begin(&verdict, &scene, "engine", &error), error);
     const StepObserver observer = simulate_verdict_observer(&verdict);
     assert_refused(simulate_observed(&scene, &method, &observer, &error), "is NaN or infinite");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Captions for LaTeX: what they state, and that no name breaks them. */
 #include "testing.h"
+#include "files.h"
 
 #include "base/file.h"
 #include "figures/internal.h"
@@ -57,16 +58,13 @@ static char *caption_of(const char *kind_name, FigureSpec spec) {
     Error error = {0};
     FigureFacts facts = {0};
     Sketch sketch = {0};
-    size_t size;
     const char *path = temporary_path("caption.tex");
     const FigureKind *kind = figure_kind(kind_name, &error);
     spec.facts = &facts;
     assert_ok(kind != NULL && kind->draw(&sketch, &spec, &error), error);
     assert_ok(figure_write_caption(kind, &spec, path, &error), error);
     sketch_free(&sketch);
-    char *text = file_read(path, 10000, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
+    return text_of(path);
 }
 
 /* Up to the version. */

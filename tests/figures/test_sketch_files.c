@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The three formats of a sketch. Areas have closed forms; a PDF's object table is checked. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
 #include "base/file.h"
 #include "base/hash.h"
@@ -19,8 +20,7 @@ static Image *as_pixels(const Sketch *sketch, const SketchOutput *output) {
     Error error = {0};
     const char *path = temporary_path("sketch.png");
     assert_ok(sketch_write(sketch, path, output, &error), error);
-    Image *image = image_read_png(path, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_of(path);
     assert_int_equal(image->width, (int)lrint(10 * sketch->width));
     assert_int_equal(image->height, (int)lrint(10 * sketch->height));
     return image;
@@ -103,7 +103,7 @@ TEST(shapes_lie_at_their_place_and_colour) {
 
 TEST(a_picture_of_its_places_size_keeps_its_pixels) {
     Sketch sketch;
-    Image *picture = image_create(20, 10, &error);
+    Image *picture = image_sized(20, 10);
     for (int i = 0; i < 20 * 10 * 4; i++) picture->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(i * 37);
     picture->pixels[3] = 0;
     sketch_begin(&sketch, 10, 5);
@@ -151,8 +151,7 @@ TEST(words_are_as_wide_as_they_say) {
 }
 
 static void draw_something(Sketch *sketch) {
-    Error error = {0};
-    Image *picture = image_create(3, 2, &error);
+    Image *picture = image_sized(3, 2);
     for (int i = 0; i < 3 * 2 * 4; i++) picture->pixels[i] = (uint8_t)(i * 37);
     sketch_begin(sketch, 30, 20);
     strcpy(sketch->title, "Something <new>");
@@ -180,8 +179,7 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
         const char *path = temporary_path(expected[i / 2].name);
         assert_ok(sketch_write(&sketch, path, transparent ? &clear : &white, &error), error);
         size_t size;
-        char *data = file_read(path, 1 << 20, &size, &error);
-        assert_ok(data != NULL, error);
+        char *data = read_whole(path, &size);
         const uint64_t hash = hash_xxh3(data, size);
         free(data);
         if (hash != (transparent ? expected[i / 2].transparent : expected[i / 2].on_white))
@@ -227,9 +225,7 @@ static void expect_printed(const char *program, const char *path, const char *wa
              strcmp(program, "pdftotext") == 0 ? "-" : "", out);
     assert_ok(process_start(&process, (const char *const[]){"sh", "-c", command, NULL}, &error), error);
     assert_ok(process_finish(&process, text, sizeof text, &error), error);
-    size_t size;
-    char *printed = file_read(out, 1 << 16, &size, &error);
-    assert_ok(printed != NULL, error);
+    char *printed = text_of(out);
     if (strncmp(printed, wanted, strlen(wanted)) != 0) fail_msg("%s prints '%s', not '%s'", program, printed, wanted);
     free(printed);
 }

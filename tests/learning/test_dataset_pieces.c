@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Datasets in pieces: the file is that of a dataset in memory, for any targets and views; damaged pieces are refused. */
 #include "testing.h"
+#include "files.h"
 
 #include "base/file.h"
 #include "learning/dataset.h"
@@ -17,10 +18,8 @@ static DatasetOptions options_for(DatasetOptions options) {
 }
 
 static void assert_equal_files(const char *path, const char *other) {
-    Error error = {0};
     size_t sizes[2];
-    char *one = file_read(path, 1 << 28, &sizes[0], &error), *two = file_read(other, 1 << 28, &sizes[1], &error);
-    assert_ok(one != NULL && two != NULL, error);
+    char *one = read_whole(path, &sizes[0]), *two = read_whole(other, &sizes[1]);
     assert_int_equal(sizes[0], sizes[1]);
     assert_memory_equal(one, two, sizes[0]);
     free(one);

@@ -26,8 +26,7 @@ typedef struct Case {
 static Case make_case_of(Dataset *dataset, LossKind kind, int layers, const int *widths, Activation hidden,
                          Activation last, OutputScale scale) {
     Error error = {0};
-    Case made = {.dataset = dataset, .network = network_create(layers, widths, &error)};
-    assert_ok(made.network != NULL, error);
+    Case made = {.dataset = dataset, .network = network_sized(layers, widths)};
     for (int l = 0; l < layers; l++) made.network->activations[l] = l < layers - 1 ? hidden : last;
     samples_fit_normalisation(made.dataset, scale, made.network);
     made.train = samples_create(made.dataset, made.network, false, &error);

@@ -10,9 +10,7 @@ enum { ROWS = 2000 };
 
 /* A network without hidden layers and with weights 0: it predicts its biases for every row. */
 static Network *make_constant(const Dataset *dataset) {
-    Error error = {0};
-    Network *network = network_create(1, (const int[]){PAIR_INPUTS, PAIR_CHANGES}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(1, (const int[]){PAIR_INPUTS, PAIR_CHANGES});
     strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     samples_fit_normalisation(dataset, SCALE_STANDARD, network);
     return network;

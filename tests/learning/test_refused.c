@@ -33,8 +33,7 @@ TEST(invalid_options_are_refused) {
         memcpy(options.widths, cases[i].widths, sizeof cases[i].widths);
         refuse(dataset, options, cases[i].text);
     }
-    Network *start = network_create(2, (const int[]){PAIR_INPUTS, 5, 2}, &error);
-    assert_ok(start != NULL, error);
+    Network *start = network_sized(2, (const int[]){PAIR_INPUTS, 5, 2});
     options = small("adam", 0);
     options.start = start;
     refuse(dataset, options, "trained on other inputs");

@@ -15,8 +15,7 @@ typedef struct Case {
 
 static Case make_case(Dataset *dataset, int outputs, OutputScale scale) {
     Error error = {0};
-    Case made = {.dataset = dataset, .network = network_create(1, (const int[]){PAIR_INPUTS, outputs}, &error)};
-    assert_ok(made.network != NULL, error);
+    Case made = {.dataset = dataset, .network = network_sized(1, (const int[]){PAIR_INPUTS, outputs})};
     made.network->activations[0] = outputs == 2 ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;
     samples_fit_normalisation(dataset, scale, made.network);
     made.train = samples_create(dataset, made.network, false, &error);

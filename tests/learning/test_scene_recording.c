@@ -26,7 +26,7 @@ static void assert_equal_samples(const SlotSamples *samples, const SlotSamples *
 }
 
 TEST(shards_record_what_the_training_runs) {
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     SceneRecording recording;
     Pieces pieces;
     SceneTraining reading = training;

@@ -9,7 +9,7 @@
 #include <omp.h>
 
 static Scene *short_scene(void) {
-    Scene *scene = shipped_scene("single");
+    Scene *scene = scene_named("single");
     scene->frames = 40;
     return scene;
 }

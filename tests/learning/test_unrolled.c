@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sweeps in double against the engine's, and their derivatives against finite differences. */
-#include "testing.h"
+#include "made.h"
 
 #include "runs/runs.h"
 #include "methods/kernels.h"
@@ -16,10 +16,8 @@ static void observe_scene(const char *name, bool (*observe)(void *, int, const W
     char path[512];
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
-    Method engine;
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
-    assert_ok(method_parse(&engine, "engine", &error), error);
+    Scene *scene = scene_from(path);
+    const Method engine = method_named("engine");
     assert_ok(simulate_observed(scene, &engine, &(StepObserver){observe, context}, &error), error);
     scene_destroy(scene);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stepper gns. Its learned part is any network here: laws do not depend on what was learned. */
+#include "made.h"
 #include "methods/particle_heap.h"
 #include "allocations.h"
 
@@ -47,10 +48,8 @@ static void begin(Run *run, BodyDef *bodies, int count, const char *settings, co
     snprintf(text, sizeof text, "gns%s", settings);
     assert_ok(method_with_network(&method, text, net, &error), error);
     run->scene = scene_of(bodies, count);
-    run->world = scene_world(&run->scene, &error);
-    assert_ok(run->world != NULL, error);
-    run->stepper = stepper_create(&method, &run->scene, &error);
-    assert_ok(run->stepper != NULL, error);
+    run->world = world_of(&run->scene);
+    run->stepper = stepper_of(&run->scene, &method);
 }
 
 static void end(Run *run) {
@@ -156,10 +155,9 @@ TEST(states_beyond_training_are_counted) {
 }
 
 TEST(other_networks_are_refused) {
-    Method method;
     BodyDef bodies[] = {ground};
     const Scene scene = scene_of(bodies, 1);
-    assert_ok(method_parse(&method, "gns", &error), error);
+    Method method = method_named("gns");
     assert_refused(stepper_create(&method, &scene, &error), "needs a network");
     error = (Error){0};
     assert_ok(method_with_network(&method, "gns", SOURCE_DIR "/scenes/networks/sain.npz", &error), error);

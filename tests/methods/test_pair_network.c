@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a file may hold, and which solver takes it. */
+#include "made.h"
 #include "pair_networks.h"
 
 TEST(texts_that_do_not_fit_each_other_are_refused) {
-    Network *network = network_create(1, (const int[]){10, 3}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(1, (const int[]){10, 3});
     strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     strcpy(network->target, "pair");
     assert_network_refused(&solver_pair_net, write_pair_network(network),

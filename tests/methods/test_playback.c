@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What playback plays is what was recorded. */
-#include "runs/made.h"
+#include "made.h"
 
 static Trajectory *run(const char *method_text, float x, int frame) {
     Scene *scene = scene_named("single");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws that hold for soft-step and avbd, the steppers that remove overlap without giving it a velocity. */
 #include "allocations.h"
-#include "runs/made.h"
+#include "made.h"
 
 #include "base/hash.h"
 
@@ -181,7 +181,7 @@ TEST(a_used_stepper_steps_as_a_new_one) {
         Stepper *stepper = make_stepper(&scene, methods[m]);
         uint64_t hashes[2];
         for (int i = 0; i < 2; i++) {
-            World *world = scene_world(&scene, &error);
+            World *world = world_of(&scene);
             take_steps(stepper, world, &scene, 1, 50);
             hashes[i] = state_hash(world);
             world_destroy(world);
@@ -201,7 +201,7 @@ TEST(other_worlds_step_without_memory) {
     const int first[] = {51, 1}, ahead[] = {10, 0};
     for (int m = 0; m < METHOD_COUNT; m++)
         for (int i = 0; i < 2; i++) {
-            World *world = scene_world(&scene, &error), *copy = scene_world(&scene, &error);
+            World *world = world_of(&scene), *copy = world_of(&scene);
             Stepper *stepper = make_stepper(&scene, methods[m]), *fresh = make_stepper(&scene, methods[m]);
             take_steps(stepper, world, &scene, 1, 50);
             assert_ok(world_copy(copy, world, &error), error);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of sain. */
+#include "made.h"
 #include "relation_networks.h"
 
 #include "nets/nets.h"
@@ -37,7 +38,7 @@ static void refuse(const char *path, const char *reason) {
 
 TEST(other_files_are_refused) {
     const int widths[] = {10, 10, 2};
-    Network *pair = network_create(2, widths, &error);
+    Network *pair = network_sized(2, widths);
     const char *path = temporary_path("pair.npz");
     assert_ok(network_write(pair, path, &error), error);
     refuse(path, "kind");

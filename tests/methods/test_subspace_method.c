@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws of the method with a network made by hand: boxes go on as they move. */
-#include "runs/made.h"
+#include "made.h"
 
 #include "methods/subspace_nets.h"
 #include "methods/steppers.h"
@@ -94,8 +94,7 @@ TEST(another_world_starts_from_its_poses) {
     const Scene other = launch_scene(scene, &launch);
     SubspaceNet *net = subspace_net_by_hand(0);
     const Method method = method_of(net, scene, "subspace");
-    Stepper *both = stepper_create(&method, scene, &error), *alone = stepper_create(&method, scene, &error);
-    assert_true(both != NULL && alone != NULL);
+    Stepper *both = stepper_of(scene, &method), *alone = stepper_of(scene, &method);
     World *first = world_of(scene), *second = world_of(&other), *expected = world_of(&other);
     for (int frame = 1; frame <= 3; frame++) step_world(both, first, scene, frame);
     for (int frame = 4; frame <= 6; frame++) step_world(both, second, &other, frame);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "made.h"
 #include "networks.h"
 
 #include "nets/nets.h"
@@ -14,8 +15,7 @@ static void predict(const Network *network, const float *input, float *output) {
 }
 
 TEST(a_new_network_is_zero_with_identity_normalisation) {
-    Network *network = network_create(2, (const int[]){3, 5, 2}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(2, (const int[]){3, 5, 2});
     const float input[3] = {1, -2, 3};
     float output[2] = {7, 7};
     predict(network, input, output);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is written is read; what holds no slot network, or one that cannot be, is refused with place and reason. */
+#include "files.h"
 #include "net_files.h"
 #include "slot_networks.h"
 
@@ -120,8 +121,7 @@ TEST(every_array_is_needed_and_checked) {
     assert_ok(slot_network_write(network, path, &error), error);
     slot_network_destroy(network);
     size_t size;
-    char *bytes = file_read(path, 1 << 20, &size, &error);
-    assert_ok(bytes != NULL, error);
+    char *bytes = read_whole(path, &size);
     assert_file_is_checked(is_read, path, "scene-net", SLOT_NETWORK_VERSION);
     bytes[size / 2] ^= 1; /* inside a matrix */
     refuse_file(is_read, write_bytes(temporary_path("flipped.npz"), bytes, size), "damaged");

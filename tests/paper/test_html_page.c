@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/png.h"
 #include "paper/report_internal.h"
 
 static void write_picture(const char *name) {
     Error error = {0};
-    Image *image = image_create(5, 3, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(5, 3);
     assert_ok(image_write_png(image, temporary_path(name), NULL, 0, &error), error);
     image_destroy(image);
 }

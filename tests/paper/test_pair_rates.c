@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rates with known values: the engine agrees with itself, a network that predicts zero has the warm start's rates, one
    that predicts the mean has the constant predictor's. */
-#include "testing.h"
+#include "made.h"
 
 #include "methods/pair.h"
 #include "nets/nets.h"
@@ -22,9 +22,7 @@ static SnapshotList *sample_stack(Scene *scene) {
 }
 
 static Scene *read_stack(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("stack");
     scene->frames = 150;
     return scene;
 }
@@ -32,8 +30,7 @@ static Scene *read_stack(void) {
 /* Without hidden layers and with weights 0: it always predicts `mean`. */
 static const char *write_constant(PairView view, PairTarget target, int outputs, const float *mean) {
     Error error = {0};
-    Network *network = network_create(1, (const int[]){pair_views[view].count, outputs}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(1, (const int[]){pair_views[view].count, outputs});
     strcpy(network->inputs, pair_views[view].inputs);
     strcpy(network->outputs, pair_output_names(view, target, outputs));
     strcpy(network->target, pair_target_names[target]);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The frame of the systems that the paper cites, tried on a system made for this test: interior with other limits. */
+#include "files.h"
 #include "tables.h"
 
 #include "sanitized.h"
@@ -217,10 +218,8 @@ TEST(a_page_plays_the_runs_of_the_strips) {
     assert_ok(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), NULL, &error), error);
     for (int i = 0; i < STRIP_SCENES; i++) {
         char name[64];
-        size_t size;
         snprintf(name, sizeof name, "strip-%s.html", strip_scene_names[i]);
-        char *page = file_read(temporary_path(name), 1 << 22, &size, &error);
-        assert_ok(page != NULL, error);
+        char *page = text_of(temporary_path(name));
         const char *engine = strstr(page, "\"method\": \"engine\""),
                    *own = strstr(page, "\"method\": \"interior:near=0.01\"");
         assert_true(engine != NULL && own != NULL && engine < own);

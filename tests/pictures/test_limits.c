@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a page leaves out, and what is refused. Runs of noise, which does not pack. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
 #include "base/file.h"
 #include "base/base.h"
@@ -12,8 +13,7 @@ static float noise(uint64_t *random) { return (float)(split_mix(random) >> 40) /
 
 static Trajectory *noisy_run(const char *method, uint64_t random) {
     Error error = {0};
-    Trajectory *run = trajectory_create(FRAMES, BODIES, &error);
-    assert_ok(run != NULL, error);
+    Trajectory *run = run_sized(FRAMES, BODIES);
     snprintf(run->scene, sizeof run->scene, "noise");
     snprintf(run->method, sizeof run->method, "%s", method);
     run->dt = 1.0F / 60;
@@ -63,13 +63,6 @@ static bool write_page(const Pair *pair, const PlayerOptions *options, const cha
     return player_write(pair->runs, 2, options, path, result, error);
 }
 
-static char *text_of(const char *path, size_t *size) {
-    Error error = {0};
-    char *text = file_read(path, 1 << 30, size, &error);
-    assert_ok(text != NULL, error);
-    return text;
-}
-
 TEST(the_same_runs_give_the_same_bytes) {
     const char *paths[] = {temporary_path("a.html"), temporary_path("b.html")};
     char *texts[2];
@@ -77,7 +70,7 @@ TEST(the_same_runs_give_the_same_bytes) {
     for (int i = 0; i < 2; i++) {
         PlayerResult result;
         assert_ok(write_page(*state, &(PlayerOptions){.last = -1}, paths[i], &result, &error), error);
-        texts[i] = text_of(paths[i], &sizes[i]);
+        texts[i] = read_whole(paths[i], &sizes[i]);
         assert_int_equal(result.bytes, sizes[i]);
         assert_int_equal(result.frames, FRAMES);
         assert_false(result.left_contacts);
@@ -93,12 +86,11 @@ TEST(the_same_runs_give_the_same_bytes) {
 TEST(contacts_are_left_out_first) {
     const char *path = temporary_path("left.html");
     PlayerResult whole, less;
-    size_t size;
     assert_ok(write_page(*state, &(PlayerOptions){.last = -1}, path, &whole, &error), error);
     assert_ok(write_page(*state, &(PlayerOptions){.last = -1, .most_bytes = whole.bytes * 9 / 10}, path, &less, &error),
               error);
     assert_true(less.left_contacts && less.bytes < whole.bytes * 9 / 10);
-    char *text = text_of(path, &size);
+    char *text = text_of(path);
     assert_null(strstr(text, "id=\"c0-0\""));
     assert_non_null(strstr(text, "without contacts"));
     free(text);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects of each look: required runs, and positions of poses, cameras, colours and curves. */
-#include "testing.h"
+#include "made.h"
 
 #include "look_runs.h"
 #include "mesa.h"
@@ -177,9 +177,9 @@ static uint64_t hash_of(const RenderLook *look, int count, Moment moment) {
     Error error = {0};
     RenderOptions options = {.width = 800, .height = 450, .look = *look};
     Renderer *renderer = renderer_create(panels, count, &options, &error);
-    Image *image = image_create(800, 450, &error);
+    Image *image = image_sized(800, 450);
     const bool *changed;
-    assert_ok(renderer != NULL && image != NULL, error);
+    assert_ok(renderer != NULL, error);
     assert_ok(renderer_draw_next(renderer, moment, image, &changed, &error), error);
     uint64_t hash = image_hash(image);
     renderer_destroy(renderer);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The manifest describes what was drawn, and an interrupted sequence is resumed to the same bytes as an
    uninterrupted one. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/hash.h"
 #include "files.h"
@@ -105,7 +105,7 @@ static void check_picture(const json_t *item, int index) {
     const char *path = frame_path(whole, index), *part = json_string_value(json_object_get(item, "part"));
     int frame = (int)json_integer_value(json_object_get(item, "frame"));
     char *data = read_whole(path, &size), text[64] = "";
-    Image *image = image_read_png(path, &error);
+    Image *image = image_of(path);
     assert_true(hash_of(json_object_get(item, "pixels")) == image_hash(image));
     assert_true(hash_of(json_object_get(item, "file_hash")) == hash_xxh3(data, size));
     assert_non_null(strstr(path, json_string_value(json_object_get(item, "file"))));
@@ -181,9 +181,7 @@ static void check_view(const char *directory, bool moving) {
         const json_t *picture = json_array_get(pictures, i);
         assert_int_equal(json_object_get(picture, "camera") != NULL, moving);
         if (strcmp(json_string_value(json_object_get(picture, "shows")), "frame") != 0) continue;
-        Error error = {0};
-        Image *image = image_read_png(frame_path(directory, (int)i), &error);
-        assert_ok(image != NULL, error);
+        Image *image = image_of(frame_path(directory, (int)i));
         check_bodies(all, picture, image);
         image_destroy(image);
     }
@@ -218,8 +216,7 @@ TEST(the_view_names_the_files_of_the_runs) {
 }
 
 TEST(a_manifest_names_no_place) {
-    size_t size;
-    char *text = read_whole(manifest_of(whole), &size);
+    char *text = text_of(manifest_of(whole));
     assert_null(strstr(text, temporary_folder));
     free(text);
 }
@@ -401,10 +398,7 @@ TEST(files_that_are_not_manifests_stay) {
         write_bytes(manifest_of(options.directory), foreign, sizeof foreign - 1);
         assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error),
                        "foreign/manifest.json: error: is not a manifest of twinbox");
-        size_t size;
-        char *text = read_whole(manifest_of(options.directory), &size);
-        assert_string_equal(text, foreign);
-        free(text);
+        assert_file(manifest_of(options.directory), foreign);
     }
     assert_int_equal(unlink(manifest_of(options.directory)), 0);
     assert_int_equal(mkdir(manifest_of(options.directory), 0700), 0);

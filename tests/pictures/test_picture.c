@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole frames: equal in both contexts for all contents of the trajectories, and stable from frame to frame. */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/built_contexts.h"
 #include "regression/compare.h"
@@ -31,7 +31,7 @@ static Image *draw_in(ContextChoice context, int count, int width, int height, i
     RenderOptions options = {.width = width, .height = height, .context = context};
     Renderer *renderer = renderer_create(panels, count, &options, &error);
     assert_ok(renderer != NULL, error);
-    Image *image = image_create(width, height, &error);
+    Image *image = image_sized(width, height);
     assert_ok(renderer_draw(renderer, frame, image, &error), error);
     renderer_destroy(renderer);
     return image;
@@ -72,7 +72,7 @@ TEST_WITH(an_ended_panel_holds_its_last_frame, make, destroy) {
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
     assert_int_equal(picture.frames, 12);
     Image *last = draw_in(CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(CONTEXT_AUTO, 2, 640, 360, 9);
-    Image *a = image_create(640, 360, &error), *b = image_create(640, 360, &error);
+    Image *a = image_sized(640, 360), *b = image_sized(640, 360);
     const Rect *rects = picture.layout.panels;
     copy_panel(a, last, &rects[1]);
     copy_panel(b, later, &rects[1]);
@@ -164,7 +164,7 @@ static uint64_t hash_with_words(const char *title, const char *note) {
     RenderOptions options = {.width = 1280, .height = 720, .title = title, .notes = {NULL, note}};
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
     assert_ok(renderer != NULL, error);
-    Image *image = image_create(1280, 720, &error);
+    Image *image = image_sized(1280, 720);
     assert_ok(renderer_draw(renderer, 4, image, &error), error);
     uint64_t hash = image_hash(image);
     image_destroy(image);
@@ -242,7 +242,7 @@ TEST_WITH(what_cannot_be_shown_is_refused, make, destroy) {
     assert_refused(renderer_create(panels, 2, &options, &error),
                    "panel 2 (pair-net:network=a/b.npz) has time steps of 0.02 s");
     Renderer *renderer = renderer_create(panels, 1, &options, &error);
-    Image *image = image_create(64, 64, &error);
+    Image *image = image_sized(64, 64);
     for (int frame = -1; frame <= 12; frame += 13) {
         assert_refused(renderer_draw(renderer, frame, image, &error), "the frames are 0 to 11");
     }

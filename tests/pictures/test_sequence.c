@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sequences: the same files with any number of processes, and an error message for every failure. */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/built_contexts.h"
 #include "files.h"
@@ -59,11 +59,10 @@ TEST_WITH(a_sequence_holds_the_frames_of_the_renderer, make, destroy) {
     assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     assert_int_equal(count_files(options.directory, ".png"), 5);
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
-    Image *image = image_create(options.width, options.height, &error);
+    Image *image = image_sized(options.width, options.height);
     for (int frame = 3; frame <= 7; frame++) {
         assert_ok(renderer_draw(renderer, frame, image, &error), error);
-        Image *written = image_read_png(frame_path(options.directory, frame), &error);
-        assert_ok(written != NULL, error);
+        Image *written = image_of(frame_path(options.directory, frame));
         assert_true(image_hash(written) == image_hash(image));
         image_destroy(written);
     }

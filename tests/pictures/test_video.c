@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Videos have all frames or do not exist. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/machine.h"
 #include "files.h"
@@ -120,7 +120,7 @@ TEST(gifs_are_small) {
         int frames, width, height;
         double rate;
         const char *directory = temporary_path("large");
-        Image *image = image_create(sizes[i][0], sizes[i][1], &error);
+        Image *image = image_sized(sizes[i][0], sizes[i][1]);
         assert_ok(file_make_directory(directory, &error), error);
         for (size_t k = 0; k < 4 * (size_t)image->width * (size_t)image->height; k++)
             image->pixels[k] = (uint8_t)(k % 251);
@@ -154,7 +154,7 @@ TEST(a_damaged_frame_makes_no_video) {
     size_t size, other_size;
     const char *path = temporary_path("kept.mp4"), *frame = frame_path(folder, 4);
     char *data = read_whole(frame, &size), *other = read_whole(frame_path(folder, 8), &other_size);
-    Image *small = image_create(8, 8, &error);
+    Image *small = image_sized(8, 8);
     for (int i = 0; i < 4; i++) {
         static const char *const texts[] = {"cannot open", "unexpected end of file", "differ from those drawn",
                                             "frame 4 is 8x8, but the first is 96x64"};

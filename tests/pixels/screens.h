@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A canvas in each kind of context, for tests of single pixels. Include testing.h first. */
 #pragma once
+#include "made.h"
 #include "built_contexts.h"
 #include "pixels/gl.h"
 #include "regression/compare.h"
@@ -31,8 +32,8 @@ static inline int open_screens(void **state) {
         assert_int_equal(s->context.kind->choice, wanted);
         assert_ok(gl_load(&s->gl, s->context.kind->find, s->context.state, &error), error);
         s->canvas = canvas_create(&s->gl, SCREEN_SIDE, SCREEN_SIDE, &error);
-        s->image = image_create(SCREEN_SIDE, SCREEN_SIDE, &error);
-        assert_ok(s->canvas != NULL && s->image != NULL, error);
+        s->image = image_sized(SCREEN_SIDE, SCREEN_SIDE);
+        assert_ok(s->canvas != NULL, error);
     }
     return 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of the encoder, read back by libpng and pngcheck: every kind of picture, and sequences of which only changed
    rows are compressed again. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "regression/compare.h"
@@ -15,9 +15,7 @@ static unsigned any_below(unsigned limit) {
 }
 
 static Image *blank_image(int width, int height) {
-    Error error = {0};
-    Image *image = image_create(width, height, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(width, height);
     memset(image->pixels, 255, (size_t)width * (size_t)height * 4);
     return image;
 }
@@ -58,8 +56,7 @@ static void assert_holds(const uint8_t *data, size_t size, const Image *image) {
     Error error = {0};
     const char *path = temporary_path("holds.png");
     assert_ok(file_write(path, data, size, &error), error);
-    Image *back = image_read_png(path, &error);
-    assert_ok(back != NULL, error);
+    Image *back = image_of(path);
     ImageDifference difference;
     image_compare(image, back, &difference);
     assert_true(difference.equal);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Comparison and hash of synthetic pictures. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/compare.h"
 
@@ -8,9 +8,8 @@ static Image *a, *b;
 
 static int make(void **state) {
     (void)state;
-    Error error = {0};
-    a = image_create(4, 3, &error);
-    b = image_create(4, 3, &error);
+    a = image_sized(4, 3);
+    b = image_sized(4, 3);
     return a == NULL || b == NULL;
 }
 
@@ -53,7 +52,7 @@ TEST_WITH(one_bit_changes_the_hash, make, destroy) {
 
 TEST_WITH(the_shape_counts, make, destroy) {
     ImageDifference d;
-    Image *turned = image_create(3, 4, &error);
+    Image *turned = image_sized(3, 4);
     image_compare(a, turned, &d);
     assert_false(d.equal);
     assert_false(d.same_size);

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNG files of every kind are read as the pixels they hold; damaged ones are refused. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
 #include "base/file.h"
 #include "regression/compare.h"
 #include "pngs.h"
 
 static Image *patterned(int width, int height) {
-    Error error = {0};
-    Image *image = image_create(width, height, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(width, height);
     uint32_t state = 1;
     for (size_t i = 0; i < (size_t)width * (size_t)height * 4; i++) {
         state = state * 1664525 + 1013904223;
@@ -24,8 +23,7 @@ TEST(written_pictures_come_back) {
         const char *path = temporary_path("round.png");
         Image *image = patterned(sizes[i][0], sizes[i][1]);
         assert_ok(image_write_png(image, path, NULL, 0, &error), error);
-        Image *back = image_read_png(path, &error);
-        assert_ok(back != NULL, error);
+        Image *back = image_of(path);
         ImageDifference difference;
         image_compare(image, back, &difference);
         assert_true(difference.equal);
@@ -39,8 +37,7 @@ TEST(alpha_is_dropped) {
     Image *image = patterned(2, 1);
     image->pixels[3] = 7;
     assert_ok(image_write_png(image, path, NULL, 0, &error), error);
-    Image *back = image_read_png(path, &error);
-    assert_ok(back != NULL, error);
+    Image *back = image_of(path);
     assert_int_equal(back->pixels[3], 255);
     assert_memory_equal(back->pixels, image->pixels, 3);
     image_destroy(image);
@@ -105,8 +102,7 @@ TEST(every_kind_is_read) {
         const PngKind *kind = &kinds[i / 2];
         const char *path = temporary_path("kind.png");
         write_kind(path, kind, i % 2 ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE);
-        Image *image = image_read_png(path, &error);
-        assert_ok(image != NULL, error);
+        Image *image = image_of(path);
         assert_true(image->width == PNG_SIDE && image->height == PNG_SIDE);
         for (int y = 0; y < PNG_SIDE; y++)
             for (int x = 0; x < PNG_SIDE; x++) {
@@ -126,9 +122,7 @@ static char *small_file(size_t *size) {
     Image *image = patterned(5, 4);
     assert_ok(image_write_png(image, path, &(ImageText){"Scene", "single"}, 1, &error), error);
     image_destroy(image);
-    char *data = file_read(path, 1 << 20, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
+    return read_whole(path, size);
 }
 
 static void refuse(const char *path, const char *text) {
@@ -211,8 +205,7 @@ TEST(sixteen_bits_count_in_full) {
     for (int interlace = 0; interlace < 2; interlace++) {
         const char *path = temporary_path("deep.png");
         write_kind(path, &kind, interlace);
-        Image *a = image_read_png(path, &error), *b = image_read_png(path, &error);
-        assert_ok(a != NULL && b != NULL, error);
+        Image *a = image_of(path), *b = image_of(path);
         assert_non_null(a->pixels16);
         for (int y = 0; y < PNG_SIDE; y++)
             for (int x = 0; x < PNG_SIDE; x++)
@@ -270,8 +263,7 @@ TEST(texts_that_swell_do_no_harm) {
     const char *path = temporary_path("bomb.png");
     static char value[SWOLLEN];
     write_text_bomb(path);
-    Image *image = image_read_png(path, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_of(path);
     assert_memory_equal(image->pixels, "abc\xFF", 4);
     image_destroy(image);
     assert_false(image_read_text(path, "Bomb", value, sizeof value, &error));

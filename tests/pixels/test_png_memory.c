@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whichever allocation fails, also of libpng: the result is that of enough memory, or a system error. Never is the file
    called damaged, a text missing, or a colour profile different. */
-#include "testing.h"
+#include "made.h"
 
 #include "allocations.h"
 #include "regression/compare.h"
@@ -82,8 +82,8 @@ static void find_text(Error *error) {
 }
 
 TEST_WITH(no_text_is_called_missing, NULL, unload) {
-    Image *image = image_create(3, 2, &error);
-    assert_ok(image != NULL && image_write_png(image, temporary_path("text.png"), &text, 1, &error), error);
+    Image *image = image_sized(3, 2);
+    assert_ok(image_write_png(image, temporary_path("text.png"), &text, 1, &error), error);
     image_destroy(image);
     load(temporary_path("text.png"));
     fail_each(find_text);

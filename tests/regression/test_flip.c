@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* FLIP in closed form where filters have no effect: uniform pictures differ only by colour. Elsewhere, laws. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/flip.h"
 
@@ -144,8 +144,7 @@ TEST_WITH(the_surroundings_do_not_matter, make, destroy) {
     FlipSummary result;
     float *next = large;
     const FlipSink sink = {keep_row, &next};
-    Image *wide_a = image_create(2 * SIDE, 2 * SIDE, &error), *wide_b = image_create(2 * SIDE, 2 * SIDE, &error);
-    assert_ok(wide_a != NULL && wide_b != NULL, error);
+    Image *wide_a = image_sized(2 * SIDE, 2 * SIDE), *wide_b = image_sized(2 * SIDE, 2 * SIDE);
     for (int x = 0; x < 2 * SIDE; x++) paint(wide_a, x, x + 1, busy_grey(x)), paint(wide_b, x, x + 1, busy_grey(x));
     for (int x = 0; x < SIDE; x++) paint(a, x, x + 1, busy_grey(x)), paint(b, x, x + 1, busy_grey(x));
     paint(wide_b, 30, 34, 0xFF8000);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The smallest possible changes, each with its verdict: the cause and the first frame. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "pictures/mesa.h"
@@ -133,8 +133,8 @@ static Image *drawn(int frame) {
     const Trajectory *const panels[] = {run};
     const RenderOptions options = {.width = WIDTH, .height = HEIGHT};
     Renderer *renderer = renderer_create(panels, 1, &options, &error);
-    Image *image = image_create(WIDTH, HEIGHT, &error);
-    assert_ok(renderer != NULL && image != NULL && renderer_draw(renderer, frame, image, &error), error);
+    Image *image = image_sized(WIDTH, HEIGHT);
+    assert_ok(renderer != NULL && renderer_draw(renderer, frame, image, &error), error);
     renderer_destroy(renderer);
     return image;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rules of a comparison: what is refused, with its place, and what applies to a name; limits that hold or not. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/regression.h"
 
@@ -107,7 +107,7 @@ TEST(later_rules_replace_limits) {
 
 TEST(all_masks_count) {
     Rules *rules = read_text(text, &error);
-    Image *expected = image_create(3, 1, &error);
+    Image *expected = image_sized(3, 1);
     uint8_t masked[3] = {0};
     memcpy(expected->pixels + 8, (const uint8_t[]){10, 255, 0, 255}, 4);
     assert_false(rules_have_masks(rules, "b.png"));

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trajectories in files: they come back bit by bit, and what is inconsistent is refused. */
 #include "made.h"
+#include "files.h"
 
 #include "base/file.h"
 #include "example.h"
@@ -39,7 +40,7 @@ TEST(written_is_read) {
 /* An empty world of one frame is one, too. */
 TEST(the_smallest_trajectory) {
     const char *path = temporary_path("small.npz");
-    Trajectory *t = trajectory_create(1, 0, &error);
+    Trajectory *t = run_sized(1, 0);
     t->dt = 1;
     write_file(t, path);
     Trajectory *r = trajectory_of(path);
@@ -114,8 +115,7 @@ TEST(a_verdict_may_be_unknown) {
     trajectory_destroy(r);
     trajectory_judge(t, "", 2, 1);
     write_file(t, path);
-    r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    r = trajectory_of(path);
     assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
     trajectory_destroy(r);
     trajectory_destroy(t);
@@ -185,7 +185,7 @@ TEST(bad_contacts_are_refused) {
 
 /* In step 1 the bomb is not there yet. */
 TEST(a_contact_of_an_absent_body_is_refused) {
-    Trajectory *t = trajectory_create(2, 2, &error);
+    Trajectory *t = run_sized(2, 2);
     t->dt = 1;
     t->size[0] = t->size[1] = vec2(1, 1);
     for (int frame = 0; frame < 2; frame++) example_pose(t, frame, 0, (float[6]){0});
@@ -201,8 +201,7 @@ TEST(random_damage_is_refused_or_harmless) {
     Trajectory *t = example_trajectory();
     write_file(t, path);
     size_t size;
-    char *data = file_read(path, 1 << 20, &size, &error);
-    assert_ok(data != NULL, error);
+    char *data = read_whole(path, &size);
     uint32_t seed = 7;
     for (int round = 0; round < 1000; round++) {
         seed = seed * 1664525 + 1013904223;
@@ -222,14 +221,6 @@ TEST(random_damage_is_refused_or_harmless) {
     }
     free(data);
     trajectory_destroy(t);
-}
-
-static char *text_of(const char *path) {
-    Error error = {0};
-    size_t size;
-    char *text = file_read(path, 1 << 20, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
 }
 
 /* The dynamic bodies that are there, and every number exactly. */

@@ -24,10 +24,7 @@ static const char *make(const char *name, const char *change) {
     return path;
 }
 
-static Trajectory *read_changed(const char *name, const char *change) {
-    Trajectory *t = trajectory_of(make(name, change));
-    return t;
-}
+static Trajectory *read_changed(const char *name, const char *change) { return trajectory_of(make(name, change)); }
 
 TEST(four_arrays_are_enough) {
     Trajectory *t = read_changed("v\303\266lker.2.npz", "");

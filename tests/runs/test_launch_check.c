@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Launches whose bomb would start inside a body are refused, where the bodies are when it is added. */
-#include "testing.h"
+#include "made.h"
 
 #include "runs/runs.h"
 
@@ -14,11 +14,8 @@ static const char falling[] = "gravity: [0, -10]\ndt: 1/60\niterations: 10\nfram
 
 static Scene *read_scene(const char *text, const char *more) {
     char all[1000];
-    Error error = {0};
     snprintf(all, sizeof all, "%s%s", text, more);
-    Scene *scene = scene_read(write_bytes(temporary_path("scene.yaml"), all, strlen(all)), &error);
-    assert_ok(scene != NULL, error);
-    return scene;
+    return scene_from(write_bytes(temporary_path("scene.yaml"), all, strlen(all)));
 }
 
 TEST(bodies_are_where_they_are_when_the_bomb_is_added) {
@@ -85,8 +82,7 @@ TEST(runs_are_refused_by_any_method) {
 /* Training and scoring launches, and the launch of a single run. */
 static void check_shipped(const char *path) {
     Error error = {0};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_from(path);
     enum { COUNT = LAUNCH_GRID };
     Launch launches[2 * COUNT + 1];
     if (scene->bomb.present) {

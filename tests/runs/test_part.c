@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Why two trajectories part: made by hand, so that the first frame, body, contact and cause are known. */
-#include "testing.h"
+#include "made.h"
 
 #include "runs/trajectory.h"
 
@@ -35,9 +35,7 @@ static void add_contacts(Trajectory *t, int step) {
 }
 
 static Trajectory *example(void) {
-    Error error = {0};
-    Trajectory *t = trajectory_create(FRAMES, BODIES, &error);
-    assert_ok(t != NULL, error);
+    Trajectory *t = run_sized(FRAMES, BODIES);
     t->dt = 0.5F;
     t->bomb = BOMB;
     t->fixed[0] = 1;

@@ -32,8 +32,7 @@ TEST(files_are_those_of_a_run_in_memory) {
     for (size_t i = 0; i < 2 * sizeof runs / sizeof *runs; i++) {
         const bool no_contacts = i % 2 == 1;
         Scene *scene = read_scene(runs[i / 2].scene, runs[i / 2].frames);
-        Trajectory *run = simulate(scene, &method, NULL, &error);
-        assert_ok(run != NULL, error);
+        Trajectory *run = run_with(scene, &method);
         if (no_contacts) {
             trajectory_restart_contacts(run);
             trajectory_end_contacts(run);

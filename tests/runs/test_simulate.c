@@ -103,10 +103,9 @@ static bool count_step(void *context, int frame, const World *world, Error *erro
 
 TEST(an_observer_sees_every_step_and_may_end_the_run) {
     Scene *scene = scene_named("single");
-    Method method;
     int steps = 0;
     StepObserver observer = {count_step, &steps};
-    assert_ok(method_parse(&method, "engine", &error), error);
+    const Method method = method_named("engine");
     assert_refused(simulate_observed(scene, &method, &observer, &error), "observer: error: enough");
     assert_int_equal(steps, 7);
     scene_destroy(scene);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run compared with a shifted one. */
-#include "testing.h"
+#include "made.h"
 
 #include "runs/runs.h"
 
@@ -16,12 +16,9 @@ static const char *write_scene(const char *bodies_and_bomb) {
 }
 
 static Trajectory *run_scene(const char *path, const char *text) {
-    Error error = {0};
-    Method method;
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL && method_parse(&method, text, &error), error);
-    Trajectory *run = simulate(scene, &method, NULL, &error);
-    assert_ok(run != NULL, error);
+    Scene *scene = scene_from(path);
+    const Method method = method_named(text);
+    Trajectory *run = run_with(scene, &method);
     scene_destroy(scene);
     return run;
 }
@@ -86,12 +83,10 @@ TEST(a_bomb_that_has_not_hit_is_not_shifted) {
 TEST(distances_are_those_of_the_trajectories) {
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "momentum:k=5");
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_from(path);
     scene->bodies[10].position.x = 1e-6F;
-    Method method;
-    assert_ok(method_parse(&method, "momentum:k=5", &error), error);
-    Trajectory *shifted = simulate(scene, &method, NULL, &error);
+    const Method method = method_named("momentum:k=5");
+    Trajectory *shifted = run_with(scene, &method);
     Chaos chaos;
     assert_ok(chaos_run(&chaos, path, run, 10, run->frames, NULL, &error), error);
     for (int frame = 0; frame < run->frames; frame++)

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "files.h"
 #include "charts.h"
 
 #include "studies/chart.h"
@@ -40,14 +41,9 @@ TEST(rows_are_written_in_the_order_of_the_header) {
     const ChartRow rows[] = {full, bare()};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &chart_layout, rows, 2, &error), error);
-    size_t size;
-    char *text = file_read(path, 10000, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, CHART_HEADER
-                        ",cpu\nstack,momentum,\"k=20,warm=off\",closed,after,40,10.5,9.25,11.75,52.5,123456,"
-                        "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5,AMD EPYC\n"
-                        "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,,\n");
-    free(text);
+    assert_file(path, CHART_HEADER ",cpu\nstack,momentum,\"k=20,warm=off\",closed,after,40,10.5,9.25,11.75,52.5,123456,"
+                                   "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5,AMD EPYC\n"
+                                   "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,,\n");
 }
 
 static void assert_same_figure(double found, double expected) {

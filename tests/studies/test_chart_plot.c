@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* chart.csv: invented numbers, modelled on measured ones; twelve methods. */
+#include "files.h"
 #include "python.h"
 
 #include "studies/chart.h"
@@ -25,10 +26,7 @@ static const char *folder(void) {
 }
 
 static char *read_drawn(const char *scene, const char *ending, size_t *size) {
-    Error error = {0};
-    char *data = file_read(drawn_file(scene, ending), 1 << 24, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
+    return read_whole(drawn_file(scene, ending), size);
 }
 
 TEST(three_files_are_drawn) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who takes part in a study. */
-#include "testing.h"
+#include "made.h"
 
 #include "studies/chart.h"
 
@@ -73,8 +73,7 @@ TEST(bad_lists_are_refused) {
 }
 
 TEST(a_method_without_its_network_is_left_out) {
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("single");
     ContenderList list = parse("engine:k=10,pair-net:k=5,pair-net:network=x.npz");
     const Contender *fit[3];
     assert_int_equal(contenders_for(&list, scene, fit), 3);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figure of errors at equal time, of an invented chart. */
+#include "files.h"
 #include "python.h"
 
 #include "studies/chart.h"
@@ -36,8 +37,7 @@ TEST(tables_and_three_formats_are_written) {
                                          "%PDF-"};
     for (int i = 0; i < 4; i++) {
         size_t size;
-        char *data = file_read(temporary_path(files[i]), 1 << 24, &size, &error);
-        assert_ok(data != NULL, error);
+        char *data = read_whole(temporary_path(files[i]), &size);
         assert_true(size > strlen(begins[i]));
         assert_memory_equal(data, begins[i], strlen(begins[i]));
         free(data);

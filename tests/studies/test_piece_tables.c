@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
+#include "files.h"
 
 #include "base/file.h"
 #include "studies/chart.h"
@@ -34,13 +35,8 @@ static bool write_tables(const char *folder, const char **results, int count, co
 
 static void assert_table(const char *folder, const char *name, const char *expected) {
     char path[400];
-    Error error = {0};
-    size_t size;
     snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-    char *text = file_read(path, 1000, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, expected);
-    free(text);
+    assert_file(path, expected);
 }
 
 TEST(rows_have_the_order_of_pieces_and_sections) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measures of synthetic logs. */
-#include "testing.h"
+#include "made.h"
 
 #include "studies/chart.h"
 
@@ -115,8 +115,7 @@ TEST(runs_part_where_a_body_or_the_bomb_is_away) {
 TEST(momentum_and_fallbacks_are_added) {
     BodyDef box = {.size = {1, 1}, .mass = 1};
     const Scene scene = {.dt = 0.5f, .frames = 2, .body_count = 1, .bodies = &box};
-    World *world = scene_world(&scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(&scene);
     RunLog log = {0};
     assert_true(run_log_begin(&log, &scene, world));
     for (int frame = 1; frame <= 2; frame++) {
@@ -143,8 +142,7 @@ TEST(momentum_and_fallbacks_are_added) {
 TEST(energy_is_kinetic_and_potential) {
     BodyDef box = {.size = {1, 1}, .mass = 3, .position = {5, 2}, .velocity = {0, 4}, .angular_velocity = 6};
     Scene scene = {.dt = 0.5f, .frames = 1, .body_count = 1, .bodies = &box, .gravity = {0, -10}};
-    World *world = scene_world(&scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(&scene);
     RunLog log = {0};
     assert_true(run_log_begin(&log, &scene, world));
     assert_near(log.at[0].energy, 3 * (8 + 20) + 0.5 * 0.5 * 36, 1e-4);

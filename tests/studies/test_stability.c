@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of studies, single cases, and complete quick studies. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
 #include "base/file.h"
 #include "studies/stability.h"
@@ -68,29 +69,18 @@ TEST(a_seed_shifts_the_first_dynamic_body) {
     }
 }
 
-static Method method_of(const char *text) {
-    Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, text, &error), error);
-    return method;
-}
-
 TEST(methods_that_do_not_apply_have_a_reason) {
     Scene *stack = read_scene("stack_height");
-    const Method engine = method_of("engine"), nameless = method_of("scene-net");
+    const Method engine = method_named("engine"), nameless = method_named("scene-net");
     assert_true(stability_applies(&engine, stack, &error));
     assert_refused(stability_applies(&nameless, stack, &error), "names no network");
     scene_destroy(stack);
 }
 
 static char *read_table(const char *folder, const char *name) {
-    Error error = {0};
     char path[600];
-    size_t size;
     snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-    char *text = file_read(path, 1 << 20, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
+    return text_of(path);
 }
 
 /* The stack's network is for ten boxes: with two boxes the first step fails. That must not count as non-finite. */
@@ -116,7 +106,7 @@ TEST(methods_without_k_use_the_scenes_iterations) {
     } rows[] = {{"engine", true},     {"engine:k=10", false}, {"engine:warm=off", true}, {"momentum", true},
                 {"reference", false}, {"substepping", false}, {"contact-net", false}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const Method method = method_of(rows[i].method);
+        const Method method = method_named(rows[i].method);
         assert_true(stability_takes_iterations(&method) == rows[i].takes);
     }
 }
