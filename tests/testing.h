@@ -17,8 +17,8 @@
 #include <unistd.h>
 
 /* TEST(law) { ... } is a test, in the order of the file; `state` is cmocka's, and `error` is an empty one of the test's own.
-   TEST_WITH() has what cmocka calls before and after it. RUN_TESTS(before, after) ends the file: the two, or NULL, are called
-   once, before and after all. */
+   TEST_WITH() has the fixtures that are called before and after it, each of which is FIXTURE(name) { ... } with the same two.
+   RUN_TESTS(before, after) ends the file: its fixtures, or NULL, are called once, before and after all. */
 enum { TESTS_MAX = 64 }; /* of a file */
 static struct CMUnitTest tests_of_file[TESTS_MAX] __attribute__((unused));
 static size_t test_count __attribute__((unused));
@@ -32,6 +32,11 @@ static size_t test_count __attribute__((unused));
         tests_of_file[test_count++] = (struct CMUnitTest){#law, call_##law, (before), (after), NULL}; \
     }                                                                                                 \
     static void law(__attribute__((unused)) void **state, __attribute__((unused)) Error error)
+
+#define FIXTURE(name)                                                         \
+    static void do_##name(void **state, Error error);                         \
+    static int name(void **state) { return do_##name(state, (Error){0}), 0; } \
+    static void do_##name(__attribute__((unused)) void **state, __attribute__((unused)) Error error)
 
 #define RUN_TESTS(before, after) \
     int main(void) { return _cmocka_run_group_tests("tests", tests_of_file, test_count, before, after); }

@@ -2,7 +2,6 @@
 /* Whole files: what is under a name is whole, and failures leave nothing behind. */
 #include "testing.h"
 
-#include "base/file.h"
 #include "files.h"
 
 #include <errno.h>

@@ -2,7 +2,6 @@
 #include "testing.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "base/json.h"
 
 #include <math.h>

@@ -4,7 +4,6 @@
 #include "made.h"
 
 #include "files.h"
-#include "base/npz.h"
 
 #include <time.h>
 

@@ -2,7 +2,6 @@
 /* Arrays of other types and orders, as NumPy writes them: converted exactly, or refused with the value that does not fit. */
 #include "made.h"
 
-#include "base/npz.h"
 #include "python.h"
 
 #include <math.h>

@@ -3,7 +3,6 @@
 #include "made.h"
 
 #include "files.h"
-#include "base/npz.h"
 
 #include <zip.h>
 

@@ -17,15 +17,12 @@ static bool write_all(Error *error) {
     return npz_write(path, arrays, 2, error);
 }
 
-static int begin(void **state) {
-    (void)state;
+FIXTURE(begin) {
     static char name[256];
-    Error error = {0};
     path = strcpy(name, temporary_path("a.npz"));
     for (int i = 0; i < 300; i++) numbers[i] = (float)(i * i % 97);
     assert_ok(write_all(&error), error);
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
-    return 0;
 }
 
 /* Lets only so many more files be opened. */
@@ -37,10 +34,7 @@ static void allow_files(unsigned more) {
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
 }
 
-static int allow_all(void **state) {
-    (void)state;
-    return setrlimit(RLIMIT_NOFILE, &before);
-}
+FIXTURE(allow_all) { assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0); }
 
 /* libzip needs a descriptor of its own. */
 TEST_WITH(a_lack_of_descriptors_is_no_damage, NULL, allow_all) {

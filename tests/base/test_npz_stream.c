@@ -3,8 +3,6 @@
    deflated only where that pays; nothing is left of a stream that is not finished. */
 #include "made.h"
 
-#include "base/file.h"
-#include "base/npz.h"
 #include "files.h"
 
 #include <signal.h>
@@ -30,11 +28,9 @@ static int make_numbers(void **state) {
     return 0;
 }
 
-static int free_numbers(void **state) {
-    (void)state;
+FIXTURE(free_numbers) {
     free(noise);
     free(zeros);
-    return 0;
 }
 
 static size_t file_size(const char *path) {

@@ -3,7 +3,6 @@
    /usr/bin/python3 with NumPy (python3-numpy). */
 #include "made.h"
 
-#include "base/npz.h"
 #include "python.h"
 
 static const float matrix[3][2] = {{1, -2.5F}, {0, 3e38F}, {-0.0F, 1e-45F}};

@@ -4,7 +4,6 @@
 #include "files.h"
 
 #include "cli/cli.h"
-#include "base/file.h"
 #include "base/base.h"
 
 static double now; /* s */

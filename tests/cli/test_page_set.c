@@ -5,7 +5,6 @@
 
 #include "cli/cli.h"
 #include "studies/chart_internal.h"
-#include "base/file.h"
 
 /* Two boxes that stand still for so many frames. */
 static Trajectory *make_run(int frames) {

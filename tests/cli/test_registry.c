@@ -5,7 +5,6 @@
 #include "files.h"
 
 #include "cli/cli.h"
-#include "base/file.h"
 #include "pictures/internal.h"
 #include "pictures/runs.h"
 #include "methods/methods.h"

@@ -59,24 +59,17 @@ TEST(what_is_no_cell_is_refused) {
 
 static CsvTable table;
 
-static int read_table(void **state) {
-    (void)state;
+FIXTURE(read_table) {
     static const char text[] = HEADER "a,engine,,h,,10,i,,1,falls,9,1,1,m\na,engine,,h,,10.05,i,,1,sinks,9,1,1,m\n"
                                       "a,engine,,h,,-20,i,,0,falls,9,1,1,m\n"
                                       "a,engine,k=4,h,,10,i,,1,not applicable,,,,\n"
                                       "a,momentum,,h,,10,i,,1,sways,9,1,1,J\na,nncg,,h,,10,i,,1,settles,9,1,1,J\n"
                                       "b,engine,,h,,10.05,i,,1,settles,9,1,1,J\n";
-    Error error = {0};
     assert_ok(file_write_soon(temporary_path("maps.csv"), text, strlen(text), &error), error);
     assert_ok(csv_table_read_from(&table, temporary_folder, &map_layout, &error), error);
-    return 0;
 }
 
-static int free_table(void **state) {
-    (void)state;
-    csv_table_free(&table);
-    return 0;
-}
+FIXTURE(free_table) { csv_table_free(&table); }
 
 /* The row of the table, from 0; -1: there is none, and the error has this text. */
 static void expect_row(const char *text, int row, const char *message) {

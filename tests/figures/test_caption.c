@@ -3,7 +3,6 @@
 #include "testing.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "figures/internal.h"
 #include "figures/run_figure.h"
 
@@ -11,10 +10,8 @@ enum { FRAMES = 61, IMPACT = 30 };
 
 static Trajectory *runs[3];
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     static const char *const methods[] = {"engine", "momentum:k=20", "pair-net:network=nets/my_net.npz"};
-    Error error = {0};
     for (int i = 0; i < 3; i++) {
         TrajectoryContact contact = {
             .a = FIRST_BOX, .b = BOMB_BODY, .point = {1, (float)i}, .normal = {0, 1}, .normal_impulse = 2};
@@ -23,13 +20,10 @@ static int make(void **state) {
         assert_ok(trajectory_add_contact(runs[i], IMPACT, &contact, &error), error);
         trajectory_end_contacts(runs[i]);
     }
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     for (int i = 0; i < 3; i++) trajectory_destroy(runs[i]);
-    return 0;
 }
 
 static void print_text(FILE *out, const void *text) { latex_text(out, text); }

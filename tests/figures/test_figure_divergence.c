@@ -3,7 +3,6 @@
 
 #include "figures/sketch.h"
 #include "figures/run_figure.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
@@ -58,9 +57,8 @@ TEST(a_plot_places_decades_evenly) {
 
 static Trajectory *simulate_stack(const char *method_name, float bomb_shift, int frames) {
     Scene *scene = scene_from(STACK);
-    const Method method = method_named(method_name);
     scene->frames = frames;
-    Trajectory *run = run_with(scene, &method);
+    Trajectory *run = run_by(scene, method_name);
     for (int frame = 0; frame <= frames; frame++) run->position[frame * run->bodies + run->bomb].x += bomb_shift;
     scene_destroy(scene);
     return run;

@@ -2,7 +2,6 @@
 #include "made.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "figures/internal.h"
 #include "figures/run_figure.h"
 

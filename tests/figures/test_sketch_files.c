@@ -3,7 +3,6 @@
 #include "made.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "base/hash.h"
 #include "base/machine.h"
 #include "figures/internal.h"

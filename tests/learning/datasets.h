@@ -4,7 +4,6 @@
 #include "made.h"
 
 #include "learning/dataset.h"
-#include "nets/nets.h"
 #include "learning/pair_training.h"
 
 #include <math.h>

@@ -3,7 +3,6 @@
 #pragma once
 #include "trainings.h"
 
-#include "methods/methods.h"
 #include "learning/scene_training_internal.h"
 #include "learning/scene_training.h"
 

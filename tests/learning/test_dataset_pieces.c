@@ -3,7 +3,6 @@
 #include "testing.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "learning/dataset.h"
 #include "in_shards.h"
 

@@ -2,7 +2,6 @@
 #include "trainings.h"
 
 #include "learning/dataset.h"
-#include "runs/runs.h"
 
 #include <math.h>
 

@@ -29,10 +29,8 @@ static void *keep(size_t count, size_t size) {
     return block;
 }
 
-static int free_all(void **state) {
-    (void)state;
+FIXTURE(free_all) {
     while (kept_count > 0) free(kept[--kept_count]);
-    return 0;
 }
 
 static Table make_table(int rows, int columns) {

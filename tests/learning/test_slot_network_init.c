@@ -11,18 +11,14 @@ enum { LAUNCHES = 20 };
 static SlotSamples samples;
 static SlotNetwork *network;
 
-static int begin(void **state) {
-    (void)state;
+FIXTURE(begin) {
     samples = labelled_impacts(LAUNCHES);
     network = network_for(&samples);
-    return 0;
 }
 
-static int end(void **state) {
-    (void)state;
+FIXTURE(end) {
     slot_network_destroy(network);
     slot_samples_free(&samples);
-    return 0;
 }
 
 static const ContactPoint *contact_in(const SlotSample *sample, int a, int b, uint32_t feature) {

@@ -2,7 +2,6 @@
 /* Small complete learnings on the single box, and the method with what they learned. */
 #include "trainings.h"
 
-#include "runs/runs.h"
 #include "learning/hybrid_training.h"
 
 #include <math.h>

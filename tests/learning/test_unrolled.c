@@ -2,7 +2,6 @@
 /* Sweeps in double against the engine's, and their derivatives against finite differences. */
 #include "made.h"
 
-#include "runs/runs.h"
 #include "methods/kernels.h"
 #include "methods/random_problem.h"
 #include "learning/scene_training.h"

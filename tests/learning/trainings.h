@@ -4,7 +4,6 @@
 #include "made.h"
 
 #include "base/machine.h"
-#include "scenes/scenes.h"
 
 /* Stops at the report of that number. */
 static inline bool stop_at(void *context, double done, double total) {

@@ -5,7 +5,6 @@
 #include "worlds.h"
 
 #include "methods/pair.h"
-#include "nets/nets.h"
 
 /* Any six changes. */
 static const float six[PAIR_CHANGES] = {1, 2, 3, 4, 5, 6};

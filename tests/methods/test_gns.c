@@ -4,8 +4,6 @@
 #include "methods/particle_heap.h"
 #include "allocations.h"
 
-#include "runs/runs.h"
-
 #include <math.h>
 
 static BodyDef box_at(float x, float y) {

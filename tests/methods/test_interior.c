@@ -404,10 +404,6 @@ TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
     }
 }
 
-static int free_reference(void **state) {
-    (void)state;
-    reference_free(&reference);
-    return 0;
-}
+FIXTURE(free_reference) { reference_free(&reference); }
 
 RUN_TESTS(NULL, free_reference)

@@ -115,10 +115,6 @@ TEST(the_path_ends_at_the_tolerance) {
     world_destroy(world);
 }
 
-static int free_reference(void **state) {
-    (void)state;
-    reference_free(&reference);
-    return 0;
-}
+FIXTURE(free_reference) { reference_free(&reference); }
 
 RUN_TESTS(NULL, free_reference)

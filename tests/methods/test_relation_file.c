@@ -3,8 +3,6 @@
 #include "made.h"
 #include "relation_networks.h"
 
-#include "nets/nets.h"
-
 #include <math.h>
 
 TEST(a_file_keeps_every_bit) {

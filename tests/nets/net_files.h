@@ -4,9 +4,6 @@
 #include "made.h"
 #include "files.h"
 
-#include "base/file.h"
-#include "base/npz.h"
-
 #include <math.h>
 
 enum { NET_ARRAYS_MAX = 40 };

@@ -3,8 +3,6 @@
 #pragma once
 #include "made.h"
 
-#include "nets/nets.h"
-
 /* Numbers in [-1, 1) from a linear congruential sequence. */
 static inline double next_number(uint32_t *sequence) {
     *sequence = *sequence * 1664525u + 1013904223u;

@@ -2,7 +2,6 @@
 #include "made.h"
 #include "networks.h"
 
-#include "nets/nets.h"
 #include "nets/kernels.h"
 
 #include <math.h>

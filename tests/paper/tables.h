@@ -4,7 +4,6 @@
 #include "testing.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "paper/paper.h"
 
 static inline const char *folder(void) {

@@ -3,7 +3,6 @@
 #include "made.h"
 #include "library_allocations.h"
 
-#include "pixels/png.h"
 #include "paper/report_internal.h"
 
 static char whole[1 << 14];

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "made.h"
 
-#include "pixels/png.h"
 #include "paper/report_internal.h"
 
 static void write_picture(const char *name) {

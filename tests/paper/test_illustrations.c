@@ -5,25 +5,19 @@
 
 #include "pictures/mesa.h"
 
-#include "base/file.h"
 #include "learning/dataset.h"
 #include "paper/report_internal.h"
 #include "paper/report.h"
 #include "figures/figure.h"
 #include "figures/sketch.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
 #define SCENES SOURCE_DIR "/scenes"
 
-static int draw_all(void **state) {
-    (void)state;
-    Error error = {0};
+FIXTURE(draw_all) {
     temporary_path(""); /* makes the folder */
-    if (illustrations_draw(SCENES, temporary_folder, &error)) return 0;
-    print_error("%s\n", error.message);
-    return 1;
+    assert_ok(illustrations_draw(SCENES, temporary_folder, &error), error);
 }
 
 static char *read_file(const char *name, const char *ending, size_t *size) {

@@ -4,8 +4,6 @@
 #include "made.h"
 
 #include "methods/pair.h"
-#include "nets/nets.h"
-#include "scenes/scenes.h"
 #include "paper/paper_internal.h"
 
 #include <math.h>

@@ -5,7 +5,6 @@
 #include "python.h"
 #include "tables.h"
 
-#include "pixels/png.h"
 #include "paper/report.h"
 
 static const char *const tables[] = {"table1.csv",   "networks.csv", "rates.csv",         "closed_loop.csv", "laws.csv",

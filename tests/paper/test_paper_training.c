@@ -11,22 +11,15 @@ static const PaperDataSize size = {.swept = "-2:2:1"};
 static PaperDatasets datasets = {.size = &size, .seed = 1};
 static PaperTraining training = {.datasets = &datasets, .seed = 1};
 
-static int begin(void **state) {
-    (void)state;
-    Error error = {0};
+FIXTURE(begin) {
     static char folder[256];
     assert_ok(paper_datasets_begin(&datasets, SOURCE_DIR "/scenes", &size, 1, &error), error);
     training.network = paper_network(0);
     training.network.iterations = 20;
     training.folder = strcpy(folder, temporary_path("."));
-    return 0;
 }
 
-static int end(void **state) {
-    (void)state;
-    paper_datasets_free(&datasets);
-    return 0;
-}
+FIXTURE(end) { paper_datasets_free(&datasets); }
 
 static const char *network_path(void) { return temporary_path("baseline.npz"); }
 

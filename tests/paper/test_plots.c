@@ -5,8 +5,6 @@
 
 #include "paper/report.h"
 
-#include "base/file.h"
-
 #include <sys/stat.h>
 
 static const char *const tables[] = {"table1",   "networks",    "rates",         "closed_loop", "laws",

@@ -2,7 +2,6 @@
 /* Small synthetic runs. Include testing.h first. */
 #pragma once
 #include "made.h"
-#include "runs/trajectory.h"
 
 #include <math.h>
 

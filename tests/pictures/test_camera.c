@@ -10,17 +10,9 @@ enum { SIZES = sizeof sizes / sizeof sizes[0] };
 
 static Trajectory *run;
 
-static int make(void **state) {
-    (void)state;
-    run = run_make("engine", 12);
-    return 0;
-}
+FIXTURE(make) { run = run_make("engine", 12); }
 
-static int destroy(void **state) {
-    (void)state;
-    trajectory_destroy(run);
-    return 0;
-}
+FIXTURE(destroy) { trajectory_destroy(run); }
 
 static void assert_inside(const Camera *camera, double x, double y, const int size[2]) {
     double left = camera->left + camera->scale * x, top = camera->top - camera->scale * y;

@@ -5,7 +5,6 @@
 #include "sanitized.h"
 
 #include "regression/compare.h"
-#include "pixels/png.h"
 #include "mesa.h"
 #include "pixels/gl.h"
 #include "pictures/render_internal.h"

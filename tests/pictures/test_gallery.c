@@ -6,9 +6,7 @@
 
 #include "pixels/built_contexts.h"
 #include "regression/compare.h"
-#include "pixels/png.h"
 #include "mesa.h"
-#include "methods/methods.h"
 #include "pictures/render_internal.h"
 
 #include <limits.h>

@@ -6,7 +6,6 @@
 
 #include "regression/compare.h"
 #include "mesa.h"
-#include "methods/methods.h"
 #include "pictures/render.h"
 
 #include <dirent.h>

@@ -3,8 +3,6 @@
 #include "made.h"
 #include "files.h"
 
-#include "base/file.h"
-#include "base/base.h"
 #include "pictures/player.h"
 
 enum { FRAMES = 300, BODIES = 40, CONTACTS = 100 };
@@ -44,17 +42,15 @@ typedef struct Pair {
     const Trajectory *runs[2];
 } Pair;
 
-static int begin(void **state) {
+FIXTURE(begin) {
     static Pair pair;
     pair = (Pair){{noisy_run("engine", 1), noisy_run("momentum", 2)}};
     *state = &pair;
-    return 0;
 }
 
-static int end(void **state) {
+FIXTURE(end) {
     const Pair *pair = *state;
     for (int i = 0; i < 2; i++) trajectory_destroy((Trajectory *)pair->runs[i]);
-    return 0;
 }
 
 static bool write_page(const Pair *pair, const PlayerOptions *options, const char *path, PlayerResult *result,

@@ -28,9 +28,7 @@ static RenderOptions options_for(const char *directory) {
         .width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = directory, .slow = 3, .hold = 0.05};
 }
 
-static int make(void **state) {
-    (void)state;
-    Error error = {0};
+FIXTURE(make) {
     TrajectoryContact contact = {.a = FIRST_BOX, .b = BOMB_BODY, .normal = {0, 1}};
     panels[0] = runs[0] = run_make("engine", FRAMES);
     panels[1] = runs[1] = run_make("pair-net:network=nets/small.npz", FRAMES - 3);
@@ -39,14 +37,11 @@ static int make(void **state) {
     snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
     RenderOptions options = options_for(whole);
     assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
-    return 0;
 }
 
 static const char *manifest_of(const char *directory) {

@@ -27,17 +27,9 @@ static Trajectory *struck(int frames, int impact) {
     return trajectory;
 }
 
-static int make(void **state) {
-    (void)state;
-    run = struck(FRAMES, IMPACT);
-    return 0;
-}
+FIXTURE(make) { run = struck(FRAMES, IMPACT); }
 
-static int destroy(void **state) {
-    (void)state;
-    trajectory_destroy(run);
-    return 0;
-}
+FIXTURE(destroy) { trajectory_destroy(run); }
 
 static MomentPlan plan_for(RenderOptions options) {
     MomentPlan plan;

@@ -12,18 +12,14 @@
 static const Trajectory *panels[RENDER_PANELS_MAX];
 static Trajectory *runs[RENDER_PANELS_MAX];
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     static const char *const methods[] = {"engine", "pair-net:network=a/b.npz", "momentum", "x:y=1", "pair-net",
                                           "engine"};
     for (int i = 0; i < RENDER_PANELS_MAX; i++) panels[i] = runs[i] = run_make(methods[i], 12);
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     for (int i = 0; i < RENDER_PANELS_MAX; i++) trajectory_destroy(runs[i]);
-    return 0;
 }
 
 static Image *draw_in(ContextChoice context, int count, int width, int height, int frame) {

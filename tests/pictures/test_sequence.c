@@ -17,19 +17,15 @@ enum { FRAMES = 11 };
 static Trajectory *runs[2];
 static const Trajectory *panels[2];
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     panels[0] = runs[0] = run_make("engine", FRAMES);
     panels[1] = runs[1] = run_make("pair-net:network=nets/small.npz", FRAMES - 3);
     run_position(runs[1], 4, FIRST_BOX)->x -= 0.25F;
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
-    return 0;
 }
 
 static RenderOptions options_for(const char *directory, int jobs) {

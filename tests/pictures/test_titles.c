@@ -12,17 +12,13 @@ static const char LONG_TITLE[] =
 
 static Trajectory *runs[2];
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     runs[0] = run_make("engine", 12);
     runs[1] = run_make("pair-net", 12);
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     for (int i = 0; i < 2; i++) trajectory_destroy(runs[i]);
-    return 0;
 }
 
 TEST(lines_fit_and_hold_every_word) {

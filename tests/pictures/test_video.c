@@ -18,9 +18,7 @@ enum { FRAMES = 9, WIDTH = 96, HEIGHT = 64 };
 static char folder[256]; /* of the frames */
 static PictureHashes *hashes;
 
-static int make(void **state) {
-    (void)state;
-    Error error = {0};
+FIXTURE(make) {
     RenderResult result;
     snprintf(folder, sizeof folder, "%s", temporary_path("frames"));
     Trajectory *run = run_make("engine", FRAMES);
@@ -28,14 +26,9 @@ static int make(void **state) {
     assert_ok(render_sequence((const Trajectory *[]){run}, 1, &options, &result, NULL, &error), error);
     hashes = result.hashes;
     trajectory_destroy(run);
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
-    free(hashes);
-    return 0;
-}
+FIXTURE(destroy) { free(hashes); }
 
 static VideoOptions options_for(const char *path) {
     return (VideoOptions){folder, 0, FRAMES - 1, 60, hashes, path, false};

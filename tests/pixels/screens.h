@@ -22,10 +22,8 @@ static Screen screens[SCREENS] = {{.wanted = CONTEXT_OSMESA}, {.wanted = CONTEXT
 static Drawing drawing;
 
 /* A context that is built in but missing fails the test: both must give equal frames. */
-static inline int open_screens(void **state) {
-    (void)state;
+FIXTURE(open_screens) {
     for (int i = 0; i < SCREENS; i++) {
-        Error error = {0};
         Screen *s = &screens[i];
         ContextChoice wanted = built_context(s->wanted);
         assert_ok(context_create(&s->context, wanted, &error), error);
@@ -35,20 +33,16 @@ static inline int open_screens(void **state) {
         s->image = image_sized(SCREEN_SIDE, SCREEN_SIDE);
         assert_ok(s->canvas != NULL, error);
     }
-    return 0;
 }
 
-static inline int close_screens(void **state) {
-    (void)state;
+FIXTURE(close_screens) {
     for (int i = 0; i < SCREENS; i++) {
-        Error error = {0};
         assert_ok(context_make_current(&screens[i].context, &error), error);
         canvas_destroy(screens[i].canvas);
         context_destroy(&screens[i].context);
         image_destroy(screens[i].image);
     }
     drawing_free(&drawing);
-    return 0;
 }
 
 /* Paints the drawing over black on every screen, then clears it. All screens must show the same picture. */

@@ -5,7 +5,6 @@
 
 #include "base/file.h"
 #include "regression/compare.h"
-#include "pixels/png.h"
 
 static uint32_t seed = 1;
 

@@ -6,18 +6,14 @@
 
 static Image *a, *b;
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     a = image_sized(4, 3);
     b = image_sized(4, 3);
-    return a == NULL || b == NULL;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     image_destroy(a);
     image_destroy(b);
-    return 0;
 }
 
 static uint8_t *channel(Image *image, int x, int y, int c) { return &image->pixels[(y * image->width + x) * 4 + c]; }

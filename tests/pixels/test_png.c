@@ -3,7 +3,6 @@
 #include "made.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "regression/compare.h"
 #include "pngs.h"
 

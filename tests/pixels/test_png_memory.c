@@ -5,7 +5,6 @@
 
 #include "allocations.h"
 #include "regression/compare.h"
-#include "pixels/png.h"
 #include "pixels/internal.h"
 #include "png_parts.h"
 #include "pngs.h"
@@ -48,11 +47,9 @@ static void load(const char *path) {
     assert_ok(file != NULL, error);
 }
 
-static int unload(void **state) {
-    (void)state;
+FIXTURE(unload) {
     free((void *)file);
     file = NULL;
-    return 0;
 }
 
 static void decode(Error *error) {

@@ -9,18 +9,14 @@
 enum { SIDE = 64 };
 static Image *a, *b;
 
-static int make(void **state) {
-    (void)state;
-    a = image_create(SIDE, SIDE, &(Error){0});
-    b = image_create(SIDE, SIDE, &(Error){0});
-    return a == NULL || b == NULL;
+FIXTURE(make) {
+    a = image_sized(SIDE, SIDE);
+    b = image_sized(SIDE, SIDE);
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     image_destroy(a);
     image_destroy(b);
-    return 0;
 }
 
 static void paint(Image *image, int left, int right, uint32_t color) {

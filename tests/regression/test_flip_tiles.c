@@ -5,7 +5,6 @@
 #include "sanitized.h"
 
 #include "regression/flip.h"
-#include "pixels/png.h"
 
 #include <math.h>
 

@@ -6,11 +6,7 @@
 enum { WIDTH = 6, HEIGHT = 4 };
 static Mask mask;
 
-static int clear(void **state) {
-    (void)state;
-    mask_free(&mask);
-    return 0;
-}
+FIXTURE(clear) { mask_free(&mask); }
 
 static uint8_t *made(void) {
     Error error = {0};

@@ -9,7 +9,6 @@
 #include "pictures/mesa.h"
 #include "pictures/render.h"
 #include "regression/internal.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
@@ -70,9 +69,8 @@ static Trajectory *run_of(const Shot *shot, const char *method_text) {
     char path[512];
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, shot->scene);
     Scene *scene = scene_from(path);
-    const Method method = method_named(method_text);
     scene->frames = shot->frame + 5;
-    Trajectory *run = run_with(scene, &method);
+    Trajectory *run = run_by(scene, method_text);
     scene_destroy(scene);
     return run;
 }

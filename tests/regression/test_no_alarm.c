@@ -6,7 +6,6 @@
 #include "pixels/built_contexts.h"
 #include "pictures/mesa.h"
 #include "pictures/render.h"
-#include "runs/runs.h"
 
 #include <dirent.h>
 #include <sys/mman.h>

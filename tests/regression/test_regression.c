@@ -49,31 +49,27 @@ static Trajectory *make_run(void) {
 }
 
 /* Rendered once, copied for each test. */
-static int draw_expected(void **state) {
-    (void)state;
+FIXTURE(draw_expected) {
     snprintf(expected, sizeof expected, "%s", temporary_path("expected"));
     snprintf(actual, sizeof actual, "%s", temporary_path("actual"));
     snprintf(kept, sizeof kept, "%s", temporary_path("kept"));
     run = make_run();
     render_into(kept);
     trajectory_destroy(run);
-    return 0;
 }
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     char command[2048];
     run = make_run();
     snprintf(command, sizeof command, "cp -r %s %s && cp -r %s %s", kept, actual, kept, expected);
-    return system(command);
+    assert_int_equal(system(command), 0);
 }
 
-static int remove_folders(void **state) {
-    (void)state;
+FIXTURE(remove_folders) {
     char command[1024];
     trajectory_destroy(run);
     snprintf(command, sizeof command, "rm -r %s %s", actual, expected);
-    return system(command);
+    assert_int_equal(system(command), 0);
 }
 
 static Regression compared(void) {

@@ -19,13 +19,11 @@ static void make_picture(const char *folder, const char *name) {
     image_destroy(image);
 }
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     static const char *const names[] = {"1.png", "2.png", "sub/3.png"};
     snprintf(expected, sizeof expected, "%s", temporary_path("expected"));
     snprintf(actual, sizeof actual, "%s", temporary_path("actual"));
     for (int i = 0; i < 3; i++) make_picture(expected, names[i]), make_picture(actual, names[i]);
-    return 0;
 }
 
 /* Each call fails in turn, until none is left. Three lists are read: the pictures of both folders, and trajectories. */

@@ -9,18 +9,14 @@
 /* Two examples, which differ in what a test then changes in the second. */
 static Trajectory *a, *b;
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     a = example_trajectory();
     b = example_trajectory();
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     trajectory_destroy(a);
     trajectory_destroy(b);
-    return 0;
 }
 
 static TrajectoryDifference compared(void) {

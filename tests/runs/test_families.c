@@ -3,9 +3,6 @@
 #include "made.h"
 #include "sanitized.h"
 
-#include "scenes/scenes.h"
-#include "runs/runs.h"
-
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>

@@ -3,9 +3,6 @@
 #include "made.h"
 #include "files.h"
 
-#include "base/file.h"
-#include "runs/runs.h"
-
 #include <math.h>
 
 enum { FRAMES = 200 };

@@ -2,8 +2,6 @@
 /* Launches whose bomb would start inside a body are refused, where the bodies are when it is added. */
 #include "made.h"
 
-#include "runs/runs.h"
-
 #include <glob.h>
 
 /* A box of 1 m that begins 2 m above the ground and falls; the bomb appears beside or in it. */

@@ -2,8 +2,6 @@
 /* Why two trajectories part: made by hand, so that the first frame, body, contact and cause are known. */
 #include "made.h"
 
-#include "runs/trajectory.h"
-
 #include <math.h>
 
 /* A floor, two boxes on it, and a bomb (body 3) that comes in frame 3. Every step has four contacts. */
@@ -50,18 +48,14 @@ static Trajectory *example(void) {
 
 static TrajectoryContact *contact(Trajectory *t, int step, int i) { return &t->contacts[t->contact_start[step] + i]; }
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     a = example();
     b = example();
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     trajectory_destroy(a);
     trajectory_destroy(b);
-    return 0;
 }
 
 /* The other way round the cause, the frames and the bodies are the same. */

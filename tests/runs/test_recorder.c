@@ -2,7 +2,6 @@
 /* A run that is written while it is made gives the files of a run that is recorded in memory and written then. */
 #include "made.h"
 
-#include "base/file.h"
 #include "files.h"
 
 static Scene *read_scene(const char *name, int frames) {

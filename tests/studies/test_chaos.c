@@ -2,8 +2,6 @@
 /* A run compared with a shifted one. */
 #include "made.h"
 
-#include "runs/runs.h"
-
 #include <math.h>
 
 static const char *write_scene(const char *bodies_and_bomb) {
@@ -17,8 +15,7 @@ static const char *write_scene(const char *bodies_and_bomb) {
 
 static Trajectory *run_scene(const char *path, const char *text) {
     Scene *scene = scene_from(path);
-    const Method method = method_named(text);
-    Trajectory *run = run_with(scene, &method);
+    Trajectory *run = run_by(scene, text);
     scene_destroy(scene);
     return run;
 }
@@ -85,8 +82,7 @@ TEST(distances_are_those_of_the_trajectories) {
     Trajectory *run = run_scene(path, "momentum:k=5");
     Scene *scene = scene_from(path);
     scene->bodies[10].position.x = 1e-6F;
-    const Method method = method_named("momentum:k=5");
-    Trajectory *shifted = run_with(scene, &method);
+    Trajectory *shifted = run_by(scene, "momentum:k=5");
     Chaos chaos;
     assert_ok(chaos_run(&chaos, path, run, 10, run->frames, NULL, &error), error);
     for (int frame = 0; frame < run->frames; frame++)

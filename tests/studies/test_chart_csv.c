@@ -4,8 +4,6 @@
 
 #include "studies/chart.h"
 
-#include "base/file.h"
-
 #include <math.h>
 
 static const ChartRow full = {

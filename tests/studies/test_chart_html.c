@@ -4,7 +4,6 @@
 #include "files.h"
 
 #include "studies/chart.h"
-#include "base/file.h"
 
 #include <math.h>
 

@@ -6,7 +6,6 @@
 #include "studies/chart.h"
 #include "studies/first_line.h"
 
-#include "base/file.h"
 #include "studies/chart_internal.h"
 #include "methods/methods.h"
 

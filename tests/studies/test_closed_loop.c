@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "made.h"
 
-#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 #include <math.h>

@@ -5,8 +5,6 @@
 
 #include "studies/chart.h"
 
-#include "base/file.h"
-
 #define SAMPLE SOURCE_DIR "/tests/studies/equal_time.csv"
 
 static const char *folder(void) {

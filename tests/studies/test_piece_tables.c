@@ -2,7 +2,6 @@
 #include "testing.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "studies/chart.h"
 
 static const CsvColumn columns[] = {{"x", CSV_INTEGER, .offset = 0, .maximum = 99}};

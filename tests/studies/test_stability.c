@@ -3,7 +3,6 @@
 #include "made.h"
 #include "files.h"
 
-#include "base/file.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 

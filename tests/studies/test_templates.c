@@ -51,11 +51,11 @@ static void check_template(const char *name) {
     scene_destroy(scene);
 }
 
-TEST(wall) { (void)state, check_template("wall"); }
-TEST(stack) { (void)state, check_template("stack"); }
-TEST(pyramid) { (void)state, check_template("pyramid"); }
-TEST(arch) { (void)state, check_template("arch"); }
-TEST(dominoes) { (void)state, check_template("dominoes"); }
+TEST(wall) { check_template("wall"); }
+TEST(stack) { check_template("stack"); }
+TEST(pyramid) { check_template("pyramid"); }
+TEST(arch) { check_template("arch"); }
+TEST(dominoes) { check_template("dominoes"); }
 
 /* "With 10 iterations it falls." */
 TEST(the_arch_needs_its_iterations) {
