@@ -43,6 +43,11 @@ static inline Stepper *stepper_of(const Scene *scene, const Method *method) {
     return stepper;
 }
 
+static inline Stepper *stepper_by(const Scene *scene, const char *method_text) {
+    const Method method = method_named(method_text);
+    return stepper_of(scene, &method);
+}
+
 static inline Trajectory *run_with(const Scene *scene, const Method *method) {
     Error error = {0};
     Trajectory *run = simulate(scene, method, NULL, &error);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "made.h"
+
 #include "files.h"
 
 #include "figures/internal.h"

@@ -12,10 +12,8 @@ enum { SWEEPS = 20, NUMBERS_MAX = 2 * CONTACTS_MAX };
 
 /* Runs a scene with the engine; calls observe after each step. */
 static void observe_scene(const char *name, bool (*observe)(void *, int, const World *, Error *), void *context) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
-    Scene *scene = scene_from(path);
+    Scene *scene = scene_named(name);
     const Method engine = method_named("engine");
     assert_ok(simulate_observed(scene, &engine, &(StepObserver){observe, context}, &error), error);
     scene_destroy(scene);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The laws of pushing by impulses, for networks and problems that are as they like. */
-#include "made.h"
 #include "pair_networks.h"
 #include "random_problem.h"
 

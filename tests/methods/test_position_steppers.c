@@ -29,11 +29,6 @@ static Scene scene_of(BodyDef *bodies, int count, Vec2 gravity) {
                    .bodies = bodies};
 }
 
-static Stepper *make_stepper(const Scene *scene, const char *text) {
-    const Method method = method_named(text);
-    return stepper_of(scene, &method);
-}
-
 static void take_steps(Stepper *stepper, World *world, const Scene *scene, int first, int last) {
     Error error = {0};
     for (int frame = first; frame <= last; frame++)
@@ -42,7 +37,7 @@ static void take_steps(Stepper *stepper, World *world, const Scene *scene, int f
 
 static World *run(const Scene *scene, const char *text, int steps) {
     World *world = world_of(scene);
-    Stepper *stepper = make_stepper(scene, text);
+    Stepper *stepper = stepper_by(scene, text);
     take_steps(stepper, world, scene, 1, steps);
     stepper_destroy(stepper);
     return world;
@@ -178,7 +173,7 @@ TEST(a_used_stepper_steps_as_a_new_one) {
     BodyDef bodies[11];
     const Scene scene = stack_of_ten(bodies);
     for (int m = 0; m < METHOD_COUNT; m++) {
-        Stepper *stepper = make_stepper(&scene, methods[m]);
+        Stepper *stepper = stepper_by(&scene, methods[m]);
         uint64_t hashes[2];
         for (int i = 0; i < 2; i++) {
             World *world = world_of(&scene);
@@ -202,7 +197,7 @@ TEST(other_worlds_step_without_memory) {
     for (int m = 0; m < METHOD_COUNT; m++)
         for (int i = 0; i < 2; i++) {
             World *world = world_of(&scene), *copy = world_of(&scene);
-            Stepper *stepper = make_stepper(&scene, methods[m]), *fresh = make_stepper(&scene, methods[m]);
+            Stepper *stepper = stepper_by(&scene, methods[m]), *fresh = stepper_by(&scene, methods[m]);
             take_steps(stepper, world, &scene, 1, 50);
             assert_ok(world_copy(copy, world, &error), error);
             take_steps(stepper, world, &scene, 51, 50 + ahead[i]);
@@ -223,7 +218,7 @@ TEST(a_settled_stack_steps_without_allocating) {
     const Scene scene = stack_of_ten(bodies);
     for (int m = 0; m < 3; m++) {
         World *world = world_of(&scene);
-        Stepper *stepper = make_stepper(&scene, steppers[m]);
+        Stepper *stepper = stepper_by(&scene, steppers[m]);
         allocations = 0;
         take_steps(stepper, world, &scene, 1, 60);
         assert_true(allocations > 5);

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "made.h"
 #include "networks.h"
 
 #include "nets/kernels.h"

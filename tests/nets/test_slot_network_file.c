@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is written is read; what holds no slot network, or one that cannot be, is refused with place and reason. */
-#include "files.h"
 #include "net_files.h"
 #include "slot_networks.h"
 

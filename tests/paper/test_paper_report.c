@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reports of small hand-written tables, with figures of a few pixels. */
 #include "made.h"
-#include "files.h"
 #include "python.h"
 #include "tables.h"
 

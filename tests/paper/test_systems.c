@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The frame of the systems that the paper cites, tried on a system made for this test: interior with other limits. */
-#include "files.h"
 #include "tables.h"
 
 #include "sanitized.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small synthetic runs. Include testing.h first. */
+/* Small synthetic runs. */
 #pragma once
 #include "made.h"
 

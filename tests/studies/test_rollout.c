@@ -6,18 +6,13 @@
 
 static const Sampling every = {.after = 1, .rest = 1}, few = {.after = 10, .rest = 50};
 
-static Stepper *make_stepper(const Scene *scene, const char *text) {
-    const Method method = method_named(text);
-    return stepper_of(scene, &method);
-}
-
 static void free_scores(StepScores scores[PHASES]) {
     for (int phase = 0; phase < PHASES; phase++) step_scores_free(&scores[phase]);
 }
 
 TEST(the_reference_has_no_error) {
     Scene *scene = scene_named("stack");
-    Stepper *stepper = make_stepper(scene, "reference");
+    Stepper *stepper = stepper_by(scene, "reference");
     Rollout rollout = {0};
     StepScores scores[PHASES] = {0};
     assert_ok(rollout_run(&rollout, stepper, scene, &few, scores, &error), error);
@@ -36,7 +31,7 @@ TEST(the_reference_has_no_error) {
 TEST(every_frame_is_in_one_phase) {
     Scene *scene = scene_named("single");
     scene->frames = 200;
-    Stepper *stepper = make_stepper(scene, "engine");
+    Stepper *stepper = stepper_by(scene, "engine");
     Rollout rollout = {0};
     StepScores scores[PHASES] = {0};
     assert_ok(rollout_run(&rollout, stepper, scene, &every, scores, &error), error);
@@ -56,7 +51,7 @@ TEST(every_frame_is_in_one_phase) {
 static double frozen_error(const SnapshotList *list, const Scene *scene, const char *method) {
     Error error = {0};
     StepScores scores[PHASES] = {0};
-    Stepper *stepper = make_stepper(scene, method);
+    Stepper *stepper = stepper_by(scene, method);
     World *world = world_of(scene);
     assert_ok(snapshots_score(list, stepper, world, scores, &error), error);
     assert_int_equal(scores[PHASE_IMPACT].count, 6);
@@ -90,7 +85,7 @@ TEST(frozen_steps_of_the_engine_are_its_own) {
     SnapshotList list = {0};
     StepScores frozen[PHASES] = {0}, closed[PHASES] = {0};
     Rollout rollout = {0};
-    Stepper *stepper = make_stepper(scene, "engine");
+    Stepper *stepper = stepper_by(scene, "engine");
     assert_ok(snapshots_add(&list, scene, &few, &error), error);
     assert_ok(rollout_run(&rollout, stepper, scene, &few, closed, &error), error);
     assert_ok(snapshots_score(&list, stepper, rollout.world, frozen, &error), error);
@@ -174,9 +169,9 @@ TEST(push_out_counts_for_methods_that_have_it) {
                    .bodies = bodies};
     assert_errors(&scene, make_still_stepper(&scene, false), 0.6, 1e-5);
     assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
-    assert_errors(&scene, make_stepper(&scene, "avbd:k=50"), 0, 1e-3);
-    assert_errors(&scene, make_stepper(&scene, "soft-step"), 0, 0.2); /* its one relaxing sweep leaves a spin */
-    assert_errors(&scene, make_stepper(&scene, "engine:k=100"), 0, 1e-4);
+    assert_errors(&scene, stepper_by(&scene, "avbd:k=50"), 0, 1e-3);
+    assert_errors(&scene, stepper_by(&scene, "soft-step"), 0, 0.2); /* its one relaxing sweep leaves a spin */
+    assert_errors(&scene, stepper_by(&scene, "engine:k=100"), 0, 1e-4);
     scene.position_correction = false;
     assert_errors(&scene, make_still_stepper(&scene, false), 0, 1e-5);
     assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
