@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whole files, and what a folder holds. Include testing.h first. */
+/* Whole files, and what a folder holds. */
 #pragma once
+#include "testing.h"
+
 #include "base/file.h"
 
 #include <dirent.h>
@@ -33,6 +35,11 @@ static inline char *read_whole(const char *path, size_t *size) {
     char *data = file_read(path, 1 << 30, size, &error);
     assert_ok(data != NULL, error);
     return data;
+}
+
+static inline char *text_of(const char *path) {
+    size_t size;
+    return read_whole(path, &size);
 }
 
 static inline void assert_file(const char *path, const char *text) {

@@ -16,20 +16,27 @@
 #include <string.h>
 #include <unistd.h>
 
-/* TEST(law) { ... } is a test, in the order of the file; `state` is cmocka's. TEST_WITH() has what cmocka calls before and
-   after it. RUN_TESTS(before, after) ends the file: the two, or NULL, are called once, before and after all. */
+/* TEST(law) { ... } is a test, in the order of the file; `state` is cmocka's, and `error` is an empty one of the test's own.
+   TEST_WITH() has the fixtures that are called before and after it, each of which is FIXTURE(name) { ... } with the same two.
+   RUN_TESTS(before, after) ends the file: its fixtures, or NULL, are called once, before and after all. */
 enum { TESTS_MAX = 64 }; /* of a file */
 static struct CMUnitTest tests_of_file[TESTS_MAX] __attribute__((unused));
 static size_t test_count __attribute__((unused));
 
 #define TEST(law) TEST_WITH(law, NULL, NULL)
-#define TEST_WITH(law, before, after)                                                         \
-    static void law(void **state);                                                            \
-    __attribute__((constructor)) static void add_##law(void) {                                \
-        if (test_count == TESTS_MAX) abort();                                                 \
-        tests_of_file[test_count++] = (struct CMUnitTest){#law, law, (before), (after), NULL}; \
-    }                                                                                         \
-    static void law(__attribute__((unused)) void **state)
+#define TEST_WITH(law, before, after)                                                                 \
+    static void law(void **state, Error error);                                                       \
+    static void call_##law(void **state) { law(state, (Error){0}); }                                  \
+    __attribute__((constructor)) static void add_##law(void) {                                        \
+        if (test_count == TESTS_MAX) abort();                                                         \
+        tests_of_file[test_count++] = (struct CMUnitTest){#law, call_##law, (before), (after), NULL}; \
+    }                                                                                                 \
+    static void law(__attribute__((unused)) void **state, __attribute__((unused)) Error error)
+
+#define FIXTURE(name)                                                         \
+    static void do_##name(void **state, Error error);                         \
+    static int name(void **state) { return do_##name(state, (Error){0}), 0; } \
+    static void do_##name(__attribute__((unused)) void **state, __attribute__((unused)) Error error)
 
 #define RUN_TESTS(before, after) \
     int main(void) { return _cmocka_run_group_tests("tests", tests_of_file, test_count, before, after); }

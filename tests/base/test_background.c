@@ -30,7 +30,6 @@ static bool give(Background *background, int from, int to, Error *error) {
 
 TEST(items_are_done_in_order) {
     Log log = {0};
-    Error error = {0};
     Background *background = background_start(note, &log, &error);
     assert_ok(background != NULL, error);
     assert_ok(give(background, 0, 500, &error), error);
@@ -42,7 +41,6 @@ TEST(items_are_done_in_order) {
 
 TEST(nothing_is_done_after_a_failure) {
     Log log = {0};
-    Error error = {0};
     Background *background = background_start(note, &log, &error);
     assert_ok(background != NULL, error);
     assert_refused(give(background, 400, ITEMS, &error) && background_wait(background, &error),
@@ -53,7 +51,6 @@ TEST(nothing_is_done_after_a_failure) {
 
 TEST(it_stops_with_an_item_in_work) {
     Log log = {0};
-    Error error = {0};
     int item = 7;
     Background *background = background_start(note, &log, &error);
     assert_ok(background != NULL, error);

@@ -35,7 +35,6 @@ TEST(arrays_grow_by_doubling_and_keep_their_items) {
 }
 
 TEST(the_first_error_stays) {
-    Error error = {0};
     assert_false(error_input(&error, "a.yaml:1:2", "mass is %d", 0));
     assert_false(error_system(&error, "b", "later"));
     assert_int_equal(error.kind, ERROR_INPUT);
@@ -47,7 +46,7 @@ TEST(long_errors_lose_their_middle) {
     memset(long_text, 'x', sizeof long_text - 1);
     memcpy(long_text, "begin", 5);
     memcpy(long_text + sizeof long_text - 4, "end", 3);
-    Error error = {0}, other = {0};
+    Error other = {0};
     assert_refused(error_input(&error, long_text, "cannot be read"), "xend: error: cannot be read");
     assert_memory_equal(error.message, "beginxx", 7);
     assert_non_null(strstr(error.message, "x...x"));
@@ -59,7 +58,7 @@ TEST(long_errors_lose_their_middle) {
 
 TEST(known_names_are_listed_once_and_whole) {
     NameList known = {0};
-    Error error = {0}, none = {0};
+    Error none = {0};
     assert_false(error_unknown(&none, "--kind", "x", "a kind", &known));
     assert_string_equal(none.message, "--kind: error: 'x' is not a kind; known: none");
     static const char *const names[] = {"pair-net", "net", "pair-net", "scene", "net"};

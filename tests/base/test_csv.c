@@ -36,7 +36,6 @@ TEST(fields_are_found_and_unquoted) {
 }
 
 TEST(errors_name_line_and_column_in_characters) {
-    Error error = {0};
     Csv csv = read_good("a,b,c\n\"1,\",\xc3\xa4\xc3\xb6,2\n");
     assert_refused(csv_error(&csv, 1, 2, &error, "not %d", 7), "table.csv:2:9: error: not 7");
     csv_free(&csv);
@@ -67,14 +66,12 @@ TEST(broken_tables_are_refused_with_their_place) {
         CASE("a,b\n\"1\"2,x\n", "table.csv:2:4: error: expected a comma after the closing quote"),
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
         Csv csv;
         assert_refused(csv_read(&csv, write_table(cases[i].text, cases[i].size), 1000, 1, 3, &error), cases[i].message);
     }
 }
 
 TEST(large_and_missing_files_are_refused) {
-    Error error = {0};
     Csv csv;
     assert_refused(csv_read(&csv, write_table("a\n1\n2\n", 6), 5, 1, 3, &error), "larger than 5 bytes");
     assert_refused(csv_read(&csv, temporary_path("none.csv"), 5, 1, 3, &error), "cannot open");

@@ -160,7 +160,6 @@ TEST(keys_are_not_repeated) {
 
 TEST(errors_point_at_a_field) {
     CsvTable table = read_good(&subset, "number,name\n2,\"a,b\"\n3,c\n");
-    Error error = {0};
     assert_refused(csv_table_error(&table, 1, NAME, &error, "not %d", 7), "rows.csv:3:3: error: not 7");
     assert_refused(csv_table_error(&table, 0, WORD, &error, "no word"), "rows.csv:2:1: error: no word");
     csv_table_free(&table);
@@ -170,7 +169,6 @@ static const Row written[] = {{"k=20,b=\"c\"", "x [m]", GREEN, -5, 0.1f, 1234567
                               {"", "", RED, 0, -3, 0, NAN}};
 
 TEST(written_tables_are_read_back) {
-    Error error = {0};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &exact, written, 2, &error), error);
     assert_file(path, HEADER "\"k=20,b=\"\"c\"\"\",\"x [m]\",green,-5,0.1,1234567.89,-0.123457\n,\"\",red,0,-3,0,\n");
@@ -194,7 +192,6 @@ TEST(unreadable_values_are_not_written) {
     rows[2].number = NAN;
     rows[3].optional = -INFINITY;
     for (int i = 0; i < 4; i++) {
-        Error error = {0};
         const char *path = temporary_path("unwritten.csv");
         assert_refused(csv_table_write(path, &exact, &rows[i], 1, &error), "unwritten.csv: error: ", messages[i]);
         assert_int_equal(access(path, F_OK), -1);
@@ -209,7 +206,6 @@ TEST(unreadable_values_are_not_written) {
 }
 
 TEST(an_optional_column_may_be_missing) {
-    Error error = {0};
     CsvTable table = read_good(&grown, "integer\n3\n");
     assert_int_equal(((Row *)table.rows)->integer, 3);
     assert_string_equal(((Row *)table.rows)->text, "");

@@ -2,7 +2,6 @@
 /* Whole files: what is under a name is whole, and failures leave nothing behind. */
 #include "testing.h"
 
-#include "base/file.h"
 #include "files.h"
 
 #include <errno.h>
@@ -133,7 +132,6 @@ TEST(standard_output_is_written_into) {
     dup2(output, STDOUT_FILENO);
     close(output);
     bool before = write(STDOUT_FILENO, "before ", 7) == 7;
-    Error error = {0};
     bool done = file_write(link, "text", 4, &error);
     bool after = write(STDOUT_FILENO, " after", 6) == 6;
     dup2(saved, STDOUT_FILENO);
@@ -169,7 +167,6 @@ TEST(a_full_disk_keeps_the_old_file) {
     small = (struct rlimit){1000, previous.rlim_max};
     signal(SIGXFSZ, SIG_IGN);
     static char large[5000];
-    Error error = {0};
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
     bool done = file_write(path, large, sizeof large, &error);
     setrlimit(RLIMIT_FSIZE, &previous);
@@ -199,7 +196,6 @@ TEST(bad_inputs_are_refused) {
 }
 
 TEST(directories_are_made_with_those_above) {
-    Error error = {0};
     const char *path = temporary_path("a//b/c/"), *file = temporary_path("file");
     assert_ok(file_make_directory(path, &error), error);
     assert_ok(file_make_directory(path, &error), error);
@@ -220,7 +216,6 @@ TEST(folders_end_with_their_slash) {
 }
 
 TEST(many_files_wait_for_the_disk_once) {
-    Error error = {0};
     const char *path = temporary_path("soon");
     assert_ok(file_write_soon(path, "old and long", 12, &error), error);
     assert_ok(file_write_soon(path, "new", 3, &error), error);
@@ -232,7 +227,6 @@ TEST(many_files_wait_for_the_disk_once) {
 }
 
 TEST(paths_are_printed_whole_or_refused) {
-    Error error = {0};
     char path[8];
     assert_ok(file_path(path, sizeof path, &error, "%s/%s.x", "ab", "cd"), error);
     assert_string_equal(path, "ab/cd.x");

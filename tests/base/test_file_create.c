@@ -5,7 +5,6 @@
 #include "files.h"
 
 TEST(a_new_file_is_written) {
-    Error error = {0};
     const char *path = temporary_path("new");
     assert_ok(file_create(path, "text", 4, &error), error);
     assert_file(path, "text");
@@ -18,7 +17,6 @@ TEST(a_file_that_exists_is_kept) {
     assert_int_equal(symlink("nothing", link), 0);
     const char *const taken[] = {path, link, temporary_path(".")};
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
         assert_refused(file_create(taken[i], "text", 4, &error), "exists already, and is not overwritten");
     }
     assert_file(path, "mine");
@@ -26,7 +24,6 @@ TEST(a_file_that_exists_is_kept) {
 }
 
 TEST(a_missing_folder_is_an_error) {
-    Error error = {0};
     assert_false(file_create(temporary_path("missing/new"), "text", 4, &error));
     assert_error(error, ERROR_SYSTEM, "missing/new: error: cannot write: No such file or directory");
 }

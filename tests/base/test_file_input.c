@@ -19,7 +19,6 @@ static void give(size_t size) {
 TEST(all_of_it_is_read) {
     const size_t sizes[] = {0, 1, 60000};
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
         size_t size;
         give(sizes[i]);
         char *data = file_read_input(60000, &size, &error);
@@ -31,14 +30,12 @@ TEST(all_of_it_is_read) {
 }
 
 TEST(more_than_the_limit_is_refused) {
-    Error error = {0};
     size_t size;
     give(101);
     assert_refused(file_read_input(100, &size, &error), "standard input: error: larger than 100 bytes");
 }
 
 TEST(what_cannot_be_read_is_an_error) {
-    Error error = {0};
     size_t size;
     close(STDIN_FILENO);
     assert_null(file_read_input(100, &size, &error));

@@ -27,8 +27,7 @@ static void make_file(const char *name) {
 static void make_link(const char *target, const char *name) { assert_int_equal(symlink(target, below(name)), 0); }
 
 /* tree/ has a.x, b/c.x, b/d/e.x; other files, hidden ones. outside.x lies beside it. */
-static int make_tree(void **state) {
-    (void)state;
+FIXTURE(make_tree) {
     static const char *const names[] = {"tree/a.x",         "tree/b/c.x",  "tree/b/d/e.x",  "tree/a.y",
                                         "tree/b/.hidden.x", "tree/.b/f.x", "outside/far.x", "tree/b/x"};
     static int made;
@@ -37,7 +36,6 @@ static int make_tree(void **state) {
     snprintf(root, sizeof root, "%s", temporary_path(name));
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) make_file(names[i]);
     failing_opendir = failing_readdir = failing_stat = 0;
-    return 0;
 }
 
 static bool is_x(const char *name) { return strstr(name, ".x") != NULL; }
@@ -113,7 +111,7 @@ TEST_WITH(no_failed_call_shortens_the_list, make_tree, NULL) {
     for (int kind = 0; kind < 3; kind++) {
         int call = 0;
         for (bool failed = true; failed;) {
-            Error error = {0};
+            error = (Error){0};
             FolderList list;
             *countdowns[kind] = ++call;
             failed = !folder_list(&list, below("tree"), is_x, true, &error);

@@ -51,7 +51,6 @@ static pid_t start_holder(bool leave) {
 
 TEST(the_other_process_is_named) {
     char name[64];
-    Error error = {0};
     choose_folder("held/by/another");
     const pid_t holder = start_holder(false);
     assert_int_equal(reserve_in_child(&error), 0);
@@ -67,7 +66,6 @@ TEST(the_other_process_is_named) {
 }
 
 TEST(children_of_an_ended_process_are_waited_for) {
-    Error error = {0};
     choose_folder("left");
     const pid_t holder = start_holder(true);
     assert_int_equal(waitpid(holder, NULL, 0), holder);
@@ -76,7 +74,6 @@ TEST(children_of_an_ended_process_are_waited_for) {
 }
 
 TEST(a_process_may_reserve_a_folder_again) {
-    Error error = {0};
     for (int i = 0; i < 30; i++) {
         char name[32];
         snprintf(name, sizeof name, "own-%d", i % 10); /* more than are kept at a time */

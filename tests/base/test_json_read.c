@@ -37,7 +37,6 @@ static void refuse(const char *text, size_t size, const char *why) {
 
 TEST(values_are_read_one_by_one_with_their_places) {
     static const char text[] = " [ -0.5E+1 ,\r\n\t\"\xc3\xa4\\u00e4\",  {\n \"a\": [1,\n2]} ,\n7] ";
-    Error error = {0};
     bool more;
     JsonReader reader = open_text(text, sizeof text - 1);
     assert_true(json_read_char(&reader, '['));
@@ -86,7 +85,6 @@ TEST(invalid_json_is_refused_with_its_place) {
 
 /* Terminal escape sequences in a file must not reach the terminal. */
 TEST(messages_contain_nothing_of_the_file) {
-    Error error = {0};
     JsonReader reader = open_text("[\x1b[31m]", 7);
     int count;
     assert_false(read_array(&reader, &count, &error));
@@ -113,7 +111,6 @@ TEST(size_depth_and_memory_of_a_value_are_limited) {
     char *text = malloc(MAX_SIZE + 1);
     const size_t most = JSON_VALUE_SIZE;
     int count;
-    Error error = {0};
     JsonReader reader = open_text(text, repeat(text, "[\"", "x", most - 2, "\", 0]"));
     assert_ok(read_array(&reader, &count, &error), error);
     assert_int_equal(count, 2);
@@ -132,7 +129,6 @@ TEST(the_memory_of_a_value_is_reused) {
     char *text = malloc(MAX_SIZE + 1);
     const size_t items = 10000; /* 2 MB if all were kept */
     int count;
-    Error error = {0};
     JsonReader reader = open_text(text, repeat(text, "[", "{\"a\": \"b\"}, ", items, "0]"));
     assert_ok(read_array(&reader, &count, &error), error);
     assert_int_equal(count, items + 1);
@@ -141,7 +137,6 @@ TEST(the_memory_of_a_value_is_reused) {
 }
 
 TEST(a_large_file_is_refused) {
-    Error error = {0};
     JsonReader reader;
     assert_refused(json_read_open(&reader, store("[1, 2]", 6), 5, &error), "larger than 5 bytes");
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "base/json.h"
 
 #include <math.h>
@@ -38,23 +38,19 @@ static void write_all_kinds(FILE *out, const void *context) {
 }
 
 TEST(what_is_written_has_this_form) {
-    Error error = {0};
-    size_t size;
     const char *path = temporary_path("kinds.json");
     assert_ok(file_write_text(path, write_all_kinds, NULL, &error), error);
-    char *text = file_read(path, MAX_SIZE, &size, &error);
-    assert_string_equal(text, "{\n"
-                              "  \"text\": \"a \\\"b\\\" \\\\ \\u000a\\u007f \xc3\xa4 \xf0\x9f\x93\xa6\",\n"
-                              "  \"no UTF-8\": \"x\xef\xbf\xbdy\",\n"
-                              "  \"none\": null,\n"
-                              "  \"numbers\": [0.1, -0.3333333333333333, null, -9007199254740991, {}],\n"
-                              "  \"rows\": [\n"
-                              "    {\"first\": true, \"hash\": \"000000000000feed\"},\n"
-                              "    {\"first\": false, \"hash\": \"000000000000feed\"}\n"
-                              "  ],\n"
-                              "  \"empty\": []\n"
-                              "}\n");
-    free(text);
+    assert_file(path, "{\n"
+                      "  \"text\": \"a \\\"b\\\" \\\\ \\u000a\\u007f \xc3\xa4 \xf0\x9f\x93\xa6\",\n"
+                      "  \"no UTF-8\": \"x\xef\xbf\xbdy\",\n"
+                      "  \"none\": null,\n"
+                      "  \"numbers\": [0.1, -0.3333333333333333, null, -9007199254740991, {}],\n"
+                      "  \"rows\": [\n"
+                      "    {\"first\": true, \"hash\": \"000000000000feed\"},\n"
+                      "    {\"first\": false, \"hash\": \"000000000000feed\"}\n"
+                      "  ],\n"
+                      "  \"empty\": []\n"
+                      "}\n");
 }
 
 RUN_TESTS(NULL, NULL)

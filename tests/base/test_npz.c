@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* .npz: arrays come back as they went in, the same arrays give the same bytes, and damaged or hostile files are refused
    (test_npz_hostile.c: files made for harm). test_numpy.c compares with NumPy. */
-#include "testing.h"
+#include "made.h"
 
 #include "files.h"
-#include "base/npz.h"
 
 #include <time.h>
 
@@ -23,13 +22,6 @@ enum { ARRAYS = sizeof arrays / sizeof arrays[0] };
 static void write_arrays(const char *path) {
     Error error = {0};
     assert_ok(npz_write(path, arrays, ARRAYS, &error), error);
-}
-
-static NpzFile *open_file(const char *path) {
-    Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
-    return file;
 }
 
 /* 1 where all arrays are read and equal, 0 where something is refused; anything else fails. */
@@ -59,11 +51,10 @@ TEST(written_is_read) {
     const char *path = temporary_path("written.npz");
     write_arrays(path);
     assert_int_equal(read_and_compare(path), 1);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     assert_true(npz_has(file, "matrix"));
     assert_false(npz_has(file, "matri"));
     int64_t shape[2];
-    Error error = {0};
     assert_ok(npz_shape(file, "matrix", NPZ_FLOAT32, 2, shape, &error), error);
     assert_int_equal(shape[0], 3);
     assert_int_equal(shape[1], 2);
@@ -93,7 +84,7 @@ TEST(same_arrays_same_bytes) {
 TEST(mismatches_name_found_and_wanted) {
     const char *path = temporary_path("mismatch.npz");
     write_arrays(path);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     Error missing = {0}, type = {0}, rank = {0}, shape = {0}, text = {0};
     int64_t found[NPZ_MAX_RANK];
     assert_null(npz_read(file, "no", NPZ_FLOAT32, 0, NULL, &missing));
@@ -107,7 +98,6 @@ TEST(mismatches_name_found_and_wanted) {
     char small[13], exact[14];
     assert_false(npz_read_text(file, "name", small, sizeof small, &text));
     assert_error(text, ERROR_INPUT, "'name'");
-    Error error = {0};
     assert_ok(npz_read_text(file, "name", exact, sizeof exact, &error), error);
     npz_close(file);
 }
@@ -117,7 +107,6 @@ TEST(bad_texts_are_not_written) {
         "\xff", "\x80", "\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80"};
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         NpzArray array = {"name", NPZ_TEXT, 0, {0}, texts[i]};
-        Error error = {0};
         assert_refused(npz_write(temporary_path("text.npz"), &array, 1, &error),
                        "text.npz: error: cannot store 'name'");
         assert_int_not_equal(access(temporary_path("text.npz"), F_OK), 0);
@@ -159,7 +148,6 @@ TEST(flipped_bytes_are_refused_or_harmless) {
 }
 
 TEST(failed_writes_tell) {
-    Error error = {0};
     assert_false(npz_write(temporary_path("nowhere/x.npz"), arrays, ARRAYS, &error));
     assert_error(error, ERROR_SYSTEM, "nowhere/x.npz: error: cannot write: ");
 }
@@ -170,7 +158,7 @@ static bool is_table(const char *kind, int32_t version, Error *error) {
     const char *path = temporary_path("kind.npz");
     *error = (Error){0};
     assert_ok(npz_write(path, head, 2, error), *error);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     assert_string_equal(npz_path(file), path);
     const bool is = npz_check_kind(file, "table", 3, error);
     npz_close(file);
@@ -178,7 +166,6 @@ static bool is_table(const char *kind, int32_t version, Error *error) {
 }
 
 TEST(kind_and_version_are_checked) {
-    Error error;
     assert_true(is_table("table", 3, &error));
     assert_refused(is_table("chair", 3, &error), "kind.npz: error: not a file of kind 'table'");
     assert_refused(is_table("tables", 3, &error), "kind.npz: error: not a file of kind 'table'");
@@ -192,9 +179,8 @@ TEST(scalars_and_names_are_read) {
                                {"bad", NPZ_TEXT, 0, {0}, "z\33[2J"},
                                {"worse", NPZ_TEXT, 0, {0}, "\x7f"}};
     const char *path = temporary_path("fields.npz");
-    Error error = {0};
     assert_ok(npz_write(path, fields, 4, &error), error);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     uint64_t found = 0;
     char text[16];
     assert_ok(npz_read_scalar(file, "hash", NPZ_UINT64, &found, sizeof found, &error), error);

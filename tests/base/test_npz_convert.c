@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Arrays of other types and orders, as NumPy writes them: converted exactly, or refused with the value that does not fit. */
-#include "testing.h"
+#include "made.h"
 
-#include "base/npz.h"
 #include "python.h"
 
 #include <math.h>
@@ -13,10 +12,7 @@ static NpzFile *make(const char *expression) {
     char program[512];
     snprintf(program, sizeof program, "import sys, numpy as np\nnp.savez(sys.argv[1], array=%s)\n", expression);
     run_python(program, path);
-    Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
-    return file;
+    return npz_of(path);
 }
 
 static void expect(const char *expression, NpzType type, int rank, const int64_t *shape, const void *wanted,
@@ -40,10 +36,7 @@ static NpzFile *make_all(void) {
                "in 'lb'}\n"
                "np.savez(sys.argv[1], bool=[False, True, True], **arrays)\n",
                path);
-    Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
-    return file;
+    return npz_of(path);
 }
 
 static void expect_in(NpzFile *file, const char *name, NpzType type, const void *wanted, size_t size) {
@@ -109,7 +102,6 @@ TEST(one_number_is_a_scalar) {
 }
 
 TEST(texts_of_either_order_are_read) {
-    Error error = {0};
     char text[16];
     NpzFile *file = make("np.array('z\\u00e4h', '>U8')");
     npz_convert(file);

@@ -1,18 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files that are no .npz, or one made for harm: refused with the reason, before they cost time or memory. */
-#include "testing.h"
+#include "made.h"
 
 #include "files.h"
-#include "base/npz.h"
 
 #include <zip.h>
-
-static NpzFile *open_file(const char *path) {
-    Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
-    return file;
-}
 
 /* A zip of one member with these bytes. */
 static void write_member(const char *path, const char *name, const char *data, size_t size, zip_int32_t method) {
@@ -41,7 +33,7 @@ static void expect_head_refused(const char *dictionary, size_t data_size, const 
     write_member(path, "array.npy", member, 10 + strlen(dictionary) + data_size, ZIP_CM_STORE);
     free(member);
     if (reason == NULL)
-        npz_close(open_file(path));
+        npz_close(npz_of(path));
     else
         expect_refused(path, reason);
 }
@@ -135,7 +127,6 @@ TEST(a_name_twice_is_refused) {
     const char *path = temporary_path("twice.npz");
     float value = 1;
     NpzArray twins[] = {{"twin1", NPZ_FLOAT32, 0, {0}, &value}, {"twin2", NPZ_FLOAT32, 0, {0}, &value}};
-    Error error = {0};
     assert_ok(npz_write(path, twins, 2, &error), error);
     size_t size;
     char *data = read_whole(path, &size);
@@ -155,9 +146,8 @@ TEST(too_many_arrays_are_refused) {
         many[i] = (NpzArray){names[i], NPZ_UINT8, 0, {0}, &value};
     }
     const char *path = temporary_path("many.npz");
-    Error error = {0};
     assert_ok(npz_write(path, many, 256, &error), error);
-    npz_close(open_file(path));
+    npz_close(npz_of(path));
     assert_ok(npz_write(path, many, 257, &error), error);
     expect_refused(path, "holds 257 arrays; expected 1 to 256");
 }
@@ -170,7 +160,6 @@ static void set_little_endian(char *at, uint32_t value) {
 TEST(small_files_cannot_hold_much) {
     const char *path = temporary_path("claim.npz");
     NpzArray array = {"empty", NPZ_FLOAT32, 1, {0}, NULL};
-    Error error = {0};
     assert_ok(npz_write(path, &array, 1, &error), error);
     size_t size;
     char *data = read_whole(path, &size);
@@ -195,7 +184,7 @@ static void write_zeros(const char *path, const char *type, size_t size) {
 TEST(more_than_the_budget_is_refused) {
     const char *path = temporary_path("bomb.npz");
     write_zeros(path, "|u1", 16 << 20);
-    npz_close(open_file(path));
+    npz_close(npz_of(path));
     write_zeros(path, "|u1", 64 << 20);
     expect_refused(path, "its arrays take 67108864 bytes; expected at most 3");
     expect_refused(path, "(16 MiB and 256 times the size of the file)");
@@ -205,10 +194,9 @@ TEST(what_is_written_is_within_the_budget) {
     enum { SIZE = 64 << 20 };
     const char *path = temporary_path("zeros.npz");
     NpzArray array = {"zeros", NPZ_UINT8, 1, {SIZE}, calloc(SIZE, 1)};
-    Error error = {0};
     assert_ok(npz_write(path, &array, 1, &error), error);
     free((void *)array.data);
-    npz_close(open_file(path));
+    npz_close(npz_of(path));
 }
 
 /* An array that is read again and again: 15 MiB, three times of which would exceed 16 MiB and 256 times 15 KB. */
@@ -216,9 +204,8 @@ TEST(all_that_is_read_is_limited) {
     enum { SIZE = 15 << 20 };
     const char *path = temporary_path("again.npz");
     const int64_t shape = SIZE;
-    Error error = {0};
     write_zeros(path, "|u1", SIZE);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     int read = 0;
     for (void *data; (data = npz_read(file, "zeros", NPZ_UINT8, 1, &shape, &error)) != NULL; read++) free(data);
     npz_close(file);
@@ -231,9 +218,8 @@ TEST(converted_arrays_count_as_what_they_become) {
     enum { SIZE = 15 << 20 };
     const char *path = temporary_path("converted.npz");
     const int64_t shape = SIZE;
-    Error error = {0};
     write_zeros(path, "|i1", SIZE);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     npz_convert(file);
     assert_null(npz_read(file, "zeros", NPZ_INT64, 1, &shape, &error));
     npz_close(file);
@@ -245,9 +231,8 @@ TEST(shapes_are_expected_without_data) {
     const float numbers[6] = {0};
     const NpzArray written[] = {{"a", NPZ_FLOAT32, 2, {3, 2}, numbers}, {"b", NPZ_FLOAT32, 0, {0}, numbers}};
     NpzArray expected[] = {{"b", NPZ_FLOAT32, 0, {0}, NULL}, {"a", NPZ_FLOAT32, 2, {3, 2}, NULL}};
-    Error error = {0};
     assert_ok(npz_write(path, written, 2, &error), error);
-    NpzFile *file = open_file(path);
+    NpzFile *file = npz_of(path);
     assert_ok(npz_expect(file, expected, 2, &error), error);
     expected[1].shape[0] = 2;
     assert_refused(npz_expect(file, expected, 2, &error), "array 'a' has shape (3, 2); expected (2, 2)");

@@ -17,15 +17,12 @@ static bool write_all(Error *error) {
     return npz_write(path, arrays, 2, error);
 }
 
-static int begin(void **state) {
-    (void)state;
+FIXTURE(begin) {
     static char name[256];
-    Error error = {0};
     path = strcpy(name, temporary_path("a.npz"));
     for (int i = 0; i < 300; i++) numbers[i] = (float)(i * i % 97);
     assert_ok(write_all(&error), error);
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &before), 0);
-    return 0;
 }
 
 /* Lets only so many more files be opened. */
@@ -37,15 +34,12 @@ static void allow_files(unsigned more) {
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
 }
 
-static int allow_all(void **state) {
-    (void)state;
-    return setrlimit(RLIMIT_NOFILE, &before);
-}
+FIXTURE(allow_all) { assert_int_equal(setrlimit(RLIMIT_NOFILE, &before), 0); }
 
 /* libzip needs a descriptor of its own. */
 TEST_WITH(a_lack_of_descriptors_is_no_damage, NULL, allow_all) {
     for (unsigned more = 0; more < 2; more++) {
-        Error error = {0};
+        error = (Error){0};
         allow_files(more);
         assert_null(npz_open(path, &error));
         allow_all(NULL);
@@ -55,7 +49,6 @@ TEST_WITH(a_lack_of_descriptors_is_no_damage, NULL, allow_all) {
 
 /* Nor does it make a file one of another kind, which an output does not replace. */
 TEST_WITH(a_lack_of_descriptors_is_no_other_kind, NULL, allow_all) {
-    Error error = {0};
     allow_files(1);
     assert_false(output_check_npz(path, NULL, &error));
     allow_all(NULL);
@@ -84,7 +77,6 @@ TEST(a_lack_of_memory_is_no_damage) { assert_memory_is_named(read_all); }
 
 /* The file is that of the last write that was done. */
 TEST(writing_names_the_lack_of_memory) {
-    Error error = {0};
     assert_memory_is_named(write_all);
     assert_ok(read_all(&error), error);
 }

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* .npz whose arrays grow: the same bytes as those of whole arrays, however the rows come; large arrays come back, and are
    deflated only where that pays; nothing is left of a stream that is not finished. */
-#include "testing.h"
+#include "made.h"
 
-#include "base/file.h"
-#include "base/npz.h"
 #include "files.h"
 
 #include <signal.h>
@@ -30,11 +28,9 @@ static int make_numbers(void **state) {
     return 0;
 }
 
-static int free_numbers(void **state) {
-    (void)state;
+FIXTURE(free_numbers) {
     free(noise);
     free(zeros);
-    return 0;
 }
 
 static size_t file_size(const char *path) {
@@ -64,7 +60,6 @@ TEST(rows_give_the_bytes_of_the_whole) {
     enum { ARRAYS = sizeof whole / sizeof *whole };
     static const size_t row_size[ARRAYS] = {8, 8, 4, 8, 0, 0, 1, 1, 1};
     const char *expected = temporary_path("whole.npz"), *path = temporary_path("rows.npz");
-    Error error = {0};
     assert_ok(npz_write(expected, whole, ARRAYS, &error), error);
     NpzStream *stream = npz_stream_create(path, ARRAYS, &error);
     assert_ok(stream != NULL, error);
@@ -81,8 +76,7 @@ TEST(rows_give_the_bytes_of_the_whole) {
     npz_stream_destroy(stream);
     assert_same_file(path, expected);
 
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
+    NpzFile *file = npz_of(path);
     for (int i = 0; i < ARRAYS; i++) {
         if (row_size[i] == 0) continue;
         void *read = npz_read(file, whole[i].name, whole[i].type, whole[i].rank, whole[i].shape, &error);
@@ -98,7 +92,6 @@ TEST(blocks_are_deflated_where_that_pays) {
     const size_t half = ROWS * sizeof *noise;
     const NpzArray arrays[] = {{"both", NPZ_FLOAT32, 1, {2 * ROWS}, noise},
                                {"zeros", NPZ_FLOAT32, 1, {2 * ROWS}, zeros}};
-    Error error = {0};
     assert_ok(npz_write(path, &arrays[0], 1, &error), error);
     assert_in_range(file_size(path), half, half + half / 50);
     assert_ok(npz_write(path, &arrays[1], 1, &error), error);
@@ -109,7 +102,6 @@ TEST(an_unfinished_stream_leaves_nothing) {
     char folder[256];
     snprintf(folder, sizeof folder, "%s", temporary_path("unfinished"));
     assert_int_equal(mkdir(folder, 0777), 0);
-    Error error = {0};
     char path[300];
     snprintf(path, sizeof path, "%s/run.npz", folder);
     NpzStream *stream = npz_stream_create(path, 1, &error);
@@ -129,7 +121,6 @@ TEST(a_full_disk_is_told) {
     signal(SIGXFSZ, SIG_IGN);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &limit), 0);
     const char *path = temporary_path("full.npz");
-    Error error = {0};
     NpzStream *stream = npz_stream_create(path, 1, &error);
     const int array = npz_stream_add(stream, &(NpzArray){"noise", NPZ_UINT32, 1, {0}, NULL}, &error);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){1 << 20, limit.rlim_max}), 0);

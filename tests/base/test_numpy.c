@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NumPy reads what npz_write writes, and npz_read what numpy.savez and savez_compressed write. Needs
    /usr/bin/python3 with NumPy (python3-numpy). */
-#include "testing.h"
+#include "made.h"
 
-#include "base/npz.h"
 #include "python.h"
 
 static const float matrix[3][2] = {{1, -2.5F}, {0, 3e38F}, {-0.0F, 1e-45F}};
@@ -29,7 +28,6 @@ TEST(numpy_reads_what_is_written) {
         {"nothing", NPZ_TEXT, 0, {0}, ""},
     };
     const char *path = temporary_path("written.npz");
-    Error error = {0};
     assert_ok(npz_write(path, arrays, sizeof arrays / sizeof arrays[0], &error), error);
     run_python("import sys, zipfile, numpy as np\n"
                "f = np.load(sys.argv[1], allow_pickle=False)\n"
@@ -71,8 +69,7 @@ static void expect_array(NpzFile *file, const NpzArray *wanted, size_t size) {
 
 static void expect_arrays(const char *path) {
     Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
+    NpzFile *file = npz_of(path);
     expect_array(file, &(NpzArray){"matrix", NPZ_FLOAT32, 2, {3, 2}, matrix}, sizeof matrix);
     expect_array(file, &(NpzArray){"reals", NPZ_FLOAT64, 1, {2}, reals}, sizeof reals);
     expect_array(file, &(NpzArray){"cube", NPZ_INT32, 3, {2, 1, 2}, cube}, sizeof cube);

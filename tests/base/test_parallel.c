@@ -21,14 +21,12 @@ static bool fail_at_500(void *context, int i, Error *error) {
 
 TEST(every_piece_is_done_once) {
     int done[PIECES] = {0};
-    Error error = {0};
     assert_ok(parallel_for(&(ParallelWork){add_one, done}, PIECES, "test", NULL, &error), error);
     for (int i = 0; i < PIECES; i++) assert_int_equal(done[i], 1);
 }
 
 TEST(an_error_stops_the_rest) {
     int done[PIECES] = {0};
-    Error error = {0};
     assert_refused(parallel_for(&(ParallelWork){fail_at_500, done}, PIECES, "test", NULL, &error),
                    "piece: error: number 500");
     for (int i = 0; i < PIECES; i++) assert_true(done[i] <= 1);
@@ -42,7 +40,6 @@ static bool stop_at_ten(void *context, double done, double total) {
 TEST(progress_can_stop_it) {
     int done[PIECES] = {0}, count = 0;
     double limit = 10;
-    Error error = {0};
     Progress progress = {stop_at_ten, &limit};
     assert_false(parallel_for(&(ParallelWork){add_one, done}, PIECES, "launches", &progress, &error));
     assert_error(error, ERROR_INTERRUPTED, "launches: error: stopped after 1");
@@ -69,7 +66,6 @@ static bool count_call(void *context, double done, double total) {
 TEST(progress_is_reported_by_one_thread_at_a_time) {
     atomic_int begun = 0;
     int calls = 0;
-    Error error = {0};
     const Progress progress = {count_call, &calls};
     assert_ok(parallel_for(&(ParallelWork){meet_the_others, &begun}, PIECES, "test", &progress, &error), error);
     assert_int_equal(calls, PIECES);

@@ -4,7 +4,6 @@
 #include "base/machine.h"
 
 TEST(a_program_is_fed_and_what_it_says_comes_back) {
-    Error error = {0};
     Process process;
     char text[64];
     assert_ok(process_start(&process, (const char *const[]){"tr", "a-z", "A-Z", NULL}, &error), error);
@@ -14,7 +13,6 @@ TEST(a_program_is_fed_and_what_it_says_comes_back) {
 }
 
 TEST(failure_comes_with_its_words) {
-    Error error = {0};
     Process process;
     char text[64];
     assert_ok(
@@ -29,7 +27,6 @@ TEST(failure_comes_with_its_words) {
 
 /* A program that does not read must not take this one with it (SIGPIPE). */
 TEST(a_deaf_program_is_survived) {
-    Error error = {0};
     Process process;
     char text[16], *much = calloc(1, 1 << 20);
     assert_non_null(much);
@@ -44,7 +41,6 @@ TEST(a_deaf_program_is_survived) {
 }
 
 TEST(output_is_kept_in_tmpdir) {
-    Error error = {0};
     Process process;
     assert_int_equal(setenv("TMPDIR", "/nonexistent", 1), 0);
     assert_false(process_start(&process, (const char *const[]){"true", NULL}, &error));

@@ -30,7 +30,6 @@ TEST(values_are_found_by_key) {
     assert_int_equal(settings.count, 3);
     assert_string_equal(settings_get(&settings, "network"), "a=b.npz");
     assert_null(settings_get(&settings, "warms"));
-    Error error = {0};
     Values *values = settings_make(&settings, known, &standard, sizeof standard, "test", &error);
     assert_ok(values != NULL, error);
     assert_int_equal(values->iterations, 12);
@@ -106,12 +105,10 @@ TEST(bad_values_are_refused) {
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const Settings settings = parsed(bad[i][0]);
-        Error error = {0};
         assert_refused(settings_make(&settings, known, &standard, sizeof standard, "test", &error) != NULL, bad[i][1]);
     }
     const Settings settings = parsed("iterations=1,share=1.25,warm=off");
     Values values = standard;
-    Error error = {0};
     assert_ok(settings_read(&settings, known, &values, &error), error);
     assert_true(values.iterations == 1 && values.share == 1.25f && !values.warm);
 }

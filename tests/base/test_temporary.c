@@ -4,7 +4,6 @@
 #define _GNU_SOURCE /* O_TMPFILE, RTLD_NEXT */
 #include "testing.h"
 
-#include "base/file.h"
 #include "files.h"
 
 #include <dlfcn.h>
@@ -179,7 +178,6 @@ TEST(files_in_use_stay) {
         assert_int_equal(write_in_child(replace_file, "old", NO_CALL), 0);
         start_other();
         before_rename = let_other_write;
-        Error error = {0};
         assert_ok(file_write(below("file"), "new", 3, &error), error);
         assert_null(before_rename);
         assert_file(below("file"), "new");
@@ -204,7 +202,6 @@ TEST(only_such_names_are_removed) {
 TEST(drafts_for_pipes_are_in_the_folder_for_temporary_files) {
     make_folder();
     assert_int_equal(setenv("TMPDIR", folder, 1), 0);
-    Error error = {0};
     const int draft = file_draft("-", &error);
     assert_ok(draft >= 0, error);
     char path[64], place[300] = "";

@@ -5,7 +5,6 @@
 #define _GNU_SOURCE /* O_TMPFILE, RTLD_NEXT */
 #include "testing.h"
 
-#include "base/file.h"
 #include "files.h"
 
 #include <dlfcn.h>

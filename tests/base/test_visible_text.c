@@ -63,7 +63,6 @@ TEST(a_name_is_no_second_message) {
 }
 
 TEST(additions_end_where_the_message_does) {
-    Error error = {0};
     error_input(&error, "a", "b");
     for (int i = 0; i < 5000; i++) error_add(&error, ", %s", "more");
     assert_true(strlen(error.message) < sizeof error.message);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What reaches standard error at each level. Time is that of the test: the linker replaces clock_seconds(). */
 #include "testing.h"
+#include "files.h"
 
 #include "cli/cli.h"
-#include "base/file.h"
 #include "base/base.h"
 
 static double now; /* s */
@@ -22,7 +22,6 @@ static void work_for_an_hour(void) {
 
 /* What a level lets through; the caller frees it. */
 static char *print_all(NoteLevel level) {
-    Error error = {0};
     const char *path = temporary_path("printed");
     const int before = dup(STDERR_FILENO);
     assert_non_null(freopen(path, "w", stderr));
@@ -35,10 +34,7 @@ static char *print_all(NoteLevel level) {
     note_set_level(NOTES_NORMAL);
     dup2(before, STDERR_FILENO);
     close(before);
-    size_t size;
-    char *text = file_read(path, 1 << 20, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
+    return text_of(path);
 }
 
 TEST(quiet_prints_nothing) {

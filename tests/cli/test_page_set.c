@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pages of a study stay within bounds: of one page, and of all together. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
 #include "cli/cli.h"
 #include "studies/chart_internal.h"
-#include "base/file.h"
 
 /* Two boxes that stand still for so many frames. */
 static Trajectory *make_run(int frames) {
-    Error error = {0};
-    Trajectory *run = trajectory_create(frames, 2, &error);
-    assert_ok(run != NULL, error);
+    Trajectory *run = run_sized(frames, 2);
     strcpy(run->scene, "still");
     strcpy(run->method, "none");
     run->dt = 0.0625f;
@@ -36,11 +34,8 @@ static PageFile write_run(const PageSet *set, const char *name, int frames, cons
 static char *read_page(const PageFile *file) {
     Error error = {0};
     char path[PAGE_NAME_SIZE + 64];
-    size_t size;
     assert_ok(file_path(path, sizeof path, &error, "%s/%s", temporary_folder, file->path), error);
-    char *text = file_read(path, 64 << 20, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
+    return text_of(path);
 }
 
 /* A set without parts, to write single pages. */
@@ -116,7 +111,6 @@ static bool write_part(void *context, int part, FILE *lines, const Progress *pro
 TEST(pages_are_counted_once) {
     Work work = {.fails = true};
     for (int round = 0; round < 2; round++) {
-        Error error = {0};
         PageSet set = begin();
         set = (PageSet){.folder = set.folder, .layout = &layout, .parts = 2, .write = write_part, .context = &work};
         work.set = &set;
@@ -128,13 +122,9 @@ TEST(pages_are_counted_once) {
         assert_ok(page_set_end(&set, &error), error);
     }
     assert_true(work.done[0] == 1 && work.done[1] == 2);
-    size_t size;
-    Error error = {0};
-    char *text = file_read(temporary_path("listed.csv"), 10000, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, "number,page,bytes\n1,pages/a.html#t=1&body=2,100\n2,pages/a.html#t=5,100\n"
-                              "3,pages/b.html#t=1,20\n4,,0\n5,pages/c.html#t=1,3\n");
-    free(text);
+    assert_file(temporary_path("listed.csv"),
+                "number,page,bytes\n1,pages/a.html#t=1&body=2,100\n2,pages/a.html#t=5,100\n"
+                "3,pages/b.html#t=1,20\n4,,0\n5,pages/c.html#t=1,3\n");
 }
 
 TEST(beyond_the_limit_pages_are_left_out) {

@@ -2,9 +2,9 @@
 /* A solver that only this test has is one definition and one line of the registry. Lists, charts, captions and the
    stability study then know it. */
 #include "testing.h"
+#include "files.h"
 
 #include "cli/cli.h"
-#include "base/file.h"
 #include "pictures/internal.h"
 #include "pictures/runs.h"
 #include "methods/methods.h"
@@ -31,14 +31,6 @@ static const ContactSolverKind solver_of_test = {.description = {.name = "of-tes
 /* In place of methods/registry.c, which is not linked. */
 const MethodKind method_kinds[] = {METHODS(METHOD_KIND_SOLVER, METHOD_KIND_STEPPING) METHOD_KIND_SOLVER(of_test){0}};
 
-static char *read_text(const char *path) {
-    Error error = {0};
-    size_t size;
-    char *text = file_read(path, 1 << 20, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
-}
-
 /* What a command prints; the caller frees it. */
 static char *run_command(bool (*command)(int, char **, Error *), char **argv) {
     Error error = {0};
@@ -53,13 +45,13 @@ static char *run_command(bool (*command)(int, char **, Error *), char **argv) {
     dup2(before, STDOUT_FILENO);
     close(before);
     assert_ok(same, error);
-    return read_text(path);
+    return text_of(path);
 }
 
 /* The command writes a table to the path, and the table has the text. */
 static void assert_table_has(bool (*command)(int, char **, Error *), char **argv, const char *path, const char *text) {
     free(run_command(command, argv));
-    char *table = read_text(path);
+    char *table = text_of(path);
     if (strstr(table, text) == NULL) fail_msg("%s lacks %s", path, text);
     free(table);
 }
@@ -73,7 +65,6 @@ TEST(methods_lists_it) {
 
 TEST(every_study_has_it) {
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
-        Error error = {0};
         ContenderList list;
         assert_ok(contenders_parse(&list, NULL, study, &error), error);
         const Contender *last = &list.items[list.count - 1];
@@ -113,7 +104,7 @@ TEST(its_fallbacks_are_counted) {
     char *study[] = {"twinbox stability", "--scenes",   SOURCE_DIR "/scenes", "-o",      folder,
                      "--study",           "bomb_speed", "--methods",          "of-test", NULL};
     free(run_command(command_stability, study));
-    char *table = read_text(temporary_path("fallbacks/fallbacks.csv"));
+    char *table = text_of(temporary_path("fallbacks/fallbacks.csv"));
     int steps, by_sweeps;
     assert_non_null(strstr(table, ",by_sweeps\n"));
     assert_int_equal(
@@ -128,7 +119,6 @@ TEST(its_fallbacks_are_counted) {
 }
 
 TEST(a_picture_has_its_caption) {
-    Error error = {0};
     Picture picture;
     Trajectory *run = run_make("of-test", 2);
     const RenderOptions options = draw_panels_defaults(".");

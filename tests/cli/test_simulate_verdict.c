@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Which failures of a run are verdicts. */
-#include "testing.h"
+#include "made.h"
 
 #include "cli/runs.h"
 #include "base/file.h"
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step; no scene file may have that speed. */
 TEST(a_run_that_overflows_has_a_verdict) {
-    Error error = {0};
     BodyDef body = {.size = {1, 1}, .mass = 1, .position = {0, 1}, .velocity = {3e38f, 0}};
     const Scene scene = {.name = "fast",
                          .gravity = {0, -10},
@@ -16,9 +15,8 @@ TEST(a_run_that_overflows_has_a_verdict) {
                          .frames = 100,
                          .body_count = 1,
                          .bodies = &body};
-    Method method;
     SimulateVerdict verdict;
-    assert_ok(method_parse(&method, "engine", &error), error);
+    const Method method = method_named("engine");
     assert_ok(simulate_verdict_begin(&verdict, &scene, "engine", &error), error);
     const StepObserver observer = simulate_verdict_observer(&verdict);
     assert_refused(simulate_observed(&scene, &method, &observer, &error), "is NaN or infinite");
@@ -38,7 +36,6 @@ TEST(a_run_that_overflows_has_a_verdict) {
 }
 
 TEST(other_failures_have_none) {
-    Error error = {0};
     const Scene scene = {.name = "empty", .dt = 1.0f / 60.0f, .frames = 1};
     SimulateVerdict verdict;
     assert_ok(simulate_verdict_begin(&verdict, &scene, "engine", &error), error);

@@ -16,7 +16,6 @@ TEST(a_cell_has_a_map_a_method_and_two_numbers) {
                  {"a:pair-net:network=b:c.npz:0,0", "a", "pair-net:network=b:c.npz", 0, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         StabilityCell cell;
-        Error error = {0};
         assert_ok(stability_cell_parse(&cell, cases[i].text, &error), error);
         assert_string_equal(cell.map, cases[i].map);
         assert_string_equal(cell.method, cases[i].method);
@@ -46,13 +45,12 @@ TEST(what_is_no_cell_is_refused) {
                                  method};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         StabilityCell cell;
-        Error error = {0};
+        error = (Error){0};
         if (stability_cell_parse(&cell, texts[i], &error)) fail_msg("'%s' is taken", texts[i]);
         assert_error(error, ERROR_INPUT, "is not MAP:METHOD:X,Y");
     }
     /* One character less has room. */
     StabilityCell cell;
-    Error error = {0};
     snprintf(map, sizeof map, "%0*d:engine:1,2", CSV_NAME_SIZE - 1, 1);
     snprintf(method, sizeof method, "a:%0*d:1,2", METHOD_TEXT_SIZE - 1, 1);
     assert_ok(stability_cell_parse(&cell, map, &error) && stability_cell_parse(&cell, method, &error), error);
@@ -61,24 +59,17 @@ TEST(what_is_no_cell_is_refused) {
 
 static CsvTable table;
 
-static int read_table(void **state) {
-    (void)state;
+FIXTURE(read_table) {
     static const char text[] = HEADER "a,engine,,h,,10,i,,1,falls,9,1,1,m\na,engine,,h,,10.05,i,,1,sinks,9,1,1,m\n"
                                       "a,engine,,h,,-20,i,,0,falls,9,1,1,m\n"
                                       "a,engine,k=4,h,,10,i,,1,not applicable,,,,\n"
                                       "a,momentum,,h,,10,i,,1,sways,9,1,1,J\na,nncg,,h,,10,i,,1,settles,9,1,1,J\n"
                                       "b,engine,,h,,10.05,i,,1,settles,9,1,1,J\n";
-    Error error = {0};
     assert_ok(file_write_soon(temporary_path("maps.csv"), text, strlen(text), &error), error);
     assert_ok(csv_table_read_from(&table, temporary_folder, &map_layout, &error), error);
-    return 0;
 }
 
-static int free_table(void **state) {
-    (void)state;
-    csv_table_free(&table);
-    return 0;
-}
+FIXTURE(free_table) { csv_table_free(&table); }
 
 /* The row of the table, from 0; -1: there is none, and the error has this text. */
 static void expect_row(const char *text, int row, const char *message) {

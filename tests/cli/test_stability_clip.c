@@ -26,7 +26,6 @@ static bool there_is(const char *name) { return access(temporary_path(name), R_O
 
 /* 20 Hz: frames 0 to 4, and those of three seconds. */
 TEST(a_clip_goes_on_for_three_seconds) {
-    Error error = {0};
     assert_ok(make_clip("m:engine:20,2", 20, &error), error);
     assert_true(there_is("clips/m-engine-20_2.mp4") && there_is("clips/m-engine-20_2/frame_000064.png"));
     assert_false(there_is("clips/m-engine-20_2/frame_000065.png"));
@@ -34,7 +33,6 @@ TEST(a_clip_goes_on_for_three_seconds) {
 
 /* 480 Hz: every eighth frame, up to step 2 + 3 * 480. */
 TEST(no_more_than_sixty_frames_a_second_are_drawn) {
-    Error error = {0};
     assert_ok(make_clip("m:momentum:480,2", 480, &error), error);
     assert_true(there_is("clips/m-momentum-480_2/frame_000180.png"));
     assert_false(there_is("clips/m-momentum-480_2/frame_000181.png"));
@@ -42,7 +40,6 @@ TEST(no_more_than_sixty_frames_a_second_are_drawn) {
 
 /* The run that leaves the finite numbers in step 3 ends with frame 2; one that holds goes on beside it. */
 TEST(what_is_no_more_finite_ends_before) {
-    Error error = {0};
     assert_ok(make_clip("m:nncg:20,2", 20, &error), error);
     assert_true(there_is("clips/m-nncg-20_2/frame_000063.png"));
     assert_false(there_is("clips/m-nncg-20_2/frame_000064.png"));
@@ -58,10 +55,8 @@ TEST(what_cannot_be_shown_is_refused) {
                  {"m:engine:30,2", "map m has no cell 30,2 of method engine"},
                  {"m:scene-net:20,2", "'m:scene-net:20,2' is not applicable"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
         assert_refused(make_clip(cases[i].cell, 20, &error), cases[i].message);
     }
-    Error error = {0};
     assert_refused(stability_clip(&(ClipOptions){temporary_folder, "m:engine:20,2", NULL, 0, 160, 90}, &error),
                    "map m has no scene");
 }

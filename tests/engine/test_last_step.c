@@ -21,7 +21,6 @@ static void add_box(World *world, float x) {
 }
 
 TEST(a_problem_outlives_added_bodies) {
-    Error error = {0};
     World *world = world_create(&(WorldDef){.gravity = {0, -10}}, &error);
     assert_ok(world != NULL, error);
     for (int i = 0; i < BODIES; i++) add_box(world, 2.0f * (float)i);

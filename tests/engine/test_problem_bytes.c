@@ -49,7 +49,6 @@ static bool read_copy(const Written *written, size_t size, ContactProblem *probl
 
 TEST(written_is_read) {
     Written written;
-    Error error;
     ContactProblem problem;
     ProblemBytes bytes;
     make_problem(&written);
@@ -66,7 +65,6 @@ TEST(written_is_read) {
 
 TEST(cut_off_is_refused) {
     Written written;
-    Error error;
     ContactProblem problem;
     ProblemBytes bytes;
     make_problem(&written);

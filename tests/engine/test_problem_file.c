@@ -52,7 +52,6 @@ TEST(written_is_read) {
     const char *path = temporary_path("problem.npz");
     Example example;
     make_example(&example);
-    Error error = {0};
     assert_ok(problem_write(&example.problem, "stack", 41, path, &error), error);
     StoredProblem *stored = problem_read(path, &error);
     assert_ok(stored != NULL, error);
@@ -74,7 +73,6 @@ TEST(a_problem_without_contacts_is_one) {
     example.problem.contact_count = 0;
     example.problem.contacts = NULL;
     example.problem.marked = -1;
-    Error error = {0};
     assert_ok(problem_write(&example.problem, "", 1, path, &error), error);
     StoredProblem *stored = problem_read(path, &error);
     assert_ok(stored != NULL, error);

@@ -131,7 +131,6 @@ TEST(a_step_that_fails_leaves_the_world_unchanged) {
 
 /* A copy continues as the original does, impulses included; a step that is begun and not ended changes neither. */
 TEST(a_copy_goes_on_as_the_original) {
-    Error error = {0};
     World *world = box_on_ground(true, true, 0.495f), *copy = box_on_ground(false, false, 3);
     FakeSolver fake = {.impulse = 7, .velocity = -0.1f};
     step(world, &fake);
@@ -153,7 +152,6 @@ TEST(a_copy_goes_on_as_the_original) {
 
 /* Poses from the method, velocities from the solution. */
 TEST(a_step_can_end_at_poses_given) {
-    Error error = {0};
     World *world = box_on_ground(true, true, 2);
     ContactProblem problem;
     ContactSolution *solution;
@@ -201,7 +199,6 @@ TEST(a_body_taken_out_takes_its_contacts_with_it) {
 
 /* A body added in its place has neither its impulses nor its box; a copy made meanwhile continues alike. */
 TEST(a_body_in_the_place_of_one_taken_out_starts_anew) {
-    Error error = {0};
     for (int same_size = 0; same_size <= 1; same_size++) {
         World *world = two_boxes_on_ground(vec2(1, 1)), *copy = box_on_ground(false, false, 3);
         FakeSolver fake = {.impulse = 7};
@@ -223,7 +220,6 @@ TEST(a_body_in_the_place_of_one_taken_out_starts_anew) {
 
 /* n boxes in one place are n (n - 1) / 2 pairs: 1448 are just below 2^20, 1449 above. */
 TEST(too_many_pairs_are_refused) {
-    Error error = {0};
     const WorldDef def = {.gravity = {0, -10}};
     const BodyDef box = {.size = {1, 1}, .mass = 1};
     World *world = world_create(&def, &error);

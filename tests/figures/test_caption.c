@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Captions for LaTeX: what they state, and that no name breaks them. */
 #include "testing.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "figures/internal.h"
 #include "figures/run_figure.h"
 
@@ -10,10 +10,8 @@ enum { FRAMES = 61, IMPACT = 30 };
 
 static Trajectory *runs[3];
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     static const char *const methods[] = {"engine", "momentum:k=20", "pair-net:network=nets/my_net.npz"};
-    Error error = {0};
     for (int i = 0; i < 3; i++) {
         TrajectoryContact contact = {
             .a = FIRST_BOX, .b = BOMB_BODY, .point = {1, (float)i}, .normal = {0, 1}, .normal_impulse = 2};
@@ -22,13 +20,10 @@ static int make(void **state) {
         assert_ok(trajectory_add_contact(runs[i], IMPACT, &contact, &error), error);
         trajectory_end_contacts(runs[i]);
     }
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     for (int i = 0; i < 3; i++) trajectory_destroy(runs[i]);
-    return 0;
 }
 
 static void print_text(FILE *out, const void *text) { latex_text(out, text); }
@@ -57,16 +52,13 @@ static char *caption_of(const char *kind_name, FigureSpec spec) {
     Error error = {0};
     FigureFacts facts = {0};
     Sketch sketch = {0};
-    size_t size;
     const char *path = temporary_path("caption.tex");
     const FigureKind *kind = figure_kind(kind_name, &error);
     spec.facts = &facts;
     assert_ok(kind != NULL && kind->draw(&sketch, &spec, &error), error);
     assert_ok(figure_write_caption(kind, &spec, path, &error), error);
     sketch_free(&sketch);
-    char *text = file_read(path, 10000, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
+    return text_of(path);
 }
 
 /* Up to the version. */

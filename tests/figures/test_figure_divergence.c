@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "made.h"
 
 #include "figures/sketch.h"
 #include "figures/run_figure.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
@@ -57,13 +56,9 @@ TEST(a_plot_places_decades_evenly) {
 }
 
 static Trajectory *simulate_stack(const char *method_name, float bomb_shift, int frames) {
-    Error error = {0};
-    Method method;
-    Scene *scene = scene_read(STACK, &error);
-    assert_ok(scene != NULL && method_parse(&method, method_name, &error), error);
+    Scene *scene = scene_from(STACK);
     scene->frames = frames;
-    Trajectory *run = simulate(scene, &method, NULL, &error);
-    assert_ok(run != NULL, error);
+    Trajectory *run = run_by(scene, method_name);
     for (int frame = 0; frame <= frames; frame++) run->position[frame * run->bodies + run->bomb].x += bomb_shift;
     scene_destroy(scene);
     return run;

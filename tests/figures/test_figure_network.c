@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "made.h"
 
-#include "base/file.h"
+#include "files.h"
+
 #include "figures/internal.h"
 #include "figures/run_figure.h"
 
@@ -17,8 +18,7 @@ static FigureSpec spec_for(const char *path) {
 /* 3-2-1: weights 1 to 6 of alternating signs, then 4 and -8. */
 static const char *write_small(const char *inputs) {
     Error error = {0};
-    Network *network = network_create(2, (const int[]){3, 2, 1}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(2, (const int[]){3, 2, 1});
     for (int i = 0; i < 6; i++) network->weights[0][i] = (float)(i + 1) * (i % 2 == 0 ? 1.0f : -1.0f);
     network->weights[1][0] = 4, network->weights[1][1] = -8;
     network->activations[0] = ACTIVATION_TANH;
@@ -84,8 +84,7 @@ TEST(colours_tell_sign_and_size) {
 }
 
 TEST(wide_layers_are_matrices) {
-    Error error = {0};
-    Network *network = network_create(1, (const int[]){50, 2}, &error);
+    Network *network = network_sized(1, (const int[]){50, 2});
     network->weights[0][0] = 2, network->weights[0][50 + 49] = -1;
     const char *path = temporary_path("wide.npz");
     assert_ok(network_write(network, path, &error), error);
@@ -108,8 +107,7 @@ TEST(wide_layers_are_matrices) {
 
 /* 37 weights share a pixel: the largest is shown, which is the first, not the last. */
 TEST(of_weights_in_a_pixel_the_largest_shows) {
-    Error error = {0};
-    Network *network = network_create(1, (const int[]){4096, 1}, &error);
+    Network *network = network_sized(1, (const int[]){4096, 1});
     for (int i = 0; i < 4096; i++) network->weights[0][i] = 0.25f;
     network->weights[0][0] = -1;
     const char *path = temporary_path("wide.npz");
@@ -148,10 +146,8 @@ TEST(the_networks_that_ship_are_shown) {
 }
 
 TEST(damaged_files_are_refused) {
-    Error error = {0};
     size_t size;
-    char *whole = file_read(NETWORKS "pair-net.npz", 1 << 20, &size, &error);
-    assert_ok(whole != NULL, error);
+    char *whole = read_whole(NETWORKS "pair-net.npz", &size);
     const char *path = temporary_path("cut.npz");
     assert_ok(file_write(path, whole, size / 2, &error), error);
     free(whole);

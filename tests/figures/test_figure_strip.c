@@ -141,7 +141,6 @@ TEST(long_settings_are_cut_to_their_row) {
 }
 
 TEST(what_cannot_be_shown_is_refused) {
-    Error error = {0};
     Trajectory *runs[] = {run_make("engine", 31), run_make("pair-net", 11)};
     FigureSpec spec = spec_of(runs, 2);
     spec.time_count = 1;

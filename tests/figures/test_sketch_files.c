@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The three formats of a sketch. Areas have closed forms; a PDF's object table is checked. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "base/hash.h"
 #include "base/machine.h"
 #include "figures/internal.h"
@@ -19,8 +19,7 @@ static Image *as_pixels(const Sketch *sketch, const SketchOutput *output) {
     Error error = {0};
     const char *path = temporary_path("sketch.png");
     assert_ok(sketch_write(sketch, path, output, &error), error);
-    Image *image = image_read_png(path, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_of(path);
     assert_int_equal(image->width, (int)lrint(10 * sketch->width));
     assert_int_equal(image->height, (int)lrint(10 * sketch->height));
     return image;
@@ -102,9 +101,8 @@ TEST(shapes_lie_at_their_place_and_colour) {
 }
 
 TEST(a_picture_of_its_places_size_keeps_its_pixels) {
-    Error error = {0};
     Sketch sketch;
-    Image *picture = image_create(20, 10, &error);
+    Image *picture = image_sized(20, 10);
     for (int i = 0; i < 20 * 10 * 4; i++) picture->pixels[i] = i % 4 == 3 ? 255 : (uint8_t)(i * 37);
     picture->pixels[3] = 0;
     sketch_begin(&sketch, 10, 5);
@@ -152,8 +150,7 @@ TEST(words_are_as_wide_as_they_say) {
 }
 
 static void draw_something(Sketch *sketch) {
-    Error error = {0};
-    Image *picture = image_create(3, 2, &error);
+    Image *picture = image_sized(3, 2);
     for (int i = 0; i < 3 * 2 * 4; i++) picture->pixels[i] = (uint8_t)(i * 37);
     sketch_begin(sketch, 30, 20);
     strcpy(sketch->title, "Something <new>");
@@ -174,7 +171,6 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
         {"a.svg", 0x77c28023e196dc9c, 0x59a07ad45902c0cd},
         {"a.pdf", 0x1ec4adee1acfa27e, 0x04ccdd4df6961d22},
     };
-    Error error = {0};
     Sketch sketch;
     draw_something(&sketch);
     for (int i = 0; i < 2 * SKETCH_FORMATS; i++) {
@@ -182,8 +178,7 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
         const char *path = temporary_path(expected[i / 2].name);
         assert_ok(sketch_write(&sketch, path, transparent ? &clear : &white, &error), error);
         size_t size;
-        char *data = file_read(path, 1 << 20, &size, &error);
-        assert_ok(data != NULL, error);
+        char *data = read_whole(path, &size);
         const uint64_t hash = hash_xxh3(data, size);
         free(data);
         if (hash != (transparent ? expected[i / 2].transparent : expected[i / 2].on_white))
@@ -195,7 +190,6 @@ TEST(a_sketch_has_the_same_bytes_everywhere) {
 
 /* Text is text, in a font that the file brings; or outlines, without the font. */
 TEST(an_svg_has_its_words) {
-    Error error = {0};
     Sketch sketch;
     size_t size;
     draw_something(&sketch);
@@ -230,15 +224,12 @@ static void expect_printed(const char *program, const char *path, const char *wa
              strcmp(program, "pdftotext") == 0 ? "-" : "", out);
     assert_ok(process_start(&process, (const char *const[]){"sh", "-c", command, NULL}, &error), error);
     assert_ok(process_finish(&process, text, sizeof text, &error), error);
-    size_t size;
-    char *printed = file_read(out, 1 << 16, &size, &error);
-    assert_ok(printed != NULL, error);
+    char *printed = text_of(out);
     if (strncmp(printed, wanted, strlen(wanted)) != 0) fail_msg("%s prints '%s', not '%s'", program, printed, wanted);
     free(printed);
 }
 
 TEST(an_svg_of_outlines_needs_no_font) {
-    Error error = {0};
     Sketch sketch;
     size_t size;
     draw_something(&sketch);
@@ -256,7 +247,6 @@ TEST(an_svg_of_outlines_needs_no_font) {
 
 /* In an SVG an area is a link, whose texts cannot end it; in the other formats it is nothing. */
 TEST(a_link_is_in_an_svg_only) {
-    Error error = {0};
     char *data[2][SKETCH_FORMATS];
     size_t size[2][SKETCH_FORMATS];
     for (int linked = 0; linked < 2; linked++) {
@@ -285,7 +275,6 @@ TEST(a_link_is_in_an_svg_only) {
 
 /* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
 TEST(a_pdf_is_read_as_it_is_seen) {
-    Error error = {0};
     Sketch sketch;
     sketch_begin(&sketch, 100, 40);
     strcpy(sketch.title, "Distances, 1 µm to ∞");
@@ -302,7 +291,6 @@ TEST(a_pdf_is_read_as_it_is_seen) {
 
 /* Every entry of the table points to its object, and the file contains no date or path. */
 TEST(a_pdf_has_a_valid_object_table) {
-    Error error = {0};
     Sketch sketch;
     size_t size;
     draw_something(&sketch);

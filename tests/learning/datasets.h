@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Synthetic datasets. */
 #pragma once
-#include "testing.h"
+#include "made.h"
 
 #include "learning/dataset.h"
-#include "nets/nets.h"
 #include "learning/pair_training.h"
 
 #include <math.h>
@@ -32,10 +31,8 @@ static inline Dataset *make_dataset(int rows) {
 /* Changes of b's velocity are the outputs of a 10-4-2 network of sigmoids: a network of that shape can learn them
    exactly, except for the min-max normalisation. */
 static inline Dataset *make_taught_dataset(int rows) {
-    Error error = {0};
     Dataset *dataset = make_dataset(rows);
-    Network *teacher = network_create(2, (const int[]){PAIR_INPUTS, 4, 2}, &error);
-    assert_ok(teacher != NULL, error);
+    Network *teacher = network_sized(2, (const int[]){PAIR_INPUTS, 4, 2});
     teacher->activations[0] = teacher->activations[1] = ACTIVATION_SIGMOID;
     uint32_t sequence = 11;
     for (int p = 0; p < network_parameter_count(teacher); p++) teacher->weights[0][p] = 3 * next_number(&sequence);

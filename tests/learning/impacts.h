@@ -3,7 +3,6 @@
 #pragma once
 #include "trainings.h"
 
-#include "methods/methods.h"
 #include "learning/scene_training_internal.h"
 #include "learning/scene_training.h"
 
@@ -29,7 +28,7 @@ static inline void throw_over_grid(const Scene *scene, int count, Launch *launch
 
 static inline void record_impacts(SlotSamples *samples, int launches, int first) {
     Error error = {0};
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     Launch table[200];
     assert_in_range(launches, 1, 200);
     throw_over_grid(scene, launches, table);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Datasets in pieces: the file is that of a dataset in memory, for any targets and views; damaged pieces are refused. */
 #include "testing.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "learning/dataset.h"
 #include "in_shards.h"
 
@@ -17,10 +17,8 @@ static DatasetOptions options_for(DatasetOptions options) {
 }
 
 static void assert_equal_files(const char *path, const char *other) {
-    Error error = {0};
     size_t sizes[2];
-    char *one = file_read(path, 1 << 28, &sizes[0], &error), *two = file_read(other, 1 << 28, &sizes[1], &error);
-    assert_ok(one != NULL && two != NULL, error);
+    char *one = read_whole(path, &sizes[0]), *two = read_whole(other, &sizes[1]);
     assert_int_equal(sizes[0], sizes[1]);
     assert_memory_equal(one, two, sizes[0]);
     free(one);
@@ -63,7 +61,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(a_merge_that_is_stopped_writes_nothing) {
-    Error error = {0};
     DatasetPieces pieces;
     Pieces done;
     int64_t rows;
@@ -81,7 +78,6 @@ TEST(a_merge_that_is_stopped_writes_nothing) {
 
 /* Rows of other launches, and half a row. */
 TEST(damaged_rows_are_refused) {
-    Error error = {0};
     DatasetPieces pieces;
     const DatasetOptions options = options_for((DatasetOptions){.target = TARGET_PAIR});
     assert_ok(dataset_pieces_make(&pieces, &options, &error), error);

@@ -26,8 +26,7 @@ typedef struct Case {
 static Case make_case_of(Dataset *dataset, LossKind kind, int layers, const int *widths, Activation hidden,
                          Activation last, OutputScale scale) {
     Error error = {0};
-    Case made = {.dataset = dataset, .network = network_create(layers, widths, &error)};
-    assert_ok(made.network != NULL, error);
+    Case made = {.dataset = dataset, .network = network_sized(layers, widths)};
     for (int l = 0; l < layers; l++) made.network->activations[l] = l < layers - 1 ? hidden : last;
     samples_fit_normalisation(made.dataset, scale, made.network);
     made.train = samples_create(made.dataset, made.network, false, &error);
@@ -101,7 +100,6 @@ TEST(gradient_of_the_smooth_loss_is_the_finite_difference) {
     for (int scale = 0; scale < 2; scale++) {
         Case made = make_case_of(make_taught_dataset(FEW_ROWS), LOSS_SMOOTH_L1, 2, widths, ACTIVATION_TANH,
                                  ACTIVATION_LINEAR, scale == 0 ? SCALE_MINMAX : SCALE_STANDARD);
-        Error error = {0};
         Loss *mse = loss_create(made.network, LOSS_MSE, &error);
         assert_ok(mse != NULL, error);
         const double smooth = loss_value(made.loss, made.train, NULL, made.parameters);
@@ -115,7 +113,6 @@ TEST(gradient_of_the_smooth_loss_is_the_finite_difference) {
 TEST(gradient_of_the_laws_is_the_finite_difference) {
     const int widths[] = {10, 4, 6};
     for (int law = 0; law <= LAWS; law++) {
-        Error error = {0};
         LawNumbers weights;
         Case made = make_case_of(make_pushed_dataset(FEW_ROWS), law < LAWS ? LOSS_MSE : LOSS_SMOOTH_L1, 2, widths,
                                  ACTIVATION_TANH, ACTIVATION_LINEAR, law % 2 == 0 ? SCALE_STANDARD : SCALE_MINMAX);

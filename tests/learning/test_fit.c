@@ -12,7 +12,6 @@ TEST(equal_slopes_make_steps_of_the_rate) {
     enum { STEPS = 50 };
     const double slopes[2] = {3, -0.25}, rate = 0.01;
     Adam adam;
-    Error error = {0};
     assert_ok(adam_create(&adam, 2, ADAM_SQUARE_DECAY, &error), error);
     for (int i = 1; i <= STEPS; i++) {
         adam_step(&adam, slopes, rate);
@@ -25,7 +24,6 @@ TEST(equal_slopes_make_steps_of_the_rate) {
 /* f(x) = (x - 3)^2 / 2 */
 TEST(finds_a_minimum) {
     Adam adam;
-    Error error = {0};
     assert_ok(adam_create(&adam, 1, 0.99, &error), error);
     for (int i = 0; i < 2000; i++) {
         const double slope = adam.weights[0] - 3;
@@ -109,7 +107,6 @@ static bool stop_at(void *context, double done, double total) {
 
 TEST(a_training_writes_reports_and_ends) {
     Toy toy;
-    Error error = {0};
     const char *path = temporary_path("whole.part");
     assert_ok(train(&toy, path, "train", &all, &error), error);
     assert_int_equal(toy.steps, STAGES * STEPS);
@@ -126,7 +123,6 @@ TEST(a_training_writes_reports_and_ends) {
 /* At each of its reports in turn, again and again. */
 TEST(interruptions_leave_no_trace) {
     Toy whole, parts;
-    Error error = {0};
     assert_ok(train(&whole, temporary_path("whole.part"), "train", &all, &error), error);
     for (int every = 1; every <= 6; every++) {
         const char *path = temporary_path("parts.part");
@@ -152,7 +148,6 @@ TEST(interruptions_leave_no_trace) {
 
 TEST(a_failing_step_ends_the_training) {
     Toy toy;
-    Error error = {0};
     const char *path = temporary_path("fails.part");
     assert_ok(train(&toy, path, "train", &all, &error), error);
     fit_stage(&toy.fit, 0);
@@ -166,7 +161,6 @@ TEST(a_failing_step_ends_the_training) {
 
 TEST(another_command_begins_again) {
     Toy toy;
-    Error error = {0};
     const char *path = temporary_path("other.part");
     assert_ok(train(&toy, path, "train a", NULL, &error), error);
     fit_free(&toy.fit);
@@ -177,7 +171,6 @@ TEST(another_command_begins_again) {
 
 TEST(damaged_states_are_refused) {
     bool found;
-    Error error = {0};
     const char *path = temporary_path("net.npz.part");
     Fit fit, other;
     fit_init(&fit, "train", path, NULL);

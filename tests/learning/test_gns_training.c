@@ -8,7 +8,6 @@
 #include <omp.h>
 
 static Scene *small_scene(void) {
-    Error error = {0};
     const char *path = temporary_path("small.yaml");
     FILE *file = fopen(path, "w");
     assert_non_null(file);
@@ -18,9 +17,7 @@ static Scene *small_scene(void) {
           "bomb: {x: {from: -1, to: 1}, y: 8, size: [1, 1], mass: 5, velocity: {times_position: -1.5}}\n",
           file);
     fclose(file);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
+    return scene_from(path);
 }
 
 /* Trains on the small scene; the caller frees the net. */
@@ -46,7 +43,6 @@ static bool train(void *context, const char *path, const Progress *progress, Err
 }
 
 TEST(same_bits_for_any_threads_and_interruptions) {
-    Error error = {0};
     GnsNet whole, parts;
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);
@@ -67,9 +63,8 @@ typedef struct Recorded {
 
 static void record(Recorded *recorded, float noise) {
     Error error = {0};
-    Method method;
     *recorded = (Recorded){.examples = {.noise = noise, .seed = 8}};
-    assert_ok(method_parse(&method, "engine", &error), error);
+    const Method method = method_named("engine");
     assert_ok(gns_examples_add(&recorded->examples, small_scene(), &method, 2, NULL, &error), error);
 }
 

@@ -2,26 +2,23 @@
 #include "trainings.h"
 
 #include "learning/dataset.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
 /* Frames before the bomb have none. */
 TEST(poses_are_those_of_single_runs) {
     enum { LAUNCHES = 3 };
-    Error error = {0};
     Method method;
     Launch launches[LAUNCHES];
     LaunchRuns runs;
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     scene->frames = 60;
     assert_ok(method_parse(&method, "engine", &error) && launches_for_training(scene, LAUNCHES, launches, &error),
               error);
     assert_ok(launch_runs_record(&runs, scene, &method, launches, LAUNCHES, NULL, &error), error);
     for (int i = 0; i < LAUNCHES; i++) {
         const Scene launched = launch_scene(scene, &launches[i]);
-        Trajectory *run = simulate(&launched, &method, NULL, &error);
-        assert_ok(run != NULL, error);
+        Trajectory *run = run_with(&launched, &method);
         assert_int_equal(runs.bodies, run->bodies);
         assert_int_equal(runs.frames, run->frames);
         for (int frame = 0; frame < run->frames; frame++)
@@ -40,11 +37,9 @@ TEST(poses_are_those_of_single_runs) {
 }
 
 TEST(too_many_are_refused) {
-    Error error = {0};
-    Method method;
     LaunchRuns runs;
-    Scene *scene = shipped_scene("stack");
-    assert_ok(method_parse(&method, "engine", &error), error);
+    Scene *scene = scene_named("stack");
+    const Method method = method_named("engine");
     const Launch own = launch_of(scene);
     scene->frames = 1000000;
     assert_refused(launch_runs_record(&runs, scene, &method, &own, 1000, NULL, &error), "at most 1024 MiB are allowed");

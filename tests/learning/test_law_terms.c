@@ -112,7 +112,6 @@ static void assert_no_weights(const char *text, const char *message) {
 }
 
 TEST(weights_are_parsed) {
-    Error error = {0};
     LawNumbers weights;
     assert_true(law_weights_parse("cone=1,momentum=0.1", &weights, &error));
     assert_true(weights.of[LAW_MOMENTUM] == 0.1 && weights.of[LAW_CONE] == 1);

@@ -10,9 +10,7 @@ enum { ROWS = 2000 };
 
 /* A network without hidden layers and with weights 0: it predicts its biases for every row. */
 static Network *make_constant(const Dataset *dataset) {
-    Error error = {0};
-    Network *network = network_create(1, (const int[]){PAIR_INPUTS, PAIR_CHANGES}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(1, (const int[]){PAIR_INPUTS, PAIR_CHANGES});
     strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     samples_fit_normalisation(dataset, SCALE_STANDARD, network);
     return network;
@@ -97,7 +95,6 @@ TEST(a_weight_of_one_makes_the_labels_own_size_one) {
 
 /* A prediction of 0 changes no velocity: approaching pairs violate `approach`; no other law is violated. */
 TEST(violations_are_measured_on_the_test_rows) {
-    Error error = {0};
     Dataset *dataset = make_pushed_dataset(ROWS);
     Network *network = make_constant(dataset);
     for (int k = 0; k < PAIR_CHANGES; k++)
@@ -142,7 +139,6 @@ static Network *train(const Dataset *dataset, const char *laws, int iterations, 
 }
 
 TEST(a_law_in_the_loss_is_violated_less) {
-    Error error = {0};
     Dataset *dataset = make_pushed_dataset(ROWS);
     TrainingScore score;
     LawNumbers without, with;
@@ -161,7 +157,6 @@ TEST(a_law_in_the_loss_is_violated_less) {
 
 /* Scores exclude the laws, so that networks with and without them can be compared. */
 TEST(scores_exclude_the_laws) {
-    Error error = {0};
     Dataset *dataset = make_pushed_dataset(ROWS);
     TrainingScore with, without, again;
     network_destroy(train(dataset, "none", 0, &without));

@@ -8,9 +8,8 @@
 
 /* The first ONLINE_FIRST steps make the network; trained on one step again and again, it fits it. */
 TEST(a_step_that_comes_back_is_learned) {
-    Error error = {0};
     AskedSteps asked = {0};
-    Scene *scene = shipped_scene("single");
+    Scene *scene = scene_named("single");
     LaunchSteps *runs = launch_steps_create(scene, &error);
     assert_ok(runs != NULL, error);
     OnlineNet *net = online_net_create(1, &error);

@@ -29,10 +29,8 @@ static void *keep(size_t count, size_t size) {
     return block;
 }
 
-static int free_all(void **state) {
-    (void)state;
+FIXTURE(free_all) {
     while (kept_count > 0) free(kept[--kept_count]);
-    return 0;
 }
 
 static Table make_table(int rows, int columns) {
@@ -293,7 +291,6 @@ TEST(sums_do_not_depend_on_threads) {
     for (int i = 0; i < COLUMNS * WIDTH; i++) directions[i] = sin(i);
     const int threads = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
-        Error error = {0};
         SparseCovariance covariance;
         omp_set_num_threads(i + 1);
         assert_ok(sparse_covariance_make(&covariance, &table.sparse, WIDTH, &error), error);

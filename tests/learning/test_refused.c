@@ -33,9 +33,7 @@ TEST(invalid_options_are_refused) {
         memcpy(options.widths, cases[i].widths, sizeof cases[i].widths);
         refuse(dataset, options, cases[i].text);
     }
-    Error error = {0};
-    Network *start = network_create(2, (const int[]){PAIR_INPUTS, 5, 2}, &error);
-    assert_ok(start != NULL, error);
+    Network *start = network_sized(2, (const int[]){PAIR_INPUTS, 5, 2});
     options = small("adam", 0);
     options.start = start;
     refuse(dataset, options, "trained on other inputs");
@@ -101,7 +99,6 @@ TEST(options_that_contradict_each_other_are_refused) {
     dataset->context = NULL;
     refuse(dataset, options, "laws: error: the dataset has no context; record it again with --context");
     options.laws.of[LAW_CONE] = 0;
-    Error error = {0};
     Network *network = training_run(dataset, &options, NULL, &error);
     assert_ok(network != NULL, error);
     network_destroy(network);
@@ -110,7 +107,6 @@ TEST(options_that_contradict_each_other_are_refused) {
 
 /* A start network keeps its activations and output scaling. */
 TEST(options_that_contradict_the_start_network_are_refused) {
-    Error error = {0};
     Dataset *dataset = make_taught_dataset(100);
     TrainingOptions options = small("adam", 1);
     options.hidden = "tanh";
@@ -137,7 +133,6 @@ TEST(options_that_contradict_the_start_network_are_refused) {
 /* Ten equal inputs: the loss of a linear layer has curvature 10 along their sum, so a step of gradient descent at rate
    1/2 multiplies the distance from the minimum by -4. From 1 it exceeds the largest float, 2^128, in about 64 steps. */
 TEST(divergence_names_its_iteration) {
-    Error error = {0};
     Dataset *dataset = make_taught_dataset(100);
     for (int i = 0; i < 100 * PAIR_INPUTS; i++) dataset->inputs[i] = dataset->inputs[i / PAIR_INPUTS * PAIR_INPUTS];
     TrainingOptions options = {.layers = 1,

@@ -55,7 +55,6 @@ static void clear(Any *any) {
 
 TEST(slopes_are_finite_differences) {
     static Any any;
-    Error error = {0};
     RelationLoss loss = {0};
     fill(&any);
     assert_ok(relation_loss_begin(&loss, &any.network, &error), error);

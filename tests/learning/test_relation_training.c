@@ -37,9 +37,8 @@ static void assert_same(const RelationNetworks *a, const RelationNetworks *b) {
 }
 
 TEST(an_interrupted_training_has_the_same_bits) {
-    Error error = {0};
     RelationNetworks whole, resumed;
-    scene = shipped_scene("single");
+    scene = scene_named("single");
     assert_ok(train(&whole, temporary_path("whole.part"), NULL, &error), error);
     assert_true(train_in_parts(train, &resumed, temporary_path("resumed.part"), 5, 4) > 2);
     assert_same(&whole, &resumed);

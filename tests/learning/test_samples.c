@@ -15,8 +15,7 @@ typedef struct Case {
 
 static Case make_case(Dataset *dataset, int outputs, OutputScale scale) {
     Error error = {0};
-    Case made = {.dataset = dataset, .network = network_create(1, (const int[]){PAIR_INPUTS, outputs}, &error)};
-    assert_ok(made.network != NULL, error);
+    Case made = {.dataset = dataset, .network = network_sized(1, (const int[]){PAIR_INPUTS, outputs})};
     made.network->activations[0] = outputs == 2 ? ACTIVATION_SIGMOID : ACTIVATION_LINEAR;
     samples_fit_normalisation(dataset, scale, made.network);
     made.train = samples_create(dataset, made.network, false, &error);
@@ -125,7 +124,6 @@ TEST(the_constant_predictor_has_the_variance) {
 /* Changes of 0, 1, 2, 3 m/s, scaled by 1/3; the errors of the constant are 0.1, 0.9, 1.9, 2.9 m/s. Up to 0.3 m/s the
    loss is the square, beyond it 0.6 |e| - 0.09; in the network's units a ninth of that. */
 TEST(the_smooth_loss_is_linear_beyond_its_threshold) {
-    Error error = {0};
     Case made = make_case(small_dataset(), 2, SCALE_MINMAX);
     const Samples *train = made.train;
     Loss *smooth = loss_create(made.network, LOSS_SMOOTH_L1, &error);

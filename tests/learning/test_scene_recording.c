@@ -26,8 +26,7 @@ static void assert_equal_samples(const SlotSamples *samples, const SlotSamples *
 }
 
 TEST(shards_record_what_the_training_runs) {
-    Error error = {0};
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     SceneRecording recording;
     Pieces pieces;
     SceneTraining reading = training;
@@ -66,7 +65,6 @@ static bool is_refused(const char *bytes, size_t size, int bodies) {
 }
 
 TEST(damaged_samples_are_refused) {
-    Error error = {0};
     SlotSamples samples = labelled_impacts(2), read = {0};
     char *bytes = NULL;
     size_t size;

@@ -35,8 +35,7 @@ static SlotNetwork *train(const Scene *scene, Scores *scores, const Progress *pr
 }
 
 TEST(the_network_is_for_its_scene_and_the_same_for_any_threads) {
-    Error error = {0};
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     Scores scores[2];
     SlotNetwork *networks[2];
     const int threads = omp_get_max_threads();
@@ -83,10 +82,10 @@ static bool stop_share(void *context, double done, double total) {
 
 /* Stopped in the first fit, in the labels after it, in the second fit. */
 TEST(a_stopped_training_keeps_the_rounds_so_far) {
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     static const double at[] = {0.27, 0.67, 0.87};
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
+        error = (Error){0};
         Scores scores;
         Stop stop = {.at = at[i]};
         SlotNetwork *network = train(scene, &scores, &(Progress){stop_share, &stop}, &error);
@@ -101,8 +100,7 @@ TEST(a_stopped_training_keeps_the_rounds_so_far) {
 }
 
 TEST(a_training_stopped_before_the_first_network_fails) {
-    Error error = {0};
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     Scores scores;
     Stop stop = {.at = 0.1};
     assert_null(train(scene, &scores, &(Progress){stop_share, &stop}, &error));
@@ -111,8 +109,7 @@ TEST(a_training_stopped_before_the_first_network_fails) {
 }
 
 TEST(a_scene_without_a_bomb_is_refused) {
-    Error error = {0};
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     Scores scores;
     scene->bomb.present = false;
     assert_refused(train(scene, &scores, NULL, &error), "stack: error: has no bomb to launch");

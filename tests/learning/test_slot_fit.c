@@ -117,7 +117,6 @@ TEST(same_bits_for_any_number_of_threads) {
 }
 
 TEST(a_loss_of_nan_is_an_error_naming_the_epoch) {
-    Error error = {0};
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     const SlotFit fit = fit_of(2, 9, 0.01, false);
@@ -139,7 +138,6 @@ static bool stop_after_three(void *context, double done, double total) {
 }
 
 TEST(a_stopped_fit_keeps_its_parameters) {
-    Error error = {0};
     SlotSamples samples;
     SlotNetwork *network = begin(&samples);
     int epochs = 0;

@@ -11,18 +11,14 @@ enum { LAUNCHES = 20 };
 static SlotSamples samples;
 static SlotNetwork *network;
 
-static int begin(void **state) {
-    (void)state;
+FIXTURE(begin) {
     samples = labelled_impacts(LAUNCHES);
     network = network_for(&samples);
-    return 0;
 }
 
-static int end(void **state) {
-    (void)state;
+FIXTURE(end) {
     slot_network_destroy(network);
     slot_samples_free(&samples);
-    return 0;
 }
 
 static const ContactPoint *contact_in(const SlotSample *sample, int a, int b, uint32_t feature) {
@@ -176,7 +172,6 @@ TEST(same_seed_same_bits) {
 }
 
 TEST(samples_without_slots_are_refused) {
-    Error error = {0};
     SlotSamples few = {0};
     assert_refused(slot_network_from_samples(&few, &small_widths, 1, &error),
                    "no launch has an impact whose residual reaches the gate");

@@ -66,8 +66,7 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
     Error error = {0};
     Scene quiet = *scene;
     quiet.bomb.present = false;
-    World *world = scene_world(&quiet, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(&quiet);
     int found = 0;
     for (int frame = 0, since = -1; since < IMPACT_STEPS - 1 && frame <= scene->frames; frame++) {
         if (frame == scene->bomb.frame) assert_ok(scene_add_bomb(scene, world, &error), error);
@@ -83,10 +82,9 @@ static int check_launch(const Scene *scene, const ContactSolver *solver, const S
 }
 
 TEST(samples_are_the_steps_with_a_large_residual) {
-    Error error = {0};
     SlotSamples samples = {0};
     ContactSolver solver;
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     Launch launches[LAUNCHES];
     record_impacts(&samples, LAUNCHES, 0);
     throw_over_grid(scene, LAUNCHES, launches);
@@ -109,8 +107,7 @@ static bool no_solver(void *context, ContactSolver *solver, Error *error) {
 }
 
 TEST(a_solver_that_cannot_be_made_is_an_error) {
-    Error error = {0};
-    Scene *scene = shipped_scene("stack");
+    Scene *scene = scene_named("stack");
     Launch launch = launch_of(scene);
     SlotSamples samples = {0};
     const SlotRollout rollout = {

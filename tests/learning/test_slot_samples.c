@@ -44,7 +44,6 @@ TEST(empty_samples_can_be_moved) {
 }
 
 TEST(labels_are_the_references) {
-    Error error = {0};
     const int threads = omp_get_max_threads();
     Reference reference = {0};
     for (int t = 1; t <= 2; t++) {
@@ -74,7 +73,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(only_samples_from_the_given_index_are_labelled) {
-    Error error = {0};
     SlotSamples samples = {0};
     record_impacts(&samples, LAUNCHES, 0);
     const int half = samples.count / 2;
@@ -89,7 +87,6 @@ TEST(only_samples_from_the_given_index_are_labelled) {
 }
 
 TEST(inputs_are_those_of_the_network) {
-    Error error = {0};
     SlotSamples shaped = labelled_impacts(LAUNCHES), samples = {0};
     SlotNetwork *network = network_for(&shaped);
     record_impacts(&samples, LAUNCHES, 0);

@@ -49,7 +49,6 @@ static const unsigned held_out = 1u << 3 | 1u << 8 | 1u << 13 | 1u << 18;
 
 TEST(a_subset_has_the_rows_of_its_launches) {
     for (int context = 0; context < 2; context++) {
-        Error error = {0};
         Dataset *dataset = make_dataset(context == 1);
         const bool keep[LAUNCHES] = {[0] = true, [8] = true, [17] = true, [19] = true};
         Dataset *subset = dataset_subset(dataset, keep, &error);
@@ -80,7 +79,6 @@ TEST(launches_are_drawn_by_the_seed) {
     Dataset *dataset = make_dataset(false);
     unsigned last = held_out, first_of_seed[3];
     for (int count = 1; count <= 15; count++) {
-        Error error = {0};
         Dataset *subset = dataset_draw_subset(dataset, count, 5, &error);
         assert_ok(subset != NULL, error);
         const unsigned found = check_rows(subset);
@@ -89,7 +87,6 @@ TEST(launches_are_drawn_by_the_seed) {
         dataset_destroy(subset);
     }
     for (uint64_t seed = 0; seed < 3; seed++) {
-        Error error = {0};
         Dataset *subset = dataset_draw_subset(dataset, 5, seed + 1, &error);
         assert_ok(subset != NULL, error);
         first_of_seed[seed] = check_rows(subset);
@@ -101,7 +98,6 @@ TEST(launches_are_drawn_by_the_seed) {
 
 TEST(what_would_leave_nothing_is_refused) {
     Dataset *dataset = make_dataset(false);
-    Error error = {0};
     assert_refused(dataset_subset(dataset, (const bool[LAUNCHES]){[3] = true, [19] = true}, &error),
                    "no rows are left to train on");
     for (int count = -1; count <= 16; count += count == 0 ? 16 : 1) {

@@ -9,7 +9,7 @@
 #include <omp.h>
 
 static Scene *short_scene(void) {
-    Scene *scene = shipped_scene("single");
+    Scene *scene = scene_named("single");
     scene->frames = 40;
     return scene;
 }
@@ -28,7 +28,6 @@ static bool train(void *context, const char *path, const Progress *progress, Err
 
 /* A report for each launch that is recorded, then one before each epoch. */
 TEST(the_bits_do_not_depend_on_threads_or_interruptions) {
-    Error error = {0};
     SubspaceNet *one, *two;
     scene = short_scene();
     omp_set_num_threads(1);
@@ -46,7 +45,6 @@ TEST(the_bits_do_not_depend_on_threads_or_interruptions) {
 
 /* All of them are kept, so nothing is lost but the rounding of floats; the first state lies one step before. */
 TEST(rows_are_the_recorded_poses) {
-    Error error = {0};
     Launch launches[2];
     PoseRows rows;
     scene = short_scene();
@@ -74,7 +72,6 @@ TEST(rows_are_the_recorded_poses) {
 }
 
 TEST(too_few_frames_are_refused) {
-    Error error = {0};
     scene = short_scene();
     scene->frames = 20;
     const SubspaceTraining training = small(temporary_path("few.part"));

@@ -2,7 +2,6 @@
 /* Small complete learnings on the single box, and the method with what they learned. */
 #include "trainings.h"
 
-#include "runs/runs.h"
 #include "learning/hybrid_training.h"
 
 #include <math.h>
@@ -64,7 +63,7 @@ static void assert_same_memory(const Tabulation *a, const Tabulation *b) {
 }
 
 TEST(familiar_impacts_are_answered_within_the_tolerance) {
-    Scene *scene = shipped_scene("single");
+    Scene *scene = scene_named("single");
     Counts counts;
     const TabulationTraining training = training_of(&counts);
     Tabulation *memory = learn(scene, &training, NULL);
@@ -81,7 +80,7 @@ TEST(familiar_impacts_are_answered_within_the_tolerance) {
 
 /* Each ends where the memory has no room for one more entry. */
 TEST(the_limit_holds_and_is_reported) {
-    Scene *scene = shipped_scene("single");
+    Scene *scene = scene_named("single");
     Counts counts;
     TabulationTraining training = training_of(&counts);
     training.limit = 40000;
@@ -94,7 +93,7 @@ TEST(the_limit_holds_and_is_reported) {
 }
 
 TEST(an_interrupted_learning_is_continued_with_the_same_bits) {
-    Scene *scene = shipped_scene("single");
+    Scene *scene = scene_named("single");
     Counts counts;
     TabulationTraining training = training_of(&counts);
     Tabulation *whole = learn(scene, &training, NULL);
@@ -124,12 +123,10 @@ static Trajectory *run(const Scene *scene, const char *name, const char *path) {
     Method method;
     assert_ok(path != NULL ? method_with_network(&method, name, path, &error) : method_parse(&method, name, &error),
               error);
-    Trajectory *run = simulate(scene, &method, NULL, &error);
-    assert_ok(run != NULL, error);
-    return run;
+    return run_with(scene, &method);
 }
 
-static void assert_same_run(Trajectory *a, Trajectory *b) {
+static void assert_same_end(Trajectory *a, Trajectory *b) {
     assert_int_equal(trajectory_frame_hash(a, a->frames - 1), trajectory_frame_hash(b, b->frames - 1));
     trajectory_destroy(a);
     trajectory_destroy(b);
@@ -137,8 +134,7 @@ static void assert_same_run(Trajectory *a, Trajectory *b) {
 
 /* net=off and an empty memory solve every step to convergence; a memory gives the same run each time, and another one. */
 TEST(the_method_without_its_memory_is_its_twin) {
-    Error error = {0};
-    Scene *scene = shipped_scene("single");
+    Scene *scene = scene_named("single");
     Counts counts;
     const TabulationTraining training = training_of(&counts);
     Tabulation *memory = learn(scene, &training, NULL);
@@ -148,9 +144,9 @@ TEST(the_method_without_its_memory_is_its_twin) {
     Scene bare = *scene;
     bare.network_count = 0;
     const char *twin = "interior:near=0.001";
-    assert_same_run(run(scene, "hybrid:net=off", path), run(scene, twin, NULL));
-    assert_same_run(run(&bare, "hybrid", NULL), run(&bare, twin, NULL));
-    assert_same_run(run(scene, "hybrid", path), run(scene, "hybrid", path));
+    assert_same_end(run(scene, "hybrid:net=off", path), run(scene, twin, NULL));
+    assert_same_end(run(&bare, "hybrid", NULL), run(&bare, twin, NULL));
+    assert_same_end(run(scene, "hybrid", path), run(scene, "hybrid", path));
     int answered = 0;
     for (float x = -4; x <= 4; x++) {
         Launch launch = launch_of(scene);

@@ -246,7 +246,6 @@ TEST(stopped_training_returns_the_best_so_far) {
     Dataset *dataset = make_taught_dataset(500);
     const char *const names[] = {"adam", "bfgs", "gd", "lm"};
     for (int i = 0; i < 4; i++) {
-        Error error = {0};
         Scores scores = {0};
         int stop = 7;
         const Progress progress = {stop_at, &stop};
@@ -269,7 +268,6 @@ TEST(training_returns_the_best_and_not_the_last) {
     double best = INFINITY;
     int overshot = 0;
     for (int stop = 0; stop < 12; stop++) {
-        Error error = {0};
         Scores scores = {0};
         const Progress progress = {stop_at, &stop};
         TrainingOptions options = small("adam", 1000);

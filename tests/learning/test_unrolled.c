@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sweeps in double against the engine's, and their derivatives against finite differences. */
-#include "testing.h"
+#include "made.h"
 
-#include "runs/runs.h"
 #include "methods/kernels.h"
 #include "methods/random_problem.h"
 #include "learning/scene_training.h"
@@ -13,13 +12,9 @@ enum { SWEEPS = 20, NUMBERS_MAX = 2 * CONTACTS_MAX };
 
 /* Runs a scene with the engine; calls observe after each step. */
 static void observe_scene(const char *name, bool (*observe)(void *, int, const World *, Error *), void *context) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     Error error = {0};
-    Method engine;
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
-    assert_ok(method_parse(&engine, "engine", &error), error);
+    Scene *scene = scene_named(name);
+    const Method engine = method_named("engine");
     assert_ok(simulate_observed(scene, &engine, &(StepObserver){observe, context}, &error), error);
     scene_destroy(scene);
 }

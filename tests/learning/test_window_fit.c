@@ -77,7 +77,6 @@ TEST(slopes_are_differences) {
 /* Of one prediction, by the network of the training with its scales. */
 TEST(the_stored_predictor_is_the_trained_one) {
     static Case c;
-    Error error = {0};
     make(&c);
     window_linear(&c.data, c.linear);
     c.linear[0] = 0.5;

@@ -1,19 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole trainings on shipped scenes, interrupted and continued. */
 #pragma once
-#include "testing.h"
+#include "made.h"
 
 #include "base/machine.h"
-#include "scenes/scenes.h"
-
-static inline Scene *shipped_scene(const char *name) {
-    char path[512];
-    Error error = {0};
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
 
 /* Stops at the report of that number. */
 static inline bool stop_at(void *context, double done, double total) {

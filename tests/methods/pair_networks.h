@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Networks of pairs for tests, and the solvers that use them. */
 #pragma once
+#include "made.h"
 #include "worlds.h"
 
 #include "methods/pair.h"
-#include "nets/nets.h"
 
 /* Any six changes. */
 static const float six[PAIR_CHANGES] = {1, 2, 3, 4, 5, 6};
@@ -19,9 +19,7 @@ static const ContactProblem chain = {
 
 /* One linear layer of zeros with the texts of its view and target. */
 static inline Network *make_pair_network(PairView view, PairTarget target, int outputs) {
-    Error error = {0};
-    Network *network = network_create(1, (const int[]){pair_views[view].count, outputs}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(1, (const int[]){pair_views[view].count, outputs});
     strcpy(network->inputs, pair_views[view].inputs);
     strcpy(network->outputs, pair_output_names(view, target, outputs));
     strcpy(network->target, pair_target_names[target]);

@@ -45,7 +45,6 @@ TEST(a_settled_pyramid_steps_without_allocating) {
 
 /* The network's pyramid would not stand, so each is asked about the engine's, twice. */
 TEST(pair_networks_solve_without_allocating) {
-    Error error = {0};
     World *world = make_pyramid();
     ContactSolver engine = make_engine("");
     run(world, &engine, 10);
@@ -90,7 +89,6 @@ TEST(a_view_of_no_larger_problem_allocates_nothing) {
 TEST(a_network_of_a_scene_solves_without_allocating) {
     static RandomProblem random;
     uint32_t seed = 4;
-    Error error = {0};
     ContactSolver solver;
     BodyVelocity velocities[BODIES_MAX];
     ContactImpulse impulses[CONTACTS_MAX];
@@ -112,7 +110,6 @@ TEST(a_network_of_a_scene_solves_without_allocating) {
 }
 
 TEST(corrected_steps_allocate_nothing) {
-    Error error = {0};
     uint32_t seed = 1;
     RelationNetwork network;
     make_relation_network(&network, &seed, 0.1f);

@@ -25,7 +25,6 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
                     random.contacts[k].arm_b = random.contacts[k - 1].arm_b;
             ContactSolution plain = make_solution(&random.problem), found = make_solution(&random.problem);
             block_solve(&random.problem, counts[c], &plain);
-            Error error = {0};
             assert_ok(solver_block.solve(block.state, &random.problem, &found, &error), error);
             assert_same_bits(&random.problem, &found, &plain, text);
             free_solution(&plain);
@@ -133,7 +132,6 @@ TEST(what_overflows_has_the_bits_of_the_plain_text) {
     ContactSolution plain = make_solution(&random.problem), found = make_solution(&random.problem);
     block_solve(&random.problem, 10, &plain);
     ContactSolver block = make_solver(&solver_block, "k=10");
-    Error error = {0};
     assert_ok(solver_block.solve(block.state, &random.problem, &found, &error), error);
     int lost = 0;
     for (int i = 0; i < random.problem.body_count; i++) lost += !isfinite(plain.velocities[i].linear.x);

@@ -36,7 +36,6 @@ TEST(the_constant_says_what_the_data_were_on_average) {
 TEST(a_silenced_network_is_the_constant) {
     static const PairTarget targets[] = {TARGET_POINTS, TARGET_PAIR};
     for (int i = 0; i < 2; i++) {
-        Error error = {0};
         char text[512];
         BodyVelocity constant[3], silenced[3], network[3];
         ContactImpulse impulses[2];

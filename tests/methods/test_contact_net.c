@@ -8,10 +8,8 @@
 
 /* A network of two layers whose weights know nothing. */
 static const char *random_network(PairView view, uint32_t seed) {
-    Error error = {0};
     const int widths[3] = {pair_views[view].count, 8, PAIR_POINT_CHANGES};
-    Network *network = network_create(2, widths, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(2, widths);
     network->activations[0] = ACTIVATION_TANH;
     for (int i = 0; i < network_parameter_count(network); i++) network->weights[0][i] = 3 * (float)next_number(&seed);
     strcpy(network->inputs, pair_views[view].inputs);

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stepper gns. Its learned part is any network here: laws do not depend on what was learned. */
+#include "made.h"
 #include "methods/particle_heap.h"
 #include "allocations.h"
-
-#include "runs/runs.h"
 
 #include <math.h>
 
@@ -47,10 +46,8 @@ static void begin(Run *run, BodyDef *bodies, int count, const char *settings, co
     snprintf(text, sizeof text, "gns%s", settings);
     assert_ok(method_with_network(&method, text, net, &error), error);
     run->scene = scene_of(bodies, count);
-    run->world = scene_world(&run->scene, &error);
-    assert_ok(run->world != NULL, error);
-    run->stepper = stepper_create(&method, &run->scene, &error);
-    assert_ok(run->stepper != NULL, error);
+    run->world = world_of(&run->scene);
+    run->stepper = stepper_of(&run->scene, &method);
 }
 
 static void end(Run *run) {
@@ -108,7 +105,6 @@ TEST(momentum_in_free_flight_is_an_error) {
 
 /* A box that the stepper left in another state, or does not know, begins with a past of constant velocity. */
 TEST(another_world_begins_without_a_past) {
-    Error error = {0};
     const char *net = write_net(0.4f, 1e6f);
     BodyDef bodies[] = {ground, box_at(0, 0.6f), box_at(0.5f, 1.7f)};
     Run fresh, used;
@@ -157,11 +153,9 @@ TEST(states_beyond_training_are_counted) {
 }
 
 TEST(other_networks_are_refused) {
-    Error error = {0};
-    Method method;
     BodyDef bodies[] = {ground};
     const Scene scene = scene_of(bodies, 1);
-    assert_ok(method_parse(&method, "gns", &error), error);
+    Method method = method_named("gns");
     assert_refused(stepper_create(&method, &scene, &error), "needs a network");
     error = (Error){0};
     assert_ok(method_with_network(&method, "gns", SOURCE_DIR "/scenes/networks/sain.npz", &error), error);

@@ -10,7 +10,6 @@
 #include <string.h>
 
 TEST(what_is_written_is_read_again) {
-    Error error = {0};
     GnsNet net, read;
     const char *path = temporary_path("net.npz");
     assert_ok(gns_net_create(&net, 32, 3, &error), error);
@@ -63,7 +62,6 @@ static void refuse(const char *path, const char *text) {
 }
 
 TEST(hostile_files_are_refused) {
-    Error error = {0};
     GnsNet net;
     assert_ok(gns_net_read(&net, write_file((File){"gns", 1, 16, 1, 0, 1, 0}), &error), error);
     gns_net_free(&net);

@@ -71,7 +71,6 @@ static double residual_of(const ContactProblem *problem, const ContactSolution *
 TEST(impacts_have_the_reference_solution) {
     World *worlds[] = {make_struck_stack(2), make_struck_stack(4), make_heap(4), make_heap(9)};
     for (int i = 0; i < 4; i++) {
-        Error error = {0};
         const ContactProblem *problem = next_problem(worlds[i]);
         assert_ok(reference_solve(&reference, problem, NULL, &error), error);
         assert_true(reference.residual <= tight);
@@ -127,7 +126,6 @@ TEST(random_problems_have_the_reference_solution) {
     uint32_t seed = 3;
     int compared = 0, agree = 0;
     for (int run = 0; run < 60; run++) {
-        Error error = {0};
         make_random(&random, &seed, 3 + run % 12, 0.25f, 1);
         fit_masses(&random);
         assert_ok(reference_solve(&reference, &random.problem, NULL, &error), error);
@@ -266,7 +264,6 @@ TEST(kernels_have_the_bits_of_the_scalar_one) {
 
 /* The same problem gives the same bits whatever the solver has solved before. */
 TEST(earlier_problems_leave_no_trace) {
-    Error error = {0};
     World *pyramid = make_struck_pyramid(2), *stack = make_struck_stack(3);
     const ContactProblem *first = next_problem(pyramid), *second = next_problem(stack);
     ContactSolution fresh = make_solution(second), used = make_solution(second), other = make_solution(first);
@@ -407,10 +404,6 @@ TEST(large_pyramids_are_left_to_sweeps_and_stacks_are_not) {
     }
 }
 
-static int free_reference(void **state) {
-    (void)state;
-    reference_free(&reference);
-    return 0;
-}
+FIXTURE(free_reference) { reference_free(&reference); }
 
 RUN_TESTS(NULL, free_reference)

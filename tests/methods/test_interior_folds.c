@@ -78,7 +78,6 @@ TEST(a_step_without_a_solution_falls_back) {
 /* After a problem of the same size that iterations solve: a softer impact. */
 TEST(the_path_allocates_nothing) {
     enum { BODIES_MAX = 64 };
-    Error error = {0};
     World *world = make_struck_wall(-3.9f, 0.9f, 1);
     const ContactProblem *struck = next_problem(world);
     ContactProblem calm = *struck;
@@ -103,7 +102,6 @@ TEST(the_path_allocates_nothing) {
 
 /* The reference ends as soon as asked to. */
 TEST(the_path_ends_at_the_tolerance) {
-    Error error = {0};
     World *world = make_struck_wall(2.1f, 0.3f, 1);
     const ContactProblem *problem = next_problem(world);
     assert_ok(reference_solve_to(&reference, problem, 0.01, INT_MAX, &error), error);
@@ -117,10 +115,6 @@ TEST(the_path_ends_at_the_tolerance) {
     world_destroy(world);
 }
 
-static int free_reference(void **state) {
-    (void)state;
-    reference_free(&reference);
-    return 0;
-}
+FIXTURE(free_reference) { reference_free(&reference); }
 
 RUN_TESTS(NULL, free_reference)

@@ -81,7 +81,6 @@ TEST(many_stacks_stand_as_one_does) {
 TEST(a_box_that_friction_holds_does_not_creep) {
     static const float slopes[] = {0.1f, 0.19f, 0.199f};
     for (int k = 0; k < 3; k++) {
-        Error error = {0};
         const WorldDef def = {.gravity = {10 * slopes[k], -10}, .warm_starting = true, .position_correction = true};
         World *world = world_create(&def, &error);
         assert_ok(world != NULL, error);

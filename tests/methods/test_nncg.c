@@ -78,7 +78,6 @@ TEST(random_problems_have_the_bits_of_the_plain_text) {
             if (i % 5 == 0) calm_down(&random, &seed);
             ContactSolution plain = make_solution(&random.problem), found = make_solution(&random.problem);
             begun_anew += solve_plainly(&random.problem, counts[c], &plain);
-            Error error = {0};
             assert_ok(solver_nncg.solve(nncg.state, &random.problem, &found, &error), error);
             assert_same_bits(&random.problem, &found, &plain, text);
             free_solution(&plain);

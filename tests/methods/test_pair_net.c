@@ -157,7 +157,6 @@ TEST(what_is_not_finite_never_reaches_a_body) {
 
 /* A network that tells pairs, inputs and outputs apart: three pairs of one batch, each added as its own prediction. */
 TEST(every_pair_gets_its_own_prediction) {
-    Error error = {0};
     Network *network = make_pair_network(PAIR_RELATIVE, TARGET_PAIR, PAIR_CHANGES);
     for (int i = 0; i < PAIR_INPUTS * PAIR_CHANGES; i++) network->weights[0][i] = (float)(i * i % 17) / 16 - 0.4f;
     Network *kept = network_copy(network, &error);

@@ -3,9 +3,7 @@
 #include "pair_networks.h"
 
 TEST(texts_that_do_not_fit_each_other_are_refused) {
-    Error error = {0};
-    Network *network = network_create(1, (const int[]){10, 3}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(1, (const int[]){10, 3});
     strcpy(network->inputs, pair_views[PAIR_RELATIVE].inputs);
     strcpy(network->target, "pair");
     assert_network_refused(&solver_pair_net, write_pair_network(network),
@@ -43,7 +41,6 @@ TEST(other_methods_networks_are_refused) {
     assert_network_refused(
         &solver_contact_net, constant_network(PAIR_RELATIVE, TARGET_NET, 6, six),
         "the network has the target net, which is for pair-net; contact-net needs the target points");
-    Error error = {0};
     assert_refused(solver_pair_net.create(&(Settings){0}, &error),
                    "pair-net: error: the scene names no network for it: use pair-net:network=FILE");
     assert_refused(solver_constant.create(&(Settings){0}, &error), "constant: error: the scene names no network");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What playback plays is what was recorded. */
-#include "runs/made.h"
+#include "made.h"
 
 static Trajectory *run(const char *method_text, float x, int frame) {
     Scene *scene = scene_named("single");
@@ -17,7 +17,6 @@ static Trajectory *run(const char *method_text, float x, int frame) {
 /* Of two launches recorded, x = -2.5 and 2.5 m, the nearer one. */
 TEST(the_nearest_launch_is_played) {
     Launch recorded[2];
-    Error error = {0};
     Scene *scene = scene_named("single");
     assert_ok(launches_for_training(scene, 2, recorded, &error), error);
     scene_destroy(scene);
@@ -35,7 +34,6 @@ TEST(the_nearest_launch_is_played) {
 }
 
 TEST(a_scene_without_a_bomb_has_nothing_to_play) {
-    Error error = {0};
     Scene *scene = scene_named("single");
     scene->bomb.present = false;
     Method method = method_named("playback");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws that hold for soft-step and avbd, the steppers that remove overlap without giving it a velocity. */
 #include "allocations.h"
-#include "runs/made.h"
+#include "made.h"
 
 #include "base/hash.h"
 
@@ -29,11 +29,6 @@ static Scene scene_of(BodyDef *bodies, int count, Vec2 gravity) {
                    .bodies = bodies};
 }
 
-static Stepper *make_stepper(const Scene *scene, const char *text) {
-    const Method method = method_named(text);
-    return stepper_of(scene, &method);
-}
-
 static void take_steps(Stepper *stepper, World *world, const Scene *scene, int first, int last) {
     Error error = {0};
     for (int frame = first; frame <= last; frame++)
@@ -42,7 +37,7 @@ static void take_steps(Stepper *stepper, World *world, const Scene *scene, int f
 
 static World *run(const Scene *scene, const char *text, int steps) {
     World *world = world_of(scene);
-    Stepper *stepper = make_stepper(scene, text);
+    Stepper *stepper = stepper_by(scene, text);
     take_steps(stepper, world, scene, 1, steps);
     stepper_destroy(stepper);
     return world;
@@ -176,13 +171,12 @@ static uint64_t state_hash(const World *world) {
 /* What a stepper keeps of one world must not reach another. */
 TEST(a_used_stepper_steps_as_a_new_one) {
     BodyDef bodies[11];
-    Error error = {0};
     const Scene scene = stack_of_ten(bodies);
     for (int m = 0; m < METHOD_COUNT; m++) {
-        Stepper *stepper = make_stepper(&scene, methods[m]);
+        Stepper *stepper = stepper_by(&scene, methods[m]);
         uint64_t hashes[2];
         for (int i = 0; i < 2; i++) {
-            World *world = scene_world(&scene, &error);
+            World *world = world_of(&scene);
             take_steps(stepper, world, &scene, 1, 50);
             hashes[i] = state_hash(world);
             world_destroy(world);
@@ -198,13 +192,12 @@ TEST(a_used_stepper_steps_as_a_new_one) {
    run begins in the state that the last one ended with. */
 TEST(other_worlds_step_without_memory) {
     BodyDef bodies[11];
-    Error error = {0};
     const Scene scene = stack_of_ten(bodies);
     const int first[] = {51, 1}, ahead[] = {10, 0};
     for (int m = 0; m < METHOD_COUNT; m++)
         for (int i = 0; i < 2; i++) {
-            World *world = scene_world(&scene, &error), *copy = scene_world(&scene, &error);
-            Stepper *stepper = make_stepper(&scene, methods[m]), *fresh = make_stepper(&scene, methods[m]);
+            World *world = world_of(&scene), *copy = world_of(&scene);
+            Stepper *stepper = stepper_by(&scene, methods[m]), *fresh = stepper_by(&scene, methods[m]);
             take_steps(stepper, world, &scene, 1, 50);
             assert_ok(world_copy(copy, world, &error), error);
             take_steps(stepper, world, &scene, 51, 50 + ahead[i]);
@@ -225,7 +218,7 @@ TEST(a_settled_stack_steps_without_allocating) {
     const Scene scene = stack_of_ten(bodies);
     for (int m = 0; m < 3; m++) {
         World *world = world_of(&scene);
-        Stepper *stepper = make_stepper(&scene, steppers[m]);
+        Stepper *stepper = stepper_by(&scene, steppers[m]);
         allocations = 0;
         take_steps(stepper, world, &scene, 1, 60);
         assert_true(allocations > 5);

@@ -130,7 +130,6 @@ TEST(a_plate_lies_on_very_many_boxes) {
     run_engine(world, "k=1", 1);
     const ContactProblem *problem = world_problem(world);
     assert_int_equal(problem->contact_count, 4 * BOXES);
-    Error error = {0};
     assert_ok(reference_solve(&reference, problem, NULL, &error), error);
     double on_ground = 0, on_boxes = 0, dt = (double)world_dt;
     for (int i = 0; i < problem->contact_count; i++)

@@ -131,7 +131,6 @@ TEST(the_residual_tells_how_far_impulses_are_off) {
     World *world = make_heap(10);
     Reference reference = {0}, again = {0};
     const ContactProblem *problem = solve_next(world, &reference);
-    Error error = {0};
     double last = INFINITY, residual;
     ContactImpulse impulses[64];
     for (int sweeps = 3; sweeps < 200; sweeps *= 4) {
@@ -168,7 +167,6 @@ TEST(the_residual_is_what_a_plain_sweep_changes) {
     World *world = make_heap(10);
     Reference reference = {0};
     const ContactProblem *problem = solve_next(world, &reference);
-    Error error = {0};
     ContactImpulse impulses[64];
     sweep_impulses(problem, 5, impulses);
     double residual, largest = 0;

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of sain. */
+#include "made.h"
 #include "relation_networks.h"
-
-#include "nets/nets.h"
 
 #include <math.h>
 
 TEST(a_file_keeps_every_bit) {
-    Error error = {0};
     uint32_t seed = 8;
     RelationNetworks written, read;
     make_relation_networks(&written, &seed, 2);
@@ -37,9 +35,8 @@ static void refuse(const char *path, const char *reason) {
 }
 
 TEST(other_files_are_refused) {
-    Error error = {0};
     const int widths[] = {10, 10, 2};
-    Network *pair = network_create(2, widths, &error);
+    Network *pair = network_sized(2, widths);
     const char *path = temporary_path("pair.npz");
     assert_ok(network_write(pair, path, &error), error);
     refuse(path, "kind");
@@ -47,7 +44,6 @@ TEST(other_files_are_refused) {
 }
 
 TEST(numbers_out_of_range_are_refused) {
-    Error error = {0};
     uint32_t seed = 8;
     RelationNetworks networks;
     const char *path = temporary_path("bad.npz");

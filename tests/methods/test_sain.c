@@ -33,7 +33,6 @@ static bool is_finite(const ContactProblem *problem, const ContactSolution *solu
 TEST(without_its_network_it_is_the_engine) {
     static RandomProblem random;
     static const char *const forms[] = {"on", "off", "shuffled"};
-    Error error = {0};
     uint32_t seed = 5;
     RelationNetworks networks;
     const char *path = temporary_path("sain.npz");

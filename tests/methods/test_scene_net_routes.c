@@ -127,7 +127,6 @@ TEST(a_network_that_says_nothing_changes_nothing) {
 
 /* The network's file has factors and outputs that must not matter. */
 TEST(without_its_prediction_it_is_momentum_with_the_same_stopping_rule) {
-    Error error = {0};
     char text[400];
     static Known known;
     uint32_t seed = 10;

@@ -22,18 +22,18 @@ static SolutionError error_of(BodyVelocity first, BodyVelocity second) {
 }
 
 TEST(the_reference_itself_has_no_error) {
-    SolutionError error = error_of((BodyVelocity){0}, (BodyVelocity){0});
-    assert_true(error.rms == 0);
-    assert_int_equal(error.right, 2);
-    assert_int_equal(error.counted, 2);
+    SolutionError found = error_of((BodyVelocity){0}, (BodyVelocity){0});
+    assert_true(found.rms == 0);
+    assert_int_equal(found.right, 2);
+    assert_int_equal(found.counted, 2);
 }
 
 /* sqrt((3^2 + 4^2 + 6^2/6 + 1^2 + 2^2) / 2) = sqrt(18) */
 TEST(the_rms_is_over_the_bodies_that_move) {
-    SolutionError error = error_of((BodyVelocity){{3, -4}, 6}, (BodyVelocity){{1, 2}, 0});
-    assert_near(error.rms, sqrt(18), 1e-15);
-    assert_int_equal(error.right, 0);
-    assert_int_equal(error.counted, 2);
+    SolutionError found = error_of((BodyVelocity){{3, -4}, 6}, (BodyVelocity){{1, 2}, 0});
+    assert_near(found.rms, sqrt(18), 1e-15);
+    assert_int_equal(found.right, 0);
+    assert_int_equal(found.counted, 2);
 }
 
 /* By |dv|^2 + dspin^2 / 6: 36 / 6 is less than 7, and more than 5. Static bodies do not count; what is no number does. */
@@ -59,16 +59,16 @@ TEST(a_body_is_right_within_its_allowance) {
 }
 
 TEST(what_is_no_number_is_wrong) {
-    SolutionError error = error_of((BodyVelocity){{NAN, 0}, 0}, (BodyVelocity){0});
-    assert_true(isinf(error.rms));
-    assert_int_equal(error.right, 1);
+    SolutionError found = error_of((BodyVelocity){{NAN, 0}, 0}, (BodyVelocity){0});
+    assert_true(isinf(found.rms));
+    assert_int_equal(found.right, 1);
 }
 
 TEST(nothing_that_moves_is_no_error) {
     const ContactProblem ground = {.body_count = 1, .marked = -1, .dt = 0.1f, .bodies = bodies};
-    SolutionError error = solution_error(&ground, &(BodyVelocity){{1, 1}, 1}, reference);
-    assert_true(error.rms == 0);
-    assert_int_equal(error.counted, 0);
+    SolutionError found = solution_error(&ground, &(BodyVelocity){{1, 1}, 1}, reference);
+    assert_true(found.rms == 0);
+    assert_int_equal(found.counted, 0);
 }
 
 /* The engine's error in a stack that has just landed falls with its sweeps, and grows with what is added to it. */

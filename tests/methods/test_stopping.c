@@ -89,7 +89,6 @@ TEST(random_problems_stop_there_too) {
 
 /* A solver keeps its schedules from step to step. */
 TEST(one_solver_has_the_same_bits_step_after_step) {
-    Error error = {0};
     static RandomProblem random;
     for (int kind = 0; kind < KINDS; kind++) {
         uint32_t seed = 13;

@@ -9,7 +9,6 @@
 
 TEST(what_is_written_is_read) {
     const char *path = temporary_path("net.npz");
-    Error error = {0};
     SubspaceNet *net = subspace_net_by_hand(3);
     net->physics = 0x123456789abcdef;
     strcpy(net->command, "twinbox train");
@@ -60,13 +59,11 @@ TEST(sizes_that_do_not_fit_are_refused) {
     refuse(net, "do not fit together");
     net->shape = shape;
     net->shape.bodies = 100000;
-    Error error = {0};
     assert_refused(subspace_shape_check(&net->shape, "file", &error), "file: error: 100000 bodies");
     subspace_net_destroy(net);
 }
 
 TEST(another_kind_is_refused) {
-    Error error = {0};
     assert_refused(subspace_net_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error), "pair-net.npz", "subspace");
 }
 

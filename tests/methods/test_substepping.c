@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Small steps: what they must have in common with whole ones. */
-#include "runs/made.h"
+#include "made.h"
 
 static Trajectory *run(const char *scene_name, const char *method_text, int frames) {
     Scene *scene = scene_named(scene_name);

@@ -144,7 +144,6 @@ TEST(no_contacts_leave_the_velocities) {
 /* Where numbers overflow the order of visits shows; then the engine falls back to the plain text. */
 TEST(what_overflows_has_the_bits_of_the_plain_text) {
     static RandomProblem random;
-    Error error = {0};
     uint32_t seed = 11;
     make_random(&random, &seed, 60, 0.1f, 1);
     random.contacts[40].mass_normal = 1e38f;

@@ -19,7 +19,6 @@ static Tabulation *make_three(void) {
 }
 
 TEST(what_is_written_is_read_again) {
-    Error error = {0};
     Tabulation *memory = make_three();
     const char *path = temporary_path("memory.npz");
     assert_ok(tabulation_write(memory, path, &error), error);
@@ -78,7 +77,6 @@ TEST(hostile_files_are_refused) {
 }
 
 TEST(an_empty_memory_is_not_written) {
-    Error error = {0};
     Tabulation *memory = make_memory();
     assert_refused(tabulation_write(memory, temporary_path("empty.npz"), &error), "is empty");
     tabulation_destroy(memory);

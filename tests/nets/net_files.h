@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The arrays of a network's file, for tests that change one, and what holds for the files of all kinds. */
 #pragma once
-#include "testing.h"
-
-#include "base/file.h"
-#include "base/npz.h"
+#include "made.h"
+#include "files.h"
 
 #include <math.h>
 
@@ -34,9 +32,7 @@ static inline bool take_array(NpzFile *file, NpzArray *array) {
 
 static inline NetArrays read_arrays(const char *path) {
     NetArrays arrays = {0};
-    Error error = {0};
-    NpzFile *file = npz_open(path, &error);
-    assert_ok(file != NULL, error);
+    NpzFile *file = npz_of(path);
     for (const char *name; (name = npz_name(file, arrays.count)) != NULL; arrays.count++) {
         assert_in_range(arrays.count, 0, NET_ARRAYS_MAX - 1);
         arrays.items[arrays.count] = (NpzArray){.name = strdup(name)};
@@ -121,8 +117,7 @@ static inline void assert_file_is_checked(NetReader *read, const char *path, con
     char text[128], endless[2000];
     NetArrays arrays = read_arrays(path);
     size_t size;
-    char *bytes = file_read(path, 1 << 24, &size, &error);
-    assert_ok(bytes != NULL, error);
+    char *bytes = read_whole(path, &size);
     memset(endless, 'x', sizeof endless - 1);
     endless[sizeof endless - 1] = '\0';
     assert_ok(read(write_with(&arrays, arrays.items[0]), &error), error);

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Networks for tests. */
 #pragma once
-#include "testing.h"
-
-#include "nets/nets.h"
+#include "made.h"
 
 /* Numbers in [-1, 1) from a linear congruential sequence. */
 static inline double next_number(uint32_t *sequence) {
@@ -12,9 +10,7 @@ static inline double next_number(uint32_t *sequence) {
 }
 
 static inline Network *make_network(int layers, const int *widths, const Activation *activations) {
-    Error error = {0};
-    Network *network = network_create(layers, widths, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(layers, widths);
     for (int l = 0; l < layers; l++) network->activations[l] = activations[l];
     uint32_t sequence = 1;
     for (int p = 0; p < network_parameter_count(network); p++) network->weights[0][p] = (float)next_number(&sequence);

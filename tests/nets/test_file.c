@@ -28,7 +28,6 @@ static bool is_read(const char *path, Error *error) {
 }
 
 TEST(files_keep_every_bit) {
-    Error error = {0};
     Network *network = example(), *read = network_read(write_network(network), &error);
     assert_ok(read != NULL, error);
     assert_int_equal(read->layers, 2);
@@ -95,7 +94,6 @@ TEST(sizes_and_words_that_do_not_fit_are_refused) {
 }
 
 TEST(every_activation_has_its_word) {
-    Error error = {0};
     const Activation all[] = {ACTIVATION_LINEAR, ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU};
     Network *network = make_network(4, (const int[]){2, 2, 2, 2, 2}, all);
     NetArrays arrays = read_arrays(write_network(network));

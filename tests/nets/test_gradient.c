@@ -187,7 +187,7 @@ TEST(dot_sums_every_row_once) {
     assert_true(network_block_dot(a, b) == (BLOCK_ROWS - 1.0) * BLOCK_ROWS * (BLOCK_ROWS + 1.0) / 3);
 }
 
-static void run_by(const Kernels *kernels, Case *made, double *gradient) {
+static void gradient_by(const Kernels *kernels, Case *made, double *gradient) {
     const int layers = made->network->layers;
     kernels->forward(made->block, made->parameters);
     const double *y = made->block->values[layers];
@@ -202,14 +202,14 @@ TEST(all_instruction_sets_give_the_same_bits) {
                   (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH, ACTIVATION_RELU, ACTIVATION_LINEAR});
     double expected[256] = {0};
     assert_true(made.count <= 256);
-    run_by(&kernels_scalar, &made, expected);
+    gradient_by(&kernels_scalar, &made, expected);
     const double *y = made.block->values[1];
     const double expected_dot = kernels_scalar.dot(y, y + BLOCK_ROWS);
     const Kernels *list[KERNELS_MAX + 1];
     kernels_list(list);
     for (int k = 0; list[k] != NULL; k++) {
         double gradient[256] = {0};
-        run_by(list[k], &made, gradient);
+        gradient_by(list[k], &made, gradient);
         assert_memory_equal(gradient, expected, sizeof gradient);
         assert_true(list[k]->dot(y, y + BLOCK_ROWS) == expected_dot);
     }

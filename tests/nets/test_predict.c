@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "networks.h"
 
-#include "nets/nets.h"
 #include "nets/kernels.h"
 
 #include <math.h>
@@ -14,9 +13,7 @@ static void predict(const Network *network, const float *input, float *output) {
 }
 
 TEST(a_new_network_is_zero_with_identity_normalisation) {
-    Error error = {0};
-    Network *network = network_create(2, (const int[]){3, 5, 2}, &error);
-    assert_ok(network != NULL, error);
+    Network *network = network_sized(2, (const int[]){3, 5, 2});
     const float input[3] = {1, -2, 3};
     float output[2] = {7, 7};
     predict(network, input, output);
@@ -171,7 +168,6 @@ TEST(a_copy_has_numbers_of_its_own) {
         make_network(2, (const int[]){3, 4, 2}, (const Activation[]){ACTIVATION_SIGMOID, ACTIVATION_TANH});
     network->output.offset[1] = 5, network->input.scale[2] = 3;
     strcpy(network->inputs, "x y z");
-    Error error = {0};
     Network *copy = network_copy(network, &error);
     assert_ok(copy != NULL, error);
     const float input[3] = {0.5f, -0.25f, 1};

@@ -50,7 +50,6 @@ TEST(every_slot_is_found_and_no_other) {
 }
 
 TEST(a_new_network_is_zero_and_has_its_own_slots) {
-    Error error = {0};
     Slot slots[FIVE_SLOTS];
     memcpy(slots, five_slots, sizeof slots);
     SlotNetwork *network = slot_network_create(&five_shape, slots, &error);

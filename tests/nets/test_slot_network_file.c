@@ -60,7 +60,6 @@ TEST(files_keep_every_bit) {
 
 /* Numbers that rise through all of a matrix say where NumPy has each of them. */
 TEST(numpy_sees_the_shapes) {
-    Error error = {0};
     SlotNetwork *network = example();
     for (int i = 0; i < 2 * FIVE_SLOTS * 64; i++) network->rows[i] = (float)i;
     for (int i = 0; i < 24 * 16; i++) network->state.rows[i] = (float)i;
@@ -116,14 +115,12 @@ static NetArrays two_slots(void) {
 }
 
 TEST(every_array_is_needed_and_checked) {
-    Error error = {0};
     SlotNetwork *network = example();
     const char *path = temporary_path("net.npz");
     assert_ok(slot_network_write(network, path, &error), error);
     slot_network_destroy(network);
     size_t size;
-    char *bytes = file_read(path, 1 << 20, &size, &error);
-    assert_ok(bytes != NULL, error);
+    char *bytes = read_whole(path, &size);
     assert_file_is_checked(is_read, path, "scene-net", SLOT_NETWORK_VERSION);
     bytes[size / 2] ^= 1; /* inside a matrix */
     refuse_file(is_read, write_bytes(temporary_path("flipped.npz"), bytes, size), "damaged");
@@ -131,7 +128,6 @@ TEST(every_array_is_needed_and_checked) {
 }
 
 TEST(numbers_out_of_range_are_refused) {
-    Error error = {0};
     SlotNetwork *network = example();
     const char *path = temporary_path("bad.npz");
     struct {

@@ -2,8 +2,8 @@
 /* Made-up tables in a folder of the test, and the claims that follow from them. */
 #pragma once
 #include "testing.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "paper/paper.h"
 
 static inline const char *folder(void) {
@@ -13,14 +13,6 @@ static inline const char *folder(void) {
 
 static inline void write_text(const char *name, const char *text) {
     write_bytes(temporary_path(name), text, strlen(text));
-}
-
-static inline char *read_text(const char *path) {
-    Error error = {0};
-    size_t size;
-    char *text = file_read(path, 1 << 24, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
 }
 
 /* The rows that a system states from its table in the folder. */

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study of gns: runs beside the teacher's, and verdicts from made-up tables. */
+#include "made.h"
 #include "tables.h"
 
 #include "paper/paper_internal.h"
 
 /* Without its network gns falls: as its teacher until something touches, and then through the ground, g t^2 / 2. */
 TEST(without_its_network_boxes_fall_away) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("single");
     GnsRollout rollout;
     assert_ok(gns_rollout_run(&rollout, scene, "none.npz", "net=off", &error), error);
     assert_int_equal(rollout.boxes, 2);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whichever allocation fails, also of cmark-gfm, which aborts by itself: a page is written whole, or memory is named. */
+#include "made.h"
 #include "library_allocations.h"
 
-#include "pixels/png.h"
 #include "paper/report_internal.h"
 
 static char whole[1 << 14];
@@ -29,9 +29,8 @@ static bool write_page(Error *error) {
 }
 
 TEST(a_page_is_whole_or_memory_is_short) {
-    Error error = {0};
-    Image *image = image_create(5, 3, &error);
-    assert_ok(image != NULL && image_write_png(image, temporary_path("a.png"), NULL, 0, &error), error);
+    Image *image = image_sized(5, 3);
+    assert_ok(image_write_png(image, temporary_path("a.png"), NULL, 0, &error), error);
     image_destroy(image);
     assert_memory_is_named(write_page);
     assert_non_null(strstr(whole, "<figcaption><p><strong>Figure 1.</strong> z</p>"));

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "made.h"
 
-#include "pixels/png.h"
 #include "paper/report_internal.h"
 
 static void write_picture(const char *name) {
     Error error = {0};
-    Image *image = image_create(5, 3, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(5, 3);
     assert_ok(image_write_png(image, temporary_path(name), NULL, 0, &error), error);
     image_destroy(image);
 }
@@ -59,7 +57,6 @@ TEST(pictures_are_embedded) {
     expect_within("![x](a.png)\n\n**Figure 1.** z\n\nbehind\n",
                   "<figcaption><p><strong>Figure 1.</strong> z</p>\n</figcaption></figure>\n<p>behind</p>");
     expect_within("![x](a.png)\n", "<figcaption></figcaption></figure>");
-    Error error = {0};
     FILE *out = fopen("/dev/null", "w");
     assert_non_null(out);
     const HtmlPage page = {"![x](b.png)\n", "", temporary_folder};

@@ -28,7 +28,6 @@ static CsvTable table_of(FILE *lines) {
 
 /* No limit on times, only on what is true of any. */
 TEST(a_learning_has_rows_that_fit_together) {
-    Error error = {0};
     const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .quick = true, .seed = 1};
     FILE *lines = tmpfile();
     assert_non_null(lines);

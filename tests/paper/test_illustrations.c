@@ -1,37 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figures are drawn once, from the scenes that ship. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
 #include "pictures/mesa.h"
 
-#include "base/file.h"
 #include "learning/dataset.h"
 #include "paper/report_internal.h"
 #include "paper/report.h"
 #include "figures/figure.h"
 #include "figures/sketch.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
 #define SCENES SOURCE_DIR "/scenes"
 
-static int draw_all(void **state) {
-    (void)state;
-    Error error = {0};
+FIXTURE(draw_all) {
     temporary_path(""); /* makes the folder */
-    if (illustrations_draw(SCENES, temporary_folder, &error)) return 0;
-    print_error("%s\n", error.message);
-    return 1;
+    assert_ok(illustrations_draw(SCENES, temporary_folder, &error), error);
 }
 
 static char *read_file(const char *name, const char *ending, size_t *size) {
     char file[64];
-    Error error = {0};
     snprintf(file, sizeof file, "%s.%s", name, ending);
-    char *data = file_read(temporary_path(file), 1 << 24, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
+    return read_whole(temporary_path(file), size);
 }
 
 TEST(every_figure_is_a_picture_a_drawing_and_a_caption) {
@@ -78,13 +70,10 @@ TEST(drawings_say_what_they_show) {
 
 /* The engine's run of a scene, up to a step. */
 static Trajectory *run_to(const char *path, int step) {
-    Error error = {0};
-    Method engine;
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL && method_parse(&engine, "engine", &error), error);
+    Scene *scene = scene_from(path);
+    const Method engine = method_named("engine");
     scene->frames = step;
-    Trajectory *run = simulate(scene, &engine, NULL, &error);
-    assert_ok(run != NULL, error);
+    Trajectory *run = run_with(scene, &engine);
     scene_destroy(scene);
     return run;
 }
@@ -239,7 +228,6 @@ TEST(the_row_shown_is_the_datasets) {
                             &changes[0], &changes[1], &changes[2], &changes[3]),
                      4);
     free(caption);
-    Error error = {0};
     Dataset *dataset = dataset_record(&options, NULL, &error);
     assert_ok(dataset != NULL, error);
     assert_int_equal(rows, dataset->rows);
@@ -260,9 +248,7 @@ TEST(the_row_shown_is_the_datasets) {
 
 TEST(the_same_run_gives_the_same_files) {
     static const char *const endings[] = {"png", "svg"};
-    Error error = {0};
-    Scene *scenes[ILLUSTRATION_SCENES] = {[SCENE_STACK] = scene_read(SCENES "/stack.yaml", &error)};
-    assert_ok(scenes[SCENE_STACK] != NULL, error);
+    Scene *scenes[ILLUSTRATION_SCENES] = {[SCENE_STACK] = scene_from(SCENES "/stack.yaml")};
     Sketch sketch;
     char caption[CAPTION_SIZE];
     sketch_begin(&sketch, illustration_loop.width, illustration_loop.height);
@@ -290,8 +276,7 @@ static const char *folder_with(const char *name, const char *text) {
         char path[512];
         size_t size = strlen(text);
         snprintf(path, sizeof path, SCENES "/%s", names[i]);
-        char *shipped = file_read(path, 1 << 16, &(size_t){0}, &error);
-        assert_ok(shipped != NULL, error);
+        char *shipped = text_of(path);
         const char *data = strcmp(names[i], name) == 0 ? text : shipped;
         size = strlen(data);
         snprintf(path, sizeof path, "%s/%s", folder, names[i]);

@@ -25,7 +25,6 @@ static LawResult run(const Dataset *dataset, const char *laws, double weight, ui
 
 /* The engine's impulses are equal and opposite and within the cone, by construction. */
 TEST(the_engine_keeps_what_it_keeps) {
-    Error error = {0};
     Dataset *dataset = record(true);
     LawResult labels;
     assert_ok(law_study_labels(dataset, &labels, &error), error);
@@ -54,7 +53,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(what_is_not_whole_does_not_count) {
-    Error error = {0};
     LawResult result;
     Dataset *dataset = record(true), *without = record(false);
     const Progress progress = {stop, NULL};

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rates with known values: the engine agrees with itself, a network that predicts zero has the warm start's rates, one
    that predicts the mean has the constant predictor's. */
-#include "testing.h"
+#include "methods/pair_networks.h"
 
-#include "methods/pair.h"
-#include "nets/nets.h"
-#include "scenes/scenes.h"
 #include "paper/paper_internal.h"
 
 #include <math.h>
@@ -13,48 +10,36 @@
 static const Sampling sampling = {.after = 20, .rest = 60};
 
 /* Sampled from one launch of the stack. */
-static SnapshotList *sample_stack(Scene *scene) {
-    Error error = {0};
-    SnapshotList *list = calloc(1, sizeof *list);
-    assert_non_null(list);
-    assert_ok(snapshots_add(list, scene, &sampling, &error), error);
-    return list;
+static Scene *scene;
+static SnapshotList list;
+
+FIXTURE(sample_stack) {
+    scene = scene_named("stack");
+    scene->frames = 150;
+    assert_ok(snapshots_add(&list, scene, &sampling, &error), error);
 }
 
-static Scene *read_stack(void) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/stack.yaml", &error);
-    assert_ok(scene != NULL, error);
-    scene->frames = 150;
-    return scene;
+FIXTURE(free_stack) {
+    snapshots_free(&list);
+    scene_destroy(scene);
 }
 
 /* Without hidden layers and with weights 0: it always predicts `mean`. */
 static const char *write_constant(PairView view, PairTarget target, int outputs, const float *mean) {
-    Error error = {0};
-    Network *network = network_create(1, (const int[]){pair_views[view].count, outputs}, &error);
-    assert_ok(network != NULL, error);
-    strcpy(network->inputs, pair_views[view].inputs);
-    strcpy(network->outputs, pair_output_names(view, target, outputs));
-    strcpy(network->target, pair_target_names[target]);
+    Network *network = make_pair_network(view, target, outputs);
     for (int k = 0; k < outputs; k++) network->biases[0][k] = network->output_mean[k] = mean[k];
-    const char *path = temporary_path("constant.npz");
-    assert_ok(network_write(network, path, &error), error);
-    network_destroy(network);
-    return path;
+    return write_pair_network(network);
 }
 
-static PairRates measure(const char *path, const Scene *scene, const SnapshotList *list) {
+static PairRates measure(const char *path) {
     Error error = {0};
     PairRates rates;
-    assert_ok(pair_rates_measure(path, scene, list, 1, &sampling, &rates, &error), error);
+    assert_ok(pair_rates_measure(path, scene, &list, 1, &sampling, &rates, &error), error);
     return rates;
 }
 
 TEST(the_engine_agrees_with_itself) {
-    Scene *scene = read_stack();
-    SnapshotList *list = sample_stack(scene);
-    PairRates rates = measure(NULL, scene, list);
+    PairRates rates = measure(NULL);
     for (int phase = 0; phase < RATE_PHASES; phase++) {
         assert_near(rates.share[RATE_RANGE][phase][RATE_ENGINE10], 1, 0);
         assert_near(rates.share[RATE_ABSOLUTE][phase][RATE_ENGINE10], 1, 0);
@@ -64,23 +49,15 @@ TEST(the_engine_agrees_with_itself) {
     /* At the impact one sweep is not ten, and ten are not converged. */
     assert_true(rates.share[RATE_ABSOLUTE][PHASE_IMPACT][RATE_ENGINE1] < 0.9);
     assert_true(rates.share[RATE_BODIES][PHASE_IMPACT][RATE_ENGINE10] < 0.9);
-    snapshots_free(list);
-    free(list);
-    scene_destroy(scene);
 }
 
 TEST(a_contact_net_that_says_nothing_is_the_warm_start) {
-    Scene *scene = read_stack();
-    SnapshotList *list = sample_stack(scene);
-    const PairRates warm = measure(NULL, scene, list);
+    const PairRates warm = measure(NULL);
     const char *path = write_constant(PAIR_NEIGHBOURS, TARGET_POINTS, PAIR_POINT_CHANGES, (const float[4]){0});
-    const PairRates rates = measure(path, scene, list);
+    const PairRates rates = measure(path);
     for (int definition = 0; definition < RATE_DEFINITIONS; definition++)
         for (int phase = 0; phase < RATE_PHASES; phase++)
             assert_near(rates.share[definition][phase][RATE_NETWORK], warm.share[definition][phase][RATE_NETWORK], 0);
-    snapshots_free(list);
-    free(list);
-    scene_destroy(scene);
 }
 
 /* For every target: such a network has the rates of its constant predictor. */
@@ -94,11 +71,9 @@ TEST(a_network_that_predicts_the_mean_has_the_constants_rates) {
                  {PAIR_NEIGHBOURS, TARGET_NET, 2},  {PAIR_RELATIVE, TARGET_IMPULSE, 2},
                  {PAIR_CONTACT, TARGET_IMPULSE, 2}, {PAIR_CONTACT, TARGET_POINTS, 4}};
     const float mean[6] = {0.125f, 0.25f, 0, 0.375f, 0.5f, 0};
-    Scene *scene = read_stack();
-    SnapshotList *list = sample_stack(scene);
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         const char *path = write_constant(kinds[i].view, kinds[i].target, kinds[i].outputs, mean);
-        const PairRates rates = measure(path, scene, list);
+        const PairRates rates = measure(path);
         for (int definition = 0; definition < RATE_DEFINITIONS; definition++) {
             double network = rates.share[definition][RATE_ALL][RATE_NETWORK];
             double constant = rates.share[definition][RATE_ALL][RATE_CONSTANT];
@@ -109,16 +84,11 @@ TEST(a_network_that_predicts_the_mean_has_the_constants_rates) {
                 assert_near(network, constant, 1e-12);
         }
     }
-    snapshots_free(list);
-    free(list);
-    scene_destroy(scene);
 }
 
 /* all = (impact + 20 after + 60 rest) / (their counts, weighted alike): a value between its parts. */
 TEST(all_lies_between_the_phases) {
-    Scene *scene = read_stack();
-    SnapshotList *list = sample_stack(scene);
-    const PairRates rates = measure(NULL, scene, list);
+    const PairRates rates = measure(NULL);
     const double(*share)[RATE_COLUMNS] = rates.share[RATE_ABSOLUTE];
     double least = 1, most = 0;
     for (int phase = 0; phase < PHASES; phase++) {
@@ -126,9 +96,6 @@ TEST(all_lies_between_the_phases) {
         most = fmax(most, share[phase][RATE_ENGINE1]);
     }
     assert_true(least < share[RATE_ALL][RATE_ENGINE1] && share[RATE_ALL][RATE_ENGINE1] < most);
-    snapshots_free(list);
-    free(list);
-    scene_destroy(scene);
 }
 
-RUN_TESTS(NULL, NULL)
+RUN_TESTS(sample_stack, free_stack)

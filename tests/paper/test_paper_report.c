@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Reports of small hand-written tables, with figures of a few pixels. */
+#include "made.h"
 #include "python.h"
 #include "tables.h"
 
-#include "pixels/png.h"
 #include "paper/report.h"
 
 static const char *const tables[] = {"table1.csv",   "networks.csv", "rates.csv",         "closed_loop.csv", "laws.csv",
@@ -45,16 +45,15 @@ static void make_study(void) {
     size_t size;
     for (int i = 0; tables[i] != NULL; i++) {
         snprintf(path, sizeof path, "%s/tests/paper/report/%s", SOURCE_DIR, tables[i]);
-        char *text = read_text(path);
+        char *text = text_of(path);
         write_text(tables[i], text);
         free(text);
     }
-    Image *image = image_create(5, 3, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(5, 3);
     assert_ok(image_write_png(image, temporary_path("picture.png"), NULL, 0, &error), error);
     image_destroy(image);
-    char *picture = file_read(temporary_path("picture.png"), 1 << 20, &size, &error);
-    assert_ok(picture != NULL && file_make_directory(temporary_path("figures"), &error), error);
+    char *picture = read_whole(temporary_path("picture.png"), &size);
+    assert_ok(file_make_directory(temporary_path("figures"), &error), error);
     for (int i = 0; figures[i] != NULL; i++) {
         write_bytes(temporary_path(figure_name(figures[i], "png")), picture, size);
         write_text(figure_name(figures[i], "txt"), "Boxes at 5 µs <step> & *more*.\n");
@@ -66,7 +65,7 @@ static void make_study(void) {
 static char *write_again(const char *name) {
     Error error = {0};
     assert_ok(paper_report_write(folder(), &error), error);
-    return read_text(temporary_path(name));
+    return text_of(temporary_path(name));
 }
 
 static char *write_and_read(const char *name) {

@@ -11,22 +11,15 @@ static const PaperDataSize size = {.swept = "-2:2:1"};
 static PaperDatasets datasets = {.size = &size, .seed = 1};
 static PaperTraining training = {.datasets = &datasets, .seed = 1};
 
-static int begin(void **state) {
-    (void)state;
-    Error error = {0};
+FIXTURE(begin) {
     static char folder[256];
     assert_ok(paper_datasets_begin(&datasets, SOURCE_DIR "/scenes", &size, 1, &error), error);
     training.network = paper_network(0);
     training.network.iterations = 20;
     training.folder = strcpy(folder, temporary_path("."));
-    return 0;
 }
 
-static int end(void **state) {
-    (void)state;
-    paper_datasets_free(&datasets);
-    return 0;
-}
+FIXTURE(end) { paper_datasets_free(&datasets); }
 
 static const char *network_path(void) { return temporary_path("baseline.npz"); }
 
@@ -55,7 +48,6 @@ static bool train(int most, Limit *limit, Error *error) {
 }
 
 TEST(a_training_that_is_stopped_leaves_no_network) {
-    Error error = {0};
     Limit limit;
     assert_ok(train(1 << 20, &limit, &error), error);
     assert_int_equal(access(network_path(), F_OK), 0);
@@ -71,7 +63,6 @@ TEST(a_training_that_is_stopped_leaves_no_network) {
 }
 
 TEST(lines_know_their_network) {
-    Error error = {0};
     char *lines = NULL;
     size_t used;
     bool there;
@@ -94,7 +85,6 @@ TEST(lines_know_their_network) {
 }
 
 TEST(without_memory_there_is_no_accuracy) {
-    Error error = {0};
     const Dataset *dataset = paper_dataset(&datasets, &training.network, &error);
     Network *network = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
     double accuracy = -1;

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* paper/: tables made up after measured ones, each with all that its figure can show. */
+#include "files.h"
 #include "python.h"
 
 #include "paper/report.h"
-
-#include "base/file.h"
 
 #include <sys/stat.h>
 
@@ -27,13 +26,6 @@ static const char *figure_path(const char *figure, const char *ending) {
     return temporary_path(name);
 }
 
-static char *read_file(const char *path, size_t *size) {
-    Error error = {0};
-    char *data = file_read(path, 1 << 24, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
-}
-
 static void write_table(const char *table, const char *text, size_t size) {
     Error error = {0};
     assert_ok(file_write_soon(table_path(table), text, size, &error), error);
@@ -47,7 +39,7 @@ static void start_afresh(void) {
         char path[512];
         size_t size;
         snprintf(path, sizeof path, "%s/tests/paper/figures/%s.csv", SOURCE_DIR, tables[i]);
-        char *text = read_file(path, &size);
+        char *text = read_whole(path, &size);
         write_table(tables[i], text, size);
         free(text);
     }
@@ -66,7 +58,7 @@ static unsigned number_at(const char *data, int at) {
 
 static void expect_size(const char *figure, double mm) {
     size_t size;
-    char *png = read_file(figure_path(figure, "png"), &size);
+    char *png = read_whole(figure_path(figure, "png"), &size);
     assert_true(size > 10000);
     assert_memory_equal(png, "\x89PNG\r\n\x1a\n", 8);
     assert_near(number_at(png, 16), mm / 25.4 * 300, 1);
@@ -75,15 +67,14 @@ static void expect_size(const char *figure, double mm) {
 
 static void expect_caption(const char *figure) {
     size_t size;
-    char *text = read_file(figure_path(figure, "txt"), &size);
+    char *text = read_whole(figure_path(figure, "txt"), &size);
     assert_true(size > 50);
     assert_ptr_equal(strchr(text, '\n'), text + size - 1);
     free(text);
 }
 
 static bool tells_of_values_beyond(const char *figure) {
-    size_t size;
-    char *text = read_file(figure_path(figure, "txt"), &size);
+    char *text = text_of(figure_path(figure, "txt"));
     bool tells = strstr(text, "beyond an axis") != NULL;
     free(text);
     return tells;
@@ -126,7 +117,7 @@ TEST(the_same_tables_give_the_same_files) {
     for (int run = 0; run < 2; run++) {
         start_afresh();
         draw();
-        for (int i = 0; i < 3; i++) data[run][i] = read_file(figure_path("laws", endings[i]), &size[run][i]);
+        for (int i = 0; i < 3; i++) data[run][i] = read_whole(figure_path("laws", endings[i]), &size[run][i]);
     }
     for (int i = 0; i < 3; i++) {
         assert_int_equal(size[0][i], size[1][i]);
@@ -218,7 +209,6 @@ TEST(too_many_lines_are_refused) {
          "closed_loop.csv:242:1: error: the table has more than 240 rows", 240},
     };
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
         start_afresh();
         write_many(cases[i].table, cases[i].header, cases[i].line, cases[i].most + 1);
         assert_refused(plots_draw(temporary_folder, NULL, &error), cases[i].message);
@@ -229,7 +219,7 @@ TEST(too_many_lines_are_refused) {
 
 TEST(a_missing_table_is_refused) {
     for (int i = 0; i < TABLES; i++) {
-        Error error = {0};
+        error = (Error){0};
         start_afresh();
         assert_int_equal(remove(table_path(tables[i])), 0);
         assert_false(plots_draw(temporary_folder, NULL, &error));

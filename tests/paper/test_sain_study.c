@@ -12,7 +12,6 @@ TEST(a_part_is_repeatable) {
     static char texts[2][2048];
     const SystemStudy study = {SOURCE_DIR "/scenes", true, 1};
     for (int run = 0; run < 2; run++) {
-        Error error = {0};
         FILE *lines = tmpfile();
         assert_non_null(lines);
         assert_ok(system_sain.parts[0].write(&study, system_sain.parts[0].index, lines, NULL, &error), error);

@@ -21,7 +21,6 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
 /* The part of the single box: the scene has two bodies that move, so one row of eight components, which lose nothing. */
 TEST(a_scene_has_a_row_for_each_engine_and_size) {
     Pieces done;
-    Error error = {0};
     static const CsvLayout *const layout = &subspace_study_layout;
     const SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .quick = true, .seed = 1};
     SystemWork part = {&study, &system_subspace.parts[0]};

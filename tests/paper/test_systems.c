@@ -96,7 +96,6 @@ TEST(parts_and_scores_are_done_once) {
     Pieces done;
     do_parts(&done, false);
     assert_int_equal(parts_written, 2);
-    Error error = {0};
     CsvTable first, again;
     assert_ok(csv_table_read_from(&first, folder(), &system_score_layout, &error), error);
     do_parts(&done, true); /* as after an interruption */
@@ -118,7 +117,6 @@ static const SystemScoreRow *score(const CsvTable *scores, const char *method) {
 }
 
 TEST(scores_are_those_of_runs_beside_the_engine_s) {
-    Error error = {0};
     CsvTable scores;
     write_study();
     assert_ok(csv_table_read_from(&scores, folder(), &system_score_layout, &error), error);
@@ -137,7 +135,6 @@ TEST(scores_are_those_of_runs_beside_the_engine_s) {
 }
 
 TEST(claims_follow_from_tables_and_scores) {
-    Error error = {0};
     CsvTable claims;
     write_study();
     assert_ok(system_claims_write(systems, folder(), &error), error);
@@ -190,7 +187,6 @@ TEST(a_text_that_cannot_be_read_back_is_refused) {
     const Claims claims = {.system = "double", .lines = lines};
     const Claim fits = {text + 1, "source", "measured", CLAIM_NO}, beyond = {text, "source", "measured", CLAIM_NO},
                 empty = {"", "source", "measured", CLAIM_NO};
-    Error error = {0};
     assert_ok(claim_state(&claims, &fits, &error, "%d", 1), error);
     assert_refused(claim_state(&claims, &beyond, &error, "%d", 1), "double: error: ");
     error = (Error){0};
@@ -206,7 +202,6 @@ static bool stop(void *context, double done, double total) {
 }
 
 TEST(strips_are_refused_or_stopped) {
-    Error error = {0};
     const Progress progress = {stop, NULL};
     assert_false(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), &progress, &error));
     assert_error(error, ERROR_INTERRUPTED, "stopped");
@@ -216,17 +211,14 @@ TEST(strips_are_refused_or_stopped) {
 /* The engine and the system, in this order. Not under sanitizers: in a process with the threads of OpenMP and of Mesa, the
    search for leaks crashes in one of a hundred runs. They watch strips and pages in other tests. */
 TEST(a_page_plays_the_runs_of_the_strips) {
-    Error error = {0};
 #ifdef SANITIZED
     skip();
 #endif
     assert_ok(system_strips_draw(systems, SOURCE_DIR "/scenes", true, folder(), NULL, &error), error);
     for (int i = 0; i < STRIP_SCENES; i++) {
         char name[64];
-        size_t size;
         snprintf(name, sizeof name, "strip-%s.html", strip_scene_names[i]);
-        char *page = file_read(temporary_path(name), 1 << 22, &size, &error);
-        assert_ok(page != NULL, error);
+        char *page = text_of(temporary_path(name));
         const char *engine = strstr(page, "\"method\": \"engine\""),
                    *own = strstr(page, "\"method\": \"interior:near=0.01\"");
         assert_true(engine != NULL && own != NULL && engine < own);

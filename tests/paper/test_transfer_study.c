@@ -43,7 +43,6 @@ static double constant_by_hand(const Dataset *dataset) {
 }
 
 TEST(errors_stand_beside_the_constant) {
-    Error error = {0};
     Dataset *pyramid = record(single, PAIR_CONTACT), *drawn = dataset_draw_subset(pyramid, 2, 3, &error);
     assert_ok(drawn != NULL, error);
     const TransferData data = {NULL, NULL, pyramid};
@@ -61,7 +60,6 @@ TEST(errors_stand_beside_the_constant) {
 /* After 0 iterations, a network with transfer differs from one from scratch only by its normalisation, which is that of
    its first stage. It does not differ if that stage had the same rows. */
 TEST(the_first_stage_decides_the_units) {
-    Error error = {0};
     Dataset *elsewhere = record(single, PAIR_RELATIVE), *pyramid = record(stack, PAIR_RELATIVE);
     Dataset *drawn = dataset_draw_subset(pyramid, 2, 5, &error);
     assert_ok(drawn != NULL, error);
@@ -107,7 +105,6 @@ TEST(what_cannot_be_run_is_refused) {
     TransferResult result;
     int stages = 0;
     const Progress progress = {stop, &stages};
-    Error error = {0};
     TransferStudy study = {.transfer = true, .seed = 1, .launches = 5, .iterations = 3};
     assert_refused(transfer_study_run(&data, &study, &result, NULL, &error),
                    "5 training launches requested; expected 1 to 4");

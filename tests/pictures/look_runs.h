@@ -10,11 +10,9 @@ static Trajectory *runs[RUNS];
 static const Trajectory *panels[RUNS];
 
 /* The second run diverges from the first in frame 5, the third collapses; the bomb touches a box in frame 20. */
-static inline int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     static const char *const methods[RUNS] = {"engine", "momentum:k=20", "pair-net"};
     for (int i = 0; i < RUNS; i++) {
-        Error error = {0};
         panels[i] = runs[i] = run_make(methods[i], FRAMES);
         for (int frame = 0; frame < FRAMES; frame++) {
             if (i == 1 && frame >= 5) run_position(runs[i], frame, FIRST_BOX)->x += 0.002F * (float)(frame - 4);
@@ -27,11 +25,8 @@ static inline int make(void **state) {
         }
         trajectory_end_contacts(runs[i]);
     }
-    return 0;
 }
 
-static inline int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     for (int i = 0; i < RUNS; i++) trajectory_destroy(runs[i]);
-    return 0;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Small synthetic runs. Include testing.h first. */
+/* Small synthetic runs. */
 #pragma once
-#include "runs/trajectory.h"
+#include "made.h"
 
 #include <math.h>
 
@@ -16,9 +16,7 @@ static inline float *run_angle(Trajectory *run, int frame, int body) { return &r
 /* Two boxes on a wide ground, one rotating, and a bomb that appears in frame 2 and falls. */
 static inline Trajectory *run_make(const char *method, int frames) {
     static const Vec2 sizes[RUN_BODIES] = {{100, 20}, {1, 1}, {2, 1}, {1.5F, 1.5F}};
-    Error error = {0};
-    Trajectory *run = trajectory_create(frames, RUN_BODIES, &error);
-    assert_ok(run != NULL, error);
+    Trajectory *run = run_sized(frames, RUN_BODIES);
     strcpy(run->scene, "two_boxes");
     strcpy(run->method, method);
     run->dt = 1.0F / 60;

@@ -10,17 +10,9 @@ enum { SIZES = sizeof sizes / sizeof sizes[0] };
 
 static Trajectory *run;
 
-static int make(void **state) {
-    (void)state;
-    run = run_make("engine", 12);
-    return 0;
-}
+FIXTURE(make) { run = run_make("engine", 12); }
 
-static int destroy(void **state) {
-    (void)state;
-    trajectory_destroy(run);
-    return 0;
-}
+FIXTURE(destroy) { trajectory_destroy(run); }
 
 static void assert_inside(const Camera *camera, double x, double y, const int size[2]) {
     double left = camera->left + camera->scale * x, top = camera->top - camera->scale * y;
@@ -84,7 +76,6 @@ TEST_WITH(no_mark_of_frame_0_moves, make, destroy) {
         Drawing drawings[2] = {{0}, {0}};
         for (int i = 0; i < 2; i++) {
             Picture picture;
-            Error error = {0};
             for (int frame = 8; frame < 12; frame++) {
                 run_position(run, frame, FIRST_BOX)->x = i == 0 ? -2 : 700;
                 run_position(other, frame, SECOND_BOX)->y = i == 0 ? 0.5F : 90;
@@ -223,7 +214,6 @@ TEST_WITH(a_look_sets_the_view, make, destroy) {
     assert_true(memcmp(&own, &others, sizeof own) != 0);
     assert_memory_equal(&borrowed, &others, sizeof others);
     const RenderLook wrong = {.view = {1, 2, 30, -4}};
-    Error error = {0};
     assert_refused(look_check(&wrong, (const Trajectory *[]){run}, 1, &error), "cannot be drawn");
     assert_true(set.scale < 45 && set.scale > 30); /* about 1230 pixels for 30 m */
     trajectory_destroy(other);
@@ -233,7 +223,6 @@ TEST_WITH(only_the_first_panel_counts, make, destroy) {
     Trajectory *network = run_make("pair-net", 12);
     const Trajectory *panels[] = {run, network};
     Picture calm, wild;
-    Error error = {0};
     assert_ok(picture_plan(&calm, panels, 2, 1280, 720, &error), error);
     for (int frame = 5; frame < 12; frame++) *run_position(network, frame, FIRST_BOX) = vec2(1e4F, 1e6F);
     assert_ok(picture_plan(&wild, panels, 2, 1280, 720, &error), error);

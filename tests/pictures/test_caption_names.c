@@ -15,20 +15,16 @@ static Trajectory *runs[RENDER_PANELS_MAX];
 static const Trajectory *panels[RENDER_PANELS_MAX];
 
 /* Bodies have left the picture in all runs but the first, and one run has ended. */
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     for (int i = 0; i < RENDER_PANELS_MAX; i++) {
         panels[i] = runs[i] = run_make(methods[i], i == 3 ? 9 : 12);
         for (int frame = 6; frame < runs[i]->frames && i > 0; frame++)
             for (int body = FIRST_BOX; body <= BOMB_BODY; body++) run_position(runs[i], frame, body)->x += 700;
     }
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     for (int i = 0; i < RENDER_PANELS_MAX; i++) trajectory_destroy(runs[i]);
-    return 0;
 }
 
 /* Whether these characters of a font stand beside each other in the drawing. */

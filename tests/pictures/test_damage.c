@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Consecutive frames of which only the changes are drawn, read and compressed, compared with the same frames drawn
    whole: equal pixels and equal bytes, along the runs of golden/ and across jumps. */
-#include "testing.h"
+#include "made.h"
 #include "sanitized.h"
 
 #include "regression/compare.h"
-#include "pixels/png.h"
 #include "mesa.h"
 #include "pixels/gl.h"
 #include "pictures/render_internal.h"
@@ -30,8 +29,8 @@ static void open_twins(Twins *twins, const Trajectory *const *panels, int count)
     RenderOptions options = {.width = WIDTH, .height = HEIGHT};
     *twins = (Twins){.next = renderer_create(panels, count, &options, &error),
                      .whole = renderer_create(panels, count, &options, &error),
-                     .next_image = image_create(WIDTH, HEIGHT, &error),
-                     .whole_image = image_create(WIDTH, HEIGHT, &error),
+                     .next_image = image_sized(WIDTH, HEIGHT),
+                     .whole_image = image_sized(WIDTH, HEIGHT),
                      .next_encoder = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error)};
     assert_ok(twins->next != NULL && twins->whole != NULL && twins->next_encoder != NULL, error);
 }
@@ -72,11 +71,8 @@ static void assert_same_frame(Twins *twins, int frame) {
 
 static Trajectory *golden_run(const char *scene, const char *method) {
     char path[PATH_MAX];
-    Error error = {0};
     snprintf(path, sizeof path, "%s/%s-%s.npz", TRAJECTORIES, scene, method);
-    Trajectory *run = trajectory_read(path, &error);
-    assert_ok(run != NULL, error);
-    return run;
+    return trajectory_of(path);
 }
 
 TEST(followed_frames_equal_whole_ones) {
@@ -123,7 +119,6 @@ TEST(wild_frames_equal_whole_ones) {
 
 /* A single frame drawn in between invalidates the canvas; a frame that does not exist does not. */
 TEST(other_calls_may_come_between) {
-    Error error = {0};
     Trajectory *run = run_make("engine", 6);
     const Trajectory *const panels[] = {run};
     for (int frame = 0; frame < 6; frame++) run_position(run, frame, FIRST_BOX)->y += 1.6F * (float)frame;

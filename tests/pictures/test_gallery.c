@@ -2,13 +2,11 @@
 /* Redraws the pictures of golden/gallery, one of every style, the dark ones by EGL: the pixels must be equal. A
    picture that differs is written to actual_NAME.png in the working directory of the test. Given a folder like
    golden/, the program writes the pictures of its runs into its gallery/, as `golden/renew` does. */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/built_contexts.h"
 #include "regression/compare.h"
-#include "pixels/png.h"
 #include "mesa.h"
-#include "methods/methods.h"
 #include "pictures/render_internal.h"
 
 #include <limits.h>
@@ -86,10 +84,8 @@ static Runs read_runs(const char *const *names) {
     Runs runs = {0};
     for (; names[runs.count] != NULL; runs.count++) {
         char path[PATH_MAX];
-        Error error = {0};
         snprintf(path, sizeof path, "%s/%s.npz", golden, names[runs.count]);
-        runs.panels[runs.count] = runs.owned[runs.count] = trajectory_read(path, &error);
-        assert_ok(runs.owned[runs.count] != NULL, error);
+        runs.panels[runs.count] = runs.owned[runs.count] = trajectory_of(path);
     }
     return runs;
 }
@@ -102,7 +98,7 @@ static Image *draw(int i, bool dark, ContextChoice context) {
     if (dark) options.look.theme = LOOK_DARK;
     Renderer *renderer = renderer_create(runs.panels, runs.count, &options, &error);
     assert_ok(renderer != NULL, error);
-    Image *image = image_create(WIDTH, HEIGHT, &error);
+    Image *image = image_sized(WIDTH, HEIGHT);
     const bool *changed;
     assert_ok(renderer_draw_next(renderer, entries[i].moment, image, &changed, &error), error);
     renderer_destroy(renderer);
@@ -135,11 +131,9 @@ TEST(the_gallery_is_drawn_again) {
     for (int i = 0; i < ENTRIES; i++)
         for (int dark = 0; dark <= (entries[i].dark ? 1 : 0); dark++) {
             char name[NAME_SIZE], path[PATH_MAX];
-            Error error = {0};
             name_entry(name, i, dark);
             snprintf(path, sizeof path, "%s/gallery/%s.png", golden, name);
-            Image *expected = image_read_png(path, &error);
-            assert_ok(expected != NULL, error);
+            Image *expected = image_of(path);
             different += !is_equal(expected, i, dark, built_context(dark ? CONTEXT_EGL : CONTEXT_OSMESA));
             image_destroy(expected);
         }

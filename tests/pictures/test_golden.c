@@ -2,11 +2,10 @@
 /* Redraws the frames of golden/frames in each context that is built in, from golden/trajectories: SCENE_NNNNNN.png is frame NNNNNN
    of SCENE-engine.npz and SCENE-pair-net.npz side by side. The pixels must be equal. A picture that differs is
    written to actual_SCENE_NNNNNN_CONTEXT.png in the working directory of the test. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/compare.h"
 #include "mesa.h"
-#include "methods/methods.h"
 #include "pictures/render.h"
 
 #include <dirent.h>
@@ -60,7 +59,7 @@ static Image *draw(const Golden *golden, ContextChoice context) {
     const Trajectory *const panels[PANELS] = {golden->panels[0], golden->panels[1]};
     Renderer *renderer = renderer_create(panels, PANELS, &options, &error);
     assert_ok(renderer != NULL, error);
-    Image *image = image_create(options.width, options.height, &error);
+    Image *image = image_sized(options.width, options.height);
     assert_ok(renderer_draw(renderer, golden->frame, image, &error), error);
     renderer_destroy(renderer);
     return image;

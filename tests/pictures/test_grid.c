@@ -19,7 +19,6 @@ static void count_tics(const Picture *picture, const Drawing *drawing, int *acro
 
 TEST(every_frame_has_three_tics_on_each_axis) {
     static const LookCamera cameras[] = {LOOK_FIT, LOOK_BOMB, LOOK_DIVERGENCE};
-    Error error = {0};
     Trajectory *runs[] = {trajectory_read(SOURCE_DIR "/golden/trajectories/stack-engine.npz", &error),
                           trajectory_read(SOURCE_DIR "/golden/gallery/stack-momentum.npz", &error)};
     assert_ok(runs[0] != NULL && runs[1] != NULL, error);

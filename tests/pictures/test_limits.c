@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a page leaves out, and what is refused. Runs of noise, which does not pack. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
-#include "base/file.h"
-#include "base/base.h"
 #include "pictures/player.h"
 
 enum { FRAMES = 300, BODIES = 40, CONTACTS = 100 };
@@ -12,8 +11,7 @@ static float noise(uint64_t *random) { return (float)(split_mix(random) >> 40) /
 
 static Trajectory *noisy_run(const char *method, uint64_t random) {
     Error error = {0};
-    Trajectory *run = trajectory_create(FRAMES, BODIES, &error);
-    assert_ok(run != NULL, error);
+    Trajectory *run = run_sized(FRAMES, BODIES);
     snprintf(run->scene, sizeof run->scene, "noise");
     snprintf(run->method, sizeof run->method, "%s", method);
     run->dt = 1.0F / 60;
@@ -44,17 +42,15 @@ typedef struct Pair {
     const Trajectory *runs[2];
 } Pair;
 
-static int begin(void **state) {
+FIXTURE(begin) {
     static Pair pair;
     pair = (Pair){{noisy_run("engine", 1), noisy_run("momentum", 2)}};
     *state = &pair;
-    return 0;
 }
 
-static int end(void **state) {
+FIXTURE(end) {
     const Pair *pair = *state;
     for (int i = 0; i < 2; i++) trajectory_destroy((Trajectory *)pair->runs[i]);
-    return 0;
 }
 
 static bool write_page(const Pair *pair, const PlayerOptions *options, const char *path, PlayerResult *result,
@@ -63,22 +59,14 @@ static bool write_page(const Pair *pair, const PlayerOptions *options, const cha
     return player_write(pair->runs, 2, options, path, result, error);
 }
 
-static char *text_of(const char *path, size_t *size) {
-    Error error = {0};
-    char *text = file_read(path, 1 << 30, size, &error);
-    assert_ok(text != NULL, error);
-    return text;
-}
-
 TEST(the_same_runs_give_the_same_bytes) {
     const char *paths[] = {temporary_path("a.html"), temporary_path("b.html")};
     char *texts[2];
     size_t sizes[2];
     for (int i = 0; i < 2; i++) {
         PlayerResult result;
-        Error error;
         assert_ok(write_page(*state, &(PlayerOptions){.last = -1}, paths[i], &result, &error), error);
-        texts[i] = text_of(paths[i], &sizes[i]);
+        texts[i] = read_whole(paths[i], &sizes[i]);
         assert_int_equal(result.bytes, sizes[i]);
         assert_int_equal(result.frames, FRAMES);
         assert_false(result.left_contacts);
@@ -94,13 +82,11 @@ TEST(the_same_runs_give_the_same_bytes) {
 TEST(contacts_are_left_out_first) {
     const char *path = temporary_path("left.html");
     PlayerResult whole, less;
-    Error error;
-    size_t size;
     assert_ok(write_page(*state, &(PlayerOptions){.last = -1}, path, &whole, &error), error);
     assert_ok(write_page(*state, &(PlayerOptions){.last = -1, .most_bytes = whole.bytes * 9 / 10}, path, &less, &error),
               error);
     assert_true(less.left_contacts && less.bytes < whole.bytes * 9 / 10);
-    char *text = text_of(path, &size);
+    char *text = text_of(path);
     assert_null(strstr(text, "id=\"c0-0\""));
     assert_non_null(strstr(text, "without contacts"));
     free(text);
@@ -111,7 +97,6 @@ TEST(what_is_too_large_is_refused_with_a_way_out) {
     const char *path = temporary_path("refused.html");
     const int64_t most = 500000;
     PlayerResult result;
-    Error error;
     assert_refused(write_page(*state, &(PlayerOptions){.last = -1, .most_bytes = most}, path, &result, &error),
                    "use --every ");
     assert_int_not_equal(access(path, F_OK), 0);
@@ -126,7 +111,6 @@ TEST(what_is_too_large_is_refused_with_a_way_out) {
 TEST(frames_beyond_the_end_are_refused) {
     const char *path = temporary_path("frames.html");
     PlayerResult result;
-    Error error;
     assert_refused(write_page(*state, &(PlayerOptions){.last = FRAMES}, path, &result, &error),
                    "300 is beyond the last frame, 299");
     assert_refused(write_page(*state, &(PlayerOptions){.first = FRAMES, .last = -1}, path, &result, &error),

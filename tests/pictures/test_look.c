@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Effects of each look: required runs, and positions of poses, cameras, colours and curves. */
-#include "testing.h"
+#include "made.h"
 
 #include "look_runs.h"
 #include "mesa.h"
@@ -32,11 +32,9 @@ TEST_WITH(a_look_that_the_runs_do_not_have_is_refused, make, destroy) {
     };
     runs[2]->size[FIRST_BOX].x = 2;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        Error error = {0};
         RenderOptions options = {.width = WIDTH, .height = HEIGHT, .look = wrong[i].look};
         assert_refused(renderer_create(panels, wrong[i].count, &options, &error), wrong[i].text);
     }
-    Error error = {0};
     runs[0]->bomb = -1;
     assert_refused(look_check(&(RenderLook){.camera = LOOK_BOMB}, panels, 2, &error), "cannot follow the bomb");
     error = (Error){0};
@@ -161,7 +159,6 @@ TEST_WITH(colors_of_distance_are_even_in_lightness, make, destroy) {
 
 TEST_WITH(distances_have_their_place_on_the_scale, make, destroy) {
     Scales scales;
-    Error error = {0};
     Picture picture = picture_with_look(2, &(RenderLook){.show = LOOK_IMPULSES});
     assert_ok(scales_choose(&scales, runs[0], &picture.layout, picture.camera.scale, 0.5, &error), error);
     assert_int_equal(scales.last_decade, 0);
@@ -180,9 +177,9 @@ static uint64_t hash_of(const RenderLook *look, int count, Moment moment) {
     Error error = {0};
     RenderOptions options = {.width = 800, .height = 450, .look = *look};
     Renderer *renderer = renderer_create(panels, count, &options, &error);
-    Image *image = image_create(800, 450, &error);
+    Image *image = image_sized(800, 450);
     const bool *changed;
-    assert_ok(renderer != NULL && image != NULL, error);
+    assert_ok(renderer != NULL, error);
     assert_ok(renderer_draw_next(renderer, moment, image, &changed, &error), error);
     uint64_t hash = image_hash(image);
     renderer_destroy(renderer);

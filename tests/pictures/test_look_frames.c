@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every look gives equal pixels in both contexts, and drawn whole or row by row, for all contents of the runs. */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/built_contexts.h"
 #include "regression/compare.h"
@@ -25,7 +25,7 @@ static void assert_followed(const RenderLook *look, int count, int width, int he
     options.context = built_context(CONTEXT_EGL);
     Renderer *whole = renderer_create(panels, count, &options, &error);
     assert_ok(next != NULL && whole != NULL, error);
-    Image *a = image_create(width, height, &error), *b = image_create(width, height, &error);
+    Image *a = image_sized(width, height), *b = image_sized(width, height);
     const bool *changed;
     for (int i = 0; i < MOMENTS; i++) {
         ImageDifference difference;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The manifest describes what was drawn, and an interrupted sequence is resumed to the same bytes as an
    uninterrupted one. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/hash.h"
 #include "files.h"
@@ -28,9 +28,7 @@ static RenderOptions options_for(const char *directory) {
         .width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = directory, .slow = 3, .hold = 0.05};
 }
 
-static int make(void **state) {
-    (void)state;
-    Error error = {0};
+FIXTURE(make) {
     TrajectoryContact contact = {.a = FIRST_BOX, .b = BOMB_BODY, .normal = {0, 1}};
     panels[0] = runs[0] = run_make("engine", FRAMES);
     panels[1] = runs[1] = run_make("pair-net:network=nets/small.npz", FRAMES - 3);
@@ -39,14 +37,11 @@ static int make(void **state) {
     snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
     RenderOptions options = options_for(whole);
     assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
-    return 0;
 }
 
 static const char *manifest_of(const char *directory) {
@@ -105,7 +100,7 @@ static void check_picture(const json_t *item, int index) {
     const char *path = frame_path(whole, index), *part = json_string_value(json_object_get(item, "part"));
     int frame = (int)json_integer_value(json_object_get(item, "frame"));
     char *data = read_whole(path, &size), text[64] = "";
-    Image *image = image_read_png(path, &error);
+    Image *image = image_of(path);
     assert_true(hash_of(json_object_get(item, "pixels")) == image_hash(image));
     assert_true(hash_of(json_object_get(item, "file_hash")) == hash_xxh3(data, size));
     assert_non_null(strstr(path, json_string_value(json_object_get(item, "file"))));
@@ -181,9 +176,7 @@ static void check_view(const char *directory, bool moving) {
         const json_t *picture = json_array_get(pictures, i);
         assert_int_equal(json_object_get(picture, "camera") != NULL, moving);
         if (strcmp(json_string_value(json_object_get(picture, "shows")), "frame") != 0) continue;
-        Error error = {0};
-        Image *image = image_read_png(frame_path(directory, (int)i), &error);
-        assert_ok(image != NULL, error);
+        Image *image = image_of(frame_path(directory, (int)i));
         check_bodies(all, picture, image);
         image_destroy(image);
     }
@@ -191,7 +184,6 @@ static void check_view(const char *directory, bool moving) {
 }
 
 TEST(the_view_leads_to_the_bodies) {
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("moving"));
     options.look.camera = LOOK_BOMB;
     options.width = 4 * WIDTH, options.height = 4 * HEIGHT;
@@ -206,7 +198,6 @@ TEST(the_view_leads_to_the_bodies) {
 }
 
 TEST(the_view_names_the_files_of_the_runs) {
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("named"));
     options.look.show = LOOK_GHOSTS;
     assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
@@ -220,8 +211,7 @@ TEST(the_view_names_the_files_of_the_runs) {
 }
 
 TEST(a_manifest_names_no_place) {
-    size_t size;
-    char *text = read_whole(manifest_of(whole), &size);
+    char *text = text_of(manifest_of(whole));
     assert_null(strstr(text, temporary_folder));
     free(text);
 }
@@ -268,7 +258,7 @@ static bool stop(void *context, double done, double total) {
 
 TEST(a_stopped_sequence_goes_on) {
     for (int at = 1; at < PICTURES; at += 30) {
-        Error error = {0};
+        error = (Error){0};
         RenderOptions options = options_for(temporary_path("stopped"));
         assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){at, false}}, &error));
         assert_error(error, ERROR_INTERRUPTED, "stopped");
@@ -295,7 +285,6 @@ TEST(a_killed_sequence_goes_on) {
 
 /* A power failure cuts a write: the last line may be partial, and so may pictures. */
 TEST(every_cut_of_the_journal_is_survived) {
-    Error error = {0};
     char journal[600];
     RenderOptions options = options_for(temporary_path("cut"));
     assert_false(render_sequence(panels, 2, &options, NULL, &(Progress){stop, &(Stop){6, false}}, &error));
@@ -326,7 +315,6 @@ TEST(another_sequence_is_redrawn) {
         {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
     char why[256];
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
-        Error error = {0};
         char name[16];
         snprintf(name, sizeof name, "other%zu", i);
         RenderOptions options = others[i].options;
@@ -350,7 +338,6 @@ TEST(another_run_is_redrawn) {
     RenderOptions options = options_for(directory);
     options.resume = true;
     RenderResult result;
-    Error error = {0};
     assert_ok(render_sequence(panels, 2, &options, &result, NULL, &error), error);
     assert_int_equal(result.kept, 0);
     free(result.hashes);
@@ -400,17 +387,13 @@ TEST(a_manifest_is_not_trusted) {
 /* Files of other programs are not touched. */
 TEST(files_that_are_not_manifests_stay) {
     static const char foreign[] = "{\"name\": \"my own\"}";
-    Error error = {0};
     RenderOptions options = options_for(copied("foreign"));
     for (int again = 0; again < 2; again++) {
         options.resume = again == 1;
         write_bytes(manifest_of(options.directory), foreign, sizeof foreign - 1);
         assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error),
                        "foreign/manifest.json: error: is not a manifest of twinbox");
-        size_t size;
-        char *text = read_whole(manifest_of(options.directory), &size);
-        assert_string_equal(text, foreign);
-        free(text);
+        assert_file(manifest_of(options.directory), foreign);
     }
     assert_int_equal(unlink(manifest_of(options.directory)), 0);
     assert_int_equal(mkdir(manifest_of(options.directory), 0700), 0);

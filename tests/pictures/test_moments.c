@@ -27,17 +27,9 @@ static Trajectory *struck(int frames, int impact) {
     return trajectory;
 }
 
-static int make(void **state) {
-    (void)state;
-    run = struck(FRAMES, IMPACT);
-    return 0;
-}
+FIXTURE(make) { run = struck(FRAMES, IMPACT); }
 
-static int destroy(void **state) {
-    (void)state;
-    trajectory_destroy(run);
-    return 0;
-}
+FIXTURE(destroy) { trajectory_destroy(run); }
 
 static MomentPlan plan_for(RenderOptions options) {
     MomentPlan plan;
@@ -102,7 +94,6 @@ TEST(slow_motion_ends_where_the_run_does) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Trajectory *other = struck(cases[i].frames, cases[i].impact);
         MomentPlan plan;
-        Error error = {0};
         const Trajectory *panels[] = {other};
         assert_ok(moments_plan(&plan, panels, 1, 0, cases[i].frames - 1, &(RenderOptions){.slow = 4}, &error), error);
         assert_int_equal(moments_last(&plan) + 1, cases[i].frames + 3 * cases[i].between);
@@ -114,7 +105,6 @@ TEST(slow_motion_ends_where_the_run_does) {
 TEST(the_first_impact_of_all_panels_counts) {
     Trajectory *later = struck(FRAMES + 5, IMPACT + 30);
     MomentPlan plan;
-    Error error = {0};
     const Trajectory *panels[] = {later, run};
     assert_ok(moments_plan(&plan, panels, 2, 0, FRAMES + 4, &(RenderOptions){.slow = 2}, &error), error);
     assert_int_equal(plan.slow_first, IMPACT - BEFORE);
@@ -156,7 +146,6 @@ TEST(a_range_of_frames_is_a_complete_sequence) {
     for (int first = 0; first < FRAMES; first += 11)
         for (int last = first; last < FRAMES; last += 13) {
             MomentPlan plan;
-            Error error = {0};
             assert_ok(moments_plan(&plan, panels, 1, first, last, &options, &error), error);
             int whole = 0, i = first;
             while (time_of(moments_at(&bare, whole)) < first) whole++;
@@ -183,10 +172,8 @@ TEST(what_is_out_of_range_is_refused) {
     const Trajectory *panels[] = {run};
     MomentPlan plan;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        Error error = {0};
         assert_refused(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &wrong[i].options, &error), wrong[i].text);
     }
-    Error error = {0};
     run->dt = 1e-9F;
     assert_refused(moments_plan(&plan, panels, 1, 0, FRAMES - 1, &(RenderOptions){.hold = 60}, &error),
                    "too many pictures for one sequence");
@@ -320,7 +307,6 @@ TEST(a_duration_is_that_of_the_whole_film) {
 /* File names begin with the first frame. */
 TEST(a_range_plays_in_real_time) {
     MomentPlan plan;
-    Error error = {0};
     assert_ok(plan_range(&plan, 60, 30, 41, (RenderOptions){.fps = 30}, &error), error);
     assert_int_equal(moments_last(&plan), 30 + 6);
     for (int p = 0; p < 6; p++) assert_int_equal(moments_at(&plan, 30 + p).frame, 30 + 2 * p);
@@ -356,13 +342,12 @@ TEST(what_makes_no_sense_is_refused) {
         {1e-3, 0, FRAMES - 1, {.fps = 240, .slow = 16}, NULL},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        Error error = {0};
+        error = (Error){0};
         MomentPlan plan;
         const bool planned = plan_range(&plan, wrong[i].rate, wrong[i].first, wrong[i].last, wrong[i].options, &error);
         assert_int_equal(planned, wrong[i].text == NULL);
         if (!planned) assert_error(error, ERROR_INPUT, wrong[i].text);
     }
-    Error error = {0};
     MomentPlan plan;
     run->dt = 1000;
     const Trajectory *panels[] = {run};

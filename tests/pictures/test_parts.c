@@ -69,7 +69,6 @@ TEST_WITH(every_mark_is_in_a_part, make, destroy) {
 /* A region in a panel must not be taken for a caption. */
 TEST_WITH(parts_and_panels_do_not_overlap, make, destroy) {
     for (int i = 0; i < SIZES; i++) {
-        Error error = {0};
         Picture picture;
         Part parts[PARTS_MAX];
         RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1], .look = {.show = ALL_SHOWN}};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whole frames: equal in both contexts for all contents of the trajectories, and stable from frame to frame. */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/built_contexts.h"
 #include "regression/compare.h"
@@ -12,18 +12,14 @@
 static const Trajectory *panels[RENDER_PANELS_MAX];
 static Trajectory *runs[RENDER_PANELS_MAX];
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     static const char *const methods[] = {"engine", "pair-net:network=a/b.npz", "momentum", "x:y=1", "pair-net",
                                           "engine"};
     for (int i = 0; i < RENDER_PANELS_MAX; i++) panels[i] = runs[i] = run_make(methods[i], 12);
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     for (int i = 0; i < RENDER_PANELS_MAX; i++) trajectory_destroy(runs[i]);
-    return 0;
 }
 
 static Image *draw_in(ContextChoice context, int count, int width, int height, int frame) {
@@ -31,7 +27,7 @@ static Image *draw_in(ContextChoice context, int count, int width, int height, i
     RenderOptions options = {.width = width, .height = height, .context = context};
     Renderer *renderer = renderer_create(panels, count, &options, &error);
     assert_ok(renderer != NULL, error);
-    Image *image = image_create(width, height, &error);
+    Image *image = image_sized(width, height);
     assert_ok(renderer_draw(renderer, frame, image, &error), error);
     renderer_destroy(renderer);
     return image;
@@ -69,11 +65,10 @@ static void copy_panel(Image *to, const Image *from, const Rect *rect) {
 TEST_WITH(an_ended_panel_holds_its_last_frame, make, destroy) {
     runs[1]->frames = 6;
     Picture picture;
-    Error error = {0};
     assert_ok(picture_plan(&picture, panels, 2, 640, 360, &error), error);
     assert_int_equal(picture.frames, 12);
     Image *last = draw_in(CONTEXT_AUTO, 2, 640, 360, 5), *later = draw_in(CONTEXT_AUTO, 2, 640, 360, 9);
-    Image *a = image_create(640, 360, &error), *b = image_create(640, 360, &error);
+    Image *a = image_sized(640, 360), *b = image_sized(640, 360);
     const Rect *rects = picture.layout.panels;
     copy_panel(a, last, &rects[1]);
     copy_panel(b, later, &rects[1]);
@@ -97,7 +92,6 @@ TEST_WITH(an_ended_panel_holds_its_last_frame, make, destroy) {
 
 TEST_WITH(the_largest_distance_of_any_panel_counts, make, destroy) {
     Picture picture;
-    Error error = {0};
     run_position(runs[1], 4, SECOND_BOX)->y += 2;
     run_position(runs[2], 4, FIRST_BOX)->x += 0.5F;
     assert_ok(picture_plan(&picture, panels, 3, 640, 360, &error), error);
@@ -142,7 +136,6 @@ TEST_WITH(hostile_poses_do_no_harm, make, destroy) {
 
 TEST_WITH(bodies_out_of_view_are_counted, make, destroy) {
     Picture picture;
-    Error error = {0};
     *run_position(runs[1], 5, FIRST_BOX) = vec2(-1000, 3);
     *run_position(runs[1], 5, BOMB_BODY) = vec2(0, 3e38F);
     *run_position(runs[1], 5, SECOND_BOX) = vec2(NAN, NAN); /* does not exist */
@@ -167,7 +160,7 @@ static uint64_t hash_with_words(const char *title, const char *note) {
     RenderOptions options = {.width = 1280, .height = 720, .title = title, .notes = {NULL, note}};
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
     assert_ok(renderer != NULL, error);
-    Image *image = image_create(1280, 720, &error);
+    Image *image = image_sized(1280, 720);
     assert_ok(renderer_draw(renderer, 4, image, &error), error);
     uint64_t hash = image_hash(image);
     image_destroy(image);
@@ -191,7 +184,6 @@ TEST_WITH(captions_do_not_jump, make, destroy) {
     panels[0] = runs[0] = run_make("engine", 1010);
     Picture picture;
     Drawing drawing = {0};
-    Error error = {0};
     assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
     int left = 0;
     for (int frame = 0; frame < 1010; frame += 7) {
@@ -222,7 +214,6 @@ TEST_WITH(hostile_names_do_no_harm, make, destroy) {
         memset(runs[0]->method, byte, TRAJECTORY_NAME_SIZE - 1);
         Picture picture;
         Drawing drawing = {0};
-        Error error = {0};
         assert_ok(picture_plan(&picture, panels, 2, 400, 300, &error), error);
         picture_draw(&picture, moment_stored(3), &drawing);
         for (size_t i = 0; i < drawing.glyph_count; i++) {
@@ -236,21 +227,18 @@ TEST_WITH(hostile_names_do_no_harm, make, destroy) {
 TEST_WITH(what_cannot_be_shown_is_refused, make, destroy) {
     static const int sizes[][2] = {{63, 64}, {64, 63}, {8193, 64}, {64, 8193}, {-5, 100}, {0, 0}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        Error error = {0};
         RenderOptions options = {.width = sizes[i][0], .height = sizes[i][1]};
         assert_refused(renderer_create(panels, 1, &options, &error), "must be 64 to 8192 pixels (got");
     }
     RenderOptions options = {.width = 64, .height = 64};
     for (int count = 0; count <= 7; count += 7) {
-        Error error = {0};
         assert_refused(renderer_create(panels, count, &options, &error), "the number of panels must be 1 to 6 (got");
     }
-    Error error = {0};
     runs[1]->dt = 1.0F / 50;
     assert_refused(renderer_create(panels, 2, &options, &error),
                    "panel 2 (pair-net:network=a/b.npz) has time steps of 0.02 s");
     Renderer *renderer = renderer_create(panels, 1, &options, &error);
-    Image *image = image_create(64, 64, &error);
+    Image *image = image_sized(64, 64);
     for (int frame = -1; frame <= 12; frame += 13) {
         assert_refused(renderer_draw(renderer, frame, image, &error), "the frames are 0 to 11");
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sequences: the same files with any number of processes, and an error message for every failure. */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/built_contexts.h"
 #include "files.h"
@@ -17,19 +17,15 @@ enum { FRAMES = 11 };
 static Trajectory *runs[2];
 static const Trajectory *panels[2];
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     panels[0] = runs[0] = run_make("engine", FRAMES);
     panels[1] = runs[1] = run_make("pair-net:network=nets/small.npz", FRAMES - 3);
     run_position(runs[1], 4, FIRST_BOX)->x -= 0.25F;
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     trajectory_destroy(runs[0]);
     trajectory_destroy(runs[1]);
-    return 0;
 }
 
 static RenderOptions options_for(const char *directory, int jobs) {
@@ -38,7 +34,6 @@ static RenderOptions options_for(const char *directory, int jobs) {
 
 TEST_WITH(any_number_of_jobs_writes_the_same_files, make, destroy) {
     static const int jobs[] = {2, 3, 20}; /* fewer and more than frames */
-    Error error = {0};
     for (int i = 0; i < 2; i++) {
         trajectory_destroy(runs[i]);
         panels[i] = runs[i] = run_make(i == 0 ? "engine" : "momentum", 4 - i);
@@ -55,17 +50,15 @@ TEST_WITH(any_number_of_jobs_writes_the_same_files, make, destroy) {
 }
 
 TEST_WITH(a_sequence_holds_the_frames_of_the_renderer, make, destroy) {
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("range"), 2);
     options.first = 3, options.last = 7;
     assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
     assert_int_equal(count_files(options.directory, ".png"), 5);
     Renderer *renderer = renderer_create(panels, 2, &options, &error);
-    Image *image = image_create(options.width, options.height, &error);
+    Image *image = image_sized(options.width, options.height);
     for (int frame = 3; frame <= 7; frame++) {
         assert_ok(renderer_draw(renderer, frame, image, &error), error);
-        Image *written = image_read_png(frame_path(options.directory, frame), &error);
-        assert_ok(written != NULL, error);
+        Image *written = image_of(frame_path(options.directory, frame));
         assert_true(image_hash(written) == image_hash(image));
         image_destroy(written);
     }
@@ -81,7 +74,6 @@ static void assert_text(const char *path, const char *key, const char *wanted) {
 }
 
 TEST_WITH(frames_tell_their_origin, make, destroy) {
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("texts"), 1);
     options.first = options.last = FRAMES - 1;
     assert_ok(render_sequence(panels, 2, &options, NULL, NULL, &error), error);
@@ -113,7 +105,6 @@ static bool listen_to(void *context, double done, double total) {
 }
 
 TEST_WITH(progress_counts_the_frames, make, destroy) {
-    Error error = {0};
     Listener listener = {.stop_at = 1000};
     RenderOptions options = options_for(temporary_path("progress"), 3);
     assert_ok(render_sequence(panels, 2, &options, NULL, &(Progress){listen_to, &listener}, &error), error);
@@ -122,7 +113,6 @@ TEST_WITH(progress_counts_the_frames, make, destroy) {
 
 /* No process remains, and no file is incomplete. */
 TEST_WITH(a_sequence_can_be_stopped, make, destroy) {
-    Error error = {0};
     trajectory_destroy(runs[0]);
     panels[0] = runs[0] = run_make("engine", 2000);
     Listener listener = {.stop_at = 5};
@@ -149,7 +139,6 @@ static void limit_files(rlim_t bytes, void (*handler)(int)) {
 }
 
 TEST_WITH(a_full_disk_is_told, make, destroy) {
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("full"), 2);
     /* Too small for the manifest, for a picture (3 kB), for the journal's growth. */
     static const struct {
@@ -170,7 +159,6 @@ TEST_WITH(a_full_disk_is_told, make, destroy) {
 
 /* With its signal, the same limit kills the process. */
 TEST_WITH(a_killed_process_is_reported, make, destroy) {
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("killed"), 2);
     limit_files(2000, SIG_DFL);
     bool ok = render_sequence(panels, 2, &options, NULL, NULL, &error);
@@ -181,7 +169,6 @@ TEST_WITH(a_killed_process_is_reported, make, destroy) {
 }
 
 TEST_WITH(folders_that_cannot_be_written_are_refused, make, destroy) {
-    Error error = {0};
     const char *file = temporary_path("file"), *inside = temporary_path("file/frames");
     assert_ok(file_write(file, "", 0, &error), error);
     RenderOptions options = options_for(inside, 1);
@@ -208,7 +195,6 @@ TEST_WITH(wrong_options_are_refused, make, destroy) {
         {{.width = 160, .height = 90, .first = -1, .last = 2, .jobs = 1}, "(got -1 to 2)"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
-        Error error = {0};
         RenderOptions options = wrong[i].options;
         options.directory = directory;
         assert_refused(render_sequence(panels, 2, &options, NULL, NULL, &error), wrong[i].text);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bodies on a transparent background: alpha, and which bodies are drawn. */
-#include "testing.h"
+#include "made.h"
 
 #include "pictures/mesa.h"
 #include "pictures/runs.h"
@@ -14,9 +14,9 @@ static const Camera camera = {20, 100, 160};
 static Image *shoot(const Trajectory *run, int frame, MethodColour colour, StillParts parts) {
     Error error = {0};
     Still *still = still_create(SIDE, SIDE, &error);
-    Image *image = image_create(SIDE, SIDE, &error);
+    Image *image = image_sized(SIDE, SIDE);
     const StillShot shot = {run, frame, colour, parts, camera};
-    assert_ok(still != NULL && image != NULL && still_draw(still, &shot, image, &error), error);
+    assert_ok(still != NULL && still_draw(still, &shot, image, &error), error);
     still_destroy(still);
     return image;
 }
@@ -65,7 +65,6 @@ TEST(alpha_is_coverage) {
 }
 
 TEST(sizes_are_limited) {
-    Error error = {0};
     assert_refused(still_create(RENDER_SIDE_MAX + 1, 10, &error), "(got 8193 x 10)");
     assert_refused(still_create(10, 0, &error), "(got 10 x 0)");
 }

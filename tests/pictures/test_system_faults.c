@@ -65,7 +65,6 @@ static bool draw(const RenderOptions *options, int frames, Error *error) {
 }
 
 TEST(interrupted_calls_are_continued) {
-    Error error = {0};
     char whole[256];
     snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
     RenderOptions options = options_for(whole);
@@ -84,7 +83,6 @@ TEST(what_cannot_be_removed_is_an_error) {
         const char *ending;
         int frames; /* of a second call */
     } cases[] = {{"manifest.json.part", FRAMES}, {"manifest.json", FRAMES - 1}, {"frame_000005.png", FRAMES - 1}};
-    Error error = {0};
     RenderOptions options = options_for(temporary_path("left"));
     assert_ok(draw(&options, FRAMES, &error), error);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -103,7 +101,7 @@ TEST(what_cannot_be_inspected_is_an_error) {
     static const char *const endings[] = {"manifest.json", "manifest.json.part"};
     RenderOptions options = options_for(temporary_path("unseen"));
     for (int i = 0; i < 2; i++) {
-        Error error = {0};
+        error = (Error){0};
         unseen = endings[i];
         assert_false(draw(&options, FRAMES, &error));
         unseen = NULL;

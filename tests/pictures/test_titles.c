@@ -12,17 +12,13 @@ static const char LONG_TITLE[] =
 
 static Trajectory *runs[2];
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     runs[0] = run_make("engine", 12);
     runs[1] = run_make("pair-net", 12);
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     for (int i = 0; i < 2; i++) trajectory_destroy(runs[i]);
-    return 0;
 }
 
 TEST(lines_fit_and_hold_every_word) {
@@ -72,7 +68,6 @@ TEST_WITH(the_header_is_as_high_as_its_title, make, destroy) {
 }
 
 TEST_WITH(too_long_a_title_is_an_error, make, destroy) {
-    Error error = {0};
     char text[2 * sizeof LONG_TITLE];
     snprintf(text, sizeof text, "%.126s %.126s", LONG_TITLE, LONG_TITLE);
     const RenderOptions title = {.width = 640, .height = 360, .title = text},
@@ -117,7 +112,6 @@ TEST_WITH(a_caption_stands_for_the_method, make, destroy) {
 }
 
 TEST(captions_are_checked) {
-    Error error = {0};
     char text[CAPTION_TEXT_SIZE + 1];
     memset(text, 'a', sizeof text);
     text[CAPTION_TEXT_SIZE - 1] = '\0';

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Videos have all frames or do not exist. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/machine.h"
 #include "files.h"
@@ -18,9 +18,7 @@ enum { FRAMES = 9, WIDTH = 96, HEIGHT = 64 };
 static char folder[256]; /* of the frames */
 static PictureHashes *hashes;
 
-static int make(void **state) {
-    (void)state;
-    Error error = {0};
+FIXTURE(make) {
     RenderResult result;
     snprintf(folder, sizeof folder, "%s", temporary_path("frames"));
     Trajectory *run = run_make("engine", FRAMES);
@@ -28,14 +26,9 @@ static int make(void **state) {
     assert_ok(render_sequence((const Trajectory *[]){run}, 1, &options, &result, NULL, &error), error);
     hashes = result.hashes;
     trajectory_destroy(run);
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
-    free(hashes);
-    return 0;
-}
+FIXTURE(destroy) { free(hashes); }
 
 static VideoOptions options_for(const char *path) {
     return (VideoOptions){folder, 0, FRAMES - 1, 60, hashes, path, false};
@@ -77,7 +70,6 @@ TEST(each_form_has_all_its_frames_and_the_same_bytes_again) {
     } cases[] = {
         {"a.mp4", 60, 0, FRAMES}, {"a.webm", 60, 0, FRAMES}, {"a.gif", 20, 0, (FRAMES + 2) / 3}}; /* 0.05 s a frame */
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
         int frames, width, height;
         double rate;
         VideoOptions options = options_for(temporary_path(cases[i].name));
@@ -101,7 +93,6 @@ TEST(gifs_keep_a_chosen_rate) {
         double shown;
     } cases[] = {{50, true, 50}, {50, false, 25}, {25, false, 25}, {100, true, 50}, {20, false, 20}, {75, false, 25}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
         int frames, width, height;
         double rate;
         VideoOptions options = options_for(temporary_path("rate.gif"));
@@ -119,11 +110,10 @@ TEST(gifs_are_small) {
     static const int sizes[][4] = {
         {1600, 90, 800, 45}, {90, 1600, 45, 800}, {801, 100, 800, 100}, {800, 60, 800, 60}, {96, 64, 96, 64}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        Error error = {0};
         int frames, width, height;
         double rate;
         const char *directory = temporary_path("large");
-        Image *image = image_create(sizes[i][0], sizes[i][1], &error);
+        Image *image = image_sized(sizes[i][0], sizes[i][1]);
         assert_ok(file_make_directory(directory, &error), error);
         for (size_t k = 0; k < 4 * (size_t)image->width * (size_t)image->height; k++)
             image->pixels[k] = (uint8_t)(k % 251);
@@ -139,7 +129,6 @@ TEST(gifs_are_small) {
 /* No name is taken for a pattern, an option or a URL. */
 TEST(any_file_name_works) {
     static const char *const names[] = {"-y.mp4", "a%03d.gif", "http:x.mp4", "b c'\"$.mp4"};
-    Error error = {0};
     char before[512];
     const char *directory = temporary_path("names");
     assert_ok(file_make_directory(directory, &error), error);
@@ -158,8 +147,7 @@ TEST(a_damaged_frame_makes_no_video) {
     size_t size, other_size;
     const char *path = temporary_path("kept.mp4"), *frame = frame_path(folder, 4);
     char *data = read_whole(frame, &size), *other = read_whole(frame_path(folder, 8), &other_size);
-    Error error = {0};
-    Image *small = image_create(8, 8, &error);
+    Image *small = image_sized(8, 8);
     for (int i = 0; i < 4; i++) {
         static const char *const texts[] = {"cannot open", "unexpected end of file", "differ from those drawn",
                                             "frame 4 is 8x8, but the first is 96x64"};
@@ -208,7 +196,7 @@ TEST(a_video_that_lacks_a_frame_is_removed) {
         {"#!/bin/sh\ncat >/dev/null\n", "ffprobe: error: failed"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
+        error = (Error){0};
         VideoOptions options = options_for(temporary_path("lacking.mp4"));
         pretend("ffmpeg", cases[i].ffmpeg);
         assert_false(video_encode(&options, NULL, &error));
@@ -216,7 +204,6 @@ TEST(a_video_that_lacks_a_frame_is_removed) {
         assert_int_equal(access(options.path, F_OK), -1);
         assert_nothing_left(temporary_folder);
     }
-    Error error = {0};
     VideoOptions options = options_for(temporary_path("lacking.mp4"));
     pretend("ffmpeg", "#!/bin/sh\ncat >/dev/null\necho File too large >&2\n");
     pretend("ffprobe", "#!/bin/sh\necho 8\n");
@@ -226,7 +213,6 @@ TEST(a_video_that_lacks_a_frame_is_removed) {
 }
 
 TEST(missing_programs_are_told) {
-    Error error = {0};
     assert_ok(video_check_programs(&error), error);
     setenv("PATH", temporary_folder, 1);
     assert_false(video_check_programs(&error));
@@ -240,7 +226,6 @@ static bool never(void *context, double done, double total) {
 }
 
 TEST(a_video_can_be_stopped) {
-    Error error = {0};
     VideoOptions options = options_for(temporary_path("stopped.gif"));
     assert_false(video_encode(&options, &(Progress){never, NULL}, &error));
     assert_error(error, ERROR_INTERRUPTED, "stopped");
@@ -257,7 +242,6 @@ static bool kill_oneself(void *context, double done, double total) {
 /* The encoder has no name of a file. */
 TEST(a_killed_program_leaves_nothing) {
     static const char *const names[] = {"killed/a.mp4", "killed/a.gif"};
-    Error error = {0};
     int status;
     assert_ok(file_make_directory(temporary_path("killed"), &error), error);
     for (int i = 0; i < 2; i++) {
@@ -274,7 +258,6 @@ TEST(a_killed_program_leaves_nothing) {
 }
 
 TEST(wrong_names_are_refused) {
-    Error error = {0};
     assert_ok(file_make_directory(temporary_path("folder.mp4"), &error), error);
     assert_ok(file_write(temporary_path("a.y4m"), "", 0, &error), error);
     static const struct {
@@ -300,7 +283,6 @@ TEST(wrong_names_are_refused) {
 }
 
 TEST(y4m_holds_every_frame) {
-    Error error = {0};
     int frames, width, height;
     double rate;
     const char *path = temporary_path("a.y4m");
@@ -313,7 +295,6 @@ TEST(y4m_holds_every_frame) {
 }
 
 TEST(a_reader_that_has_gone_is_told) {
-    Error error = {0};
     int ends[2];
     VideoOptions options = options_for("the pipe");
     assert_int_equal(pipe(ends), 0);

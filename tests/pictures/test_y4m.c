@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Pictures as y4m against BT.709 in closed form. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "pictures/render.h"
 
 #include <fcntl.h>
@@ -12,8 +12,7 @@ enum { HEADER_MOST = 128, LARGEST = 1 << 18 };
 /* Writes the opaque pixels[width * height], 0xRRGGBB, as a video of one picture; returns the malloc'ed stream. */
 static char *stream_of(const uint32_t *pixels, int width, int height, double rate, size_t *size) {
     Error error = {0};
-    Image *image = image_create(width, height, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(width, height);
     for (int i = 0; i < width * height; i++)
         for (int c = 0; c < 4; c++) image->pixels[4 * i + c] = (uint8_t)(c < 3 ? pixels[i] >> (16 - 8 * c) : 255);
     const char *png = temporary_path("frame_000000.png"), *path = temporary_path("video.y4m");
@@ -24,9 +23,7 @@ static char *stream_of(const uint32_t *pixels, int width, int height, double rat
     assert_true(file >= 0);
     assert_ok(video_write_y4m(&options, file, NULL, &error), error);
     close(file);
-    char *stream = file_read(path, LARGEST, size, &error);
-    assert_ok(stream != NULL, error);
-    return stream;
+    return read_whole(path, size);
 }
 
 /* The planes of such a picture: Y[count], Cb[count], Cr[count]. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A canvas in each kind of context, for tests of single pixels. Include testing.h first. */
 #pragma once
+#include "made.h"
 #include "built_contexts.h"
 #include "pixels/gl.h"
 #include "regression/compare.h"
@@ -21,33 +22,27 @@ static Screen screens[SCREENS] = {{.wanted = CONTEXT_OSMESA}, {.wanted = CONTEXT
 static Drawing drawing;
 
 /* A context that is built in but missing fails the test: both must give equal frames. */
-static inline int open_screens(void **state) {
-    (void)state;
+FIXTURE(open_screens) {
     for (int i = 0; i < SCREENS; i++) {
-        Error error = {0};
         Screen *s = &screens[i];
         ContextChoice wanted = built_context(s->wanted);
         assert_ok(context_create(&s->context, wanted, &error), error);
         assert_int_equal(s->context.kind->choice, wanted);
         assert_ok(gl_load(&s->gl, s->context.kind->find, s->context.state, &error), error);
         s->canvas = canvas_create(&s->gl, SCREEN_SIDE, SCREEN_SIDE, &error);
-        s->image = image_create(SCREEN_SIDE, SCREEN_SIDE, &error);
-        assert_ok(s->canvas != NULL && s->image != NULL, error);
+        s->image = image_sized(SCREEN_SIDE, SCREEN_SIDE);
+        assert_ok(s->canvas != NULL, error);
     }
-    return 0;
 }
 
-static inline int close_screens(void **state) {
-    (void)state;
+FIXTURE(close_screens) {
     for (int i = 0; i < SCREENS; i++) {
-        Error error = {0};
         assert_ok(context_make_current(&screens[i].context, &error), error);
         canvas_destroy(screens[i].canvas);
         context_destroy(&screens[i].context);
         image_destroy(screens[i].image);
     }
     drawing_free(&drawing);
-    return 0;
 }
 
 /* Paints the drawing over black on every screen, then clears it. All screens must show the same picture. */

@@ -6,7 +6,6 @@
 #include "pictures/mesa.h"
 
 TEST(the_first_kind_is_the_default) {
-    Error error = {0};
     Context context;
     assert_non_null(context_kinds[0]);
     assert_ok(context_create(&context, CONTEXT_AUTO, &error), error);
@@ -16,7 +15,6 @@ TEST(the_first_kind_is_the_default) {
 
 TEST(every_kind_draws_by_llvmpipe) {
     for (int i = 0; context_kinds[i] != NULL; i++) {
-        Error error = {0};
         Context context;
         GlFunctions gl;
         assert_ptr_equal(context_kind(context_kinds[i]->choice), context_kinds[i]);
@@ -31,7 +29,6 @@ TEST(every_kind_draws_by_llvmpipe) {
 TEST(a_kind_that_is_not_built_in_is_refused) {
     for (ContextChoice choice = CONTEXT_OSMESA; choice <= CONTEXT_EGL; choice++) {
         Context context;
-        Error error = {0};
         if (context_kind(choice) != NULL) continue;
         assert_refused(context_create(&context, choice, &error), "twinbox was built without");
     }

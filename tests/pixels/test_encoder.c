@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of the encoder, read back by libpng and pngcheck: every kind of picture, and sequences of which only changed
    rows are compressed again. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "regression/compare.h"
-#include "pixels/png.h"
 
 static uint32_t seed = 1;
 
@@ -15,9 +14,7 @@ static unsigned any_below(unsigned limit) {
 }
 
 static Image *blank_image(int width, int height) {
-    Error error = {0};
-    Image *image = image_create(width, height, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(width, height);
     memset(image->pixels, 255, (size_t)width * (size_t)height * 4);
     return image;
 }
@@ -58,8 +55,7 @@ static void assert_holds(const uint8_t *data, size_t size, const Image *image) {
     Error error = {0};
     const char *path = temporary_path("holds.png");
     assert_ok(file_write(path, data, size, &error), error);
-    Image *back = image_read_png(path, &error);
-    assert_ok(back != NULL, error);
+    Image *back = image_of(path);
     ImageDifference difference;
     image_compare(image, back, &difference);
     assert_true(difference.equal);
@@ -79,7 +75,6 @@ TEST(every_picture_comes_back) {
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
         for (int kind = 0; kind < KINDS; kind++)
             for (PngEffort effort = PNG_FAST; effort <= PNG_SMALL; effort++) {
-                Error error = {0};
                 const uint8_t *data;
                 size_t size;
                 Image *image = blank_image(sizes[i][0], sizes[i][1]);
@@ -96,7 +91,6 @@ TEST(every_picture_comes_back) {
 
 TEST(random_pictures_come_back) {
     for (int i = 0; i < 400; i++) {
-        Error error = {0};
         const uint8_t *data;
         size_t size;
         bool ignored[64];
@@ -114,7 +108,6 @@ TEST(random_pictures_come_back) {
 /* The bytes equal those of a new encoder, whatever was encoded before. */
 TEST(kept_rows_change_no_byte) {
     enum { WIDTH = 230, HEIGHT = 61 };
-    Error error = {0};
     Image *image = blank_image(WIDTH, HEIGHT);
     PngEncoder *encoder = png_encoder_create(WIDTH, HEIGHT, PNG_FAST, &error);
     for (int frame = 0; frame < 200; frame++) {
@@ -135,7 +128,6 @@ TEST(kept_rows_change_no_byte) {
 
 /* Rows not flagged as changed are not read. */
 TEST(only_changed_rows_are_read) {
-    Error error = {0};
     bool none[40] = {false};
     const uint8_t *data;
     size_t size;
@@ -151,7 +143,6 @@ TEST(only_changed_rows_are_read) {
 }
 
 TEST(small_is_smaller) {
-    Error error = {0};
     const uint8_t *data;
     size_t sizes[2];
     bool ignored[400];

@@ -1,24 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Comparison and hash of synthetic pictures. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/compare.h"
 
 static Image *a, *b;
 
-static int make(void **state) {
-    (void)state;
-    Error error = {0};
-    a = image_create(4, 3, &error);
-    b = image_create(4, 3, &error);
-    return a == NULL || b == NULL;
+FIXTURE(make) {
+    a = image_sized(4, 3);
+    b = image_sized(4, 3);
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     image_destroy(a);
     image_destroy(b);
-    return 0;
 }
 
 static uint8_t *channel(Image *image, int x, int y, int c) { return &image->pixels[(y * image->width + x) * 4 + c]; }
@@ -53,8 +48,7 @@ TEST_WITH(one_bit_changes_the_hash, make, destroy) {
 
 TEST_WITH(the_shape_counts, make, destroy) {
     ImageDifference d;
-    Error error = {0};
-    Image *turned = image_create(3, 4, &error);
+    Image *turned = image_sized(3, 4);
     image_compare(a, turned, &d);
     assert_false(d.equal);
     assert_false(d.same_size);

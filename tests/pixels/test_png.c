@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* PNG files of every kind are read as the pixels they hold; damaged ones are refused. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "regression/compare.h"
 #include "pngs.h"
 
 static Image *patterned(int width, int height) {
-    Error error = {0};
-    Image *image = image_create(width, height, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(width, height);
     uint32_t state = 1;
     for (size_t i = 0; i < (size_t)width * (size_t)height * 4; i++) {
         state = state * 1664525 + 1013904223;
@@ -21,12 +19,10 @@ static Image *patterned(int width, int height) {
 TEST(written_pictures_come_back) {
     static const int sizes[][2] = {{1, 1}, {7, 5}, {300, 1}, {1, 300}, {640, 480}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        Error error = {0};
         const char *path = temporary_path("round.png");
         Image *image = patterned(sizes[i][0], sizes[i][1]);
         assert_ok(image_write_png(image, path, NULL, 0, &error), error);
-        Image *back = image_read_png(path, &error);
-        assert_ok(back != NULL, error);
+        Image *back = image_of(path);
         ImageDifference difference;
         image_compare(image, back, &difference);
         assert_true(difference.equal);
@@ -36,13 +32,11 @@ TEST(written_pictures_come_back) {
 }
 
 TEST(alpha_is_dropped) {
-    Error error = {0};
     const char *path = temporary_path("opaque.png");
     Image *image = patterned(2, 1);
     image->pixels[3] = 7;
     assert_ok(image_write_png(image, path, NULL, 0, &error), error);
-    Image *back = image_read_png(path, &error);
-    assert_ok(back != NULL, error);
+    Image *back = image_of(path);
     assert_int_equal(back->pixels[3], 255);
     assert_memory_equal(back->pixels, image->pixels, 3);
     image_destroy(image);
@@ -50,7 +44,6 @@ TEST(alpha_is_dropped) {
 }
 
 TEST(texts_come_back) {
-    Error error = {0};
     const char *path = temporary_path("text.png");
     const ImageText texts[] = {{"Scene", "pyramid"}, {"Method", "engine | pr\xC3\xA9"}, {"Empty", ""}};
     char value[64];
@@ -108,9 +101,7 @@ TEST(every_kind_is_read) {
         const PngKind *kind = &kinds[i / 2];
         const char *path = temporary_path("kind.png");
         write_kind(path, kind, i % 2 ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE);
-        Error error = {0};
-        Image *image = image_read_png(path, &error);
-        assert_ok(image != NULL, error);
+        Image *image = image_of(path);
         assert_true(image->width == PNG_SIDE && image->height == PNG_SIDE);
         for (int y = 0; y < PNG_SIDE; y++)
             for (int x = 0; x < PNG_SIDE; x++) {
@@ -130,9 +121,7 @@ static char *small_file(size_t *size) {
     Image *image = patterned(5, 4);
     assert_ok(image_write_png(image, path, &(ImageText){"Scene", "single"}, 1, &error), error);
     image_destroy(image);
-    char *data = file_read(path, 1 << 20, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
+    return read_whole(path, size);
 }
 
 static void refuse(const char *path, const char *text) {
@@ -181,7 +170,6 @@ TEST(large_claims_are_refused_before_they_cost) {
 }
 
 TEST(the_limit_of_pixels_is_the_callers) {
-    Error error = {0};
     size_t size;
     uint8_t *data = (uint8_t *)small_file(&size);
     Image *image = image_decode_png(data, size, "small.png", 20, &error);
@@ -212,13 +200,11 @@ TEST(animations_are_refused) {
 
 /* Two pictures that differ in 16 bits but not in 8. */
 TEST(sixteen_bits_count_in_full) {
-    Error error = {0};
     static const PngKind kind = {"rgb 16", PNG_COLOR_TYPE_RGB, 16, false};
     for (int interlace = 0; interlace < 2; interlace++) {
         const char *path = temporary_path("deep.png");
         write_kind(path, &kind, interlace);
-        Image *a = image_read_png(path, &error), *b = image_read_png(path, &error);
-        assert_ok(a != NULL && b != NULL, error);
+        Image *a = image_of(path), *b = image_of(path);
         assert_non_null(a->pixels16);
         for (int y = 0; y < PNG_SIDE; y++)
             for (int x = 0; x < PNG_SIDE; x++)
@@ -273,12 +259,10 @@ static void write_text_bomb(const char *path) {
 }
 
 TEST(texts_that_swell_do_no_harm) {
-    Error error = {0};
     const char *path = temporary_path("bomb.png");
     static char value[SWOLLEN];
     write_text_bomb(path);
-    Image *image = image_read_png(path, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_of(path);
     assert_memory_equal(image->pixels, "abc\xFF", 4);
     image_destroy(image);
     assert_false(image_read_text(path, "Bomb", value, sizeof value, &error));
@@ -286,7 +270,6 @@ TEST(texts_that_swell_do_no_harm) {
 }
 
 TEST(what_is_no_file_is_refused) {
-    Error error = {0};
     assert_refused(image_read_png(temporary_path("missing.png"), &error), "missing.png");
     error = (Error){0};
     assert_null(image_read_png("/", &error));
@@ -294,7 +277,6 @@ TEST(what_is_no_file_is_refused) {
 }
 
 TEST(a_failed_write_is_the_systems_fault) {
-    Error error = {0};
     Image *image = patterned(2, 2);
     assert_false(image_write_png(image, temporary_path("no/such/folder.png"), NULL, 0, &error));
     assert_error(error, ERROR_SYSTEM, "no/such/folder.png");

@@ -49,7 +49,6 @@ TEST(every_kind_is_valid) {
             size_t size;
             int width = 0, height = 0;
             uint8_t *data = kind_bytes(&kinds[i], interlace, &size);
-            Error error = {0};
             assert_ok(png_check(data, size, "x.png", &width, &height, &error), error);
             assert_true(width == PNG_SIDE && height == PNG_SIDE);
             free(data);
@@ -57,7 +56,6 @@ TEST(every_kind_is_valid) {
 }
 
 TEST(cut_and_changed_files_are_refused) {
-    Error error;
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         size_t size;
         uint8_t *data = kind_bytes(&kinds[i], 0, &size);
@@ -165,7 +163,6 @@ TEST(pixels_that_cannot_be_complete_are_refused) {
 TEST(the_smallest_file_of_a_large_picture_is_valid) {
     PngParts png;
     uint8_t pixels[4096];
-    Error error;
     size_t size = compress_zeros(pixels, sizeof pixels, 1000 * 3001);
     put_header(&png, 1000, 1000, 8, 2);
     put_chunk(&png, "IDAT", pixels, size);
@@ -177,7 +174,6 @@ TEST(the_smallest_file_of_a_large_picture_is_valid) {
 TEST(odd_but_valid_files_are_accepted) {
     PngParts png;
     uint8_t pixels[64];
-    Error error;
     size_t size = begin(&png, pixels);
     put_chunk(&png, "xxXx", "?", 1);
     put_chunk(&png, "IDAT", NULL, 0);

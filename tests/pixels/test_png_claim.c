@@ -19,7 +19,6 @@ static void claim(PngParts *file, int color) {
 TEST(too_few_bytes_are_refused_first) {
     PngParts file;
     for (int color = 0; color <= 6; color += 2) {
-        Error error = {0};
         Image *image = NULL;
         claim(&file, color);
         assert_false(png_fast_decode(file.data, file.size, IMAGE_MAX_PIXELS, &image));

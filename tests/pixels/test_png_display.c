@@ -6,11 +6,9 @@
 
 static PngParts a, b;
 
-static int begin(void **state) {
-    (void)state;
+FIXTURE(begin) {
     put_header(&a, 1, 1, 8, 2);
     put_header(&b, 1, 1, 8, 2);
-    return 0;
 }
 
 static void end(PngParts *png) {

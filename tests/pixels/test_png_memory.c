@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whichever allocation fails, also of libpng: the result is that of enough memory, or a system error. Never is the file
    called damaged, a text missing, or a colour profile different. */
-#include "testing.h"
+#include "made.h"
 
 #include "allocations.h"
 #include "regression/compare.h"
-#include "pixels/png.h"
 #include "pixels/internal.h"
 #include "png_parts.h"
 #include "pngs.h"
@@ -48,11 +47,9 @@ static void load(const char *path) {
     assert_ok(file != NULL, error);
 }
 
-static int unload(void **state) {
-    (void)state;
+FIXTURE(unload) {
     free((void *)file);
     file = NULL;
-    return 0;
 }
 
 static void decode(Error *error) {
@@ -82,9 +79,8 @@ static void find_text(Error *error) {
 }
 
 TEST_WITH(no_text_is_called_missing, NULL, unload) {
-    Error error = {0};
-    Image *image = image_create(3, 2, &error);
-    assert_ok(image != NULL && image_write_png(image, temporary_path("text.png"), &text, 1, &error), error);
+    Image *image = image_sized(3, 2);
+    assert_ok(image_write_png(image, temporary_path("text.png"), &text, 1, &error), error);
     image_destroy(image);
     load(temporary_path("text.png"));
     fail_each(find_text);

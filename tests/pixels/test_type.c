@@ -23,7 +23,6 @@ TEST(alphabets_are_whole) {
 }
 
 TEST(common_symbols_are_there) {
-    Error error = {0};
     assert_ok(
         type_check("\u2264\u2265\u00D7\u00B0\u00B5\u2192\u2190\u2013\u2014\u2026\u00B7\u00B2\u00B3\u00BD\u0394\u03C0"
                    "\u00B1\u2260\u2248\u221E\u2211\u221A\u2202\u222B\u03BC\u2126\u2212\u201E\u201C\u201D\u2018\u2019"
@@ -61,7 +60,6 @@ TEST(what_cannot_be_drawn_is_named) {
     refuse("\xC0\xAF", "byte 1 of the text is 0xC0");     /* overlong */
     refuse("\xED\xA0\x80", "byte 1 of the text is 0xED"); /* a surrogate */
     refuse("abc\xE4\xBD", "byte 4 of the text is 0xE4");  /* cut off */
-    Error error = {0};
     assert_true(type_check(NULL, "--title", &error) && type_check("", "--title", &error));
 }
 
@@ -70,7 +68,6 @@ TEST(every_character_passes_or_fails) {
     int passed = 0;
     for (uint32_t code = 1; code < 0x30000; code++) {
         char text[8] = "";
-        Error error = {0};
         if (code >= 0xD800 && code < 0xE000) continue;
         utf8_encode(text, code);
         const bool ok = type_check(text, "text", &error);

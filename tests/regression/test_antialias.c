@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Lines, rings and boxes with exact coverage: moved by a part of a pixel or sampled otherwise they have no differences;
    erased, faded, moved by a pixel or with one wrong pixel they have. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/internal.h"
 #include "regression/compare.h"
@@ -47,9 +47,7 @@ typedef struct TestDrawing {
 static const TestDrawing plain = {.samples = FINE, .strength = 1, .ink = {0, 0, 0}, .paper = {255, 255, 255}};
 
 static Image *drawn(const TestShape *shape, const TestDrawing *drawing) {
-    Error error = {0};
-    Image *image = image_create(SIDE, SIDE, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(SIDE, SIDE);
     for (int i = 0; i < SIDE * SIDE; i++) {
         int count = 0, n = drawing->samples;
         for (int k = 0; k < n * n; k++) {
@@ -203,8 +201,7 @@ TEST(single_wrong_pixels_are_detected) {
 
 /* A crisp edge that moves by a whole pixel has no coverage to compare. */
 TEST(an_edge_that_moves_by_a_pixel_differs) {
-    Error error = {0};
-    Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+    Image *a = image_sized(SIDE, SIDE), *b = image_sized(SIDE, SIDE);
     for (int i = 0; i < SIDE * SIDE; i++) {
         memset(a->pixels + 4 * i, i % SIDE < 20 ? 0 : 255, 4);
         memset(b->pixels + 4 * i, i % SIDE < 21 ? 0 : 255, 4);
@@ -216,8 +213,7 @@ TEST(an_edge_that_moves_by_a_pixel_differs) {
 
 /* What a transparent pixel hides does not matter: premultiplied, (171, 0, 85, 128) lies half way to transparent. */
 TEST(transparent_edges_are_edges) {
-    Error error = {0};
-    Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+    Image *a = image_sized(SIDE, SIDE), *b = image_sized(SIDE, SIDE);
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
             static const uint8_t opaque[4] = {171, 0, 85, 255}, half[4] = {171, 0, 85, 128}, none[4] = {0, 0, 0, 0};
@@ -234,8 +230,7 @@ TEST(transparent_edges_are_edges) {
 
 /* A reproducible texture without flat areas: each change of brightness counts nearly everywhere. */
 TEST(textures_have_no_edges) {
-    Error error = {0};
-    Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+    Image *a = image_sized(SIDE, SIDE), *b = image_sized(SIDE, SIDE);
     uint32_t random = 1;
     for (int i = 0; i < 4 * SIDE * SIDE; i++) {
         random = random * 1664525 + 1013904223;
@@ -250,10 +245,9 @@ TEST(textures_have_no_edges) {
 
 /* By one level, or two. */
 TEST(areas_that_become_lighter_differ) {
-    Error error = {0};
     for (int slope = 0; slope <= 2; slope++)
         for (int more = 1; more <= 2; more++) {
-            Image *a = image_create(SIDE, SIDE, &error), *b = image_create(SIDE, SIDE, &error);
+            Image *a = image_sized(SIDE, SIDE), *b = image_sized(SIDE, SIDE);
             for (int i = 0; i < 4 * SIDE * SIDE; i++) {
                 bool alpha = i % 4 == 3;
                 a->pixels[i] = (uint8_t)(alpha ? 255 : 20 + slope * (i / 4 % SIDE + i / 4 / SIDE));
@@ -267,10 +261,9 @@ TEST(areas_that_become_lighter_differ) {
 
 /* Pictures smaller than the windows. */
 TEST(small_pictures_are_compared) {
-    Error error = {0};
     for (int width = 1; width <= 4; width++)
         for (int height = 1; height <= 4; height++) {
-            Image *a = image_create(width, height, &error), *b = image_create(width, height, &error);
+            Image *a = image_sized(width, height), *b = image_sized(width, height);
             uint8_t masked[16] = {0};
             memset(a->pixels, 255, 4 * (size_t)(width * height));
             antialias_mark(a, b, masked);

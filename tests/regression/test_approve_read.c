@@ -10,7 +10,6 @@
 static const char *store(const char *text) { return write_bytes(temporary_path("results.json"), text, strlen(text)); }
 
 TEST(failures_are_read_in_any_order_of_members) {
-    Error error = {0};
     ApprovalList list;
     const char *text = "{\"trajectories\": [], \"frames\": [\n"
                        "{\"failed\": true, \"shown\": false, \"expected\": " FILE_0 ", \"actual\": null},\n"
@@ -57,7 +56,7 @@ TEST(invalid_results_are_refused_with_their_place) {
         {HEAD ", \"frames\": [], \"trajectories\": []}\n}", "2:1: error: end of file expected"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
+        error = (Error){0};
         ApprovalList list;
         if (approval_read(&list, store(cases[i].text), &error)) fail_msg("read: %s", cases[i].text);
         assert_error(error, ERROR_INPUT, cases[i].why);
@@ -68,7 +67,7 @@ TEST(invalid_results_are_refused_with_their_place) {
 TEST(a_file_that_is_named_twice_is_refused) {
     enum { COUNT = 3000, SIZE = 120 };
     for (int twice = 0; twice <= 1; twice++) {
-        Error error = {0};
+        error = (Error){0};
         ApprovalList list;
         char *text = malloc(COUNT * SIZE + 200), *end = text;
         end += sprintf(end, "%s", HEAD ", \"trajectories\": [], \"frames\": [\n");

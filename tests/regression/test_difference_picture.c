@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pictures of a report, read back: every colour of their scales, and sizes beyond one part of the compressor. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/internal.h"
 #include "regression/compare.h"
@@ -22,13 +22,6 @@ static Image *draw(const Image *expected, const Image *actual, const uint8_t *ma
     return read_back(file, size);
 }
 
-static Image *black(int width, int height) {
-    Error error = {0};
-    Image *image = image_create(width, height, &error);
-    assert_ok(image != NULL, error);
-    return image;
-}
-
 static void assert_pixel(const Image *image, int x, int red, int green, int blue) {
     const uint8_t *p = image->pixels + 4 * x;
     if (p[0] != red || p[1] != green || p[2] != blue || p[3] != 255)
@@ -39,7 +32,7 @@ static int luma(const uint8_t *p) { return p[0] * 3 + p[1] * 6 + p[2]; }
 
 /* Pixel x differs by x. The ends are the header's colours; between them each step is darker, or as dark. */
 TEST(differences_are_coloured_by_size) {
-    Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
+    Image *expected = image_sized(LEVELS, 1), *actual = image_sized(LEVELS, 1);
     for (int x = 0; x < LEVELS; x++) actual->pixels[4 * x + x % 4] = (uint8_t)x;
     Image *drawn = draw(expected, actual, NULL);
     assert_pixel(drawn, 0, 200, 200, 200); /* equal: pale */
@@ -56,7 +49,7 @@ TEST(differences_are_coloured_by_size) {
 }
 
 TEST(equal_pixels_are_pale) {
-    Image *expected = black(LEVELS, 1);
+    Image *expected = image_sized(LEVELS, 1);
     for (int x = 0; x < LEVELS; x++) memset(expected->pixels + 4 * x, x, 4);
     Image *drawn = draw(expected, expected, NULL);
     for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 200 + x * 55 / 255, 200 + x * 55 / 255, 200 + x * 55 / 255);
@@ -64,19 +57,31 @@ TEST(equal_pixels_are_pale) {
     image_destroy(drawn);
 }
 
-/* In diagonal lines, every eighth pixel; a masked difference is not coloured. */
-TEST(masked_pixels_are_hatched) {
+/* Black against white, ignored for one reason: the difference is not coloured. */
+static Image *draw_ignored(uint8_t reason) {
     uint8_t masked[LEVELS];
-    Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
+    Image *expected = image_sized(LEVELS, 1), *actual = image_sized(LEVELS, 1);
     memset(actual->pixels, 255, 4 * LEVELS);
-    memset(masked, IGNORED_MASK, sizeof masked);
+    memset(masked, reason, sizeof masked);
     Image *drawn = draw(expected, actual, masked);
+    image_destroy(expected);
+    image_destroy(actual);
+    return drawn;
+}
+
+/* In diagonal lines, every eighth pixel. */
+TEST(masked_pixels_are_hatched) {
+    Image *drawn = draw_ignored(IGNORED_MASK);
     for (int x = 0; x < LEVELS; x++) {
         int grey = x % 8 == 0 ? 120 : 200;
         assert_pixel(drawn, x, grey, grey, grey);
     }
-    image_destroy(expected);
-    image_destroy(actual);
+    image_destroy(drawn);
+}
+
+TEST(ignored_edges_are_blue) {
+    Image *drawn = draw_ignored(IGNORED_EDGE);
+    for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 70, 150, 235);
     image_destroy(drawn);
 }
 
@@ -92,7 +97,6 @@ TEST(sixteen_bits_count_in_full) {
 
 /* The header's colours at the ends; only 0 is black. */
 TEST(heat_goes_from_black_to_yellow) {
-    Error error = {0};
     size_t size;
     float values[LEVELS];
     IndexedPng *png = heat_picture(LEVELS, 1, &error);
@@ -114,7 +118,6 @@ TEST(heat_goes_from_black_to_yellow) {
 /* Noise does not shrink: 300 KB are ten parts. */
 TEST(noise_comes_back) {
     enum { WIDTH = 1000, HEIGHT = 300 };
-    Error error = {0};
     Palette palette = {.count = LEVELS};
     size_t size;
     uint32_t seed = 1;
@@ -134,23 +137,10 @@ TEST(noise_comes_back) {
     image_destroy(drawn);
 }
 
-TEST(ignored_edges_are_blue) {
-    uint8_t masked[LEVELS];
-    Image *expected = black(LEVELS, 1), *actual = black(LEVELS, 1);
-    memset(actual->pixels, 255, 4 * LEVELS);
-    memset(masked, IGNORED_EDGE, sizeof masked);
-    Image *drawn = draw(expected, actual, masked);
-    for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 70, 150, 235);
-    image_destroy(expected);
-    image_destroy(actual);
-    image_destroy(drawn);
-}
-
 /* Equal but for one pixel, 24 x 12 and 16 x 20. */
 TEST(what_only_one_picture_has_is_striped) {
-    Error error = {0};
     size_t size;
-    Image *a = black(24, 12), *b = black(16, 20);
+    Image *a = image_sized(24, 12), *b = image_sized(16, 20);
     ImageDifference difference;
     for (int i = 0; i < 24 * 12; i++) a->pixels[4 * i] = (uint8_t)(i % 24 + 9 * (i / 24));
     for (int i = 0; i < 16 * 20; i++) b->pixels[4 * i] = (uint8_t)(i % 16 + 9 * (i / 16));

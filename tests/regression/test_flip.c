@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* FLIP in closed form where filters have no effect: uniform pictures differ only by colour. Elsewhere, laws. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/flip.h"
 
@@ -9,18 +9,14 @@
 enum { SIDE = 64 };
 static Image *a, *b;
 
-static int make(void **state) {
-    (void)state;
-    a = image_create(SIDE, SIDE, &(Error){0});
-    b = image_create(SIDE, SIDE, &(Error){0});
-    return a == NULL || b == NULL;
+FIXTURE(make) {
+    a = image_sized(SIDE, SIDE);
+    b = image_sized(SIDE, SIDE);
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     image_destroy(a);
     image_destroy(b);
-    return 0;
 }
 
 static void paint(Image *image, int left, int right, uint32_t color) {
@@ -108,7 +104,6 @@ TEST_WITH(a_larger_shift_looks_larger, make, destroy) {
 
 /* At many pixels per degree, the eye blurs stripes to the grey of equal luminance. */
 TEST_WITH(fine_stripes_vanish_with_distance, make, destroy) {
-    Error error = {0};
     FlipSummary near, far;
     for (int x = 0; x < SIDE; x++) {
         paint(a, x, x + 1, x % 2 ? 0xFFFFFF : 0x000000);
@@ -142,12 +137,10 @@ static uint32_t busy_grey(int x) { return (uint32_t)(x * 37 % 200) * 0x010101; }
 /* Away from the edges, a region has the same values as in a larger picture, which is computed whole. */
 TEST_WITH(the_surroundings_do_not_matter, make, destroy) {
     static float small[SIDE * SIDE], large[SIDE * SIDE * 4];
-    Error error = {0};
     FlipSummary result;
     float *next = large;
     const FlipSink sink = {keep_row, &next};
-    Image *wide_a = image_create(2 * SIDE, 2 * SIDE, &error), *wide_b = image_create(2 * SIDE, 2 * SIDE, &error);
-    assert_ok(wide_a != NULL && wide_b != NULL, error);
+    Image *wide_a = image_sized(2 * SIDE, 2 * SIDE), *wide_b = image_sized(2 * SIDE, 2 * SIDE);
     for (int x = 0; x < 2 * SIDE; x++) paint(wide_a, x, x + 1, busy_grey(x)), paint(wide_b, x, x + 1, busy_grey(x));
     for (int x = 0; x < SIDE; x++) paint(a, x, x + 1, busy_grey(x)), paint(b, x, x + 1, busy_grey(x));
     paint(wide_b, 30, 34, 0xFF8000);

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* FLIP in tiles has the bits of FLIP of whole planes, which is written here as simply as possible; the percentile is
    that of all values sorted. */
-#include "testing.h"
+#include "made.h"
 #include "sanitized.h"
 
 #include "regression/flip.h"
-#include "pixels/png.h"
 
 #include <math.h>
 
@@ -138,9 +137,7 @@ static uint32_t draw(uint32_t *state) {
 
 /* One pixel in 997 is not opaque. */
 static Image *noise(int width, int height, uint32_t seed) {
-    Error error = {0};
-    Image *image = image_create(width, height, &error);
-    assert_ok(image != NULL, error);
+    Image *image = image_sized(width, height);
     for (int i = 0; i < width * height * 4; i++)
         image->pixels[i] = (uint8_t)(i % 4 == 3 && i / 4 % 997 != 0 ? 255 : draw(&seed));
     return image;
@@ -180,7 +177,6 @@ TEST(the_largest_are_those_of_a_sort) {
     static float values[COUNT];
     for (int order = 0; order < 4; order++)
         for (size_t keep = 1; keep < 2 * COUNT; keep = keep * 3 + 1) {
-            Error error = {0};
             Largest largest;
             uint32_t seed = 7;
             assert_ok(largest_create(&largest, keep, &error), error);

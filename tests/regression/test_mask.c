@@ -1,20 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/compare.h"
 
 enum { WIDTH = 6, HEIGHT = 4 };
 static Mask mask;
 
-static int clear(void **state) {
-    (void)state;
-    mask_free(&mask);
-    return 0;
-}
+FIXTURE(clear) { mask_free(&mask); }
 
 static uint8_t *made(void) {
     Error error = {0};
-    Image *expected = image_create(WIDTH, HEIGHT, &error);
+    Image *expected = image_sized(WIDTH, HEIGHT);
     uint8_t *masked = calloc(WIDTH * HEIGHT, 1);
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         expected->pixels[4 * i] = (uint8_t)i;
@@ -26,7 +22,6 @@ static uint8_t *made(void) {
 }
 
 TEST_WITH(rectangles_are_cut_at_the_edges, NULL, clear) {
-    Error error = {0};
     assert_ok(mask_add_rectangle(&mask, -2, -1, 3, 2, &error), error);
     assert_ok(mask_add_rectangle(&mask, 4, 2, 1000000, 1000000, &error), error);
     assert_ok(mask_add_rectangle(&mask, 100, 100, 5, 5, &error), error);
@@ -39,9 +34,8 @@ TEST_WITH(rectangles_are_cut_at_the_edges, NULL, clear) {
 
 /* White, dark, black; the last two transparent, which the opaque file does not preserve. */
 TEST_WITH(pictures_mask_where_they_are_not_black, NULL, clear) {
-    Error error = {0};
     const char *path = temporary_path("mask.png");
-    Image *image = image_create(WIDTH, HEIGHT, &error);
+    Image *image = image_sized(WIDTH, HEIGHT);
     image->pixels[4 * 3 + 1] = 1;
     memset(image->pixels + 4 * 7, 255, 3);
     assert_ok(image_write_png(image, path, NULL, 0, &error), error);
@@ -62,9 +56,8 @@ TEST_WITH(pictures_with_damaged_pixels_are_refused_when_drawn, NULL, clear) {
         0,    0,    1,    0,    0,    0,    1,    8,    0,    0,   0,   0,   0x3A, 0x7E, 0x9B, 0x55, 0,
         0,    0,    10,   'I',  'D',  'A',  'T',  0x78, 0x01, 7,   0,   0,   0,    0,    0,    0,    0,
         0xD8, 0xE1, 0x07, 0x44, 0,    0,    0,    0,    'I',  'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
-    Error error = {0};
     const char *path = temporary_path("damaged.png");
-    Image *image = image_create(1, 1, &error);
+    Image *image = image_sized(1, 1);
     uint8_t masked = 0;
     write_bytes(path, damaged, sizeof damaged);
     assert_ok(mask_add_picture(&mask, path, &error), error);
@@ -78,7 +71,6 @@ TEST_WITH(pictures_with_damaged_pixels_are_refused_when_drawn, NULL, clear) {
 
 /* Opaque ones: the odd pixels are not. */
 TEST_WITH(colours_mask_where_the_expected_picture_has_them, NULL, clear) {
-    Error error = {0};
     for (int i = 8; i <= 11; i++) assert_ok(mask_add_color(&mask, (const uint8_t[3]){(uint8_t)i, 0, 0}, &error), error);
     assert_ok(mask_add_color(&mask, (const uint8_t[3]){4, 1, 0}, &error), error);
     uint8_t *masked = made();
@@ -87,9 +79,8 @@ TEST_WITH(colours_mask_where_the_expected_picture_has_them, NULL, clear) {
 }
 
 TEST_WITH(masked_pixels_do_not_count, NULL, clear) {
-    Error error = {0};
     ImageDifference difference;
-    Image *a = image_create(WIDTH, HEIGHT, &error), *b = image_create(WIDTH, HEIGHT, &error);
+    Image *a = image_sized(WIDTH, HEIGHT), *b = image_sized(WIDTH, HEIGHT);
     uint8_t masked[WIDTH * HEIGHT] = {[8] = IGNORED_MASK, [9] = IGNORED_MASK, [20] = IGNORED_EDGE, [21] = IGNORED_EDGE};
     a->pixels[4 * 8] = 200, a->pixels[4 * 10] = 3, a->pixels[4 * 22 + 2] = 7, a->pixels[4 * 20] = 90;
     image_compare_masked(a, b, masked, 3, &difference);
@@ -110,7 +101,6 @@ TEST_WITH(masked_pixels_do_not_count, NULL, clear) {
 }
 
 TEST_WITH(the_number_of_masks_is_limited, NULL, clear) {
-    Error error = {0};
     for (int i = 0; i < MASK_PARTS; i++) assert_ok(mask_add_rectangle(&mask, 0, 0, 1, 1, &error), error);
     assert_refused(mask_add_rectangle(&mask, 0, 0, 1, 1, &error), "at most 64 masks");
 }

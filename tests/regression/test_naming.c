@@ -2,14 +2,13 @@
 /* Changes drawn with the real renderer, each with its right name. 50 of them; with TWINBOX_ALL_CHANGES=1 a thousand. A
    changed picture differs from the expected one in one thing: a body that moved (in the run, or only in the picture), a
    colour or the line width of a body, or a glyph of a text. */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/gl.h"
 #include "pictures/internal.h"
 #include "pictures/mesa.h"
 #include "pictures/render.h"
 #include "regression/internal.h"
-#include "runs/runs.h"
 
 #include <math.h>
 
@@ -67,15 +66,11 @@ static int any_below(int count) { return (int)(random_bits() % (uint32_t)count);
 static double random_between(double low, double high) { return low + (high - low) * random_bits() / 2147483648.0; }
 
 static Trajectory *run_of(const Shot *shot, const char *method_text) {
-    Error error = {0};
-    Method method;
     char path[512];
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, shot->scene);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL && method_parse(&method, method_text, &error), error);
+    Scene *scene = scene_from(path);
     scene->frames = shot->frame + 5;
-    Trajectory *run = simulate(scene, &method, NULL, &error);
-    assert_ok(run != NULL, error);
+    Trajectory *run = run_by(scene, method_text);
     scene_destroy(scene);
     return run;
 }
@@ -110,7 +105,7 @@ static void open_stage(Stage *stage, const Shot *shot) {
               error);
     stage->canvas = canvas_create(&stage->gl, shot->width, shot->height, &error);
     assert_ok(stage->canvas != NULL, error);
-    for (int i = 0; i < 2; i++) stage->images[i] = image_create(shot->width, shot->height, &error);
+    for (int i = 0; i < 2; i++) stage->images[i] = image_sized(shot->width, shot->height);
     picture_draw(&stage->picture, stage->moment, &stage->drawing);
 }
 

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Frames do not depend on the rendering configuration: both contexts, 0, 1 and 2 threads of Mesa, and emulated CPUs
    with fewer features. Every 30th of 900 frames; all if the environment variable TWINBOX_ALL_FRAMES is set. */
-#include "testing.h"
+#include "made.h"
 
 #include "pixels/built_contexts.h"
 #include "pictures/mesa.h"
 #include "pictures/render.h"
-#include "runs/runs.h"
 
 #include <dirent.h>
 #include <sys/mman.h>
@@ -40,14 +39,11 @@ typedef struct Drawn {
     Error error;
 } Drawn;
 
-static Trajectory *run_by(const char *method_text) {
-    Error error = {0};
-    Method method;
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/pyramid_settled.yaml", &error);
-    assert_ok(scene != NULL && method_parse(&method, method_text, &error), error);
+static Trajectory *pyramid_by(const char *method_text) {
+    Scene *scene = scene_named("pyramid_settled");
     scene->frames = FRAMES - 1;
-    Trajectory *run = simulate(scene, &method, NULL, &error);
-    assert_ok(run != NULL && run->frames == FRAMES, error);
+    Trajectory *run = run_by(scene, method_text);
+    assert_int_equal(run->frames, FRAMES);
     scene_destroy(scene);
     return run;
 }
@@ -83,7 +79,7 @@ TEST(every_configuration_draws_the_same_frames) {
     assert_int_equal(ftruncate(fileno(file), (off_t)size), 0);
     Drawn *drawn = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fileno(file), 0);
     assert_ptr_not_equal(drawn, MAP_FAILED);
-    Trajectory *runs[PANELS] = {run_by("engine"), run_by("momentum:k=20")};
+    Trajectory *runs[PANELS] = {pyramid_by("engine"), pyramid_by("momentum:k=20")};
     for (int i = 0; i < CONFIGURATIONS; i++) {
         pid_t child = fork();
         assert_true(child >= 0);

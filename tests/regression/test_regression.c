@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The smallest possible changes, each with its verdict: the cause and the first frame. */
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "pictures/mesa.h"
@@ -49,31 +49,27 @@ static Trajectory *make_run(void) {
 }
 
 /* Rendered once, copied for each test. */
-static int draw_expected(void **state) {
-    (void)state;
+FIXTURE(draw_expected) {
     snprintf(expected, sizeof expected, "%s", temporary_path("expected"));
     snprintf(actual, sizeof actual, "%s", temporary_path("actual"));
     snprintf(kept, sizeof kept, "%s", temporary_path("kept"));
     run = make_run();
     render_into(kept);
     trajectory_destroy(run);
-    return 0;
 }
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     char command[2048];
     run = make_run();
     snprintf(command, sizeof command, "cp -r %s %s && cp -r %s %s", kept, actual, kept, expected);
-    return system(command);
+    assert_int_equal(system(command), 0);
 }
 
-static int remove_folders(void **state) {
-    (void)state;
+FIXTURE(remove_folders) {
     char command[1024];
     trajectory_destroy(run);
     snprintf(command, sizeof command, "rm -r %s %s", actual, expected);
-    return system(command);
+    assert_int_equal(system(command), 0);
 }
 
 static Regression compared(void) {
@@ -133,8 +129,8 @@ static Image *drawn(int frame) {
     const Trajectory *const panels[] = {run};
     const RenderOptions options = {.width = WIDTH, .height = HEIGHT};
     Renderer *renderer = renderer_create(panels, 1, &options, &error);
-    Image *image = image_create(WIDTH, HEIGHT, &error);
-    assert_ok(renderer != NULL && image != NULL && renderer_draw(renderer, frame, image, &error), error);
+    Image *image = image_sized(WIDTH, HEIGHT);
+    assert_ok(renderer != NULL && renderer_draw(renderer, frame, image, &error), error);
     renderer_destroy(renderer);
     return image;
 }
@@ -221,7 +217,6 @@ TEST_WITH(causes_of_several_frames, make, remove_folders) {
 
 /* A run that has not drawn the pictures gives no names. */
 TEST_WITH(a_run_of_other_pictures, make, remove_folders) {
-    Error error = {0};
     run_position(run, 3, FIRST_BOX)->x += 1;
     Image *image = drawn(3);
     replace_pixels(3, image);
@@ -246,7 +241,6 @@ TEST_WITH(two_frames_swapped, make, remove_folders) {
 
 /* Not visible in any pixel; detected by the run. */
 TEST_WITH(the_last_bit_of_one_body, make, remove_folders) {
-    Error error = {0};
     float *angle = run_angle(run, 4, SECOND_BOX);
     *angle = nextafterf(*angle, 10);
     assert_ok(trajectory_write(run, in(actual, "two_boxes-engine.npz"), &error), error);
@@ -282,7 +276,6 @@ TEST_WITH(both_at_once, make, remove_folders) {
 
 /* A run of another length differs from its end on, a run of other bodies everywhere. */
 TEST_WITH(other_runs_beside_the_frames, make, remove_folders) {
-    Error error = {0};
     Trajectory *other = run_make("engine", 4);
     assert_ok(trajectory_write(other, in(actual, "two_boxes-engine.npz"), &error), error);
     Regression regression = compared();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A folder that cannot be read to its end is a failure of the system, never "equal". */
 #include "folder_faults.h"
-#include "testing.h"
+#include "made.h"
 
 #include "base/file.h"
 #include "regression/regression.h"
@@ -11,21 +11,19 @@ static char expected[256], actual[256];
 static void make_picture(const char *folder, const char *name) {
     Error error = {0};
     char path[512];
-    Image *image = image_create(4, 4, &error);
+    Image *image = image_sized(4, 4);
     snprintf(path, sizeof path, "%s/sub", folder);
-    assert_ok(image != NULL && file_make_directory(path, &error), error);
+    assert_ok(file_make_directory(path, &error), error);
     snprintf(path, sizeof path, "%s/%s", folder, name);
     assert_ok(image_write_png(image, path, NULL, 0, &error), error);
     image_destroy(image);
 }
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     static const char *const names[] = {"1.png", "2.png", "sub/3.png"};
     snprintf(expected, sizeof expected, "%s", temporary_path("expected"));
     snprintf(actual, sizeof actual, "%s", temporary_path("actual"));
     for (int i = 0; i < 3; i++) make_picture(expected, names[i]), make_picture(actual, names[i]);
-    return 0;
 }
 
 /* Each call fails in turn, until none is left. Three lists are read: the pictures of both folders, and trajectories. */

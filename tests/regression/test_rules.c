@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rules of a comparison: what is refused, with its place, and what applies to a name; limits that hold or not. */
-#include "testing.h"
+#include "made.h"
 
 #include "regression/regression.h"
 
@@ -59,7 +59,6 @@ TEST(mistakes_are_refused_with_their_place) {
 /* Rules, and pictures of masks. */
 TEST(numbers_of_rules_are_limited) {
     enum { ROOM = 64 };
-    Error error;
     static char many[(RULES_MAX + 2) * ROOM];
     const Image dot = {1, 1, (uint8_t[]){9, 9, 9, 255}, NULL};
     assert_ok(image_write_png(&dot, temporary_path("dot.png"), NULL, 0, &error), error);
@@ -91,7 +90,6 @@ static const char text[] = "rules:\n"
                            "  - {files: sub/a.png, fuzzy: [9, 0.1], masks: [{colour: \"#0aFF00\"}]}\n";
 
 TEST(later_rules_replace_limits) {
-    Error error;
     Rules *rules = read_text(text, &error);
     assert_ok(rules != NULL, error);
     Tolerance a = {0}, b = {0};
@@ -108,9 +106,8 @@ TEST(later_rules_replace_limits) {
 }
 
 TEST(all_masks_count) {
-    Error error;
     Rules *rules = read_text(text, &error);
-    Image *expected = image_create(3, 1, &error);
+    Image *expected = image_sized(3, 1);
     uint8_t masked[3] = {0};
     memcpy(expected->pixels + 8, (const uint8_t[]){10, 255, 0, 255}, 4);
     assert_false(rules_have_masks(rules, "b.png"));
@@ -124,7 +121,6 @@ TEST(all_masks_count) {
 }
 
 TEST(a_rule_without_files_is_refused) {
-    Error error;
     static const char *const names[] = {"b.png", "sub/a.png"}, *const other[] = {"b.png", "sub/c.png"};
     Rules *rules = read_text(text, &error);
     assert_ok(rules_check_names(rules, names, 2, &error), error);

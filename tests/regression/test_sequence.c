@@ -140,7 +140,6 @@ TEST(doubtful_folders_are_refused) {
     refuse(folder_of("bytes", "frame_\xFF.png"), "is not UTF-8 or has control characters");
     refuse(folder_of("line", "frame_\x01.png"), "is not UTF-8 or has control characters");
     refuse(temporary_path("nowhere"), "nowhere: error: cannot be read");
-    Error error = {0};
     int count;
     ImageSequence *folder = opened(folder_of("folder", "1.png")), *file = opened(temporary_path("folder/1.png"));
     assert_refused(image_sequence_pair(folder, file, &count, &error), "is a folder, but");
@@ -149,7 +148,6 @@ TEST(doubtful_folders_are_refused) {
 }
 
 TEST(frames_that_could_be_two_pairs_are_refused) {
-    Error error = {0};
     int count;
     ImageSequence *a = opened(folder_of("twice", "frame_1.png frame_01.png")),
                   *b = opened(folder_of("once", "f_1.png"));
@@ -162,7 +160,6 @@ TEST(frames_that_could_be_two_pairs_are_refused) {
 }
 
 TEST(pictures_in_subfolders_are_counted) {
-    Error error = {0};
     ImageSequence *sequence = image_sequence_open(folder_of("flat", "1.png a/1.png a/b/2.png a/x.txt"), false, &error);
     assert_ok(sequence != NULL, error);
     assert_int_equal(sequence->count, 1);

@@ -30,7 +30,6 @@ static bool read_after(int members, FrameView *view, Error *error) {
 
 TEST(names_of_runs_are_read) {
     FrameView view;
-    Error error = {0};
     assert_ok(read_named("sk\xc3\xa4l-engine.npz", &view, &error), error);
     assert_string_equal(view.panels[0].run, "sk\xc3\xa4l-engine.npz");
 }
@@ -40,14 +39,12 @@ TEST(names_that_command_are_refused) {
                                         "a\x7f.npz",        "../a.npz",           ".a.npz"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         FrameView view;
-        Error error = {0};
         assert_refused(read_named(names[i], &view, &error), "'runs' with file names");
     }
 }
 
 TEST(members_before_the_view_are_limited) {
     FrameView view;
-    Error error = {0};
     assert_ok(read_after(31, &view, &error), error);
     assert_int_equal(view.width, 80);
     assert_refused(read_after(32, &view, &error), "manifest.json:32:18: error: 'view' expected");

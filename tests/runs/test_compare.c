@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Comparison of two trajectories: equal means every bit, and the first difference is the first. */
-#include "testing.h"
+#include "made.h"
 
 #include "example.h"
 
@@ -9,18 +9,14 @@
 /* Two examples, which differ in what a test then changes in the second. */
 static Trajectory *a, *b;
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     a = example_trajectory();
     b = example_trajectory();
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     trajectory_destroy(a);
     trajectory_destroy(b);
-    return 0;
 }
 
 static TrajectoryDifference compared(void) {
@@ -125,9 +121,7 @@ TEST_WITH(the_distance_of_a_frame_is_the_largest_of_its_bodies, make, destroy) {
     b->position[2 * EXAMPLE_BODIES + 2].y = NAN;
     assert_true(fabs(trajectory_distance(a, b, 2) - 3) < 1e-6);
     trajectory_destroy(b);
-    Error error = {0};
-    b = trajectory_create(EXAMPLE_FRAMES, 1, &error);
-    assert_ok(b != NULL, error);
+    b = run_sized(EXAMPLE_FRAMES, 1);
     assert_true(trajectory_distance(a, b, 2) == 0);
     example_pose(b, 2, 0, (float[]){30, 30, 0, 0, 0, 0});
     assert_true(trajectory_distance(a, b, 2) == 50);

@@ -104,7 +104,6 @@ TEST(rows_may_be_missing_where_that_has_a_meaning) {
 
 TEST(what_is_written_is_read_back) {
     const char *path = temporary_path("example.csv");
-    Error error = {0};
     Trajectory *t = example_trajectory();
     t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
     t->iterations = 12;
@@ -129,7 +128,6 @@ TEST(what_is_written_is_read_back) {
 /* A body that never moves need not be static, which the file states, too. */
 TEST(kinds_and_missing_velocities_are_read_back) {
     const char *path = temporary_path("example.csv");
-    Error error = {0};
     Trajectory *t = read_ok(HEAD ROWS, &defaults);
     t->fixed[0] = 0;
     assert_ok(csv_run_write(t, path, &error), error);
@@ -187,7 +185,7 @@ static const struct {
 
 TEST(what_is_no_run_is_refused_with_its_line) {
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-        Error error = {0};
+        error = (Error){0};
         Trajectory *run = read_text(refused[i].text, &defaults, &error);
         if (run != NULL) fail_msg("taken: %s", refused[i].text);
         assert_error(error, ERROR_INPUT, refused[i].reason);
@@ -204,7 +202,6 @@ TEST(few_rows_of_many_bodies_are_refused) {
     fprintf(file, "frame,body,x,y,angle\n");
     for (int i = 0; i < MANY; i++) fprintf(file, "%d,%d,0,0,0\n", i, i);
     fclose(file);
-    Error error = {0};
     const CsvRunOptions options = {.name = "many", .dt = 1};
     assert_refused(csv_run_read(path, &options, &notes, &error),
                    "60000 frames of 60000 bodies take 86400000000 bytes; expected at most ");
@@ -219,7 +216,7 @@ TEST(damaged_files_are_refused_or_harmless) {
             seed = seed * 1664525 + 1013904223;
             damaged[(seed >> 4) % (sizeof text - 1)] = "0123456789,.-\n#e \0\xff:"[(seed >> 20) % 20];
         }
-        Error error = {0};
+        error = (Error){0};
         const char *path = write_bytes(temporary_path("damaged.csv"), damaged, sizeof damaged - 1);
         Trajectory *run = csv_run_read(path, &defaults, &notes, &error);
         if (run == NULL) assert_int_equal(error.kind, ERROR_INPUT);

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scenes in scenes/families: they stand until the bomb comes, and the bomb starts in free space and strikes. */
-#include "testing.h"
+#include "made.h"
 #include "sanitized.h"
-
-#include "scenes/scenes.h"
-#include "runs/runs.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -12,11 +9,8 @@
 
 static Scene *read_family(const char *file) {
     char path[1024];
-    Error error = {0};
     snprintf(path, sizeof path, SOURCE_DIR "/scenes/families/%s", file);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
+    return scene_from(path);
 }
 
 /* m: how far a box is from where it began. */
@@ -47,10 +41,9 @@ static bool watch_step(void *context, int frame, const World *world, Error *erro
 
 static void check_launch(const char *file, const Scene *scene, const Launch *launch) {
     Error error = {0};
-    Method method;
     const Scene launched = launch_scene(scene, launch);
     Watch watch = {.scene = &launched, .tracker = {.impact_frames = scene->bomb.impact_frames}};
-    assert_ok(method_parse(&method, "momentum:k=50", &error), error);
+    const Method method = method_named("momentum:k=50");
     assert_ok(simulate_observed(&launched, &method, &(StepObserver){watch_step, &watch}, &error), error);
     if (watch.moved > 0.2) fail_msg("%s: a box moved by %g m before the bomb came", file, watch.moved);
     if (watch.tracker.touch == 0) fail_msg("%s: the bomb from x = %g m touches nothing", file, (double)launch->x);
@@ -72,7 +65,6 @@ TEST(families_stand_until_the_bomb_strikes) {
         if (strstr(entry->d_name, ".yaml") == NULL) continue;
         Scene *scene = read_family(entry->d_name);
         Launch launches[2];
-        Error error = {0};
         assert_ok(launches_for_scoring(scene, 2, launches, &error), error);
         for (int i = 0; i < runs_of(scene); i++) check_launch(entry->d_name, scene, &launches[i]);
         scene_destroy(scene);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Trajectories in files: they come back bit by bit, and what is inconsistent is refused. */
 #include "made.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "example.h"
 
 #include <inttypes.h>
@@ -39,8 +39,7 @@ TEST(written_is_read) {
 /* An empty world of one frame is one, too. */
 TEST(the_smallest_trajectory) {
     const char *path = temporary_path("small.npz");
-    Error error = {0};
-    Trajectory *t = trajectory_create(1, 0, &error);
+    Trajectory *t = run_sized(1, 0);
     t->dt = 1;
     write_file(t, path);
     Trajectory *r = trajectory_of(path);
@@ -106,7 +105,6 @@ TEST(bad_poses_are_refused) {
 /* A verdict without a body, and no verdict. */
 TEST(a_verdict_may_be_unknown) {
     const char *path = temporary_path("calm.npz");
-    Error error = {0};
     Trajectory *t = example_trajectory();
     trajectory_judge(t, "settles", 0, -1);
     write_file(t, path);
@@ -116,8 +114,7 @@ TEST(a_verdict_may_be_unknown) {
     trajectory_destroy(r);
     trajectory_judge(t, "", 2, 1);
     write_file(t, path);
-    r = trajectory_read(path, &error);
-    assert_ok(r != NULL, error);
+    r = trajectory_of(path);
     assert_true(r->verdict[0] == '\0' && r->verdict_frame == -1 && r->verdict_body == -1);
     trajectory_destroy(r);
     trajectory_destroy(t);
@@ -187,8 +184,7 @@ TEST(bad_contacts_are_refused) {
 
 /* In step 1 the bomb is not there yet. */
 TEST(a_contact_of_an_absent_body_is_refused) {
-    Error error = {0};
-    Trajectory *t = trajectory_create(2, 2, &error);
+    Trajectory *t = run_sized(2, 2);
     t->dt = 1;
     t->size[0] = t->size[1] = vec2(1, 1);
     for (int frame = 0; frame < 2; frame++) example_pose(t, frame, 0, (float[6]){0});
@@ -203,10 +199,8 @@ TEST(random_damage_is_refused_or_harmless) {
     const char *path = temporary_path("damaged.npz");
     Trajectory *t = example_trajectory();
     write_file(t, path);
-    Error error = {0};
     size_t size;
-    char *data = file_read(path, 1 << 20, &size, &error);
-    assert_ok(data != NULL, error);
+    char *data = read_whole(path, &size);
     uint32_t seed = 7;
     for (int round = 0; round < 1000; round++) {
         seed = seed * 1664525 + 1013904223;
@@ -228,21 +222,12 @@ TEST(random_damage_is_refused_or_harmless) {
     trajectory_destroy(t);
 }
 
-static char *text_of(const char *path) {
-    Error error = {0};
-    size_t size;
-    char *text = file_read(path, 1 << 20, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
-}
-
 /* The dynamic bodies that are there, and every number exactly. */
 TEST(csv_gives_every_float_back) {
     const char *path = temporary_path("run.csv");
     Trajectory *t = example_trajectory();
     /* With 8 digits this float and the next read the same. */
     t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
-    Error error = {0};
     assert_ok(trajectory_write_csv(t, path, &error), error);
     char *text = text_of(path), *line = strtok(text, "\n");
     assert_string_equal(line, "frame,body,x,y,angle,vx,vy,omega");
@@ -269,7 +254,6 @@ TEST(hashes_are_those_of_the_frames) {
     const char *path = temporary_path("run.hashes");
     Trajectory *t = example_trajectory();
     t->fixed[1] = t->fixed[2] = 1;
-    Error error = {0};
     assert_ok(trajectory_write_hashes(t, path, &error), error);
     char *text = text_of(path);
     /* Of no bodies: the start value. */
@@ -291,7 +275,7 @@ TEST(failed_writes_tell) {
                                                                           trajectory_write_hashes};
     Trajectory *t = example_trajectory();
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
+        error = (Error){0};
         assert_false(writers[i](t, temporary_path("nowhere/run"), &error));
         assert_error(error, ERROR_SYSTEM, "nowhere/run: error: cannot write: ");
     }

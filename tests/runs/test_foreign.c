@@ -24,10 +24,7 @@ static const char *make(const char *name, const char *change) {
     return path;
 }
 
-static Trajectory *read_changed(const char *name, const char *change) {
-    Trajectory *t = trajectory_of(make(name, change));
-    return t;
-}
+static Trajectory *read_changed(const char *name, const char *change) { return trajectory_of(make(name, change)); }
 
 TEST(four_arrays_are_enough) {
     Trajectory *t = read_changed("v\303\266lker.2.npz", "");
@@ -77,7 +74,6 @@ TEST(long_and_strange_names_of_files_become_names) {
 }
 
 TEST(a_run_without_velocities_is_written_without) {
-    Error error = {0};
     const char *path = temporary_path("again.npz");
     Trajectory *t = read_changed("run.npz", "");
     assert_ok(trajectory_write(t, path, &error), error);

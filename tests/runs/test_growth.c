@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Growth of a distance: exponentials, whose rate is known. */
-#include "testing.h"
-
-#include "base/file.h"
-#include "runs/runs.h"
+#include "made.h"
+#include "files.h"
 
 #include <math.h>
 
@@ -37,9 +35,7 @@ TEST(an_exponential_has_its_rate) {
 
 /* The same by two trajectories, whose floats lie far enough from each other to be fine. */
 TEST(trajectories_that_part_exponentially) {
-    Error error = {0};
-    Trajectory *a = trajectory_create(FRAMES, 1, &error), *b = trajectory_create(FRAMES, 1, &error);
-    assert_true(a != NULL && b != NULL);
+    Trajectory *a = run_sized(FRAMES, 1), *b = run_sized(FRAMES, 1);
     for (int frame = 0; frame < FRAMES; frame++) {
         a->position[frame] = vec2(0, 0);
         b->position[frame] = vec2(0, (float)(1e-5 * exp(2 * frame * DT)));
@@ -111,11 +107,8 @@ TEST(verdicts) {
 static void expect_table(const DistanceTable *table, const char *expected) {
     Error error = {0};
     const char *path = temporary_path("distance.csv");
-    size_t size;
     assert_ok(distance_table_write(table, path, &error), error);
-    char *text = file_read(path, 1000, &size, &error);
-    assert_string_equal(text, expected);
-    free(text);
+    assert_file(path, expected);
 }
 
 TEST(tables) {
@@ -124,7 +117,6 @@ TEST(tables) {
                  "frame,time,distance,shifted_distance\n0,0,0,1e-06\n1,0.5,0.125,0.25\n2,1,3e-09,\n");
     expect_table(&(DistanceTable){2, 0.5, of_both, NULL},
                  "frame,time,distance,shifted_distance\n0,0,0,\n1,0.5,0.125,\n");
-    Error error = {0};
     assert_false(distance_table_write(&(DistanceTable){2, 0.5, of_both, NULL}, "/nowhere/distance.csv", &error));
     assert_error(error, ERROR_SYSTEM, "/nowhere/distance.csv");
 }

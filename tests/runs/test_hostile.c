@@ -124,12 +124,10 @@ static bool needs_files(const Method *method, const Scene *scene) {
 /* The reference is held to fewer scenes: it takes its time. */
 TEST(no_method_leaves_the_finite_numbers) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
-        Error error = {0};
-        Method method;
         Scene scene;
         BodyDef bodies[BOXES_MAX];
         uint32_t seed = 11;
-        assert_ok(method_parse(&method, kind->description->name, &error), error);
+        const Method method = method_named(kind->description->name);
         make_heap(&scene, bodies);
         if (needs_files(&method, &scene)) continue;
         run_scene(&scene, -1, &method);
@@ -143,12 +141,10 @@ TEST(no_method_leaves_the_finite_numbers) {
 
 /* So there is something to refuse. */
 TEST(a_step_that_blows_up_is_refused) {
-    Error error = {0};
-    Method method;
     Scene scene;
     BodyDef bodies[BOXES_MAX];
     make_heap(&scene, bodies);
-    assert_ok(method_parse(&method, "engine", &error), error);
+    const Method method = method_named("engine");
     assert_true(run_scene(&scene, -1, &method));
 }
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Launches whose bomb would start inside a body are refused, where the bodies are when it is added. */
-#include "testing.h"
-
-#include "runs/runs.h"
+#include "made.h"
 
 #include <glob.h>
 
@@ -14,16 +12,12 @@ static const char falling[] = "gravity: [0, -10]\ndt: 1/60\niterations: 10\nfram
 
 static Scene *read_scene(const char *text, const char *more) {
     char all[1000];
-    Error error = {0};
     snprintf(all, sizeof all, "%s%s", text, more);
-    Scene *scene = scene_read(write_bytes(temporary_path("scene.yaml"), all, strlen(all)), &error);
-    assert_ok(scene != NULL, error);
-    return scene;
+    return scene_from(write_bytes(temporary_path("scene.yaml"), all, strlen(all)));
 }
 
 TEST(bodies_are_where_they_are_when_the_bomb_is_added) {
     Scene *scene = read_scene(falling, "");
-    Error error = {0};
     Launch launch = launch_of(scene);
     launch.x = 0.6f;
     launch.frame = 1; /* the box is still above */
@@ -39,7 +33,6 @@ TEST(bodies_are_where_they_are_when_the_bomb_is_added) {
 /* The first launch that is refused is named by its place in the list, in whatever order their frames come. */
 TEST(the_launch_is_named) {
     Scene *scene = read_scene(falling, "");
-    Error error = {0};
     const Launch own = launch_of(scene);
     Launch launches[] = {own, own, own, own};
     launches[0].x = 0, launches[0].frame = 2; /* still below the box */
@@ -58,7 +51,6 @@ TEST(the_launch_is_named) {
 
 TEST(a_scene_may_allow_it) {
     Scene *scene = read_scene(falling, "overlaps: allowed\n");
-    Error error = {0};
     Launch launch = launch_of(scene);
     launch.x = 0;
     assert_ok(launches_check(scene, &launch, 1, &error), error);
@@ -78,7 +70,6 @@ static Trajectory *run(const char *method_text, float x, Error *error) {
 TEST(runs_are_refused_by_any_method) {
     static const char *const methods[] = {"engine", "momentum", "interior"};
     for (int i = 0; i < 3; i++) {
-        Error error = {0};
         assert_refused(run(methods[i], 0.3f, &error), "the bomb would start 0.7 m inside body 1 in frame 60");
         Trajectory *free_run = run(methods[i], 1.5f, (error = (Error){0}, &error));
         assert_ok(free_run != NULL, error);
@@ -89,8 +80,7 @@ TEST(runs_are_refused_by_any_method) {
 /* Training and scoring launches, and the launch of a single run. */
 static void check_shipped(const char *path) {
     Error error = {0};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_from(path);
     enum { COUNT = LAUNCH_GRID };
     Launch launches[2 * COUNT + 1];
     if (scene->bomb.present) {

@@ -8,7 +8,6 @@
 TEST(numpy_reads_every_member) {
     const char *path = temporary_path("run.npz");
     Trajectory *t = example_trajectory();
-    Error error = {0};
     assert_ok(trajectory_write(t, path, &error), error);
     trajectory_destroy(t);
     run_python("import sys, numpy as np\n"

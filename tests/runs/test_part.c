@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Why two trajectories part: made by hand, so that the first frame, body, contact and cause are known. */
-#include "testing.h"
-
-#include "runs/trajectory.h"
+#include "made.h"
 
 #include <math.h>
 
@@ -35,9 +33,7 @@ static void add_contacts(Trajectory *t, int step) {
 }
 
 static Trajectory *example(void) {
-    Error error = {0};
-    Trajectory *t = trajectory_create(FRAMES, BODIES, &error);
-    assert_ok(t != NULL, error);
+    Trajectory *t = run_sized(FRAMES, BODIES);
     t->dt = 0.5F;
     t->bomb = BOMB;
     t->fixed[0] = 1;
@@ -52,18 +48,14 @@ static Trajectory *example(void) {
 
 static TrajectoryContact *contact(Trajectory *t, int step, int i) { return &t->contacts[t->contact_start[step] + i]; }
 
-static int make(void **state) {
-    (void)state;
+FIXTURE(make) {
     a = example();
     b = example();
-    return 0;
 }
 
-static int destroy(void **state) {
-    (void)state;
+FIXTURE(destroy) {
     trajectory_destroy(a);
     trajectory_destroy(b);
-    return 0;
 }
 
 /* The other way round the cause, the frames and the bodies are the same. */

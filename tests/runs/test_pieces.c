@@ -91,7 +91,6 @@ static void assert_results(const Study *study) {
 }
 
 TEST(a_whole_study_does_every_piece_once_and_leaves_nothing) {
-    Error error = {0};
     const char *folder = folder_of("whole");
     Study study = new_study();
     assert_ok(run_study(&study, folder, 0, 1, 1, NULL, &error), error);
@@ -103,7 +102,6 @@ TEST(a_whole_study_does_every_piece_once_and_leaves_nothing) {
 }
 
 TEST(shards_share_the_pieces_and_are_merged) {
-    Error error = {0};
     const char *folder = folder_of("shards");
     int done[COUNT] = {0};
     for (int shard = 1; shard <= 4; shard++) {
@@ -139,7 +137,6 @@ static bool stop_after(void *context, double done, double total) {
 }
 
 TEST(a_stopped_shard_continues) {
-    Error error = {0};
     const char *folder = folder_of("stopped");
     int done[COUNT] = {0};
     double most = 3.2;
@@ -156,7 +153,6 @@ TEST(a_stopped_shard_continues) {
 }
 
 TEST(a_piece_waits_for_those_that_it_needs) {
-    Error error = {0};
     const char *folder = folder_of("waiting");
     const int needed = 2, shard = shard_of(needed, COUNT, 2), other = 3 - shard;
     for (int round = 0; round < 2; round++) {
@@ -176,7 +172,6 @@ TEST(a_piece_waits_for_those_that_it_needs) {
 }
 
 TEST(what_differs_is_refused) {
-    Error error = {0};
     const char *folder = folder_of("differs");
     Study study = new_study();
     assert_ok(run_study(&study, folder, 1, 2, 1, NULL, &error), error);
@@ -212,7 +207,6 @@ static void measure_elsewhere(const Study *study, int64_t piece) {
 }
 
 TEST(times_of_two_processors_are_not_mixed) {
-    Error error = {0};
     const char *folder = folder_of("processors");
     for (int shard = 1; shard <= 2; shard++) {
         Study study = new_study();

@@ -71,7 +71,6 @@ static void change(const Files *files, int piece, const char *text) {
 }
 
 TEST(a_piece_whose_file_is_gone_or_altered_is_missing_and_done_again) {
-    Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("files"));
     Files files = {.folder = folder};
@@ -102,7 +101,6 @@ TEST(a_piece_whose_file_is_gone_or_altered_is_missing_and_done_again) {
 }
 
 TEST(a_piece_is_found_with_its_processor) {
-    Error error = {0};
     char folder[300], cpu[CPU_NAME_SIZE], own[CPU_NAME_SIZE];
     snprintf(folder, sizeof folder, "%s", temporary_path("found"));
     Files files = {.folder = folder};

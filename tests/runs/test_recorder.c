@@ -2,7 +2,6 @@
 /* A run that is written while it is made gives the files of a run that is recorded in memory and written then. */
 #include "made.h"
 
-#include "base/file.h"
 #include "files.h"
 
 static Scene *read_scene(const char *name, int frames) {
@@ -28,13 +27,11 @@ TEST(files_are_those_of_a_run_in_memory) {
         const char *scene;
         int frames;
     } runs[] = {{"stack", 1}, {"stack", 90}, {"single", 300}, {"pyramid", 900}, {"stability/top_removed", 4000}};
-    Error error = {0};
     Method method = method_named("engine");
     for (size_t i = 0; i < 2 * sizeof runs / sizeof *runs; i++) {
         const bool no_contacts = i % 2 == 1;
         Scene *scene = read_scene(runs[i / 2].scene, runs[i / 2].frames);
-        Trajectory *run = simulate(scene, &method, NULL, &error);
-        assert_ok(run != NULL, error);
+        Trajectory *run = run_with(scene, &method);
         if (no_contacts) {
             trajectory_restart_contacts(run);
             trajectory_end_contacts(run);
@@ -59,7 +56,6 @@ TEST(golden_files_have_the_same_bytes) {
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char golden[512];
         snprintf(golden, sizeof golden, SOURCE_DIR "/golden/trajectories/%s.npz", names[i]);
-        Error error = {0};
         Trajectory *run = trajectory_of(golden);
         const char *again = temporary_path("again.npz");
         assert_ok(trajectory_write(run, again, &error), error);
@@ -74,7 +70,6 @@ static bool fail_late(void *context, int frame, const World *world, Error *error
 }
 
 TEST(a_run_that_fails_leaves_no_file) {
-    Error error = {0};
     Method method = method_named("engine");
     Scene *scene = read_scene("pyramid", 900);
     const char *path = temporary_path("failed.npz");
@@ -90,7 +85,6 @@ TEST(a_run_that_fails_leaves_no_file) {
 }
 
 TEST(too_long_runs_are_refused_before_the_first_step) {
-    Error error = {0};
     Method method = method_named("engine");
     Scene *scene = read_scene("pyramid", SIMULATE_MAX_STATES / 60);
     assert_refused(recorder_create_to(scene, &method, NULL, 0, false, &error), "are too many to record");

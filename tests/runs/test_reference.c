@@ -12,10 +12,7 @@ static Scene *read_scene(const char *name) {
     char path[512];
     bool ours = strcmp(name, "pyramid78") != 0;
     snprintf(path, sizeof path, "%s/%s/%s.yaml", SOURCE_DIR, ours ? "scenes" : "tests/scenes", name);
-    Error error = {0};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
+    return scene_from(path);
 }
 
 static FILE *open_golden(const char *name, const char *header) {

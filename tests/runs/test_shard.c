@@ -50,7 +50,6 @@ TEST(large_studies_do_not_overflow) {
 }
 
 TEST(a_share_is_read_or_refused) {
-    Error error = {0};
     Shard shard;
     assert_ok(shard_parse(&shard, "3/16", &error), error);
     assert_int_equal(shard.number, 3);
@@ -115,7 +114,6 @@ TEST(the_environment_says_which_share) {
         {{"7", "3", "19", "4", "2", "4"}, "1/1", 1, 1, 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        Error error = {0};
         ShardRequest found;
         assert_ok(request(&found, rows[i].values, rows[i].option, &error), error);
         assert_int_equal(found.shard.number, rows[i].number);
@@ -138,7 +136,6 @@ TEST(an_environment_that_contradicts_itself_is_refused) {
                 {{NULL, NULL, NULL, NULL, "0", "0"}, "PMI_SIZE"},
                 {{NULL, NULL, NULL, NULL, NULL, NULL, "-1", "4"}, "OMPI_COMM_WORLD_RANK"}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        Error error = {0};
         ShardRequest found;
         assert_refused(request(&found, rows[i].values, NULL, &error), rows[i].message);
     }

@@ -54,7 +54,6 @@ static Scene *read_top_removed(void) {
 
 /* Taken out after step 30, so it is not in frame 30, though step 30 had its contacts; a file tells the same. */
 TEST(the_last_body_goes_after_the_step_it_is_told_to) {
-    Error error = {0};
     Scene *scene = read_top_removed();
     Trajectory *trajectory = run_by(scene, "engine");
     assert_int_equal(trajectory->bodies, 12);
@@ -104,11 +103,9 @@ static bool count_step(void *context, int frame, const World *world, Error *erro
 
 TEST(an_observer_sees_every_step_and_may_end_the_run) {
     Scene *scene = scene_named("single");
-    Error error = {0};
-    Method method;
     int steps = 0;
     StepObserver observer = {count_step, &steps};
-    assert_ok(method_parse(&method, "engine", &error), error);
+    const Method method = method_named("engine");
     assert_refused(simulate_observed(scene, &method, &observer, &error), "observer: error: enough");
     assert_int_equal(steps, 7);
     scene_destroy(scene);
@@ -121,7 +118,6 @@ static bool stop(void *context, double done, double total) {
 
 TEST(a_run_that_cannot_go_on_says_why) {
     Scene *scene = scene_named("single");
-    Error error = {0};
     Method method = method_named("engine");
     assert_null(simulate(scene, &method, &(Progress){stop, NULL}, &error));
     assert_error(error, ERROR_INTERRUPTED, "single: error: stopped after step 5 of 300");
@@ -141,7 +137,6 @@ TEST(a_run_that_cannot_go_on_says_why) {
 }
 
 TEST(methods_are_found_by_name) {
-    Error error = {0};
     Method method;
     int count = 0;
     for (; method_kinds[count].description != NULL; count++) {

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The trajectory in memory: existing bodies, contacts by step, the hash of a frame. */
-#include "testing.h"
+#include "made.h"
 
 #include "example.h"
 
 #include <math.h>
 
 TEST(a_new_trajectory_is_empty) {
-    Error error = {0};
-    Trajectory *t = trajectory_create(3, 2, &error);
-    assert_ok(t != NULL, error);
+    Trajectory *t = run_sized(3, 2);
     for (int i = 0; i < 6; i++) {
         assert_true(isnan(t->position[i].x) && isnan(t->position[i].y) && isnan(t->angle[i]));
         assert_true(isnan(t->velocity[i].x) && isnan(t->velocity[i].y) && isnan(t->angular_velocity[i]));
@@ -23,7 +21,6 @@ TEST(a_new_trajectory_is_empty) {
 TEST(too_large_a_trajectory_is_refused) {
     static const int cases[][2] = {{INT32_MAX, INT32_MAX}, {1000001, 10000}, {INT32_MAX, 1}, {1, INT32_MAX}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        Error error = {0};
         assert_refused(trajectory_create(cases[i][0], cases[i][1], &error), "bodies take more than 2 GiB");
     }
 }
@@ -40,8 +37,7 @@ TEST(a_body_is_there_where_its_position_is_finite) {
 /* Steps with 2, 0, 1, 0, ... contacts: every step finds its own. */
 TEST(contacts_are_found_by_step) {
     enum { FRAMES = 50 };
-    Error error = {0};
-    Trajectory *t = trajectory_create(FRAMES, 2, &error);
+    Trajectory *t = run_sized(FRAMES, 2);
     for (int step = 1; step < FRAMES - 5; step++) {
         for (int i = 0; i < step % 3; i++) {
             TrajectoryContact contact = {.a = step, .b = i};
@@ -85,9 +81,8 @@ TEST(the_hash_is_fnv_of_dynamic_bodies_that_are_there) {
 
 /* In every third of 8 frames, what frame 4 saw is there in frame 6, the last but one; frame 7 is beyond. */
 TEST(a_verdict_keeps_its_place) {
-    Error error = {0};
     const int kept[8] = {0, 1, 1, 1, 2, 2, 2, -1};
-    Trajectory *t = trajectory_create(8, 2, &error);
+    Trajectory *t = run_sized(8, 2);
     t->dt = 1;
     for (int frame = 0; frame < 8; frame++) {
         trajectory_judge(t, "falls", frame, 1);
@@ -118,8 +113,7 @@ TEST(a_long_verdict_is_cut) {
 
 /* Of 8 frames every third: 0, 3 and 6, each with its own state and the contacts of its own step. */
 TEST(every_third_frame_is_the_same_frame) {
-    Error error = {0};
-    Trajectory *t = trajectory_create(8, 2, &error);
+    Trajectory *t = run_sized(8, 2);
     strcpy(t->method, "engine");
     t->dt = 0.125F;
     t->bomb = 1;

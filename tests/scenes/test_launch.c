@@ -64,7 +64,6 @@ TEST(columns_come_in_any_order_and_number) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         LaunchTable table = read_good(cases[i].text);
         Launch out[2];
-        Error error = {0};
         assert_int_equal(table.count, 2);
         assert_ok(launches_for(&table, scene, out, &error), error);
         assert_launch(out[0], cases[i].first);
@@ -96,7 +95,6 @@ TEST(broken_launches_are_refused_with_their_place) {
         CASE("frame\n1000001\n", "2:1: error: frame: '1000001' is greater than 1e+06"),
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        Error error = {0};
         LaunchTable table;
         assert_refused(launches_read(&table, write_launches(cases[i].text, cases[i].size), &error), cases[i].message);
     }
@@ -105,7 +103,6 @@ TEST(broken_launches_are_refused_with_their_place) {
 TEST(ten_thousand_launches_are_the_most) {
     static char text[2 + 2 * 10001] = "x\n";
     for (int i = 0; i < 10001; i++) memcpy(text + 2 + 2 * i, "1\n", 2);
-    Error error = {0};
     LaunchTable table;
     assert_ok(launches_read(&table, write_launches(text, sizeof text - 2), &error), error);
     assert_int_equal(table.count, 10000);
@@ -212,7 +209,6 @@ TEST(every_number_of_a_family_is_spread_over_its_span) {
 TEST(a_bomb_without_a_family_cannot_be_spread) {
     Scene *scene = aiming_scene();
     Launch out;
-    Error error = {0};
     assert_refused(launches_for_scoring(scene, 1, &out, &error), "scene: error: the bomb has one launch and no family");
     scene_destroy(scene);
 }

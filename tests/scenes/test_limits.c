@@ -132,7 +132,6 @@ TEST(large_line_numbers_keep_the_excerpt_aligned) {
 TEST(large_files_are_refused) {
     Text text = text_begin("#");
     text_append(&text, "\n#", SOURCE_MAX_SIZE / 2);
-    Error error;
     assert_refused(read_bytes(text.data, text.size, &error), "larger than 1572864 bytes");
     free(text.data);
 }
@@ -173,7 +172,7 @@ TEST(damaged_files_are_read_or_refused_with_their_place) {
         size_t size = fread(text, 1, sizeof text, file);
         fclose(file);
         damage(text, &size, &seed);
-        Error error;
+        error = (Error){0};
         Scene *scene = read_bytes(text, size, &error);
         int line, column;
         if (scene == NULL) {

@@ -96,7 +96,6 @@ TEST(settings_take_the_place_of_values) {
     const SceneSetting settings[] = {{"ratio", 0.5}, {"height", 40}};
     static const double masses[] = {1, 5, 20};
     for (int count = 0; count <= 2; count++) {
-        Error error;
         Scene *scene = read_with(SCENE("$height*$ratio"), settings, count, &error);
         assert_ok(scene != NULL, error);
         assert_near(scene->bodies[0].mass, masses[count], 0);
@@ -123,12 +122,11 @@ TEST(bad_settings_are_refused) {
         {{{"", 3}}, 1, " error: '' is not a parameter; known: height, ratio"},
     };
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
-        Error error;
+        error = (Error){0};
         assert_null(read_with(SCENE("$height*$ratio"), table[i].settings, table[i].count, &error));
         assert_int_equal(error.kind, ERROR_INPUT);
         assert_string_equal(behind_path(&error), table[i].message);
     }
-    Error error;
     assert_null(read_with(BASE GROUND, &(SceneSetting){"height", 3}, 1, &error));
     assert_string_equal(behind_path(&error), " error: 'height' is not a parameter; known: none");
     /* A value in its bounds may still be none for the number that is made of it. */

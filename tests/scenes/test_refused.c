@@ -232,7 +232,6 @@ static const Refused syntax[] = {
 
 TEST(syntax_errors_have_place_and_excerpt) {
     CHECK_TABLE(syntax);
-    Error error;
     assert_null(read_text("dt: 1\nframes: \"3\n", &error));
     assert_int_equal(error.kind, ERROR_INPUT);
     assert_int_equal(strncmp(behind_path(&error), "2:9: ", 5), 0);
@@ -282,7 +281,7 @@ TEST(places_beyond_the_text_are_shown_at_its_end) {
         char text[8];
         strcpy(text, cases[i].text);
         const Source source = {"x", text, strlen(text)};
-        Error error = {.kind = ERROR_NONE};
+        error = (Error){0};
         assert_false(source_error(&source, cases[i].place, &error, "e"));
         assert_string_equal(error.message, cases[i].message);
     }
@@ -312,7 +311,6 @@ TEST(excerpt_of_a_long_line_is_cut_around_the_caret) {
 TEST(files_that_are_no_files_are_refused) {
     static const char *const paths[] = {"/dev/zero", "/tmp", "/nonexistent/scene.yaml"};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        Error error = {.kind = ERROR_NONE};
         assert_refused(scene_read(paths[i], &error), paths[i]);
     }
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scenes in scenes/, body by body in closed form; every key of the format; hash and world of a scene. */
 #include "scene_text.h"
-#include "runs/made.h"
+#include "made.h"
 
 static Scene *shipped(const char *name) {
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
-    Error error = {.kind = ERROR_NONE};
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named(name);
     assert_string_equal(scene->name, name);
     return scene;
 }
@@ -281,7 +277,6 @@ TEST(world_has_the_bodies_in_order_and_the_bomb_last) {
 }
 
 TEST(world_has_no_bomb_before_its_frame) {
-    Error error = {.kind = ERROR_NONE};
     Scene *scene = shipped("pyramid_settled");
     World *world = world_of(scene);
     assert_int_equal(world_body_count(world), 67);

@@ -151,7 +151,6 @@ TEST(values_are_rounded_as_in_tables) {
 }
 
 TEST(a_failing_evaluation_ends_the_search) {
-    Error error = {0};
     BorderList list;
     Made made = {.how = VERDICTS};
     assert_refused(border_search(&list, &heights, &(BorderProbe){evaluate, &made, 1}, &error), "refused");

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run compared with a shifted one. */
-#include "testing.h"
-
-#include "runs/runs.h"
+#include "made.h"
 
 #include <math.h>
 
@@ -16,12 +14,8 @@ static const char *write_scene(const char *bodies_and_bomb) {
 }
 
 static Trajectory *run_scene(const char *path, const char *text) {
-    Error error = {0};
-    Method method;
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL && method_parse(&method, text, &error), error);
-    Trajectory *run = simulate(scene, &method, NULL, &error);
-    assert_ok(run != NULL, error);
+    Scene *scene = scene_from(path);
+    Trajectory *run = run_by(scene, text);
     scene_destroy(scene);
     return run;
 }
@@ -35,7 +29,6 @@ static const char bomb[] = "bomb: {x: 0.001, y: 100, frame: 20, size: [1, 1], ma
    velocity of an aimed bomb were shifted too, its distance would grow by 15e-6 m/s. */
 TEST(a_shift_in_free_flight_is_constant) {
     char text[1024];
-    Error error = {0};
     for (int with_bomb = 0; with_bomb < 2; with_bomb++) {
         snprintf(text, sizeof text, "%s%s", falling, with_bomb ? bomb : "");
         const char *path = write_scene(text);
@@ -55,7 +48,6 @@ TEST(a_shift_in_free_flight_is_constant) {
 
 /* At a position where one ulp is 0.0625 m. */
 TEST(a_shift_is_at_least_one_float) {
-    Error error = {0};
     const char *path = write_scene("  - {size: [1, 1], position: [600000, 50], mass: 1, friction: 0}\n");
     Trajectory *run = run_scene(path, "engine");
     Chaos chaos;
@@ -86,15 +78,11 @@ TEST(a_bomb_that_has_not_hit_is_not_shifted) {
 
 /* The distances are those between the two trajectories. */
 TEST(distances_are_those_of_the_trajectories) {
-    Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "momentum:k=5");
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_from(path);
     scene->bodies[10].position.x = 1e-6F;
-    Method method;
-    assert_ok(method_parse(&method, "momentum:k=5", &error), error);
-    Trajectory *shifted = simulate(scene, &method, NULL, &error);
+    Trajectory *shifted = run_by(scene, "momentum:k=5");
     Chaos chaos;
     assert_ok(chaos_run(&chaos, path, run, 10, run->frames, NULL, &error), error);
     for (int frame = 0; frame < run->frames; frame++)
@@ -112,7 +100,6 @@ static void expect_refused(const Trajectory *run, const char *path, int frames, 
 }
 
 TEST(other_scenes_and_runs_are_detected) {
-    Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "engine");
     expect_refused(run, SOURCE_DIR "/scenes/single.yaml", 20, "single.yaml: error: is not the scene of the run");
@@ -139,7 +126,6 @@ static bool stop_late(void *context, double done, double total) {
 
 /* A stop must not be taken for a NaN or infinite state. */
 TEST(a_stop_is_an_error) {
-    Error error = {0};
     const char *path = SOURCE_DIR "/scenes/stack.yaml";
     Trajectory *run = run_scene(path, "engine");
     Chaos chaos;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "files.h"
 #include "charts.h"
 
 #include "studies/chart.h"
-
-#include "base/file.h"
 
 #include <math.h>
 
@@ -37,18 +36,12 @@ static ChartRow bare(void) {
 }
 
 TEST(rows_are_written_in_the_order_of_the_header) {
-    Error error = {0};
     const ChartRow rows[] = {full, bare()};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &chart_layout, rows, 2, &error), error);
-    size_t size;
-    char *text = file_read(path, 10000, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, CHART_HEADER
-                        ",cpu\nstack,momentum,\"k=20,warm=off\",closed,after,40,10.5,9.25,11.75,52.5,123456,"
-                        "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5,AMD EPYC\n"
-                        "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,,\n");
-    free(text);
+    assert_file(path, CHART_HEADER ",cpu\nstack,momentum,\"k=20,warm=off\",closed,after,40,10.5,9.25,11.75,52.5,123456,"
+                                   "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5,AMD EPYC\n"
+                                   "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,,\n");
 }
 
 static void assert_same_figure(double found, double expected) {
@@ -71,7 +64,6 @@ static void assert_same_row(const ChartRow *found, const ChartRow *expected) {
 }
 
 TEST(written_tables_are_read_back) {
-    Error error = {0};
     ChartRow rows[] = {full, bare(), full};
     rows[2].phase = PHASE_REST;
     rows[2].method = "say \"k\", \\ and 'more'";
@@ -94,7 +86,6 @@ static void expect_refused(const char *path, const char *message) {
 
 /* As twinbox wrote them before it named the processor; the column can be the last one only. */
 TEST(the_processor_may_be_missing) {
-    Error error = {0};
     CsvTable table;
     assert_ok(csv_table_read(&table, write_chart(GOOD), &chart_layout, &error), error);
     assert_string_equal(chart_row(&table, 0)->cpu, "");
@@ -141,7 +132,6 @@ TEST(long_names_are_refused) {
 }
 
 TEST(other_headers_are_refused) {
-    Error error = {0};
     const char *path = temporary_path("other.csv");
     static const char text[] = "scene,name\na,b\n";
     assert_ok(file_write(path, text, strlen(text), &error), error);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the page of a chart says of times: on which processor they were measured, and which are left out. */
 #include "testing.h"
+#include "files.h"
 
 #include "studies/chart.h"
-#include "base/file.h"
 
 #include <math.h>
 
@@ -35,13 +35,10 @@ static ChartRow make_row(const char *scene, const char *method, const char *cpu)
 /* The page of these rows, without links. To be freed. */
 static char *write_page(const ChartRow *rows, int count) {
     Error error = {0};
-    size_t size;
     assert_ok(csv_table_write(temporary_path("chart.csv"), &chart_layout, rows, count, &error), error);
     assert_ok(csv_table_write(temporary_path("chart_pages.csv"), &launch_page_layout, NULL, 0, &error), error);
     assert_ok(chart_html_write(temporary_folder, &error), error);
-    char *text = file_read(temporary_path("chart.html"), 1 << 20, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
+    return text_of(temporary_path("chart.html"));
 }
 
 TEST(the_page_names_the_processor) {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* chart.csv: invented numbers, modelled on measured ones; twelve methods. */
+#include "files.h"
 #include "python.h"
 
 #include "studies/chart.h"
 #include "studies/first_line.h"
 
-#include "base/file.h"
 #include "studies/chart_internal.h"
 #include "methods/methods.h"
 
@@ -25,14 +25,10 @@ static const char *folder(void) {
 }
 
 static char *read_drawn(const char *scene, const char *ending, size_t *size) {
-    Error error = {0};
-    char *data = file_read(drawn_file(scene, ending), 1 << 24, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
+    return read_whole(drawn_file(scene, ending), size);
 }
 
 TEST(three_files_are_drawn) {
-    Error error = {0};
     assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
     size_t size;
     char *png = read_drawn("pyramid_settled", "png", &size);
@@ -63,7 +59,6 @@ TEST(three_files_are_drawn) {
 
 TEST(the_same_table_gives_the_same_files) {
     static const char *const endings[] = {"png", "svg", "pdf"};
-    Error error = {0};
     size_t size[2][3];
     char *data[2][3];
     for (int run = 0; run < 2; run++) {
@@ -116,7 +111,6 @@ TEST(tables_without_a_mark_are_refused) {
 }
 
 TEST(one_mark_and_one_panel_are_enough) {
-    Error error = {0};
     assert_ok(
         chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &error),
         error);
@@ -125,7 +119,6 @@ TEST(one_mark_and_one_panel_are_enough) {
 
 /* A note names the methods whose errors have another target. Without such methods the chart has no note. */
 TEST(a_target_without_push_out_is_noted) {
-    Error error = {0};
     static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n";
@@ -145,7 +138,6 @@ TEST(a_target_without_push_out_is_noted) {
 
 /* The maximum number of methods, with the longest names and settings. */
 TEST(a_full_chart_is_drawn) {
-    Error error = {0};
     char lines[20000] = "";
     for (int i = 0; i < CHART_MAX_LINES * 5; i++)
         snprintf(lines + strlen(lines), 200,
@@ -171,7 +163,6 @@ TEST(names_stay_texts) {
     fclose(file);
     const char *path = write_rows(lines);
     free(lines);
-    Error error = {0};
     assert_ok(chart_plot(path, "hostile", folder(), &error), error);
     run_python("import sys, xml.etree.ElementTree as tree\n"
                "root = tree.parse(sys.argv[1]).getroot()\n"
@@ -242,7 +233,6 @@ TEST(marks_are_gathered_by_line_and_time) {
 
 /* A baseline a thousand times faster would push the methods that compete into a corner. */
 TEST(the_axes_show_what_competes) {
-    Error error = {0};
     CsvTable table;
     Chart chart = gather(&table, "stack,engine,k=5,closed,impact,40,20,19,21,,,1,,,,,,,,\n"
                                  "stack,engine,k=100,closed,impact,40,200,190,210,,,0.1,,,,,,,,\n"

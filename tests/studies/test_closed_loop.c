@@ -1,32 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "testing.h"
+#include "made.h"
 
-#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 #include <math.h>
 
-static Scene *read_scene(const char *name) {
-    Error error = {0};
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
-
 static ClosedLoop run(const char *text, const Scene *scene) {
     Error error = {0};
-    Method method;
     ClosedLoop result;
-    assert_ok(method_parse(&method, text, &error), error);
+    const Method method = method_named(text);
     assert_ok(closed_loop_run(&method, scene, 1, &result, &error), error);
     return result;
 }
 
 /* The engine conserves momentum; friction and inelastic impacts only dissipate energy. */
 TEST(the_engine_equals_itself) {
-    Scene *scene = read_scene("single");
+    Scene *scene = scene_named("single");
     ClosedLoop result = run("engine", scene);
     assert_near(result.frames_until_apart, CLOSED_LOOP_FRAMES, 0);
     assert_near(result.momentum_error, 0, 0);
@@ -37,7 +26,7 @@ TEST(the_engine_equals_itself) {
 
 /* With one sweep and no warm start a stack of ten sinks. */
 TEST(a_poor_method_diverges_from_the_engine) {
-    Scene *scene = read_scene("stack");
+    Scene *scene = scene_named("stack");
     ClosedLoop poor = run("engine:k=1,warm=off", scene), same = run("engine", scene);
     assert_true(poor.frames_until_apart > 1 && poor.frames_until_apart < 100);
     assert_true(poor.penetration_max > same.penetration_max);
@@ -46,7 +35,7 @@ TEST(a_poor_method_diverges_from_the_engine) {
 
 /* The energy that a late bomb brings is not counted as created by the method. */
 TEST(energy_counts_from_the_bomb_on) {
-    Scene *scene = read_scene("single");
+    Scene *scene = scene_named("single");
     scene->bomb.frame = 30;
     ClosedLoop result = run("engine", scene);
     assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
@@ -55,14 +44,12 @@ TEST(energy_counts_from_the_bomb_on) {
 
 /* The interior method is close to the converged run of the stack for longer than to the engine's. */
 TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
-    Error error = {0};
-    Scene *scene = read_scene("stack");
+    Scene *scene = scene_named("stack");
     scene->frames = 60;
-    Method method;
     RunLog engine = {0}, converged = {0};
     Rollout rollout = {0};
     LaunchLoop loop;
-    assert_ok(method_parse(&method, "interior", &error), error);
+    const Method method = method_named("interior");
     assert_ok(closed_loop_log(&engine, "engine", scene, &error), error);
     assert_ok(closed_loop_log(&converged, "reference", scene, &error), error);
     assert_ok(closed_loop_launch(&rollout, &method, scene, &engine, &converged, &loop, &error), error);
@@ -78,15 +65,13 @@ TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
 }
 
 TEST(both_methods_are_timed) {
-    Error error = {0};
-    Scene *scene = read_scene("stack");
+    Scene *scene = scene_named("stack");
     scene->frames = 60;
     const Sampling sampling = {.after = 20, .rest = 20};
     SnapshotList states = {0};
     assert_ok(snapshots_add(&states, scene, &sampling, &error), error);
-    Method method;
     double us_step = 0, us_step_engine = 0;
-    assert_ok(method_parse(&method, "engine:k=1", &error), error);
+    const Method method = method_named("engine:k=1");
     assert_ok(closed_loop_time(&method, &states, 3, &us_step, &us_step_engine, &error), error);
     assert_true(us_step > 0 && us_step_engine > 0);
     snapshots_free(&states);

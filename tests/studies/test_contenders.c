@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Who takes part in a study. */
-#include "testing.h"
+#include "made.h"
 
 #include "studies/chart.h"
 
@@ -43,7 +43,6 @@ TEST(a_name_alone_stands_for_all_its_settings) {
 /* The engine as shipped is the mark that all others are held to. */
 TEST(the_engine_as_shipped_is_always_there) {
     for (int quick = 0; quick < 2; quick++) {
-        Error error = {0};
         ContenderList list;
         assert_ok(contenders_parse(&list, NULL, quick ? STUDY_CHART_QUICK : STUDY_CHART, &error), error);
         int found = 0;
@@ -74,9 +73,7 @@ TEST(bad_lists_are_refused) {
 }
 
 TEST(a_method_without_its_network_is_left_out) {
-    Error error = {0};
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/single.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("single");
     ContenderList list = parse("engine:k=10,pair-net:k=5,pair-net:network=x.npz");
     const Contender *fit[3];
     assert_int_equal(contenders_for(&list, scene, fit), 3);
@@ -102,7 +99,6 @@ static bool has_twin(const ContenderList *list, const Contender *run) {
 /* The ablation that must stand beside it. */
 TEST(every_learned_method_has_its_twin_in_every_study) {
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
-        Error error = {0};
         ContenderList all;
         assert_ok(contenders_parse(&all, NULL, study, &error), error);
         for (int i = 0; i < all.count; i++)
@@ -126,7 +122,6 @@ TEST(every_learned_method_names_its_twin) {
 /* What is left out is reported. */
 TEST(every_method_runs_or_is_left_out) {
     for (ContenderStudy study = STUDY_CHART; study <= STUDY_STABILITY; study++) {
-        Error error = {0};
         ContenderList all;
         assert_ok(contenders_parse(&all, NULL, study, &error), error);
         const NameList left_out = contenders_left_out(study);

@@ -57,7 +57,6 @@ TEST(every_setting_meets_its_best_rival_at_its_time) {
     static const double factors[] = {1, 0.5, 2};
     CsvTable rows = read_chart();
     EqualTime table;
-    Error error = {0};
     /* The line of logarithms from (8, 0.8) to (20, 0.2), at 10 and at 16. */
     assert_near(0.8 * pow(0.25, log(1.25) / log(2.5)), expected[4].rival_error, 1e-11);
     assert_near(0.8 * pow(0.25, log(2) / log(2.5)), expected[6].rival_error, 1e-11);
@@ -94,7 +93,6 @@ TEST(methods_are_compared_at_one_time) {
     };
     CsvTable rows = read_chart();
     EqualTime table;
-    Error error = {0};
     assert_ok(equal_time_make(&table, rows.rows, rows.count, &error), error);
     assert_string_equal(table.time, "k=50");
     assert_int_equal(table.method_count, sizeof methods / sizeof *methods);

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figure of errors at equal time, of an invented chart. */
+#include "files.h"
 #include "python.h"
 
 #include "studies/chart.h"
-
-#include "base/file.h"
 
 #define SAMPLE SOURCE_DIR "/tests/studies/equal_time.csv"
 
@@ -14,7 +13,6 @@ static const char *folder(void) {
 }
 
 TEST(learned_methods_stand_beside_their_twins) {
-    Error error = {0};
     bool drawn = false;
     assert_ok(equal_time_plot(SAMPLE, folder(), &drawn, &error), error);
     assert_true(drawn);
@@ -37,9 +35,7 @@ TEST(tables_and_three_formats_are_written) {
                                          "%PDF-"};
     for (int i = 0; i < 4; i++) {
         size_t size;
-        Error error = {0};
-        char *data = file_read(temporary_path(files[i]), 1 << 24, &size, &error);
-        assert_ok(data != NULL, error);
+        char *data = read_whole(temporary_path(files[i]), &size);
         assert_true(size > strlen(begins[i]));
         assert_memory_equal(data, begins[i], strlen(begins[i]));
         free(data);
@@ -48,7 +44,6 @@ TEST(tables_and_three_formats_are_written) {
 
 /* One method alone has no rival: there are tables, but no figure. */
 TEST(a_method_without_rivals_has_no_figure) {
-    Error error = {0};
     bool drawn = true;
     const char *path = temporary_path("alone.csv");
     CsvTable chart;

@@ -17,8 +17,8 @@ TEST(points_on_a_power_law_give_it_exactly) {
     assert_int_equal(error_curve_front(points, POINTS), POINTS);
     for (double us = 2; us <= 100; us *= 1.01) {
         CurveReach reach;
-        const double error = error_curve_at(points, POINTS, us, &reach);
-        assert_near(error / power_law(us), 1, 1e-13);
+        const double found = error_curve_at(points, POINTS, us, &reach);
+        assert_near(found / power_law(us), 1, 1e-13);
         assert_int_equal(reach, CURVE_WITHIN);
     }
 }

@@ -65,7 +65,6 @@ TEST(launches_are_put_together) {
     MethodScores scores[METHODS] = {0};
     for (int launch = 0; launch < LAUNCHES; launch++) {
         size_t size;
-        Error error = {0};
         StoredScores stored;
         char *bytes = write_launch(launch, &size);
         assert_ok(stored_scores_open(&stored, "launch", bytes, size, METHODS, &error), error);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "studies/chart.h"
 
 static const CsvColumn columns[] = {{"x", CSV_INTEGER, .offset = 0, .maximum = 99}};
@@ -34,17 +34,11 @@ static bool write_tables(const char *folder, const char **results, int count, co
 
 static void assert_table(const char *folder, const char *name, const char *expected) {
     char path[400];
-    Error error = {0};
-    size_t size;
     snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-    char *text = file_read(path, 1000, &size, &error);
-    assert_ok(text != NULL, error);
-    assert_string_equal(text, expected);
-    free(text);
+    assert_file(path, expected);
 }
 
 TEST(rows_have_the_order_of_pieces_and_sections) {
-    Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("tables"));
     const char *results[] = {"a:1\n# a:9\nab:2\na:3\n#\n", "",     "# 8\nab:4\n", "a/1:11\na/0:10\nab:5\n",
@@ -63,7 +57,7 @@ TEST(lines_of_no_table_are_refused) {
     static const char *const wrong[] = {"b:1\n", "a1\n",    "a/0:1\n", "a/-2:1\n", "a/x:1\n",
                                         "a:1",   "abc:1\n", ":1\n",    "\n"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        Error error = {0};
+        error = (Error){0};
         const char *results[] = {wrong[i]};
         if (write_tables(folder, results, 1, NULL, 0, &error)) fail_msg("'%s' is taken", wrong[i]);
         assert_int_equal(error.kind, ERROR_SYSTEM);
@@ -71,7 +65,6 @@ TEST(lines_of_no_table_are_refused) {
 }
 
 TEST(a_row_is_a_line_with_the_tables_name) {
-    Error error = {0};
     char *text = NULL;
     size_t size;
     FILE *results = open_memstream(&text, &size);

@@ -1,38 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Scores of methods with a known ranking: the reference has no error, more sweeps have less, noise has more. */
-#include "testing.h"
+#include "made.h"
 
-#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 static const Sampling every = {.after = 1, .rest = 1}, few = {.after = 10, .rest = 50};
-
-static Scene *read_scene(const char *name) {
-    Error error = {0};
-    char path[512];
-    snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
-
-static Stepper *make_stepper(const Scene *scene, const char *text) {
-    Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, text, &error), error);
-    Stepper *stepper = stepper_create(&method, scene, &error);
-    assert_ok(stepper != NULL, error);
-    return stepper;
-}
 
 static void free_scores(StepScores scores[PHASES]) {
     for (int phase = 0; phase < PHASES; phase++) step_scores_free(&scores[phase]);
 }
 
 TEST(the_reference_has_no_error) {
-    Error error = {0};
-    Scene *scene = read_scene("stack");
-    Stepper *stepper = make_stepper(scene, "reference");
+    Scene *scene = scene_named("stack");
+    Stepper *stepper = stepper_by(scene, "reference");
     Rollout rollout = {0};
     StepScores scores[PHASES] = {0};
     assert_ok(rollout_run(&rollout, stepper, scene, &few, scores, &error), error);
@@ -49,10 +29,9 @@ TEST(the_reference_has_no_error) {
 
 /* 6 impact frames, 60 frames after; every frame is in exactly one phase. */
 TEST(every_frame_is_in_one_phase) {
-    Error error = {0};
-    Scene *scene = read_scene("single");
+    Scene *scene = scene_named("single");
     scene->frames = 200;
-    Stepper *stepper = make_stepper(scene, "engine");
+    Stepper *stepper = stepper_by(scene, "engine");
     Rollout rollout = {0};
     StepScores scores[PHASES] = {0};
     assert_ok(rollout_run(&rollout, stepper, scene, &every, scores, &error), error);
@@ -72,9 +51,8 @@ TEST(every_frame_is_in_one_phase) {
 static double frozen_error(const SnapshotList *list, const Scene *scene, const char *method) {
     Error error = {0};
     StepScores scores[PHASES] = {0};
-    Stepper *stepper = make_stepper(scene, method);
-    World *world = scene_world(scene, &error);
-    assert_ok(world != NULL, error);
+    Stepper *stepper = stepper_by(scene, method);
+    World *world = world_of(scene);
     assert_ok(snapshots_score(list, stepper, world, scores, &error), error);
     assert_int_equal(scores[PHASE_IMPACT].count, 6);
     double mean = statistics_mean(scores[PHASE_IMPACT].error, scores[PHASE_IMPACT].count);
@@ -86,8 +64,7 @@ static double frozen_error(const SnapshotList *list, const Scene *scene, const c
 
 /* More sweeps give a smaller error; no warm start, or noise, a larger one. */
 TEST(methods_rank_as_expected_on_frozen_steps) {
-    Error error = {0};
-    Scene *scene = read_scene("stack");
+    Scene *scene = scene_named("stack");
     SnapshotList list = {0};
     assert_ok(snapshots_add(&list, scene, &few, &error), error);
     assert_true(list.residual < 1e-4);
@@ -104,12 +81,11 @@ TEST(methods_rank_as_expected_on_frozen_steps) {
 
 /* The engine's frozen steps are those of its closed loop, so the errors are the same. */
 TEST(frozen_steps_of_the_engine_are_its_own) {
-    Error error = {0};
-    Scene *scene = read_scene("pyramid_settled");
+    Scene *scene = scene_named("pyramid_settled");
     SnapshotList list = {0};
     StepScores frozen[PHASES] = {0}, closed[PHASES] = {0};
     Rollout rollout = {0};
-    Stepper *stepper = make_stepper(scene, "engine");
+    Stepper *stepper = stepper_by(scene, "engine");
     assert_ok(snapshots_add(&list, scene, &few, &error), error);
     assert_ok(rollout_run(&rollout, stepper, scene, &few, closed, &error), error);
     assert_ok(snapshots_score(&list, stepper, rollout.world, frozen, &error), error);
@@ -150,11 +126,8 @@ static Stepper *make_still_stepper(const Scene *scene, bool no_push_out) {
     static SteppingKind stepping = {.create = create_nothing, .solve = stand_still, .destroy = destroy_nothing};
     static MethodKind kind = {&stepping.description, NULL, &stepping};
     const Method method = {.text = "still", .kind = &kind};
-    Error error = {0};
     stepping.description = (MethodDescription){.name = "still", .no_push_out = no_push_out};
-    Stepper *stepper = stepper_create(&method, scene, &error);
-    assert_ok(stepper != NULL, error);
-    return stepper;
+    return stepper_of(scene, &method);
 }
 
 /* The errors of the first step of a scene: frozen, and of a run of this many frames: closed loop. */
@@ -196,9 +169,9 @@ TEST(push_out_counts_for_methods_that_have_it) {
                    .bodies = bodies};
     assert_errors(&scene, make_still_stepper(&scene, false), 0.6, 1e-5);
     assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
-    assert_errors(&scene, make_stepper(&scene, "avbd:k=50"), 0, 1e-3);
-    assert_errors(&scene, make_stepper(&scene, "soft-step"), 0, 0.2); /* its one relaxing sweep leaves a spin */
-    assert_errors(&scene, make_stepper(&scene, "engine:k=100"), 0, 1e-4);
+    assert_errors(&scene, stepper_by(&scene, "avbd:k=50"), 0, 1e-3);
+    assert_errors(&scene, stepper_by(&scene, "soft-step"), 0, 0.2); /* its one relaxing sweep leaves a spin */
+    assert_errors(&scene, stepper_by(&scene, "engine:k=100"), 0, 1e-4);
     scene.position_correction = false;
     assert_errors(&scene, make_still_stepper(&scene, false), 0, 1e-5);
     assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);

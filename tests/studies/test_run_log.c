@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measures of synthetic logs. */
-#include "testing.h"
+#include "made.h"
 
 #include "studies/chart.h"
 
@@ -113,11 +113,9 @@ TEST(runs_part_where_a_body_or_the_bomb_is_away) {
 
 /* Two steps: one creates 0.5 N s and falls back, the other clamps an impulse to its cone, which is no fallback. */
 TEST(momentum_and_fallbacks_are_added) {
-    Error error = {0};
     BodyDef box = {.size = {1, 1}, .mass = 1};
     const Scene scene = {.dt = 0.5f, .frames = 2, .body_count = 1, .bodies = &box};
-    World *world = scene_world(&scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(&scene);
     RunLog log = {0};
     assert_true(run_log_begin(&log, &scene, world));
     for (int frame = 1; frame <= 2; frame++) {
@@ -142,11 +140,9 @@ TEST(momentum_and_fallbacks_are_added) {
 
 /* A box of 3 kg, 2 m up, at 4 m/s and 6 rad/s: 3 (16 / 2 + 10 2) + 3 (1 + 1) / 12 36 / 2 = 93 J. */
 TEST(energy_is_kinetic_and_potential) {
-    Error error = {0};
     BodyDef box = {.size = {1, 1}, .mass = 3, .position = {5, 2}, .velocity = {0, 4}, .angular_velocity = 6};
     Scene scene = {.dt = 0.5f, .frames = 1, .body_count = 1, .bodies = &box, .gravity = {0, -10}};
-    World *world = scene_world(&scene, &error);
-    assert_ok(world != NULL, error);
+    World *world = world_of(&scene);
     RunLog log = {0};
     assert_true(run_log_begin(&log, &scene, world));
     assert_near(log.at[0].energy, 3 * (8 + 20) + 0.5 * 0.5 * 36, 1e-4);

@@ -68,7 +68,6 @@ static void change_processor(const char *cpu) {
 }
 
 TEST(times_of_other_processors_are_refused_or_left_out) {
-    Error error;
     const PiecesRun merge = {.merge = true}, first = {.merge = true, .times_first = true};
     do_shards();
     assert_ok(run_study(&merge, &error), error);

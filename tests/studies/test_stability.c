@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of studies, single cases, and complete quick studies. */
-#include "testing.h"
+#include "made.h"
+#include "files.h"
 
-#include "base/file.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 
@@ -68,35 +68,22 @@ TEST(a_seed_shifts_the_first_dynamic_body) {
     }
 }
 
-static Method method_of(const char *text) {
-    Error error = {0};
-    Method method;
-    assert_ok(method_parse(&method, text, &error), error);
-    return method;
-}
-
 TEST(methods_that_do_not_apply_have_a_reason) {
-    Error error = {0};
     Scene *stack = read_scene("stack_height");
-    const Method engine = method_of("engine"), nameless = method_of("scene-net");
+    const Method engine = method_named("engine"), nameless = method_named("scene-net");
     assert_true(stability_applies(&engine, stack, &error));
     assert_refused(stability_applies(&nameless, stack, &error), "names no network");
     scene_destroy(stack);
 }
 
 static char *read_table(const char *folder, const char *name) {
-    Error error = {0};
     char path[600];
-    size_t size;
     snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-    char *text = file_read(path, 1 << 20, &size, &error);
-    assert_ok(text != NULL, error);
-    return text;
+    return text_of(path);
 }
 
 /* The stack's network is for ten boxes: with two boxes the first step fails. That must not count as non-finite. */
 TEST(a_method_that_fits_some_values_only_does_not_apply) {
-    Error error = {0};
     const char *folder = temporary_path("network");
     const StabilityOptions options = {.folder = folder,
                                       .scenes = scenes,
@@ -118,7 +105,7 @@ TEST(methods_without_k_use_the_scenes_iterations) {
     } rows[] = {{"engine", true},     {"engine:k=10", false}, {"engine:warm=off", true}, {"momentum", true},
                 {"reference", false}, {"substepping", false}, {"contact-net", false}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        const Method method = method_of(rows[i].method);
+        const Method method = method_named(rows[i].method);
         assert_true(stability_takes_iterations(&method) == rows[i].takes);
     }
 }
@@ -147,7 +134,6 @@ static bool run_shots(const char *folder, const char *methods, Reports *reports,
 /* A box starts with its centre 0.51 m above the top of a slab 0.25 m thick and falls freely for one step. It is then
    pushed out on the nearer side: below, if its centre has passed the slab's. */
 TEST(a_study_writes_borders_maps_and_refusals) {
-    Error error = {0};
     char folder[300];
     Reports reports = {0, -1};
     snprintf(folder, sizeof folder, "%s", temporary_path("shots"));
@@ -178,7 +164,6 @@ TEST(a_study_writes_borders_maps_and_refusals) {
 
 /* Two boxes stay in place; if a network lifts them off within ten seconds, drift and energy are empty. */
 TEST(a_study_at_rest_writes_drift_and_energy) {
-    Error error = {0};
     const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
                                   .stands = true, .rests = true};
     ContenderList methods;
@@ -212,7 +197,6 @@ TEST(a_study_at_rest_writes_drift_and_energy) {
 
 /* Coulomb: a box stands on a slope if and only if its tangent is below the friction. */
 TEST(a_map_of_slopes_has_its_border_at_the_friction) {
-    Error error = {0};
     char folder[300];
     snprintf(folder, sizeof folder, "%s", temporary_path("slopes"));
     const StabilityOptions options = {.folder = folder,
@@ -238,7 +222,6 @@ TEST(a_map_of_slopes_has_its_border_at_the_friction) {
 
 /* Stopped in the map, the finished study is kept; resumed, it gives the same tables as an uninterrupted run. */
 TEST(an_interrupted_study_is_resumed) {
-    Error error = {0};
     char whole[300], cut[300];
     Reports all = {0, -1}, some = {0, -1}, rest = {0, -1};
     snprintf(whole, sizeof whole, "%s", temporary_path("whole"));
@@ -260,7 +243,6 @@ TEST(an_interrupted_study_is_resumed) {
 }
 
 TEST(unknown_names_and_methods_are_refused) {
-    Error error = {0};
     StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
     assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error),
                    "'luck' is not a study or map; known: stack_height, ");

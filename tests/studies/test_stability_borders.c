@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The borders figure, from synthetic tables; and what it has in common with maps. */
+#include "files.h"
 #include "stability_drawn.h"
 
 TEST(borders_are_drawn_as_in_the_table) {
@@ -78,12 +79,7 @@ TEST(invalid_borders_are_refused_with_their_place) {
     }
 }
 
-static char *read_file(const char *name, size_t *size) {
-    Error error = {0};
-    char *data = file_read(temporary_path(name), 1 << 24, size, &error);
-    assert_ok(data != NULL, error);
-    return data;
-}
+static char *read_file(const char *name, size_t *size) { return read_whole(temporary_path(name), size); }
 
 TEST(the_same_tables_give_the_same_files) {
     static const char *const names[] = {"map-grid.png", "map-grid.svg", "map-grid.txt",

@@ -64,7 +64,6 @@ static bool check_row(void *context, int i, Error *error) {
 }
 
 TEST(borders_are_where_they_were) {
-    Error error = {0};
     Golden golden = {0};
     assert_ok(csv_table_read_from(&golden.table, SOURCE_DIR "/golden", &border_layout, &error), error);
     assert_true(golden.table.count >= 40);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scenes of `twinbox new` stand without the bomb, as their comments state, with each parameter at both ends. */
-#include "testing.h"
+#include "made.h"
 
 #include "runs/verdict.h"
 
@@ -11,20 +11,18 @@ static const char *const methods[] = {"engine", "momentum", "interior"};
 static void check_stands(const char *path, const SceneSetting *settings, int count) {
     Error error = {0};
     EnergyLog converged = {0};
-    Method reference;
     Scene *scene = scene_read_with(path, settings, count, &error);
     assert_ok(scene != NULL, error);
     scene->bomb.present = false;
     scene->frames = STEPS;
-    assert_ok(method_parse(&reference, "reference", &error), error);
+    const Method reference = method_named("reference");
     assert_ok(energy_log_run(&converged, scene, &reference, &error), error);
     VerdictRun run = verdict_run_of(scene);
     assert_true(run.stands);
     run.converged = &converged;
     for (int i = 0; i < 3; i++) {
-        Method method;
         VerdictReading reading;
-        assert_ok(method_parse(&method, methods[i], &error), error);
+        const Method method = method_named(methods[i]);
         assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
         if (!verdict_holds(reading.verdict))
             fail_msg("%s with %s = %g: %s %s at body %d, frame %d", path, count > 0 ? settings->name : "",
@@ -37,10 +35,8 @@ static void check_stands(const char *path, const SceneSetting *settings, int cou
 
 static void check_template(const char *name) {
     char path[512];
-    Error error = {0};
     snprintf(path, sizeof path, SOURCE_DIR "/scenes/templates/%s.yaml", name);
-    Scene *scene = scene_read(path, &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_from(path);
     assert_true(scene->bomb.present && scene_span_varies(&scene->bomb.x));
     assert_in_range(scene->parameter_count, 1, 2);
     check_stands(path, NULL, 0);
@@ -55,20 +51,18 @@ static void check_template(const char *name) {
     scene_destroy(scene);
 }
 
-TEST(wall) { (void)state, check_template("wall"); }
-TEST(stack) { (void)state, check_template("stack"); }
-TEST(pyramid) { (void)state, check_template("pyramid"); }
-TEST(arch) { (void)state, check_template("arch"); }
-TEST(dominoes) { (void)state, check_template("dominoes"); }
+TEST(wall) { check_template("wall"); }
+TEST(stack) { check_template("stack"); }
+TEST(pyramid) { check_template("pyramid"); }
+TEST(arch) { check_template("arch"); }
+TEST(dominoes) { check_template("dominoes"); }
 
 /* "With 10 iterations it falls." */
 TEST(the_arch_needs_its_iterations) {
-    Error error = {0};
     EnergyLog converged = {0};
     Method reference, engine;
     VerdictReading reading;
-    Scene *scene = scene_read(SOURCE_DIR "/scenes/templates/arch.yaml", &error);
-    assert_ok(scene != NULL, error);
+    Scene *scene = scene_named("templates/arch");
     scene->bomb.present = false;
     scene->frames = STEPS;
     scene->iterations = 10;

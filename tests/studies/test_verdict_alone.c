@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Verdicts without a converged run, as `simulate` gives them: by the run's own energy. */
+#include "made.h"
 #include "studies/trial.h"
 
 #include "studies/stability.h"
@@ -128,9 +129,8 @@ TEST(scenes_without_bomb_and_speed_stand) {
 
 static void judge_both(const Scene *scene, const char *text, bool stands, const EnergyLog *converged, int found[2]) {
     Error error = {0};
-    Method method;
     VerdictReading alone, converging;
-    assert_ok(method_parse(&method, text, &error), error);
+    const Method method = method_named(text);
     const VerdictRun runs[2] = {beside(scene, stands, converged), beside(scene, stands, NULL)};
     assert_ok(verdict_run(&converging, scene, &method, &runs[0], &error), error);
     assert_ok(verdict_run(&alone, scene, &method, &runs[1], &error), error);
@@ -149,7 +149,6 @@ TEST(verdicts_agree_with_those_beside_the_converged_run) {
         double values[BORDER_POINTS_MAX];
         const int value_count = border_scan_values(&study->scan, values);
         for (int v = 0; v < value_count; v++) {
-            Error error = {0};
             EnergyLog converged = {0};
             Scene *scene = scene_at(study, values[v]);
             if (scene->frames > 600) scene->frames = 600;

@@ -265,7 +265,6 @@ TEST(verdicts_have_names) {
 }
 
 TEST(a_converged_run_that_is_shorter_is_refused) {
-    Error error = {0};
     Trial trial;
     trial_begin(&trial);
     trial.converged.frames--;

@@ -6,7 +6,6 @@
    at 0, 70 of 70 J are lost. It is removed with 5 J that it had regained: 65 of 65 J are lost then, and 75 at -1 m.
    Lifted to 80 J, the highest level so far, 120 J are lost down to -4 m. */
 TEST(lost_energy_is_available) {
-    Error error = {0};
     EnergyLog log = {0};
     Body bodies[2] = {trial_box, trial_box};
     const struct {
@@ -32,7 +31,6 @@ TEST(lost_energy_is_available) {
 /* A stack of ten boxes, 1 kg and 10 m/s^2: 0 + 1 + ... + 9 m are 450 J. A bomb of 2 kg is added 9 m above the lowest:
    180 J; one below the lowest adds nothing. */
 TEST(the_height_of_a_stack_is_available) {
-    Error error = {0};
     EnergyLog log = {0};
     Body bodies[14];
     for (int i = 0; i < 14; i++) bodies[i] = trial_box;
@@ -141,7 +139,6 @@ TEST(a_fast_box_tunnels_through_a_thin_slab) {
 
 /* At 3e38 m/s the position overflows a float, 3.4e38 m, in the 69th step. */
 TEST(a_run_that_overflows_is_judged) {
-    Error error = {0};
     Method method;
     BodyDef slab;
     EnergyLog converged = {0};

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scenes, methods, steppers, runs, networks and pictures that must be in order. */
+#pragma once
+#include "testing.h"
+
+#include "base/npz.h"
+#include "nets/nets.h"
+#include "pixels/png.h"
+#include "runs/runs.h"
+
+static inline Scene *scene_from(const char *path) {
+    Error error = {0};
+    Scene *scene = scene_read(path, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+/* scenes/NAME.yaml */
+static inline Scene *scene_named(const char *name) {
+    char path[512];
+    snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s.yaml", name);
+    return scene_from(path);
+}
+
+static inline Method method_named(const char *text) {
+    Error error = {0};
+    Method method;
+    assert_ok(method_parse(&method, text, &error), error);
+    return method;
+}
+
+static inline World *world_of(const Scene *scene) {
+    Error error = {0};
+    World *world = scene_world(scene, &error);
+    assert_ok(world != NULL, error);
+    return world;
+}
+
+static inline Stepper *stepper_of(const Scene *scene, const Method *method) {
+    Error error = {0};
+    Stepper *stepper = stepper_create(method, scene, &error);
+    assert_ok(stepper != NULL, error);
+    return stepper;
+}
+
+static inline Stepper *stepper_by(const Scene *scene, const char *method_text) {
+    const Method method = method_named(method_text);
+    return stepper_of(scene, &method);
+}
+
+static inline Trajectory *run_with(const Scene *scene, const Method *method) {
+    Error error = {0};
+    Trajectory *run = simulate(scene, method, NULL, &error);
+    assert_ok(run != NULL, error);
+    return run;
+}
+
+static inline Trajectory *run_by(const Scene *scene, const char *method_text) {
+    const Method method = method_named(method_text);
+    return run_with(scene, &method);
+}
+
+static inline Trajectory *run_sized(int frames, int bodies) {
+    Error error = {0};
+    Trajectory *run = trajectory_create(frames, bodies, &error);
+    assert_ok(run != NULL, error);
+    return run;
+}
+
+static inline Trajectory *trajectory_of(const char *path) {
+    Error error = {0};
+    Trajectory *run = trajectory_read(path, &error);
+    assert_ok(run != NULL, error);
+    return run;
+}
+
+/* Of the same frames and bodies, with the same bits. */
+static inline void assert_same_run(const Trajectory *a, const Trajectory *b) {
+    TrajectoryDifference difference;
+    trajectory_compare(a, b, &difference);
+    assert_true(difference.equal);
+}
+
+static inline Network *network_sized(int layers, const int *widths) {
+    Error error = {0};
+    Network *network = network_create(layers, widths, &error);
+    assert_ok(network != NULL, error);
+    return network;
+}
+
+static inline NpzFile *npz_of(const char *path) {
+    Error error = {0};
+    NpzFile *file = npz_open(path, &error);
+    assert_ok(file != NULL, error);
+    return file;
+}
+
+static inline Image *image_sized(int width, int height) {
+    Error error = {0};
+    Image *image = image_create(width, height, &error);
+    assert_ok(image != NULL, error);
+    return image;
+}
+
+static inline Image *image_of(const char *path) {
+    Error error = {0};
+    Image *image = image_read_png(path, &error);
+    assert_ok(image != NULL, error);
+    return image;
+}
