@@ -127,6 +127,7 @@ TEST(bad_settings_are_refused) {
         assert_int_equal(error.kind, ERROR_INPUT);
         assert_string_equal(behind_path(&error), table[i].message);
     }
+    error = (Error){0};
     assert_null(read_with(BASE GROUND, &(SceneSetting){"height", 3}, 1, &error));
     assert_string_equal(behind_path(&error), " error: 'height' is not a parameter; known: none");
     /* A value in its bounds may still be none for the number that is made of it. */
