@@ -101,7 +101,7 @@ TEST(a_network_of_a_scene_solves_without_allocating) {
     assert_ok(scene_net_make(&solver, network, 0.05f, &error), error);
     allocations = 0;
     assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
-    assert_true(allocations > 5);
+    assert_true(allocations > 0);
     allocations = 0;
     assert_ok(solver.kind->solve(solver.state, &random.problem, &solution, &error), error);
     assert_int_equal(allocations, 0);
