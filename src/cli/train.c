@@ -367,7 +367,9 @@ static bool train_kind(TrainRequest *request, Error *error) {
     train_describe(request, command, kind->command_size);
     request->state = state;
     request->command = command;
-    return train_on_scene(request, error);
+    const bool ok = train_on_scene(request, error);
+    request->state = request->command = NULL;
+    return ok;
 }
 
 bool command_train(int argc, char **argv, Error *error) {

@@ -9,6 +9,7 @@
 #include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -286,6 +287,7 @@ static PlotAxis make_axis(const Figure *figure, bool shape, const char *label) {
 
 static void gns_panel(const void *of, int panel, PlotPanel *out) {
     static const char *const titles[GNS_PANELS] = {"Single box", "Stack", "Settled pyramid", "Shape, rigid=off"};
+    assert(panel < GNS_PANELS);
     const Figure *figure = of;
     const bool shape = panel == SCENES;
     const double width = out->box.width - shape_gap / GNS_PANELS;
