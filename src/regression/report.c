@@ -264,15 +264,13 @@ static bool show_runs(Writing *writing, const Progress *progress, Error *error) 
 }
 
 /* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference.
-   ERROR_INPUT if a run has changed since the comparison. On failure nothing needs to be freed. */
+   ERROR_INPUT if a run has changed since the comparison. The caller frees runs->links, also on failure. */
 static bool write_run_pages(ReportRuns *runs, const Regression *regression, const char *folder, size_t max_bytes,
                             const Progress *progress, Error *error) {
     *runs = (ReportRuns){.links = calloc((size_t)regression->run_count + 1, sizeof *runs->links)};
     if (runs->links == NULL) return error_memory(error, "report");
     Writing writing = {runs, regression, folder, max_bytes};
-    if (show_runs(&writing, progress, error)) return true;
-    free(runs->links);
-    return false;
+    return show_runs(&writing, progress, error);
 }
 
 /* The files of a report. results.json is last: if it exists, the report is complete. */
