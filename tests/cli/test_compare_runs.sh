@@ -87,4 +87,10 @@ grep -q "Without a page, as these exceed the report's size limit: 1\." small/rep
 run 1 compare many/expected many/actual --report large
 [ -e large/run-zz_b__.html ] || fail "no page: $(ls large)"
 grep -q 'zz<b>' large/report.html && fail "a name is markup"
+
+# A page that cannot be written ends the report, which is then not complete.
+mkdir -p taken/run-long.html
+run 3 compare many/expected many/actual --report taken
+complains "taken/run-long.html: error: "
+[ ! -e taken/results.json ] || fail "a report without its pages has results"
 finish
