@@ -90,5 +90,6 @@ run 2 check missing.yaml
 complains "missing.yaml: error: cannot open"
 
 # Scenes of the repository are in order (tests/scenes/test_stability.c and tests/runs/test_launch_check.c read them all).
+! brief || finish
 for file in "$scenes"/*.yaml "$scenes"/families/g*.yaml "$scenes"/stability/{arch,overlap}.yaml; do run 0 check "$file" -o first.png; done
 finish

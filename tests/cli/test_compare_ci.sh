@@ -133,6 +133,8 @@ import xml.etree.ElementTree
 assert "not compared: 1 picture in subfolders of sub.a" in xml.etree.ElementTree.parse("report/junit.xml").find("system-out").text
 PYTHON
 
+! brief || finish
+
 # A summary of which GitHub would refuse all is cut, and what was there before counts.
 rm summary.md
 run 1 compare crowd/a crowd/b --annotations github

@@ -2,6 +2,7 @@
 /* paper/: tables made up after measured ones, each with all that its figure can show. */
 #include "files.h"
 #include "python.h"
+#include "sanitized.h"
 
 #include "paper/report.h"
 
@@ -253,7 +254,7 @@ TEST(odd_numbers_are_drawn) {
                  {"0", "0", "", "0", "3"},
                  {"5e-324", "5e-324", "1e-6", "5e-324", "1"},
                  {"1e6", "1", "1e6", "1e6", "1e6"}};
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i += sampled(2)) {
         const char *n = cases[i].number, *rate = cases[i].rate, *divisor = cases[i].divisor;
         char text[1024];
         start_afresh();

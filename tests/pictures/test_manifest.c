@@ -9,6 +9,7 @@
 #include "pictures/picture.h"
 #include "pictures/render.h"
 #include "runs.h"
+#include "sanitized.h"
 
 #include <jansson.h>
 #include <signal.h>
@@ -294,7 +295,7 @@ TEST(every_cut_of_the_journal_is_survived) {
     /* In the head, in the first line, in and after the last. */
     const size_t cuts[] = {0,        50,  (size_t)(strstr(text, "{\"file\"") - text) + 30, size - 90, size - 20,
                            size - 1, size};
-    for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i++) {
+    for (size_t i = 0; i < sizeof cuts / sizeof *cuts; i += (size_t)sampled(3)) {
         assert_int_equal(unlink(manifest_of(options.directory)), i == 0 ? -1 : 0);
         write_bytes(journal, text, cuts[i]);
         resume(options.directory, NULL);
@@ -314,7 +315,7 @@ TEST(another_sequence_is_redrawn) {
         {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .title = "x"}, "manifest.json:7 differs"},
         {{.width = WIDTH, .height = HEIGHT, .slow = 3, .hold = 0.05, .notes = {"x"}}, "differs: other runs"}};
     char why[256];
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    for (size_t i = 0; i < sizeof others / sizeof *others; i += (size_t)sampled(2)) {
         char name[16];
         snprintf(name, sizeof name, "other%zu", i);
         RenderOptions options = others[i].options;
@@ -369,7 +370,7 @@ TEST(a_manifest_is_not_trusted) {
     size_t size;
     char *text = read_whole(manifest_of(whole), &size);
     const char *directory = copied("changed");
-    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i += (size_t)sampled(3)) {
         char *changed = replaced(text, changes[i][0], changes[i][1]);
         bool ours = strncmp(changed, text, 12) == 0;
         write_bytes(manifest_of(directory), changed, strlen(changed));

@@ -7,6 +7,7 @@
 #include "mesa.h"
 #include "pictures/render.h"
 #include "runs.h"
+#include "sanitized.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -92,7 +93,7 @@ TEST(gifs_keep_a_chosen_rate) {
         bool chosen;
         double shown;
     } cases[] = {{50, true, 50}, {50, false, 25}, {25, false, 25}, {100, true, 50}, {20, false, 20}, {75, false, 25}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i += (size_t)sampled(3)) {
         int frames, width, height;
         double rate;
         VideoOptions options = options_for(temporary_path("rate.gif"));
@@ -109,7 +110,7 @@ TEST(gifs_keep_a_chosen_rate) {
 TEST(gifs_are_small) {
     static const int sizes[][4] = {
         {1600, 90, 800, 45}, {90, 1600, 45, 800}, {801, 100, 800, 100}, {800, 60, 800, 60}, {96, 64, 96, 64}};
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i += (size_t)sampled(2)) {
         int frames, width, height;
         double rate;
         const char *directory = temporary_path("large");
