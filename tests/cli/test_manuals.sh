@@ -30,7 +30,7 @@ section() { awk -v name="$1" '/^[A-Z]/ { found = $0 == name; next } found { prin
 lacking() { awk 'NR == FNR { text = text $0 "\n"; next } !index(text, $0)' "$1" -; }
 
 if ! command -v mandoc >/dev/null; then
-    fail "mandoc is not installed (tests/setup --tests)"
+    fail "mandoc is not installed (tests/setup --all)"
     finish
 fi
 version=$("$twinbox" --version)

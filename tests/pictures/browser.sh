@@ -4,6 +4,6 @@ twinbox=$1 sources=$2
 
 # browse SCRIPT: by Debian's Python, for NumPy.
 browse() {
-    command -v chromium >/dev/null || { echo "FAILED: chromium is not installed; tests/setup --tests does that"; exit 1; }
+    command -v chromium >/dev/null || { echo "FAILED: chromium is not installed; tests/setup --all does that"; exit 1; }
     PYTHONPATH=$sources/tests/browser exec /usr/bin/python3 -B "$sources/tests/pictures/$1" "$twinbox" "$sources"
 }
