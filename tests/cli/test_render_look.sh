@@ -66,6 +66,8 @@ run 1 compare set moving
 look -o near --camera bomb --view-from seen.npz
 run 0 compare moving near
 
+! brief || finish
+
 # Costs are those that a chart of the scene holds.
 run 0 chart "$scenes/single.yaml" --quick --methods engine:k=10,momentum:k=20 -o chart
 draw -o free --size 640x360 --jobs 1
