@@ -29,6 +29,8 @@ draw -o three $everything --jobs 3 --context egl
 draw -o single $everything --jobs 1 --context osmesa
 run 0 compare three single
 
+! brief || finish
+
 # A box flies off in frame 20: no pixel of the frames before changes, of one run or of several side by side.
 run 0 simulate "$scenes/stack.yaml" --frames 24 -o calm.npz
 /usr/bin/python3 -c "
@@ -65,8 +67,6 @@ look -o moving --camera bomb --camera 0,5,16,9
 run 1 compare set moving
 look -o near --camera bomb --view-from seen.npz
 run 0 compare moving near
-
-! brief || finish
 
 # Costs are those that a chart of the scene holds.
 run 0 chart "$scenes/single.yaml" --quick --methods engine:k=10,momentum:k=20 -o chart

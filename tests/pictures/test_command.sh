@@ -100,7 +100,7 @@ checks=$((checks + 1))
 
 # The scripts as the page has them, and each as it is written.
 if ! brief; then
-    command -v node >/dev/null || fail "node is not installed; tests/setup --tests does that"
+    command -v node >/dev/null || fail "node is not installed; tests/setup --all does that"
     for script in begin.js viewer.js "$sources"/src/pictures/player/*.js "$sources"/tests/pictures/*.js; do
         checks=$((checks + 1))
         node --check "$script" >out 2>&1 || fail "$script: $(head -c 400 out)"
