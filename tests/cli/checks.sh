@@ -67,7 +67,7 @@ unchanged() {
 strike() {
     local signal=$1 wanted=$2 when=$3
     shift 3
-    "$twinbox" "$@" >out 2>err </dev/null &
+    nice "$twinbox" "$@" >out 2>err </dev/null & # after this loop on a busy machine: the signal has to come in time
     until eval "$when" >/dev/null 2>&1 || ! kill -0 $! 2>/dev/null; do sleep 0.01; done
     kill -"$signal" $!
     wait $! 2>/dev/null
