@@ -279,9 +279,10 @@ static bool draw_measured(const SpeedAccuracyOptions *options, const char *csv, 
     if (!draw_scene(csv, &drawn, options->folder, i, options->scene_count, error)) return false;
     const char *without = scene->without_network.text;
     if (without[0] != '\0') printf("    left out, as no network is named for them: %s\n", without);
-    printf("    reference: residual at most %.1g m/s in frozen steps; above 1 mm/s in %" PRId64 " of %" PRId64
-           " steps in closed loop\n",
-           scene->solves.frozen_residual, scene->solves.unconverged, scene->solves.solves);
+    const SceneSolves *solves = &scene->solves;
+    printf("    not scored, as the reference does not converge: %" PRId64 " of %" PRId64 " frozen steps, %" PRId64
+           " of %" PRId64 " in closed loop\n",
+           solves->frozen_unconverged, solves->frozen, solves->closed_unconverged, solves->closed);
     return true;
 }
 

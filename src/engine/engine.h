@@ -229,8 +229,8 @@ typedef struct NetworkFallbacks {
     int outside_cone;    /* impulses that were clamped to the friction cone */
     int beyond_training; /* steps unlike the training data: taken without the network, or with inputs or components that
                             were clamped to its range (the method's file says which) */
-    int by_sweeps;       /* steps that sweeps solved, because the residual of interior-point steps stayed high or the
-                            problem is too large for them */
+    int by_sweeps;       /* steps in which sweeps solved an island, because the residual of interior-point steps stayed
+                            high or it is too large for them */
 } NetworkFallbacks;
 
 static inline void network_fallbacks_add(NetworkFallbacks *sum, const NetworkFallbacks *step) {

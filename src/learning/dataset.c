@@ -73,7 +73,7 @@ static void difference(float *changes, const BodyVelocity *to, const BodyVelocit
 
 /* The state after the warm start, before the first sweep. */
 static SequentialOptions sweeps_of(const Scene *scene) {
-    return (SequentialOptions){.accumulate = scene->accumulate_impulses, .warm = true, .relaxation = 1};
+    return (SequentialOptions){.accumulate = scene->accumulate_impulses, .warm = true};
 }
 
 static bool record_step(LaunchRecorder *recorder, int frame, const World *world, Error *error) {

@@ -7,33 +7,55 @@
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
+#include <stdlib.h>
+
+typedef struct State {
+    StoppingRule rule;
+    SequentialOptions options;
+    Sweeps sweeps;
+} State;
+
 static const SettingSpec settings[] = {
     SWEEPS_SETTING,
     {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)",
-     SETTING_BOOL(SweepState, options.accumulate)},
-    {"warm", "on|off: warm start from the previous step's impulses (default: on)",
-     SETTING_BOOL(SweepState, options.warm)},
+     SETTING_BOOL(State, options.accumulate)},
+    {"warm", "on|off: warm start from the previous step's impulses (default: on)", SETTING_BOOL(State, options.warm)},
     STOPPING_SETTINGS,
     {0}};
 
+static void destroy(void *state) {
+    State *solver = state;
+    if (solver == NULL) return;
+    sweeps_free(&solver->sweeps);
+    free(solver);
+}
+
 static void *create(const Settings *chosen, Error *error) {
-    static const SweepState standard = {.rule.k = 10,
-                                        .options = {.accumulate = true, .warm = true, .relaxation = 1.0f}};
+    static const State standard = {.rule.k = 10, .options = {.accumulate = true, .warm = true}};
     return stopping_make(chosen, settings, &standard, sizeof standard, "engine", error);
 }
 
-static void solve_scalar(const SweepState *solver, const ContactProblem *problem, ContactSolution *solution) {
+static bool sweep(State *solver, const ContactProblem *problem) {
+    const StoppingRule *rule = &solver->rule;
+    Sweeps *sweeps = &solver->sweeps;
+    sweeps->block = rule->more > 0 ? STOPPING_BLOCK : 0;
+    if (!sweeps_run(sweeps, rule->k)) return false;
+    for (int done = 0; stopping_needs_more(rule, done, sweeps, problem); done += STOPPING_BLOCK)
+        if (!sweeps_run(sweeps, STOPPING_BLOCK)) return false;
+    return true;
+}
+
+static void solve_scalar(const State *solver, const ContactProblem *problem, ContactSolution *solution) {
     sequential_impulses_solve(problem, &solver->options, solver->rule.k, solution);
     for (int done = 0; stopping_needs_more_scalar(&solver->rule, done, problem, solution); done += STOPPING_BLOCK)
         for (int i = 0; i < STOPPING_BLOCK; i++) sequential_impulses_sweep(problem, &solver->options, solution);
 }
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
-    SweepState *solver = state;
+    State *solver = state;
     const SequentialOptions *options = &solver->options;
     if (options->accumulate) {
-        if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, options->warm, options->relaxation) ||
-            !stopping_run(&solver->rule, &solver->sweeps, problem, sweeps_run))
+        if (!sweeps_begin(&solver->sweeps, sweeps_best_kernel(), problem, options->warm) || !sweep(solver, problem))
             return error_memory(error, "engine");
         if (sweeps_end(&solver->sweeps, solution)) return true;
     }
@@ -54,4 +76,4 @@ const ContactSolverKind solver_engine = {
                     .stability_place = 1},
     .create = create,
     .solve = solve,
-    .destroy = sweep_state_destroy};
+    .destroy = destroy};

@@ -201,8 +201,18 @@ bool interior_load(Interior *s, const InteriorKernels *kernels, const Sweeps *sw
     return true;
 }
 
-void interior_close(Interior *s, double speed, double depth) {
-    for (int i = 0; i < s->group_count; i++)
-        for (int k = 0; k < BLOCK_SLOTS; k++)
-            if (s->groups[i].depth[k] < depth) s->groups[i].bias[k] -= speed;
+/* m: the overlap that a contact at rest closes to. Both exceed the rounding of positions; where nothing holds sideways, a
+   box that is pressed in on one side tilts, and slides. */
+static const double closed = (double)CONTACT_SLOP / 200, closed_slippery = 3e-6;
+/* Contacts that overlap by this share of it are left: closing these, too, makes those of a loop take turns. */
+static const double closed_enough = 0.98;
+
+void interior_close(Interior *s, double speed, double dt) {
+    for (int i = 0; i < s->group_count; i++) {
+        InteriorGroup *g = &s->groups[i];
+        for (int k = 0; k < BLOCK_SLOTS; k++) {
+            const double depth = g->friction[k] < (double)INTERIOR_SLIPPERY ? closed_slippery : closed;
+            if (g->depth[k] < closed_enough * depth) g->bias[k] -= fmin(speed, (depth - g->depth[k]) / dt);
+        }
+    }
 }

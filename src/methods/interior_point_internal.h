@@ -96,9 +96,12 @@ void interior_free(Interior *interior);
 bool interior_load(Interior *interior, const InteriorKernels *kernels, const Sweeps *sweeps,
                    const ContactProblem *problem);
 
-/* Lets contacts of less than `depth` (m) close by `speed` (m/s): an interior point leaves each a little open, and boxes
-   that rest on each other would part. */
-void interior_close(Interior *interior, double speed, double depth);
+/* Friction below this holds nothing. */
+#define INTERIOR_SLIPPERY 0.01f
+
+/* Lets contacts close by up to `speed` (m/s) in a step of dt (s), until they overlap a little: an interior point leaves each
+   a little open, and boxes that rest on each other would part. */
+void interior_close(Interior *interior, double speed, double dt);
 
 /* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus `least_scale`. */
 typedef struct InteriorRule {

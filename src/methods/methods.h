@@ -104,9 +104,7 @@ typedef struct ContactSolver {
    solver call in a step. New methods go to the end: lines of a chart get their colours in this order. */
 #define METHODS(SOLVER, STEPPING) \
     SOLVER(engine)                \
-    SOLVER(over_relaxation)       \
     SOLVER(momentum)              \
-    SOLVER(block)                 \
     SOLVER(nncg)                  \
     STEPPING(substepping)         \
     SOLVER(pair_net)              \

@@ -122,7 +122,7 @@ static bool is_last(const Nncg *solver, int sweep, const ContactProblem *problem
 
 /* False when memory is short. */
 static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
-    if (!sweeps_begin(&solver->sweeps, kernel, problem, true, 1.0f) || !reserve(solver)) return false;
+    if (!sweeps_begin(&solver->sweeps, kernel, problem, true) || !reserve(solver)) return false;
     restart(solver);
     float squared_before = 0.0f;
     for (int sweep = 1;; sweep++) {

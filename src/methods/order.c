@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The order of visits by colours, and the loops of islands (methods/sweeps.h). */
+/* The order of visits by colours (methods/sweeps.h). */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/sweeps.h"
@@ -51,37 +51,4 @@ bool colours_order(Colours *colours, const ContactProblem *problem) {
         for (int first = colours->pairs[i]; first < colours->pairs[i + 1]; first++) *visit++ = first;
     }
     return true;
-}
-
-void islands_free(Islands *islands) {
-    free(islands->arrays.memory);
-    *islands = (Islands){0};
-}
-
-/* The body that stands for the island; halves the path to it. */
-static int32_t find(int32_t *parent, int32_t body) {
-    while (parent[body] != body) body = parent[body] = parent[parent[body]];
-    return body;
-}
-
-int islands_most_loops(Islands *islands, const ContactProblem *problem) {
-    if (!ARRAY_BLOCK_RESERVE(&islands->arrays, ARRAY_PART(islands->parent, problem->body_count),
-                             ARRAY_PART(islands->loops, problem->body_count)))
-        return -1;
-    int32_t *parent = islands->parent, *loops = islands->loops;
-    for (int i = 0; i < problem->body_count; i++) {
-        parent[i] = problem_body_moves(&problem->bodies[i]) ? i : -1;
-        loops[i] = 0;
-    }
-    int most = 0;
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        const bool again = i > 0 && contact[-1].a == contact->a && contact[-1].b == contact->b;
-        if (again || parent[contact->a] < 0 || parent[contact->b] < 0) continue;
-        const int32_t a = find(parent, contact->a), b = find(parent, contact->b);
-        parent[b] = a;
-        loops[a] += a == b ? 1 : loops[b];
-        if (loops[a] > most) most = loops[a];
-    }
-    return most;
 }

@@ -104,7 +104,7 @@ static bool find_moment(PairNetwork *pair, const ContactProblem *problem, const 
     *now = NULL;
     if (!pair_views[pair->view].by_contact) return true;
     if (!pair_moment_reserve(&pair->moment, problem)) return false;
-    static const SequentialOptions options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
+    static const SequentialOptions options = {.accumulate = true, .warm = true};
     ContactSolution begun = pair_moment_solution(&pair->moment);
     sequential_impulses_begin(problem, &options, &begun);
     if (pair->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&pair->moment, problem);
@@ -404,7 +404,7 @@ static void visit(const ContactPoint *contact, const ProblemBody *bodies, BodyVe
 
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     (void)error;
-    static const SequentialOptions start = {.accumulate = true, .warm = true, .relaxation = 1.0f};
+    static const SequentialOptions start = {.accumulate = true, .warm = true};
     const StoppingRule *rule = state;
     sequential_impulses_begin(problem, &start, solution);
     for (int sweep = 0; sweep < rule->k; sweep++)

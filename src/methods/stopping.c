@@ -73,6 +73,25 @@ bool residual_of_visits_reaches(const Sweeps *sweeps, int contact_count, float l
     return sum_reaches(sweeps, contact_count, limit, squared_of_visit, true);
 }
 
+PairResidual residual_of_pair(const Sweeps *sweeps, int i) {
+    const SweepPair *pair = &sweeps->pairs[i];
+    const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
+    const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
+    PairResidual sum = {0};
+    for (int k = 0; k < sweep_pair_points(pair); k++) {
+        const float held = pair->sums[k].normal / pair->points[k].mass_normal;
+        sum.visit += squared_of(squared_of_visit, pair, k, a, b);
+        sum.held += held * held;
+    }
+    return sum;
+}
+
+float residual_of_sweeps(const Sweeps *sweeps) {
+    float sum = 0;
+    for (int i = 0; i < sweeps->pair_count; i++) sum += residual_of_pair(sweeps, i).visit;
+    return sum;
+}
+
 bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit) {
     const float enough = limit * limit * (float)problem->contact_count;
     float sum = 0;
@@ -86,15 +105,12 @@ bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolutio
     return problem->contact_count > 0 && sum >= enough;
 }
 
-bool residual_motion_reaches(const ContactProblem *problem, float limit) {
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
-        const Vec2 velocity = relative_velocity(b->velocity, b->angular_velocity, contact->arm_b, a->velocity,
-                                                a->angular_velocity, contact->arm_a);
-        if (!(vec2_dot(velocity, velocity) < limit * limit)) return true;
-    }
-    return false;
+float residual_of_motion(const ContactProblem *problem, int i) {
+    const ContactPoint *contact = &problem->contacts[i];
+    const ProblemBody *a = &problem->bodies[contact->a], *b = &problem->bodies[contact->b];
+    const Vec2 velocity = relative_velocity(b->velocity, b->angular_velocity, contact->arm_b, a->velocity,
+                                            a->angular_velocity, contact->arm_a);
+    return vec2_dot(velocity, velocity);
 }
 
 bool stopping_read(StoppingRule *rule, const Settings *chosen, Error *error) {
@@ -125,19 +141,4 @@ bool stopping_needs_more(const StoppingRule *rule, int done, const Sweeps *sweep
 bool stopping_needs_more_scalar(const StoppingRule *rule, int done, const ContactProblem *problem,
                                 const ContactSolution *solution) {
     return done < rule->more && residual_reaches_scalar(problem, solution, rule->near);
-}
-
-bool stopping_run(const StoppingRule *rule, Sweeps *sweeps, const ContactProblem *problem, bool (*run)(Sweeps *, int)) {
-    sweeps->block = rule->more > 0 ? STOPPING_BLOCK : 0;
-    if (!run(sweeps, rule->k)) return false;
-    for (int done = 0; stopping_needs_more(rule, done, sweeps, problem); done += STOPPING_BLOCK)
-        if (!run(sweeps, STOPPING_BLOCK)) return false;
-    return true;
-}
-
-void sweep_state_destroy(void *state) {
-    SweepState *solver = state;
-    if (solver == NULL) return;
-    sweeps_free(&solver->sweeps);
-    free(solver);
 }

@@ -76,7 +76,7 @@ static void find_pushes(Substepping *stepping, Vec2 gravity) {
 
 /* Bodies before gravity, plus the push of the first small step; contacts from the collision pass. */
 static bool begin(Substepping *stepping, const World *world, const ContactProblem *problem, Vec2 gravity) {
-    if (!reserve(stepping, problem) || !sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false, 1))
+    if (!reserve(stepping, problem) || !sweeps_begin(&stepping->sweeps, sweeps_best_kernel(), problem, false))
         return false;
     const Body *now = world_bodies(world);
     for (int i = 0; i < problem->body_count; i++) {

@@ -210,16 +210,6 @@ static bool run(Sweeps *sweeps, const float *factors, int count) {
     return true;
 }
 
-bool sweeps_run_blocks(Sweeps *sweeps, int count) {
-    if (sweeps->pair_count == 0) return true;
-    int at_once = sweeps_of_schedule(sweeps, count, false);
-    if (!reschedule(sweeps, at_once, count % at_once, false)) return false;
-    int done = 0;
-    for (; done + at_once <= count; done += at_once) sweeps_run_blocks_avx2(sweeps, &sweeps->whole);
-    if (done < count) sweeps_run_blocks_avx2(sweeps, &sweeps->rest);
-    return true;
-}
-
 bool sweeps_run(Sweeps *sweeps, int count) { return sweeps->pair_count == 0 || run(sweeps, NULL, count); }
 
 /* Both halves are equal: before the first sweep there is no change to extrapolate. */
@@ -317,20 +307,20 @@ static SweepEnds ends_of(const Sweeps *sweeps, int a, int b) {
 }
 
 /* Member by member, so that a record is written once and not copied. */
-static void load_point(SweepPair *pair, int k, const ContactPoint *contact, float extra, bool warm, float relaxation) {
+static void load_point(SweepPair *pair, int k, const ContactPoint *contact, float extra, bool warm) {
     SweepPoint *point = &pair->points[k];
     pair->sums[k].normal = warm ? contact->warm_normal : 0.0f;
     pair->sums[k].tangent = warm ? contact->warm_tangent : 0.0f;
     point->arm_a = contact->arm_a;
     point->arm_b = contact->arm_b;
-    point->mass_normal = relaxation * contact->mass_normal;
-    point->mass_tangent = relaxation * contact->mass_tangent;
+    point->mass_normal = contact->mass_normal;
+    point->mass_tangent = contact->mass_tangent;
     point->bias = contact->bias;
     point->extra = extra;
 }
 
 /* Packs the pair that begins with contact `first` of the problem; returns its number of points. */
-static int load_pair(Sweeps *sweeps, const ContactProblem *problem, int first, bool warm, float relaxation) {
+static int load_pair(Sweeps *sweeps, const ContactProblem *problem, int first, bool warm) {
     static const ContactPoint none = {0};
     const ContactPoint *contact = &problem->contacts[first], *next = contact + 1;
     const int points = contact_surface_points(problem, first);
@@ -338,48 +328,34 @@ static int load_pair(Sweeps *sweeps, const ContactProblem *problem, int first, b
     pair->normal = contact->normal;
     pair->friction = contact->friction;
     pair->inv_inertia_a = problem->bodies[contact->a].inv_inertia;
-    load_point(pair, 0, contact, problem->bodies[contact->b].inv_inertia, warm, relaxation);
-    load_point(pair, 1, points == 2 ? next : &none, points == 2 ? -1.0f : 0.0f, warm, relaxation);
+    load_point(pair, 0, contact, problem->bodies[contact->b].inv_inertia, warm);
+    load_point(pair, 1, points == 2 ? next : &none, points == 2 ? -1.0f : 0.0f, warm);
     sweeps->first[sweeps->pair_count] = first;
     sweeps->ends[sweeps->pair_count++] = ends_of(sweeps, contact->a, contact->b);
     return points;
 }
 
 /* visits: the order of contacts, with those of a pair adjacent; NULL for the problem's order. */
-static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, const int32_t *visits, bool warm,
-                       float relaxation) {
+static void load_pairs(Sweeps *sweeps, const ContactProblem *problem, const int32_t *visits, bool warm) {
     sweeps->pair_count = 0;
-    for (int i = 0; i < problem->contact_count;)
-        i += load_pair(sweeps, problem, visits != NULL ? visits[i] : i, warm, relaxation);
+    for (int i = 0; i < problem->contact_count;) i += load_pair(sweeps, problem, visits != NULL ? visits[i] : i, warm);
     sweeps->pairs[sweeps->pair_count] = (SweepPair){0};
 }
 
-static bool begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, const int32_t *visits, bool warm,
-                  float relaxation) {
+static bool begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, const int32_t *visits, bool warm) {
     if (!reserve(sweeps, problem)) return false;
     sweeps->kernel = kernel;
     sweeps->coloured = visits != NULL;
     load_bodies(sweeps, problem);
-    load_pairs(sweeps, problem, visits, warm, relaxation);
+    load_pairs(sweeps, problem, visits, warm);
     sweeps_warm_start(sweeps);
     return true;
 }
 
-bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation) {
-    return begin(sweeps, kernel, problem, NULL, warm, relaxation);
+bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm) {
+    return begin(sweeps, kernel, problem, NULL, warm);
 }
 
 bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem) {
-    return colours_order(&sweeps->colours, problem) &&
-           begin(sweeps, kernel, problem, sweeps->colours.visits, true, 1.0f);
-}
-
-bool sweeps_begin_blocks(Sweeps *sweeps, const ContactProblem *problem) {
-    if (!sweeps_begin(sweeps, sweeps_best_kernel(), problem, true, 1.0f)) return false;
-    for (int i = 0; i < sweeps->pair_count; i++) {
-        SweepPair *pair = &sweeps->pairs[i];
-        const ContactPoint *contact = &problem->contacts[sweeps->first[i]];
-        pair->block = sweep_pair_points(pair) == 2 ? block_make(contact, contact + 1, problem->bodies) : (Block){0};
-    }
-    return true;
+    return colours_order(&sweeps->colours, problem) && begin(sweeps, kernel, problem, sweeps->colours.visits, true);
 }

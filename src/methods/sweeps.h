@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sweeps over contacts: the scalar reference implementation, fast kernels, blocks, islands and the order of visits. */
+/* Sweeps over contacts: the scalar reference implementation, fast kernels and the order of visits. */
 #pragma once
 #include "engine/engine.h"
 
@@ -8,27 +8,11 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Islands: bodies that contacts connect, through bodies that move. */
-
-/* Work space. Zero-initialise; arrays grow and are reused. */
-typedef struct Islands {
-    int32_t *parent, *loops; /* [body_count] */
-    ArrayBlock arrays;
-} Islands;
-
-void islands_free(Islands *islands);
-
-/* The loops of the island that has most: touching pairs of its moving bodies that could open without dividing it. A
-   stack has none, a pyramid or a wall almost as many as boxes. A factorization fills in only where loops are. -1 when
-   memory is short. */
-int islands_most_loops(Islands *islands, const ContactProblem *problem);
-
 /* The scalar reference implementation of sequential impulses. The vectorised sweeps (sweeps.h) must have its bits. */
 
 typedef struct SequentialOptions {
-    bool accumulate;  /* clamp accumulated impulses, not each impulse */
-    bool warm;        /* start from the problem's warm-start impulses, not from zero */
-    float relaxation; /* factor of every impulse; 1: none */
+    bool accumulate; /* clamp accumulated impulses, not each impulse */
+    bool warm;       /* start from the problem's warm-start impulses, not from zero */
 } SequentialOptions;
 
 /* Sets velocities and impulses before the first sweep. */
@@ -46,20 +30,6 @@ void sequential_impulses_sweep(const ContactProblem *problem, const SequentialOp
 /* Begins, then `count` sweeps. */
 void sequential_impulses_solve(const ContactProblem *problem, const SequentialOptions *options, int count,
                                ContactSolution *solution);
-
-/* The scalar reference implementation of the block solver (block.c), and its data for the two points of a pair. */
-
-/* K of two normals, 1/kg: K x is the change of the two normal velocities by the normal impulses x. */
-typedef struct Block {
-    float k11, k12, k22;
-    float inverse_determinant; /* kg^2; 0 if the points are solved separately */
-} Block;
-
-/* first, second: points of the same pair. They are solved separately if K is ill-conditioned. */
-Block block_make(const ContactPoint *first, const ContactPoint *second, const ProblemBody *bodies);
-
-/* `count` sweeps, after the warm start. */
-void block_solve(const ContactProblem *problem, int count, ContactSolution *solution);
 
 /* Graph colouring of the contacts: pairs of one colour share no moving body, so their visits commute. A sweep in this
    order has one level (sweeps.h) per colour, instead of one per body of the longest chain, and a schedule needs two
@@ -136,7 +106,6 @@ typedef struct SweepPair {
     Vec2 normal;
     float friction, inv_inertia_a;
     SweepPoint points[2];
-    Block block; /* only for the block solver */
 } SweepPair;
 
 enum {
@@ -217,12 +186,10 @@ typedef struct Sweeps {
 
 void sweeps_free(Sweeps *sweeps);
 
-/* Loads a problem and applies its warm start. Effective masses are multiplied by `relaxation` (1: unchanged). False
-   when memory is short. */
-bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm, float relaxation);
+/* Loads a problem and applies its warm start. False when memory is short. */
+bool sweeps_begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem, bool warm);
 
-/* The same with visits in the order of colours: faster, with other bits. With warm start, without
-   relaxation. */
+/* The same with visits in the order of colours: faster, with other bits. With warm start. */
 bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *problem);
 
 /* `count` sweeps over all contacts. False when memory is short. */
@@ -235,10 +202,6 @@ bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
 
 /* Continues after sweeps_run_momentum() or itself, as if in one run: here factors[0] counts. Both counts are even. */
 bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count);
-
-/* The same for the block solver, with the bits of block.c. Only for processors with lanes. */
-bool sweeps_begin_blocks(Sweeps *sweeps, const ContactProblem *problem);
-bool sweeps_run_blocks(Sweeps *sweeps, int count);
 
 /* Applies additional impulses [contact_count] and adds them to the sums. */
 void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses);
@@ -306,7 +269,6 @@ bool sweeps_have_avx2(void);
 void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors);
 
 /* The same with the normal impulses of a pair solved together. */
-void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule);
 
 /* Applies the initial impulses in the sums. */
 void sweeps_warm_start(Sweeps *sweeps);

@@ -28,8 +28,6 @@ TARGET static inline Lanes lanes_and(Lanes a, Lanes b) { return _mm256_and_ps(a,
 
 #include "methods/sweeps_lanes.h"
 
-#include "methods/block_lanes.h"
-
 TARGET static inline Lanes load_two(const float *low, const float *high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);
 }
@@ -88,10 +86,6 @@ TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const
         run_levels_extrapolating(sweeps, schedule, factors);
 }
 
-TARGET void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule) {
-    run_block_levels(sweeps, schedule);
-}
-
 #else
 
 #include <assert.h>
@@ -100,11 +94,6 @@ bool sweeps_have_avx2(void) { return false; }
 
 void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
     (void)sweeps, (void)schedule, (void)factors;
-    assert(false);
-}
-
-void sweeps_run_blocks_avx2(Sweeps *sweeps, const SweepSchedule *schedule) {
-    (void)sweeps, (void)schedule;
     assert(false);
 }
 

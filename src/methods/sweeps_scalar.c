@@ -223,7 +223,7 @@ static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies
     BodyVelocity *a = &velocities[contact->a], *b = &velocities[contact->b];
 
     float normal_velocity = vec2_dot(contact_relative_velocity(a, b, contact), contact->normal);
-    float normal = options->relaxation * contact->mass_normal * (-normal_velocity + contact->bias);
+    float normal = contact->mass_normal * (-normal_velocity + contact->bias);
     float pushed = accumulate ? sum->normal : 0.0f;
     float total = pushed + normal > 0.0f ? pushed + normal : 0.0f;
     normal = total - pushed;
@@ -232,7 +232,7 @@ static void solve_contact(const ContactPoint *contact, const ProblemBody *bodies
 
     Vec2 direction = vec2_cross_scalar(contact->normal, 1.0f);
     float tangent_velocity = vec2_dot(contact_relative_velocity(a, b, contact), direction);
-    float tangent = options->relaxation * contact->mass_tangent * -tangent_velocity;
+    float tangent = contact->mass_tangent * -tangent_velocity;
     float limit = contact->friction * (accumulate ? sum->normal : normal);
     float dragged = accumulate ? sum->tangent : 0.0f;
     total = contact_clamp(dragged + tangent, -limit, limit);

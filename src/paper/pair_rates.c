@@ -89,7 +89,7 @@ static void end(Rating *rating) {
     free(rating->pairs);
 }
 
-static const SequentialOptions engine_options = {.accumulate = true, .warm = true, .relaxation = 1};
+static const SequentialOptions engine_options = {.accumulate = true, .warm = true};
 
 /* Solves the problem with every column that can. */
 static bool solve_all(Rating *rating, const ContactProblem *problem, Error *error) {

@@ -219,7 +219,7 @@ static bool add_launch(const Assembly *assembly, int launch, int first, int end,
     char path[PIECES_PATH_SIZE], *text = NULL;
     StoredScores stored;
     bool ok = open_launch(assembly, launch, path, &stored, &text, error);
-    if (ok && stored.residual > assembly->solves->frozen_residual) assembly->solves->frozen_residual = stored.residual;
+    if (ok && first == 0) assembly->solves->frozen_unconverged += stored.unconverged;
     for (int i = first; ok && i < end; i++) ok = method_scores_add(&assembly->scores[i], &stored, i, error);
     free(text);
     return ok;
@@ -228,17 +228,20 @@ static bool add_launch(const Assembly *assembly, int launch, int first, int end,
 static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
     const SceneStudy *study = &assembly->scene->study;
     MethodScores *scores = &assembly->scores[contender];
+    int64_t steps[PROTOCOLS] = {0};
     for (int protocol = 0; protocol < PROTOCOLS; protocol++)
         for (int phase = 0; phase < PHASES; phase++) {
             ChartRow *row = &rows[protocol * PHASES + phase];
             *row = scene_row(study->scene->name, study->launch_count, study->contenders[contender], protocol, phase);
             scene_row_errors(row, &scores->steps[protocol][phase]);
+            steps[protocol] += scores->steps[protocol][phase].count;
             if (protocol != PROTOCOL_CLOSED) continue;
             row->error_worst = scores->worst[phase];
             scene_row_measures(row, scores->measures, study->launch_count);
         }
-    assembly->solves->solves += scores->solves;
-    assembly->solves->unconverged += scores->unconverged;
+    assembly->solves->frozen = steps[PROTOCOL_FROZEN] + assembly->solves->frozen_unconverged;
+    assembly->solves->closed += steps[PROTOCOL_CLOSED] + scores->unconverged;
+    assembly->solves->closed_unconverged += scores->unconverged;
     method_scores_free(scores);
 }
 

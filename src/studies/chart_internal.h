@@ -13,27 +13,27 @@
 #include <stdio.h>
 
 /* The scores of the methods on the launches of a scene. Those of one launch are stored as bytes of this machine: the number of
-   methods, the launch's residual, where each method's part ends, then the parts; so one method's is found at once. */
+   methods, the frozen steps that were left out, where each method's part ends, then the parts; so one method's is found at once. */
 
 /* A method on one launch. Zero-initialise. */
 typedef struct LaunchScores {
     StepScores steps[PROTOCOLS][PHASES];
     RunMeasures measures;
-    int unconverged; /* of the reference solves in closed loop, one for each step, as in Rollout */
+    int unconverged; /* steps in closed loop, as in Rollout */
 } LaunchScores;
 
 void launch_scores_free(LaunchScores *scores);
 
-/* Writes those of all methods, scores[count]. residual: m/s, the largest of the reference solves of frozen steps. */
-void launch_scores_write(FILE *results, const LaunchScores *scores, int count, double residual);
+/* Writes those of all methods, scores[count]. unconverged: frozen steps, as in SnapshotList. */
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged);
 
 /* What is stored of a launch. */
 typedef struct StoredScores {
     const char *path; /* for messages */
     const char *bytes;
     size_t size;
-    int count; /* methods */
-    double residual;
+    int count;           /* methods */
+    int64_t unconverged; /* frozen steps */
 } StoredScores;
 
 /* Looks at stored results with so many methods. ERROR_INPUT if they are damaged. The bytes must outlive *stored. */
@@ -52,7 +52,7 @@ typedef struct MethodScores {
     double worst[PHASES];  /* m/s: largest mean error of a launch in closed loop; NaN without a scored step */
     RunMeasures *measures; /* [launches] */
     int launches;
-    int64_t solves, unconverged; /* reference solves in closed loop, as in Rollout */
+    int64_t unconverged; /* steps in closed loop, as in Rollout */
     size_t measure_capacity;
 } MethodScores;
 
@@ -141,7 +141,7 @@ typedef struct EqualTimeRow {
     double time_scene_net;   /* us_solver / that of scene-net in this scene; likewise */
 } EqualTimeRow;
 
-/* Mean errors at the impact, in the time of momentum with 50 sweeps, or with 20 in a chart without that. */
+/* Mean errors at the impact, in the time of momentum with 100 sweeps, or with 50 or 20 in a chart without that. */
 typedef struct EqualMethodRow {
     const char *scene, *method; /* method: its family */
     double us_solver;           /* the time, microseconds */
@@ -158,7 +158,7 @@ typedef struct EqualTime {
     int count, method_count;
     EqualTimeRow *rows;      /* [count]; texts point into the chart's rows and into curves */
     EqualMethodRow *methods; /* [method_count], scene by scene; none for scenes without such a run of momentum */
-    const char *time;        /* the setting of momentum whose time all methods have: "k=50", else "k=20" */
+    const char *time;        /* the setting of momentum whose time all methods have: "k=100", "k=50" or "k=20" */
     RivalCurves curves;
 } EqualTime;
 

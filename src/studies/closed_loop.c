@@ -147,19 +147,15 @@ void rollout_free(Rollout *rollout) {
     *rollout = (Rollout){0};
 }
 
-/* m/s, far below the differences between methods. Only states that a bad method made explode, and steps without a
-   solution (methods/reference.h), do not reach it. */
-static const double solve_converged = 1e-3;
-
 static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores, Error *error) {
     const ContactProblem *problem = world_problem(rollout->world);
-    const Reference *reference = &rollout->converged.reference;
     if (!converged_step_solve(&rollout->converged, problem, push_out, error)) return false;
-    rollout->solves++;
-    rollout->unconverged += reference->residual > solve_converged;
-    if (step_scores_add(scores, frame, problem, world_solution(rollout->world)->velocities, reference->velocities))
-        return true;
-    return error_memory(error, "study");
+    const bool found = converged_step_found(&rollout->converged);
+    rollout->unconverged += !found;
+    return !found ||
+           step_scores_add(scores, frame, problem, world_solution(rollout->world)->velocities,
+                           rollout->converged.reference.velocities) ||
+           error_memory(error, "study");
 }
 
 static bool begin(Rollout *rollout, const Scene *launched, Error *error) {

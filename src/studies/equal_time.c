@@ -182,8 +182,10 @@ static EqualTimeRow compare_setting(const RivalCurves *curves, int i, CurveStati
 
 /* The most sweeps of momentum, of these, that were run somewhere. */
 static const char *choose_time(const ChartRow *rows, int count) {
-    for (int i = 0; i < count; i++)
-        if (strcmp(rows[i].method, "momentum") == 0 && strcmp(rows[i].setting, "k=50") == 0) return "k=50";
+    static const char *const times[] = {"k=100", "k=50"};
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < count; i++)
+            if (strcmp(rows[i].method, "momentum") == 0 && strcmp(rows[i].setting, times[k]) == 0) return times[k];
     return "k=20";
 }
 

@@ -26,7 +26,7 @@ typedef struct EqualTimeCell {
 
 typedef struct EqualTimeGrid {
     int columns, rows;
-    char time[CHART_TEXT_SIZE];                        /* setting of momentum whose time all methods have: "k=50" */
+    char time[CHART_TEXT_SIZE];                        /* setting of momentum whose time all methods have: "k=100" */
     char methods[EQUAL_TIME_COLUMNS][CHART_TEXT_SIZE]; /* plain */
     bool joined[EQUAL_TIME_COLUMNS]; /* the column and the one before it differ only in what was learned */
     char scenes[EQUAL_TIME_SCENES][CHART_TEXT_SIZE];

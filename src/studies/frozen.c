@@ -136,12 +136,14 @@ NameList contenders_without_network(const ContenderList *list, const Scene *scen
     return names;
 }
 
+static void snapshot_free(Snapshot *snapshot) {
+    world_destroy(snapshot->world);
+    free(snapshot->reference);
+    free(snapshot->no_push_out);
+}
+
 void snapshots_free(SnapshotList *list) {
-    for (int i = 0; i < list->count; i++) {
-        world_destroy(list->items[i].world);
-        free(list->items[i].reference);
-        free(list->items[i].no_push_out);
-    }
+    for (int i = 0; i < list->count; i++) snapshot_free(&list->items[i]);
     free(list->items);
     *list = (SnapshotList){0};
 }
@@ -153,34 +155,36 @@ static World *empty_world(const Scene *scene, Error *error) {
     return scene_world(&empty, error);
 }
 
-/* A copy of the converged velocities of a step, or NULL with error set. */
-static ReferenceVelocity *converged_velocities(SnapshotList *list, ConvergedStep *converged,
-                                               const ContactProblem *problem, bool push_out, Error *error) {
-    const size_t size = (size_t)problem->body_count * sizeof(ReferenceVelocity);
-    if (!converged_step_solve(converged, problem, push_out, error)) return NULL;
-    if (converged->reference.residual > list->residual) list->residual = converged->reference.residual;
-    ReferenceVelocity *copy = malloc(size + 1);
-    if (copy == NULL) error_memory(error, "study");
-    if (copy != NULL && size > 0) memcpy(copy, converged->reference.velocities, size);
-    return copy;
+/* *velocities: a copy of the converged velocities of a step, or NULL if the solve has not converged. */
+static bool converged_velocities(ConvergedStep *converged, const ContactProblem *problem, bool push_out,
+                                 ReferenceVelocity **velocities, Error *error) {
+    const size_t size = (size_t)problem->body_count * sizeof **velocities;
+    if (!converged_step_solve(converged, problem, push_out, error)) return false;
+    if (!converged_step_found(converged)) return true;
+    *velocities = malloc(size + 1);
+    if (*velocities == NULL) return error_memory(error, "study");
+    if (size > 0) memcpy(*velocities, converged->reference.velocities, size);
+    return true;
 }
 
-/* Stores the state before the step that led to `after`, and the step's converged velocities. */
+/* Stores the state before the step that led to `after`, and the step's converged velocities, if there are any. */
 static bool store(SnapshotList *list, const Scene *scene, const World *before, const World *after, int frame,
                   Phase phase, ConvergedStep *converged, Error *error) {
     const ContactProblem *problem = world_problem(after);
     if (!array_reserve((void **)&list->items, &list->capacity, (size_t)list->count + 1, sizeof *list->items))
         return error_memory(error, "study");
-    Snapshot *snapshot = &list->items[list->count++];
+    Snapshot *snapshot = &list->items[list->count];
     *snapshot = (Snapshot){.scene = scene, .frame = frame, .phase = phase};
-    snapshot->reference = converged_velocities(list, converged, problem, true, error);
-    if (snapshot->reference == NULL) return false;
-    if (list->no_push_out) {
-        snapshot->no_push_out = converged_velocities(list, converged, problem, false, error);
-        if (snapshot->no_push_out == NULL) return false;
+    bool ok = converged_velocities(converged, problem, true, &snapshot->reference, error);
+    if (ok && list->no_push_out) ok = converged_velocities(converged, problem, false, &snapshot->no_push_out, error);
+    if (ok && (snapshot->reference == NULL || (list->no_push_out && snapshot->no_push_out == NULL))) {
+        snapshot_free(snapshot);
+        list->unconverged++;
+        return true;
     }
-    snapshot->world = empty_world(scene, error);
-    return snapshot->world != NULL && world_copy(snapshot->world, before, error);
+    list->count++;
+    if (ok) snapshot->world = empty_world(scene, error);
+    return ok && snapshot->world != NULL && world_copy(snapshot->world, before, error);
 }
 
 typedef struct Sampler {

@@ -19,7 +19,7 @@
 
 typedef struct LaunchHead {
     int64_t count; /* of methods */
-    double residual;
+    int64_t unconverged;
 } LaunchHead;
 
 /* Followed by the errors and the shares of each protocol and phase. */
@@ -63,8 +63,8 @@ static void write_part(FILE *results, const LaunchScores *scores) {
         }
 }
 
-void launch_scores_write(FILE *results, const LaunchScores *scores, int count, double residual) {
-    const LaunchHead head = {count, residual};
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged) {
+    const LaunchHead head = {count, unconverged};
     int64_t end = (int64_t)sizeof head + count * (int64_t)sizeof end;
     fwrite(&head, sizeof head, 1, results);
     for (int i = 0; i < count; i++) {
@@ -87,28 +87,23 @@ static int64_t part_begin(const StoredScores *stored, int method) {
     return begin;
 }
 
+static bool is_step_count(int64_t count) { return count >= 0 && count <= SCENE_MAX_FRAMES; }
+
 bool stored_scores_open(StoredScores *stored, const char *path, const char *bytes, size_t size, int count,
                         Error *error) {
     LaunchHead head = {0};
     *stored = (StoredScores){.path = path, .bytes = bytes, .size = size, .count = count};
     if (size >= sizeof head) memcpy(&head, bytes, sizeof head);
     const size_t begin = sizeof head + (size_t)count * sizeof(int64_t);
-    if (size < begin || head.count != count || !(head.residual >= 0)) return refuse(stored, error);
+    if (size < begin || head.count != count || !is_step_count(head.unconverged)) return refuse(stored, error);
     for (int i = 0; i < count; i++) {
         const int64_t end = part_begin(stored, i + 1);
         if (end > (int64_t)size || end < part_begin(stored, i) + (int64_t)sizeof(PartHead))
             return refuse(stored, error);
     }
     if (part_begin(stored, count) != (int64_t)size) return refuse(stored, error);
-    stored->residual = head.residual;
+    stored->unconverged = head.unconverged;
     return true;
-}
-
-/* Each is a reference solve. */
-static int64_t closed_steps(const PartHead *head) {
-    int64_t sum = 0;
-    for (int phase = 0; phase < PHASES; phase++) sum += head->counts[PROTOCOL_CLOSED][phase];
-    return sum;
 }
 
 /* The counts fit the size of the part. */
@@ -120,7 +115,7 @@ static bool fits(const PartHead *head, size_t size) {
             if (count < 0 || (size_t)count > rest) return false;
             rest -= (size_t)count;
         }
-    return part_size(head) == size && head->unconverged >= 0 && head->unconverged <= closed_steps(head);
+    return part_size(head) == size && is_step_count(head->unconverged);
 }
 
 /* Errors are not negative, shares at most 1. */
@@ -172,7 +167,6 @@ bool method_scores_add(MethodScores *scores, const StoredScores *stored, int met
     for (int phase = 0; scores->launches == 0 && phase < PHASES; phase++) scores->worst[phase] = NAN;
     if (!append_all(scores, stored, &head, stored->bytes + begin + sizeof head, error)) return false;
     scores->measures[scores->launches++] = head.measures;
-    scores->solves += closed_steps(&head);
     scores->unconverged += head.unconverged;
     return true;
 }

@@ -9,7 +9,7 @@
 #include <math.h>
 
 /* As the engine sweeps. */
-static const SequentialOptions engine_options = {.accumulate = true, .warm = true, .relaxation = 1.0f};
+static const SequentialOptions engine_options = {.accumulate = true, .warm = true};
 
 static inline ContactSolution make_solution(const ContactProblem *problem) {
     ContactSolution solution = {calloc((size_t)problem->body_count + 1, sizeof(BodyVelocity)),
@@ -52,7 +52,7 @@ static inline void assert_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], const Cont
     sequential_impulses_solve(problem, options, iterations, &plain);
     for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
         if (!sweeps_can(kernel)) continue;
-        assert_true(sweeps_begin(&sweeps[kernel], kernel, problem, options->warm, options->relaxation));
+        assert_true(sweeps_begin(&sweeps[kernel], kernel, problem, options->warm));
         assert_true(sweeps_run(&sweeps[kernel], iterations));
         assert_true(sweeps_end(&sweeps[kernel], &fast));
         assert_same_bits(problem, &fast, &plain, kernel == SWEEP_ONE_BY_ONE ? "one by one" : "lanes");
@@ -73,7 +73,7 @@ static inline void assert_momentum_kernels_agree(Sweeps sweeps[SWEEP_KERNELS], c
     for (SweepKernel kernel = 0; kernel < SWEEP_KERNELS; kernel++) {
         if (!sweeps_can(kernel)) continue;
         assert_true(coloured ? sweeps_begin_coloured(&sweeps[kernel], kernel, problem)
-                             : sweeps_begin(&sweeps[kernel], kernel, problem, true, 1.0f));
+                             : sweeps_begin(&sweeps[kernel], kernel, problem, true));
         assert_true(sweeps_run_momentum(&sweeps[kernel], factors, iterations));
         assert_true(sweeps_end(&sweeps[kernel], &fast));
         assert_same_bits(problem, &fast, &plain, kernel == SWEEP_ONE_BY_ONE ? "momentum one by one" : "momentum lanes");

@@ -32,8 +32,7 @@ static void steps_allocate_nothing_by(const ContactSolverKind *kind, const char 
 }
 
 TEST(a_settled_pyramid_steps_without_allocating) {
-    static const ContactSolverKind *const by_rule[] = {&solver_engine, &solver_over_relaxation, &solver_momentum,
-                                                       &solver_block, &solver_nncg},
+    static const ContactSolverKind *const by_rule[] = {&solver_engine, &solver_momentum, &solver_nncg},
                                           *const others[] = {&solver_relu_net, &solver_interior, &solver_hybrid,
                                                              &solver_reference};
     for (size_t i = 0; i < sizeof by_rule / sizeof *by_rule; i++) {

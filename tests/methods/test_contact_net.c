@@ -94,7 +94,7 @@ TEST(impulses_stay_in_their_cones) {
             contact->warm_tangent = impulses[i].tangent;
         }
         ContactSolution warm = {expected, impulses, 0, {0}};
-        sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true, 1}, &warm);
+        sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true}, &warm);
         assert_velocities(v, expected, random.problem.body_count, 0);
     }
     assert_true(pushed > 100 && sliding > 50);
@@ -115,7 +115,7 @@ TEST(a_network_of_zeros_is_the_warm_start) {
         solve_by(&solver_contact_net, constant_network(PAIR_CONTACT, TARGET_POINTS, 4, zeros), 1, &random.problem, v,
                  impulses);
         ContactSolution warm = {expected, started, 0, {0}};
-        sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true, 1}, &warm);
+        sequential_impulses_begin(&random.problem, &(SequentialOptions){true, true}, &warm);
         for (int i = 0; i < random.problem.contact_count; i++) {
             assert_near(impulses[i].normal, started[i].normal, 0);
             assert_near(impulses[i].tangent, started[i].tangent, 0);

@@ -53,7 +53,8 @@ TEST(stacks_at_rest_stay_in_place) {
         for (int i = 0; i < heights[k]; i++) add_box(world, 1, 0.2f, vec2(0, 0.5f + (float)i));
         ContactSolver solver = make_solver(&solver_interior, "");
         run(world, &solver, 1200);
-        assert_true(moved(world, &solver, 600) < 1e-6);
+        const double by = moved(world, &solver, 600);
+        if (!(by < 1e-6)) fail_msg("%d boxes moved by %g m", heights[k], by);
         free_solver(&solver);
         world_destroy(world);
     }
@@ -92,6 +93,107 @@ TEST(a_box_that_friction_holds_does_not_creep) {
         free_solver(&solver);
         world_destroy(world);
     }
+}
+
+/* A pyramid of that many rows, spaced by `width`. */
+static void add_pyramid(World *world, int rows, float width, float friction) {
+    for (int row = 0; row < rows; row++)
+        for (int i = 0; i < rows - row; i++)
+            add_box(world, 5, friction, vec2(width * ((float)i - 0.5f * (float)(rows - 1 - row)), 0.5f + (float)row));
+}
+
+/* Bricks of 1.6 m in half-brick bond, that touch. */
+static void add_wall(World *world, int courses, int per_course, float friction) {
+    for (int course = 0; course < courses; course++)
+        for (int i = 0; i <= per_course; i++) {
+            const bool odd = course % 2 == 1, half = odd && (i == 0 || i == per_course);
+            if (!odd && i == per_course) continue;
+            const float middle = odd ? (float)i - 0.5f : (float)i, shift = !half ? 0 : i == 0 ? 0.25f : -0.25f;
+            add_body(world, &(BodyDef){.size = {half ? 0.8f : 1.6f, 0.8f},
+                                       .mass = half ? 3 : 6,
+                                       .friction = friction,
+                                       .position = {1.6f * (middle + shift - 0.5f * (float)(per_course - 1)),
+                                                    0.4f + 0.8f * (float)course}});
+        }
+}
+
+/* Boxes of 1 and 100 kg in turns, pressed together between walls: impulses that nothing limits are there from the start. */
+static void add_jam(World *world) {
+    for (int side = -1; side <= 1; side += 2)
+        add_body(world, &(BodyDef){.size = {1, 10}, .fixed = true, .friction = 1, .position = {3 * (float)side, 5}});
+    for (int row = 0; row < 8; row++)
+        for (int i = 0; i < 5; i++)
+            add_body(world, &(BodyDef){.size = {1.003f, 1},
+                                       .mass = (row + i) % 2 == 0 ? 1 : 100,
+                                       .friction = 1,
+                                       .position = {(float)(i - 2), 0.5f + (float)row}});
+}
+
+/* Of any body, from where it began, sideways, m. */
+static double shifted(const World *world, const Body *before) {
+    double most = 0;
+    for (int i = 0; i < world_body_count(world); i++)
+        most = fmax(most, fabs((double)(world_bodies(world)[i].position.x - before[i].position.x)));
+    return most;
+}
+
+/* For 10 s no body moves by `most` m sideways, nor overlaps by more than `overlap`. */
+static void assert_stands(World *world, double most, double overlap) {
+    const int count = world_body_count(world);
+    Body *before = malloc((size_t)count * sizeof *before);
+    assert_non_null(before);
+    memcpy(before, world_bodies(world), (size_t)count * sizeof *before);
+    ContactSolver solver = make_solver(&solver_interior, "");
+    run(world, &solver, 600);
+    const double by = shifted(world, before);
+    if (!(by < most && world_penetration(world) < overlap))
+        fail_msg("%d bodies: %g m sideways, overlap %g m", count, by, world_penetration(world));
+    free_solver(&solver);
+    free(before);
+    world_destroy(world);
+}
+
+/* Many boxes, with loops between them, beside each other or apart; light below heavy; without friction; jammed.
+   Contacts that open once let all of them fall: a pyramid of 20 rows fell by 0.5 m. */
+TEST(what_stands_on_many_contacts_stays_closed) {
+    for (int k = 0; k < 8; k++) {
+        World *world = make_world();
+        add_ground(world, k == 7 ? 1 : 0.5f);
+        if (k == 0) add_pyramid(world, 20, 1, 0.5f);
+        if (k == 1) add_pyramid(world, 20, 1.125f, 0.5f);
+        if (k == 2) add_pyramid(world, 12, 1.125f, 0);
+        if (k == 3) add_wall(world, 12, 12, 0.5f);
+        if (k == 4) add_wall(world, 9, 40, 0.5f);
+        if (k == 5) add_wall(world, 8, 8, 1.5f);
+        if (k == 6)
+            for (int i = 0; i < 20; i++) add_box(world, i % 2 == 0 ? 1 : 1000, 0.5f, vec2(0, 0.5f + (float)i));
+        if (k == 7) add_jam(world);
+        assert_stands(world, 0.01, k < 3 ? 0.001 : 0.023);
+    }
+}
+
+/* What moves in one island changes no bit in another: a box that slides by beside a pyramid, or flies there. */
+TEST(a_stranger_changes_nothing) {
+    World *worlds[3];
+    for (int k = 0; k < 3; k++) {
+        worlds[k] = make_world();
+        add_ground(worlds[k], 0.5f);
+        add_pyramid(worlds[k], 14, 1.125f, 0.5f);
+        if (k == 1)
+            add_body(worlds[k], &(BodyDef){.size = {1, 1}, .mass = 1, .position = {20, 0.5f}, .velocity = {1, 0}});
+        if (k == 2)
+            add_body(worlds[k], &(BodyDef){.size = {1, 1}, .mass = 1, .position = {20, 5}, .velocity = {0, 40}});
+        ContactSolver solver = make_solver(&solver_interior, "");
+        run(worlds[k], &solver, 300);
+        free_solver(&solver);
+    }
+    for (int k = 1; k < 3; k++)
+        for (int i = 0; i < world_body_count(worlds[0]); i++)
+            assert_memory_equal(&world_bodies(worlds[0])[i].position, &world_bodies(worlds[k])[i].position,
+                                sizeof(Vec2));
+    const Body *stranger = &world_bodies(worlds[1])[world_body_count(worlds[0])];
+    assert_near(stranger->position.x, 25, 1e-3); /* nothing holds it */
+    for (int k = 0; k < 3; k++) world_destroy(worlds[k]);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loops of islands: as many as edges that are left when a tree through the island is taken away. */
+/* Islands: their loops, as many as edges that are left when a tree through the island is taken away; and each as a problem
+   of its own. */
 #include "testing.h"
 
-#include "methods/sweeps.h"
+#include "methods/islands.h"
 
 enum { BODIES_MAX = 400, CONTACTS_MAX = 2000 };
 
@@ -24,7 +25,11 @@ static void touch(int a, int b) {
 
 static void assert_most_loops(int expected) {
     Islands islands = {0};
-    assert_int_equal(islands_most_loops(&islands, &problem), expected);
+    int most = 0;
+    assert_true(islands_find(&islands, &problem));
+    for (int k = 0; k < islands.count; k++)
+        if (islands.islands[k].loops > most) most = islands.islands[k].loops;
+    assert_int_equal(most, expected);
     islands_free(&islands);
 }
 
@@ -79,6 +84,54 @@ TEST(the_island_with_most_loops_counts) {
     assert_most_loops(4);
     touch(13, 17);
     assert_most_loops(4);
+}
+
+/* Body i has velocity i, contact i the feature i. */
+static void number_all(void) {
+    for (int i = 0; i < problem.body_count; i++) bodies[i].velocity.x = (float)i;
+    for (int i = 0; i < problem.contact_count; i++) contacts[i].feature = (uint32_t)i;
+}
+
+/* Bodies 0, 4 and 7 do not move. Of the others 1, 3 and 6 are one island, 2 and 5 another; 8 touches nothing. */
+TEST(an_island_is_a_problem_of_its_own) {
+    static const int members[2][5] = {{0, 1, 3, 4, 6}, {0, 2, 4, 5, 7}},
+                     touching[2][8] = {{0, 1, 4, 5, 6, 7, 10, 11}, {2, 3, 8, 9, 12, 13, 14, 15}};
+    begin(9);
+    bodies[4].inv_mass = bodies[7].inv_mass = 0;
+    touch(0, 1), touch(0, 2), touch(1, 3), touch(1, 4), touch(2, 7), touch(3, 6), touch(4, 5), touch(2, 5);
+    touch(4, 7); /* neither moves: of no island */
+    number_all();
+    problem.marked = 5;
+    BodyVelocity velocities[9] = {0};
+    ContactImpulse impulses[18] = {0};
+    ContactSolution all = {.velocities = velocities, .impulses = impulses};
+    Islands islands = {0};
+    assert_true(islands_find(&islands, &problem));
+    assert_int_equal(islands.count, 2);
+    for (int k = 1; k >= 0; k--) {
+        ContactSolution room;
+        const ContactProblem part = islands_take(&islands, &problem, k, &room);
+        assert_true(part.body_count == 5 && part.contact_count == 8 && part.dt == problem.dt);
+        assert_int_equal(part.marked, k == 1 ? 3 : -1);
+        for (int i = 0; i < 5; i++) {
+            assert_int_equal((int)part.bodies[i].velocity.x, members[k][i]);
+            room.velocities[i].angular = (float)(10 + members[k][i]);
+        }
+        for (int i = 0; i < 8; i++) {
+            const ContactPoint *copy = &part.contacts[i], *from = &contacts[copy->feature];
+            assert_int_equal(copy->feature, touching[k][i]);
+            assert_true(members[k][copy->a] == from->a && members[k][copy->b] == from->b);
+            room.impulses[i].normal = (float)(100 + touching[k][i]);
+        }
+        room.fallbacks.by_sweeps = 1;
+        islands_put(&islands, k, &part, &room, &all);
+    }
+    for (int i = 0; i < 9; i++)
+        assert_int_equal((int)velocities[i].angular, i == 0 || i == 4 || i == 7 || i == 8 ? 0 : 10 + i);
+    for (int i = 0; i < 18; i++) assert_int_equal((int)impulses[i].normal, i < 16 ? 100 + i : 0);
+    assert_int_equal(all.fallbacks.by_sweeps, 2);
+    problem.marked = -1;
+    islands_free(&islands);
 }
 
 RUN_TESTS(NULL, NULL)

@@ -166,7 +166,7 @@ TEST(the_form_without_accumulation_keeps_a_box_up) {
 }
 
 int main(void) {
-    static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_block, &solver_interior};
+    static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_interior};
     int failed = 0;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         judged = kinds[i];

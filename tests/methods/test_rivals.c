@@ -13,16 +13,10 @@
 static const struct {
     const ContactSolverKind *kind;
     const char *text;
-} converged[] = {{&solver_momentum, "k=2000"},
-                 {&solver_over_relaxation, "k=5000"},
-                 {&solver_over_relaxation, "k=5000,omega=0.7"},
-                 {&solver_block, "k=2000"},
-                 {&solver_nncg, "k=200"},
-                 {&solver_engine, "k=20000,warm=off"}};
+} converged[] = {{&solver_momentum, "k=2000"}, {&solver_nncg, "k=200"}, {&solver_engine, "k=20000,warm=off"}};
 
 /* Solvers with the setting k. */
-static const ContactSolverKind *const sweepers[] = {&solver_engine, &solver_momentum, &solver_over_relaxation,
-                                                    &solver_nncg, &solver_block};
+static const ContactSolverKind *const sweepers[] = {&solver_engine, &solver_momentum, &solver_nncg};
 
 /* Four boxes in the air, which a fast and heavy one is about to hit; no ground, so momentum is kept. */
 static World *make_crash(void) {
@@ -69,8 +63,6 @@ TEST(cone_momentum_and_velocities_fit_after_every_sweep) {
             for (int i = 0; i < problem->contact_count; i++) {
                 ContactImpulse p = found.impulses[i];
                 assert_true(p.normal >= 0);
-                /* Blocks rub within the normal impulse of the sweep before. */
-                if (sweepers[rival] == &solver_block) continue;
                 assert_true(fabsf(p.tangent) <= problem->contacts[i].friction * p.normal);
             }
             assert_consistent(problem, &found);

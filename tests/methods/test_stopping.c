@@ -5,9 +5,8 @@
 
 #include "methods/solvers.h"
 
-static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_over_relaxation, &solver_block, &solver_nncg,
-                                                 &solver_momentum};
-enum { KINDS = sizeof kinds / sizeof *kinds, IN_PLACE = 4 /* those whose blocks continue as if in one run */ };
+static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_nncg, &solver_momentum};
+enum { KINDS = sizeof kinds / sizeof *kinds, IN_PLACE = 2 /* those whose blocks continue as if in one run */ };
 
 /* Boxes side by side and on top of each other, which a heavy one strikes. */
 static World *make_struck(float speed) {
@@ -74,7 +73,7 @@ TEST(sweeps_stop_at_the_first_block_below_near) {
             }
         assert_in_range(at_once, 1, runs - 1);
     }
-    assert_true(between > 10 && limit > 10);
+    assert_true(between > 5 && limit > 5);
 }
 
 TEST(random_problems_stop_there_too) {
@@ -119,8 +118,9 @@ static void sweep_with_momentum(const ContactProblem *problem, int n, ContactSol
     sweeps_free(&sweeps);
 }
 
+/* Until the residual doubles. */
 TEST(momentum_continues_in_one_run) {
-    World *world = make_struck(10);
+    World *world = make_struck(5);
     const ContactProblem *problem = world_problem(world);
     ContactSolution found = make_solution(problem), expected = make_solution(problem);
     int least = 6, most = 0, between = 0;
@@ -139,6 +139,28 @@ TEST(momentum_continues_in_one_run) {
     assert_true(least == 0 && most == 6 && between > 0);
     free_solution(&found);
     free_solution(&expected);
+    world_destroy(world);
+}
+
+/* In a pyramid whose top a heavy box strikes, momentum that does not begin again carries errors past the solution for
+   ever. */
+TEST(momentum_that_begins_again_converges) {
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    for (int row = 0; row < 20; row++)
+        for (int i = row; i < 20; i++)
+            add_box(world, 1, 0.2f, vec2(1.1f * ((float)i - 0.5f * (float)row), 0.499f + 0.998f * (float)row));
+    add_body(
+        world,
+        &(BodyDef){.size = {1, 1}, .mass = 50, .friction = 0.2f, .position = {10.5f, 20.4f}, .velocity = {-6, -20}});
+    run_engine(world, "", 3);
+    const ContactProblem *problem = world_problem(world);
+    ContactSolution found = make_solution(problem);
+    solve_with(&solver_momentum, "k=4000", problem, &found);
+    assert_true(residual_reaches_scalar(problem, &found, 0.003f));
+    solve_with(&solver_momentum, "near=1e-9,more=4000", problem, &found);
+    assert_false(residual_reaches_scalar(problem, &found, 0.001f));
+    free_solution(&found);
     world_destroy(world);
 }
 

@@ -42,9 +42,9 @@ TEST(energy_counts_from_the_bomb_on) {
     scene_destroy(scene);
 }
 
-/* The interior method is close to the converged run of the stack for longer than to the engine's. */
+/* The interior method is close to the converged run of the pyramid for longer than to the engine's. */
 TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
-    Scene *scene = scene_named("stack");
+    Scene *scene = scene_named("pyramid");
     scene->frames = 60;
     RunLog engine = {0}, converged = {0};
     Rollout rollout = {0};

@@ -41,7 +41,7 @@ static char *write_launch(int launch, size_t *size) {
     FILE *stream = memory_stream(&bytes, size);
     assert_non_null(stream);
     for (int i = 0; i < METHODS; i++) scores[i] = make_scores(launch, i);
-    launch_scores_write(stream, scores, METHODS, 0.5 + launch);
+    launch_scores_write(stream, scores, METHODS, 5 + launch);
     assert_int_equal(fclose(stream), 0);
     for (int i = 0; i < METHODS; i++) launch_scores_free(&scores[i]);
     return bytes;
@@ -68,7 +68,7 @@ TEST(launches_are_put_together) {
         StoredScores stored;
         char *bytes = write_launch(launch, &size);
         assert_ok(stored_scores_open(&stored, "launch", bytes, size, METHODS, &error), error);
-        assert_true(stored.residual == 0.5 + launch);
+        assert_int_equal(stored.unconverged, 5 + launch);
         for (int i = 0; i < METHODS; i++) assert_ok(method_scores_add(&scores[i], &stored, i, &error), error);
         free(bytes);
     }
@@ -77,9 +77,6 @@ TEST(launches_are_put_together) {
         assert_int_equal(scores[i].launches, LAUNCHES);
         assert_true(scores[i].measures[1].drift == 1 && isnan(scores[i].measures[0].energy[2]));
         assert_int_equal(scores[i].unconverged, LAUNCHES * i);
-        int64_t solves = 0;
-        for (int phase = 0; phase < PHASES; phase++) solves += scores[i].steps[PROTOCOL_CLOSED][phase].count;
-        assert_int_equal(scores[i].solves, solves);
     }
     /* The later launch is worse: its mean over three steps of the impact, 10 m/s apart. */
     assert_true(fabs(scores[2].worst[PHASE_IMPACT] - (error_of(1, 2, PROTOCOL_CLOSED, PHASE_IMPACT, 0) + 10)) < 1e-9);
@@ -111,12 +108,11 @@ TEST(damaged_results_are_refused) {
     assert_false(are_read(bytes, size, METHODS - 1));
     assert_false(are_read(bytes, 0, METHODS));
     for (size_t cut = 1; cut < size; cut++) assert_false(are_read(bytes, cut, METHODS));
-    /* The number of methods, the index and the head of the first part; the residual may be any number from 0, and a few
-       solves more may have failed. */
+    /* The number of methods, the index and the head of the first part; a few more steps may have been left out. */
     const size_t index = 2 * sizeof(int64_t), part = index + METHODS * sizeof(int64_t), counts = part + sizeof(int64_t),
                  values = counts + sizeof(int32_t[PROTOCOLS][PHASES]) + 64;
     for (size_t at = 0; at < counts + sizeof(int32_t[PROTOCOLS][PHASES]); at++) {
-        if ((at >= sizeof(int64_t) && at < index) || at == part) continue;
+        if ((at >= sizeof(int64_t) && at < index) || (at >= part && at < part + 3)) continue;
         for (int bit = 0; bit < 8; bit++) {
             bytes[at] = (char)(bytes[at] ^ 1 << bit);
             if (are_read(bytes, size, METHODS)) fail_msg("bit %d of byte %d", bit, (int)at);

@@ -101,7 +101,7 @@ static void solve(Solver *solver, const ContactProblem *problem) {
     Sweeps *sweeps = &solver->sweeps;
     const SweepKernel kernel = sweeps_best_kernel();
     bool ok = solver->order == 0 ? sweeps_begin_coloured(sweeps, kernel, problem)
-                                 : sweeps_begin(sweeps, kernel, problem, true, 1.0f);
+                                 : sweeps_begin(sweeps, kernel, problem, true);
     if (!ok || !sweeps_run_momentum(sweeps, solver->factors, SWEEPS)) give_up("out of memory");
     if (!sweeps_end(sweeps, &solver->solution)) give_up("a velocity is not finite");
 }

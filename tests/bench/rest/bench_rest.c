@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { CASES = 6, METHODS = 2, RUNS = 31, SETTLED = 600, STEPS = 10, SOLVES = 20 };
+enum { CASES = 8, METHODS = 2, RUNS = 31, SETTLED = 600, STEPS = 10, SOLVES = 20 };
 
 static const struct {
     const ContactSolverKind *kind;
@@ -24,15 +24,17 @@ static const struct {
 } cases[CASES] = {{"10 boxes", "at_rest", {"height", 10}},
                   {"pyramid of 8 rows", "pyramid_rows", {"rows", 8}},
                   {"pyramid of 12 rows", "pyramid_rows", {"rows", 12}},
+                  {"pyramid of 20 rows", "pyramid_rows", {"rows", 20}},
+                  {"pyramid of 30 rows", "pyramid_rows", {"rows", 30}},
                   {"card house", "card_house", {"friction", 0.6}},
                   {"plate", "plate", {"ratio", 20}},
                   {"gate", "gate", {"mass", 20}}};
 
-typedef struct Method {
+typedef struct Contender {
     ContactSolver solver;
     World *world;
     ContactSolution found;
-} Method;
+} Contender;
 
 static void give_up(const Error *error) {
     fprintf(stderr, "%s\n", error->message);
@@ -48,15 +50,15 @@ static Scene *read_scene(int i) {
     return scene;
 }
 
-static void step(Method *method, float dt) {
+static void step(Contender *method, float dt) {
     Error error = {0};
     if (!world_step(method->world, method->solver.kind->solve, method->solver.state, dt, &error)) give_up(&error);
 }
 
-static Method settle(int k, const Scene *scene) {
+static Contender settle(int k, const Scene *scene) {
     Error error = {0};
     Settings settings;
-    Method method = {{methods[k].kind, NULL}, scene_world(scene, &error), {0}};
+    Contender method = {{methods[k].kind, NULL}, scene_world(scene, &error), {0}};
     if (method.world == NULL ||
         !settings_parse(&settings, methods[k].settings, methods[k].kind->description.settings, methods[k].name, &error))
         give_up(&error);
@@ -66,13 +68,13 @@ static Method settle(int k, const Scene *scene) {
     const ContactProblem *problem = world_problem(method.world);
     method.found = (ContactSolution){
         .velocities = calloc((size_t)problem->body_count, sizeof *method.found.velocities),
-        .impulses = calloc((size_t)problem->contact_count + 16, sizeof *method.found.impulses), /* more may close */
+        .impulses = calloc(8 * (size_t)problem->body_count, sizeof *method.found.impulses), /* more may close */
     };
     if (method.found.velocities == NULL || method.found.impulses == NULL) exit(3);
     return method;
 }
 
-static double microseconds(Method *method) {
+static double microseconds(Contender *method) {
     Error error = {0};
     const ContactProblem *problem = world_problem(method->world);
     const double start = processor_seconds();
@@ -84,7 +86,7 @@ static double microseconds(Method *method) {
 static void measure(int i) {
     Scene *scene = read_scene(i);
     Samples samples[METHODS] = {0}, ratios = {0};
-    Method of[METHODS];
+    Contender of[METHODS];
     for (int k = 0; k < METHODS; k++) of[k] = settle(k, scene);
     for (int run = 0; run < RUNS; run++) {
         double sum[METHODS] = {0};

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Islands by union-find over the contacts (methods/islands.h). */
+#include "methods/islands.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void islands_free(Islands *islands) {
+    free(islands->by_body.memory);
+    free(islands->by_contact.memory);
+    *islands = (Islands){0};
+}
+
+/* An island has at most one body that does not move for each contact. */
+static bool reserve(Islands *s, const ContactProblem *problem) {
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count,
+                 all = bodies + contacts;
+    return ARRAY_BLOCK_RESERVE(&s->by_body, ARRAY_PART(s->islands, bodies), ARRAY_PART(s->parent, bodies),
+                               ARRAY_PART(s->number, bodies), ARRAY_PART(s->members, bodies),
+                               ARRAY_PART(s->behind_members, bodies), ARRAY_PART(s->behind_contacts, bodies),
+                               ARRAY_PART(s->place, bodies), ARRAY_PART(s->in_island, bodies)) &&
+           ARRAY_BLOCK_RESERVE(&s->by_contact, ARRAY_PART(s->island, contacts), ARRAY_PART(s->contacts, contacts),
+                               ARRAY_PART(s->bodies, all), ARRAY_PART(s->body_copies, all),
+                               ARRAY_PART(s->contact_copies, contacts), ARRAY_PART(s->velocities, all),
+                               ARRAY_PART(s->impulses, contacts));
+}
+
+/* The body that stands for the island; halves the path to it. */
+static int32_t find(int32_t *parent, int32_t body) {
+    while (parent[body] != body) body = parent[body] = parent[parent[body]];
+    return body;
+}
+
+static bool is_new_pair(const ContactProblem *problem, int i) {
+    const ContactPoint *contact = &problem->contacts[i];
+    return i == 0 || contact[-1].a != contact->a || contact[-1].b != contact->b;
+}
+
+static void connect(Islands *s, const ContactProblem *problem) {
+    int32_t *parent = s->parent;
+    s->moving = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        parent[i] = problem_body_moves(&problem->bodies[i]) ? i : -1;
+        s->moving += parent[i] >= 0;
+        s->number[i] = -1;
+    }
+    for (int i = 0; i < problem->contact_count; i++) {
+        const ContactPoint *contact = &problem->contacts[i];
+        if (!is_new_pair(problem, i) || parent[contact->a] < 0 || parent[contact->b] < 0) continue;
+        const int32_t a = find(parent, contact->a), b = find(parent, contact->b);
+        parent[b] = a;
+    }
+}
+
+/* Of the pair that contact i begins. An island's bodies less one are as many pairs as a tree has; each further pair closes
+   a loop. */
+static int32_t count_pair(Islands *s, const ContactProblem *problem, int i) {
+    const ContactPoint *contact = &problem->contacts[i];
+    const bool a = s->parent[contact->a] >= 0, b = s->parent[contact->b] >= 0;
+    if (!a && !b) return -1;
+    int32_t *number = &s->number[find(s->parent, a ? contact->a : contact->b)];
+    if (*number < 0) {
+        s->islands[s->count] = (Island){.loops = 1};
+        *number = s->count++;
+    }
+    s->islands[*number].loops += a && b;
+    return *number;
+}
+
+static void count_contacts(Islands *s, const ContactProblem *problem) {
+    s->count = 0;
+    for (int i = 0; i < problem->contact_count; i++) {
+        s->island[i] = is_new_pair(problem, i) ? count_pair(s, problem, i) : s->island[i - 1];
+        if (s->island[i] >= 0) s->islands[s->island[i]].contacts++;
+    }
+}
+
+static int32_t island_of_body(Islands *s, int body) {
+    return s->parent[body] < 0 ? -1 : s->number[find(s->parent, body)];
+}
+
+bool islands_find(Islands *s, const ContactProblem *problem) {
+    if (!reserve(s, problem)) return false;
+    connect(s, problem);
+    count_contacts(s, problem);
+    for (int i = 0; i < problem->body_count; i++) {
+        const int32_t k = island_of_body(s, i);
+        if (k < 0) continue;
+        s->islands[k].bodies++;
+        s->islands[k].loops--;
+    }
+    s->sorted = false;
+    return true;
+}
+
+static void sort(Islands *s, const ContactProblem *problem) {
+    int32_t members = 0, contacts = 0;
+    for (int k = 0; k < s->count; k++) {
+        s->behind_members[k] = members, s->behind_contacts[k] = contacts;
+        members += s->islands[k].bodies, contacts += s->islands[k].contacts;
+    }
+    for (int i = 0; i < problem->body_count; i++) {
+        const int32_t k = island_of_body(s, i);
+        if (k >= 0) s->members[s->behind_members[k]++] = i;
+    }
+    for (int i = 0; i < problem->contact_count; i++)
+        if (s->island[i] >= 0) s->contacts[s->behind_contacts[s->island[i]]++] = i;
+    memset(s->in_island, -1, (size_t)problem->body_count * sizeof *s->in_island);
+    s->sorted = true;
+}
+
+/* Collects the bodies that do not move and touch the island, in order, behind its others. Returns their number. */
+static int find_fixed(Islands *s, const ContactProblem *problem, int k, const int32_t *contacts) {
+    int32_t *fixed = &s->bodies[s->islands[k].bodies];
+    int count = 0;
+    for (int i = 0; i < s->islands[k].contacts; i++) {
+        const ContactPoint *contact = &problem->contacts[contacts[i]];
+        const int32_t body = s->parent[contact->a] < 0 ? contact->a : contact->b;
+        if (s->parent[body] >= 0 || s->in_island[body] == k) continue;
+        s->in_island[body] = k;
+        int at = count++; /* mostly the last */
+        for (; at > 0 && fixed[at - 1] > body; at--) fixed[at] = fixed[at - 1];
+        fixed[at] = body;
+    }
+    return count;
+}
+
+/* Sorts the island's bodies into s->bodies: `members`, and `fixed` that are behind their place there. */
+static void merge(Islands *s, const int32_t *members, int count, int fixed_count) {
+    const int32_t *fixed = &s->bodies[count];
+    for (int i = 0, f = 0, at = 0; at < count + fixed_count; at++)
+        s->bodies[at] = f < fixed_count && (i == count || fixed[f] < members[i]) ? fixed[f++] : members[i++];
+}
+
+ContactProblem islands_take(Islands *s, const ContactProblem *problem, int k, ContactSolution *room) {
+    if (!s->sorted) sort(s, problem);
+    const Island *island = &s->islands[k];
+    const int32_t *members = &s->members[s->behind_members[k] - island->bodies];
+    const int32_t *contacts = &s->contacts[s->behind_contacts[k] - island->contacts];
+    const int fixed = find_fixed(s, problem, k, contacts);
+    merge(s, members, island->bodies, fixed);
+    ContactProblem part = {island->bodies + fixed, island->contacts, -1, problem->dt,
+                           s->body_copies,         s->contact_copies};
+    for (int i = 0; i < part.body_count; i++) {
+        s->place[s->bodies[i]] = i;
+        s->body_copies[i] = problem->bodies[s->bodies[i]];
+        if (s->bodies[i] == problem->marked) part.marked = i;
+    }
+    for (int i = 0; i < island->contacts; i++) {
+        ContactPoint *contact = &s->contact_copies[i];
+        *contact = problem->contacts[contacts[i]];
+        contact->a = s->place[contact->a], contact->b = s->place[contact->b];
+    }
+    *room = (ContactSolution){.velocities = s->velocities, .impulses = s->impulses};
+    return part;
+}
+
+void islands_put(const Islands *s, int k, const ContactProblem *part, const ContactSolution *of_part,
+                 ContactSolution *solution) {
+    const int32_t *contacts = &s->contacts[s->behind_contacts[k] - part->contact_count];
+    for (int i = 0; i < part->body_count; i++)
+        if (s->parent[s->bodies[i]] >= 0) solution->velocities[s->bodies[i]] = of_part->velocities[i];
+    for (int i = 0; i < part->contact_count; i++) solution->impulses[contacts[i]] = of_part->impulses[i];
+    network_fallbacks_add(&solution->fallbacks, &of_part->fallbacks);
+}

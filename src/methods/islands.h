@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Islands: bodies that contacts connect, through bodies that move. What happens in one changes nothing in another, so each
+   can be solved as a contact problem of its own. */
+#pragma once
+#include "base/base.h"
+#include "engine/engine.h"
+
+#include <stdint.h>
+
+typedef struct Island {
+    int bodies, contacts; /* their numbers; bodies: those that move */
+    /* Touching pairs of its bodies that could open without dividing it. A stack has none, a pyramid or a wall almost as many
+       as boxes. A factorization fills in only where loops are. */
+    int loops;
+} Island;
+
+/* Zero-initialise; arrays grow and are reused. */
+typedef struct Islands {
+    int count;
+    int moving;                  /* bodies that move, in islands or alone */
+    Island *islands;             /* [count], in the order of their first contacts */
+    int32_t *island;             /* [contact_count] of each contact; -1: of bodies that do not move */
+    bool sorted;                 /* `members` and `contacts` are filled */
+    int32_t *parent;             /* [body_count] another body of the island, or itself; -1: does not move */
+    int32_t *number;             /* [body_count] of the island of which the body is the root */
+    int32_t *members, *contacts; /* those of the first island, of the second, ... */
+    int32_t *behind_members, *behind_contacts; /* [count] where each island's end */
+    int32_t *place, *in_island;                /* [body_count] in the island that was taken last */
+    /* The island that was taken last. */
+    int32_t *bodies; /* in the whole problem */
+    ProblemBody *body_copies;
+    ContactPoint *contact_copies;
+    BodyVelocity *velocities;
+    ContactImpulse *impulses;
+    ArrayBlock by_body, by_contact;
+} Islands;
+
+void islands_free(Islands *islands);
+
+/* Finds the islands of a problem. False when memory is short. */
+bool islands_find(Islands *islands, const ContactProblem *problem);
+
+/* A copy of island k of the problem, valid until the next call, and room for its solution. Bodies keep their order, and so
+   do contacts. Bodies that do not move are in every island that touches them. */
+ContactProblem islands_take(Islands *islands, const ContactProblem *problem, int k, ContactSolution *room);
+
+/* Stores the solution of island k, which was taken last, in that of the whole problem. */
+void islands_put(const Islands *islands, int k, const ContactProblem *part, const ContactSolution *of_part,
+                 ContactSolution *solution);
