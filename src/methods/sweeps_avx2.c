@@ -22,9 +22,6 @@ TARGET static inline Lanes lanes_negate(Lanes a) { return _mm256_xor_ps(a, _mm25
 /* b where the sign of `by` is negative. */
 TARGET static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) { return _mm256_blendv_ps(a, b, by); }
 TARGET static inline bool lanes_any_positive(Lanes a) { return _mm256_movemask_ps(a) != 0xff; }
-/* Negative where a >= b. */
-TARGET static inline Lanes lanes_at_least(Lanes a, Lanes b) { return _mm256_cmp_ps(a, b, _CMP_GE_OQ); }
-TARGET static inline Lanes lanes_and(Lanes a, Lanes b) { return _mm256_and_ps(a, b); }
 
 #include "methods/sweeps_lanes.h"
 
