@@ -307,7 +307,7 @@ static bool fall_back(State *solver, bool finite, float near, const ContactProbl
     return end_sweep(solver, problem, factors, FALLBACK_SWEEPS, solution, error);
 }
 
-/* The first sweeps of a calm problem. False when memory is short. */
+/* Begins with the warm start, and with the first sweeps if the problem is calm. False when memory is short. */
 static bool start(Sweeps *sweeps, const ContactProblem *problem, bool calm) {
     return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) && (!calm || sweeps_run(sweeps, FIRST_SWEEPS));
 }
