@@ -2,7 +2,7 @@
 """The command lines that are run with faults. SCENES stands for the folder of scenes."""
 
 # Three pieces, of which the first shard has two.
-SHARDED = "stability SCENES/stability/bomb_speed.yaml --vary speed --quick --methods engine:k=4,momentum:k=3,block"
+SHARDED = "stability SCENES/stability/bomb_speed.yaml --vary speed --quick --methods engine:k=4,momentum:k=3,nncg"
 
 # What the cases start from, in one folder; made once per run of the driver.
 PREPARATION = [

@@ -9,7 +9,7 @@ IMPACTS = SCENE_NET.replace("net.npz", "impacts.npz")
 PIECES = "dataset SCENES/single.yaml -o pieces.npz --random 200"
 
 # Three pieces, of which the first shard has two.
-SHARDED = "stability SCENES/stability/bomb_speed.yaml --vary speed --quick --methods engine:k=4,momentum:k=3,block"
+SHARDED = "stability SCENES/stability/bomb_speed.yaml --vary speed --quick --methods engine:k=4,momentum:k=3,nncg"
 
 # What the cases start from, in one folder: how each file or folder is made, by a command of twinbox, which needs those
 # that it names, by several (" && "), or of the shell (sh).
