@@ -87,7 +87,7 @@ refused "whole: error: has no shards" merge whole
 
 # Other inputs.
 mkdir own && cp "$scenes/stability/bomb_speed.yaml" own/scene.yaml
-vary="own/scene.yaml --vary speed --quick --methods engine,block -o vary"
+vary="own/scene.yaml --vary speed --quick --methods engine,nncg -o vary"
 run 0 stability $vary --shard 1/2
 sed -i 's/^frames: .*/frames: 100/' own/scene.yaml
 run 2 stability $vary --shard 2/2
