@@ -103,7 +103,6 @@ typedef struct Look {
     bool calm, many, slippery, uneven;
     bool restless;      /* calm only now, after an impact: it slides on for some time */
     bool slender;       /* towers: errors below are larger above */
-    bool jams;          /* sweeps carry little between its bodies */
     float near, enough; /* m/s: residuals at which iterations stop, and that are taken */
     PairResidual left;  /* sum over its pairs, after the first sweeps */
 } Look;
@@ -172,13 +171,15 @@ static float tolerance(const Look *step, float near, float dt) {
     return smaller(near, step->many && !step->uneven ? same_way(many_near, dt) : calm_near);
 }
 
+/* Sweeps carry little between its bodies. */
+static bool jams(const Look *step) { return step->slippery || step->uneven; }
+
 static void decide(Look *step, float near, float dt) {
-    step->jams = step->slippery || step->uneven;
     step->near = tolerance(step, near, dt);
-    step->enough = !step->calm || !step->many ? near : step->jams ? jammed_near * step->near : step->near;
+    step->enough = !step->calm || !step->many ? near : jams(step) ? jammed_near * step->near : step->near;
 }
 
-/* At each island before the step. False when memory is short. */
+/* Looks at each island before the step. False when memory is short. */
 static bool look(State *solver, const ContactProblem *problem) {
     const Islands *islands = &solver->islands;
     if (!ARRAY_BLOCK_RESERVE(&solver->look_block, ARRAY_PART(solver->looks, islands->count))) return false;
@@ -254,7 +255,7 @@ static bool is_solved(const State *solver, const Look *step) {
 static bool iterate(State *solver, const ContactProblem *problem, const Look *step) {
     const Attempt *as_impact = impact_attempts(step->bodies);
     if (!step->calm) return attempt(solver, problem, as_impact, false, step->near);
-    if (step->many && !step->jams) return attempt(solver, problem, at_rest_of_many, true, step->near);
+    if (step->many && !jams(step)) return attempt(solver, problem, at_rest_of_many, true, step->near);
     if (step->restless) return attempt(solver, problem, as_impact, true, step->near);
     return attempt(solver, problem, at_rest, true, step->near) &&
            (is_solved(solver, step) || attempt(solver, problem, as_impact, step->many, step->enough));
@@ -328,7 +329,7 @@ static bool continue_sweeps(State *solver, const ContactProblem *problem, const 
 static bool try_sweeps(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                        bool *done) {
     *done = false;
-    if (step->calm && (!step->many || step->jams)) return true;
+    if (step->calm && (!step->many || jams(step))) return true;
     if ((step->calm || !step->many) &&
         !continue_sweeps(solver, problem, step, solver->start_factors, START_SWEEPS, solution, done))
         return false;

@@ -81,7 +81,7 @@ void momentum_free(Momentum *momentum) {
     *momentum = (Momentum){0};
 }
 
-/* Momentum carries a residual beyond its least value and back; beyond this multiple, (m/s)^2, it does not come back. */
+/* Momentum makes the residual rise and fall. It begins again at this multiple of the least sum of squares. */
 static const float overshoot = 4;
 
 bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors) {

@@ -147,9 +147,9 @@ typedef struct Momentum {
 
 /* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb
    on a whole stack, which need momentum with large factors: so this is one run of sweeps with momentum, not many short
-   ones. It begins again from factors[0] once the residual is twice the least so far: without that, the residual of an
-   impact on 200 boxes grows beyond 400 sweeps. Source: O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient
-   Schemes" (2015). False when memory is short. */
+   ones. It begins again from factors[0] once the residual is twice the least since it last did: else errors of impacts on
+   many boxes are carried past the solution for ever. Source: O'Donoghue, Candes, "Adaptive Restart for Accelerated
+   Gradient Schemes" (2015). False when memory is short. */
 bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors);
 
 void momentum_free(Momentum *momentum);

@@ -55,7 +55,7 @@ for file in README.md LICENSE OFL.txt; do [ -s $pages/$file ] || fail "no $file"
 pictures=$(grep -o '([^():]*\.png)' $pages/README.md | tr -d '()')
 equal "a page has pictures" "$([ -n "$pictures" ] && echo yes)" yes
 for picture in $pictures; do [ -s "$pages/$picture" ] || fail "README.md shows $picture, which is not installed"; done
-for scene in "$sources"/scenes/*.yaml "$sources"/scenes/stability/*.yaml; do
+for scene in "$sources"/scenes/*.yaml "$sources"/scenes/stability/*.yaml "$sources"/scenes/large/*.yaml; do
     cmp -s "$scene" "second/share/twinbox/${scene#"$sources"/}" || fail "$scene is not installed"
 done
 

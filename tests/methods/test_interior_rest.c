@@ -172,6 +172,19 @@ TEST(what_stands_on_many_contacts_stays_closed) {
     }
 }
 
+/* In a step of 0.1 s what opens falls by 0.1 m. */
+TEST(a_pyramid_stands_at_ten_steps_per_second) {
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    add_pyramid(world, 11, 1.125f, 0.2f);
+    ContactSolver solver = make_solver(&solver_interior, "");
+    for (int i = 0; i < 300; i++) assert_ok(world_step(world, solver.kind->solve, solver.state, 0.1f, &error), error);
+    const double overlap = world_penetration(world);
+    if (!(overlap < 0.001)) fail_msg("overlap %g m", overlap);
+    free_solver(&solver);
+    world_destroy(world);
+}
+
 /* What moves in one island changes no bit in another: a box that slides by beside a pyramid, or flies there. */
 TEST(a_stranger_changes_nothing) {
     World *worlds[3];
