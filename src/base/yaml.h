@@ -8,7 +8,7 @@
 
 /* The text of a YAML file, and messages that show a place in it, as a compiler does. */
 
-enum { SOURCE_MAX_SIZE = 3 << 19 }; /* bytes: 157 for each of 10,000 bodies, one per line */
+enum { SOURCE_MAX_SIZE = 3 << 19 }; /* bytes: 157 for each of 10,000 bodies, one per line; patterns make more */
 
 /* Line and column from 0, the column in characters, as libyaml counts them. */
 typedef struct Place {

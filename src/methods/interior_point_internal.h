@@ -67,6 +67,7 @@ typedef struct Interior {
        the first solve of an iteration; corrected: of the second */
     Vec4 *velocities, *start, *changes, *corrected;
     double residual; /* m/s, of the answer */
+    double rounding; /* m: of the farthest contact's position in float */
     int iterations;  /* of the last solve */
     ArrayBlock memory;
 } Interior;

@@ -28,7 +28,7 @@ Phase phase_next(PhaseTracker *tracker, const ContactProblem *problem, int frame
 enum {
     SCENE_NAME_SIZE = 128,
     SCENE_PATH_SIZE = 512,
-    SCENE_MAX_BODIES = 10000,
+    SCENE_MAX_BODIES = 25000,
     SCENE_MAX_FRAMES = 1000000,
     SCENE_MAX_ITERATIONS = 1000000,
     SCENE_MAX_NETWORKS = 16,
@@ -107,7 +107,7 @@ typedef struct Scene {
 
 /* NULL with error set: "path:line:column: error: what", the line of the file, a caret below. Takes at most 0.1 s and 20
    MB for any file: the limits are in base/yaml.h. Only long thin boxes whose bounds all overlap take
-   longer to check, 0.7 s for 10,000. The format is described at the head of scenes/pyramid_settled.yaml. */
+   longer to check, 4 s for 25,000. The format is described at the head of scenes/pyramid_settled.yaml. */
 Scene *scene_read(const char *path, Error *error);
 
 /* The same with values for some of its parameters. Refuses settings that are unknown, given twice, out of their

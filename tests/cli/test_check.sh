@@ -71,7 +71,7 @@ wrong "tower: error: launch 82 at x = -0.95 m"
 wrong "(with height = 20, an end of its range)"
 # Parameters that are not valid at an end.
 scene "camera: {center: [0, 0], size: [\$width, 1]}" "parameters: {height: {value: 5, from: 0, to: 6}, width: {value: 1, from: 1, to: 2}}"
-wrong "tower.yaml:7:29: error: count must be a whole number from 1 to 10000 (got 0, from \$height with height = 0)"
+wrong "tower.yaml:7:29: error: count must be a whole number from 1 to 25000 (got 0, from \$height with height = 0)"
 # Networks that are missing, for another scene, or of a method without one.
 scene "networks: {pair-net: missing.npz}" "$height"
 wrong "missing.npz: error: "

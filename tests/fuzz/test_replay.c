@@ -44,7 +44,7 @@ static void replay_corpus(void **state) {
         count++;
     }
     closedir(folder);
-    assert_in_range(count, 1, 10000);
+    assert_in_range(count, 1, 25000);
 }
 
 int main(int argc, char **argv) {

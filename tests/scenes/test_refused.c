@@ -89,7 +89,7 @@ static const Refused bodies[] = {
     {BODY(BOX ", pattern: row, spacing: [1, 1]"), "6:5: error: a pattern needs the key 'count'"},
     {BODY(BOX ", count: 3"), "6:54: error: count needs the key 'pattern' beside it"},
     {BODY(BOX ", spacing: [1, 1]"), "6:56: error: spacing needs the key 'pattern' beside it"},
-    {BODY(BOX ", pattern: row, count: 0"), "6:68: error: count must be a whole number from 1 to 10000 (got 0)"},
+    {BODY(BOX ", pattern: row, count: 0"), "6:68: error: count must be a whole number from 1 to 25000 (got 0)"},
     {BODY(BOX ", pattern: row, count: 3, spacing: [0, 5e5]"), NULL}, /* 0, 5e5, 1e6: just within reach */
     {BODY(BOX ", pattern: row, count: 4, spacing: [0, 5e5]"),
      "6:68: error: body 3 of the pattern is at (0, 1.5e+06), beyond 1e+06 m"},
