@@ -144,12 +144,6 @@ RESULT(int, yaml_parser_parse, (yaml_parser_t * parser, yaml_event_t *event), (p
         __msan_unpoison(event->data.scalar.value, event->data.scalar.length + 1);
 })
 
-NO_RESULT(amd_2,
-          (int count, int *start, int *list, int *length, int size, int used, int *a, int *b, int *order, int *c,
-           int *d, int *e, int *f, double *control, double *information),
-          (count, start, list, length, size, used, a, b, order, c, d, e, f, control, information),
-          __msan_unpoison(order, (size_t)count * sizeof *order))
-
 /* clang 14 knows other names of these than today's C library has. */
 RESULT(int, stat, (const char *path, struct stat *status), (path, status), STORED(status))
 RESULT(int, lstat, (const char *path, struct stat *status), (path, status), STORED(status))
