@@ -46,7 +46,8 @@ static const Option option_table[] = {
      "Pass frames in which no channel differs by more than MAX (0 to 255) and at most this SHARE (0 to 1) of the "
      "pixels differs",
      OPTION_READ(read_fuzzy, CompareOptions, tolerance)},
-    {"--beyond", 0, "SHARE", "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than --tolerance",
+    {"--beyond", 0, "SHARE",
+     "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than --tolerance",
      OPTION_READ(read_beyond, CompareOptions, tolerance)},
     {"--flip", 0, "[p99=]MAX",
      "Pass frames whose FLIP is at most MAX (0 to 1) on average, or at its 99th percentile (may be repeated); "

@@ -121,6 +121,8 @@ in_terminal bash "source '$bash_script'"
 
 # fish completes the word before the cursor; it adds the blank itself.
 if command -v fish >/dev/null; then
+    equal "commands in fish" "$(HOME=$PWD fish -N -c "source '$fish_script'; complete -C 'twinbox help '" | cut -f1 | xargs)" \
+        "$(echo $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'))"
     while IFS='|' read -r keys line; do
         equal "fish: $keys" "$(HOME=$PWD fish -N -c "source '$fish_script'; complete -C '${keys%<TAB>}'" | cut -f1 | head -1)" "$line"
     done <<'END'

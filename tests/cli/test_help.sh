@@ -9,7 +9,7 @@ run 0 --help
 names=$(awk '/^  [a-z]/ { print $1 }' out)
 # Groups of commands: those of the table in README.md, with the same commands in the same order.
 sed -n 's/:$//; /^[A-Z][a-z ]*$/p; s/^  \([a-z]*\)  .*/\1/p' out >groups
-sed -n '/^## Commands/,/^## /{ s/^| \*\*\(.*\)\*\* |.*/\1/p; s/^| `twinbox \([a-z]*\).*/\1/p }' "$sources/README.md" >groups_of_readme
+sed -n '/^## Commands/,/^## /s/^| \(\*\*\(.*\)\*\* \)\?| \[\?`twinbox \([a-z]*\).*/\2\n\3/p' "$sources/README.md" | sed '/^$/d' >groups_of_readme
 diff groups groups_of_readme >difference || fail "README.md has other groups of commands: $(<difference)"
 equal "groups" "$(grep -c '^[A-Z]' groups)" 6
 equal "commands" "$(wc -w <<<"$names")" "$(ls "$sources"/src/cli/*.c | xargs grep -h "^bool command_" | grep -cv -e completion -e diverge -e problem)"
