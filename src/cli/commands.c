@@ -32,5 +32,5 @@ void print_contexts(FILE *file) {
     }
 }
 
-#define COMMAND_ENTRY(name, summary) {#name, summary, command_##name},
+#define COMMAND_ENTRY(name, summary, heading) {#name, summary, heading, command_##name},
 const Command commands[] = {COMMANDS(COMMAND_ENTRY){0}};

@@ -9,7 +9,6 @@
 #include "regression/compare.h"
 #include "regression/regression.h"
 #include "regression/report.h"
-#include "runs/trajectory.h"
 
 #include <inttypes.h>
 #include <limits.h>
@@ -19,19 +18,36 @@
 #include <strings.h>
 #include <time.h>
 
-static OptionRead read_fuzzy, read_tolerance, read_beyond, read_flip, read_antialias, read_mask;
+static OptionRead read_fuzzy, read_beyond, read_flip, read_antialias, read_mask;
 
 static const char *const annotation_kinds[] = {"none", "github", NULL}; /* CompareAnnotations */
 static const char *const metadata_kinds[] = {"report", "strict", NULL};
 
 static const Option option_table[] = {
+    {"--tolerance", 0, "MAX",
+     "Pictures: ignore pixels in which no channel differs by more than MAX (0 to 255). Runs: pass them where the "
+     "centres "
+     "of a body are at most MAX metres apart (default: 0, every bit of pose and velocity counts)",
+     OPTION_TEXT(CompareOptions, limit)},
+    {"--watch", 0, NULL,
+     "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
+     OPTION_FLAG(CompareOptions, watch)},
+    {OPTION_JSON(CompareOptions, json)},
+    {.help = "Runs:"},
+    {"--scene", 0, "SCENE",
+     "Scene of the first run: run it again with the same method and one body shifted by 1e-6 m, and compare the "
+     "growth. The shifted body is the bomb; before the bomb hits, the first body that differs; without a bomb, the "
+     "last body",
+     OPTION_PATH(CompareOptions, scene)},
+    {"--csv", 0, "FILE", "Write frame,time,distance,shifted_distance: the largest distance of any body, s and m",
+     OPTION_OUTPUT(CompareOptions, csv)},
+    {.help = "Pictures:"},
     {"--fuzzy", 0, "MAX,SHARE",
      "Pass frames in which no channel differs by more than MAX (0 to 255) and at most this SHARE (0 to 1) of the "
      "pixels differs",
      OPTION_READ(read_fuzzy, CompareOptions, tolerance)},
-    {"--tolerance", 0, "MAX", "Ignore pixels in which no channel differs by more than MAX (0 to 255)",
-     OPTION_READ(read_tolerance, CompareOptions, tolerance)},
-    {"--beyond", 0, "SHARE", "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than that",
+    {"--beyond", 0, "SHARE",
+     "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than --tolerance",
      OPTION_READ(read_beyond, CompareOptions, tolerance)},
     {"--flip", 0, "[p99=]MAX",
      "Pass frames whose FLIP is at most MAX (0 to 1) on average, or at its 99th percentile (may be repeated); "
@@ -63,10 +79,6 @@ static const Option option_table[] = {
      "none, or github: print failures as annotations of GitHub Actions (at most ten) and append a summary to the file "
      "named by GITHUB_STEP_SUMMARY (default: none)",
      OPTION_ENUM(CompareOptions, annotations, annotation_kinds)},
-    {"--watch", 0, NULL,
-     "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
-     OPTION_FLAG(CompareOptions, watch)},
-    {OPTION_JSON(CompareOptions, json)},
     {0}};
 
 static const CommandSpec spec = {
@@ -76,14 +88,16 @@ static const CommandSpec spec = {
               OPTION_PATHS(CompareOptions, paths, count)},
     .inputs = {2, 2, "input"},
     .help =
-        "Compare two trajectories (.npz) or two PNG sequences (folders with their subfolders, or single files). "
-        "Trajectories are equal if every bit of every pose and velocity is equal; pictures are equal if every decoded "
-        "pixel is. Frames are matched by name, or by the stem and the number of their names. Trajectories that are in "
-        "both folders, and the states "
-        "named in twinbox's own pictures, tell whether the physics or the renderer changed. Exit status 0: equal, 1: "
-        "different, 2: not comparable.\v"
+        "Compare two runs (.npz) or two PNG sequences (folders with their subfolders, or single files). Exit status 0: "
+        "equal, 1: different, 2: not comparable.\n"
+        "Runs are equal if every bit of every pose and velocity is equal. Otherwise the first frame, body and contact "
+        "that differ are found, whether the solver or an earlier step is the cause, and how fast the distance grows "
+        "from there.\n"
+        "Pictures are equal if every decoded pixel is. Frames are matched by name, or by the stem and the number of "
+        "their names. Runs that are in both folders, and the states named in twinbox's own pictures, tell whether the "
+        "physics or the renderer changed.\v"
         "Example: twinbox compare golden/frames out/golden/frames --report out/report\n"
-        "         twinbox compare expected.npz actual.npz"};
+        "         twinbox compare engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv"};
 
 /* "X,Y,W,H"; false for anything else. */
 static bool parse_rectangle(const char *text, int numbers[4]) {
@@ -130,16 +144,6 @@ static bool read_fuzzy(const Option *option, const char *text, void *value, Erro
     return true;
 }
 
-static bool read_tolerance(const Option *option, const char *text, void *value, Error *error) {
-    Tolerance *tolerance = value;
-    int64_t difference;
-    if (!parse_int(text, 0, 255, &difference))
-        return error_input(error, option->name, "'%s' is not a whole number from 0 to 255", text);
-    tolerance->given |= LIMIT_TOLERANCE;
-    tolerance->tolerance = (int)difference;
-    return true;
-}
-
 static bool read_beyond(const Option *option, const char *text, void *value, Error *error) {
     Tolerance *tolerance = value;
     if (!parse_share(text, &tolerance->beyond))
@@ -161,52 +165,53 @@ static bool read_antialias(const Option *option, const char *text, void *value, 
     return true;
 }
 
-/* Reads the command line. False with error set if it is wrong, or after --help. */
-static bool compare_options_parse(CompareOptions *options, int argc, char **argv, Error *error) {
-    *options = (CompareOptions){.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES};
-    if (!options_parse(&spec, argc, argv, options, error)) return false;
-    if (options->json && (options->watch || options->annotations != ANNOTATE_NONE))
-        return error_input(error, "--json", "cannot be combined with --%s", options->watch ? "watch" : "annotations");
-    return true;
-}
-
-static void compare_options_free(CompareOptions *options) { mask_free(&options->mask); }
-
 static bool is_trajectory(const char *path) {
     return path_is_standard(path) || file_name_ends_with(path, ".npz"); /* pictures come in folders */
 }
 
-static void print_trajectory_difference(const Trajectory *a, const TrajectoryDifference *difference) {
-    if (difference->poses_only) printf("only poses are compared: a run has no velocities\n");
-    if (difference->equal) {
-        printf("equal: %d frames of %d bodies\n", a->frames, a->bodies);
-        return;
-    }
-    if (difference->what[0] != '\0') printf("%s\n", difference->what);
-    if (difference->frame < 0) return;
-    printf("first difference: frame %d, body %d: %g m apart, %g rad", difference->frame, difference->body,
-           difference->distance, difference->angle);
-    if (!difference->poses_only) printf(", %g m/s", difference->speed);
-    printf("\n");
-    printf("largest distance: frame %d, body %d: %g m apart\n", difference->max_frame, difference->max_body,
-           difference->max_distance);
+static bool read_distance(CompareOptions *options, Error *error) {
+    return options->limit == NULL || (parse_double(options->limit, &options->distance) && options->distance >= 0) ||
+           error_input(error, "--tolerance", "'%.64s' is not a distance in metres", options->limit);
 }
 
-static bool compare_trajectories(const CompareOptions *options, Error *error) {
+static bool read_tolerance(CompareOptions *options, Error *error) {
+    int64_t difference;
+    if (options->limit == NULL) return true;
+    if (!parse_int(options->limit, 0, 255, &difference))
+        return error_input(error, "--tolerance", "'%.64s' is not a whole number from 0 to 255", options->limit);
+    options->tolerance.given |= LIMIT_TOLERANCE;
+    options->tolerance.tolerance = (int)difference;
+    return true;
+}
+
+static bool check_runs(CompareOptions *options, Error *error) {
+    if (options->report != NULL || options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0 ||
+        options->annotations != 0)
+        return error_input(error, options->paths[0],
+                           "--report, --annotations, --rules, masks and limits of pixels apply to pictures only");
+    return json_output_check(options->json, error) && read_distance(options, error);
+}
+
+static bool check_pictures(CompareOptions *options, Error *error) {
+    if (options->scene != NULL || options->csv != NULL)
+        return error_input(error, options->paths[0], "--scene and --csv apply to runs only");
+    return read_tolerance(options, error);
+}
+
+static bool check_inputs(CompareOptions *options, Error *error) {
     const char *const *paths = options->paths;
-    Trajectory *a = trajectory_read(paths[0], error);
-    Trajectory *b = a != NULL ? trajectory_read(paths[1], error) : NULL;
-    TrajectoryDifference difference = {0};
-    if (b != NULL) {
-        trajectory_compare(a, b, &difference);
-        if (options->json)
-            compare_json_runs(paths, a, b, &difference, error);
-        else
-            print_trajectory_difference(a, &difference);
-    }
-    trajectory_destroy(a);
-    trajectory_destroy(b);
-    return difference.equal && error->kind == ERROR_NONE;
+    const bool first = is_trajectory(paths[0]), second = is_trajectory(paths[1]);
+    if (first != second)
+        return error_input(error, paths[first ? 1 : 0], "is not a trajectory (.npz), but %s is", paths[first ? 0 : 1]);
+    return first ? check_runs(options, error) : check_pictures(options, error);
+}
+
+/* Reads the command line. False with error set if it is wrong, or after --help. */
+static bool compare_options_parse(CompareOptions *options, int argc, char **argv, Error *error) {
+    if (!options_parse(&spec, argc, argv, options, error)) return false;
+    if (options->json && (options->watch || options->annotations != ANNOTATE_NONE))
+        return error_input(error, "--json", "cannot be combined with --%s", options->watch ? "watch" : "annotations");
+    return check_inputs(options, error);
 }
 
 static bool report(Regression *regression, const CompareOptions *options, Error *error) {
@@ -262,29 +267,29 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
     return ok;
 }
 
-static bool compare_inputs(const CompareOptions *options, Error *error) {
-    bool first = is_trajectory(options->paths[0]), second = is_trajectory(options->paths[1]);
-    if (first != second)
-        return error_input(error, options->paths[first ? 1 : 0], "is not a trajectory (.npz), but %s is",
-                           options->paths[first ? 0 : 1]);
-    bool limits = options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0;
-    if (first && (options->report != NULL || limits || options->annotations != 0))
-        return error_input(error, options->paths[0],
-                           "--report, --annotations, --rules, masks and tolerances apply to pictures only");
-    return first ? compare_trajectories(options, error) : compare_pictures(options, error);
-}
-
 static bool compare(const CompareOptions *options, Error *error) {
-    bool same = compare_inputs(options, error);
+    bool same = is_trajectory(options->paths[0]) ? compare_runs(options, error) : compare_pictures(options, error);
     if (error->kind != ERROR_NONE && options->annotations == ANNOTATE_GITHUB)
         github_annotate_message(stdout, "twinbox compare", error->message);
     return same;
 }
 
-bool command_compare(int argc, char **argv, Error *error) {
-    CompareOptions options;
-    bool same = compare_options_parse(&options, argc, argv, error) &&
-                (options.watch ? compare_watch(&options, compare, error) : compare(&options, error));
-    compare_options_free(&options);
+static bool run(CompareOptions *options, int argc, char **argv, Error *error) {
+    bool same = compare_options_parse(options, argc, argv, error);
+    if (same && options->diverge) note_print("'twinbox diverge' is now 'twinbox compare'; its options stay");
+    same = same && (options->watch ? compare_watch(options, compare, error) : compare(options, error));
+    mask_free(&options->mask);
     return same;
+}
+
+bool command_compare(int argc, char **argv, Error *error) {
+    CompareOptions options = {.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES};
+    return run(&options, argc, argv, error);
+}
+
+bool command_diverge(int argc, char **argv, Error *error) {
+    static char now[] = "twinbox compare";
+    if (argc > 0) argv[0] = now;
+    CompareOptions options = {.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES, .diverge = true};
+    return run(&options, argc, argv, error);
 }

@@ -299,9 +299,12 @@ static void complete(const CommandSpec *spec, void *context) {
 }
 
 static void complete_command(const char *typed, bool is_first) {
-    for (const Command *command = commands; command->name != NULL; command++)
+    for (const Command *command = commands; command->name != NULL; command++) {
+        if (command->heading != NULL) printf("<group>%s\n", command->heading);
         if (command->summary != NULL) offer("", typed, command->name, "", command->summary);
+    }
     if (!is_first) return;
+    puts("<group>Help");
     offer("", typed, "help", "", "print the help of a command");
     if (typed[0] != '-') return;
     offer("", typed, "--help", "", "list the commands");
@@ -310,7 +313,7 @@ static void complete_command(const char *typed, bool is_first) {
 
 /* Prints what the last word may become, one line each: the whole word, a tab, a description. A line
    "<files>BEGIN<tab>npz csv" stands for files with these endings, or with any if none is given, whose names follow BEGIN
-   in the word; "<folders>BEGIN" stands for folders. */
+   in the word; "<folders>BEGIN" stands for folders; "<group>Make" is the heading of the commands that follow, in this order. */
 static void print_completions(const CompletionWords *words) {
     if (words->count == 0 || strlen(words->words[words->count - 1]) >= COMPLETION_WORD_SIZE) return;
     const bool help = words->count == 2 && strcmp(words->words[0], "help") == 0;

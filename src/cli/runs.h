@@ -29,22 +29,27 @@ typedef struct CompareOptions {
     const char *paths[2], *report;
     int count, megabytes;
     int max_pixels;
+    const char *limit; /* --tolerance, as given: of pictures in `tolerance`, of runs in `distance` (m) */
     Tolerance tolerance;
-    const char *rules; /* a file; NULL: not given */
+    double distance;
+    const char *scene, *csv; /* of runs */
+    const char *rules;       /* a file; NULL: not given */
     bool flat;
     unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
     bool watch, json;
+    bool diverge; /* by the old name: runs of other worlds are refused, and what only one run has is not compared */
     Mask mask;
 } CompareOptions;
+
+/* Compares two runs and prints the result. False if they differ, or with error set. */
+bool compare_runs(const CompareOptions *options, Error *error);
 
 /* Prints the result of a comparison of pictures. */
 void compare_print(const Regression *regression);
 
-/* The result as JSON: of pictures, what results.json of a report has; or of runs. */
+/* The same as JSON: what results.json of a report has. */
 bool compare_json_pictures(const Regression *regression, Error *error);
-bool compare_json_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b,
-                       const TrajectoryDifference *difference, Error *error);
 
 typedef bool CompareRun(const CompareOptions *options, Error *error);
 

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox solve: takes a contact problem from a file, or from a step of a scene; writes it, and scores methods on it. */
 #include "base/base.h"
+#include "base/file.h"
 #include "base/json.h"
 #include "cli/cli.h"
 #include "cli/options.h"
@@ -9,34 +11,53 @@
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { MAX_METHODS = 64 };
 
 typedef struct Options {
-    const char *path;
+    const char *input; /* with `frame` a scene, else a file of a contact problem */
     const char *methods[MAX_METHODS];
-    int method_count;
+    int method_count, frame; /* frame 0: not given */
+    float bomb_x;            /* m; NaN: not given */
+    const char *run_by, *output;
     bool json;
 } Options;
 
-static const Option option_table[] = {{"--method", 'm', "NAME[:KEY=VALUE,...]", "Method to score (may be repeated)",
-                                       OPTION_TEXTS(Options, methods, method_count),
-                                       .needed = "--method NAME is needed"},
-                                      {OPTION_JSON(Options, json)},
-                                      {0}};
+static const Option option_table[] = {
+    {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method to score (may be repeated)",
+     OPTION_TEXTS(Options, methods, method_count)},
+    {OPTION_JSON(Options, json)},
+    {.help = "Of a scene:"},
+    {"--frame", 0, "N", "Number of the step, from 1: the step that leads to frame N of a run",
+     OPTION_INT(Options, frame, 1, SCENE_MAX_FRAMES)},
+    {"--bomb-x", 0, "X", "Where the bomb is launched, m (default: the scene's x)",
+     OPTION_FLOAT(Options, bomb_x, -SCENE_MAX_POSITION, SCENE_MAX_POSITION)},
+    {"--run-by", 0, "NAME[:KEY=VALUE,...]", "Method that runs the scene up to this step (default: engine)",
+     OPTION_TEXT(Options, run_by)},
+    {"--output", 'o', "P.npz", "Write the contact problem; without --method, nothing is solved",
+     OPTION_BINARY(Options, output)},
+    {0}};
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "P.npz", .needed = "a contact problem (.npz) is needed", OPTION_PATH(Options, path)},
-    .inputs = {1, 1, "problem"},
+    .input = {.value = "SCENE|P.npz",
+              .needed = "a scene, or a contact problem (.npz), is needed",
+              OPTION_PATH(Options, input)},
+    .inputs = {1, 1, "input"},
     .help =
-        "Solve one contact problem with each method and score it against the converged solution: RMS error of the "
+        "Solve the contact problem of one step with each method: the bodies with their velocities before any impulse, "
+        "and the contacts. The step is one of a scene (--frame), or was written by -o before. Methods are scored "
+        "against the converged solution: RMS error of the "
         "bodies' velocities (m/s, spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of "
         "the change made by the contacts), and the residual of the method's impulses: the largest change of a "
         "contact's velocity by one more sweep (m/s; a method without impulses counts as impulses of 0).\v"
-        "Example: twinbox solve impact.npz --method engine:k=10 --method engine:k=100"};
+        "Example: twinbox solve scenes/stack.yaml --frame 41 --method engine:k=10 --method engine:k=100\n"
+        "         twinbox solve scenes/stack.yaml --frame 41 -o impact.npz\n"
+        "         twinbox solve impact.npz --method momentum:k=20\n"
+        "In Python: problem = numpy.load('impact.npz'); problem['velocity'] has shape (bodies, 2)."};
 
 typedef struct Score {
     SolutionError error;
@@ -118,20 +139,99 @@ static void write_result(JsonWriter *json, const void *context) {
     json_end(json);
 }
 
-bool command_solve(int argc, char **argv, Error *error) {
-    Options options = {0};
-    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+static bool solve(const StoredProblem *stored, const Options *options, Error *error) {
     static Method methods[MAX_METHODS];
-    for (int i = 0; i < options.method_count; i++)
-        if (!method_parse(&methods[i], options.methods[i], error)) return false;
-    StoredProblem *stored = problem_read(options.path, error);
-    Result result = {.stored = stored, .methods = methods, .method_count = options.method_count};
-    bool ok = stored != NULL && score_all(&result, error);
-    if (ok && options.json)
+    Result result = {.stored = stored, .methods = methods, .method_count = options->method_count};
+    bool ok = true;
+    for (int i = 0; ok && i < options->method_count; i++) ok = method_parse(&methods[i], options->methods[i], error);
+    ok = ok && score_all(&result, error);
+    if (ok && options->json)
         ok = json_output("twinbox solve 1", write_result, &result, error);
     else if (ok)
         print(&result);
     reference_free(&result.truth);
+    return ok;
+}
+
+typedef struct Recording {
+    const Scene *scene;
+    const Options *options;
+} Recording;
+
+static bool write(const StoredProblem *stored, const Options *options, Error *error) {
+    const ContactProblem *problem = &stored->problem;
+    if (!problem_write(problem, stored->scene, stored->frame, options->output, error)) return false;
+    if (!options->json)
+        printf("%s, step %d: %d bodies, %d contacts -> %s\n", stored->scene, stored->frame, problem->body_count,
+               problem->contact_count, options->output);
+    return true;
+}
+
+/* Uses the problem of the last step, which lasts as long as the world stands still. */
+static bool use_last(void *context, int frame, const World *world, Error *error) {
+    const Recording *recording = context;
+    const Options *options = recording->options;
+    if (frame < options->frame) return true;
+    StoredProblem stored = {.frame = frame, .problem = *world_problem(world)};
+    snprintf(stored.scene, sizeof stored.scene, "%s", recording->scene->name);
+    return (options->output == NULL || write(&stored, options, error)) &&
+           (options->method_count == 0 || solve(&stored, options, error));
+}
+
+static bool run_scene(Scene *scene, const Options *options, Error *error) {
+    Method method;
+    if (!isnan(options->bomb_x) && !scene->bomb.present)
+        return error_input(error, options->input, "the scene has no bomb to launch");
+    if (!isnan(options->bomb_x)) scene->bomb.body.position.x = options->bomb_x;
+    scene->frames = options->frame;
+    if (!method_parse(&method, options->run_by != NULL ? options->run_by : "engine", error)) return false;
+    return simulate_observed(scene, &method, &(StepObserver){use_last, &(Recording){scene, options}}, error);
+}
+
+static bool solve_step(const Options *options, Error *error) {
+    Scene *scene = scene_read(options->input, error);
+    const bool ok = scene != NULL && run_scene(scene, options, error);
+    scene_destroy(scene);
+    return ok;
+}
+
+static bool solve_file(const Options *options, Error *error) {
+    StoredProblem *stored = problem_read(options->input, error);
+    const bool ok = stored != NULL && solve(stored, options, error);
     problem_destroy(stored);
     return ok;
+}
+
+static bool check_options(const Options *options, Error *error) {
+    const bool step = options->frame > 0;
+    if (!step && file_name_ends_with(options->input, ".yaml"))
+        return error_input(error, options->input, "--frame N is needed: the step of the scene");
+    if (!step && (options->output != NULL || options->run_by != NULL || !isnan(options->bomb_x)))
+        return error_input(error, options->input, "-o, --run-by and --bomb-x are for a scene, with --frame N");
+    if (step && file_name_ends_with(options->input, ".npz"))
+        return error_input(error, options->input, "--frame is for a scene; a contact problem is of one step");
+    if (options->method_count == 0 && (options->output == NULL || options->json))
+        return error_input(error, options->input, "--method NAME is needed%s", step ? ", or -o P.npz to write" : "");
+    return json_output_check(options->json, error) &&
+           (options->output == NULL || output_check_npz(options->output, "contact problem", error));
+}
+
+bool command_solve(int argc, char **argv, Error *error) {
+    Options options = {.bomb_x = NAN};
+    return options_parse(&spec, argc, argv, &options, error) && check_options(&options, error) &&
+           (options.frame > 0 ? solve_step(&options, error) : solve_file(&options, error));
+}
+
+/* The old name of its part that writes. --method was what is now --run-by. */
+bool command_problem(int argc, char **argv, Error *error) {
+    static char now[] = "twinbox solve";
+    Options options = {.bomb_x = NAN};
+    if (argc > 0) argv[0] = now;
+    if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    note_print(
+        "'twinbox problem SCENE --frame N -o P.npz' is now 'twinbox solve SCENE --frame N -o P.npz'; its --method "
+        "is now --run-by");
+    if (options.method_count > 0) options.run_by = options.methods[options.method_count - 1];
+    options.method_count = 0;
+    return check_options(&options, error) && solve_step(&options, error);
 }

@@ -55,8 +55,7 @@ x = max(means, key=means.get)
 print(x if abs(float(x) - float(row["x"])) < 1e-6 else "wrong", row["frame"], row["error"], row["body"], sep=",")
 PYTHON
 )"
-run 0 problem "$scenes/stack.yaml" --bomb-x="$x" --frame "$frame" -m engine:k=10 -o worst.npz
-run 0 solve worst.npz -m engine:k=10 --json
+run 0 solve "$scenes/stack.yaml" --bomb-x="$x" --frame "$frame" --run-by engine:k=10 -m engine:k=10 --json
 /usr/bin/python3 - "$error" <<'PYTHON' || fail "the error of the worst step"
 import json, sys
 solved = json.load(open("out"))["methods"][0]["error"]

@@ -10,7 +10,7 @@ run 0 simulate "$scenes/single.yaml" --frames 40 -o other.npz
 run 0 compare a.npz a.npz
 says "equal: 41 frames of 12 bodies"
 run 1 compare a.npz b.npz
-says "first difference: frame 0, body 11:"
+says "first difference: frame 0, body 11 (the bomb):"
 run 1 compare a.npz short.npz
 says "41"
 says "31"

@@ -105,12 +105,14 @@ in_terminal zsh 'source <(twinbox completion zsh)'
 # With bash-completion's breaks of words, and without any of = and :.
 in_terminal bash "COMP_WORDBREAKS=' '; source <(twinbox completion bash)"
 
-# All that bash offers, in its order.
-cat >alike <<'END'
-twinbox diverge <ALL>|twinbox diverge drawn engine.npz two\ words.npz 
+# All that bash offers, in its order. Commands keep the order of their groups.
+sed "s/COMMANDS/$(echo $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'))/" >alike <<'END'
+twinbox help <ALL>|twinbox help COMMANDS 
+twinbox export <ALL>|twinbox export drawn engine.npz two\ words.npz 
 twinbox figure n<ALL>|twinbox figure narrow-phase network 
 twinbox render --png <ALL>|twinbox render --png fast small 
-twinbox problem --<ALL>|twinbox problem --bomb-x --frame --help --method --output --quiet --verbose --version 
+twinbox solve --<ALL>|twinbox solve --bomb-x --frame --help --json --method --output --quiet --run-by --verbose --version 
+twinbox problem --fr<ALL>|twinbox problem --frame 
 twinbox simulate our_wall.yaml <ALL>|twinbox simulate our_wall.yaml 
 END
 cut -d'|' -f1 alike >keys
@@ -119,6 +121,8 @@ in_terminal bash "source '$bash_script'"
 
 # fish completes the word before the cursor; it adds the blank itself.
 if command -v fish >/dev/null; then
+    equal "commands in fish" "$(HOME=$PWD fish -N -c "source '$fish_script'; complete -C 'twinbox help '" | cut -f1 | xargs)" \
+        "$(echo $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'))"
     while IFS='|' read -r keys line; do
         equal "fish: $keys" "$(HOME=$PWD fish -N -c "source '$fish_script'; complete -C '${keys%<TAB>}'" | cut -f1 | head -1)" "$line"
     done <<'END'

@@ -1,5 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
+# Why two runs differ, and how fast they diverge.
 . "$(dirname "$0")/checks.sh"
 
 stack=$scenes/stack.yaml
@@ -8,25 +9,27 @@ run 0 simulate "$stack" --frames 120 --method engine:k=20 -o more.npz
 run 0 simulate "$stack" --frames 60 -o short.npz
 run 0 simulate "$stack" --frames 120 --bomb-x 5.000001 -o moved.npz
 
-run 0 diverge engine.npz engine.npz
+run 0 compare engine.npz engine.npz
 says "equal: 121 frames of 12 bodies, every bit of pose and velocity"
 equal "lines" "$(wc -l <out)" 3
-run 0 diverge engine.npz short.npz
-says "different lengths: only the first 61 frames are compared"
-says "equal: 61 frames"
+run 1 compare engine.npz short.npz
+says "different lengths, 121 and 61 frames: only the first 61 are compared"
+says "equal as far as both go: 61 frames"
+run 1 compare engine.npz short.npz --tolerance 1
 
 # Ten sweeps and twenty: equal until the first box touches the ground.
-run 1 diverge engine.npz more.npz
+run 1 compare engine.npz more.npz
 says "run 1: stack by engine, 121 frames of 12 bodies (engine.npz)"
 says "run 2: stack by engine:k=20, 121 frames of 12 bodies (more.npz)"
 says "first difference: frame 5, body 1:"
 says "cause: the solver"
 says "all states of frame 4 are equal, and so are the 2 contacts of step 5, but the impulses of 2 differ"
 says "contact of bodies 0 and 1, feature 03020000"
-says "shifted run: give --scene SCENE"
+says "largest distance: frame "
+complains "note: with --scene SCENE, the growth is compared"
 grep -q "centres" out && fail "a distance is compared without --tolerance"
 
-run 1 diverge engine.npz more.npz --tolerance 0.01 --scene "$stack" --csv distance.csv
+run 1 compare engine.npz more.npz --tolerance 0.01 --scene "$stack" --csv distance.csv
 says "centres more than 0.01 m apart: frame 18, body 4:"
 says "the states before that step differ since frame 5: an earlier step is the cause"
 says "shifted run (body 1 shifted by 1e-06 m, the same frames): from"
@@ -34,12 +37,12 @@ says "verdict: "
 equal "header" "$(head -1 distance.csv)" "frame,time,distance,shifted_distance"
 equal "lines" "$(wc -l <distance.csv)" 122
 equal "first frame" "$(sed -n 2p distance.csv)" "0,0,0,9.99999997e-07"
-run 0 diverge engine.npz more.npz --tolerance 1e6 --csv alone.csv
+run 0 compare engine.npz more.npz --tolerance 1e6 --csv alone.csv
 says "centres at most 1e+06 m apart: 121 frames of 12 bodies"
 equal "first frame" "$(sed -n 2p alone.csv)" "0,0,0,"
 
 # Run 2 has a shifted bomb, as the shifted run has: both grow alike.
-run 1 diverge engine.npz moved.npz --scene "$stack"
+run 1 compare engine.npz moved.npz --scene "$stack"
 says "different scenes: hashes "
 says "first difference: frame 0, body 11 (the bomb):"
 says "cause: the initial state"
@@ -60,36 +63,60 @@ numpy.savez("sorcery.npz", **run)
 run["contact_start"][5] = 1 << 60
 numpy.savez("hostile.npz", **run)
 PYTHON
-run 0 diverge engine.npz silent.npz
+run 0 compare engine.npz silent.npz
 says "the states do not show it, but contacts of step 30 differ: 1 in impulse, 0 in position, 0 in one run only"
-run 1 diverge engine.npz hidden.npz
+run 1 compare engine.npz hidden.npz
 says "first difference: frame 40, body 3: 0 m apart, 0 rad, 1 m/s"
 says "cause: the warm start, which no state shows"
 says "all states of frame 39 are equal, but contacts of step 30 differ: 1 in impulse"
 says "growth of the largest distance: there are no frames with a distance"
 
-run 2 diverge sorcery.npz engine.npz --scene "$stack"
+run 2 compare sorcery.npz engine.npz --scene "$stack"
 complains "is not a method; known: engine"
-run 2 diverge engine.npz hostile.npz
+run 2 compare engine.npz hostile.npz
 complains "hostile.npz: error: contact_start"
 head -c 1000 engine.npz >cut.npz
-run 2 diverge cut.npz engine.npz
+run 2 compare cut.npz engine.npz
 complains "cut.npz: error:"
-run 2 diverge engine.npz nowhere.npz
+run 2 compare engine.npz nowhere.npz
 complains "nowhere.npz"
 run 0 simulate "$scenes/single.yaml" --frames 20 -o single.npz
+run 1 compare engine.npz single.npz
+says "bodies: 12 and 3"
+for options in "--csv none.csv" "--scene $stack"; do
+    run 2 compare engine.npz single.npz $options
+    complains "single.npz: error: cannot be compared with engine.npz: bodies: 12 and 3"
+done
+[ -e none.csv ] && fail "distances between different bodies"
+run 0 simulate "$stack" --frames 20 --dt 1/120 -o slow.npz
+run 1 compare engine.npz slow.npz
+says "dt: 0.0166666675 and 0.00833333377 s"
+run 2 compare engine.npz more.npz --scene "$scenes/single.yaml"
+complains "single.yaml: error: is not the scene of the run by engine"
+run 2 compare engine.npz more.npz --tolerance -1
+complains "--tolerance: error:"
+for limit in nan inf x 1m ""; do
+    run 2 compare engine.npz more.npz --tolerance "$limit"
+    complains "--tolerance: error: '$limit' is not a distance in metres"
+done
+run 2 compare engine.npz more.npz short.npz
+complains "only 2 inputs can be given"
+run 3 compare engine.npz more.npz --csv /nowhere/distance.csv
+complains "/nowhere/distance.csv"
+
+# The old name has the same results. It does not count what only one run has, and refuses other worlds.
+for arguments in "engine.npz more.npz --tolerance 0.01 --scene $stack --csv both.csv" "engine.npz more.npz --json"; do
+    run 1 compare $arguments
+    cp out now
+    run 1 diverge $arguments
+    diff now out >difference || fail "diverge $arguments prints something else: $(<difference)"
+    equal "notes of diverge" "$(grep -c "note: 'twinbox diverge' is now 'twinbox compare'" err)" 1
+done
+run 0 diverge engine.npz short.npz -q
+equal "notes of diverge -q" "$(<err)" ""
+run 0 diverge engine.npz short.npz --json
 run 2 diverge engine.npz single.npz
 complains "single.npz: error: cannot be compared with engine.npz: bodies: 12 and 3"
-run 0 simulate "$stack" --frames 20 --dt 1/120 -o slow.npz
-run 2 diverge engine.npz slow.npz
-complains "dt: 0.0166666675 and 0.00833333377 s"
-run 2 diverge engine.npz more.npz --scene "$scenes/single.yaml"
-complains "single.yaml: error: is not the scene of the run by engine"
-run 2 diverge engine.npz more.npz --tolerance -1
-complains "--tolerance: error:"
-run 2 diverge engine.npz more.npz --tolerance nan
-run 2 diverge engine.npz more.npz short.npz
-complains "only 2 runs can be given"
-run 3 diverge engine.npz more.npz --csv /nowhere/distance.csv
-complains "/nowhere/distance.csv"
+run 0 help diverge
+says "Usage: twinbox compare"
 finish

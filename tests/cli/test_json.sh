@@ -59,7 +59,7 @@ assert known["engine"]["contact_solver"] and not known["playback"]["contact_solv
 assert known["scene-net"]["without_learned_part"] == "scene-net:net=off"
 PYTHON
 
-"$twinbox" problem "$scenes/stack.yaml" --frame 41 -o impact.npz >/dev/null
+"$twinbox" solve "$scenes/stack.yaml" --frame 41 -o impact.npz >/dev/null
 both 0 solve impact.npz -m engine -m momentum:k=20 -m reference
 check "twinbox solve 1" <<'PYTHON'
 assert len(result["methods"]) == 3
@@ -74,32 +74,27 @@ PYTHON
 "$twinbox" simulate "$scenes/stack.yaml" --method momentum -o momentum.npz >/dev/null
 "$twinbox" simulate "$scenes/stack.yaml" --bomb-frame 299 -o late.npz >/dev/null
 "$twinbox" simulate "$scenes/stack.yaml" --frames 5 --method momentum -o short.npz >/dev/null
-both 1 compare engine.npz momentum.npz
-check "twinbox compare runs 1" <<'PYTHON'
-first, largest = result["first"], result["largest"]
-states("first difference: frame %d, body %d: %g m apart, %g rad, %g m/s\n" % tuple(first.values()))
-states("largest distance: frame %d, body %d: %g m apart\n" % tuple(largest.values()))
-assert result["passed"] is False and result["words"] is None
-assert (result["expected"]["path"], result["actual"]["method"]) == ("engine.npz", "momentum")
-PYTHON
 both 0 compare engine.npz engine.npz
 check "twinbox compare runs 1" <<'PYTHON'
 assert result["passed"] is True and result["first"] is None and result["largest"] is None
-states("equal: %d frames of %d bodies" % (result["expected"]["frames"], result["expected"]["bodies"]))
-PYTHON
-both 1 compare engine.npz short.npz
-check "twinbox compare runs 1" <<'PYTHON'
-assert result["actual"]["frames"] == 6 and result["first"]["frame"] == 4
+states("equal: %d frames of %d bodies" % (result["frames"], result["expected"]["bodies"]))
+assert result["cause"] == "none"
+assert all(result[key] is None for key in ("first", "beyond", "contacts", "beyond_contacts", "growth", "shifted", "words"))
 PYTHON
 "$twinbox" simulate "$scenes/stack.yaml" --frames 5 -o begin.npz >/dev/null
 both 1 compare engine.npz begin.npz
 check "twinbox compare runs 1" <<'PYTHON'
+assert result["words"] == "frames: 301 and 6" and result["frames"] == 6 and result["first"] is None
+PYTHON
+"$twinbox" simulate "$scenes/single.yaml" --frames 5 -o single.npz >/dev/null
+both 1 compare engine.npz single.npz
+check "twinbox compare runs 1" <<'PYTHON'
 states(result["words"] + "\n")
-assert result["first"] is None
+assert result["passed"] is False and result["first"] is None and result["cause"] is None and result["frames"] == 0
 PYTHON
 
-both 1 diverge engine.npz momentum.npz --scene "$scenes/stack.yaml" --tolerance 0.01
-check "twinbox diverge 1" <<'PYTHON'
+both 1 compare engine.npz momentum.npz --scene "$scenes/stack.yaml" --tolerance 0.01
+check "twinbox compare runs 1" <<'PYTHON'
 def state(where):
     return "frame %d, body %d%s: %.3g m apart, %.3g rad, %.3g m/s, %.3g rad/s" % (
         where["frame"], where["body"], " (the bomb)" if where["bomb"] else "",
@@ -117,11 +112,12 @@ def contact(of):
            "%.9g and %.9g N s\n" % (of["a"], of["b"], of["feature"], *of["point"], *of["normal_impulse"], *of["tangent_impulse"])
 
 
-for i, run in enumerate(result["runs"]):
+for i, run in enumerate((result["expected"], result["actual"])):
     states(f"run {i + 1}: {run['scene']} by {run['method']}, {run['frames']} frames of {run['bodies']} bodies ({run['path']})")
 states("first difference: " + state(result["first"]))
 states("centres more than 0.01 m apart: " + state(result["beyond"]))
 states("cause: the " + result["cause"])
+states("largest distance: frame %d, body %d: %.3g m apart\n" % tuple(result["largest"].values()))
 states(contact(result["contacts"]["contact"]))
 assert result["beyond_contacts"]["step"] == result["beyond"]["frame"] > result["contacts"]["step"]
 if result["beyond_contacts"]["contact"]["only_in_run"] is None:
@@ -131,26 +127,22 @@ shifted = result["shifted"]
 states("shifted run (body %d shifted by %.2g m, the same frames): " % (shifted["body"], shifted["shift"]) + growth(shifted["growth"]))
 assert shifted["verdict"] == "chaos" and shifted["rerun_differs"] is None
 states("verdict: chaos")
-assert result["diverge"] is True and abs(result["tolerance"] - 0.01) < 1e-9 and result["frames"] == 301
+assert result["passed"] is False and result["words"] is None and abs(result["tolerance"] - 0.01) < 1e-9 and result["frames"] == 301
 PYTHON
 # Two frames are too few for a rate, which is then NaN.
-both 1 diverge engine.npz short.npz
-check "twinbox diverge 1" <<'PYTHON'
+both 1 compare engine.npz short.npz
+check "twinbox compare runs 1" <<'PYTHON'
 assert result["growth"]["rate"] is None and result["growth"]["doubling_frames"] is None
+assert result["actual"]["frames"] == 6 and result["first"]["frame"] == 4
 assert result["growth"]["count"] == 2 and result["shifted"] is None
 states("too few frames for a rate: 2 of")
 PYTHON
-both 1 diverge engine.npz late.npz
-check "twinbox diverge 1" <<'PYTHON'
+both 1 compare engine.npz late.npz
+check "twinbox compare runs 1" <<'PYTHON'
 assert result["first"]["only_in_run"] == 1 and result["first"]["bomb"] and result["cause"] == "initial state"
 assert result["first"]["distance"] is None
 assert result["contacts"] is None
 states("(the bomb): only in run 1")
-PYTHON
-both 0 diverge engine.npz engine.npz
-check "twinbox diverge 1" <<'PYTHON'
-assert result["diverge"] is False and result["cause"] == "none"
-assert all(result[key] is None for key in ("first", "beyond", "contacts", "beyond_contacts", "growth", "shifted"))
 PYTHON
 
 # A folder's name has every kind of character; what it holds is that of results.json.
@@ -201,7 +193,7 @@ equal "output after an error" "$(<out)" ""
 run 2 solve impact.npz -m engine -m pair-net --json
 equal "output after an error" "$(<out)" ""
 complains "network"
-run 2 diverge engine.npz none.npz --json
+run 2 compare engine.npz none.npz --json
 equal "output after an error" "$(<out)" ""
 run 2 compare actual none --json
 equal "output after an error" "$(<out)" ""
@@ -209,7 +201,7 @@ run 2 compare actual actual --json --watch
 complains "--json: error: cannot be combined with --watch"
 run 2 compare actual actual --json --annotations github
 complains "--json: error: cannot be combined with --annotations"
-for command in "methods" "solve impact.npz -m engine" "diverge engine.npz engine.npz"; do
+for command in "methods" "solve impact.npz -m engine" "compare engine.npz engine.npz"; do
     "$twinbox" $command --json >/dev/full 2>err
     equal "status of $command where standard output is full" $? 3
 done

@@ -44,7 +44,7 @@ refused 2 "x.txt: error: the name must end in .html" page run.npz -o x.txt
 refused 2 "run.npz: error: the name must end in .html" page run.npz -o run.npz
 refused 3 "nowhere/hash: error: cannot write" simulate stack.yaml --hash nowhere/hash
 refused 3 "nowhere/v.json: error: cannot write" simulate stack.yaml --verdict nowhere/v.json
-refused 2 "pair.npz: error: holds a file of kind 'network'" problem stack.yaml --frame 41 -o pair.npz
+refused 2 "pair.npz: error: holds a file of kind 'network'" solve stack.yaml --frame 41 -o pair.npz
 for study in "chart stack.yaml" stability "stability $scenes/stability/friction_ramp.yaml --vary slope" paper; do
     refused 3 "cannot write" $study -o /proc/none
     refused 3 "'run.npz' is not a folder" $study -o run.npz

@@ -32,7 +32,7 @@ refused() {
 refused simulate wall.yaml --bomb-x -2 -o run.npz
 complains "the launch at x = -2 m"
 refused simulate wall.yaml --bomb-x -2 --method momentum -o run.npz
-refused problem wall.yaml --bomb-x -2 --frame 12 -o p.npz
+refused solve wall.yaml --bomb-x -2 --frame 12 -o p.npz
 refused dataset wall.yaml -o data.npz
 complains "free x: -6 to -4.5, 1.3 to 6"
 refused chart wall.yaml --quick -o chart

@@ -20,7 +20,6 @@ render 0 engine.npz --frames 0:1 --size 64x64 -o out_of_render
 page 0 engine.npz momentum.npz -o out_of_page.html
 compare 1 expected actual --report out_of_compare
 approve 0 out_of_compare
-diverge 1 engine.npz momentum.npz --scene scenes/single.yaml
 figure 0 strip engine.npz --at 0,1 -o out_of_figure.svg
 import 0 engine.csv -o out_of_import.npz
 export 0 engine.npz -o out_of_export.json
@@ -30,8 +29,7 @@ chart 0 scenes/single.yaml --quick --launches scenes/launches/far.csv --methods 
 paper 3 -o /proc/none --quick
 stability 0 --study bomb_speed --methods engine:k=4 -o out_of_stability
 merge 0 shards
-problem 0 scenes/stack.yaml --frame 41 -o out_of_problem.npz
-solve 0 out_of_problem.npz -m engine
+solve 0 scenes/stack.yaml --frame 41 -o out_of_solve.npz -m engine
 methods 0"
 
 for name in $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'); do

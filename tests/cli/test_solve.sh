@@ -3,15 +3,15 @@
 # One contact problem, written and solved.
 . "$(dirname "$0")/checks.sh"
 
-run 0 problem "$scenes/stack.yaml" --frame 41 -o impact.npz
+run 0 solve "$scenes/stack.yaml" --frame 41 -o impact.npz
 says "stack, step 41: 12 bodies, 19 contacts -> impact.npz"
-run 0 problem "$scenes/stack.yaml" --frame 41 -o again.npz
+run 0 solve "$scenes/stack.yaml" --frame 41 -o again.npz
 cmp -s impact.npz again.npz || fail "the same problem has other bytes"
-run 0 problem "$scenes/stack.yaml" --frame 41 --bomb-x 2 -o other.npz
+run 0 solve "$scenes/stack.yaml" --frame 41 --bomb-x 2 -o other.npz
 cmp -s impact.npz other.npz && fail "the bomb comes from elsewhere, the problem is the same"
-run 0 problem "$scenes/stack.yaml" --frame 41 --method engine:k=3 -o soft.npz
+run 0 solve "$scenes/stack.yaml" --frame 41 --run-by engine:k=3 -o soft.npz
 cmp -s impact.npz soft.npz && fail "another method ran the scene, the problem is the same"
-run 0 problem "$scenes/stack.yaml" --frame 1 -o first.npz
+run 0 solve "$scenes/stack.yaml" --frame 1 -o first.npz
 says "step 1: 12 bodies"
 
 # The state after the step is the problem's, solved by the same method and moved on by dt.
@@ -46,22 +46,63 @@ done
 equal "bodies right by the reference" "$(value reference 3)" 11/11
 run 0 solve impact.npz -m "pair-net:network=$scenes/networks/pair-net.npz"
 
-run 2 problem "$scenes/stack.yaml" -o none.npz
+run 2 solve "$scenes/stack.yaml" -o none.npz
 complains "--frame N is needed"
-run 2 problem "$scenes/stack.yaml" --frame 0 -o none.npz
+run 2 solve "$scenes/stack.yaml" --frame 0 -o none.npz
 complains "--frame"
-run 2 problem "$scenes/stack.yaml" --frame 3 --bomb-x here -o none.npz
+run 2 solve "$scenes/stack.yaml" --frame 3 --bomb-x here -o none.npz
 complains "--bomb-x"
-run 2 problem "$scenes/stack.yaml" --frame 3 --method none -o none.npz
+run 2 solve "$scenes/stack.yaml" --frame 3 --run-by none -o none.npz
 complains "is not a method; known: engine"
-run 2 problem nowhere.yaml --frame 3 -o none.npz
+run 2 solve nowhere.yaml --frame 3 -o none.npz
 complains "nowhere.yaml"
-run 3 problem "$scenes/stack.yaml" --frame 3 -o no/where.npz
+run 3 solve "$scenes/stack.yaml" --frame 3 -o no/where.npz
 complains "no/where.npz"
 [ -e none.npz ] && fail "a problem was written all the same"
 
+# A step of a scene is solved as its file is, written or not.
+methods="-m engine:k=3 -m momentum -m reference"
+for json in "" --json; do
+    run 0 solve soft.npz $methods $json
+    cp out by_file
+    run 0 solve "$scenes/stack.yaml" --frame 41 --run-by engine:k=3 $methods $json
+    cmp -s by_file out || fail "a step and its file have other scores: $(diff by_file out)"
+done
+run 0 solve "$scenes/stack.yaml" --frame 41 -o both.npz -m engine
+cmp -s both.npz impact.npz || fail "with a method, another problem is written"
+says "stack, step 41: 12 bodies, 19 contacts -> both.npz"
+says "reference: residual"
+run 0 solve "$scenes/stack.yaml" --frame 41 -o both.npz -m engine --json
+/usr/bin/python3 -m json.tool <out >/dev/null || fail "-o --json is not JSON"
+
+# The old name of the part that writes. There, --method ran the scene.
+run 0 problem "$scenes/stack.yaml" --frame 41 --method engine:k=3 -o old.npz
+cmp -s old.npz soft.npz || fail "problem writes another problem"
+says "stack, step 41: 12 bodies, 20 contacts -> old.npz"
+equal "lines of problem" "$(wc -l <out)" 1
+equal "notes of problem" "$(grep -c "note: 'twinbox problem SCENE --frame N -o P.npz' is now 'twinbox solve " err)" 1
+run 0 problem "$scenes/stack.yaml" --frame 41 -o old.npz -q
+equal "notes of problem -q" "$(<err)" ""
+run 2 problem "$scenes/stack.yaml" --frame 41 -m engine
+complains "-o P.npz"
+run 0 help problem
+says "Usage: twinbox solve"
+
 run 2 solve impact.npz
 complains "--method NAME is needed"
+run 2 solve "$scenes/stack.yaml" --frame 41
+complains "--method NAME is needed, or -o P.npz"
+run 2 solve "$scenes/stack.yaml" --frame 41 -o none.npz --json
+complains "--method NAME is needed"
+run 2 solve "$scenes/stack.yaml" -m engine
+complains "stack.yaml: error: --frame N is needed"
+run 2 solve impact.npz -m engine --frame 41
+complains "--frame is for a scene"
+for option in "-o none.npz" "--run-by engine" "--bomb-x 1"; do
+    run 2 solve impact.npz -m engine $option
+    complains "are for a scene, with --frame N"
+done
+[ -e none.npz ] && fail "a problem was written all the same"
 run 2 solve impact.npz -m none
 complains "is not a method; known: engine"
 run 2 solve impact.npz -m pair-net

@@ -8,7 +8,7 @@ sed 's/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stdin.yaml
 cp -r "$scenes/networks" networks
 run 0 simulate stdin.yaml --frames 60 -o run.npz
 run 0 simulate stdin.yaml --frames 60 --method momentum:k=3 -o other.npz
-run 0 problem stdin.yaml --frame 41 -o impact.npz
+run 0 solve stdin.yaml --frame 41 -o impact.npz
 run 0 export run.npz -o run.csv
 sed '/^#/d' run.csv >bare.csv
 sed -n 's/^# size: //p' run.csv | { echo body,width,height,static; sed 's/static$/1/; s/dynamic$/0/'; } >sizes.csv
@@ -37,12 +37,12 @@ while IFS='|' read -r command file; do
     equal "$command" "$(result $file)" "$expected"
 done <<'TABLE'
 simulate @ --frames 20 -o OUT.csv|stdin.yaml
-problem @ --frame 41 -o OUT.npz|stdin.yaml
+solve @ --frame 41 -o OUT.npz -m engine|stdin.yaml
 dataset @ --launches launches.csv -o OUT.npz|stdin.yaml
 dataset stdin.yaml --launches @ -o OUT.npz|launches.csv
-diverge run.npz @ --tolerance 100|other.npz
-diverge @ other.npz --tolerance 10|run.npz
-diverge run.npz other.npz --tolerance 10 --scene @|stdin.yaml
+compare run.npz @ --tolerance 100|other.npz
+compare @ other.npz --tolerance 10|run.npz
+compare run.npz other.npz --tolerance 10 --scene @|stdin.yaml
 compare run.npz @|run.npz
 export @ -o OUT.csv|run.npz
 import @ -o OUT.npz|run.csv
@@ -87,7 +87,7 @@ done <<'TABLE'
 simulate stdin.yaml --frames 20 -o @|a.npz
 simulate stdin.yaml --frames 20 --hash @|a.hash
 simulate stdin.yaml --frames 20 --verdict @|a.json
-problem stdin.yaml --frame 41 -o @|b.npz
+solve stdin.yaml --frame 41 -o @|b.npz
 dataset stdin.yaml --launches launches.csv -o @|c.npz
 export run.npz -o @|b.csv
 import run.csv -o @|d.npz
@@ -96,9 +96,9 @@ page run.npz other.npz -o @|a.html
 check stdin.yaml -o @|a.png
 new @ --like wall|wall.yaml
 TABLE
-"$twinbox" diverge run.npz other.npz --csv - >written 2>err
-run 1 diverge run.npz other.npz --csv far.csv
-cmp -s written far.csv || fail "diverge --csv -"
+"$twinbox" compare run.npz other.npz --csv - >written 2>err
+run 1 compare run.npz other.npz --csv far.csv
+cmp -s written far.csv || fail "compare --csv -"
 "$twinbox" train pairs.npz --iterations 5 -o - >written 2>err || fail "train -o -"
 "$twinbox" figure network written -o other.svg >out 2>err || fail "the network that train wrote to -: $(head -c 300 err)"
 "$twinbox" simulate stdin.yaml --frames 20 -o - 2>err >written
@@ -110,7 +110,7 @@ complains "stdin by engine: 20 steps"
 says "equal: 21 frames"
 
 # Once only, and no binary data on a terminal.
-run 2 diverge - - <run.npz
+run 2 compare - - <run.npz
 complains "-: error: only one file can be read from standard input"
 run 2 simulate stdin.yaml -o - --hash -
 complains "-: error: only one file can be written to standard output"

@@ -16,7 +16,7 @@ PREPARATION = [
     " --shard 1/2 -q",
     "train --kind scene-net SCENES/stack.yaml -o network.npz --launches 10 --rounds 1 --iterations 1 --width 16"
     " --shard 2/2 -q",
-    "problem SCENES/single.yaml --frame 45 -o problem.npz -q",
+    "solve SCENES/single.yaml --frame 45 -o problem.npz -q",
     "render a.npz -o expected --size 64x64 --frames 40:42 --jobs 1 -q",
     "render b.npz -o actual --size 64x64 --frames 41:43 --jobs 1 -q",
     "render a.npz -o equal --size 64x64 --frames 40:42 --jobs 1 -q",
@@ -58,13 +58,13 @@ SHORT = [
     Case("export-json", "export a.npz -o out.json", "a.npz out.json=a.csv"),
     Case("export-blender", "export a.npz -o out.blend.py", "a.npz out.blend.py=a.csv"),
     Case("import", "import a.csv -o out.npz", "a.csv out.npz=b.npz"),
-    Case("compare-runs", "compare a.npz b.npz", "a.npz b.npz"),
+    Case("compare-runs", "compare a.npz b.npz --csv out.csv", "a.npz b.npz out.csv=a.csv"),
     Case("compare-equal", "compare expected equal", "expected equal"),
     Case("compare-json", "compare expected actual --json --antialias", "expected actual"),
     Case("approve", "approve report", "report expected actual"),
     Case("page", "page a.npz b.npz -o out.html --frames 40:50", "a.npz b.npz out.html=a.csv"),
-    Case("diverge", "diverge a.npz b.npz --csv out.csv --json", "a.npz b.npz out.csv=a.csv"),
-    Case("problem", "problem SCENES/single.yaml --frame 45 -o out.npz", "out.npz=problem.npz"),
+    Case("compare-runs-json", "compare a.npz b.npz --json", "a.npz b.npz"),
+    Case("solve-step", "solve SCENES/single.yaml --frame 45 -o out.npz -m engine:k=3", "out.npz=problem.npz"),
     Case("solve", "solve problem.npz -m engine:k=3 -m momentum:k=3 --json", "problem.npz"),
 ]
 

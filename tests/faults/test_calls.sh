@@ -15,4 +15,4 @@ some() {
     python3 "$sources/tests/faults/faults.py" "$twinbox" "$sources" --jobs 2 --sample "$sample" --call "$call" $cases
 }
 some $((sample * 4)) system simulate import compare-report approve
-some $((sample * 50)) libmalloc export-json import compare-report approve dataset train-from simulate-csv problem
+some $((sample * 50)) libmalloc export-json import compare-report approve dataset train-from simulate-csv solve-step

@@ -53,18 +53,18 @@ working() {
 
 run 0 simulate "$scenes/single.yaml" --frames 8 -o a.npz
 run 0 render a.npz -o frames --size 64x64
-run 0 problem "$scenes/single.yaml" --frame 45 -o problem.npz
+run 0 solve "$scenes/single.yaml" --frame 45 -o problem.npz
 waiting TERM simulate -
 waiting INT check -
 waiting INT render - -o drawn
 waiting TERM dataset - -o new.npz
-waiting INT problem - --frame 3 -o new.npz
+waiting INT solve - --frame 3 -o new.npz
 waiting TERM solve - -m engine
 waiting INT chart - -o chart
 waiting TERM stability - --vary height -o study
 waiting TERM import - -o new.npz
 waiting INT compare a.npz -
-waiting TERM diverge a.npz -
+waiting TERM compare a.npz - --json
 waiting INT export - -o new.csv
 waiting TERM page - -o new.html
 waiting INT figure strip - -o new.pdf

@@ -50,6 +50,7 @@ _twinbox() {
             while IFS= read -r word; do COMPREPLY+=("${begin#"$had"}$word"); done < <(compgen -d -- "${typed#"$begin"}")
             compopt -o filenames 2>/dev/null
             ;;
+        "<group>"*) compopt -o nosort 2>/dev/null ;;
         *)
             word=${line%%$'\t'*}
             [[ $word == *[=:] ]] && compopt -o nospace 2>/dev/null

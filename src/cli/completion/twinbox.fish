@@ -25,10 +25,10 @@ function __twinbox_complete
             for path in (__fish_complete_directories $start)
                 printf '%s%s\n' $begin (string split -m 1 \t -- $path)[1]
             end
-        else
+        else if not string match -q -- '<group>*' $line
             printf '%s\n' $line
         end
     end
 end
 
-complete -c twinbox -f -a '(__twinbox_complete)'
+complete -c twinbox -f -k -a '(__twinbox_complete)'

@@ -50,10 +50,13 @@ state == "examples" {
     print
     next
 }
-part == "include" || /^Exit status:/ { next }
+/^Exit status:/ { state = "exit" }
+part == "include" || state == "exit" { next }
 
 /^ +-/ && state == "text" { state = "options"; print "\nOptions:\n" }
 state == "options" && /^ +-\?, --help/ && headings { print "\nIn all commands:" }
+# A heading above commands.
+state == "text" && /^[A-Z][a-z ]*:$/ { print "" }
 # A heading above options, with or without a sentence.
 state != "usage" && /^ [A-Za-z]/ {
     if (state == "text") { state = "options"; print "\nOptions:\n" }

@@ -1,31 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox diverge: its result, both forms of it, the command. */
+/* How twinbox compare compares two runs: why and how fast they diverge, as text and as JSON. */
 #include "base/base.h"
 #include "base/json.h"
 #include "cli/cli.h"
-#include "cli/options.h"
+#include "cli/runs.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
-#include "scenes/scenes.h"
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef struct Divergence {
-    const char *const *paths; /* [2] */
-    double tolerance;         /* m */
+typedef struct Comparison {
+    const CompareOptions *options;
     Trajectory *runs[2];
+    TrajectoryDifference difference;
+    bool same_world; /* or what follows is not known: */
     TrajectoryParting parting;
     double *distance; /* [frames of both] */
     Growth growth, shifted;
     Chaos chaos; /* distance NULL: no scene given */
-} Divergence;
+} Comparison;
 
-static void write_run(JsonWriter *json, const char *path, const Trajectory *run) {
-    json_begin_object(json, NULL, JSON_ONE_LINE);
+static bool same_length(const Comparison *c) { return c->runs[0]->frames == c->runs[1]->frames; }
+
+static bool passed(const Comparison *c) {
+    return c->same_world && c->parting.beyond.frame < 0 && (same_length(c) || c->options->diverge);
+}
+
+static void write_run(JsonWriter *json, const char *key, const char *path, const Trajectory *run) {
+    json_begin_object(json, key, JSON_ONE_LINE);
     json_put_text(json, "path", path);
     json_put_text(json, "scene", run->scene);
     json_put_hash(json, "scene_hash", run->scene_hash);
@@ -48,13 +53,13 @@ static void write_only_in(JsonWriter *json, bool in_first, bool in_second) {
     put_frame(json, "only_in_run", in_first && in_second ? -1 : in_first ? 1 : 2);
 }
 
-static void write_parted(JsonWriter *json, const char *key, const Divergence *d, const PartedBody *parted) {
-    const Trajectory *a = d->runs[0];
+static void write_parted(JsonWriter *json, const char *key, const Comparison *c, const PartedBody *parted) {
+    const Trajectory *a = c->runs[0];
     if (parted->frame < 0) {
         json_put_text(json, key, NULL);
         return;
     }
-    const bool both = parted->by.in_a && parted->by.in_b, moves = both && !d->parting.poses_only;
+    const bool both = parted->by.in_a && parted->by.in_b, moves = both && !c->parting.poses_only;
     json_begin_object(json, key, JSON_ONE_LINE);
     json_put_int(json, "frame", parted->frame);
     json_put_int(json, "body", parted->body);
@@ -120,22 +125,35 @@ static void write_growth(JsonWriter *json, const char *key, const Growth *growth
     json_end(json);
 }
 
-static void write_chaos(JsonWriter *json, const Divergence *d, double dt) {
+static void write_chaos(JsonWriter *json, const Comparison *c, double dt) {
     static const char *const verdicts[] = {[GROWTH_UNKNOWN] = "unknown",
                                            [GROWTH_NEITHER] = "neither doubles",
                                            [GROWTH_SAME] = "chaos",
                                            [GROWTH_FASTER] = "faster",
                                            [GROWTH_SLOWER] = "slower"};
     json_begin_object(json, "shifted", JSON_LINES);
-    json_put_int(json, "body", d->chaos.body);
-    json_put_number(json, "shift", d->chaos.shift);
-    put_frame(json, "rerun_differs", d->chaos.rerun_differs);
-    write_growth(json, "growth", &d->shifted, dt);
-    json_put_text(json, "verdict", verdicts[growth_compare(&d->growth, &d->shifted, dt)]);
+    json_put_int(json, "body", c->chaos.body);
+    json_put_number(json, "shift", c->chaos.shift);
+    put_frame(json, "rerun_differs", c->chaos.rerun_differs);
+    write_growth(json, "growth", &c->shifted, dt);
+    json_put_text(json, "verdict", verdicts[growth_compare(&c->growth, &c->shifted, dt)]);
     json_end(json);
 }
 
-static void write_divergence(JsonWriter *json, const void *context) {
+static void write_largest(JsonWriter *json, const TrajectoryDifference *difference) {
+    if (difference->max_frame < 0) {
+        json_put_text(json, "largest", NULL);
+        return;
+    }
+    json_begin_object(json, "largest", JSON_ONE_LINE);
+    json_put_int(json, "frame", difference->max_frame);
+    json_put_int(json, "body", difference->max_body);
+    json_put_number(json, "distance", difference->max_distance);
+    json_end(json);
+}
+
+static void write_comparison(JsonWriter *json, const void *context) {
+    static const char *const keys[] = {"expected", "actual"};
     static const char *const causes[] = {[PART_NONE] = "none",
                                          [PART_START] = "initial state",
                                          [PART_LAUNCH] = "launch",
@@ -144,35 +162,31 @@ static void write_divergence(JsonWriter *json, const void *context) {
                                          [PART_SOLVER] = "solver",
                                          [PART_ELSEWHERE] = "not the contacts",
                                          [PART_UNKNOWN] = "unknown"};
-    const Divergence *d = context;
-    const TrajectoryParting *parting = &d->parting;
-    const Trajectory *a = d->runs[0];
-    const bool differ = parting->first.frame >= 0, contacts = !a->no_contacts && !d->runs[1]->no_contacts,
-               beyond = contacts && d->tolerance > 0 && parting->beyond.frame > 0;
-    json_begin_array(json, "runs", JSON_LINES);
-    for (int i = 0; i < 2; i++) write_run(json, d->paths[i], d->runs[i]);
-    json_end(json);
+    const Comparison *c = context;
+    const TrajectoryParting *parting = &c->parting;
+    const Trajectory *a = c->runs[0];
+    const bool differ = parting->first.frame >= 0, contacts = !a->no_contacts && !c->runs[1]->no_contacts,
+               beyond = contacts && c->options->distance > 0 && parting->beyond.frame > 0;
+    for (int i = 0; i < 2; i++) write_run(json, keys[i], c->options->paths[i], c->runs[i]);
+    json_put_bool(json, "passed", passed(c));
+    json_put_text(json, "words", c->difference.what[0] != '\0' ? c->difference.what : NULL);
     json_put_int(json, "frames", parting->frames);
-    json_put_number(json, "tolerance", d->tolerance);
-    json_put_bool(json, "poses_only", parting->poses_only);
-    json_put_bool(json, "diverge", parting->beyond.frame >= 0);
-    write_parted(json, "first", d, &parting->first);
-    json_put_text(json, "cause", causes[parting->cause]);
+    json_put_number(json, "tolerance", c->options->distance);
+    json_put_bool(json, "poses_only", c->difference.poses_only);
+    write_parted(json, "first", c, &parting->first);
+    write_largest(json, &c->difference);
+    json_put_text(json, "cause", c->same_world ? causes[parting->cause] : NULL);
     write_contacts(json, "contacts", parting->step, &parting->contacts);
-    write_parted(json, "beyond", d, &parting->beyond);
+    write_parted(json, "beyond", c, &parting->beyond);
     write_contacts(json, "beyond_contacts", beyond ? parting->beyond.frame : -1, &parting->beyond_contacts);
     if (differ)
-        write_growth(json, "growth", &d->growth, (double)a->dt);
+        write_growth(json, "growth", &c->growth, (double)a->dt);
     else
         json_put_text(json, "growth", NULL);
-    if (differ && d->chaos.distance != NULL)
-        write_chaos(json, d, (double)a->dt);
+    if (differ && c->chaos.distance != NULL)
+        write_chaos(json, c, (double)a->dt);
     else
         json_put_text(json, "shifted", NULL);
-}
-
-static bool diverge_print_json(const Divergence *divergence, Error *error) {
-    return json_output("twinbox diverge 1", write_divergence, divergence, error);
 }
 
 static void print_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b) {
@@ -184,9 +198,6 @@ static void print_runs(const char *const paths[2], const Trajectory *a, const Tr
         printf("different scenes: hashes %016" PRIx64 " and %016" PRIx64 "; this may be the cause\n", a->scene_hash,
                b->scene_hash);
     if (!trajectory_both_move(a, b)) printf("only poses are compared: a run has no velocities\n");
-    if (a->frames != b->frames)
-        printf("different lengths: only the first %d frames are compared\n",
-               a->frames < b->frames ? a->frames : b->frames);
 }
 
 static void print_body(const Trajectory *a, const PartedBody *parted, bool poses_only) {
@@ -271,10 +282,15 @@ static void print_beyond(const Trajectory *a, const TrajectoryParting *parting, 
     print_contact(&parting->beyond_contacts);
 }
 
-static void print_parting(const Trajectory *a, const TrajectoryParting *parting, double tolerance) {
+static void print_parting(const Comparison *c) {
+    const Trajectory *a = c->runs[0];
+    const TrajectoryParting *parting = &c->parting;
+    if (!same_length(c))
+        printf("different lengths, %d and %d frames: only the first %d are compared\n", a->frames, c->runs[1]->frames,
+               parting->frames);
     if (parting->first.frame < 0) {
-        printf("equal: %d frames of %d bodies, every bit of pose%s\n", parting->frames, a->bodies,
-               parting->poses_only ? "" : " and velocity");
+        printf("equal%s: %d frames of %d bodies, every bit of pose%s\n", same_length(c) ? "" : " as far as both go",
+               parting->frames, a->bodies, parting->poses_only ? "" : " and velocity");
         if (parting->step >= 0) {
             printf("the states do not show it, but ");
             print_hidden(parting);
@@ -285,7 +301,12 @@ static void print_parting(const Trajectory *a, const TrajectoryParting *parting,
     printf("first difference: ");
     print_body(a, &parting->first, parting->poses_only);
     print_cause(parting);
-    if (tolerance > 0) print_beyond(a, parting, tolerance);
+    if (c->options->distance > 0) print_beyond(a, parting, c->options->distance);
+    if (c->difference.max_frame >= 0)
+        printf("largest distance: frame %d, body %d: %.3g m apart\n", c->difference.max_frame, c->difference.max_body,
+               c->difference.max_distance);
+    else /* a turn by 2 pi, or 0 and -0 */
+        printf("largest distance: none, every position is the same\n");
 }
 
 static void print_rate(const Growth *growth, double dt) {
@@ -330,102 +351,77 @@ static void print_chaos(const Chaos *chaos, const Growth *growth, const Growth *
     printf("verdict: %s\n", verdicts[growth_compare(growth, shifted, dt)]);
 }
 
-static void diverge_print(const Divergence *d) {
-    const Trajectory *a = d->runs[0], *b = d->runs[1];
-    print_runs(d->paths, a, b);
-    print_parting(a, &d->parting, d->tolerance);
-    if (d->parting.first.frame < 0) return;
-    print_growth(&d->growth, (double)a->dt);
-    if (d->chaos.distance != NULL)
-        print_chaos(&d->chaos, &d->growth, &d->shifted, (double)a->dt);
-    else if (note_level() > NOTES_QUIET)
-        printf("shifted run: give --scene SCENE to measure how a shift of 1e-6 m grows\n");
+static void print(const Comparison *c) {
+    const Trajectory *a = c->runs[0];
+    print_runs(c->options->paths, a, c->runs[1]);
+    if (!c->same_world) {
+        printf("%s\n", c->difference.what);
+        return;
+    }
+    print_parting(c);
+    if (c->parting.first.frame < 0) return;
+    print_growth(&c->growth, (double)a->dt);
+    if (c->chaos.distance != NULL)
+        print_chaos(&c->chaos, &c->growth, &c->shifted, (double)a->dt);
+    else if (a->scene_hash != 0)
+        note_print("with --scene SCENE, the growth is compared with that of a shift of 1e-6 m");
 }
 
-typedef struct Options {
-    const char *paths[2];
-    int count;
-    double tolerance; /* m */
-    const char *scene, *csv;
-    bool json;
-} Options;
-
-static const Option option_table[] = {
-    {"--tolerance", 0, "M",
-     "Runs diverge where the centres of a body are more than M metres apart (default: 0, any bit of pose or "
-     "velocity)",
-     OPTION_DOUBLE(Options, tolerance, 0, (double)FLT_MAX)},
-    {"--scene", 0, "SCENE",
-     "Scene of the first run: run it again with the same method and one body shifted by 1e-6 m, and compare the "
-     "growth. The shifted body is the bomb; before the bomb hits, the first body that differs; without a bomb, the "
-     "last body",
-     OPTION_PATH(Options, scene)},
-    {"--csv", 0, "FILE", "Write frame,time,distance,shifted_distance: the largest distance of any body, s and m",
-     OPTION_OUTPUT(Options, csv)},
-    {OPTION_JSON(Options, json)},
-    {0}};
-
-static const CommandSpec spec = {
-    .options = option_table,
-    .input = {.value = "RUN RUN", .needed = "two runs (.npz) are needed", OPTION_PATHS(Options, paths, count)},
-    .inputs = {2, 2, "run"},
-    .help =
-        "Find why two runs diverge: the first frame, body and contact that differ, whether the solver or an earlier "
-        "step is the cause, and how fast the distance grows from there. Of runs of different lengths, the frames of "
-        "the shorter one are compared. Exit status 0: the runs do not diverge beyond the tolerance, 1: they do.\v"
-        "Example: twinbox diverge engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv"};
-
-static bool read_runs(Divergence *d, const Options *options, Error *error) {
-    char what[256];
-    for (int i = 0; i < 2; i++)
-        if ((d->runs[i] = trajectory_read(options->paths[i], error)) == NULL) return false;
-    return !trajectory_different_worlds(d->runs[0], d->runs[1], what, sizeof what) ||
-           error_input(error, options->paths[1], "cannot be compared with %s: %s", options->paths[0], what);
-}
-
-static bool measure(Divergence *d, Error *error) {
-    int frames = d->parting.frames;
-    d->distance = malloc((size_t)frames * sizeof *d->distance);
-    if (d->distance == NULL) return error_memory(error, "diverge");
+static bool measure(Comparison *c, Error *error) {
+    int frames = c->parting.frames;
+    c->distance = malloc((size_t)frames * sizeof *c->distance);
+    if (c->distance == NULL) return error_memory(error, "compare");
     for (int frame = 0; frame < frames; frame++)
-        d->distance[frame] = trajectory_distance(d->runs[0], d->runs[1], frame);
-    /* command_diverge() frees d->distance. NOLINTNEXTLINE(clang-analyzer-unix.Malloc) */
-    return growth_measure(d->distance, 0, frames, (double)d->runs[0]->dt, &d->growth, error);
+        c->distance[frame] = trajectory_distance(c->runs[0], c->runs[1], frame);
+    /* compare_runs() frees c->distance. NOLINTNEXTLINE(clang-analyzer-unix.Malloc) */
+    return growth_measure(c->distance, 0, frames, (double)c->runs[0]->dt, &c->growth, error);
 }
 
 /* Over the same frames as the growth of the two runs. */
-static bool measure_chaos(Divergence *d, const char *scene, Error *error) {
-    int body = chaos_body(d->runs[0], d->parting.first.body, d->parting.first.frame);
+static bool measure_chaos(Comparison *c, const char *scene, Error *error) {
+    int body = chaos_body(c->runs[0], c->parting.first.body, c->parting.first.frame);
     if (body < 0) return error_input(error, scene, "has no body that can move, so none can be shifted");
     bool ok =
-        chaos_run(&d->chaos, scene, d->runs[0], body, d->parting.frames, progress_bar_begin(d->runs[0]->scene), error);
+        chaos_run(&c->chaos, scene, c->runs[0], body, c->parting.frames, progress_bar_begin(c->runs[0]->scene), error);
     progress_bar_end();
-    return ok && growth_measure(d->chaos.distance, d->growth.first, d->growth.end, (double)d->runs[0]->dt, &d->shifted,
+    return ok && growth_measure(c->chaos.distance, c->growth.first, c->growth.end, (double)c->runs[0]->dt, &c->shifted,
                                 error);
 }
 
-static bool find(Divergence *d, const Options *options, Error *error) {
-    if (!read_runs(d, options, error) ||
-        !trajectory_part(d->runs[0], d->runs[1], options->tolerance, &d->parting, error) || !measure(d, error) ||
-        (options->scene != NULL && !measure_chaos(d, options->scene, error)))
+/* Runs of different worlds differ, but no distance of theirs means anything. */
+static bool check_worlds(Comparison *c, Error *error) {
+    const CompareOptions *options = c->options;
+    c->parting = (TrajectoryParting){.first = {.frame = -1}, .beyond = {.frame = -1}, .step = -1};
+    c->same_world = !trajectory_different_worlds(c->runs[0], c->runs[1], c->difference.what, sizeof c->difference.what);
+    return c->same_world || (!options->diverge && options->scene == NULL && options->csv == NULL) ||
+           error_input(error, options->paths[1], "cannot be compared with %s: %s", options->paths[0],
+                       c->difference.what);
+}
+
+static bool find(Comparison *c, Error *error) {
+    const CompareOptions *options = c->options;
+    for (int i = 0; i < 2; i++)
+        if ((c->runs[i] = trajectory_read(options->paths[i], error)) == NULL) return false;
+    trajectory_compare(c->runs[0], c->runs[1], &c->difference);
+    if (!check_worlds(c, error)) return false;
+    if (!c->same_world) return true;
+    if (!trajectory_part(c->runs[0], c->runs[1], options->distance, &c->parting, error) || !measure(c, error) ||
+        (options->scene != NULL && !measure_chaos(c, options->scene, error)))
         return false;
-    const DistanceTable table = {d->parting.frames, (double)d->runs[0]->dt, d->distance, d->chaos.distance};
+    const DistanceTable table = {c->parting.frames, (double)c->runs[0]->dt, c->distance, c->chaos.distance};
     return options->csv == NULL || distance_table_write(&table, options->csv, error);
 }
 
-bool command_diverge(int argc, char **argv, Error *error) {
-    Options options = {0};
-    if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (!json_output_check(options.json, error)) return false;
-    Divergence divergence = {.paths = options.paths, .tolerance = options.tolerance};
-    bool ok = find(&divergence, &options, error);
-    if (ok && options.json)
-        ok = diverge_print_json(&divergence, error);
+bool compare_runs(const CompareOptions *options, Error *error) {
+    Comparison comparison = {.options = options};
+    bool ok = find(&comparison, error);
+    if (ok && options->json)
+        ok = json_output("twinbox compare runs 1", write_comparison, &comparison, error);
     else if (ok)
-        diverge_print(&divergence);
-    bool same = ok && divergence.parting.beyond.frame < 0;
-    chaos_free(&divergence.chaos);
-    free(divergence.distance);
-    for (int i = 0; i < 2; i++) trajectory_destroy(divergence.runs[i]);
-    return same;
+        print(&comparison);
+    ok = ok && passed(&comparison);
+    chaos_free(&comparison.chaos);
+    free(comparison.distance);
+    for (int i = 0; i < 2; i++) trajectory_destroy(comparison.runs[i]);
+    return ok;
 }
