@@ -16,12 +16,13 @@
 
 enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
 
-/* Writes the figure and its caption: one panel per study, with its own axis, and one row per method. A bar covers the
-   values that hold, up to holds_at. A tile at fails_at shows how the method fails (studies/stability.h); if the
-   values beyond the bar are undecided, it is at the far end. An arrow marks a method that holds over the whole range, a
-   cross one that never holds. ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or
-   BORDERS_MAX_STUDIES studies. */
-bool stability_borders_write(const CsvTable *table, PlotPage *page, Error *error);
+/* Writes the figure and its caption: one panel per study, with its own axis, and one row per method that applies to one
+   of them; the caption names the others. The axis has the range of the study, of `own` or, if it is NULL, of the table of
+   studies; of other studies, that of their borders. A bar covers the values that hold, up to holds_at. A tile at fails_at
+   shows how the method fails (studies/stability.h); if the values beyond the bar are undecided, it is at the far end. An
+   arrow marks a method that holds over the whole range, a cross one that never holds. ERROR_INPUT, with
+   path:line:column: more than BORDERS_MAX_METHODS methods or BORDERS_MAX_STUDIES studies. */
+bool stability_borders_write(const CsvTable *table, const StabilityOwn *own, PlotPage *page, Error *error);
 
 /* One stability map: the verdict of every method in every cell of a grid. */
 

@@ -288,10 +288,9 @@ static Layout lay_out(const MapPanels *map, Sketch *sketch) {
                      .left = label_room + map_axis_width(map->y, map->y_count),
                      .right = right,
                      .top = title_room,
-                     .columns = panels == 1   ? 1
-                                : panels <= 4 ? 2
-                                : panels <= 6 ? 3
-                                              : 4,
+                     .columns = panels == 2 || panels == 4 ? 2
+                                : panels <= 6              ? (panels == 1 ? 1 : 3)
+                                                           : 4,
                      .gap = gap,
                      .row_gap = title_room + row_gap};
     grid.rows = (panels + grid.columns - 1) / grid.columns;
@@ -408,25 +407,72 @@ static void draw_legend(const Layout *layout) {
     plot_text(layout->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS, "border of holding");
 }
 
-static void write_caption(const MapPanels *map, char caption[PLOT_CAPTION_SIZE]) {
+/* 1: has a border between holding and failing; 0: holds everywhere; -1: fails everywhere; -2: has no verdict. */
+static int border_of(const MapPanels *map, int panel) {
+    bool any_holds = false, any_fails = false;
+    for (int x = 0; x < map->x_count; x++)
+        for (int y = 0; y < map->y_count; y++) {
+            any_holds = any_holds || holds(map, panel, x, y);
+            any_fails = any_fails || fails(map, panel, x, y);
+        }
+    return any_holds ? any_fails : any_fails ? -1 : -2;
+}
+
+/* Names the panels of a kind in the caption. */
+static void name_panels(const MapPanels *map, int kind, const char *why, PlotPage *page) {
+    const char *before = why;
+    for (int panel = 0; panel < map->panel_count; panel++) {
+        char name[STABILITY_TEXT_SIZE];
+        if (border_of(map, panel) != kind) continue;
+        stability_method_text(name, 8, FIGURE_PAGE_WIDTH, map->methods[panel]->method, map->methods[panel]->setting);
+        text_add(page->caption, sizeof page->caption, "%s%s", before, name);
+        before = ", ";
+    }
+    if (before != why) text_add(page->caption, sizeof page->caption, ".");
+}
+
+/* Where a method holds or fails everywhere, there is nothing to see. If no panel has a border, all stay. */
+static void leave_out(MapPanels *map, PlotPage *page) {
+    int kept = 0;
+    for (int panel = 0; panel < map->panel_count; panel++) kept += border_of(map, panel) == 1;
+    if (kept == 0) return;
+    name_panels(map, 0, " Left out, as holding everywhere: ", page);
+    name_panels(map, -1, " Left out, as failing everywhere: ", page);
+    name_panels(map, -2, " Left out, as not applicable: ", page);
+    const int count = map->panel_count;
+    map->panel_count = 0;
+    for (int panel = 0; panel < count; panel++) {
+        if (border_of(map, panel) != 1) continue;
+        map->methods[map->panel_count] = map->methods[panel];
+        memmove(map->looks[map->panel_count++], map->looks[panel], sizeof map->looks[panel]);
+    }
+}
+
+static void write_caption(MapPanels *map, PlotPage *page) {
     char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
+    WordList words = {0};
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
-    snprintf(
-        caption, PLOT_CAPTION_SIZE,
+    text_add(
+        page->caption, sizeof page->caption,
         "Where each method fails: map %s. Across: %s; up: %s. Each cell is one run and its worst verdict; darker is "
         "worse. Settling, swaying and creeping count as holding; the black line separates them from failing. All "
-        "cells have the same size, whatever their values.\n",
+        "cells have the same size, whatever their values.",
         map->first->map, x, y);
+    leave_out(map, page);
+    for (int panel = 0; panel < map->panel_count; panel++) words_add_method(&words, map->methods[panel]->method);
+    for (int panel = 0; panel < map->panel_count; panel++)
+        words_add_settings(&words, map->methods[panel]->method, map->methods[panel]->setting);
+    words_join(&words, page->caption, sizeof page->caption);
 }
 
 /* The figure and its caption. All cells have the same size; ticks show their values. */
-static void write_map(const MapPanels *map, PlotPage *page) {
+static void write_map(MapPanels *map, PlotPage *page) {
+    write_caption(map, page);
     const Layout layout = lay_out(map, &page->sketch);
     sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
     draw_legend(&layout);
-    write_caption(map, page->caption);
 }
 
 static bool go_on(int done, int total, const char *folder, const Progress *progress, Error *error) {
@@ -450,21 +496,22 @@ static bool process_maps(const CsvTable *table, const char *folder, bool draw, c
     return ok;
 }
 
-static bool draw_borders(const CsvTable *table, const char *folder, const Progress *progress, Error *error) {
+static bool draw_borders(const CsvTable *table, const char *folder, const StabilityOwn *own, const Progress *progress,
+                         Error *error) {
     if (table->count == 0) return true;
     PlotPage page = {0};
-    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, &page, error) &&
+    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, own, &page, error) &&
               plot_page_write(&page, folder, "", "borders", error);
     plot_page_free(&page);
     return ok;
 }
 
-bool stability_figures_write(const char *folder, const Progress *progress, Error *error) {
+bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error) {
     CsvTable maps = {0};
     CsvTable borders = {0};
     bool ok = csv_table_read_from(&borders, folder, &border_layout, error) &&
               csv_table_read_from(&maps, folder, &map_layout, error) &&
-              process_maps(&maps, folder, false, NULL, error) && draw_borders(&borders, folder, progress, error) &&
+              process_maps(&maps, folder, false, NULL, error) && draw_borders(&borders, folder, own, progress, error) &&
               process_maps(&maps, folder, true, progress, error);
     csv_table_free(&maps);
     csv_table_free(&borders);
