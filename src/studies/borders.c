@@ -117,7 +117,7 @@ static BorderAxis border_axis(const CsvTable *table, int first, const StabilityS
     }
     set_axis(&axis, least, most, study != NULL ? study->scan.logarithmic : least > 0 && most / least > long_axis,
              width);
-    axis.falling = falling > 0;
+    axis.falling = study != NULL && !study->scan.either ? study->scan.fails_low : falling > 0;
     stability_axis_text(axis.label, border_row(table, first)->parameter, border_row(table, first)->unit);
     return axis;
 }

@@ -214,8 +214,9 @@ enum {
 /* A method with its non-numeric settings ("engine:warm=off"). Runs with a stopping rule ("engine:near") are a line of
    their own beside those with a fixed number of sweeps. */
 typedef struct ChartLine {
-    char key[CHART_KEY_SIZE];          /* as in the table; identifies the line */
-    char name[CHART_TEXT_SIZE];        /* plain, truncated */
+    char key[CHART_KEY_SIZE];     /* as in the table; identifies the line */
+    char name[CHART_TEXT_SIZE];   /* plain, truncated */
+    char common[CHART_TEXT_SIZE]; /* settings that all its marks have and labels leave out: "k=2, more=400"; plain */
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
     bool no_push_out;                  /* as in the method's description */
@@ -232,7 +233,7 @@ typedef struct ChartMark {
     bool floored;            /* it was less */
     bool on_front;
     bool shipped;                 /* the setting that the method's description calls shipped */
-    char label[CHART_TEXT_SIZE];  /* numeric settings ("k=20"); or empty */
+    char label[CHART_TEXT_SIZE];  /* "k=20"; of several numeric settings those in which its line's marks differ */
     const char *method, *setting; /* as in the table, which outlives them */
 } ChartMark;
 
@@ -287,6 +288,7 @@ typedef struct WordList {
 } WordList;
 
 /* Add what is not there yet; unknown methods and keys have no meaning. The name may have settings, which are ignored. */
+void words_add(WordList *words, const char *word, const char *meaning);
 void words_add_method(WordList *words, const char *name);
 void words_add_settings(WordList *words, const char *name, const char *setting);
 

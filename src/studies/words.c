@@ -9,34 +9,33 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Of a meaning, what stands before " (": details and defaults are for those who run the method. */
-static void add(WordList *words, int word_length, const char *word, const char *meaning) {
+/* Of the meaning, without what is for those who run the method: choices before it, "on|off: ", and what follows " (". */
+void words_add(WordList *words, const char *word, const char *meaning) {
     char text[WORD_SIZE];
-    const char *end = strstr(meaning, " (");
-    const int length = (int)(end != NULL ? end - meaning : (ptrdiff_t)strlen(meaning));
-    snprintf(text, sizeof text, "%.*s: %.*s", word_length, word, length, meaning);
+    const char *end = strstr(meaning, " ("), *choices = strstr(meaning, ": ");
+    if (choices != NULL && memchr(meaning, '|', (size_t)(choices - meaning)) != NULL) meaning = choices + 2;
+    snprintf(text, sizeof text, "%s: %.*s", word, (int)(end != NULL ? end - meaning : WORD_SIZE), meaning);
     for (int i = 0; i < words->count; i++)
-        if (strncmp(words->items[i], text, (size_t)word_length + 2) == 0) return;
+        if (strncmp(words->items[i], text, strlen(word) + 2) == 0) return;
     if (words->count < WORDS_MAX) strcpy(words->items[words->count++], text);
 }
 
 void words_add_method(WordList *words, const char *name) {
     const MethodDescription *method = method_describe(name);
-    if (method == NULL) return;
-    add(words, (int)strlen(method->name), method->name, method->caption != NULL ? method->caption : method->summary);
+    if (method != NULL) words_add(words, method->name, method->caption != NULL ? method->caption : method->summary);
 }
 
 void words_add_settings(WordList *words, const char *name, const char *setting) {
     const MethodDescription *method = method_describe(name);
     const char *twin = method != NULL && method->twin != NULL ? method->twin + strcspn(method->twin, ":") : "";
     for (const char *part = setting; method != NULL && *part != '\0';) {
-        const int length = (int)strcspn(part, ","), key = (int)strcspn(part, "=,");
-        if (twin[0] == ':' && strncmp(part, twin + 1, (size_t)length) == 0 && twin[1 + length] == '\0')
-            add(words, length, part, "without its learned part");
+        const size_t length = strcspn(part, ","), key = strcspn(part, "=,");
+        if (twin[0] == ':' && strncmp(part, twin + 1, length) == 0 && twin[1 + length] == '\0')
+            words_add(words, twin + 1, "without its learned part");
         else
             for (const SettingSpec *known = method->settings; known != NULL && known->key != NULL; known++)
-                if (key == (int)strlen(known->key) && strncmp(part, known->key, (size_t)key) == 0)
-                    add(words, key, part, known->summary);
+                if (key == strlen(known->key) && strncmp(part, known->key, key) == 0)
+                    words_add(words, known->key, known->summary);
         part += length + (part[length] == ',');
     }
 }
