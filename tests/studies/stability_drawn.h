@@ -33,10 +33,11 @@ static inline void draw(void) {
 }
 
 /* Defines areas(svg, "#RRGGBB"): filled areas of a colour, each [left, top, right, bottom] in mm; count(svg, "#RRGGBB");
-   and texts(svg). */
+   texts(svg); and caption(name). */
 #define SVG_FUNCTIONS                                                                                       \
     "import sys, re, xml.etree.ElementTree as tree\n"                                                       \
     "def read(name): return open(sys.argv[1] + '/' + name + '.svg').read()\n"                               \
+    "def caption(name): return open(sys.argv[1] + '/' + name + '.txt').read()\n"                            \
     "def areas(svg, colour):\n"                                                                             \
     "    paths = re.findall('<path d=\"M([^\"]*)Z\" fill=\"%s\"' % colour, svg)\n"                          \
     "    corners = [[tuple(map(float, p.split())) for p in path.split('L')] for path in paths]\n"           \
