@@ -231,8 +231,7 @@ typedef struct Borders {
     Sketch *sketch;
     int study_count, method_count;
     int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* first row of each */
-    int left_out[BORDERS_MAX_METHODS],
-        left_out_count; /* the same of methods that no study applies to, if any other does */
+    int left_out[BORDERS_MAX_METHODS], left_out_count;              /* the same of methods that no study applies to */
     int columns, rows, legend_rows;
     double row_height; /* mm */
     PlotGrid grid;
@@ -276,6 +275,9 @@ static bool gather(Borders *borders, Error *error) {
     return true;
 }
 
+/* mm: of the line that names what is left out. */
+static double foot_of(const Borders *borders) { return borders->left_out_count > 0 ? WORD_ROW : 0; }
+
 /* Uses the height of a printed page if that gives rows of a readable height. */
 static void lay_out(Borders *borders) {
     int items = BORDER_SIGNS;
@@ -283,7 +285,7 @@ static void lay_out(Borders *borders) {
     borders->legend_rows = (items + LEGEND_COLUMNS - 1) / LEGEND_COLUMNS;
     borders->columns = borders->study_count <= 2 ? borders->study_count : borders->study_count <= 6 ? 3 : 4;
     borders->rows = (borders->study_count + borders->columns - 1) / borders->columns;
-    const double legend = LEGEND_ROW * borders->legend_rows + 2, around = title_room + axis_room;
+    const double legend = foot_of(borders) + LEGEND_ROW * borders->legend_rows + 2, around = title_room + axis_room;
     const double room = (most_page - legend) / borders->rows - around;
     borders->row_height = fmin(fmax(room / borders->method_count, least_row), most_row);
     borders->grid =
@@ -348,12 +350,13 @@ static void draw_samples(const Borders *borders, const LegendPlace *place, int f
 }
 
 static void draw_legend(const Borders *borders) {
-    LegendPlace place = {legend_left, LEGEND_ROW * (borders->legend_rows - 0.5) + 0.5,
+    LegendPlace place = {legend_left, foot_of(borders) + LEGEND_ROW * (borders->legend_rows - 0.5) + 0.5,
                          (FIGURE_PAGE_WIDTH - legend_left) / LEGEND_COLUMNS, LEGEND_COLUMNS};
     draw_samples(borders, &place, verdict_draw_legend(borders->sketch, borders->used, &place));
 }
 
 static void write_caption(const Borders *borders, PlotPage *page) {
+    LeftOut left_out = {0};
     WordList words = {0};
     text_add(page->caption, sizeof page->caption,
              "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a "
@@ -361,11 +364,9 @@ static void write_caption(const Borders *borders, PlotPage *page) {
              "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.");
     for (int i = 0; i < borders->left_out_count; i++) {
         const BorderRow *row = border_row(borders->table, borders->left_out[i]);
-        char name[STABILITY_TEXT_SIZE];
-        stability_method_text(name, 8, FIGURE_PAGE_WIDTH, row->method, row->setting);
-        text_add(page->caption, sizeof page->caption, "%s%s", i == 0 ? " Left out, as not applicable: " : ", ", name);
+        left_out_add(&left_out, "Left out, as not applicable: ", row->method, row->setting);
     }
-    if (borders->left_out_count > 0) text_add(page->caption, sizeof page->caption, ".");
+    left_out_draw(&left_out, page, legend_left);
     for (int i = 0; i < borders->method_count; i++)
         words_add_method(&words, border_row(borders->table, borders->methods[i])->method);
     for (int i = 0; i < borders->method_count; i++) {

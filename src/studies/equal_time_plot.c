@@ -259,8 +259,7 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
               "error at the impact / error of the best rival,");
     plot_text(sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, WORD_POINTS, layout->grid->times);
     plot_text(sketch, (Point){right, bottom - 2}, TEXT_LEFT, 8, note);
-    plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8,
-              "– slower, or unstable before the impact");
+    plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower, or unstable before the impact");
     words_draw(&layout->grid->words, sketch, layout->left, words + 0.5);
 }
 

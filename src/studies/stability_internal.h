@@ -12,6 +12,21 @@
 
 #include <stdio.h>
 
+/* What a figure leaves out, with the reason: named at its foot, as far as there is room, and in its caption. Zero-initialise. */
+
+enum { LEFT_OUT_SIZE = 8192 };
+
+typedef struct LeftOut {
+    int count;
+    char lines[3][LEFT_OUT_SIZE];
+} LeftOut;
+
+/* Methods of one reason follow each other; at most three reasons, "Left out, as not applicable: ". */
+void left_out_add(LeftOut *left_out, const char *why, const char *method, const char *setting);
+
+/* From `left` to the edge of the page; a line is WORD_ROW high. */
+void left_out_draw(const LeftOut *left_out, PlotPage *page, double left);
+
 /* The borders figure: how far each method holds in each study. */
 
 enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
