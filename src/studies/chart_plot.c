@@ -22,7 +22,7 @@
 #define RIGHT_MARGIN 3.5 /* half of "1000" below an axis that ends there */
 #define FOOT_ROW WORD_ROW
 #define FOOT_GAP 1.2
-#define LEAST_PANEL 52.0
+#define LEAST_PANEL 56.0 /* height */
 
 #define LABEL_POINTS 6.5
 #define RING_RADIUS 2.2 /* mm: around a setting as shipped */

@@ -356,7 +356,8 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
 
 /* The figures of a stability study, drawn from its tables. */
 
-/* Reads folder/stability.csv and folder/maps.csv and draws, as .png, .svg and a caption .txt of one line,
+/* Reads folder/stability.csv and folder/maps.csv, of the studies of a scene file or, with own NULL, of the table, and draws,
+   as .png, .svg and a caption .txt of one line, which also explains the words of the figure,
      map-NAME   one per map: a panel per method with a border, a tile per cell; the caption names methods
                 that hold or fail everywhere; in the .svg, tiles link to the cells' clips, whether these exist or not
      borders    how far each method holds in each study (studies/stability_internal.h)
