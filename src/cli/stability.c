@@ -378,7 +378,8 @@ static bool write_pages(const Options *options, uint64_t key, Error *error) {
 
 static bool draw(void *context, uint64_t key, Error *error) {
     const Options *options = context;
-    const bool drawn = stability_figures_write(options->study.folder, progress_bar_begin("maps"), error);
+    const bool drawn =
+        stability_figures_write(options->study.folder, options->study.own, progress_bar_begin("maps"), error);
     progress_bar_end();
     return drawn && (!options->pages || write_pages(options, key, error));
 }

@@ -360,7 +360,7 @@ bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, S
 
 /* A figure of plots with its caption; and the one function that draws plots which differ in their data only. */
 
-enum { PLOT_CAPTION_SIZE = 2048 };
+enum { PLOT_CAPTION_SIZE = 16384 };
 
 /* Initialise with zeros; free with plot_page_free(). */
 typedef struct PlotPage {

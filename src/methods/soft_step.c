@@ -176,7 +176,7 @@ static void take_substeps(SoftStep *stepping, Vec2 gravity, float dt) {
 }
 
 static const SettingSpec settings[] = {
-    {"substeps", "substeps per step (default: 4)", SETTING_INT(SoftStep, substeps, 1, 1000)},
+    {"substeps", "small steps per step (default: 4)", SETTING_INT(SoftStep, substeps, 1, 1000)},
     {"hertz", "frequency of the contacts' springs (default: 30)", SETTING_FLOAT(SoftStep, hertz, 0.01f, 1e4f)},
     {"damping", "their damping ratio (default: 10)", SETTING_FLOAT(SoftStep, damping, 0, 1e3f)},
     {0}};

@@ -97,11 +97,11 @@ typedef struct StoppingRule {
         "k", "sweeps over all contacts per step (default: the scene's, else 10)", \
             SETTING_INT(StoppingRule, k, 1, SWEEPS_MAX)                           \
     }
-#define STOPPING_SETTINGS                                                                                          \
-    {"near", "residual, m/s: after k sweeps, blocks of 8 follow while it is at least this (default: none follow)", \
-     SETTING_OWN},                                                                                                 \
-    {                                                                                                              \
-        "more", "with near: sweeps that may follow, rounded up to whole blocks (default: 48)", SETTING_OWN         \
+#define STOPPING_SETTINGS                                                                                             \
+    {"near", "sweeps go on while contacts miss their velocity by this, m/s (after k, in blocks of 8; default: none)", \
+     SETTING_OWN},                                                                                                    \
+    {                                                                                                                 \
+        "more", "sweeps that near may add (rounded up to whole blocks; default: 48)", SETTING_OWN                     \
     }
 
 /* Overwrites the rule, which has the method's defaults, with `near` and `more`. ERROR_INPUT for a value out of range, and

@@ -5,6 +5,7 @@
 #include "figures/sketch.h"
 #include "pixels/png.h"
 #include "runs/verdict.h"
+#include "studies/chart_internal.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 
@@ -15,6 +16,7 @@ typedef struct BorderAxis {
     PlotAxis axis; /* over the study's values, widened if too narrow, with a margin at both ends */
     bool falling;  /* smaller values are harder: most methods hold above their border and fail below */
     char label[STABILITY_TEXT_SIZE];
+    PlotTicks ticks; /* within the values */
 } BorderAxis;
 
 /* Margin at both ends for the marks of methods that hold over the whole range or never. */
@@ -46,22 +48,55 @@ static const double least_ratio = 1.5, apart = 1.5;
 /* Beyond this range numbers are powers of ten. */
 static const double plain_least = 1e-3, plain_most = 1e5;
 
-/* An axis for [least, most], with the margins. */
-static PlotAxis with_margins(double least, double most, double width) {
+/* The study of the row; NULL: another program's. */
+static const StabilityStudy *study_of(const StabilityOwn *own, const BorderRow *row) {
+    const StabilityStudy *studies = own != NULL ? own->studies : stability_studies;
+    const int count = own != NULL ? own->study_count : stability_study_count;
+    for (int i = 0; i < count; i++)
+        if (strcmp(studies[i].name, row->study) == 0 && strcmp(studies[i].parameter, row->parameter) == 0)
+            return &studies[i];
+    return NULL;
+}
+
+/* A number at an end of the range, instead of those that it would touch. */
+static void name_end(PlotTicks *ticks, const PlotAxis *axis, double value) {
+    const double points = 7.5, between = 1;
+    PlotTick end = {.value = value};
+    snprintf(end.text, sizeof end.text, "%.4g", value);
+    for (int i = 0; i < ticks->count; i++) {
+        PlotTick *other = &ticks->items[i];
+        const double distance = fabs(plot_axis_place(axis, other->value) - plot_axis_place(axis, value));
+        const double width = plot_tick_width(other, points);
+        if (width == 0 || distance > (width + plot_tick_width(&end, points)) / 2 + between) continue;
+        if (distance < 0.01) return;
+        other->text[0] = '\0';
+        other->digit = 0;
+    }
+    plot_tick_add(ticks, value, false, end.text);
+}
+
+/* From the least to the most value, with numbers at both. */
+static void set_axis(BorderAxis *out, double least, double most, bool logarithmic, double width) {
     const double share = BORDER_AXIS_ROOM / (width - 2 * BORDER_AXIS_ROOM);
-    PlotAxis axis = plot_linear_axis(least - share * (most - least), most + share * (most - least), NULL);
-    if (least > 0 && most / least > long_axis) {
+    PlotAxis axis = plot_linear_axis(least - share * (most - least), most + share * (most - least), NULL), inside;
+    if (logarithmic) {
         axis.scale = PLOT_LOG;
         axis.low = least / pow(most / least, share);
         axis.high = most * pow(most / least, share);
         axis.powers = least < plain_least || most >= plain_most;
     }
     axis.outside = true;
-    return axis;
+    inside = axis;
+    inside.low = least, inside.high = most;
+    inside.to = width - 2 * BORDER_AXIS_ROOM;
+    plot_ticks_choose(&out->ticks, &inside, 7.5, true);
+    name_end(&out->ticks, &inside, least);
+    name_end(&out->ticks, &inside, most);
+    out->axis = axis;
 }
 
-/* The axis of the study of row `first`, `width` mm long; its label is not set in `axis`. */
-static BorderAxis border_axis(const CsvTable *table, int first, double width) {
+/* The axis of the study of row `first`, `width` mm long; its label and ticks are not set in `axis`. */
+static BorderAxis border_axis(const CsvTable *table, int first, const StabilityStudy *study, double width) {
     BorderAxis axis = {0};
     double least = INFINITY, most = -INFINITY;
     int falling = 0;
@@ -73,12 +108,16 @@ static BorderAxis border_axis(const CsvTable *table, int first, double width) {
         falling += (row->fails_at < row->holds_at) - (row->fails_at > row->holds_at);
     }
     if (!(least <= most)) least = most = 0;
-    if (least > 0 && most / least < least_ratio) {
+    if (study != NULL) {
+        least = study->scan.from;
+        most = study->scan.to;
+    } else if (least > 0 && most / least < least_ratio) {
         least /= apart;
         most *= apart;
     }
-    axis.axis = with_margins(least, most, width);
-    axis.falling = falling > 0;
+    set_axis(&axis, least, most, study != NULL ? study->scan.logarithmic : least > 0 && most / least > long_axis,
+             width);
+    axis.falling = study != NULL && !study->scan.either ? study->scan.fails_low : falling > 0;
     stability_axis_text(axis.label, border_row(table, first)->parameter, border_row(table, first)->unit);
     return axis;
 }
@@ -153,16 +192,12 @@ static void draw_sign(const BorderRows *rows, const BorderRow *row, double y) {
     if (never_holds(row)) put_cross(rows->sketch, (Point){margin_of(rows, true), y});
 }
 
-static double height_of(const BorderRows *rows, const BorderRow *row) {
-    int i = 0;
-    while (!border_same_method(border_row(rows->table, rows->methods[i]), row)) i++;
-    return plot_axis_place(&rows->panel->y, i);
-}
-
 static void draw_each(const BorderRows *rows, void (*put)(const BorderRows *, const BorderRow *, double)) {
     for (int i = 0; i < rows->table->count; i++) {
         const BorderRow *row = border_row(rows->table, i);
-        if (border_same_study(row, rows->study)) put(rows, row, height_of(rows, row));
+        for (int method = 0; border_same_study(row, rows->study) && method < rows->method_count; method++)
+            if (border_same_method(border_row(rows->table, rows->methods[method]), row))
+                put(rows, row, plot_axis_place(&rows->panel->y, method));
     }
 }
 
@@ -192,9 +227,11 @@ enum { LEGEND_COLUMNS = 5 };
 
 typedef struct Borders {
     const CsvTable *table;
+    const StabilityOwn *own; /* or NULL */
     Sketch *sketch;
     int study_count, method_count;
     int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* first row of each */
+    int left_out[BORDERS_MAX_METHODS], left_out_count;              /* the same of methods that no study applies to */
     int columns, rows, legend_rows;
     double row_height; /* mm */
     PlotGrid grid;
@@ -211,19 +248,35 @@ static bool add_first(const CsvTable *table, int i, bool (*same)(const BorderRow
     return true;
 }
 
+/* Whether a study applies to the row's method. */
+static bool is_applicable(const CsvTable *table, const BorderRow *row) {
+    bool found = false;
+    for (int i = 0; !found && i < table->count; i++)
+        found = border_row(table, i)->verdict != LOOK_NOT_APPLICABLE && border_same_method(border_row(table, i), row);
+    return found;
+}
+
 static bool gather(Borders *borders, Error *error) {
     const CsvTable *table = borders->table;
+    bool any = false;
+    for (int i = 0; i < table->count; i++) any = any || border_row(table, i)->verdict != LOOK_NOT_APPLICABLE;
     for (int i = 0; i < table->count; i++) {
+        const BorderRow *row = border_row(table, i);
         if (!add_first(table, i, border_same_study, borders->studies, &borders->study_count, BORDERS_MAX_STUDIES))
             return csv_table_error(table, i, 0, error, "more than %d studies: too many for a figure",
                                    BORDERS_MAX_STUDIES);
-        if (!add_first(table, i, border_same_method, borders->methods, &borders->method_count, BORDERS_MAX_METHODS))
+        const bool left_out = any && !is_applicable(table, row);
+        if (!add_first(table, i, border_same_method, left_out ? borders->left_out : borders->methods,
+                       left_out ? &borders->left_out_count : &borders->method_count, BORDERS_MAX_METHODS))
             return csv_table_error(table, i, 0, error, "more than %d methods: too many for a figure",
                                    BORDERS_MAX_METHODS);
-        if (!verdict_holds((Verdict)border_row(table, i)->verdict)) borders->used[border_row(table, i)->verdict] = true;
+        if (!left_out && !verdict_holds((Verdict)row->verdict)) borders->used[row->verdict] = true;
     }
     return true;
 }
+
+/* mm: of the line that names what is left out. */
+static double foot_of(const Borders *borders) { return borders->left_out_count > 0 ? WORD_ROW : 0; }
 
 /* Uses the height of a printed page if that gives rows of a readable height. */
 static void lay_out(Borders *borders) {
@@ -232,7 +285,7 @@ static void lay_out(Borders *borders) {
     borders->legend_rows = (items + LEGEND_COLUMNS - 1) / LEGEND_COLUMNS;
     borders->columns = borders->study_count <= 2 ? borders->study_count : borders->study_count <= 6 ? 3 : 4;
     borders->rows = (borders->study_count + borders->columns - 1) / borders->columns;
-    const double legend = LEGEND_ROW * borders->legend_rows + 2, around = title_room + axis_room;
+    const double legend = foot_of(borders) + LEGEND_ROW * borders->legend_rows + 2, around = title_room + axis_room;
     const double room = (most_page - legend) / borders->rows - around;
     borders->row_height = fmin(fmax(room / borders->method_count, least_row), most_row);
     borders->grid =
@@ -263,21 +316,24 @@ static void draw_rows(const Borders *borders, const PlotPanel *panel, bool named
     }
 }
 
-static void draw_panel(const Borders *borders, int study) {
+static void draw_panel(const Borders *borders, int place) {
     static const PlotTicks none;
-    const BorderRow *first = border_row(borders->table, borders->studies[study]);
-    PlotPanel panel = {.box = plot_grid_box(&borders->grid, study)};
-    BorderAxis axis = border_axis(borders->table, borders->studies[study], panel.box.width);
+    const BorderRow *first = border_row(borders->table, borders->studies[place]);
+    const StabilityStudy *study = study_of(borders->own, first);
+    PlotPanel panel = {.box = plot_grid_box(&borders->grid, place)};
+    BorderAxis axis = border_axis(borders->table, borders->studies[place], study, panel.box.width);
     char title[STABILITY_TEXT_SIZE];
-    stability_axis_text(title, first->study, "");
+    stability_axis_text(title, study != NULL ? study->title : first->study, "");
+    chart_make_plain(title);
     text_fit(title, sizeof title, 8, panel.box.width);
     panel.title = title;
     panel.x = axis.axis;
     panel.x.label = axis.label;
+    panel.x.ticks = &axis.ticks;
     panel.y = plot_linear_axis(borders->method_count - 0.5, -0.5, NULL);
     panel.y.ticks = &none;
     plot_panel_place(&panel);
-    draw_rows(borders, &panel, study % borders->columns == 0);
+    draw_rows(borders, &panel, place % borders->columns == 0);
     border_marks_draw(&(BorderRows){borders->table, borders->sketch, first, &panel, axis.falling, borders->methods,
                                     borders->method_count});
     plot_panel_draw(borders->sketch, &panel);
@@ -294,23 +350,39 @@ static void draw_samples(const Borders *borders, const LegendPlace *place, int f
 }
 
 static void draw_legend(const Borders *borders) {
-    LegendPlace place = {legend_left, LEGEND_ROW * (borders->legend_rows - 0.5) + 0.5,
+    LegendPlace place = {legend_left, foot_of(borders) + LEGEND_ROW * (borders->legend_rows - 0.5) + 0.5,
                          (FIGURE_PAGE_WIDTH - legend_left) / LEGEND_COLUMNS, LEGEND_COLUMNS};
     draw_samples(borders, &place, verdict_draw_legend(borders->sketch, borders->used, &place));
 }
 
-bool stability_borders_write(const CsvTable *table, PlotPage *page, Error *error) {
-    static const char caption[] =
-        "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a method "
-        "fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at the far "
-        "end. "
-        "Arrow: holds over the whole range; cross: never holds; no mark: not in the study.\n";
-    Borders borders = {.table = table, .sketch = &page->sketch};
+static void write_caption(const Borders *borders, PlotPage *page) {
+    LeftOut left_out = {0};
+    WordList words = {0};
+    text_add(page->caption, sizeof page->caption,
+             "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a "
+             "method fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at "
+             "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.");
+    for (int i = 0; i < borders->left_out_count; i++) {
+        const BorderRow *row = border_row(borders->table, borders->left_out[i]);
+        left_out_add(&left_out, "Left out, as not applicable: ", row->method, row->setting);
+    }
+    left_out_draw(&left_out, page, legend_left);
+    for (int i = 0; i < borders->method_count; i++)
+        words_add_method(&words, border_row(borders->table, borders->methods[i])->method);
+    for (int i = 0; i < borders->method_count; i++) {
+        const BorderRow *row = border_row(borders->table, borders->methods[i]);
+        words_add_settings(&words, row->method, row->setting);
+    }
+    words_join(&words, page->caption, sizeof page->caption);
+}
+
+bool stability_borders_write(const CsvTable *table, const StabilityOwn *own, PlotPage *page, Error *error) {
+    Borders borders = {.table = table, .own = own, .sketch = &page->sketch};
     if (!gather(&borders, error)) return false;
     lay_out(&borders);
     sketch_begin(&page->sketch, borders.grid.width, borders.grid.height);
     for (int study = 0; study < borders.study_count; study++) draw_panel(&borders, study);
     draw_legend(&borders);
-    snprintf(page->caption, sizeof page->caption, "%s", caption);
+    write_caption(&borders, page);
     return true;
 }

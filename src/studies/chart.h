@@ -528,8 +528,8 @@ bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Err
 
 /* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path. x: solver time per step; y: mean velocity
    error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed loop. One mark per setting, one
-   line per method, and the Pareto front (studies/chart_internal.h) as a staircase behind. 174 x 100 mm, a paper's page
-   width; colours and symbols are distinguishable in grey and with colour blindness. The folder must exist. ERROR_INPUT
+   line per method, and the Pareto front (studies/chart_internal.h) as a staircase behind. Below, a line for each word: methods and
+   settings. 174 mm wide, as a paper's page, and 100 mm high or, for many words, more; colours and symbols are distinguishable in grey and with colour blindness. The folder must exist. ERROR_INPUT
    for an invalid table, a scene without marks, or a scene name that is not a file name. Each file appears complete or
    not at all. */
 bool chart_plot(const char *csv_path, const char *scene, const char *folder, Error *error);

@@ -188,6 +188,35 @@ static void add_rows(Chart *chart, const CsvTable *table, const char *scene, Cha
     for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene));
 }
 
+/* Whether all marks of the line have this setting, "k=20". */
+static bool is_common(const Chart *chart, int line, const char *part) {
+    bool common = true;
+    for (int p = 0; p < CHART_PANELS; p++)
+        for (int i = 0; i < chart->panels[p].count; i++) {
+            const ChartMark *mark = &chart->panels[p].marks[i];
+            char setting[CHART_SETTING_SIZE + 2], wanted[CHART_SETTING_SIZE + 2];
+            snprintf(setting, sizeof setting, ",%s,", mark->setting);
+            snprintf(wanted, sizeof wanted, ",%s,", part);
+            common = common && (mark->line != line || strstr(setting, wanted) != NULL);
+        }
+    return common;
+}
+
+/* Of several settings, names those in which the marks of its line differ. */
+static void shorten_label(Chart *chart, ChartMark *mark) {
+    char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
+    char own[2 * CHART_SETTING_SIZE] = "", common[3 * CHART_SETTING_SIZE] = "", *rest;
+    chart_split_setting(mark->setting, numbers, words);
+    if (strchr(numbers, ',') == NULL) return;
+    for (char *part = strtok_r(numbers, ",", &rest); part != NULL; part = strtok_r(NULL, ",", &rest))
+        if (is_common(chart, mark->line, part))
+            text_add(common, sizeof common, "%s%s", common[0] != '\0' ? ", " : "", part);
+        else
+            text_add(own, sizeof own, "%s%s", own[0] != '\0' ? "," : "", part);
+    chart_plain(mark->label, own);
+    chart_plain(chart->lines[mark->line].common, common);
+}
+
 static bool add_marks(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error) {
     bool *on_front = malloc((size_t)table->count * sizeof *on_front);
     ChartRow *rows = malloc((size_t)table->count * sizeof *rows);
@@ -201,6 +230,8 @@ static bool add_marks(Chart *chart, const CsvTable *table, const char *scene, co
         fit_axes(chart);
         for (int p = 0; p < CHART_PANELS; p++)
             qsort(chart->panels[p].marks, (size_t)chart->panels[p].count, sizeof(ChartMark), compare_marks);
+        for (int p = 0; p < CHART_PANELS; p++)
+            for (int i = 0; i < chart->panels[p].count; i++) shorten_label(chart, &chart->panels[p].marks[i]);
     }
     free(rows);
     free(on_front);

@@ -245,7 +245,7 @@ static void put_figure(FILE *out, const ChartHtml *html, const Chart *chart, con
     fputs("<figure>\n<img src=\"chart-", out);
     html_put_address(out, scene);
     fprintf(out, ".svg\" width=\"%.0f\" height=\"%.0f\" alt=\"Velocity error over solver time for each method in ",
-            10 * CHART_WIDTH, 10 * CHART_HEIGHT);
+            10 * CHART_WIDTH, 10 * chart_height(chart));
     html_put(out, scene);
     fputs("; the table below has the points.\">\n", out);
     for (int p = 0; p < CHART_PANELS; p++)

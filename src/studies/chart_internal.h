@@ -214,8 +214,9 @@ enum {
 /* A method with its non-numeric settings ("engine:warm=off"). Runs with a stopping rule ("engine:near") are a line of
    their own beside those with a fixed number of sweeps. */
 typedef struct ChartLine {
-    char key[CHART_KEY_SIZE];          /* as in the table; identifies the line */
-    char name[CHART_TEXT_SIZE];        /* plain, truncated */
+    char key[CHART_KEY_SIZE];     /* as in the table; identifies the line */
+    char name[CHART_TEXT_SIZE];   /* plain, truncated */
+    char common[CHART_TEXT_SIZE]; /* settings that all its marks have and labels leave out: "k=2, more=400"; plain */
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
     bool no_push_out;                  /* as in the method's description */
@@ -232,7 +233,7 @@ typedef struct ChartMark {
     bool floored;            /* it was less */
     bool on_front;
     bool shipped;                 /* the setting that the method's description calls shipped */
-    char label[CHART_TEXT_SIZE];  /* numeric settings ("k=20"); or empty */
+    char label[CHART_TEXT_SIZE];  /* "k=20"; of several numeric settings those in which its line's marks differ */
     const char *method, *setting; /* as in the table, which outlives them */
 } ChartMark;
 
@@ -266,10 +267,38 @@ void chart_make_plain(char *text);
 /* Copies a text, made plain and truncated to fit. */
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text);
 
-/* mm */
+/* mm; a chart with many words is higher. */
 #define CHART_WIDTH FIGURE_PAGE_WIDTH
 #define CHART_HEIGHT 100.0
+double chart_height(const Chart *chart);
+
 /* Where a mark is drawn: shares of the page's width and height, from its upper left corner. */
 void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top);
 
 extern const char *const chart_panel_titles[CHART_PANELS];
+
+/* What the words of a figure mean, for its caption: each method by what frames call it, each key of a setting by its help,
+   "nncg: conjugate gradients over sweeps". Zero-initialise. */
+
+enum { WORDS_MAX = 48, WORD_SIZE = 160 };
+
+typedef struct WordList {
+    int count;
+    char items[WORDS_MAX][WORD_SIZE];
+} WordList;
+
+/* Add what is not there yet; unknown methods and keys have no meaning. The name may have settings, which are ignored. */
+void words_add(WordList *words, const char *word, const char *meaning);
+void words_add_method(WordList *words, const char *name);
+void words_add_settings(WordList *words, const char *name, const char *setting);
+
+/* Ends a caption of `size` bytes with all of them, as far as there is room, and a line end. */
+void words_join(const WordList *words, char *caption, size_t size);
+
+/* mm, points */
+#define WORD_ROW 3.4
+#define WORD_POINTS 6.5
+
+/* Draws them in two columns, from `left` to the edge of the page. */
+double words_height(const WordList *words);
+void words_draw(const WordList *words, Sketch *sketch, double left, double bottom);

@@ -20,24 +20,24 @@
 
 #define LEFT_MARGIN 16.5
 #define RIGHT_MARGIN 3.5 /* half of "1000" below an axis that ends there */
-#define FOOT_ROW 3.4
+#define FOOT_ROW WORD_ROW
+#define FOOT_GAP 1.2
+#define LEAST_PANEL 56.0 /* height */
 
 #define LABEL_POINTS 6.5
 #define RING_RADIUS 2.2 /* mm: around a setting as shipped */
 
-enum { CHART_NOTES = 4 };
-
-typedef struct ChartNote {
-    char text[SKETCH_TEXT_SIZE]; /* one line */
-} ChartNote;
+enum { CHART_NOTES = 6 };
 
 typedef struct ChartLayout {
     const Chart *chart;
+    double height; /* mm, of the page */
     PlotPanel panels[CHART_PANELS];
-    int columns, rows; /* of the legend */
-    double legend_top; /* mm, middle of the first row */
-    int foot_rows;     /* notes below the legend, from the bottom */
-    ChartNote notes[CHART_NOTES];
+    int columns, rows;                         /* of the legend */
+    double legend_top;                         /* mm, middle of the first row */
+    WordList words;                            /* below the legend */
+    int foot_rows;                             /* notes below the words, from the bottom */
+    char notes[CHART_NOTES][SKETCH_TEXT_SIZE]; /* one line each */
 } ChartLayout;
 
 /* The legend and its notes. */
@@ -46,17 +46,8 @@ static const char front_name[] = "Pareto front of solvers";
 
 static bool is_drawn(const ChartLine *line) { return line->marks[0] + line->marks[1] > 0; }
 
-static void append(ChartNote *note, const char *format, ...) PRINTF_LIKE(2, 3);
-static void append(ChartNote *note, const char *format, ...) {
-    const size_t length = strlen(note->text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(note->text + length, sizeof note->text - length, format, arguments);
-    va_end(arguments);
-}
-
 /* Lists the lines with a nonzero counter (at `offset` in ChartLine), as far as there is room. */
-static void write_counts(ChartNote *note, const Chart *chart, const char *why, size_t offset) {
+static void write_counts(char note[SKETCH_TEXT_SIZE], const Chart *chart, const char *why, size_t offset) {
     enum { ROOM = 52 };
     const char *separator = why;
     size_t length = 0;
@@ -67,66 +58,96 @@ static void write_counts(ChartNote *note, const Chart *chart, const char *why, s
         if (count == 0) continue;
         length += strlen(line->name) + 6;
         if (length > ROOM) {
-            append(note, " and others. ");
+            text_add(note, SKETCH_TEXT_SIZE, " and others. ");
             return;
         }
-        append(note, "%s%s (%d)", separator, line->name, count);
+        text_add(note, SKETCH_TEXT_SIZE, "%s%s (%d)", separator, line->name, count);
         separator = ", ";
     }
-    if (separator != why) append(note, ". ");
+    if (separator != why) text_add(note, SKETCH_TEXT_SIZE, ". ");
 }
 
 /* "0.14 to 0.28 m/s"; one number if both are equal. */
-static void write_range(ChartNote *note, const double range[2], const char *unit) {
-    append(note, range[0] < 100 ? "%.2g" : "%.0f", range[0]);
-    if (range[1] > range[0]) append(note, range[1] < 100 ? " to %.2g" : " to %.0f", range[1]);
-    append(note, " %s", unit);
+static void write_range(char note[SKETCH_TEXT_SIZE], const double range[2], const char *unit) {
+    text_add(note, SKETCH_TEXT_SIZE, range[0] < 100 ? "%.2g" : "%.0f", range[0]);
+    if (range[1] > range[0]) text_add(note, SKETCH_TEXT_SIZE, range[1] < 100 ? " to %.2g" : " to %.0f", range[1]);
+    text_add(note, SKETCH_TEXT_SIZE, " %s", unit);
 }
 
-static void write_times(ChartNote *note, const Chart *chart) { append(note, "%s", chart->times); }
+static void write_times(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
+    text_add(note, SKETCH_TEXT_SIZE, "%s", chart->times);
+}
 
-static void write_beyond(ChartNote *note, const Chart *chart) {
+static void write_beyond(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
     const char *separator = "Beyond the axes: ";
     for (int i = 0; i < chart->line_count; i++) {
         const ChartLine *line = &chart->lines[i];
         if (line->beyond == 0) continue;
-        append(note, "%s%s (", separator, line->name);
+        text_add(note, SKETCH_TEXT_SIZE, "%s%s (", separator, line->name);
         write_range(note, line->beyond_us, "µs,");
-        append(note, " ");
-        if (line->beyond_error[1] <= PARETO_RESOLUTION) append(note, "below ");
+        text_add(note, SKETCH_TEXT_SIZE, " ");
+        if (line->beyond_error[1] <= PARETO_RESOLUTION) text_add(note, SKETCH_TEXT_SIZE, "below ");
         write_range(note, line->beyond_error, "m/s)");
         separator = ", ";
     }
 }
 
-static void write_no_push_out(ChartNote *note, const Chart *chart) {
+static void write_no_push_out(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
     const char *separator = "";
     for (int i = 0; i < chart->line_count; i++) {
         if (!chart->lines[i].no_push_out || !is_drawn(&chart->lines[i])) continue;
-        append(note, "%s%s", separator, chart->lines[i].name);
+        text_add(note, SKETCH_TEXT_SIZE, "%s%s", separator, chart->lines[i].name);
         separator = ", ";
     }
     if (separator[0] != '\0')
-        append(note, ": error against the solution without the velocity that pushes overlapping boxes apart.");
+        text_add(note, SKETCH_TEXT_SIZE,
+                 ": error against the solution without the velocity that pushes overlapping boxes apart.");
 }
 
-static void write_all_counts(ChartNote *note, const Chart *chart) {
-    write_counts(note, chart, "Unstable before the impact: ", offsetof(ChartLine, lost));
+static void write_all_counts(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
+    write_counts(note, chart, "Settings left out, as unstable before the impact: ", offsetof(ChartLine, lost));
     write_counts(note, chart, "Without time or error: ", offsetof(ChartLine, left_out));
-    if (chart->floored > 0) append(note, "Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
+    if (chart->floored > 0) text_add(note, SKETCH_TEXT_SIZE, "Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
+}
+
+static void write_error(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
+    (void)chart;
+    strcpy(note,
+           "Velocity error: difference from the converged solution of the same step, RMS over the boxes; mean over "
+           "all launches.");
+}
+
+static void write_phases(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
+    (void)chart;
+    strcpy(note,
+           "Impact frames: the first after the bomb touches a box. Pareto front: solvers that no other solver beats "
+           "in both time and error.");
 }
 
 /* From the bottom; those with nothing to say have no row. */
 static void write_notes(ChartLayout *layout) {
-    static void (*const notes[CHART_NOTES])(ChartNote *, const Chart *) = {write_all_counts, write_no_push_out,
-                                                                           write_beyond, write_times};
+    static void (*const writers[CHART_NOTES])(char[SKETCH_TEXT_SIZE], const Chart *) = {
+        write_all_counts, write_no_push_out, write_beyond, write_times, write_phases, write_error};
     for (int i = 0; i < CHART_NOTES; i++) {
-        ChartNote *note = &layout->notes[layout->foot_rows];
-        note->text[0] = '\0';
-        notes[i](note, layout->chart);
-        text_fit(note->text, sizeof note->text, LABEL_POINTS, CHART_WIDTH - LEFT_MARGIN - 1);
-        layout->foot_rows += note->text[0] != '\0';
+        char *note = layout->notes[layout->foot_rows];
+        note[0] = '\0';
+        writers[i](note, layout->chart);
+        text_fit(note, SKETCH_TEXT_SIZE, WORD_POINTS, CHART_WIDTH - LEFT_MARGIN - 1);
+        layout->foot_rows += note[0] != '\0';
     }
+}
+
+/* Methods, then what their labels leave out, then keys of settings. */
+static void gather_words(WordList *words, const Chart *chart) {
+    for (int what = 0; what < 3; what++)
+        for (int p = 0; p < CHART_PANELS; p++)
+            for (int i = 0; i < chart->panels[p].count; i++) {
+                const ChartMark *mark = &chart->panels[p].marks[i];
+                const ChartLine *line = &chart->lines[mark->line];
+                if (what == 0) words_add_method(words, mark->method);
+                if (what == 1 && line->common[0] != '\0') words_add(words, line->name, line->common);
+                if (what == 2) words_add_settings(words, mark->method, mark->setting);
+            }
 }
 
 /* Computes columns and rows of the legend, and the notes below it. */
@@ -145,6 +166,7 @@ static void lay_out_legend(ChartLayout *layout) {
     layout->rows = (entries + layout->columns - 1) / layout->columns;
     /* The fewest columns for this number of rows: the legend fills its width. */
     layout->columns = (entries + layout->rows - 1) / layout->rows;
+    gather_words(&layout->words, layout->chart);
     write_notes(layout);
 }
 
@@ -159,8 +181,9 @@ static void draw_legend(const ChartLayout *layout, Sketch *sketch) {
     }
     looks[count++] = (PlotLook){.name = front_name, .style = {.colour = PARETO_COLOUR}, .line = 6};
     plot_legend(sketch, looks, count, layout->columns, LEFT_MARGIN, layout->legend_top);
+    words_draw(&layout->words, sketch, LEFT_MARGIN, FOOT_ROW * layout->foot_rows + FOOT_GAP);
     for (int i = 0; i < layout->foot_rows; i++)
-        plot_text(sketch, (Point){LEFT_MARGIN, FOOT_ROW * (i + 0.5)}, TEXT_LEFT, LABEL_POINTS, layout->notes[i].text);
+        plot_text(sketch, (Point){LEFT_MARGIN, FOOT_ROW * (i + 0.5)}, TEXT_LEFT, WORD_POINTS, layout->notes[i]);
 }
 
 /* Labels of marks. */
@@ -294,12 +317,15 @@ const char *const chart_panel_titles[CHART_PANELS] = {"Impact frames", "The 60 f
 static ChartLayout chart_lay_out(const Chart *chart) {
     ChartLayout layout = {.chart = chart};
     lay_out_legend(&layout);
-    layout.legend_top = FOOT_ROW * layout.foot_rows + LEGEND_ROW * (layout.rows - 0.5) + 0.5;
+    layout.legend_top =
+        FOOT_ROW * layout.foot_rows + words_height(&layout.words) + 2 * FOOT_GAP + LEGEND_ROW * (layout.rows - 0.5);
+    const double below = layout.legend_top + LEGEND_ROW / 2 + axis_room;
+    layout.height = fmax(CHART_HEIGHT, below + LEAST_PANEL + top_margin);
     const PlotGrid grid = {.width = CHART_WIDTH,
-                           .height = CHART_HEIGHT,
+                           .height = layout.height,
                            .left = LEFT_MARGIN,
                            .right = RIGHT_MARGIN,
-                           .bottom = layout.legend_top + LEGEND_ROW / 2 + axis_room,
+                           .bottom = below,
                            .top = top_margin,
                            .columns = CHART_PANELS,
                            .rows = 1,
@@ -319,8 +345,10 @@ void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, doub
     const ChartLayout layout = chart_lay_out(chart);
     const Point at = plot_place(&layout.panels[panel], mark->us, mark->error);
     *left = at.x / CHART_WIDTH;
-    *top = 1 - at.y / CHART_HEIGHT;
+    *top = 1 - at.y / layout.height;
 }
+
+double chart_height(const Chart *chart) { return chart_lay_out(chart).height; }
 
 /* The front as a staircase, from the top of the panel to its right edge. */
 static bool draw_front(const ChartPanel *panel, const PlotPanel *plot, Sketch *sketch) {
@@ -395,7 +423,7 @@ static bool draw_chart(const ChartLayout *layout, const char *title, Sketch *ske
         whole = draw_panel_labels(layout, p, sketch) && whole;
     }
     const TextStyle style = {7.5, TEXT_RIGHT, 0x505050, 0, false};
-    sketch_text(sketch, (Point){layout->panels[CHART_PANELS - 1].x.to, CHART_HEIGHT - top_margin + 2.5}, &style, "%s",
+    sketch_text(sketch, (Point){layout->panels[CHART_PANELS - 1].x.to, layout->height - top_margin + 2.5}, &style, "%s",
                 title);
     draw_legend(layout, sketch);
     return whole;
@@ -407,7 +435,7 @@ static bool draw(const Chart *chart, const char *scene, const char *stem, Error 
     Sketch sketch;
     chart_plain(name, scene);
     snprintf(title, sizeof title, "%s, %d launches", name, chart->launches);
-    sketch_begin(&sketch, CHART_WIDTH, CHART_HEIGHT);
+    sketch_begin(&sketch, CHART_WIDTH, layout.height);
     snprintf(sketch.title, sizeof sketch.title, "Speed and accuracy: %s", title);
     const bool drawn = (draw_chart(&layout, title, &sketch) || error_memory(error, stem)) &&
                        sketch_draw(&sketch, stem, SKETCH_PDF, error);

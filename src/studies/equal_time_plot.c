@@ -31,6 +31,7 @@ typedef struct EqualTimeGrid {
     bool joined[EQUAL_TIME_COLUMNS]; /* the column and the one before it differ only in what was learned */
     char scenes[EQUAL_TIME_SCENES][CHART_TEXT_SIZE];
     char times[CHART_TIMES_SIZE]; /* chart_times_note(), plain; set by the caller */
+    WordList words;               /* methods and what sets learned ones apart from their twins */
     EqualTimeCell cells[EQUAL_TIME_SCENES][EQUAL_TIME_COLUMNS];
 } EqualTimeGrid;
 
@@ -103,6 +104,12 @@ static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const c
     order_columns(&columns, curves);
     grid->columns = columns.count;
     chart_plain(grid->time, table->time);
+    words_add(&grid->words, "rival", "any other method without a network");
+    for (int i = 0; i < columns.count; i++) words_add_method(&grid->words, curves->families[columns.family[i]].method);
+    for (int i = 0; i < columns.count; i++) {
+        const char *name = curves->families[columns.family[i]].name;
+        words_add_settings(&grid->words, name, name + strcspn(name, ":") + (strchr(name, ':') != NULL));
+    }
     for (int i = 0; i < columns.count; i++) {
         column_of[columns.family[i]] = i;
         chart_plain(grid->methods[i], curves->families[columns.family[i]].name);
@@ -156,7 +163,7 @@ static EqualTimePlotLayout lay_out(const EqualTimeGrid *grid) {
     const double room = (FIGURE_PAGE_WIDTH - layout.left - right - gaps) / grid->columns;
     layout.cell = fmin(fmax(room, cell_least), cell_most);
     layout.width = fmax(layout.left + grid->columns * layout.cell + gaps + right, layout.left + bar_width + note_width);
-    layout.foot = foot + (grid->times[0] != '\0' ? note_height : 0);
+    layout.foot = foot + words_height(&grid->words) + (grid->times[0] != '\0' ? note_height : 0);
     layout.top = layout.foot + grid->rows * cell_height;
     layout.height = layout.top + longest(grid->methods, grid->columns) * sin(turned) + 5;
     return layout;
@@ -237,6 +244,7 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
     Sketch *sketch = layout->sketch;
     const double bottom = layout->foot - 7.2, right = layout->left + bar_width + 6;
     char text[24], note[CHART_TEXT_SIZE + 64];
+    const double words = layout->grid->times[0] != '\0' ? note_height : 0;
     for (int i = 0; i < STEPS; i++)
         draw_box(sketch, (PlotBox){layout->left + bar_width * i / STEPS, bottom, bar_width / STEPS + 0.05, bar_height},
                  colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)));
@@ -245,12 +253,14 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
         plot_text(sketch, (Point){layout->left + bar_width * (strength(marks[i]) + 1) / 2, bottom - 2}, TEXT_CENTER, 7,
                   text);
     }
-    snprintf(note, sizeof note, "in the time of momentum:%s; rivals learn nothing", layout->grid->time);
+    snprintf(note, sizeof note, "in the time of momentum with %s sweeps per step",
+             layout->grid->time + strcspn(layout->grid->time, "0123456789"));
     plot_text(sketch, (Point){right, bottom + bar_height / 2}, TEXT_LEFT, 8,
               "error at the impact / error of the best rival,");
-    plot_text(sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, 8, layout->grid->times);
+    plot_text(sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, WORD_POINTS, layout->grid->times);
     plot_text(sketch, (Point){right, bottom - 2}, TEXT_LEFT, 8, note);
-    plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower than that, or lost the scene");
+    plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower, or unstable before the impact");
+    words_draw(&layout->grid->words, sketch, layout->left, words + 0.5);
 }
 
 static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {

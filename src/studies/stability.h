@@ -109,6 +109,7 @@ bool border_search(BorderList *list, const BorderScan *scan, const BorderProbe *
 /* A scan of one parameter of a scene of scenes/stability. */
 typedef struct StabilityStudy {
     const char *name;  /* of the study, in tables */
+    const char *title; /* in figures, whose axis names the parameter */
     const char *scene; /* file name without folder and extension */
     const char *parameter;
     BorderScan scan;
@@ -149,12 +150,13 @@ const StabilityStudy *stability_study_find(const char *name);
 enum { STABILITY_MAX_VARY = 2, STABILITY_OWN_NAME_SIZE = 40 };
 
 typedef struct StabilityOwn {
-    char names[STABILITY_MAX_VARY + 1][STABILITY_OWN_NAME_SIZE]; /* of the studies, then of the map */
-    char parameters[STABILITY_MAX_VARY][SCENE_PARAMETER_SIZE];   /* varied */
-    bool stepped[STABILITY_MAX_VARY];                            /* the range has a step: these values and no fewer */
-    int study_count, map_count;                                  /* of the arrays below */
-    StabilityStudy studies[STABILITY_MAX_VARY];                  /* SCENE_PARAMETER */
-    StabilityMap maps[1];                                        /* SCENE_PARAMETER_PARAMETER */
+    char names[STABILITY_MAX_VARY + 1][STABILITY_OWN_NAME_SIZE];                  /* of the studies, then of the map */
+    char titles[STABILITY_MAX_VARY][SCENE_NAME_SIZE + SCENE_PARAMETER_SIZE + 16]; /* "Scene NAME, by PARAMETER" */
+    char parameters[STABILITY_MAX_VARY][SCENE_PARAMETER_SIZE];                    /* varied */
+    bool stepped[STABILITY_MAX_VARY];           /* the range has a step: these values and no fewer */
+    int study_count, map_count;                 /* of the arrays below */
+    StabilityStudy studies[STABILITY_MAX_VARY]; /* SCENE_PARAMETER */
+    StabilityMap maps[1];                       /* SCENE_PARAMETER_PARAMETER */
 } StabilityOwn;
 
 /* Makes the studies of the scene at `path` for texts "NAME", "NAME=FROM:TO" or "NAME=FROM:TO:STEP"; without FROM and TO a parameter's bounds.
@@ -354,16 +356,17 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
 
 /* The figures of a stability study, drawn from its tables. */
 
-/* Reads folder/stability.csv and folder/maps.csv and draws, as .png, .svg and a caption .txt of one line,
-     map-NAME   one per map: a panel per method, a tile per cell; in the .svg, tiles link to
-                the cells' clips, whether these exist or not
+/* Reads folder/stability.csv and folder/maps.csv, of the studies of a scene file or, with own NULL, of the table, and draws,
+   as .png, .svg and a caption .txt of one line, which also explains the words of the figure,
+     map-NAME   one per map: a panel per method with a border, a tile per cell; the caption names methods
+                that hold or fail everywhere; in the .svg, tiles link to the cells' clips, whether these exist or not
      borders    how far each method holds in each study (studies/stability_internal.h)
    into the folder. Readable for the colour-blind, in grey and in black and white. The same tables give the same files.
 
    A table without rows gives no figure. An invalid table is an error "path:line:column: error: text" before anything is
    drawn. ERROR_INTERRUPTED if progress, which may be NULL, requests a stop;
    figures already drawn stay. */
-bool stability_figures_write(const char *folder, const Progress *progress, Error *error);
+bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error);
 
 /* map_pages.csv: which cells of the maps have a page that plays what happened there. */
 

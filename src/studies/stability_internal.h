@@ -12,16 +12,32 @@
 
 #include <stdio.h>
 
+/* What a figure leaves out, with the reason: named at its foot, as far as there is room, and in its caption. Zero-initialise. */
+
+enum { LEFT_OUT_SIZE = 8192 };
+
+typedef struct LeftOut {
+    int count;
+    char lines[3][LEFT_OUT_SIZE];
+} LeftOut;
+
+/* Methods of one reason follow each other; at most three reasons, "Left out, as not applicable: ". */
+void left_out_add(LeftOut *left_out, const char *why, const char *method, const char *setting);
+
+/* From `left` to the edge of the page; a line is WORD_ROW high. */
+void left_out_draw(const LeftOut *left_out, PlotPage *page, double left);
+
 /* The borders figure: how far each method holds in each study. */
 
 enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
 
-/* Writes the figure and its caption: one panel per study, with its own axis, and one row per method. A bar covers the
-   values that hold, up to holds_at. A tile at fails_at shows how the method fails (studies/stability.h); if the
-   values beyond the bar are undecided, it is at the far end. An arrow marks a method that holds over the whole range, a
-   cross one that never holds. ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or
-   BORDERS_MAX_STUDIES studies. */
-bool stability_borders_write(const CsvTable *table, PlotPage *page, Error *error);
+/* Writes the figure and its caption: one panel per study, with its own axis, and one row per method that applies to one
+   of them; the caption names the others. The axis has the range of the study, of `own` or, if it is NULL, of the table of
+   studies; of other studies, that of their borders. A bar covers the values that hold, up to holds_at. A tile at fails_at
+   shows how the method fails (studies/stability.h); if the values beyond the bar are undecided, it is at the far end. An
+   arrow marks a method that holds over the whole range, a cross one that never holds. ERROR_INPUT, with
+   path:line:column: more than BORDERS_MAX_METHODS methods or BORDERS_MAX_STUDIES studies. */
+bool stability_borders_write(const CsvTable *table, const StabilityOwn *own, PlotPage *page, Error *error);
 
 /* One stability map: the verdict of every method in every cell of a grid. */
 

@@ -250,6 +250,56 @@ int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const Le
     return count;
 }
 
+/* 1: has a border between holding and failing; 0: holds everywhere; -1: fails everywhere; -2: has no verdict. */
+static int border_of(const MapPanels *map, int panel) {
+    bool any_holds = false, any_fails = false;
+    for (int x = 0; x < map->x_count; x++)
+        for (int y = 0; y < map->y_count; y++) {
+            any_holds = any_holds || holds(map, panel, x, y);
+            any_fails = any_fails || fails(map, panel, x, y);
+        }
+    return any_holds ? any_fails : any_fails ? -1 : -2;
+}
+
+void left_out_add(LeftOut *left_out, const char *why, const char *method, const char *setting) {
+    char name[STABILITY_TEXT_SIZE];
+    const size_t length = strlen(why);
+    const bool next = left_out->count > 0 && strncmp(left_out->lines[left_out->count - 1], why, length) == 0;
+    if (!next) left_out->count++;
+    char *line = left_out->lines[left_out->count - 1];
+    stability_method_text(name, 8, FIGURE_PAGE_WIDTH, method, setting);
+    text_add(line, LEFT_OUT_SIZE, "%s%s", next ? ", " : why, name);
+}
+
+void left_out_draw(const LeftOut *left_out, PlotPage *page, double left) {
+    for (int i = 0; i < left_out->count; i++) {
+        char line[LEFT_OUT_SIZE];
+        snprintf(line, sizeof line, "%s.", left_out->lines[i]);
+        text_add(page->caption, sizeof page->caption, " %s", line);
+        text_fit(line, sizeof line, WORD_POINTS, page->sketch.width - left - 1);
+        plot_text(&page->sketch, (Point){left, WORD_ROW * (left_out->count - i - 0.5)}, TEXT_LEFT, WORD_POINTS, line);
+    }
+}
+
+/* Where a method holds or fails everywhere, there is nothing to see. If no panel has a border, all stay. */
+static void leave_out(MapPanels *map, LeftOut *left_out) {
+    static const char *const why[] = {
+        "Left out, as holding everywhere: ", "Left out, as failing everywhere: ", "Left out, as not applicable: "};
+    const int count = map->panel_count;
+    int kept = 0;
+    for (int panel = 0; panel < count; panel++) kept += border_of(map, panel) == 1;
+    for (int kind = 0; kept > 0 && kind < 3; kind++)
+        for (int panel = 0; panel < count; panel++)
+            if (border_of(map, panel) == -kind)
+                left_out_add(left_out, why[kind], map->methods[panel]->method, map->methods[panel]->setting);
+    map->panel_count = kept > 0 ? 0 : count;
+    for (int panel = 0; kept > 0 && panel < count; panel++) {
+        if (border_of(map, panel) != 1) continue;
+        map->methods[map->panel_count] = map->methods[panel];
+        memmove(map->looks[map->panel_count++], map->looks[panel], sizeof map->looks[panel]);
+    }
+}
+
 /* mm */
 static const double label_room = 8, right = 2, gap = 3.2, title_room = 6, axis_room = 9.5, row_gap = 1.5,
                     largest_cell = 4.6, least_height = 16, most_height = 52, border_width = 0.5, border_share = 0.35,
@@ -261,6 +311,7 @@ typedef struct Layout {
     const MapPanels *map;
     Sketch *sketch;
     int legend_columns, legend_rows;
+    double foot; /* mm, below the legend */
     PlotGrid grid;
     double cell_x, cell_y; /* mm: size of a cell */
     bool used[VERDICT_LOOKS];
@@ -280,25 +331,24 @@ static int count_used(const Layout *layout) {
 }
 
 /* A single panel is one column of a printed page wide; several fill the page. */
-static Layout lay_out(const MapPanels *map, Sketch *sketch) {
+static Layout lay_out(const MapPanels *map, double foot, Sketch *sketch) {
     int panels = map->panel_count;
-    Layout layout = {.map = map, .sketch = sketch};
+    Layout layout = {.map = map, .sketch = sketch, .foot = foot};
     find_used(&layout);
     PlotGrid grid = {.width = panels == 1 ? FIGURE_COLUMN_WIDTH : FIGURE_PAGE_WIDTH,
                      .left = label_room + map_axis_width(map->y, map->y_count),
                      .right = right,
                      .top = title_room,
-                     .columns = panels == 1   ? 1
-                                : panels <= 4 ? 2
-                                : panels <= 6 ? 3
-                                              : 4,
+                     .columns = panels == 2 || panels == 4 ? 2
+                                : panels <= 6              ? (panels == 1 ? 1 : 3)
+                                                           : 4,
                      .gap = gap,
                      .row_gap = title_room + row_gap};
     grid.rows = (panels + grid.columns - 1) / grid.columns;
     layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
     /* The border is one more legend item. */
     layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
-    grid.bottom = LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
+    grid.bottom = foot + LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
     char label[STABILITY_TEXT_SIZE];
     stability_axis_text(label, map->first->y_parameter, map->first->y_unit);
     const double least = fmax(least_height, type_width(label, 8) + 1);
@@ -398,7 +448,7 @@ static void draw_panel(const Layout *layout, int panel) {
 }
 
 static void draw_legend(const Layout *layout) {
-    LegendPlace place = {layout->grid.left, LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
+    LegendPlace place = {layout->grid.left, layout->foot + LEGEND_ROW * (layout->legend_rows - 0.5) + 0.5,
                          (layout->grid.width - layout->grid.left) / layout->legend_columns, layout->legend_columns};
     const int next = verdict_draw_legend(layout->sketch, layout->used, &place);
     const Point at = {place.left + place.width * (next % place.columns),
@@ -408,25 +458,33 @@ static void draw_legend(const Layout *layout) {
     plot_text(layout->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS, "border of holding");
 }
 
-static void write_caption(const MapPanels *map, char caption[PLOT_CAPTION_SIZE]) {
+static void write_caption(const MapPanels *map, PlotPage *page) {
     char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
-    snprintf(
-        caption, PLOT_CAPTION_SIZE,
+    text_add(
+        page->caption, sizeof page->caption,
         "Where each method fails: map %s. Across: %s; up: %s. Each cell is one run and its worst verdict; darker is "
         "worse. Settling, swaying and creeping count as holding; the black line separates them from failing. All "
-        "cells have the same size, whatever their values.\n",
+        "cells have the same size, whatever their values.",
         map->first->map, x, y);
 }
 
 /* The figure and its caption. All cells have the same size; ticks show their values. */
-static void write_map(const MapPanels *map, PlotPage *page) {
-    const Layout layout = lay_out(map, &page->sketch);
+static void write_map(MapPanels *map, PlotPage *page) {
+    LeftOut left_out = {0};
+    WordList words = {0};
+    leave_out(map, &left_out);
+    const Layout layout = lay_out(map, left_out.count * WORD_ROW, &page->sketch);
     sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
     draw_legend(&layout);
-    write_caption(map, page->caption);
+    write_caption(map, page);
+    left_out_draw(&left_out, page, layout.grid.left);
+    for (int panel = 0; panel < map->panel_count; panel++) words_add_method(&words, map->methods[panel]->method);
+    for (int panel = 0; panel < map->panel_count; panel++)
+        words_add_settings(&words, map->methods[panel]->method, map->methods[panel]->setting);
+    words_join(&words, page->caption, sizeof page->caption);
 }
 
 static bool go_on(int done, int total, const char *folder, const Progress *progress, Error *error) {
@@ -450,21 +508,22 @@ static bool process_maps(const CsvTable *table, const char *folder, bool draw, c
     return ok;
 }
 
-static bool draw_borders(const CsvTable *table, const char *folder, const Progress *progress, Error *error) {
+static bool draw_borders(const CsvTable *table, const char *folder, const StabilityOwn *own, const Progress *progress,
+                         Error *error) {
     if (table->count == 0) return true;
     PlotPage page = {0};
-    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, &page, error) &&
+    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, own, &page, error) &&
               plot_page_write(&page, folder, "", "borders", error);
     plot_page_free(&page);
     return ok;
 }
 
-bool stability_figures_write(const char *folder, const Progress *progress, Error *error) {
+bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error) {
     CsvTable maps = {0};
     CsvTable borders = {0};
     bool ok = csv_table_read_from(&borders, folder, &border_layout, error) &&
               csv_table_read_from(&maps, folder, &map_layout, error) &&
-              process_maps(&maps, folder, false, NULL, error) && draw_borders(&borders, folder, progress, error) &&
+              process_maps(&maps, folder, false, NULL, error) && draw_borders(&borders, folder, own, progress, error) &&
               process_maps(&maps, folder, true, progress, error);
     csv_table_free(&maps);
     csv_table_free(&borders);

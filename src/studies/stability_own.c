@@ -179,7 +179,9 @@ static bool add_study(StabilityOwn *own, const Scene *scene, const char *path, c
     bool iterations = false;
     if (!try_values(path, name, &scan, &iterations, error)) return false;
     make_name(own->names[i], scene->name, name);
+    text_add(own->titles[i], sizeof own->titles[i], "Scene %s, by %s", scene->name, name);
     own->studies[own->study_count++] = (StabilityStudy){.name = own->names[i],
+                                                        .title = own->titles[i],
                                                         .scene = own->names[i],
                                                         .parameter = name,
                                                         .scan = scan,

@@ -13,6 +13,16 @@ for file in stability refusals; do
 done
 equal "files" "$(ls own)" "$(ls table)"
 
+# Its figure has the scene's title, the range that was given, and no row of a method that does not apply.
+for text in "Scene heavy on one, by ratio" 1000; do
+    [ "$(grep -o ">$text<" own/borders.svg | wc -l)" = 1 ] || fail "not once in the figure: $text"
+done
+grep -q ">Heavy box on one<" table/borders.svg || fail "the title of the table's study"
+for figure in own table; do
+    grep -q "Left out, as not applicable: scene-net\." $figure/borders.txt || fail "$figure: not named as left out"
+    ! grep -q ">scene-net" $figure/borders.svg || fail "$figure: a row without information"
+done
+
 # A box of friction 0.2 stands on a slope up to 0.2, and on one of 0.3 from a friction of 0.3 on. Without a range a
 # parameter varies between its bounds.
 run 0 stability "$ramp" --vary slope --vary friction=0.05:0.6 --quick --methods engine -o ramp

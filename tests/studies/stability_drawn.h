@@ -29,14 +29,15 @@ static inline void start_afresh(const char *maps, const char *borders) {
 
 static inline void draw(void) {
     Error error = {0};
-    assert_ok(stability_figures_write(temporary_folder, NULL, &error), error);
+    assert_ok(stability_figures_write(temporary_folder, NULL, NULL, &error), error);
 }
 
 /* Defines areas(svg, "#RRGGBB"): filled areas of a colour, each [left, top, right, bottom] in mm; count(svg, "#RRGGBB");
-   and texts(svg). */
+   texts(svg); and caption(name). */
 #define SVG_FUNCTIONS                                                                                       \
     "import sys, re, xml.etree.ElementTree as tree\n"                                                       \
     "def read(name): return open(sys.argv[1] + '/' + name + '.svg').read()\n"                               \
+    "def caption(name): return open(sys.argv[1] + '/' + name + '.txt').read()\n"                            \
     "def areas(svg, colour):\n"                                                                             \
     "    paths = re.findall('<path d=\"M([^\"]*)Z\" fill=\"%s\"' % colour, svg)\n"                          \
     "    corners = [[tuple(map(float, p.split())) for p in path.split('L')] for path in paths]\n"           \
@@ -64,7 +65,7 @@ static inline void check_svg(const char *format, ...) {
 static inline void expect_refused(const char *maps, const char *borders, const char *message) {
     Error error = {0};
     start_afresh(maps, borders);
-    assert_refused(stability_figures_write(temporary_folder, NULL, &error), message);
+    assert_refused(stability_figures_write(temporary_folder, NULL, NULL, &error), message);
     assert_int_equal(access(temporary_path("borders.png"), F_OK), -1);
     assert_int_equal(access(temporary_path("map-stack.png"), F_OK), -1);
 }

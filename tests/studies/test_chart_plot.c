@@ -32,8 +32,8 @@ TEST(three_files_are_drawn) {
     assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
     size_t size;
     char *png = read_drawn("pyramid_settled", "png", &size);
-    /* 174 x 100 mm at 300 dots per inch: 2055 x 1181. */
-    assert_memory_equal(png, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x08\x07\0\0\x04\x9d", 24);
+    /* 174 mm at 300 dots per inch: 2055; and 115 mm, which the words below need: 1357. */
+    assert_memory_equal(png, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x08\x07\0\0\x05\x4d", 24);
     assert_true(size > 50000);
     free(png);
     char *pdf = read_drawn("pyramid_settled", "pdf", &size);
@@ -226,7 +226,9 @@ TEST(marks_are_gathered_by_line_and_time) {
     assert_true(impact->marks[0].on_front && !impact->marks[0].shipped);
     assert_string_equal(impact->marks[1].label, "k=10");
     assert_true(!impact->marks[1].on_front && impact->marks[1].shipped);
-    assert_string_equal(impact->marks[2].label, "k=7,b=0.5");
+    assert_string_equal(impact->marks[2].label, ""); /* alone on its line, which has both settings */
+    assert_string_equal(chart.lines[1].common, "k=7, b=0.5");
+    assert_string_equal(chart.lines[0].common, "");
     assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
     free_chart(&chart, &table);
 }
@@ -294,6 +296,78 @@ TEST(runs_with_a_stopping_rule_are_a_line_of_their_own) {
     assert_int_equal(chart.lines[0].marks[0], 2);
     for (int i = 1; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 3);
     assert_string_equal(chart.panels[0].marks[3].label, "k=5,near=0.1");
+    assert_string_equal(chart.lines[1].common, "");
+    free_chart(&chart, &table);
+}
+
+/* Settings that all marks of a line have stand below the chart, once. */
+TEST(labels_name_what_differs) {
+    CsvTable table;
+    Chart chart = gather(&table, "stack,momentum,\"k=2,near=0.5,more=400\",closed,impact,40,2,2,2,,,3,,,,,,,,\n"
+                                 "stack,momentum,\"k=2,near=0.1,more=400\",closed,impact,40,3,3,3,,,1,,,,,,,,\n"
+                                 "stack,momentum,\"k=2,near=0.02,more=400\",closed,after,40,4,4,4,,,0.5,,,,,,,,\n"
+                                 "stack,engine,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
+                                 "stack,engine,k=100,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
+                                 "stack,nncg,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n");
+    static const char *const labels[] = {"near=0.5", "near=0.1", "k=10", "k=100", "k=20"};
+    for (int i = 0; i < 5; i++) assert_string_equal(chart.panels[0].marks[i].label, labels[i]);
+    assert_string_equal(chart.panels[1].marks[0].label, "near=0.02");
+    assert_string_equal(chart.lines[0].common, "k=2, more=400");
+    free_chart(&chart, &table);
+    size_t size;
+    assert_ok(chart_plot(temporary_path("rows.csv"), "stack", folder(), &error), error);
+    char *svg = read_drawn("stack", "svg", &size);
+    assert_non_null(strstr(svg, "momentum:near: k=2, more=400"));
+    assert_null(strstr(svg, "near=0.5,more"));
+    free(svg);
+}
+
+/* Methods and settings that are drawn, each once, and no others. */
+TEST(a_chart_explains_its_words) {
+    static const char *const explained[] = {
+        ">engine: physics engine, sequential impulses<",
+        ">k: sweeps over all contacts per step<",
+        ">nncg: conjugate gradients over sweeps<",
+        ">avbd: augmented vertex block descent<",
+        ">momentum: sequential impulses with momentum<",
+        ">near: sweeps go on while contacts miss their velocity by this, m/s<",
+        ">more: sweeps that near may add<",
+        ">net=off: without its learned part<",
+        ">components: principal components, at most as many as the scene has<",
+        ">Velocity error: difference from the converged solution of the same step, RMS over the boxes",
+        ">Impact frames: the first after the bomb touches a box. Pareto front: solvers that no other solver beats"};
+    size_t size;
+    assert_ok(chart_plot(write_rows("stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                                    "stack,nncg,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                                    "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                                    "stack,momentum,\"k=2,near=0.1,more=9\",closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                                    "stack,scene-net,net=off,closed,after,40,5,5,5,,,1,,,,,,,,\n"
+                                    "stack,subspace,components=8,closed,after,40,5,5,5,,,1,,,,,,,,\n"
+                                    "stack,soft-step,substeps=4,closed,after,40,,,,,,1,,,,,,,,\n"
+                                    "stack,unknown,\",,q=1,net\",closed,after,40,5,5,5,,,1,,,,,,,,\n"),
+                         "stack", folder(), &error),
+              error);
+    char *svg = read_drawn("stack", "svg", &size);
+    for (size_t i = 0; i < sizeof explained / sizeof *explained; i++) {
+        const char *found = strstr(svg, explained[i]);
+        if (found == NULL) fail_msg("no '%s'", explained[i]);
+        assert_null(strstr(found + 1, explained[i]));
+    }
+    assert_null(strstr(svg, "substeps:"));
+    free(svg);
+}
+
+/* Links of chart.html have their places by the height that the words give. */
+TEST(marks_stay_on_the_page_of_a_high_chart) {
+    CsvTable table;
+    Chart chart;
+    double left, top;
+    assert_ok(csv_table_read(&table, SAMPLE, &chart_layout, &error), error);
+    assert_ok(chart_gather(&chart, &table, "pyramid_settled", SAMPLE, &error), error);
+    assert_true(chart_height(&chart) > CHART_HEIGHT);
+    chart_mark_place(&chart, 0, &(ChartMark){.us = chart.us_least, .error = chart.error_least}, &left, &top);
+    /* The panel is 56 mm high and 5.5 mm below the upper edge; the axis ends somewhat below the least error. */
+    assert_in_range((int)(top * chart_height(&chart)), 54, 61);
     free_chart(&chart, &table);
 }
 

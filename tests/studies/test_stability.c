@@ -164,8 +164,12 @@ TEST(a_study_writes_borders_maps_and_refusals) {
 
 /* Two boxes stay in place; if a network lifts them off within ten seconds, drift and energy are empty. */
 TEST(a_study_at_rest_writes_drift_and_energy) {
-    const StabilityStudy study = {"two",          "heavy_on_one", "ratio", {.from = 1, .to = 2, .points = 2},
-                                  .stands = true, .rests = true};
+    const StabilityStudy study = {.name = "two",
+                                  .scene = "heavy_on_one",
+                                  .parameter = "ratio",
+                                  .scan = {.from = 1, .to = 2, .points = 2},
+                                  .stands = true,
+                                  .rests = true};
     ContenderList methods;
     assert_ok(contenders_parse(&methods, "interior,pair-net", STUDY_STABILITY, &error), error);
     StabilityScan scan = {&study, scenes, &methods};

@@ -3,21 +3,24 @@
 #include "files.h"
 #include "stability_drawn.h"
 
+#include "pixels/type.h"
+
 TEST(borders_are_drawn_as_in_the_table) {
     start_afresh(MAPS ONE_CELL,
                  BORDERS "height,engine,k=10,height,boxes,10,11,falls\nheight,momentum,,height,boxes,15,16,falls\n"
                          "height,momentum,,height,boxes,20,19,sinks\nheight,nncg,,height,boxes,40,,settles\n"
                          "height,pair-net,,height,boxes,,2,explodes\nheight,scene-net,,height,boxes,,,not applicable\n"
-                         "time_step,engine,k=10,rate,Hz,60,50,falls\ntime_step,nncg,,rate,Hz,20,,creeps\n");
+                         "time_step,engine,k=10,rate,Hz,60,50,falls\ntime_step,nncg,,rate,Hz,20,,creeps\n"
+                         "time_step,scene-net,,rate,Hz,60,50,falls\n");
     draw();
-    check_svg("svg = read('borders')\n"
-              "expect(count(svg, '#A3CBE5'), 4 + 2 + 2, 'bars')\n"
-              "expect(count(svg, '#%06X'), 3 + 1, 'falls')\nexpect(count(svg, '#%06X'), 1 + 1, 'explodes')\n"
-              "expect(count(svg, '#%06X'), 1 + 1, 'sinks')\n"
-              "for text in ('Time step', 'Rate (Hz)', 'engine:k=10', 'never holds', 'not applicable'):\n"
-              "    expect(texts(svg).count(text), 1, text)\n",
-              verdict_looks[VERDICT_FALLS].fill, verdict_looks[VERDICT_EXPLODES].fill,
-              verdict_looks[VERDICT_SINKS].fill);
+    check_svg(
+        "svg = read('borders')\n"
+        "expect(count(svg, '#A3CBE5'), 4 + 3 + 2, 'bars')\n"
+        "expect(count(svg, '#%06X'), 4 + 1, 'falls')\nexpect(count(svg, '#%06X'), 1 + 1, 'explodes')\n"
+        "expect(count(svg, '#%06X'), 1 + 1, 'sinks')\n"
+        "for text in ('Height', 'Stack at long steps', 'Rate (Hz)', 'engine:k=10', 'never holds', 'not applicable'):\n"
+        "    expect(texts(svg).count(text), 1, text)\n",
+        verdict_looks[VERDICT_FALLS].fill, verdict_looks[VERDICT_EXPLODES].fill, verdict_looks[VERDICT_SINKS].fill);
 }
 
 /* A method that holds to 15, fails from 16 to 19, holds from 20 to 25 and fails from 26: no bar where it fails. The
@@ -44,6 +47,75 @@ TEST(undecided_values_have_no_bar) {
               "assert bars[0][1] < falls[0][0] and bars[0][0] == bars[1][0], (bars, falls)\n"
               "assert sinks[0][1] <= falls[0][0], 'the far end is beyond the last value'\n"
               "assert falls[2][1] < sinks[2][0] + 0.4 < bars[3][0] < bars[4][0], (bars, falls, sinks)\n");
+}
+
+/* A method that no study applies to has no row; one that some study applies to has. */
+TEST(methods_that_do_not_apply_are_left_out_and_named) {
+    start_afresh(MAPS ONE_CELL, BORDERS
+                 "a,pair-net,,h,,,,not applicable\na,scene-net,net=off,h,,,,not applicable\na,engine,,h,,3,4,falls\n"
+                 "b,pair-net,,h,,,,not applicable\nb,scene-net,net=off,h,,,,not applicable\n"
+                 "b,engine,,h,,,,not applicable\n");
+    draw();
+    check_svg("found = texts(read('borders'))\n"
+              "assert 'engine' in found and 'not applicable' in found, found\n"
+              "assert not any('-net' in text for text in found), found\n"
+              "assert 'Left out, as not applicable: pair-net, scene-net:net=off.' in caption('borders')\n");
+    start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,3,4,falls\na,pair-net,,h,,,1,falls\n");
+    draw();
+    check_svg("assert 'pair-net' in texts(read('borders'))\n"
+              "assert 'Left out' not in caption('borders') and 'not applicable' not in texts(read('borders'))\n");
+}
+
+/* The numbers below a panel: text with a place from the left. */
+#define NUMBERS                                               \
+    "def number(text):\n"                                     \
+    "    try: return float(text)\n"                           \
+    "    except ValueError: return None\n"                    \
+    "numbers = [number(t) for t in texts(read('borders'))]\n" \
+    "numbers = [n for n in numbers if n is not None]\n"
+
+/* Heights of the study are 2 to 40, on a linear scan; of its rows, 11 to 16. */
+TEST(an_axis_has_the_range_of_its_study) {
+    start_afresh(MAPS ONE_CELL, BORDERS "stack_height,engine,,height,boxes,11,16,falls\n");
+    draw();
+    check_svg(NUMBERS "expect(sorted(numbers), [2] + list(range(5, 41, 5)), 'numbers')\n");
+    start_afresh(MAPS ONE_CELL, BORDERS "time_step,engine,,rate,Hz,51,49,falls\n");
+    draw();
+    check_svg(NUMBERS "expect((min(numbers), max(numbers)), (20, 480), 'ends')\n");
+    /* The name of a study, but another parameter: another program's, whose range is not known. */
+    start_afresh(MAPS ONE_CELL, BORDERS "stack_height,engine,,depth,boxes,11,16,falls\n");
+    draw();
+    check_svg(NUMBERS "assert 7 < min(numbers) and max(numbers) < 25, numbers\n"
+                      "assert 'Stack height' in texts(read('borders'))\n");
+}
+
+/* Of a scene file: "Scene high, by height", and not the name of the study. */
+TEST(studies_of_a_scene_have_their_range_and_title) {
+    const char *scene = temporary_path("high.yaml"), *const vary[] = {"height=3:30", "bomb_mass"};
+    StabilityOwn own;
+    start_afresh(MAPS ONE_CELL, BORDERS "high_height,engine,,height,boxes,11,16,falls\n"
+                                        "high_bomb_mass,engine,,bomb_mass,kg,5,6,falls\n");
+    write_table("high.yaml", "parameters:\n  height: {value: 5, from: 1, to: 50, unit: boxes, whole: on}\n"
+                             "  bomb_mass: {value: 5, from: 1, to: 50, unit: kg}\n"
+                             "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 60\nbodies:\n"
+                             "  - {static: true, size: [100, 20], position: [0, -10]}\n"
+                             "  - {pattern: stack, count: $height, spacing: [0, 1], mass: $bomb_mass, size: [1, 1], "
+                             "position: [0, 0.5]}\n");
+    assert_ok(stability_own_make(&own, scene, vary, 2, true, &error), error);
+    assert_ok(stability_figures_write(temporary_folder, &own, NULL, &error), error);
+    check_svg(NUMBERS
+              "assert {3, 30, 1, 50} < set(numbers), numbers\n"
+              "for text in ('Scene high, by height', 'Scene high, by bomb mass', 'Height (boxes)', 'Bomb mass (kg)'):\n"
+              "    expect(texts(read('borders')).count(text), 1, text)\n");
+}
+
+/* In the columns of a full figure, 32 mm wide. A title is no name of a table. */
+TEST(titles_of_studies_fit_and_read_as_English) {
+    for (int i = 0; i < stability_study_count; i++) {
+        const char *title = stability_studies[i].title;
+        if (!(type_width(title, 8) < 32)) fail_msg("'%s' is %.3g mm wide", title, type_width(title, 8));
+        assert_true(title[0] >= 'A' && title[0] <= 'Z' && strchr(title, '_') == NULL);
+    }
 }
 
 /* Only rows without values; one value; zero and negative values; forty decades. */

@@ -33,6 +33,59 @@ TEST(the_border_separates_holding_from_failing) {
               "    expect(texts(svg).count(text), 1, text)\n");
 }
 
+#define CELLS(method, left, right) "m," method ",a,,1,b,,1," left ",,,,\nm," method ",a,,2,b,,1," right ",,,,\n"
+
+/* The legend has the verdicts of the panels that stay, too. */
+TEST(panels_without_a_border_are_left_out_and_named) {
+    start_afresh(MAPS CELLS("engine,k=4", "settles", "falls") CELLS("interior,", "settles", "creeps")
+                     CELLS("momentum,", "sways", "falls") CELLS("pair-net,", "explodes", "falls")
+                         CELLS("pair-net,net=off", "explodes", "not applicable")
+                             CELLS("scene-net,", "not applicable", "not applicable"),
+                 BORDERS ONE_BORDER);
+    draw();
+    check_svg("found, words = texts(read('map-m')), caption('map-m')\n"
+              "for text in ('engine:k=4', 'momentum', 'settles', 'sways', 'falls'):\n"
+              "    expect(found.count(text), 1, text)\n"
+              "for text in ('interior', 'pair-net', 'scene-net', 'creeps', 'explodes', 'not applicable'):\n"
+              "    expect(found.count(text), 0, text)\n"
+              "for text in ('Left out, as holding everywhere: interior.', 'Left out, as not applicable: scene-net.',\n"
+              "             'Left out, as failing everywhere: pair-net, pair-net:net=off.'):\n"
+              "    assert text in words, (text, words)\n"
+              "expect(len(re.findall('<title>m:', read('map-m'))), 4, 'links')\n");
+}
+
+TEST(without_any_border_all_panels_stay) {
+    start_afresh(MAPS CELLS("engine,", "settles", "sways") CELLS("nncg,", "falls", "falls"), BORDERS ONE_BORDER);
+    draw();
+    check_svg("assert {'engine', 'nncg'} < set(texts(read('map-m'))), texts(read('map-m'))\n"
+              "assert 'Left out' not in caption('map-m'), caption('map-m')\n");
+}
+
+/* Three panels are a row. */
+TEST(no_place_of_three_panels_is_empty) {
+    char *maps = make_map(3, 4, 4);
+    start_afresh(maps, BORDERS ONE_BORDER);
+    free(maps);
+    draw();
+    check_svg("root = tree.fromstring(read('map-grid'))\n"
+              "titles = [t for t in root.iter('{http://www.w3.org/2000/svg}text') if t.text.startswith('engine:k=')]\n"
+              "expect(len(titles), 3, 'titles')\nexpect(len({t.get('y') for t in titles}), 1, 'rows')\n");
+}
+
+/* Only the words that occur, each once. */
+TEST(captions_explain_their_words) {
+    start_afresh(MAPS CELLS("engine,k=4", "settles", "falls") CELLS("engine,\"k=50,warm=off\"", "sways", "falls")
+                     CELLS("scene-net,net=off", "settles", "falls") CELLS("unknown,q=1", "settles", "falls"),
+                 BORDERS "s,nncg,near=0.5,h,,1,2,falls\n");
+    draw();
+    check_svg("expect(caption('map-m').split('values. ')[1], 'engine: physics engine, sequential impulses; '\n"
+              "       'scene-net: neural network for a scene; k: sweeps over all contacts per step; '\n"
+              "       'warm: warm start from the previous step\\'s impulses; net=off: without its learned part.\\n', "
+              "'words')\n"
+              "expect(caption('borders').split('study. ')[1], 'nncg: conjugate gradients over sweeps; '\n"
+              "       'near: sweeps go on while contacts miss their velocity by this, m/s.\\n', 'words')\n");
+}
+
 /* Every cell that was run has one link, over its tile. */
 TEST(cells_link_to_their_clips) {
     start_afresh(
