@@ -117,6 +117,30 @@ bool npz_stream_append(NpzStream *stream, int array, const void *rows, int64_t c
 /* Writes the file, atomically. */
 bool npz_stream_finish(NpzStream *stream, Error *error);
 
+/* Inside this room: the archive of an .npz, a zip (npz_zip.c). Members are numbered from 0; `array` is the name of one in
+   messages. */
+
+typedef struct NpzArchive NpzArchive;
+
+/* Sets the size of the file, bytes. NULL with error set. */
+NpzArchive *npz_archive_open(const char *path, uint64_t *size, Error *error);
+void npz_archive_close(NpzArchive *archive);
+
+int64_t npz_archive_count(const NpzArchive *archive);
+
+/* The name of a member, valid until the archive is closed; NULL with error set. */
+const char *npz_archive_name(NpzArchive *archive, int64_t index, Error *error);
+
+/* Checks the entry of a member, and sets its size, bytes. */
+bool npz_archive_check(NpzArchive *archive, int64_t index, const char *array, uint64_t *size, Error *error);
+
+/* Reads the first bytes of a member, at most `size`. Returns their number; -1 with error set. */
+int64_t npz_archive_begin(NpzArchive *archive, int64_t index, const char *array, char *text, size_t size, Error *error);
+
+/* Reads the bytes of a member behind the first `head`, of which there must be `size`. */
+bool npz_archive_read(NpzArchive *archive, int64_t index, const char *array, size_t head, void *data, uint64_t size,
+                      Error *error);
+
 /* Inside this room (npy.c): the header of one .npy array (NumPy format specification), which npz_write.c writes before the
    data of each member and npz.c parses. */
 

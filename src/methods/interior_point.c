@@ -21,7 +21,7 @@ static const double scale_of_residual = 4;
 
 const InteriorKernels *interior_best(void) {
 #ifdef TWINBOX_AVX
-    if (sweeps_can(SWEEP_AVX2)) return &interior_avx2;
+    if (sweeps_can(SWEEP_LANES)) return &interior_avx2;
 #endif
     return &interior_scalar;
 }

@@ -130,7 +130,7 @@ static void store(Reference *r, const ContactProblem *problem) {
 
 static const ReferenceKernels *kernels(const Reference *r) {
 #ifdef TWINBOX_AVX
-    if (!r->scalar && sweeps_can(SWEEP_AVX2)) return &reference_avx2;
+    if (!r->scalar && sweeps_can(SWEEP_LANES)) return &reference_avx2;
 #endif
     (void)r;
     return &reference_scalar;

@@ -158,10 +158,10 @@ void sweeps_free(Sweeps *sweeps) {
 }
 
 bool sweeps_can(SweepKernel kernel) {
-    return kernel == SWEEP_ONE_BY_ONE || (kernel == SWEEP_AVX2 && sweeps_have_avx2());
+    return kernel == SWEEP_ONE_BY_ONE || (kernel == SWEEP_LANES && sweeps_have_lanes());
 }
 
-SweepKernel sweeps_best_kernel(void) { return sweeps_can(SWEEP_AVX2) ? SWEEP_AVX2 : SWEEP_ONE_BY_ONE; }
+SweepKernel sweeps_best_kernel(void) { return sweeps_can(SWEEP_LANES) ? SWEEP_LANES : SWEEP_ONE_BY_ONE; }
 
 /* Makes both schedules, unless those of the last step are for the same pairs. turns: with momentum extrapolation. */
 static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
@@ -205,8 +205,8 @@ static bool run(Sweeps *sweeps, const float *factors, int count) {
     }
     int done = 0;
     for (; done + at_once <= count; done += at_once)
-        sweeps_run_avx2(sweeps, &sweeps->whole, turns ? factors + done : NULL);
-    if (done < count) sweeps_run_avx2(sweeps, &sweeps->rest, turns ? factors + done : NULL);
+        sweeps_run_lanes(sweeps, &sweeps->whole, turns ? factors + done : NULL);
+    if (done < count) sweeps_run_lanes(sweeps, &sweeps->rest, turns ? factors + done : NULL);
     return true;
 }
 

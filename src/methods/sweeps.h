@@ -80,7 +80,7 @@ bool colours_order(Colours *colours, const ContactProblem *problem);
 enum { SWEEPS_MAX = 1000000 }; /* of one step, for any method */
 
 /* The kernels; sweeps_can() tells which ones the processor supports. */
-typedef enum SweepKernel { SWEEP_ONE_BY_ONE, SWEEP_AVX2, SWEEP_KERNELS } SweepKernel;
+typedef enum SweepKernel { SWEEP_ONE_BY_ONE, SWEEP_LANES, SWEEP_KERNELS } SweepKernel;
 
 bool sweeps_can(SweepKernel kernel);
 
@@ -262,13 +262,11 @@ static inline float contact_clamp(float value, float low, float high) {
 
 enum { SWEEPS_AT_ONCE = 16 }; /* sweeps in one schedule, which is run repeatedly */
 
-bool sweeps_have_avx2(void);
+bool sweeps_have_lanes(void);
 
-/* Solves the levels one after the other, eight pairs at a time. factors: one for each of the schedule's sweeps, or NULL
+/* Solves the levels one after the other, a pair in each lane. factors: one for each of the schedule's sweeps, or NULL
    without momentum extrapolation. */
-void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors);
-
-/* The same with the normal impulses of a pair solved together. */
+void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors);
 
 /* Applies the initial impulses in the sums. */
 void sweeps_warm_start(Sweeps *sweeps);

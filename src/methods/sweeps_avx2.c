@@ -74,9 +74,9 @@ TARGET static inline void extrapolate_body(float *base, const SweepBodyTurn *tur
     _mm_storeu_ps(base + turn->to, _mm_sub_ps(from, _mm_add_ps(step, _mm_setzero_ps())));
 }
 
-bool sweeps_have_avx2(void) { return __builtin_cpu_supports("avx2"); }
+bool sweeps_have_lanes(void) { return __builtin_cpu_supports("avx2"); }
 
-TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
+TARGET void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
     if (factors == NULL)
         run_levels(sweeps, schedule);
     else
@@ -87,9 +87,9 @@ TARGET void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const
 
 #include <assert.h>
 
-bool sweeps_have_avx2(void) { return false; }
+bool sweeps_have_lanes(void) { return false; }
 
-void sweeps_run_avx2(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
+void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
     (void)sweeps, (void)schedule, (void)factors;
     assert(false);
 }
