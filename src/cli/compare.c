@@ -188,8 +188,11 @@ static void print_trajectory_difference(const Trajectory *a, const TrajectoryDif
            difference->distance, difference->angle);
     if (!difference->poses_only) printf(", %g m/s", difference->speed);
     printf("\n");
-    printf("largest distance: frame %d, body %d: %g m apart\n", difference->max_frame, difference->max_body,
-           difference->max_distance);
+    if (difference->max_frame >= 0)
+        printf("largest distance: frame %d, body %d: %g m apart\n", difference->max_frame, difference->max_body,
+               difference->max_distance);
+    else /* a turn by 2 pi, or 0 and -0 */
+        printf("largest distance: none, every position is the same\n");
 }
 
 static bool compare_trajectories(const CompareOptions *options, Error *error) {

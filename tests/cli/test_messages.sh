@@ -40,6 +40,8 @@ refuse render a.npz -o d --title "-$hostile"
 refuse compare a b --report "$hostile"
 refuse approve report --only "$hostile"
 refuse simulate -- "$hostile"
+seen="control character U+202E"
+refuse simulate "$scene" -o $'gpj\u202e.npz'
 equal "files that were made" "$(find . -type f | sort | xargs)" "./err ./out"
 
 # Long texts are echoed in part, and the reason follows them.

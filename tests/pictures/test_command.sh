@@ -38,7 +38,7 @@ folder.npz: error: |folder.npz
 many_letters.npz: error: text 'scene' is longer than |many_letters.npz
 other_letters.npz: error: the font has no character |other_letters.npz
 backwards.npz: error: |backwards.npz
-control.npz: error: the name of the scene holds control characters |control.npz
+control.npz: error: the name of the scene has the control character U+001B |control.npz
 nan_velocity.npz: error: frame 1, body 1: pose and velocity are not all finite |nan_velocity.npz
 infinite.npz: error: frame 1, body 1: pose and velocity are not all finite |plain.npz infinite.npz
 run 2 (other_dt) has time steps of 0.0333333 s |plain.npz other_dt.npz
