@@ -82,12 +82,16 @@ if ! brief; then
 fi
 run 0 page names.npz -o names.html
 /usr/bin/python3 - <<'PYTHON' || fail "the code"
-import base64, re, zlib
+import base64, hashlib, re, zlib
 page = open("names.html", encoding="utf-8").read()
 begin, = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
 packed, = re.findall(r'<script type="text/plain" id="viewer">(.*?)</script>', page)
 open("begin.js", "w", encoding="utf-8").write(begin)
 open("viewer.js", "wb").write(zlib.decompress(base64.b64decode(packed), -15))
+# The policy allows these two scripts, by their hashes, and no other.
+allowed = [base64.b64encode(hashlib.sha256(script).digest()).decode()
+           for script in (begin.encode(), zlib.decompress(base64.b64decode(packed), -15))]
+assert f"script-src 'sha256-{allowed[0]}' 'sha256-{allowed[1]}'\">" in page, "another policy"
 # Names are in data only, and end no element there.
 assert page.count("</script>") == page.count("<script"), "another element"
 assert page.count("<img") == 0 and "<!--" not in page, "markup of a name"
