@@ -8,8 +8,152 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Expressions: numbers made of numbers and parameters. */
+
+/* What is read, and how far. */
+typedef struct Expression {
+    const YamlTree *tree;
+    int node;
+    const char *what, *text, *at;
+    int parts; /* numbers, signs and parentheses so far */
+    Error *error;
+} Expression;
+
+bool expression_is(const YamlTree *tree, int node) {
+    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "", *rest = "";
+    double number;
+    return strpbrk(text, "$+-*/()") != NULL && !(parse_leading_double(text, &number, &rest) && *rest == '\0');
+}
+
+/* The parameter with this name, or NULL. */
+static SceneParameter *find(Parameters *parameters, const char *text, size_t length) {
+    for (int i = 0; i < parameters->count; i++) {
+        SceneParameter *parameter = &parameters->items[i];
+        if (strlen(parameter->name) == length && memcmp(parameter->name, text, length) == 0) return parameter;
+    }
+    return NULL;
+}
+
+/* " with height = 10 boxes, size = 2": the parameters in the text. */
+static void add_values(Parameters *parameters, const char *text, char *out, size_t room) {
+    bool named[SCENE_MAX_PARAMETERS] = {false};
+    for (const char *name = text; (name = strchr(name, '$')) != NULL;) {
+        size_t length = strspn(++name, PARAMETER_LETTERS);
+        const SceneParameter *parameter = find(parameters, name, length);
+        if (parameter != NULL) named[parameter - parameters->items] = true;
+    }
+    const char *link = " with ";
+    for (int i = 0; i < parameters->count; i++) {
+        const SceneParameter *parameter = &parameters->items[i];
+        if (!named[i]) continue;
+        text_add(out, room, "%s%s = %.9g%s%s", link, parameter->name, parameter->value,
+                 parameter->unit[0] != '\0' ? " " : "", parameter->unit);
+        link = ", ";
+    }
+}
+
+/* The text, and the values of its names. */
+static ExpressionShown show_text(const YamlTree *tree, int node) {
+    ExpressionShown shown;
+    snprintf(shown.text, sizeof shown.text, "%s", yaml_show(tree, node).text);
+    if (tree->nodes[node].kind == YAML_SCALAR && tree->context != NULL)
+        add_values(tree->context, yaml_text(tree, node), shown.text, sizeof shown.text);
+    return shown;
+}
+
+ExpressionShown expression_show(const YamlTree *tree, int node, double value, const char *unit) {
+    ExpressionShown text = show_text(tree, node), shown = text;
+    if (expression_is(tree, node))
+        snprintf(shown.text, sizeof shown.text, "%.9g%s, from %.290s", value, unit, text.text);
+    return shown;
+}
+
+/* Errors are where the reading is, or at a place that it has passed. */
+static bool fail(const Expression *e, const char *at, const char *text) {
+    return yaml_error_at(e->tree, e->node, (size_t)(at - e->text), e->error, "%s%s (got %s)", e->what, text,
+                         show_text(e->tree, e->node).text);
+}
+
+/* The value of the name at the '$'. */
+static bool take_name(Expression *e, double *value) {
+    Parameters *parameters = e->tree->context;
+    const size_t length = strspn(e->at + 1, PARAMETER_LETTERS);
+    if (length == 0) return fail(e, e->at, ": a parameter's name must follow the '$'");
+    if (parameters == NULL) return fail(e, e->at, " must not contain parameters");
+    const SceneParameter *parameter = find(parameters, e->at + 1, length);
+    if (parameter == NULL) {
+        char name[SCENE_PARAMETER_SIZE];
+        snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name), e->at + 1);
+        return yaml_error_at(e->tree, e->node, (size_t)(e->at - e->text), e->error, "%s: '$%s' is not a parameter; %s",
+                             e->what, name, parameters_hint(parameters, name).text);
+    }
+    parameters->used[parameter - parameters->items] = true;
+    *value = parameter->value;
+    e->at += length + 1;
+    return true;
+}
+
+static bool take_sum(Expression *e, double *value);
+
+/* A number, a name, a sum in parentheses, or one of these behind a sign. */
+static bool take_operand(Expression *e, double *value) {
+    e->at += strspn(e->at, " ");
+    if (e->parts++ == EXPRESSION_MAX_PARTS)
+        return fail(e, e->at, ": an expression has too many numbers, signs and parentheses");
+    if (parse_leading_double(e->at, value, &e->at)) return true;
+    if (*e->at == '$') return take_name(e, value);
+    if (*e->at == '-') {
+        e->at++;
+        if (!take_operand(e, value)) return false;
+        *value = -*value;
+        return true;
+    }
+    if (*e->at != '(') return fail(e, e->at, ": a number, a $name or '(' is expected here");
+    e->at++;
+    if (!take_sum(e, value)) return false;
+    return *e->at++ == ')' || fail(e, e->at - 1, ": an operator or ')' is expected here");
+}
+
+static bool apply(const Expression *e, const char *operator, double number, double *value) {
+    switch (*operator) {
+    case '+': *value += number; break;
+    case '-': *value -= number; break;
+    case '*': *value *= number; break;
+    default:
+        if (number == 0) return fail(e, operator, " is divided by 0");
+        *value /= number;
+    }
+    return isfinite(*value) || fail(e, operator, " has an intermediate result that is infinite");
+}
+
+/* Operands with these operators between them, from left to right. Blanks behind them are taken, too. */
+static bool take_chain(Expression *e, bool take(Expression *e, double *value), const char *operators, double *value) {
+    if (!take(e, value)) return false;
+    for (e->at += strspn(e->at, " "); *e->at != '\0' && strchr(operators, *e->at) != NULL; e->at += strspn(e->at, " ")) {
+        const char *operator = e->at++;
+        double number = 0;
+        if (!take(e, &number) || !apply(e, operator, number, value)) return false;
+    }
+    return true;
+}
+
+static bool take_product(Expression *e, double *value) { return take_chain(e, take_operand, "*/", value); }
+
+static bool take_sum(Expression *e, double *value) { return take_chain(e, take_product, "+-", value); }
+
+bool expression_read(const YamlTree *tree, int node, const char *what, double *value, Error *error) {
+    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
+    Expression e = {tree, node, what, text, text, 0, error};
+    if (!expression_is(tree, node) && !(parse_leading_double(text, value, &e.at) && *e.at == '\0'))
+        return fail(&e, text, " must be a number");
+    e.at = text;
+    return take_sum(&e, value) && (*e.at == '\0' || fail(&e, e.at, ": an operator or the end is expected here"));
+}
+
+/* The key `parameters` of a scene. */
+
 static bool field_bound(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    return chain_read(tree, node, field->key, member, error);
+    return expression_read(tree, node, field->key, member, error);
 }
 
 /* The longest text that source_printable() never cuts. */
@@ -52,16 +196,10 @@ static bool check(const YamlTree *tree, const int *nodes, const SceneParameter *
     for (int i = VALUE; i <= TO; i++)
         if (parameter->whole && !is_whole(numbers[i]))
             return yaml_error(tree, nodes[i], error, "%s must be a whole number, because whole is on (got %s)",
-                              fields[i].key, chain_show(tree, nodes[i], numbers[i]).text);
+                              fields[i].key, expression_show(tree, nodes[i], numbers[i], "").text);
     return (parameter->value >= parameter->from && parameter->value <= parameter->to) ||
            yaml_error(tree, nodes[VALUE], error, "value must be from %.9g to %.9g (got %s)", parameter->from,
-                      parameter->to, chain_show(tree, nodes[VALUE], parameter->value).text);
-}
-
-static SceneParameter *find(Parameters *parameters, const char *name) {
-    for (int i = 0; i < parameters->count; i++)
-        if (strcmp(parameters->items[i].name, name) == 0) return &parameters->items[i];
-    return NULL;
+                      parameter->to, expression_show(tree, nodes[VALUE], parameter->value, "").text);
 }
 
 static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int value, Error *error) {
@@ -70,7 +208,7 @@ static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int 
     SceneParameter parameter = {.whole = false};
     int nodes[FIELDS_MAX];
     if (!copy_name(tree, key, parameter.name, error)) return false;
-    if (find(parameters, parameter.name) != NULL)
+    if (find(parameters, parameter.name, strlen(parameter.name)) != NULL)
         return yaml_error(tree, key, error, "key '%s' is given twice", parameter.name);
     if (!fields_read(tree, value, "a parameter", fields, &parameter, nodes, error) ||
         !check(tree, nodes, &parameter, error))
@@ -107,7 +245,7 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
 }
 
 static bool set(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {
-    SceneParameter *parameter = find(parameters, setting->name);
+    SceneParameter *parameter = find(parameters, setting->name, strlen(setting->name));
     if (parameter == NULL)
         return error_input(error, path, "'%s' is not a parameter; %s", setting->name,
                            parameters_hint(parameters, setting->name).text);
