@@ -92,8 +92,12 @@ typedef struct Parameters {
 /* Reads the tree's parameters, wherever the key is; a scene may have none. */
 bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error);
 
-/* Sets their values; see scene_read_with(). */
+/* Sets their values; see scene_read_with(). Leaves what common_set() then sets in the scene that is read. */
 bool parameters_set(Parameters *parameters, const char *path, const SceneSetting *settings, int count, Error *error);
+bool common_set(Scene *scene, const char *path, const SceneSetting *settings, int count, Error *error);
+
+/* Fills `common` of the scene. */
+void common_list(Scene *scene);
 
 /* Refuses a parameter that no number uses, because setting it would have no effect. */
 bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Error *error);

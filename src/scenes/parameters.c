@@ -244,8 +244,129 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
     return true;
 }
 
+/* What every scene has. */
+
+enum { ITERATIONS, DT, FRICTION, BOMB_X, BOMB_MASS, BOMB_SPEED, COMMON };
+
+static const struct {
+    const char *name, *unit;
+    double least, most;
+} common[COMMON] = {[ITERATIONS] = {"iterations", "", 1, SCENE_MAX_ITERATIONS},
+                    [DT] = {"dt", "s", (double)SCENE_MIN_DT, (double)SCENE_MAX_DT},
+                    [FRICTION] = {"friction", "", 0, 10},
+                    [BOMB_X] = {"bomb_x", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
+                    [BOMB_MASS] = {"bomb_mass", "kg", 1e-6, 1e9},
+                    [BOMB_SPEED] = {"bomb_speed", "m/s", 0, 1e4}};
+
+/* COMMON: none. */
+static int find_common(const char *name) {
+    int which = 0;
+    while (which < COMMON && strcmp(common[which].name, name) != 0) which++;
+    return which;
+}
+
+static double bomb_speed(const Scene *scene) { return vec2_distance(scene_bomb_body(scene).velocity, vec2(0, 0)); }
+
+static double common_value(const Scene *scene, int which) {
+    switch (which) {
+    case ITERATIONS: return scene->iterations;
+    case DT: return (double)scene->dt;
+    case FRICTION: return (double)scene->bodies[scene->body_count - 1].friction;
+    case BOMB_X: return (double)scene->bomb.body.position.x;
+    case BOMB_MASS: return (double)scene->bomb.body.mass;
+    default: return bomb_speed(scene);
+    }
+}
+
+/* The steps, when a step takes `ratio` times as long. */
+static int steps_of_time(int steps, double ratio) {
+    const double count = round(steps / ratio);
+    return count > SCENE_MAX_FRAMES ? SCENE_MAX_FRAMES : (int)count;
+}
+
+static void change_dt(Scene *scene, double dt) {
+    const double ratio = dt / (double)scene->dt;
+    scene->dt = (float)dt;
+    scene->frames = steps_of_time(scene->frames, ratio);
+    if (scene->frames == 0) scene->frames = 1;
+    scene->bomb.frame = steps_of_time(scene->bomb.frame, ratio);
+    scene->last_body_until = steps_of_time(scene->last_body_until, ratio);
+}
+
+static void change_speed(Scene *scene, double speed) {
+    const float ratio = (float)(speed / bomb_speed(scene));
+    scene->bomb.velocity_factor *= ratio;
+    scene->bomb.body.velocity = vec2_scale(ratio, scene->bomb.body.velocity);
+}
+
+static void change(Scene *scene, int which, double value) {
+    switch (which) {
+    case ITERATIONS: scene->iterations = (int)value; break;
+    case DT: change_dt(scene, value); break;
+    case FRICTION:
+        for (int i = 0; i < scene->body_count; i++) scene->bodies[i].friction = (float)value;
+        scene->bomb.body.friction = (float)value;
+        break;
+    case BOMB_X: scene->bomb.body.position.x = (float)value; break;
+    case BOMB_MASS: scene->bomb.body.mass = (float)value; break;
+    default: change_speed(scene, value);
+    }
+}
+
+static bool set_common(Scene *scene, const char *path, int which, double value, Error *error) {
+    const char *name = common[which].name, *unit = common[which].unit;
+    if (which >= BOMB_X && !scene->bomb.present)
+        return error_input(error, path, "%s cannot be set: the scene has no bomb", name);
+    if (which == BOMB_SPEED && bomb_speed(scene) == 0)
+        return error_input(error, path, "%s cannot be set: the bomb is at rest, so it has no direction", name);
+    if (!(value >= common[which].least && value <= common[which].most) || (which == ITERATIONS && !is_whole(value)))
+        return error_input(error, path, "%s must be a %s from %.9g to %.9g%s%s (set to %.9g)", name,
+                           which == ITERATIONS ? "whole number" : "number", common[which].least, common[which].most,
+                           unit[0] != '\0' ? " " : "", unit, value);
+    change(scene, which, value);
+    return !scene->bomb.present || bomb_speed(scene) <= common[BOMB_SPEED].most ||
+           error_input(error, path, "with %s = %.9g the bomb starts at %.9g m/s; at most %.9g are allowed", name, value,
+                       bomb_speed(scene), common[BOMB_SPEED].most);
+}
+
+bool common_set(Scene *scene, const char *path, const SceneSetting *settings, int count, Error *error) {
+    for (int i = 0; i < count; i++) {
+        const int which = scene_parameter(scene, settings[i].name) == NULL ? find_common(settings[i].name) : COMMON;
+        if (which < COMMON && !set_common(scene, path, which, settings[i].value, error)) return false;
+    }
+    return true;
+}
+
+void common_list(Scene *scene) {
+    const SceneSpan *x = &scene->bomb.x;
+    for (int which = 0; which < (scene->bomb.present ? COMMON : BOMB_X); which++) {
+        const double value = common_value(scene, which);
+        const double ranges[COMMON][2] = {[ITERATIONS] = {1, value < 20 ? 40 : 2 * value},
+                                          [DT] = {value / 4, value * 4},
+                                          [FRICTION] = {0, 1},
+                                          [BOMB_X] = {value - 5, value + 5},
+                                          [BOMB_MASS] = {value / 10, value * 10},
+                                          [BOMB_SPEED] = {0, 3 * value}};
+        SceneParameter *parameter = &scene->common[scene->common_count++];
+        *parameter = (SceneParameter){
+            .value = value, .from = ranges[which][0], .to = ranges[which][1], .whole = which == ITERATIONS};
+        strcpy(parameter->name, common[which].name);
+        strcpy(parameter->unit, common[which].unit);
+        if (which == BOMB_X && scene_span_varies(x)) parameter->from = (double)x->from, parameter->to = (double)x->to;
+    }
+}
+
+const SceneParameter *scene_parameter(const Scene *scene, const char *name) {
+    for (int i = 0; i < scene->parameter_count; i++)
+        if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
+    for (int i = 0; i < scene->common_count; i++)
+        if (strcmp(scene->common[i].name, name) == 0) return &scene->common[i];
+    return NULL;
+}
+
 static bool set(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {
     SceneParameter *parameter = find(parameters, setting->name, strlen(setting->name));
+    if (parameter == NULL && find_common(setting->name) < COMMON) return true;
     if (parameter == NULL)
         return error_input(error, path, "'%s' is not a parameter; %s", setting->name,
                            parameters_hint(parameters, setting->name).text);

@@ -388,9 +388,12 @@ static const Field scene_fields[] = {
     {"parameters", field_parameters, 0, NULL, false},
     {NULL, NULL, 0, NULL, false}};
 
-static bool read_fields(const YamlTree *tree, Scene *scene, Error *error) {
+static bool read_fields(const YamlTree *tree, Scene *scene, const SceneSetting *settings, int count, Error *error) {
     int nodes[FIELDS_MAX];
-    if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error)) return false;
+    if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error) ||
+        !common_set(scene, tree->source.path, settings, count, error))
+        return false;
+    common_list(scene);
     const int bodies = fields_node(scene_fields, nodes, "bodies"), bomb = fields_node(scene_fields, nodes, "bomb");
     if (scene->last_body_until > 0 && !bodies_check_until(tree, bodies, scene, error)) return false;
     if (scene->bomb.present && scene->bomb.frame > scene->frames)
@@ -405,7 +408,7 @@ static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings
         !parameters_set(&parameters, tree->source.path, settings, count, error))
         return false;
     tree->context = &parameters;
-    bool ok = read_fields(tree, scene, error) && parameters_all_used(&parameters, tree, error);
+    bool ok = read_fields(tree, scene, settings, count, error) && parameters_all_used(&parameters, tree, error);
     tree->context = NULL;
     return ok;
 }

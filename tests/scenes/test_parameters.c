@@ -123,6 +123,76 @@ TEST(settings_take_the_place_of_values) {
     }
 }
 
+/* A bomb that flies at (3, -4) m/s, and one by a law. */
+#define BOMBED(velocity) \
+    BODY("size: [1, 1], position: [0, 0], mass: 1") "bomb: {x: 2, y: 12, size: [1, 1], mass: 5, frame: 30, velocity: " velocity "}\n"
+
+static Scene *set_one(const char *text, const char *name, double value) {
+    SceneSetting setting = {.value = value};
+    Error error;
+    strcpy(setting.name, name);
+    Scene *scene = read_with(text, &setting, 1, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+TEST(what_every_scene_has_can_be_set) {
+    Scene *scene = set_one(BOMBED("[3, -4]"), "iterations", 7);
+    assert_int_equal(scene->iterations, 7);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "friction", 0.75);
+    assert_true(scene->bodies[0].friction == 0.75F && scene->bomb.body.friction == 0.75F);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "bomb_x", -2.5);
+    assert_near(scene->bomb.body.position.x, -2.5, 0);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "bomb_mass", 40);
+    assert_near(scene->bomb.body.mass, 40, 0);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "bomb_speed", 10);
+    assert_near(scene_bomb_body(scene).velocity.x, 6, 1e-6);
+    assert_near(scene_bomb_body(scene).velocity.y, -8, 1e-6);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("{times_position: -1}"), "bomb_speed", 0.5);
+    assert_near(vec2_distance(scene_bomb_body(scene).velocity, vec2(0, 0)), 0.5, 1e-6);
+    scene_destroy(scene);
+}
+
+/* The run and the way to the bomb take as many seconds as before. */
+TEST(another_time_step_leaves_the_time) {
+    Scene *plain = good_scene(BOMBED("[0, -1]")), *scene = set_one(BOMBED("[0, -1]"), "dt", (double)plain->dt / 3);
+    assert_near(scene->frames, 3 * plain->frames, 0);
+    assert_near(scene->bomb.frame, 90, 0);
+    assert_near(scene->dt * 3, plain->dt, 1e-9);
+    scene_destroy(scene);
+    scene_destroy(plain);
+}
+
+TEST(a_parameter_of_that_name_goes_before) {
+    Scene *scene = set_one(MASS("$friction") "parameters: {friction: {value: 1, from: 0.5, to: 20}}\n", "friction", 20);
+    assert_true(scene->bodies[0].mass == 20 && scene->bodies[0].friction < 1);
+    assert_ptr_equal(scene_parameter(scene, "friction"), &scene->parameters[0]);
+    scene_destroy(scene);
+}
+
+TEST(what_no_scene_can_have_is_refused) {
+    static const struct {
+        const char *text;
+        SceneSetting setting;
+        const char *message;
+    } table[] = {
+        {BOMBED("[3, -4]"), {"iterations", 0}, "iterations must be a whole number from 1 to 1000000 (set to 0)"},
+        {BOMBED("[3, -4]"), {"iterations", 2.5}, "iterations must be a whole number from 1 to 1000000 (set to 2.5)"},
+        {BOMBED("[3, -4]"), {"friction", -1}, "friction must be a number from 0 to 10 (set to -1)"},
+        {BOMBED("[3, -4]"), {"dt", NAN}, "dt must be a number from 9.99999975e-06 to "},
+        {BOMBED("[3, -4]"), {"bomb_speed", 1e5}, "bomb_speed must be a number from 0 to 10000 m/s (set to 100000)"},
+        {BOMBED("[0, 0]"), {"bomb_speed", 1}, "bomb_speed cannot be set: the bomb is at rest, so it has no direction"},
+        {BOMBED("{times_position: 100}"), {"bomb_x", 1e3}, "with bomb_x = 1000 the bomb starts at 100007.2 m/s"},
+        {BASE GROUND, {"bomb_x", 1}, "bomb_x cannot be set: the scene has no bomb"}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        assert_refused(read_with(table[i].text, &table[i].setting, 1, &error), table[i].message);
+}
+
 TEST(bad_settings_are_refused) {
     static const struct {
         SceneSetting settings[2];
