@@ -58,6 +58,7 @@ static int run(const Command *command, int argc, char **argv) {
     argv[0] = name;
     on_exit(check_exit, &ended);
     const bool same = command->run(argc, argv, &error);
+    results_end(!same || error.kind != ERROR_NONE);
     note_end();
     ended = true;
     /* Output that could not be written is a failure of the system, not success. */

@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct Options {
     const char *kind, *inputs[FIGURE_RUNS_MAX], *output;
@@ -197,6 +198,15 @@ static bool draw(const FigureKind *kind, const Options *options, Error *error) {
     return ok;
 }
 
+/* A chart of the scene of a run, if its file is found by its name. */
+static void next_chart(const char *scene) {
+    char path[TRAJECTORY_NAME_SIZE + 8];
+    snprintf(path, sizeof path, "%s.yaml", scene);
+    const char *found = access(path, R_OK) == 0 ? path : scene;
+    if (access(installed_path(found), R_OK) == 0)
+        next_print((const char *const[]){"chart", found, "--quick", "-o", next_path(scene, "-chart").text, NULL});
+}
+
 static bool read_and_draw(const FigureKind *kind, Options *options, Error *error) {
     Trajectory *runs[FIGURE_RUNS_MAX] = {NULL};
     FigureSpec *figure = &options->figure;
@@ -215,6 +225,7 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
     figure->progress = progress_bar_begin(kind->name);
     ok = ok && draw(kind, options, error);
     progress_bar_end();
+    if (ok && figure->run_count > 0 && !path_is_standard(options->output)) next_chart(runs[0]->scene);
     for (int i = 0; i < FIGURE_RUNS_MAX; i++) trajectory_destroy(runs[i]);
     trajectory_destroy(view_from);
     return ok;

@@ -38,6 +38,7 @@ bool command_new(int argc, char **argv, Error *error) {
     if (!file_name_ends_with(options.path, ".yaml"))
         return error_input(error, options.path, "the name of a scene must end in .yaml");
     if (!file_create(options.path, text, strlen(text), error)) return false;
-    printf("%s -> %s\nnext: twinbox check %s\n", names[options.like], options.path, options.path);
+    if (note_level() > NOTES_QUIET) printf("%s -> %s\n", names[options.like], options.path);
+    next_print((const char *const[]){"check", options.path, NULL});
     return true;
 }

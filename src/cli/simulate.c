@@ -384,6 +384,8 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
     if (ok && !options->json) simulate_result_print(&result);
     ok = judge(&result, options, error) && ok;
     ok = ok && (!options->json || simulate_result_json(&result, error));
+    if (ok && !options->json && options->output != NULL && file_name_ends_with(options->output, ".npz"))
+        next_film(options->output);
     simulate_verdict_free(&result.verdict);
     return ok;
 }

@@ -252,7 +252,7 @@ bool stability_clip(const ClipOptions *options, Error *error) {
     CellRuns runs = {.count = 0};
     const MapCell *row = find_cell(options, &table, error);
     const ClipMap *map = row != NULL ? find_map(options, row, error) : NULL;
-    bool ok = map != NULL && cell_runs_make(&runs, map, &table, row, options->cell, NULL, error) &&
+    bool ok = map != NULL && video_check_programs(error) && cell_runs_make(&runs, map, &table, row, options->cell, NULL, error) &&
               stability_clip_draw(options, &runs, error);
     cell_runs_free(&runs);
     csv_table_free(&table);

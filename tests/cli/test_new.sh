@@ -6,7 +6,7 @@
 for kind in wall stack pyramid arch dominoes; do
     run 0 new "my $kind.yaml" --like $kind
     says "$kind -> my $kind.yaml"
-    says "twinbox check my $kind.yaml"
+    says "next: twinbox check 'my $kind.yaml'"
     cmp -s "my $kind.yaml" "$scenes/templates/$kind.yaml" || fail "my $kind.yaml is not the file in scenes/templates"
     [ "$(grep -c '^ *#' "my $kind.yaml")" -ge 12 ] || fail "$kind has few comments"
     run 0 check "my $kind.yaml" -o first.png
