@@ -375,9 +375,13 @@ void page_set_link(char link[PAGE_LINK_SIZE], const PageFile *file, double time,
 /* "14 pages of 2.1 MB -> DIR/pages" and what was left out. */
 void page_set_print(const PageSet *set, const char *html);
 
-/* The scenes of scenes/templates/, embedded in the binary (sources.cmake lists them, too). */
+/* The scenes of scenes/templates/, embedded in the binary (src/CMakeLists.txt lists them, too). */
 
-#define TEMPLATES(TEMPLATE) TEMPLATE(wall) TEMPLATE(stack) TEMPLATE(pyramid) TEMPLATE(arch) TEMPLATE(dominoes)
+#define TEMPLATES(TEMPLATE)                                                                                 \
+    TEMPLATE(wall)                                                                                          \
+    TEMPLATE(stack)                                                                                         \
+    TEMPLATE(pyramid) TEMPLATE(arch) TEMPLATE(dominoes) TEMPLATE(towers) TEMPLATE(gate) TEMPLATE(cardhouse) \
+        TEMPLATE(pile)
 
 #define TEMPLATE_DECLARED(name) extern const char template_##name##_yaml[];
 TEMPLATES(TEMPLATE_DECLARED)

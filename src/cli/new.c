@@ -17,7 +17,8 @@ typedef struct Options {
     unsigned like; /* index of names */
 } Options;
 
-static const Option option_table[] = {{"--like", 0, "KIND", "wall, stack, pyramid, arch or dominoes",
+static const Option option_table[] = {{"--like", 0, "KIND",
+                                       "wall, stack, pyramid, arch, dominoes, towers, gate, cardhouse or pile",
                                        OPTION_ENUM(Options, like, names), .needed = "--like KIND is needed"},
                                       {0}};
 

@@ -149,9 +149,7 @@ bool option_set(const Option *option, const char *text, void *value, Error *erro
 enum { FIRST_KEY = 256, SHOWN_SIZE = 72 };
 
 const Option options_of_all[] = {
-    {.name = "--quiet",
-     .letter = 'q',
-     .help = "Print errors, and results that go to no file: no progress, no notes"},
+    {.name = "--quiet", .letter = 'q', .help = "Print errors, and results that go to no file: no progress, no notes"},
     {.name = "--verbose",
      .letter = 'v',
      .help = "Print what is done to get the result: files, settings, programs, threads, time, memory"},

@@ -94,8 +94,8 @@ static bool check_before(const SubspaceNet *net, const Scene *scene, const char 
         const BodyDef *body = &scene->bodies[i];
         if (body->fixed) continue;
         if (vec2_distance(body->position, vec2(pose[0], pose[1])) > slack + 2 * speed * dt)
-            return error_input(error, path, "before: body %d is at (%g, %g) m after a step, but starts at (%g, %g) m", i,
-                               (double)pose[0], (double)pose[1], (double)body->position.x, (double)body->position.y);
+            return error_input(error, path, "before: body %d is at (%g, %g) m after a step, but starts at (%g, %g) m",
+                               i, (double)pose[0], (double)pose[1], (double)body->position.x, (double)body->position.y);
         pose += 3;
     }
     return true;

@@ -413,8 +413,9 @@ bool study_record_check(const StudyRecord *record, const char *path, const Study
         return check_arguments(record, path, argc, argv, error) &&
                hash_differs(path, error, "the hash of options and inputs", key->value, record->key.value);
     return record->hash == record_hash(record) ||
-           error_input(error, path, "has been changed since the first shard wrote it: its hash is %016" PRIx64
-                                    ", not %016" PRIx64, record_hash(record), record->hash);
+           error_input(error, path,
+                       "has been changed since the first shard wrote it: its hash is %016" PRIx64 ", not %016" PRIx64,
+                       record_hash(record), record->hash);
 }
 
 bool study_record_shard(const StudyRecord *record, const char *path, const ShardRequest *request, Shard *shard,

@@ -129,8 +129,9 @@ static bool apply(const Expression *e, const char *operator, double number, doub
 /* Operands with these operators between them, from left to right. Blanks behind them are taken, too. */
 static bool take_chain(Expression *e, bool take(Expression *e, double *value), const char *operators, double *value) {
     if (!take(e, value)) return false;
-    for (e->at += strspn(e->at, " "); *e->at != '\0' && strchr(operators, *e->at) != NULL; e->at += strspn(e->at, " ")) {
-        const char *operator = e->at++;
+    for (e->at += strspn(e->at, " "); *e->at != '\0' && strchr(operators, *e->at) != NULL;
+         e->at += strspn(e->at, " ")) {
+        const char *operator= e->at++;
         double number = 0;
         if (!take(e, &number) || !apply(e, operator, number, value)) return false;
     }

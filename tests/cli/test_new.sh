@@ -3,7 +3,7 @@
 # twinbox new: scenes to start from, in any folder; tests/studies/test_templates.c tests that they stand.
 . "$(dirname "$0")/checks.sh"
 
-for kind in wall stack pyramid arch dominoes; do
+for kind in wall stack pyramid arch dominoes towers gate cardhouse pile; do
     run 0 new "my $kind.yaml" --like $kind
     says "$kind -> my $kind.yaml"
     says "next: twinbox check 'my $kind.yaml'"
@@ -14,7 +14,7 @@ for kind in wall stack pyramid arch dominoes; do
     [ "$(grep -c '^    parameter ' out)" -ge 1 ] && [ "$(grep -c '^    parameter ' out)" -le 2 ] || fail "$kind: parameters"
     run 0 simulate "my $kind.yaml" -o run.npz
 done
-equal "templates" "$(ls "$scenes/templates" | wc -l)" 5
+equal "templates" "$(ls "$scenes/templates" | wc -l)" 9
 
 # Nothing that exists is overwritten: a file, a link, a link to nothing.
 echo mine >mine.yaml

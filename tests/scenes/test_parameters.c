@@ -124,8 +124,9 @@ TEST(settings_take_the_place_of_values) {
 }
 
 /* A bomb that flies at (3, -4) m/s, and one by a law. */
-#define BOMBED(velocity) \
-    BODY("size: [1, 1], position: [0, 0], mass: 1") "bomb: {x: 2, y: 12, size: [1, 1], mass: 5, frame: 30, velocity: " velocity "}\n"
+#define BOMBED(velocity)                            \
+    BODY("size: [1, 1], position: [0, 0], mass: 1") \
+    "bomb: {x: 2, y: 12, size: [1, 1], mass: 5, frame: 30, velocity: " velocity "}\n"
 
 static Scene *set_one(const char *text, const char *name, double value) {
     SceneSetting setting = {.value = value};
@@ -236,8 +237,7 @@ static const Refused expressions[] = {
                                "with height = 10 boxes)"},
     {SCENE("2 - $height"),
      "6:44: error: mass must be greater than 0 (got -8 kg, from 2 - $height with height = 10 boxes)"},
-    {SCENE("0/$height"),
-     "6:44: error: mass must be greater than 0 (got 0 kg, from 0/$height with height = 10 boxes)"},
+    {SCENE("0/$height"), "6:44: error: mass must be greater than 0 (got 0 kg, from 0/$height with height = 10 boxes)"},
     {SCENE("$height/0"), "6:51: error: mass is divided by 0 (got $height/0 with height = 10 boxes)"},
     {SCENE("1/0*$height"), "6:45: error: mass is divided by 0 (got 1/0*$height with height = 10 boxes)"},
     {SCENE("1/($height - 10)"), "6:45: error: mass is divided by 0 (got 1/($height - 10) with height = 10 boxes)"},
@@ -260,8 +260,7 @@ static const Refused expressions[] = {
     {SCENE("()"), "6:45: error: mass" OPERAND "())"},
     {SCENE("2$height"), "6:45: error: mass" OPERATOR "2$height with height = 10 boxes)"},
     {SCENE("2 3*$height"), "6:46: error: mass" OPERATOR "2 3*$height with height = 10 boxes)"},
-    {SCENE("$height$ratio"),
-     "6:51: error: mass" OPERATOR "$height$ratio with height = 10 boxes, ratio = 0.1)"},
+    {SCENE("$height$ratio"), "6:51: error: mass" OPERATOR "$height$ratio with height = 10 boxes, ratio = 0.1)"},
     {SCENE("(2)3"), "6:47: error: mass" OPERATOR "(2)3)"},
     {SCENE("2*3)"), "6:47: error: mass" OPERATOR "2*3))"},
     {SCENE("$height^2"), "6:51: error: mass" OPERATOR "$height^2 with height = 10 boxes)"},
