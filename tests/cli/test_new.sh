@@ -40,5 +40,5 @@ complains "the name of the scene to write is needed"
 run 2 new other --like wall
 complains "other: error: the name of a scene must end in .yaml"
 run 3 new missing/other.yaml --like wall
-complains "missing/other.yaml: error: cannot write: No such file or directory"
+complains "missing/other.yaml: error: cannot write: its folder does not exist"
 finish
