@@ -25,8 +25,7 @@ typedef struct Options {
 static OptionRead read_input, read_times, read_bodies, read_width;
 
 static const Option option_table[] = {
-    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_OUTPUT(Options, output),
-     .needed = "-o FILE is needed"},
+    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_OUTPUT(Options, output)},
     {"--at", 0, "T,T,...", "Moments to show, seconds from the start of the run, rising",
      OPTION_READ(read_times, Options, figure)},
     {"--moments", 0, "N", "Number of moments instead, evenly spaced from the first to the last",
@@ -246,5 +245,6 @@ bool command_figure(int argc, char **argv, Error *error) {
         .help = help};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const FigureKind *kind = figure_kind(options.kind, error);
-    return kind != NULL && check_options(kind, &options, error) && read_and_draw(kind, &options, error);
+    if (kind != NULL && options.output == NULL) error_input(error, "figure", "-o FILE is needed");
+    return error->kind == ERROR_NONE && check_options(kind, &options, error) && read_and_draw(kind, &options, error);
 }
