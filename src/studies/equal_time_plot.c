@@ -245,9 +245,9 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
         plot_text(sketch, (Point){layout->left + bar_width * (strength(marks[i]) + 1) / 2, bottom - 2}, TEXT_CENTER, 7,
                   text);
     }
-    snprintf(note, sizeof note, "in the time of momentum:%s; rivals learn nothing", layout->grid->time);
+    snprintf(note, sizeof note, "without a network, in the time of momentum:%s", layout->grid->time);
     plot_text(sketch, (Point){right, bottom + bar_height / 2}, TEXT_LEFT, 8,
-              "error at the impact / error of the best rival,");
+              "error at the impact / that of the best other method");
     plot_text(sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, 8, layout->grid->times);
     plot_text(sketch, (Point){right, bottom - 2}, TEXT_LEFT, 8, note);
     plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower than that, or lost the scene");
