@@ -188,8 +188,7 @@ bool file_make_directory(const char *path, Error *error) {
     char part[PATH_MAX];
     size_t length = strlen(path);
     if (length == 0 || length >= sizeof part)
-        return error_system(error, path, "cannot make this folder: %s",
-                            strerror(length == 0 ? ENOENT : ENAMETOOLONG));
+        return error_system(error, path, "cannot make this folder: %s", strerror(length == 0 ? ENOENT : ENAMETOOLONG));
     for (size_t end = 1; end <= length; end++) {
         if (path[end] != '/' && path[end] != '\0') continue;
         snprintf(part, sizeof part, "%.*s", (int)end, path);

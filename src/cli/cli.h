@@ -377,11 +377,11 @@ void page_set_print(const PageSet *set, const char *html);
 
 /* The scenes of scenes/templates/, embedded in the binary (src/CMakeLists.txt lists them, too). */
 
-#define TEMPLATES(TEMPLATE)                                                                                 \
-    TEMPLATE(wall)                                                                                          \
-    TEMPLATE(stack)                                                                                         \
-    TEMPLATE(pyramid) TEMPLATE(arch) TEMPLATE(dominoes) TEMPLATE(towers) TEMPLATE(gate) TEMPLATE(cardhouse) \
-        TEMPLATE(pile)
+#define TEMPLATES(TEMPLATE) \
+    TEMPLATE(wall)          \
+    TEMPLATE(stack)         \
+    TEMPLATE(pyramid)       \
+    TEMPLATE(arch) TEMPLATE(dominoes) TEMPLATE(towers) TEMPLATE(gate) TEMPLATE(cardhouse) TEMPLATE(pile)
 
 #define TEMPLATE_DECLARED(name) extern const char template_##name##_yaml[];
 TEMPLATES(TEMPLATE_DECLARED)

@@ -287,8 +287,7 @@ static void put_head(FILE *file, const Player *player) {
           file);
     html_put_script_hash(file, player_begin_sha256);
     html_put_script_hash(file, player_viewer_sha256);
-    fputs("\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
-          file);
+    fputs("\">\n<link rel=\"icon\" href=\"data:,\">\n<title>", file);
     html_put(file, title);
     for (int i = 0; i < player->picture.count; i++) {
         char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];

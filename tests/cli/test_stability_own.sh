@@ -57,6 +57,9 @@ equal "cores that are used" "$(awk '$1 ~ /^[0-9]+$/ { print $1, $2 }' out | xarg
 sed 's|^dt: .*|dt: 1/20|' "$ramp" >slide.yaml
 slide="slide.yaml --vary slope=0.4:0.6:0.2 --vary friction=0.05:0.15:0.1 -o slide"
 run 0 stability $slide --methods engine
+PATH= run 3 stability $slide --clip slide_slope_friction:engine:0.6,0.05 -v
+grep -q "ffmpeg: error: " err || fail "no message on a missing program: $(<err)"
+[ -e slide/clips ] && fail "work before the missing program was found"
 run 0 stability $slide --clip slide_slope_friction:engine:0.6,0.05
 says "slide_slope_friction:engine:0.6,0.05: falls at "
 says " -> slide/clips/slide_slope_friction-engine-0.6_0.05.mp4"
