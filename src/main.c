@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "cli/cli.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,20 +48,36 @@ static int refuse_command(const char *name) {
     return ERROR_INPUT;
 }
 
-/* OpenMP exits with status 1 when it gets no memory or no thread, which must not pass for "different". */
+/* OpenMP exits with status 1 when it gets no memory or no thread, which must not pass for "different". Help that cannot be
+   written is no success; argp exits after it. */
 static void check_exit(int status, void *command_ended) {
     if (status == 1 && !*(const bool *)command_ended) _exit(ERROR_SYSTEM);
+    if (status != 0 || (fflush(stdout) == 0 && !ferror(stdout))) return;
+    fputs("standard output: error: cannot write\n", stderr);
+    _exit(ERROR_SYSTEM);
 }
+
+/* The next file would get the number of a closed stream. Writing to /dev/full fails, as it would there. */
+static void replace_closed_streams(void) {
+    for (int stream = STDOUT_FILENO; stream <= STDERR_FILENO; stream++) {
+        if (fcntl(stream, F_GETFD) >= 0) continue;
+        const int full = open("/dev/full", O_WRONLY);
+        if (full < 0 || full == stream) continue;
+        dup2(full, stream);
+        close(full);
+    }
+}
+
+static bool ended; /* the command */
 
 /* The words begin with the one of the command. */
 static int run(const Command *command, int argc, char **argv) {
-    static bool ended;
     char name[64];
     Error error = {0};
     snprintf(name, sizeof name, "twinbox %s", command->name);
     argv[0] = name;
-    on_exit(check_exit, &ended);
     const bool same = command->run(argc, argv, &error);
+    results_end(!same || error.kind != ERROR_NONE);
     note_end();
     ended = true;
     /* Output that could not be written is a failure of the system, not success. */
@@ -76,6 +93,8 @@ static int run(const Command *command, int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
+    replace_closed_streams();
+    on_exit(check_exit, &ended);
     interrupt_handle();
     signal(SIGXFSZ, SIG_IGN); /* A file beyond the limit of sizes is an error of write(), with a message. */
     if (argc < 2) {

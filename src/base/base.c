@@ -164,7 +164,7 @@ size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines
 unsigned control_in_text(const char *text) {
     while (*text != '\0') {
         const uint32_t c = utf8_next(&text);
-        if (is_control(c)) return c;
+        if (is_obeyed(c)) return c;
     }
     return 0;
 }

@@ -175,18 +175,27 @@ static bool is_directory(const char *path) {
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
+const char *file_make_cause(const char *path, int cause) {
+    struct stat status;
+    char folder[PATH_MAX] = ".";
+    const size_t length = file_folder_length(path);
+    if (cause != ENOENT || length >= sizeof folder || lstat(path, &status) == 0) return strerror(cause);
+    if (length > 0) snprintf(folder, sizeof folder, "%.*s", (int)length, path);
+    return is_directory(folder) ? "nothing new can be made there" : "its folder does not exist";
+}
+
 bool file_make_directory(const char *path, Error *error) {
     char part[PATH_MAX];
     size_t length = strlen(path);
     if (length == 0 || length >= sizeof part)
-        return error_system(error, path, "cannot make the directory: %s",
-                            strerror(length == 0 ? ENOENT : ENAMETOOLONG));
+        return error_system(error, path, "cannot make this folder: %s", strerror(length == 0 ? ENOENT : ENAMETOOLONG));
     for (size_t end = 1; end <= length; end++) {
         if (path[end] != '/' && path[end] != '\0') continue;
         snprintf(part, sizeof part, "%.*s", (int)end, path);
         if (mkdir(part, 0777) == 0) continue;
         const int cause = errno;
-        if (!is_directory(part)) return error_system(error, part, "cannot make the directory: %s", strerror(cause));
+        if (!is_directory(part))
+            return error_system(error, part, "cannot make this folder: %s", file_make_cause(part, cause));
     }
     return true;
 }

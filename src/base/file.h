@@ -75,6 +75,9 @@ bool file_remove(const char *path, Error *error);
 /* Whether there is a file or folder of that name; false with error set if the system cannot tell. */
 bool file_find(const char *path, bool *there, Error *error);
 
+/* Why nothing can be made at the path, from errno: a missing folder, or one such as /proc, is told from the other. */
+const char *file_make_cause(const char *path, int cause);
+
 /* Creates the directory and its parents where missing. */
 bool file_make_directory(const char *path, Error *error);
 

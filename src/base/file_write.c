@@ -140,7 +140,7 @@ static bool put(const char *path, const Contents *contents, bool wait) {
 }
 
 static bool finish(bool written, const char *path, size_t size, Error *error) {
-    if (!written) return error_system(error, path, "cannot write: %s", strerror(errno));
+    if (!written) return error_system(error, path, "cannot write: %s", file_make_cause(path, errno));
     trace_line("wrote %s, %zu bytes", path, size);
     return true;
 }
@@ -198,7 +198,7 @@ int file_draft(const char *path, Error *error) {
     char place[PATH_MAX];
     errno = ENAMETOOLONG;
     const int draft = draft_place(path, place) ? temporary_nameless(place) : -1;
-    if (draft < 0) error_system(error, path, "cannot write: %s", strerror(errno));
+    if (draft < 0) error_system(error, path, "cannot write: %s", file_make_cause(path, errno));
     return draft;
 }
 

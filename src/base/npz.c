@@ -265,10 +265,9 @@ bool npz_read_text(NpzFile *file, const char *name, char *text, size_t size, Err
 
 bool npz_read_name(NpzFile *file, const char *name, char *text, size_t size, Error *error) {
     if (!npz_read_text(file, name, text, size, error)) return false;
-    for (const char *c = text; *c != '\0'; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            return error_input(error, file->path, "the name of the %s holds control characters", name);
-    return true;
+    const unsigned control = control_in_text(text);
+    return control == 0 ||
+           error_input(error, file->path, "the name of the %s has the control character U+%04X", name, control);
 }
 
 bool npz_read_scalar(NpzFile *file, const char *name, NpzType type, void *value, size_t size, Error *error) {

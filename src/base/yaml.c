@@ -402,6 +402,21 @@ bool yaml_error(const YamlTree *tree, int node, Error *error, const char *format
     return source_error(&tree->source, tree->nodes[node].place, error, "%s", what);
 }
 
+/* A scalar with escapes, or on several lines, is not in the file as its text is: then the place is its begin. */
+bool yaml_error_at(const YamlTree *tree, int node, size_t byte, Error *error, const char *format, ...) {
+    char what[512];
+    const char *text = yaml_text(tree, node);
+    Place place = tree->nodes[node].place;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    const size_t at = source_offset(&tree->source, place);
+    if (byte <= tree->source.size - at && memcmp(tree->source.text + at, text, byte) == 0)
+        for (size_t i = 0; i < byte; i += character_length(&tree->source, at + i)) place.column++;
+    return source_error(&tree->source, place, error, "%s", what);
+}
+
 /* Reads mappings by tables of keys, and values of types that need no other room. */
 
 /* The known key that is nearest to a mistyped one, or NULL. */

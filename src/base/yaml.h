@@ -71,8 +71,10 @@ typedef struct YamlShown {
 } YamlShown;
 YamlShown yaml_show(const YamlTree *tree, int node);
 
-/* Sets an input error at the place of a node. Returns false. */
+/* Sets an input error at the place of a node, or at a byte of its text. Returns false. */
 bool yaml_error(const YamlTree *tree, int node, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
+bool yaml_error_at(const YamlTree *tree, int node, size_t byte, Error *error, const char *format, ...)
+    PRINTF_LIKE(5, 6);
 
 /* Reads mappings of a YAML file by tables: each key with the parser of its value and the member that it fills. */
 

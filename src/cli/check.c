@@ -22,12 +22,14 @@ static const double way = 3;
 
 typedef struct Options {
     const char *scene, *output; /* output: NULL for NAME-first-frame.png */
+    bool json;
 } Options;
 
 static const Option option_table[] = {
     {"--output", 'o', "FILE.png",
      "Picture of the first frame (default: NAME-first-frame.png in the working folder); - writes it to standard output",
      OPTION_TEXT(Options, output)},
+    {OPTION_JSON(Options, json)},
     {0}};
 
 static const CommandSpec spec = {
@@ -116,23 +118,91 @@ static bool draw_first_frame(const Scene *scene, const char *path, Error *error)
     return ok;
 }
 
-static bool check(const char *path, const Scene *scene, const char *output, Error *error) {
-    const bool to_output = output != NULL && strcmp(output, "-") == 0;
-    FILE *out = to_output ? stderr : stdout;
-    char standard[SCENE_NAME_SIZE + 32];
-    snprintf(standard, sizeof standard, "%s-first-frame.png", scene->name);
-    file_name_clean(standard);
-    if (!scene_check_launches(scene, error) || !scene_check_networks(scene, error) ||
-        !scene_check_ends(path, scene, error))
-        return false;
+static void put_bomb(JsonWriter *json, const Scene *scene) {
+    const SceneBomb *bomb = &scene->bomb;
+    const BodyDef body = scene_bomb_body(scene);
+    const struct {
+        const char *name;
+        const SceneSpan *span;
+    } family[] = {{"x", &bomb->x}, {"rotation", &bomb->rotation}, {"spin", &bomb->spin}, {"mass", &bomb->mass}};
+    json_begin_object(json, "bomb", JSON_LINES);
+    json_put_int(json, "frame", bomb->frame);
+    json_put_number(json, "mass", (double)body.mass);
+    json_output_pair(json, "position", (double)body.position.x, (double)body.position.y);
+    json_output_pair(json, "velocity", (double)body.velocity.x, (double)body.velocity.y);
+    json_begin_object(json, "launches", JSON_ONE_LINE);
+    for (size_t i = 0; i < sizeof family / sizeof *family; i++)
+        if (scene_span_varies(family[i].span))
+            json_output_pair(json, family[i].name, (double)family[i].span->from, (double)family[i].span->to);
+    json_end(json);
+    json_end(json);
+}
+
+typedef struct Checked {
+    const Scene *scene;
+    const char *path, *picture;
+} Checked;
+
+static void write_result(JsonWriter *json, const void *context) {
+    const Checked *checked = context;
+    const Scene *scene = checked->scene;
+    int fixed = 0;
+    for (int i = 0; i < scene->body_count; i++) fixed += scene->bodies[i].fixed;
+    json_put_text(json, "scene", checked->path);
+    json_put_int(json, "bodies", scene->body_count - fixed);
+    json_put_int(json, "static", fixed);
+    json_put_int(json, "steps", scene->frames);
+    json_put_number(json, "dt", (double)scene->dt);
+    json_put_int(json, "iterations", scene->iterations);
+    json_put_bool(json, "overlaps_allowed", scene->overlaps_allowed);
+    if (scene->bomb.present)
+        put_bomb(json, scene);
+    else
+        json_put_text(json, "bomb", NULL);
+    json_begin_array(json, "parameters", JSON_LINES);
+    for (int i = 0; i < scene->parameter_count; i++) {
+        const SceneParameter *parameter = &scene->parameters[i];
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        json_put_text(json, "name", parameter->name);
+        json_put_number(json, "value", parameter->value);
+        json_put_number(json, "from", parameter->from);
+        json_put_number(json, "to", parameter->to);
+        json_put_text(json, "unit", parameter->unit);
+        json_end(json);
+    }
+    json_end(json);
+    json_begin_object(json, "networks", JSON_LINES);
+    for (int i = 0; i < scene->network_count; i++)
+        json_put_text(json, scene->networks[i].method, scene->networks[i].path);
+    json_end(json);
+    json_put_text(json, "picture", checked->picture);
+}
+
+static void print_summary(FILE *out, const char *path, const Scene *scene) {
     fprintf(out, "%s is valid\n", path);
     print_bodies(out, scene);
     print_bomb(out, scene);
     print_lists(out, scene);
     fflush(out);
-    const char *picture = to_output ? "/dev/stdout" : output != NULL ? output : standard;
+}
+
+static bool check(const Scene *scene, const Options *options, Error *error) {
+    const bool to_output = options->output != NULL && strcmp(options->output, "-") == 0;
+    FILE *out = to_output && note_level() > NOTES_QUIET ? stderr : stdout;
+    char standard[SCENE_NAME_SIZE + 32];
+    snprintf(standard, sizeof standard, "%s-first-frame.png", scene->name);
+    file_name_clean(standard);
+    if (!scene_check_launches(scene, error) || !scene_check_networks(scene, error) ||
+        !scene_check_ends(options->scene, scene, error))
+        return false;
+    if (!options->json) print_summary(out, options->scene, scene);
+    const char *picture = to_output ? "/dev/stdout" : options->output != NULL ? options->output : standard;
     if (!draw_first_frame(scene, picture, error)) return false;
-    if (!to_output) fprintf(out, "first frame -> %s\n", picture);
+    if (options->json)
+        return json_output("twinbox check 1", write_result, &(Checked){scene, options->scene, picture}, error);
+    if (to_output) return true;
+    fprintf(out, "first frame -> %s\n", picture);
+    next_film(options->scene);
     return true;
 }
 
@@ -146,8 +216,11 @@ bool command_check(int argc, char **argv, Error *error) {
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (options.output != NULL && !names_picture(options.output))
         return error_input(error, options.output, "the name of the picture must end in .png");
+    if (options.json && options.output != NULL && strcmp(options.output, "-") == 0)
+        return error_input(error, "--json", "cannot be combined with a picture on standard output");
+    if (note_level() == NOTES_QUIET && !options.json) results_keep();
     Scene *scene = scene_read(options.scene, error);
-    const bool ok = scene != NULL && check(options.scene, scene, options.output, error);
+    const bool ok = scene != NULL && check(scene, &options, error);
     scene_destroy(scene);
     return ok;
 }

@@ -60,7 +60,7 @@ COMMANDS(COMMAND_DECLARED)
 #undef COMMAND_DECLARED
 
 /* What a command prints on standard error beside its errors. The options -q and -v, which every command has, set the
-   level; results and errors do not depend on it. */
+   level; errors do not depend on it, nor do results that go to no file. */
 
 typedef enum NoteLevel { NOTES_QUIET, NOTES_NORMAL, NOTES_VERBOSE } NoteLevel;
 
@@ -73,6 +73,24 @@ void note_print(const char *format, ...) PRINTF_LIKE(1, 2);
 
 /* "twinbox: TEXT": how the result came about. Only with -v. */
 void note_verbose(const char *format, ...) PRINTF_LIKE(1, 2);
+
+/* "next: twinbox WORD...", which ends with NULL, on standard output: what to type next. Words are quoted for a shell. Not with
+   -q. */
+void next_print(const char *const words[]);
+
+/* "out/NAME" and the ending: for what the next command writes. */
+typedef struct NextPath {
+    char text[TRAJECTORY_NAME_SIZE + 32];
+} NextPath;
+NextPath next_path(const char *name, const char *ending);
+
+/* To render a scene or a run as a film: "next: twinbox render wall.yaml -o out/wall --video out/wall.mp4". */
+void next_film(const char *path);
+
+/* Keeps back what is printed on standard output from now on. With -q, of commands whose results are files; main() prints it if
+   the command does not succeed. */
+void results_keep(void);
+void results_end(bool print);
 
 /* With -v: version, threads and instruction set before the work; time and memory after it. */
 void note_begin(const char *command);
@@ -360,9 +378,13 @@ void page_set_link(char link[PAGE_LINK_SIZE], const PageFile *file, double time,
 /* "14 pages of 2.1 MB -> DIR/pages" and what was left out. */
 void page_set_print(const PageSet *set, const char *html);
 
-/* The scenes of scenes/templates/, embedded in the binary (sources.cmake lists them, too). */
+/* The scenes of scenes/templates/, embedded in the binary (src/CMakeLists.txt lists them, too). */
 
-#define TEMPLATES(TEMPLATE) TEMPLATE(wall) TEMPLATE(stack) TEMPLATE(pyramid) TEMPLATE(arch) TEMPLATE(dominoes)
+#define TEMPLATES(TEMPLATE) \
+    TEMPLATE(wall)          \
+    TEMPLATE(stack)         \
+    TEMPLATE(pyramid)       \
+    TEMPLATE(arch) TEMPLATE(dominoes) TEMPLATE(towers) TEMPLATE(gate) TEMPLATE(cardhouse) TEMPLATE(pile)
 
 #define TEMPLATE_DECLARED(name) extern const char template_##name##_yaml[];
 TEMPLATES(TEMPLATE_DECLARED)

@@ -137,9 +137,7 @@ static bool try_folder(const char *folder, const char *path, Error *error) {
     char inside[PATH_MAX];
     if (!file_path(inside, sizeof inside, error, "%sfile", folder)) return false;
     const int file = temporary_nameless(inside);
-    if (file < 0 && (errno == ENOENT || errno == ENOTDIR))
-        return error_system(error, path, "cannot write: '%s' is not a folder that takes files", folder);
-    if (file < 0) return error_system(error, path, "cannot write: %s", strerror(errno));
+    if (file < 0) return error_system(error, path, "cannot write: %s", file_make_cause(inside, errno));
     close(file);
     return true;
 }

@@ -144,9 +144,11 @@ static void offer_alternatives(const CompletionValue *value, const char *text) {
 static void offer_parameters(const CompletionValue *value) {
     if (value->scene == NULL || strchr(value->typed, '=') != NULL) return;
     Scene *scene = scene_read(installed_path(value->scene), &(Error){0});
-    for (int i = 0; scene != NULL && i < scene->parameter_count; i++) {
-        const SceneParameter *parameter = &scene->parameters[i];
+    for (int i = 0; scene != NULL && i < scene->parameter_count + scene->common_count; i++) {
+        const int k = i - scene->parameter_count;
+        const SceneParameter *parameter = k < 0 ? &scene->parameters[i] : &scene->common[k];
         char range[128];
+        if (scene_parameter(scene, parameter->name) != parameter) continue;
         snprintf(range, sizeof range, "%g to %g%s%s (the scene's: %g)", parameter->from, parameter->to,
                  parameter->unit[0] != '\0' ? " " : "", parameter->unit, parameter->value);
         offer(value->begin, value->typed, parameter->name, value->option->read == option_set ? "=" : "", range);

@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct Options {
     const char *kind, *inputs[FIGURE_RUNS_MAX], *output;
@@ -24,8 +25,7 @@ typedef struct Options {
 static OptionRead read_input, read_times, read_bodies, read_width;
 
 static const Option option_table[] = {
-    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_OUTPUT(Options, output),
-     .needed = "-o FILE is needed"},
+    {"--output", 'o', "FILE", "Figure to write: .png, .svg or .pdf", OPTION_OUTPUT(Options, output)},
     {"--at", 0, "T,T,...", "Moments to show, seconds from the start of the run, rising",
      OPTION_READ(read_times, Options, figure)},
     {"--moments", 0, "N", "Number of moments instead, evenly spaced from the first to the last",
@@ -197,6 +197,15 @@ static bool draw(const FigureKind *kind, const Options *options, Error *error) {
     return ok;
 }
 
+/* A chart of the scene of a run, if its file is found by its name. */
+static void next_chart(const char *scene) {
+    char path[TRAJECTORY_NAME_SIZE + 8];
+    snprintf(path, sizeof path, "%s.yaml", scene);
+    const char *found = access(path, R_OK) == 0 ? path : scene;
+    if (access(installed_path(found), R_OK) == 0)
+        next_print((const char *const[]){"chart", found, "--quick", "-o", next_path(scene, "-chart").text, NULL});
+}
+
 static bool read_and_draw(const FigureKind *kind, Options *options, Error *error) {
     Trajectory *runs[FIGURE_RUNS_MAX] = {NULL};
     FigureSpec *figure = &options->figure;
@@ -215,6 +224,7 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
     figure->progress = progress_bar_begin(kind->name);
     ok = ok && draw(kind, options, error);
     progress_bar_end();
+    if (ok && figure->run_count > 0 && !path_is_standard(options->output)) next_chart(runs[0]->scene);
     for (int i = 0; i < FIGURE_RUNS_MAX; i++) trajectory_destroy(runs[i]);
     trajectory_destroy(view_from);
     return ok;
@@ -235,5 +245,6 @@ bool command_figure(int argc, char **argv, Error *error) {
         .help = help};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const FigureKind *kind = figure_kind(options.kind, error);
-    return kind != NULL && check_options(kind, &options, error) && read_and_draw(kind, &options, error);
+    if (kind != NULL && options.output == NULL) error_input(error, "figure", "-o FILE is needed");
+    return error->kind == ERROR_NONE && check_options(kind, &options, error) && read_and_draw(kind, &options, error);
 }

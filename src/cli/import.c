@@ -54,6 +54,7 @@ static bool import_run(const Options *options, Error *error) {
         printf("%s by %s: %d frames of %d bodies, dt %g s -> %s\n", run->scene, run->method, run->frames, run->bodies,
                (double)run->dt, options->output);
         for (int i = 0; i < notes.count; i++) note_print("assumed: %s", notes.lines[i]);
+        if (!path_is_standard(options->output)) next_film(options->output);
     }
     trajectory_destroy(run);
     return ok;

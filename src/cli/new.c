@@ -17,7 +17,8 @@ typedef struct Options {
     unsigned like; /* index of names */
 } Options;
 
-static const Option option_table[] = {{"--like", 0, "KIND", "wall, stack, pyramid, arch or dominoes",
+static const Option option_table[] = {{"--like", 0, "KIND",
+                                       "wall, stack, pyramid, arch, dominoes, towers, gate, cardhouse or pile",
                                        OPTION_ENUM(Options, like, names), .needed = "--like KIND is needed"},
                                       {0}};
 
@@ -38,6 +39,7 @@ bool command_new(int argc, char **argv, Error *error) {
     if (!file_name_ends_with(options.path, ".yaml"))
         return error_input(error, options.path, "the name of a scene must end in .yaml");
     if (!file_create(options.path, text, strlen(text), error)) return false;
-    printf("%s -> %s\nnext: twinbox check %s\n", names[options.like], options.path, options.path);
+    if (note_level() > NOTES_QUIET) printf("%s -> %s\n", names[options.like], options.path);
+    next_print((const char *const[]){"check", options.path, NULL});
     return true;
 }

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Standard error and signals: notes, interrupts, the time that is left, the progress bar. */
 #include "base/base.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/machine.h"
 #include "cli/cli.h"
 #include "nets/kernels.h"
+#include "runs/trajectory.h"
 
 #include <omp.h>
 #include <signal.h>
@@ -13,6 +15,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -74,6 +77,64 @@ void note_verbose(const char *format, ...) {
     va_start(arguments, format);
     print("", format, arguments);
     va_end(arguments);
+}
+
+static void print_word(const char *word) {
+    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:=,+-@%";
+    putchar(' ');
+    if (word[strspn(word, plain)] == '\0') {
+        fputs(word, stdout);
+        return;
+    }
+    putchar('\'');
+    for (; *word != '\0'; word++) fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, stdout);
+    putchar('\'');
+}
+
+void next_print(const char *const words[]) {
+    if (chosen == NOTES_QUIET) return;
+    fputs("next: twinbox", stdout);
+    for (; *words != NULL; words++) print_word(*words);
+    putchar('\n');
+}
+
+NextPath next_path(const char *name, const char *ending) {
+    NextPath path = {"out/"};
+    char *begin = path.text + strlen(path.text);
+    snprintf(begin, TRAJECTORY_NAME_SIZE, "%s", name);
+    file_name_clean(begin);
+    text_add(path.text, sizeof path.text, "%s", ending);
+    return path;
+}
+
+void next_film(const char *path) {
+    char name[TRAJECTORY_NAME_SIZE];
+    trajectory_name_from_path(path, name);
+    next_print((const char *const[]){"render", path, "-o", next_path(name, "").text, "--video",
+                                     next_path(name, ".mp4").text, NULL});
+}
+
+/* Standard output, while results are kept back. */
+static struct {
+    FILE *output;
+    char *text;
+    size_t size;
+} kept;
+
+void results_keep(void) {
+    FILE *stream = kept.output == NULL ? memory_stream(&kept.text, &kept.size) : NULL;
+    if (stream == NULL) return;
+    kept.output = stdout;
+    stdout = stream; /* the GNU C library lets a program change it */
+}
+
+void results_end(bool print) {
+    if (kept.output == NULL) return;
+    fclose(stdout);
+    stdout = kept.output;
+    if (print) fwrite(kept.text, 1, kept.size, stdout);
+    free(kept.text);
+    kept.output = NULL;
 }
 
 void note_begin(const char *command) {
@@ -190,6 +251,7 @@ void time_left_text(double seconds, char text[TIME_LEFT_TEXT_SIZE]) {
 static struct {
     char what[192];
     double begun, shown;          /* s */
+    double last;                  /* part that was shown last */
     bool held, visible, terminal; /* held: signals wait for the work */
     TimeLeft left;
 } bar;
@@ -198,7 +260,7 @@ static void show(double part, double elapsed) {
     enum { WIDTH = 30 };
     char left[TIME_LEFT_TEXT_SIZE] = "";
     double seconds = 0;
-    const bool known = time_left_estimate(&bar.left, elapsed, part, &seconds);
+    const bool known = part < 1 && time_left_estimate(&bar.left, elapsed, part, &seconds);
     if (known) time_left_text(seconds, left);
     const char *comma = known ? ", " : "", *behind = known ? " left" : "";
     if (!bar.terminal) {
@@ -221,8 +283,11 @@ static bool report(void *context, double done, double total) {
     const double time = clock_seconds(), elapsed = time - bar.begun, pause = bar.terminal ? 0.1 : 5.0;
     const double part = done < total ? done / total : 1.0;
     time_left_add(&bar.left, elapsed, part);
-    if (note_level() > NOTES_QUIET && elapsed >= 1.0 && time - bar.shown >= pause && done > 0) {
+    /* The last line in a file is the end, however soon it comes after the one before. */
+    const bool ends = part == 1 && bar.visible && bar.last < 1 && !bar.terminal;
+    if (note_level() > NOTES_QUIET && elapsed >= 1.0 && (time - bar.shown >= pause || ends) && done > 0) {
         bar.shown = time;
+        bar.last = part;
         bar.visible = true;
         show(part, elapsed);
     }

@@ -149,7 +149,7 @@ bool option_set(const Option *option, const char *text, void *value, Error *erro
 enum { FIRST_KEY = 256, SHOWN_SIZE = 72 };
 
 const Option options_of_all[] = {
-    {.name = "--quiet", .letter = 'q', .help = "Print errors and results only: no progress, no notes"},
+    {.name = "--quiet", .letter = 'q', .help = "Print errors, and results that go to no file: no progress, no notes"},
     {.name = "--verbose",
      .letter = 'v',
      .help = "Print what is done to get the result: files, settings, programs, threads, time, memory"},
@@ -293,6 +293,21 @@ static const struct argp_option *find_option(const struct argp_option *rows, con
     return row;
 }
 
+/* False with error set if a long option that argp does not know is near one that there is. */
+static bool suggest(const struct argp_option *rows, const char *word, const char *command, Error *error) {
+    const char *names[2 + OPTIONS_MAX + OPTIONS_OF_ALL] = {"help", "usage"}; /* argp's own */
+    char name[SHOWN_SIZE];
+    int count = 2;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    for (; rows->name != NULL || rows->doc != NULL; rows++)
+        if (rows->name != NULL) names[count++] = rows->name;
+    for (int i = 0; i < count; i++)
+        if (strncmp(names[i], name, strlen(name)) == 0) return true; /* an ambiguous one, of which argp lists all */
+    const char *nearest = nearest_word(name, names, count);
+    return nearest == NULL ||
+           error_input(error, command, "unrecognized option '--%s'; did you mean '--%s'?", name, nearest);
+}
+
 /* argp prints an option that it does not know as it is. It may do so with a short one of visible characters. */
 static bool check_words(const struct argp_option *rows, char **argv, Error *error) {
     for (int i = 1; argv[i] != NULL; i++) {
@@ -304,9 +319,21 @@ static bool check_words(const struct argp_option *rows, char **argv, Error *erro
         visible_text(shown, sizeof shown, word, VISIBLE_ONE_LINE);
         if (row == NULL && strcmp(shown, word) != 0)
             return error_input(error, argv[0], "unrecognized option '%s'", shown);
+        if (row == NULL && word[1] == '-' && !suggest(rows, word, argv[0], error)) return false;
         if (row != NULL && row->arg != NULL && value == NULL && argv[i + 1] != NULL) i++;
     }
     return true;
+}
+
+/* Whether the results are files that the command line names: then -q prints nothing beside them, unless it is asked to. */
+static bool writes_files(const Parsing *parsing) {
+    const Option *rows = parsing->spec->options;
+    bool writes = false;
+    for (int i = 0; rows[i].help != NULL; i++) {
+        if (parsing->given[i] && rows[i].name != NULL && strcmp(rows[i].name, "--json") == 0) return false;
+        writes = writes || (parsing->given[i] && rows[i].letter == 'o');
+    }
+    return writes;
 }
 
 void options_visit_next(OptionsVisit *visit, void *context) {
@@ -335,6 +362,7 @@ bool options_parse(const CommandSpec *spec, int argc, char **argv, void *options
     if (status != 0 && error->kind == ERROR_NONE) error_memory(error, argv[0]);
     if (parsing.level != NOTES_NORMAL)
         note_set_level(parsing.level); /* that of a merge stays in the command that it runs */
+    if (note_level() == NOTES_QUIET && writes_files(&parsing)) results_keep();
     note_begin(argv[0]);
     return error->kind == ERROR_NONE;
 }

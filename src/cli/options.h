@@ -71,8 +71,10 @@ typedef struct SceneSettings {
     SceneSetting items[SCENE_MAX_PARAMETERS + 1];
 } SceneSettings;
 
-#define OPTION_SET(T, member)                                                             \
-    "--set", 0, "NAME=VALUE", "Value of one of the scene's parameters (may be repeated)", \
+#define OPTION_SET(T, member)                                                                                          \
+    "--set", 0, "NAME=VALUE",                                                                                          \
+        "Value of a parameter of the scene, or of what every scene has: iterations, dt, friction, bomb_x, bomb_mass, " \
+        "bomb_speed (may be repeated)",                                                                                \
         OPTION_READ(option_set, T, member)
 
 OptionRead option_text, option_path, option_flag, option_seed, option_range, option_int, option_float, option_double,

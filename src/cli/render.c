@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "base/base.h"
+#include "base/file.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "pictures/picture.h"
@@ -8,6 +9,7 @@
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -148,6 +150,23 @@ static bool check_moments(const RenderOptions *render, const Panels *panels, Err
     return true;
 }
 
+/* A figure of the runs that the folder has. */
+static void next_figure(const char *directory, const Panels *panels) {
+    char paths[RENDER_PANELS_MAX][PATH_MAX], figure[PATH_MAX];
+    const char *words[RENDER_PANELS_MAX + 5] = {"figure", "strip"};
+    const int length = (int)strlen(directory) - file_name_ends_with(directory, "/");
+    for (int i = 0; i < panels->count; i++) {
+        char name[TRAJECTORY_FILE_NAME_SIZE];
+        trajectory_file_name((const Trajectory *const *)panels->runs, i, name);
+        snprintf(paths[i], sizeof paths[i], "%.*s/%s", length, directory, name);
+        words[2 + i] = paths[i];
+    }
+    snprintf(figure, sizeof figure, "%.*s-strip.pdf", length, directory);
+    words[2 + panels->count] = "-o";
+    words[3 + panels->count] = figure;
+    next_print(words);
+}
+
 static bool draw_study(Options *options, const Panels *panels, RenderStudy *study, Error *error) {
     RenderOptions *render = &options->render;
     RenderResult result;
@@ -159,7 +178,9 @@ static bool draw_study(Options *options, const Panels *panels, RenderStudy *stud
         return true;
     }
     print_result(options, &result);
-    return note_foreign_files(render->directory, &result, panels, error);
+    if (!note_foreign_files(render->directory, &result, panels, error)) return false;
+    if (!draw_videos_use_output(&options->videos)) next_figure(render->directory, panels);
+    return true;
 }
 
 static bool render_panels(Options *options, const Panels *panels, Error *error) {

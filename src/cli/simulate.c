@@ -107,8 +107,10 @@ static void simulate_verdict_words(const SimulateVerdict *verdict, char words[TR
     int fallen;
     const int count = count_bodies(verdict, &fallen);
     write_figure(verdict, figure);
-    const char *when = reading->verdict != VERDICT_SWAYS ? "at" : runs_to_the_end(verdict) ? "to the end," : "until";
-    snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s %s %.3g s (%s)", verdict_name(reading->verdict), when, time, figure);
+    const char *when = reading->verdict != VERDICT_SWAYS ? " at"
+                       : runs_to_the_end(verdict)        ? ": still moves at the end,"
+                                                         : ": moves until";
+    snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s%s %.3g s (%s)", verdict_name(reading->verdict), when, time, figure);
     if (!verdict->watch.run.stands && fallen > 0)
         text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d of %d bodies have fallen", fallen, count);
 }
@@ -384,6 +386,8 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
     if (ok && !options->json) simulate_result_print(&result);
     ok = judge(&result, options, error) && ok;
     ok = ok && (!options->json || simulate_result_json(&result, error));
+    if (ok && !options->json && options->output != NULL && file_name_ends_with(options->output, ".npz"))
+        next_film(options->output);
     simulate_verdict_free(&result.verdict);
     return ok;
 }

@@ -252,7 +252,8 @@ bool stability_clip(const ClipOptions *options, Error *error) {
     CellRuns runs = {.count = 0};
     const MapCell *row = find_cell(options, &table, error);
     const ClipMap *map = row != NULL ? find_map(options, row, error) : NULL;
-    bool ok = map != NULL && cell_runs_make(&runs, map, &table, row, options->cell, NULL, error) &&
+    bool ok = map != NULL && video_check_programs(error) &&
+              cell_runs_make(&runs, map, &table, row, options->cell, NULL, error) &&
               stability_clip_draw(options, &runs, error);
     cell_runs_free(&runs);
     csv_table_free(&table);
@@ -291,8 +292,9 @@ static const Option option_table[] = {
      "does not report as left out)",
      OPTION_TEXT(Options, study.methods)},
     {"--vary", 0, "NAME[=FROM:TO[:STEP]]",
-     "Parameter of SCENE to vary, by default between its bounds; with STEP at every such value, up to 128; two "
-     "parameters give their map, too",
+     "Vary a parameter of SCENE, by default between its bounds, or what every scene has: iterations, dt, friction, "
+     "bomb_x, "
+     "bomb_mass, bomb_speed; with STEP at every such value, up to 128; two of them give their map, too",
      OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
      OPTION_TEXTS(Options, study.names, study.name_count), .names = study_names},
@@ -321,12 +323,14 @@ static const CommandSpec spec = {
         "every border between holding and failing, and how it fails there. Over two parameters: maps. A run holds if "
         "it settles, sways or creeps. Takes up to twenty minutes on two cores. An interrupted run continues where it "
         "stopped.\n"
-        "With SCENE: the same along one or two of the parameters of that scene. A parameter takes 13 runs of every "
+        "With SCENE: the same along one or two parameters, of that scene or of every scene. A parameter takes 13 runs "
+        "of every "
         "method and about ten more for each border, a map 100, each as long as the scene's frames.\n"
         "With --pages, up to 8 failing cells of each method in each map get a page, which shows at most nine seconds "
         "of the run beside the first method that holds there; all pages together take at most 256 MB.\v"
         "Example: twinbox stability -o out/stability\n"
         "         twinbox stability wall.yaml --vary rows --vary mass=1:100 -o out/wall\n"
+        "         twinbox stability scenes/stack.yaml --vary iterations --quick -o out/stack-borders\n"
         "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height\n"
         "         twinbox stability -o out/stability --clip height_iterations:engine:15,5"};
 
@@ -416,7 +420,10 @@ static bool check_options(const Options *options, Error *error) {
     if (options->scene == NULL)
         return options->vary_count == 0 || error_input(error, "--vary", "a scene is needed: its parameters are varied");
     if (options->vary_count == 0)
-        return error_input(error, options->scene, "--vary NAME is needed: the parameter of the scene to vary");
+        return error_input(
+            error, options->scene,
+            "--vary NAME is needed: a parameter of the scene, or iterations, dt, friction, bomb_x, bomb_mass or "
+            "bomb_speed");
     return options->study.name_count == 0 ||
            error_input(error, "--study", "is for the studies without SCENE; '%s' is given", options->scene);
 }

@@ -48,7 +48,10 @@ const FigureKind *figure_kind(const char *name, Error *error) {
         if (strcmp(kinds[i]->name, name) == 0) return kinds[i];
         name_list_add(&known, kinds[i]->name);
     }
-    error_unknown(error, "figure", name, "a kind of figure", &known);
+    if (file_name_ends_with(name, ".npz"))
+        error_input(error, "figure", "the kind is missing before '%s'; known: %s", name, known.text);
+    else
+        error_unknown(error, "figure", name, "a kind of figure", &known);
     return NULL;
 }
 

@@ -74,6 +74,7 @@ bool method_parse(Method *method, const char *text, Error *error) {
     name[length] = '\0';
     method->kind = find(text);
     if (method->kind == NULL) return unknown_method(name, error);
+    if (strcmp(text + length, ":") == 0) return error_input(error, "method", "'%s' has no setting behind ':'", text);
     return settings_parse(&method->settings, text[length] == ':' ? text + length + 1 : "",
                           method->kind->description->settings, name, error);
 }

@@ -83,6 +83,24 @@ static void destroy(void *state) {
     free(method);
 }
 
+/* The first pose before the bomb is one step after the scene's start. Bodies that overlap may be pushed farther. */
+static bool check_before(const SubspaceNet *net, const Scene *scene, const char *path, Error *error) {
+    const double slack = 0.1, dt = (double)scene->dt; /* m, s */
+    const float *pose = net->before;
+    double speed = dt * vec2_distance(scene->gravity, vec2(0, 0));
+    for (int i = 0; i < scene->body_count; i++)
+        speed = fmax(speed, vec2_distance(scene->bodies[i].velocity, vec2(0, 0)));
+    for (int i = 0; i < scene->body_count && net->shape.frames_before > 0 && !scene->overlaps_allowed; i++) {
+        const BodyDef *body = &scene->bodies[i];
+        if (body->fixed) continue;
+        if (vec2_distance(body->position, vec2(pose[0], pose[1])) > slack + 2 * speed * dt)
+            return error_input(error, path, "before: body %d is at (%g, %g) m after a step, but starts at (%g, %g) m",
+                               i, (double)pose[0], (double)pose[1], (double)body->position.x, (double)body->position.y);
+        pose += 3;
+    }
+    return true;
+}
+
 static bool check_scene(const SubspaceNet *net, const Scene *scene, const char *path, Error *error) {
     int moving = 1;
     for (int i = 0; i < scene->body_count; i++) moving += !scene->bodies[i].fixed;
@@ -100,7 +118,9 @@ static bool prepare(SubspaceStepper *method, const char *path, const Scene *scen
     if (components != 8 && components != 32 && components != 128)
         return error_input(error, "subspace", "components must be 8, 32 or 128 (got %d)", components);
     method->net = subspace_net_read(path, error);
-    if (method->net == NULL || !check_scene(method->net, scene, path, error)) return false;
+    if (method->net == NULL || !check_scene(method->net, scene, path, error) ||
+        !check_before(method->net, scene, path, error))
+        return false;
     method->start = calloc(2 * SUBSPACE_POSE * (size_t)method->net->shape.bodies, sizeof *method->start);
     if (method->start == NULL) return error_memory(error, "subspace");
     return subspace_make(&method->subspace, method->net, subspace_net_choose(method->net, components), method->corrects,

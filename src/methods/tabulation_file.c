@@ -150,6 +150,8 @@ static bool add_entries(const Contents *contents, Error *error) {
 }
 
 static bool fill_memory(void *of, const char *path, Error *error) {
+    const int launches = ((Contents *)of)->memory->launches;
+    if (launches < 0) return error_input(error, path, "launches is %d; expected at least 0", launches);
     return add_sets(of, path, error) && check_entries(of, path, error) && add_entries(of, error);
 }
 

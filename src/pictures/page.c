@@ -77,3 +77,9 @@ void base64_put(FILE *file, const void *data, size_t size) {
     }
     fwrite(text, 1, used, file);
 }
+
+void html_put_script_hash(FILE *file, const unsigned char sha256[32]) {
+    fputs(" 'sha256-", file);
+    base64_put(file, sha256, 32);
+    fputs("'", file);
+}

@@ -11,6 +11,9 @@ void base64_put(FILE *file, const void *data, size_t size);
    UTF-8 and characters that XML does not allow become U+FFFD: a parser would refuse the whole file. */
 void html_put(FILE *file, const char *text);
 
+/* Writes " 'sha256-...'": what the policy of a page needs to run an embedded script (base/tools/embed.cmake), and no other. */
+void html_put_script_hash(FILE *file, const unsigned char sha256[32]);
+
 /* Writes a file name for use in an address: percent-encoded but for letters, digits and -._~. */
 void html_put_address(FILE *file, const char *name);
 

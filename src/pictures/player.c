@@ -283,8 +283,11 @@ static void put_head(FILE *file, const Player *player) {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-          "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
+          "style-src 'unsafe-inline'; script-src",
           file);
+    html_put_script_hash(file, player_begin_sha256);
+    html_put_script_hash(file, player_viewer_sha256);
+    fputs("\">\n<link rel=\"icon\" href=\"data:,\">\n<title>", file);
     html_put(file, title);
     for (int i = 0; i < player->picture.count; i++) {
         char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
@@ -336,29 +339,7 @@ static void put_page(FILE *file, const void *context) {
     put_data(file, player);
     fputs("</script>\n", file);
     put_packed(file, "viewer", player->viewer.data, player->viewer.size);
-    fprintf(file, "<script>\n%s</script>\n</body>\n</html>\n", player_begin_js);
-}
-
-/* The script that plays the runs, with its comments, in one scope, in the order of use. It is deflated, or it would take more
-   room than some runs. */
-static void put_scripts(FILE *file, const void *context) {
-    const char *const scripts[] = {player_codec_js,  player_world_js,   player_layout_js,  player_camera_js,
-                                   player_grid_js,   player_boxes_js,   player_marks_js,   player_captions_js,
-                                   player_legend_js, player_picture_js, player_state_js,   player_plot_js,
-                                   player_time_js,   player_pointer_js, player_measure_js, player_keys_js,
-                                   player_link_js,   player_actions_js, player_summary_js, player_main_js};
-    (void)context;
-    fputs("\"use strict\";\n{\n", file);
-    for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; i++) fprintf(file, "%s\n", scripts[i]);
-    fputs("}\n", file);
-}
-
-static bool pack_viewer(Player *player, Error *error) {
-    size_t size;
-    char *text = file_print(put_scripts, NULL, &size);
-    const bool ok = text != NULL ? bytes_deflate(&player->viewer, text, size, error) : error_memory(error, "page");
-    free(text);
-    return ok;
+    fprintf(file, "<script>%s</script>\n</body>\n</html>\n", player_begin);
 }
 
 /* Of any size: only names, colours and distances count. */
@@ -404,7 +385,8 @@ bool player_write(const Trajectory *const *runs, int count, const PlayerOptions 
     Player player = {.options = options,
                      .most_bytes = options->most_bytes > 0 ? (double)options->most_bytes : PLAYER_MAX_BYTES};
     const bool ok = plan(&player, runs, count, error) && find_all_marks(&player, error) &&
-                    player_pack(&player, error) && pack_viewer(&player, error) &&
+                    player_pack(&player, error) &&
+                    bytes_deflate(&player.viewer, player_viewer, strlen(player_viewer), error) &&
                     write_page(&player, path, result, error);
     player_free(&player);
     return ok;

@@ -75,12 +75,8 @@ typedef struct ContactUnits {
 /* The fixed parts of the page (src/pictures/player), embedded in the binary by base/tools/embed.cmake. */
 
 extern const char player_page_css[], player_body_html[], player_help_html[];
-extern const char player_begin_js[];
-extern const char player_codec_js[], player_world_js[];
-extern const char player_layout_js[], player_camera_js[], player_grid_js[], player_boxes_js[], player_marks_js[],
-    player_captions_js[], player_legend_js[], player_picture_js[];
-extern const char player_state_js[], player_plot_js[], player_time_js[], player_pointer_js[], player_measure_js[],
-    player_keys_js[], player_link_js[], player_actions_js[], player_summary_js[], player_main_js[];
+extern const char player_begin[], player_viewer[]; /* scripts; the first unpacks and runs the second */
+extern const unsigned char player_begin_sha256[], player_viewer_sha256[];
 
 typedef struct PlayerRun {
     int frames, chunks;              /* stored */
@@ -103,7 +99,7 @@ typedef struct Player {
     ContactUnits units;
     PlayerRun runs[RENDER_PANELS_MAX];
     bool left_contacts;
-    Bytes viewer; /* its script */
+    Bytes viewer; /* player_viewer, deflated: it would take more room than some runs */
 } Player;
 
 /* Packs all states, then all contacts, or leaves these out if the page would be too large. ERROR_INPUT if it is even so. */

@@ -168,8 +168,7 @@ static void draw_events(const Picture *picture, Drawing *drawing) {
     int x_impact = impact < 0 ? end : (int)x_at(picture, impact),
         x_divergence = divergence < 0 ? end : (int)x_at(picture, divergence);
     if (impact >= 0) draw_event(picture, impact, "impact", impact < divergence ? x_divergence : end, drawing);
-    if (divergence >= 0)
-        draw_event(picture, divergence, "distance > 1 mm", divergence <= impact ? x_impact : end, drawing);
+    if (divergence >= 0) draw_event(picture, divergence, "1 mm apart", divergence <= impact ? x_impact : end, drawing);
 }
 
 /* Lengths in the key of a sample line and of the spaces after it and after its name. */

@@ -441,6 +441,8 @@ static bool approve_list(const ApprovalList *list, const Folders *folders, const
         selected[i] = is_selected(&list->items[i], only, approval);
         ok = !selected[i] || decide(folders, &list->items[i], &actions[i], error);
     }
+    if (ok && only != NULL && list->count > 0 && approval->not_selected == (int)list->count)
+        ok = error_input(error, "--only", "'%s' matches none of the %zu files that failed", only, list->count);
     for (size_t i = 0; ok && i < list->count; i++)
         if (selected[i]) ok = apply(folders, &list->items[i], actions[i], on_change, approval, error);
     free(selected);

@@ -229,7 +229,8 @@ BodyFit panel_fit(Panel *panel, int body, ViewRect changed);
 /* The fixed parts of report.html (src/regression/page), embedded in the binary by base/tools/embed.cmake. */
 
 extern const char report_page_css[], report_page_html[], report_help_html[];
-extern const char report_stage_js[], report_list_js[], report_page_js[]; /* one scope, in this order */
+extern const char report_script[];
+extern const unsigned char report_script_sha256[];
 
 /* The parts of a comparison's report. */
 

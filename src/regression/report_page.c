@@ -127,8 +127,10 @@ static void write_head(FILE *file, const Regression *regression) {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-          "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n<title>twinbox compare: ",
+          "style-src 'unsafe-inline'; script-src",
           file);
+    html_put_script_hash(file, report_script_sha256);
+    fputs("\">\n<title>twinbox compare: ", file);
     html_put(file, regression_verdict(regression).text);
     fprintf(file, "</title>\n<style>\n%s%s</style>\n</head>\n<body>\n", house_css, report_page_css);
     fputs("<a class=\"skip\" id=\"skip\" href=\"#stage\">Skip to the pictures</a>\n<main>\n", file);
@@ -252,6 +254,5 @@ void report_write_page(FILE *file, const void *context) {
     write_pictures(file, report->pictures);
     fputs("<script type=\"application/json\" id=\"data\">", file);
     report_write_json(file, report);
-    fprintf(file, "</script>\n<script>\n\"use strict\";\n{\n%s\n%s\n%s}\n</script>\n</main>\n</body>\n</html>\n",
-            report_stage_js, report_list_js, report_page_js);
+    fprintf(file, "</script>\n<script>%s</script>\n</main>\n</body>\n</html>\n", report_script);
 }

@@ -235,6 +235,7 @@ typedef struct StudyRecord {
     int shards;
     JobArray array; /* of the first start; step 0: it was no job array */
     StudyCommand command;
+    uint64_t hash; /* of all of these, as the file states it */
 } StudyRecord;
 
 /* ERROR_INPUT with path:line:column if the file is missing, damaged, or no record. */
@@ -253,8 +254,8 @@ typedef struct StudyStart {
 /* Makes the file unless it is there. True with *record read in either case; the first writer wins. */
 bool study_record_meet(StudyRecord *record, const char *path, const StudyStart *start, Error *error);
 
-/* ERROR_INPUT unless this program, with this key and these arguments (argv NULL: not compared), does the recorded study:
-   says what differs. */
+/* ERROR_INPUT unless this program, with this key and these arguments (argv NULL: not compared), does the recorded study, and
+   the record is as it was written: says what differs. */
 bool study_record_check(const StudyRecord *record, const char *path, const StudyKey *key, int argc, char **argv,
                         Error *error);
 

@@ -192,6 +192,10 @@ static bool sort_bodies(CsvHead *head, const char *path, Error *error) {
 bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line, const char *sizes, Error *error) {
     *head = (CsvHead){.bomb = -1};
     if (strncmp(*text, "\xef\xbb\xbf", 3) == 0) *text += 3;
+    const char first = (*text)[strspn(*text, " \t\r\n")];
+    if (first == '{' || first == '[')
+        return error_input(error, path,
+                           "is JSON, and only CSV can be imported; 'twinbox export RUN.npz -o RUN.csv' writes it");
     for (*line = 1; **text == '#'; ++*line) {
         char comment[CSV_HEAD_LINE_SIZE];
         const char *begin = *text + 1 + strspn(*text + 1, " \t");

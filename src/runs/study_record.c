@@ -131,7 +131,8 @@ static bool take_record(const JsonReader *json, const json_t *object, StudyRecor
            take_number(json, object, "array_step", 0, INT32_MAX, &record->array.step, error) &&
            take_text(json, object, "folder", &record->command.folder, error) &&
            take_text(json, object, "output", &record->command.output, error) &&
-           take_arguments(json, object, &record->command, error) && take_inputs(json, object, &record->key, error);
+           take_arguments(json, object, &record->command, error) && take_inputs(json, object, &record->key, error) &&
+           take_hash(json, object, "hash", &record->hash, error);
 }
 
 bool study_record_read(StudyRecord *record, const char *path, Error *error) {
@@ -288,38 +289,48 @@ int piece_ranges_find(const PieceRanges *ranges, int64_t piece, int64_t *first, 
     return group;
 }
 
-/* What is written. */
-typedef struct Written {
-    const StudyStart *start;
-    const char *folder;
-} Written;
+/* Of all that the file has. */
+static uint64_t record_hash(const StudyRecord *record) {
+    const StudyCommand *command = &record->command;
+    const int numbers[] = {record->shards, record->array.first, record->array.step, command->argc};
+    const char *const texts[] = {record->version, command->folder, command->output};
+    StudyKey sum = {.value = record->key.value};
+    add_hash(&sum, record->key.program);
+    study_key_add(&sum, numbers, sizeof numbers);
+    for (int i = 0; i < 3; i++) study_key_add(&sum, texts[i], strlen(texts[i]));
+    for (int i = 0; i < command->argc; i++) study_key_add(&sum, command->argv[i], strlen(command->argv[i]));
+    for (size_t i = 0; i < record->key.count; i++) {
+        study_key_add(&sum, record->key.inputs[i].path, strlen(record->key.inputs[i].path));
+        add_hash(&sum, record->key.inputs[i].hash);
+    }
+    return sum.value;
+}
 
 static void print(FILE *out, const void *context) {
-    const Written *written = context;
-    const StudyStart *start = written->start;
-    const JobArray *array = &start->request->array;
+    const StudyRecord *record = context;
     JsonWriter json = {.out = out};
     json_begin_object(&json, NULL, JSON_LINES);
     json_put_text(&json, "format", STUDY_RECORD_FORMAT);
-    json_put_text(&json, "version", TWINBOX_VERSION);
-    json_put_hash(&json, "program", start->key->program);
-    json_put_hash(&json, "key", start->key->value);
-    json_put_int(&json, "shards", start->request->shard.count);
-    json_put_int(&json, "array_first", array->first);
-    json_put_int(&json, "array_step", array->step);
-    json_put_text(&json, "folder", written->folder);
-    json_put_text(&json, "output", start->output);
+    json_put_text(&json, "version", record->version);
+    json_put_hash(&json, "program", record->key.program);
+    json_put_hash(&json, "key", record->key.value);
+    json_put_int(&json, "shards", record->shards);
+    json_put_int(&json, "array_first", record->array.first);
+    json_put_int(&json, "array_step", record->array.step);
+    json_put_text(&json, "folder", record->command.folder);
+    json_put_text(&json, "output", record->command.output);
     json_begin_array(&json, "arguments", JSON_ONE_LINE);
-    for (int i = 0; i < start->argc; i++) json_put_text(&json, NULL, start->argv[i]);
+    for (int i = 0; i < record->command.argc; i++) json_put_text(&json, NULL, record->command.argv[i]);
     json_end(&json);
     json_begin_array(&json, "inputs", JSON_LINES);
-    for (size_t i = 0; i < start->key->count; i++) {
+    for (size_t i = 0; i < record->key.count; i++) {
         json_begin_object(&json, NULL, JSON_ONE_LINE);
-        json_put_text(&json, "file", start->key->inputs[i].path);
-        json_put_hash(&json, "hash", start->key->inputs[i].hash);
+        json_put_text(&json, "file", record->key.inputs[i].path);
+        json_put_hash(&json, "hash", record->key.inputs[i].hash);
         json_end(&json);
     }
     json_end(&json);
+    json_put_hash(&json, "hash", record_hash(record));
     json_end(&json);
 }
 
@@ -334,13 +345,17 @@ static bool create(const char *path, const char *text, size_t size, Error *error
 }
 
 bool study_record_meet(StudyRecord *record, const char *path, const StudyStart *start, Error *error) {
-    char folder[PATH_MAX];
+    char folder[PATH_MAX], version[] = TWINBOX_VERSION;
     bool there;
     *record = (StudyRecord){0};
     if (!file_find(path, &there, error)) return false;
     if (there) return study_record_read(record, path, error);
     if (getcwd(folder, sizeof folder) == NULL) return error_system(error, path, "the current folder has no name");
-    const Written written = {start, folder};
+    const StudyRecord written = {.version = version,
+                                 .key = *start->key,
+                                 .shards = start->request->shard.count,
+                                 .array = start->request->array,
+                                 .command = {start->argc, start->argv, folder, (char *)start->output}};
     size_t size;
     char *text = file_print(print, &written, &size);
     if (text == NULL) return error_memory(error, path);
@@ -369,7 +384,7 @@ static bool hash_differs(const char *path, Error *error, const char *what, uint6
 
 static bool check_inputs(const StudyRecord *record, const char *path, const StudyKey *key, Error *error) {
     char what[PATH_MAX + 32];
-    for (size_t i = 0; i < record->key.count && i < key->count; i++) {
+    for (size_t i = 0; i < record->key.count && i < key->count; i++) { /* more or fewer: other arguments */
         const StudyInput *there = &record->key.inputs[i], *here = &key->inputs[i];
         if (there->hash == here->hash) continue;
         snprintf(what, sizeof what, "the hash of the input %s", here->path);
@@ -389,13 +404,18 @@ static bool check_arguments(const StudyRecord *record, const char *path, int arg
 
 bool study_record_check(const StudyRecord *record, const char *path, const StudyKey *key, int argc, char **argv,
                         Error *error) {
-    if (key->value == record->key.value) return true;
     if (strcmp(record->version, TWINBOX_VERSION) != 0)
         return differs(path, error, "the version of twinbox", TWINBOX_VERSION, record->version);
     if (key->program != record->key.program)
         return hash_differs(path, error, "the hash of the program", key->program, record->key.program);
-    return check_inputs(record, path, key, error) && check_arguments(record, path, argc, argv, error) &&
-           hash_differs(path, error, "the hash of options and inputs", key->value, record->key.value);
+    if (!check_inputs(record, path, key, error)) return false;
+    if (key->value != record->key.value)
+        return check_arguments(record, path, argc, argv, error) &&
+               hash_differs(path, error, "the hash of options and inputs", key->value, record->key.value);
+    return record->hash == record_hash(record) ||
+           error_input(error, path,
+                       "has been changed since the first shard wrote it: its hash is %016" PRIx64 ", not %016" PRIx64,
+                       record_hash(record), record->hash);
 }
 
 bool study_record_shard(const StudyRecord *record, const char *path, const ShardRequest *request, Shard *shard,

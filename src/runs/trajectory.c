@@ -216,12 +216,12 @@ void trajectory_name_from_path(const char *path, char name[TRAJECTORY_NAME_SIZE]
     const char *file = path_is_standard(path) ? "stdin" : path + file_folder_length(path), *ending = strrchr(file, '.');
     size_t length = ending != NULL && ending > file ? (size_t)(ending - file) : strlen(file), used = 0;
     for (size_t at = 0, width; at < length && used + 4 < TRAJECTORY_NAME_SIZE; at += width > 0 ? width : 1) {
+        char letter[5] = "";
         uint32_t character;
         width = utf8_decode(file + at, length - at, &character);
-        if (width == 0 || character < 0x20 || character == 0x7f)
-            name[used++] = '_';
-        else
-            for (size_t i = 0; i < width; i++) name[used++] = file[at + i];
+        memcpy(letter, file + at, width);
+        if (width == 0 || control_in_text(letter) != 0) strcpy(letter, "_");
+        used += (size_t)snprintf(name + used, TRAJECTORY_NAME_SIZE - used, "%s", letter);
     }
     name[used] = '\0';
 }

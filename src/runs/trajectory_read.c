@@ -16,9 +16,8 @@
 static bool finite(Vec2 v) { return isfinite(v.x) && isfinite(v.y); }
 
 static bool check_verdict(const Trajectory *t, const char *path, Error *error) {
-    for (const char *c = t->verdict; *c != '\0'; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            return error_input(error, path, "the verdict holds control characters");
+    const unsigned control = control_in_text(t->verdict);
+    if (control != 0) return error_input(error, path, "the verdict has the control character U+%04X", control);
     if (t->verdict_frame < -1 || t->verdict_frame >= t->frames)
         return error_input(error, path, "the verdict is on frame %d of %d", t->verdict_frame, t->frames);
     return (t->verdict_body >= -1 && t->verdict_body < t->bodies) ||

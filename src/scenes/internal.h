@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The reading of scene files: fields, patterns, chains, bodies, overlaps. */
+/* The reading of scene files: fields, patterns, expressions, bodies, overlaps. */
 #pragma once
 #include "base/base.h"
 #include "base/yaml.h"
@@ -14,11 +14,11 @@
 extern const Range range_size, range_mass, range_position, range_angle, range_speed, range_spin, range_friction,
     range_gravity, range_dt, range_rate;
 
-/* float; float32 nearest to the decimal, a fraction such as 1/60, or a chain (shapes.c). */
+/* float; float32 nearest to the decimal, a fraction such as 1/60, or an expression. */
 FieldParser field_number;
 /* Vec2: a list of two numbers. */
 FieldParser field_vector;
-/* int; digits, or a chain whose value is whole. */
+/* int; digits, or an expression whose value is whole. */
 FieldParser field_int;
 
 /* One entry of a scene's bodies: a single body, or a pattern of equal bodies. */
@@ -45,25 +45,26 @@ int64_t pattern_body_count(const Pattern *pattern);
 
 BodyDef pattern_body(const Pattern *pattern, int64_t i);
 
-/* Chains: numbers of a scene file given as products and quotients, from left to right, of decimals and $names of the
-   scene's parameters, such as 10*$slope or 1/$rate. No other operators, no parentheses, no blanks. The tree's context
-   is the scene's Parameters, or NULL where there are none. */
+/* Expressions: numbers of a scene file made of decimals and $names of the scene's parameters by + - * / and parentheses, such
+   as $height + 0.25, with blanks where one likes. Products go before sums, else from left to right. The tree's context is
+   the scene's Parameters, or NULL where there are none. */
 
-/* Time is linear in the number of factors, and a file of 1.5 MB has room for 750,000. */
-enum { CHAIN_MAX_NUMBERS = 16, CHAIN_SHOWN_SIZE = 320 };
+/* A file of 1.5 MB has room for 750,000 parentheses. */
+enum { EXPRESSION_MAX_PARTS = 32, EXPRESSION_SHOWN_SIZE = 320 };
 
-/* True if the node's text is more than a decimal: it has '*', '/' or '$'. */
-bool chain_is(const YamlTree *tree, int node);
+/* True if the node's text is more than a decimal: it has an operator, a '$' or a parenthesis. */
+bool expression_is(const YamlTree *tree, int node);
 
-/* The value of a scalar, in double; a decimal is a chain, too. Refused, with its place: text that is not a chain,
-   unknown names, division by 0 and infinite intermediate results. Names in the chain are marked as used. */
-bool chain_read(const YamlTree *tree, int node, const char *what, double *value, Error *error);
+/* The value of a scalar, in double; a decimal is an expression, too. Refused, with its place: text that is no expression,
+   unknown names, more than EXPRESSION_MAX_PARTS numbers, signs and parentheses, division by 0 and infinite intermediate
+   results. Names in it are marked as used. */
+bool expression_read(const YamlTree *tree, int node, const char *what, double *value, Error *error);
 
-/* A node's number for a message: its text "-1", or "0, from 0*$ratio with ratio = 10". */
-typedef struct ChainShown {
-    char text[CHAIN_SHOWN_SIZE];
-} ChainShown;
-ChainShown chain_show(const YamlTree *tree, int node, double value);
+/* A node's number for a message: its text "-1", or "0 kg, from 0*$ratio with ratio = 10". unit: " kg", or "". */
+typedef struct ExpressionShown {
+    char text[EXPRESSION_SHOWN_SIZE];
+} ExpressionShown;
+ExpressionShown expression_show(const YamlTree *tree, int node, double value, const char *unit);
 
 /* The key `bodies` of a scene. */
 
@@ -91,8 +92,12 @@ typedef struct Parameters {
 /* Reads the tree's parameters, wherever the key is; a scene may have none. */
 bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error);
 
-/* Sets their values; see scene_read_with(). */
+/* Sets their values; see scene_read_with(). Leaves what common_set() then sets in the scene that is read. */
 bool parameters_set(Parameters *parameters, const char *path, const SceneSetting *settings, int count, Error *error);
+bool common_set(Scene *scene, const char *path, const SceneSetting *settings, int count, Error *error);
+
+/* Fills `common` of the scene. */
+void common_list(Scene *scene);
 
 /* Refuses a parameter that no number uses, because setting it would have no effect. */
 bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Error *error);

@@ -8,8 +8,153 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Expressions: numbers made of numbers and parameters. */
+
+/* What is read, and how far. */
+typedef struct Expression {
+    const YamlTree *tree;
+    int node;
+    const char *what, *text, *at;
+    int parts; /* numbers, signs and parentheses so far */
+    Error *error;
+} Expression;
+
+bool expression_is(const YamlTree *tree, int node) {
+    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "", *rest = "";
+    double number;
+    return strpbrk(text, "$+-*/()") != NULL && !(parse_leading_double(text, &number, &rest) && *rest == '\0');
+}
+
+/* The parameter with this name, or NULL. */
+static SceneParameter *find(Parameters *parameters, const char *text, size_t length) {
+    for (int i = 0; i < parameters->count; i++) {
+        SceneParameter *parameter = &parameters->items[i];
+        if (strlen(parameter->name) == length && memcmp(parameter->name, text, length) == 0) return parameter;
+    }
+    return NULL;
+}
+
+/* " with height = 10 boxes, size = 2": the parameters in the text. */
+static void add_values(Parameters *parameters, const char *text, char *out, size_t room) {
+    bool named[SCENE_MAX_PARAMETERS] = {false};
+    for (const char *name = text; (name = strchr(name, '$')) != NULL;) {
+        size_t length = strspn(++name, PARAMETER_LETTERS);
+        const SceneParameter *parameter = find(parameters, name, length);
+        if (parameter != NULL) named[parameter - parameters->items] = true;
+    }
+    const char *link = " with ";
+    for (int i = 0; i < parameters->count; i++) {
+        const SceneParameter *parameter = &parameters->items[i];
+        if (!named[i]) continue;
+        text_add(out, room, "%s%s = %.9g%s%s", link, parameter->name, parameter->value,
+                 parameter->unit[0] != '\0' ? " " : "", parameter->unit);
+        link = ", ";
+    }
+}
+
+/* The text, and the values of its names. */
+static ExpressionShown show_text(const YamlTree *tree, int node) {
+    ExpressionShown shown;
+    snprintf(shown.text, sizeof shown.text, "%s", yaml_show(tree, node).text);
+    if (tree->nodes[node].kind == YAML_SCALAR && tree->context != NULL)
+        add_values(tree->context, yaml_text(tree, node), shown.text, sizeof shown.text);
+    return shown;
+}
+
+ExpressionShown expression_show(const YamlTree *tree, int node, double value, const char *unit) {
+    ExpressionShown text = show_text(tree, node), shown = text;
+    if (expression_is(tree, node))
+        snprintf(shown.text, sizeof shown.text, "%.9g%s, from %.290s", value, unit, text.text);
+    return shown;
+}
+
+/* Errors are where the reading is, or at a place that it has passed. */
+static bool fail(const Expression *e, const char *at, const char *text) {
+    return yaml_error_at(e->tree, e->node, (size_t)(at - e->text), e->error, "%s%s (got %s)", e->what, text,
+                         show_text(e->tree, e->node).text);
+}
+
+/* The value of the name at the '$'. */
+static bool take_name(Expression *e, double *value) {
+    Parameters *parameters = e->tree->context;
+    const size_t length = strspn(e->at + 1, PARAMETER_LETTERS);
+    if (length == 0) return fail(e, e->at, ": a parameter's name must follow the '$'");
+    if (parameters == NULL) return fail(e, e->at, " must not contain parameters");
+    const SceneParameter *parameter = find(parameters, e->at + 1, length);
+    if (parameter == NULL) {
+        char name[SCENE_PARAMETER_SIZE];
+        snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name), e->at + 1);
+        return yaml_error_at(e->tree, e->node, (size_t)(e->at - e->text), e->error, "%s: '$%s' is not a parameter; %s",
+                             e->what, name, parameters_hint(parameters, name).text);
+    }
+    parameters->used[parameter - parameters->items] = true;
+    *value = parameter->value;
+    e->at += length + 1;
+    return true;
+}
+
+static bool take_sum(Expression *e, double *value);
+
+/* A number, a name, a sum in parentheses, or one of these behind a sign. */
+static bool take_operand(Expression *e, double *value) {
+    e->at += strspn(e->at, " ");
+    if (e->parts++ == EXPRESSION_MAX_PARTS)
+        return fail(e, e->at, ": an expression has too many numbers, signs and parentheses");
+    if (parse_leading_double(e->at, value, &e->at)) return true;
+    if (*e->at == '$') return take_name(e, value);
+    if (*e->at == '-') {
+        e->at++;
+        if (!take_operand(e, value)) return false;
+        *value = -*value;
+        return true;
+    }
+    if (*e->at != '(') return fail(e, e->at, ": a number, a $name or '(' is expected here");
+    e->at++;
+    if (!take_sum(e, value)) return false;
+    return *e->at++ == ')' || fail(e, e->at - 1, ": an operator or ')' is expected here");
+}
+
+static bool apply(const Expression *e, const char *operator, double number, double *value) {
+    switch (*operator) {
+    case '+': *value += number; break;
+    case '-': *value -= number; break;
+    case '*': *value *= number; break;
+    default:
+        if (number == 0) return fail(e, operator, " is divided by 0");
+        *value /= number;
+    }
+    return isfinite(*value) || fail(e, operator, " has an intermediate result that is infinite");
+}
+
+/* Operands with these operators between them, from left to right. Blanks behind them are taken, too. */
+static bool take_chain(Expression *e, bool take(Expression *e, double *value), const char *operators, double *value) {
+    if (!take(e, value)) return false;
+    for (e->at += strspn(e->at, " "); *e->at != '\0' && strchr(operators, *e->at) != NULL;
+         e->at += strspn(e->at, " ")) {
+        const char *operator= e->at++;
+        double number = 0;
+        if (!take(e, &number) || !apply(e, operator, number, value)) return false;
+    }
+    return true;
+}
+
+static bool take_product(Expression *e, double *value) { return take_chain(e, take_operand, "*/", value); }
+
+static bool take_sum(Expression *e, double *value) { return take_chain(e, take_product, "+-", value); }
+
+bool expression_read(const YamlTree *tree, int node, const char *what, double *value, Error *error) {
+    const char *text = tree->nodes[node].kind == YAML_SCALAR ? yaml_text(tree, node) : "";
+    Expression e = {tree, node, what, text, text, 0, error};
+    if (!expression_is(tree, node) && !(parse_leading_double(text, value, &e.at) && *e.at == '\0'))
+        return fail(&e, text, " must be a number");
+    e.at = text;
+    return take_sum(&e, value) && (*e.at == '\0' || fail(&e, e.at, ": an operator or the end is expected here"));
+}
+
+/* The key `parameters` of a scene. */
+
 static bool field_bound(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    return chain_read(tree, node, field->key, member, error);
+    return expression_read(tree, node, field->key, member, error);
 }
 
 /* The longest text that source_printable() never cuts. */
@@ -52,16 +197,10 @@ static bool check(const YamlTree *tree, const int *nodes, const SceneParameter *
     for (int i = VALUE; i <= TO; i++)
         if (parameter->whole && !is_whole(numbers[i]))
             return yaml_error(tree, nodes[i], error, "%s must be a whole number, because whole is on (got %s)",
-                              fields[i].key, chain_show(tree, nodes[i], numbers[i]).text);
+                              fields[i].key, expression_show(tree, nodes[i], numbers[i], "").text);
     return (parameter->value >= parameter->from && parameter->value <= parameter->to) ||
            yaml_error(tree, nodes[VALUE], error, "value must be from %.9g to %.9g (got %s)", parameter->from,
-                      parameter->to, chain_show(tree, nodes[VALUE], parameter->value).text);
-}
-
-static SceneParameter *find(Parameters *parameters, const char *name) {
-    for (int i = 0; i < parameters->count; i++)
-        if (strcmp(parameters->items[i].name, name) == 0) return &parameters->items[i];
-    return NULL;
+                      parameter->to, expression_show(tree, nodes[VALUE], parameter->value, "").text);
 }
 
 static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int value, Error *error) {
@@ -70,7 +209,7 @@ static bool read_one(Parameters *parameters, const YamlTree *tree, int key, int 
     SceneParameter parameter = {.whole = false};
     int nodes[FIELDS_MAX];
     if (!copy_name(tree, key, parameter.name, error)) return false;
-    if (find(parameters, parameter.name) != NULL)
+    if (find(parameters, parameter.name, strlen(parameter.name)) != NULL)
         return yaml_error(tree, key, error, "key '%s' is given twice", parameter.name);
     if (!fields_read(tree, value, "a parameter", fields, &parameter, nodes, error) ||
         !check(tree, nodes, &parameter, error))
@@ -106,8 +245,129 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
     return true;
 }
 
+/* What every scene has. */
+
+enum { ITERATIONS, DT, FRICTION, BOMB_X, BOMB_MASS, BOMB_SPEED, COMMON };
+
+static const struct {
+    const char *name, *unit;
+    double least, most;
+} common[COMMON] = {[ITERATIONS] = {"iterations", "", 1, SCENE_MAX_ITERATIONS},
+                    [DT] = {"dt", "s", (double)SCENE_MIN_DT, (double)SCENE_MAX_DT},
+                    [FRICTION] = {"friction", "", 0, 10},
+                    [BOMB_X] = {"bomb_x", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
+                    [BOMB_MASS] = {"bomb_mass", "kg", 1e-6, 1e9},
+                    [BOMB_SPEED] = {"bomb_speed", "m/s", 0, 1e4}};
+
+/* COMMON: none. */
+static int find_common(const char *name) {
+    int which = 0;
+    while (which < COMMON && strcmp(common[which].name, name) != 0) which++;
+    return which;
+}
+
+static double bomb_speed(const Scene *scene) { return vec2_distance(scene_bomb_body(scene).velocity, vec2(0, 0)); }
+
+static double common_value(const Scene *scene, int which) {
+    switch (which) {
+    case ITERATIONS: return scene->iterations;
+    case DT: return (double)scene->dt;
+    case FRICTION: return (double)scene->bodies[scene->body_count - 1].friction;
+    case BOMB_X: return (double)scene->bomb.body.position.x;
+    case BOMB_MASS: return (double)scene->bomb.body.mass;
+    default: return bomb_speed(scene);
+    }
+}
+
+/* The steps, when a step takes `ratio` times as long. */
+static int steps_of_time(int steps, double ratio) {
+    const double count = round(steps / ratio);
+    return count > SCENE_MAX_FRAMES ? SCENE_MAX_FRAMES : (int)count;
+}
+
+static void change_dt(Scene *scene, double dt) {
+    const double ratio = dt / (double)scene->dt;
+    scene->dt = (float)dt;
+    scene->frames = steps_of_time(scene->frames, ratio);
+    if (scene->frames == 0) scene->frames = 1;
+    scene->bomb.frame = steps_of_time(scene->bomb.frame, ratio);
+    scene->last_body_until = steps_of_time(scene->last_body_until, ratio);
+}
+
+static void change_speed(Scene *scene, double speed) {
+    const float ratio = (float)(speed / bomb_speed(scene));
+    scene->bomb.velocity_factor *= ratio;
+    scene->bomb.body.velocity = vec2_scale(ratio, scene->bomb.body.velocity);
+}
+
+static void change(Scene *scene, int which, double value) {
+    switch (which) {
+    case ITERATIONS: scene->iterations = (int)value; break;
+    case DT: change_dt(scene, value); break;
+    case FRICTION:
+        for (int i = 0; i < scene->body_count; i++) scene->bodies[i].friction = (float)value;
+        scene->bomb.body.friction = (float)value;
+        break;
+    case BOMB_X: scene->bomb.body.position.x = (float)value; break;
+    case BOMB_MASS: scene->bomb.body.mass = (float)value; break;
+    default: change_speed(scene, value);
+    }
+}
+
+static bool set_common(Scene *scene, const char *path, int which, double value, Error *error) {
+    const char *name = common[which].name, *unit = common[which].unit;
+    if (which >= BOMB_X && !scene->bomb.present)
+        return error_input(error, path, "%s cannot be set: the scene has no bomb", name);
+    if (which == BOMB_SPEED && bomb_speed(scene) == 0)
+        return error_input(error, path, "%s cannot be set: the bomb is at rest, so it has no direction", name);
+    if (!(value >= common[which].least && value <= common[which].most) || (which == ITERATIONS && !is_whole(value)))
+        return error_input(error, path, "%s must be a %s from %.9g to %.9g%s%s (set to %.9g)", name,
+                           which == ITERATIONS ? "whole number" : "number", common[which].least, common[which].most,
+                           unit[0] != '\0' ? " " : "", unit, value);
+    change(scene, which, value);
+    return !scene->bomb.present || bomb_speed(scene) <= common[BOMB_SPEED].most ||
+           error_input(error, path, "with %s = %.9g the bomb starts at %.9g m/s; at most %.9g are allowed", name, value,
+                       bomb_speed(scene), common[BOMB_SPEED].most);
+}
+
+bool common_set(Scene *scene, const char *path, const SceneSetting *settings, int count, Error *error) {
+    for (int i = 0; i < count; i++) {
+        const int which = scene_parameter(scene, settings[i].name) == NULL ? find_common(settings[i].name) : COMMON;
+        if (which < COMMON && !set_common(scene, path, which, settings[i].value, error)) return false;
+    }
+    return true;
+}
+
+void common_list(Scene *scene) {
+    const SceneSpan *x = &scene->bomb.x;
+    for (int which = 0; which < (scene->bomb.present ? COMMON : BOMB_X); which++) {
+        const double value = common_value(scene, which);
+        const double ranges[COMMON][2] = {[ITERATIONS] = {1, value < 20 ? 40 : 2 * value},
+                                          [DT] = {value / 4, value * 4},
+                                          [FRICTION] = {0, 1},
+                                          [BOMB_X] = {value - 5, value + 5},
+                                          [BOMB_MASS] = {value / 10, value * 10},
+                                          [BOMB_SPEED] = {0, 3 * value}};
+        SceneParameter *parameter = &scene->common[scene->common_count++];
+        *parameter = (SceneParameter){
+            .value = value, .from = ranges[which][0], .to = ranges[which][1], .whole = which == ITERATIONS};
+        strcpy(parameter->name, common[which].name);
+        strcpy(parameter->unit, common[which].unit);
+        if (which == BOMB_X && scene_span_varies(x)) parameter->from = (double)x->from, parameter->to = (double)x->to;
+    }
+}
+
+const SceneParameter *scene_parameter(const Scene *scene, const char *name) {
+    for (int i = 0; i < scene->parameter_count; i++)
+        if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
+    for (int i = 0; i < scene->common_count; i++)
+        if (strcmp(scene->common[i].name, name) == 0) return &scene->common[i];
+    return NULL;
+}
+
 static bool set(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {
-    SceneParameter *parameter = find(parameters, setting->name);
+    SceneParameter *parameter = find(parameters, setting->name, strlen(setting->name));
+    if (parameter == NULL && find_common(setting->name) < COMMON) return true;
     if (parameter == NULL)
         return error_input(error, path, "'%s' is not a parameter; %s", setting->name,
                            parameters_hint(parameters, setting->name).text);

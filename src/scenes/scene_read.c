@@ -37,19 +37,19 @@ bool field_number(const YamlTree *tree, int node, const Field *field, void *memb
     float value;
     double full;
     const Range *range = field->range;
-    /* A decimal and a fraction of two are rounded as everywhere else; a chain is rounded once, at its end. */
+    /* A decimal and a fraction of two are rounded as everywhere else; an expression is rounded once, at its end. */
     if (is_scalar(tree, node) && parse_float(yaml_text(tree, node), &value))
         full = (double)value;
-    else if (chain_read(tree, node, field->key, &full, error))
+    else if (expression_read(tree, node, field->key, &full, error))
         value = (float)full;
     else
         return false;
     if (range->minimum > 0 && value <= 0)
         return yaml_error(tree, node, error, "%s must be greater than 0 (got %s)", field->key,
-                          chain_show(tree, node, full).text);
+                          expression_show(tree, node, full, range->unit).text);
     if (value < range->minimum || value > range->maximum)
         return yaml_error(tree, node, error, "%s must be from %g to %g%s (got %s)", field->key, (double)range->minimum,
-                          (double)range->maximum, range->unit, chain_show(tree, node, full).text);
+                          (double)range->maximum, range->unit, expression_show(tree, node, full, range->unit).text);
     *(float *)member = value;
     return true;
 }
@@ -78,10 +78,10 @@ bool field_int(const YamlTree *tree, int node, const Field *field, void *member,
         *(int *)member = (int)value;
         return true;
     }
-    if (!chain_is(tree, node)) return not_whole(tree, node, field, yaml_show(tree, node).text, error);
-    if (!chain_read(tree, node, field->key, &full, error)) return false;
+    if (!expression_is(tree, node)) return not_whole(tree, node, field, yaml_show(tree, node).text, error);
+    if (!expression_read(tree, node, field->key, &full, error)) return false;
     if (full != floor(full) || full < (double)minimum || full > (double)maximum)
-        return not_whole(tree, node, field, chain_show(tree, node, full).text, error);
+        return not_whole(tree, node, field, expression_show(tree, node, full, "").text, error);
     *(int *)member = (int)full;
     return true;
 }
@@ -388,9 +388,12 @@ static const Field scene_fields[] = {
     {"parameters", field_parameters, 0, NULL, false},
     {NULL, NULL, 0, NULL, false}};
 
-static bool read_fields(const YamlTree *tree, Scene *scene, Error *error) {
+static bool read_fields(const YamlTree *tree, Scene *scene, const SceneSetting *settings, int count, Error *error) {
     int nodes[FIELDS_MAX];
-    if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error)) return false;
+    if (!fields_read(tree, 0, "a scene", scene_fields, scene, nodes, error) ||
+        !common_set(scene, tree->source.path, settings, count, error))
+        return false;
+    common_list(scene);
     const int bodies = fields_node(scene_fields, nodes, "bodies"), bomb = fields_node(scene_fields, nodes, "bomb");
     if (scene->last_body_until > 0 && !bodies_check_until(tree, bodies, scene, error)) return false;
     if (scene->bomb.present && scene->bomb.frame > scene->frames)
@@ -405,7 +408,7 @@ static bool read_tree(YamlTree *tree, Scene *scene, const SceneSetting *settings
         !parameters_set(&parameters, tree->source.path, settings, count, error))
         return false;
     tree->context = &parameters;
-    bool ok = read_fields(tree, scene, error) && parameters_all_used(&parameters, tree, error);
+    bool ok = read_fields(tree, scene, settings, count, error) && parameters_all_used(&parameters, tree, error);
     tree->context = NULL;
     return ok;
 }

@@ -80,6 +80,11 @@ typedef struct SceneParameter {
     bool whole;             /* whole numbers only */
 } SceneParameter;
 
+/* What every scene has, and settings and studies take beside its parameters: iterations, dt (the run and the time of the bomb
+   stay as long, in seconds), friction of all boxes; and in a scene with a bomb its x, mass and speed as bomb_x, bomb_mass and
+   bomb_speed. A parameter of the scene with such a name goes before. */
+enum { SCENE_COMMON_MAX = 6 };
+
 /* A value for a parameter, instead of the file's. */
 typedef struct SceneSetting {
     char name[SCENE_PARAMETER_SIZE];
@@ -103,6 +108,8 @@ typedef struct Scene {
     SceneNetwork networks[SCENE_MAX_NETWORKS];
     int parameter_count;
     SceneParameter parameters[SCENE_MAX_PARAMETERS]; /* in the order of the file; the members above have their values */
+    int common_count;
+    SceneParameter common[SCENE_COMMON_MAX]; /* from and to are no bounds, but what studies vary by default */
 } Scene;
 
 /* NULL with error set: "path:line:column: error: what", the line of the file, a caret below. Takes at most 0.1 s and 20
@@ -110,11 +117,14 @@ typedef struct Scene {
    longer to check, 4 s for 25,000. The format is described at the head of scenes/pyramid_settled.yaml. */
 Scene *scene_read(const char *path, Error *error);
 
-/* The same with values for some of its parameters. Refuses settings that are unknown, given twice, out of their
+/* The same with values for some of its parameters, or of what every scene has. Refuses settings that are unknown, given twice, out of their
    parameter's bounds or not whole where they must be: "path: error: what". */
 Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error);
 
 void scene_destroy(Scene *scene);
+
+/* The parameter, or what every scene has, with this name; NULL: none. */
+const SceneParameter *scene_parameter(const Scene *scene, const char *name);
 
 /* A world with the scene's bodies (and the bomb if its frame is 0). NULL with error set when memory is short.
  */

@@ -50,6 +50,7 @@ static bool add_runs(ContenderList *list, const char *name, MethodRuns runs, Err
 static bool add_as_given(ContenderList *list, char *word, Error *error) {
     char *colon = strchr(word, ':');
     if (colon == NULL) return add(list, word, "", error);
+    if (colon[1] == '\0') return method_parse(&(Method){0}, word, error); /* refused */
     *colon = '\0';
     return add(list, word, colon + 1, error);
 }

@@ -40,9 +40,8 @@ VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene
 }
 
 const char *stability_unit(const Scene *scene, const char *parameter) {
-    for (int i = 0; i < scene->parameter_count; i++)
-        if (strcmp(scene->parameters[i].name, parameter) == 0) return scene->parameters[i].unit;
-    return "";
+    const SceneParameter *found = scene_parameter(scene, parameter);
+    return found != NULL ? found->unit : "";
 }
 
 void stability_shift(Scene *scene, int seed) {

@@ -25,7 +25,7 @@ TEST(a_file_that_exists_is_kept) {
 
 TEST(a_missing_folder_is_an_error) {
     assert_false(file_create(temporary_path("missing/new"), "text", 4, &error));
-    assert_error(error, ERROR_SYSTEM, "missing/new: error: cannot write: No such file or directory");
+    assert_error(error, ERROR_SYSTEM, "missing/new: error: cannot write: its folder does not exist");
 }
 
 RUN_TESTS(NULL, NULL)

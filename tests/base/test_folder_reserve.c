@@ -85,7 +85,7 @@ TEST(a_process_may_reserve_a_folder_again) {
     write_bytes(temporary_path("file"), "x", 1);
     choose_folder("file/folder");
     assert_false(folder_reserve(folder, &error));
-    assert_error(error, ERROR_SYSTEM, "cannot make the directory");
+    assert_error(error, ERROR_SYSTEM, "cannot make this folder");
 }
 
 RUN_TESTS(NULL, NULL)

@@ -177,9 +177,10 @@ TEST(scalars_and_names_are_read) {
     const NpzArray fields[] = {{"hash", NPZ_UINT64, 0, {0}, &hash},
                                {"good", NPZ_TEXT, 0, {0}, "z\xc3\xa4h"},
                                {"bad", NPZ_TEXT, 0, {0}, "z\33[2J"},
-                               {"worse", NPZ_TEXT, 0, {0}, "\x7f"}};
+                               {"worse", NPZ_TEXT, 0, {0}, "\x7f"},
+                               {"turned", NPZ_TEXT, 0, {0}, "a\xe2\x80\xae"}};
     const char *path = temporary_path("fields.npz");
-    assert_ok(npz_write(path, fields, 4, &error), error);
+    assert_ok(npz_write(path, fields, 5, &error), error);
     NpzFile *file = npz_of(path);
     uint64_t found = 0;
     char text[16];
@@ -188,8 +189,10 @@ TEST(scalars_and_names_are_read) {
     assert_ok(npz_read_name(file, "good", text, sizeof text, &error), error);
     assert_string_equal(text, "z\xc3\xa4h");
     assert_refused(npz_read_name(file, "bad", text, sizeof text, &error),
-                   "fields.npz: error: the name of the bad holds control characters");
+                   "fields.npz: error: the name of the bad has the control character");
     assert_refused(npz_read_name(file, "worse", text, sizeof text, &error), "worse");
+    assert_refused(npz_read_name(file, "turned", text, sizeof text, &error),
+                   "fields.npz: error: the name of the turned has the control character U+202E");
     assert_refused(npz_read_scalar(file, "hash", NPZ_INT64, &found, sizeof found, &error), "hash");
     npz_close(file);
 }

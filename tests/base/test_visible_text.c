@@ -73,6 +73,8 @@ TEST(controls_are_found) {
     assert_int_equal(control_in_text("a\nb"), '\n');
     assert_int_equal(control_in_text("a\x7f"), 0x7f);
     assert_int_equal(control_in_text("\xc2\x9b"), 0x9b);
+    assert_int_equal(control_in_text("a\xe2\x80\xae"), 0x202e);
+    assert_int_equal(control_in_text("\xe2\x81\xa6"), 0x2066);
 }
 
 RUN_TESTS(NULL, NULL)

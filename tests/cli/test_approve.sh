@@ -38,6 +38,8 @@ cmp -s expected/frame_000002.png actual/frame_000002.png || fail "frame 2 was no
 cmp -s expected/frame_000003.png expected.kept/frame_000003.png || fail "frame 3 was not selected"
 [ -e expected/frame_000000.png ] || fail "frame 0 was removed but not selected"
 
+unchanged expected "--only: error: 'frames_*' matches none of the 7 files that failed" approve report --only 'frames_*'
+
 # approve leaves frames that passed: equal ones and, below, those within tolerance.
 restart
 run 0 compare expected actual/../expected.kept --report report

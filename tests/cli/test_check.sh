@@ -32,11 +32,27 @@ tower.yaml is valid
     launches: x from -5 to 5 m
     parameter height: 5, from 1 to 20 boxes
 first frame -> tower-first-frame.png
+next: twinbox render tower.yaml -o out/tower --video out/tower.mp4
 END
 cmp -s out expected || fail "the summary: $(diff out expected)"
 equal "size of the picture" "$(size tower-first-frame.png)" "1280 720"
 run 0 check tower.yaml -o first.png
 cmp -s first.png tower-first-frame.png || fail "-o changes the picture"
+
+run 0 check tower.yaml --json
+/usr/bin/python3 - <<'PYTHON' || fail "the summary as JSON: $(<out)"
+import json
+found = json.load(open("out"))
+assert found["format"] == "twinbox check 1" and found["scene"] == "tower.yaml", found
+assert (found["bodies"], found["static"], found["steps"], found["iterations"]) == (5, 1, 120, 10), found
+assert found["bomb"]["position"] == [4, 25] and found["bomb"]["launches"] == {"x": [-5, 5]}, found
+assert found["parameters"] == [{"name": "height", "value": 5, "from": 1, "to": 20, "unit": "boxes"}], found
+assert found["networks"] == {} and found["picture"] == "tower-first-frame.png", found
+PYTHON
+run 0 check "$scenes/single.yaml" --json
+grep -q '"pair-net": ".*networks/pair-net.npz"' out || fail "no networks: $(<out)"
+run 2 check tower.yaml --json -o -
+complains "--json: error: cannot be combined with a picture on standard output"
 
 run 0 check tower.yaml -o -
 cmp -s out first.png || fail "-o - does not write the picture"

@@ -150,4 +150,11 @@ for name in "strip annotated divergence strobe network narrow-phase".split():
     assert svg.getElementsByTagName("title")[0].firstChild.data.startswith(name + " of "), name
 assert {"engine", "pair-net", "momentum:k=20", "0.50 s"} <= set(words["strip"]), words["strip"]
 PYTHON
+
+run 2 figure engine.npz -o x.png
+complains "figure: error: the kind is missing before 'engine.npz'; known: strip, annotated"
+run 2 figure engine.npz
+complains "the kind is missing before 'engine.npz'"
+run 2 figure strip engine.npz
+complains "figure: error: -o FILE is needed"
 finish

@@ -13,6 +13,9 @@ theirs = {name: ours[name] for name in ("position", "angle", "size", "dt")}
 np.savez("theirs.npz", **theirs)
 theirs["position"][50, 3] += 0.5
 np.savez("other.npz", **theirs)
+turned = dict(theirs, position=ours["position"], angle=ours["angle"].copy())
+turned["angle"][20:, 3] += np.float32(2 * np.pi)
+np.savez("turned.npz", **turned)
 PYTHON
 
 # STATUS | what is printed | arguments
@@ -22,6 +25,8 @@ table() {
 0 | only poses are compared: a run has no velocities | compare ours.npz theirs.npz
 1 | first difference: frame 50, body 3: 0.707 m apart | compare theirs.npz other.npz
 1 | largest distance: frame 50, body 3 | compare ours.npz other.npz
+1 | first difference: frame 20, body 3: 0 m apart, 6.28 rad | compare theirs.npz turned.npz
+1 | largest distance: none, every position is the same | compare theirs.npz turned.npz
 1 | cause: unknown, as a run has no contacts | compare theirs.npz other.npz
 1 | run 1: theirs by theirs, 61 frames of 12 bodies (theirs.npz) | compare theirs.npz other.npz --csv d.csv
 2 | that run does not state its scene_hash | compare theirs.npz other.npz --scene scenes/stack.yaml

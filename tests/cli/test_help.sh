@@ -43,6 +43,20 @@ for name in new check simulate methods solve compare figure; do
     done <examples
 done
 
+# Help that nobody can read is no success.
+for words in --help --version "help compare" "compare --help" "compare --usage" methods; do
+    checks=$((checks + 1))
+    "$twinbox" $words >/dev/full 2>err
+    equal "status of $words into a full file" $? 3
+    complains "standard output: error: cannot write"
+    "$twinbox" $words >&- 2>err
+    equal "status of $words without standard output" $? 3
+    complains "standard output: error: cannot write"
+done
+"$twinbox" simulate "$scenes/single.yaml" --frames 2 -o closed.npz >&- 2>err
+equal "status of a run without standard output" $? 3
+run 0 compare closed.npz closed.npz
+
 run 2
 complains "Usage: twinbox COMMAND"
 run 2 simulat

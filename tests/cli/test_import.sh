@@ -163,4 +163,7 @@ PYTHON
 else
     echo "blender is not installed: only the syntax of its script is tested"
 fi
+run 0 export ours.npz -o ours.json
+run 2 import ours.json -o refused.npz
+complains "ours.json: error: is JSON, and only CSV can be imported; 'twinbox export RUN.npz -o RUN.csv' writes it"
 finish

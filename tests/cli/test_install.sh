@@ -12,6 +12,14 @@ run 2 paper -o none --quick
 complains "scenes/single.yaml: error:"
 
 cmake --install "$build" --prefix "$folder/first" >installed || fail "cmake --install"
+
+# A build of the program alone, such as the demo's, has no manual pages.
+if grep -q man/man1 "$build/cmake_install.cmake"; then
+    sed "s|$build/man/|$folder/no_manuals/|" "$build/cmake_install.cmake" >alone.cmake
+    cmake -DCMAKE_INSTALL_PREFIX="$folder/alone" -P alone.cmake >installed || fail "an installation without manual pages"
+    grep -q "No manual pages, as they are not built" installed || fail "missing pages are not told: $(tail -3 installed)"
+    [ -x alone/bin/twinbox ] || fail "no program without manual pages"
+fi
 mv first second
 twinbox=$folder/second/bin/twinbox
 mkdir elsewhere

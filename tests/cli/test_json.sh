@@ -181,7 +181,7 @@ both 0 simulate "$scenes/stack.yaml" -o run.npz
 exec(open("check.py").read())
 states(f"{result['scene']} by {result['method']}: {result['steps']} steps of {result['dt']:.6g} s, {result['bodies']} bodies")
 states(f"state {result['state']} -> {result['output']}")
-states(f"verdict: {result['verdict']['verdict']} ")
+states(f"verdict: {result['verdict']['verdict']}")
 assert result["steps"] == 300 and result["fallbacks"]["by_sweeps"] == 0
 PYTHON
 run 0 simulate "$scenes/stack.yaml" --frames 5 --json

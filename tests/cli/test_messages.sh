@@ -40,7 +40,20 @@ refuse render a.npz -o d --title "-$hostile"
 refuse compare a b --report "$hostile"
 refuse approve report --only "$hostile"
 refuse simulate -- "$hostile"
+seen="control character U+202E"
+refuse simulate "$scene" -o $'gpj\u202e.npz'
 equal "files that were made" "$(find . -type f | sort | xargs)" "./err ./out"
+
+# A mistyped option gets a suggestion, where one is near.
+seen="twinbox render: error: unrecognized option '--vidoe'; did you mean '--video'?"
+refuse render a.npz --vidoe=b.mp4 -o d
+seen="did you mean '--help'?"
+refuse render --hepl
+seen="unrecognized option '--colour'"
+refuse render a.npz --colour red -o d
+! grep -q "did you mean" err || fail "a suggestion from afar: $(<err)"
+seen="option '--s' is ambiguous"
+refuse render a.npz --s 2 -o d
 
 # Long texts are echoed in part, and the reason follows them.
 long=$(head -c 100000 /dev/zero | tr '\0' x)

@@ -3,10 +3,10 @@
 # twinbox new: scenes to start from, in any folder; tests/studies/test_templates.c tests that they stand.
 . "$(dirname "$0")/checks.sh"
 
-for kind in wall stack pyramid arch dominoes; do
+for kind in wall stack pyramid arch dominoes towers gate cardhouse pile; do
     run 0 new "my $kind.yaml" --like $kind
     says "$kind -> my $kind.yaml"
-    says "twinbox check my $kind.yaml"
+    says "next: twinbox check 'my $kind.yaml'"
     cmp -s "my $kind.yaml" "$scenes/templates/$kind.yaml" || fail "my $kind.yaml is not the file in scenes/templates"
     [ "$(grep -c '^ *#' "my $kind.yaml")" -ge 12 ] || fail "$kind has few comments"
     run 0 check "my $kind.yaml" -o first.png
@@ -14,7 +14,7 @@ for kind in wall stack pyramid arch dominoes; do
     [ "$(grep -c '^    parameter ' out)" -ge 1 ] && [ "$(grep -c '^    parameter ' out)" -le 2 ] || fail "$kind: parameters"
     run 0 simulate "my $kind.yaml" -o run.npz
 done
-equal "templates" "$(ls "$scenes/templates" | wc -l)" 5
+equal "templates" "$(ls "$scenes/templates" | wc -l)" 9
 
 # Nothing that exists is overwritten: a file, a link, a link to nothing.
 echo mine >mine.yaml
@@ -40,5 +40,5 @@ complains "the name of the scene to write is needed"
 run 2 new other --like wall
 complains "other: error: the name of a scene must end in .yaml"
 run 3 new missing/other.yaml --like wall
-complains "missing/other.yaml: error: cannot write: No such file or directory"
+complains "missing/other.yaml: error: cannot write: its folder does not exist"
 finish

@@ -20,21 +20,49 @@ static void work_for_an_hour(void) {
     progress_bar_end();
 }
 
-/* What a level lets through; the caller frees it. */
-static char *print_all(NoteLevel level) {
+/* What the work prints on standard error; the caller frees it. */
+static char *printed_by(void work(NoteLevel level), NoteLevel level) {
     const char *path = temporary_path("printed");
     const int before = dup(STDERR_FILENO);
     assert_non_null(freopen(path, "w", stderr));
     setvbuf(stderr, NULL, _IONBF, 0);
+    work(level);
+    note_set_level(NOTES_NORMAL);
+    dup2(before, STDERR_FILENO);
+    close(before);
+    return text_of(path);
+}
+
+static void do_all(NoteLevel level) {
     note_set_level(level);
     work_for_an_hour();
     note_print("%d is a note", 1);
     note_verbose("%d is printed only with -v", 2);
     for (int i = 0; i < 3; i++) trace_line("%d comes from below", 3);
-    note_set_level(NOTES_NORMAL);
-    dup2(before, STDERR_FILENO);
-    close(before);
-    return text_of(path);
+}
+
+static char *print_all(NoteLevel level) { return printed_by(do_all, level); }
+
+/* Two lines are at least 5 s apart; the end comes 1 s after one. */
+static void end_soon(NoteLevel level) {
+    now = 1000;
+    const Progress *progress = progress_bar_begin("short work");
+    (void)level;
+    for (int second = 1; second <= 13; second++) {
+        now += 1;
+        progress->report(progress->context, second, 13);
+    }
+    progress->report(progress->context, 13, 13);
+    progress_bar_end();
+}
+
+TEST(the_last_line_in_a_file_is_the_end) {
+    char *text = printed_by(end_soon, NOTES_NORMAL);
+    const char *end = strstr(text, "short work: 100%\n");
+    assert_non_null(end);
+    assert_string_equal(end, "short work: 100%\n");
+    assert_non_null(strstr(text, "short work: 85%"));
+    free(text);
 }
 
 TEST(quiet_prints_nothing) {

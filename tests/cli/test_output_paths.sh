@@ -23,8 +23,8 @@ refused() {
 }
 trainings=("pairs.npz" "--kind scene-net stack.yaml" "--kind sain stack.yaml" "--kind hybrid stack.yaml" "--kind gns")
 for training in "${trainings[@]}"; do
-    refused 3 "nowhere/x.npz: error: cannot write: 'nowhere/' is not a folder that takes files" train $training -o nowhere/x.npz
-    refused 3 "/proc/x.npz: error: cannot write" train $training -o /proc/x.npz
+    refused 3 "nowhere/x.npz: error: cannot write: its folder does not exist" train $training -o nowhere/x.npz
+    refused 3 "/proc/x.npz: error: cannot write: nothing new can be made there" train $training -o /proc/x.npz
     refused 2 "x.txt: error: the name must end in .npz" train $training -o x.txt
     refused 2 "folder.npz: error: is a folder" train $training -o folder.npz
     refused 2 "run.npz: error: holds a file of kind 'run', which a file of kind '" train $training -o run.npz
@@ -54,6 +54,10 @@ cmp -s run.npz run.kept || fail "a run was overwritten"
 cmp -s pair.npz pair.kept || fail "a network was overwritten"
 equal "files left" "$(echo $(ls -A))" \
     "err folder.npz notes.npz out pair.kept pair.npz pairs.npz run.kept run.npz single.yaml stack.yaml"
+
+refused 3 "/proc/out: error: cannot make this folder: nothing new can be made there" render run.npz -o /proc/out
+refused 3 "/proc/x.pdf: error: cannot write: nothing new can be made there" figure strip run.npz -o /proc/x.pdf
+refused 3 "nowhere/x.json: error: cannot write: its folder does not exist" export run.npz -o nowhere/x.json
 
 # A file of the same kind is replaced, an empty one too; devices and links to files are written through.
 run 0 train pairs.npz --iterations 2 -o pair.npz

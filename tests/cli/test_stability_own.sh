@@ -44,6 +44,13 @@ for cell in cells:
 PYTHON
 equal "figures" "$(cd ramp && echo *.png)" "borders.png map-friction_ramp_slope_friction.png"
 
+# What every scene has needs no parameter: borders as with one.
+sed 's/^iterations: .*/iterations: 10/; /iterations: {value/d' "$scenes/stability/heavy_on_one.yaml" >heavy.yaml
+run 0 stability "$scenes/stability/heavy_on_one.yaml" --vary iterations=1:40 --methods engine,momentum -o named
+run 0 stability heavy.yaml --vary iterations=1:40 --methods engine,momentum -o heavy
+equal "borders along iterations" "$(cut -d, -f2,3,6- heavy/stability.csv)" "$(cut -d, -f2,3,6- named/stability.csv)"
+equal "two methods have borders" "$(wc -l <heavy/stability.csv)" 3
+
 # Every value of a range, also with --quick.
 run 0 stability "$ramp" --vary slope=0.1:0.4:0.1 --vary friction=0.2:0.5:0.05 --quick --methods engine -o steps
 equal "slopes of the map" "$(tail -n +2 steps/maps.csv | cut -d, -f6 | sort -u | xargs)" "0.1 0.2 0.3 0.4"
@@ -60,6 +67,9 @@ equal "cores that are used" "$(awk '$1 ~ /^[0-9]+$/ { print $1, $2 }' out | xarg
 sed 's|^dt: .*|dt: 1/20|' "$ramp" >slide.yaml
 slide="slide.yaml --vary slope=0.4:0.6:0.2 --vary friction=0.05:0.15:0.1 -o slide"
 run 0 stability $slide --methods engine
+PATH= run 3 stability $slide --clip slide_slope_friction:engine:0.6,0.05 -v
+grep -q "ffmpeg: error: " err || fail "no message on a missing program: $(<err)"
+[ -e slide/clips ] && fail "work before the missing program was found"
 run 0 stability $slide --clip slide_slope_friction:engine:0.6,0.05
 says "slide_slope_friction:engine:0.6,0.05: falls at "
 says " -> slide/clips/slide_slope_friction-engine-0.6_0.05.mp4"
@@ -124,7 +134,10 @@ refused "the unit 'm;' of rows cannot stand in a table" walls.yaml --vary rows
 refused "this is the scene for --vary with gap = 0.5" walls.yaml --vary gap
 refused "the parameter 'gap' is given twice" walls.yaml --vary gap=1:2 --vary gap=1:3
 refused "at most 2 parameters" "$ramp" --vary slope --vary friction --vary slope
-refused "the scene 'stack' has no parameters" "$scenes/stack.yaml" --vary height
+refused "'height' is not a parameter of the scene; known: iterations, dt, friction, bomb_x, bomb_mass, bomb_speed" \
+    "$scenes/stack.yaml" --vary height
+refused "bomb_mass must be a number from 1e-06 to 1e+09 kg (set to -1)" "$scenes/stack.yaml" --vary bomb_mass=-1:1
+refused "'bomb_x' is not a parameter of the scene; known: gap, rows, iterations, dt, friction" walls.yaml --vary bomb_x
 refused "--vary NAME is needed" "$ramp"
 refused "a scene is needed" --vary slope
 refused "is for the studies without SCENE" "$ramp" --vary slope --study at_rest

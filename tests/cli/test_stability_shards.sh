@@ -112,8 +112,18 @@ for edit in 's/"shards": 3/"shards": 1/' 's/twinbox shards 1/twinbox shards 2/' 
     sed "$edit" record >three/shards/run.json
     refused "three/shards/run.json" merge three
 done
-sed 's/"version": "[^"]*"/"version": "0.0"/; s/"key": "....../"key": "abcdef/' record >three/shards/run.json
-refused "another study: the version of twinbox is 0.0 there" merge three
+changed_record() { # WHAT EDIT
+    sed "$2" record >three/shards/run.json
+    cmp -s record three/shards/run.json && fail "the edit $2 changes nothing"
+    refused "three/shards/run.json: error: $1" merge three
+}
+other="the folder has shards of another study:"
+changed_record "$other the version of twinbox is 0.0 there" 's/"version": "[^"]*"/"version": "0.0"/'
+changed_record "$other the hash of the program is abcdef" 's/"program": "....../"program": "abcdef/'
+changed_record "$other the hash of the input " 's/\("file": .*"hash": "\)....../\1abcdef/'
+changed_record "$other the hash of options and inputs is abcdef" 's/"key": "....../"key": "abcdef/'
+changed_record "has been changed since the first shard wrote it" 's/"shards": 3/"shards": 4/'
+changed_record "has been changed since the first shard wrote it" 's/"array_step": 0/"array_step": 1/'
 cp record three/shards/run.json
 run 0 merge three
 same_as_whole three

@@ -15,6 +15,9 @@ run 0 simulate "$stability/friction_ramp.yaml" --set slope=0.5 --verdict falls.j
 says "    verdict: falls at 0.8"
 says " s (body 1, 0.51"
 says " m lower)"
+# A box that swings is neither at rest nor fallen: it moves at the end, or until it comes to rest after the verdict's time.
+run 0 simulate "$scenes/stack.yaml" --frames 70
+says "    verdict: sways: still moves at the end, 1.17 s (kinetic energy "
 # The centre crosses the slab of 0.25 m within a step.
 run 0 simulate "$stability/bomb_speed.yaml" --set speed=100
 says "    verdict: tunnels at "

@@ -115,6 +115,7 @@ TEST_WITH(before_the_bomb_the_recorded_run_is_repeated, make, destroy) {
     single->frames = 5;
     SubspaceNet *recorded = subspace_net_by_hand(3);
     for (int i = 0; i < 9; i++) recorded->before[i] = 0.5f * (float)i;
+    recorded->before[1] = 4; /* the box's height at the start */
     const Method method = method_of(recorded, single, "subspace");
     single->frames = 2;
     Watch watch = run(single, &method, NULL);
@@ -125,6 +126,15 @@ TEST_WITH(before_the_bomb_the_recorded_run_is_repeated, make, destroy) {
     watch = run(single, &method, NULL);
     assert_near(watch.bodies[0].position.y, 3.5, 0);
     assert_near(watch.bodies[0].velocity.y, 0, 0);
+    subspace_net_destroy(recorded);
+}
+
+TEST_WITH(a_recorded_run_begins_where_the_scene_does, make, destroy) {
+    SubspaceNet *recorded = subspace_net_by_hand(1);
+    recorded->before[1] = 4 / 2;
+    const Method method = method_of(recorded, single, "subspace");
+    assert_refused(simulate_watched(single, &method, &(RunWatch){0}, &error),
+                   "before: body 1 is at (0, 2) m after a step, but starts at (0, 4) m");
     subspace_net_destroy(recorded);
 }
 

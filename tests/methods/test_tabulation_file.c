@@ -61,6 +61,7 @@ TEST(hostile_files_are_refused) {
     REFUSED(memory->impulses[1].tangent = NAN, "impulses: number 3 is nan");
     REFUSED(memory->tolerance = 0, "tolerance");
     REFUSED(memory->gate = -1, "gate");
+    REFUSED(memory->launches = -1, "launches is -1; expected at least 0");
     REFUSED(memory->reach[1] = -1, "reach: number 1 is -1");
     REFUSED(memory->entry_set[1] = 2, "entry_set: number 1 is 2; expected 0 to 1");
     REFUSED(memory->entry_set[1] = 0, "8 impulses; the entries have 6 contacts");

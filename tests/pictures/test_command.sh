@@ -38,7 +38,7 @@ folder.npz: error: |folder.npz
 many_letters.npz: error: text 'scene' is longer than |many_letters.npz
 other_letters.npz: error: the font has no character |other_letters.npz
 backwards.npz: error: |backwards.npz
-control.npz: error: the name of the scene holds control characters |control.npz
+control.npz: error: the name of the scene has the control character U+001B |control.npz
 nan_velocity.npz: error: frame 1, body 1: pose and velocity are not all finite |nan_velocity.npz
 infinite.npz: error: frame 1, body 1: pose and velocity are not all finite |plain.npz infinite.npz
 run 2 (other_dt) has time steps of 0.0333333 s |plain.npz other_dt.npz
@@ -82,12 +82,16 @@ if ! brief; then
 fi
 run 0 page names.npz -o names.html
 /usr/bin/python3 - <<'PYTHON' || fail "the code"
-import base64, re, zlib
+import base64, hashlib, re, zlib
 page = open("names.html", encoding="utf-8").read()
 begin, = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
 packed, = re.findall(r'<script type="text/plain" id="viewer">(.*?)</script>', page)
 open("begin.js", "w", encoding="utf-8").write(begin)
 open("viewer.js", "wb").write(zlib.decompress(base64.b64decode(packed), -15))
+# The policy allows these two scripts, by their hashes, and no other.
+allowed = [base64.b64encode(hashlib.sha256(script).digest()).decode()
+           for script in (begin.encode(), zlib.decompress(base64.b64decode(packed), -15))]
+assert f"script-src 'sha256-{allowed[0]}' 'sha256-{allowed[1]}'\">" in page, "another policy"
 # Names are in data only, and end no element there.
 assert page.count("</script>") == page.count("<script"), "another element"
 assert page.count("<img") == 0 and "<!--" not in page, "markup of a name"

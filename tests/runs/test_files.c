@@ -68,6 +68,12 @@ static void expect_refused(const Trajectory *t, const char *reason) {
         trajectory_destroy(t);                \
     } while (0)
 
+TEST(names_of_files_lose_what_a_terminal_would_obey) {
+    char name[TRAJECTORY_NAME_SIZE];
+    trajectory_name_from_path("runs/z\xc3\xa4h\x1b\xe2\x80\xae\xff.npz", name);
+    assert_string_equal(name, "z\xc3\xa4h___");
+}
+
 TEST(bad_heads_are_refused) {
     REFUSE(dt, 0, "dt must be finite and greater than 0 (got 0)");
     REFUSE(dt, -1, "dt must be");
@@ -80,10 +86,10 @@ TEST(bad_heads_are_refused) {
     REFUSE(size[1].x, 0, "body 1: its size must be finite and greater than 0");
     REFUSE(size[2].y, INFINITY, "body 2: its size");
     REFUSE(fixed[1], 2, "body 1: 'fixed' must be 0 or 1 (got 2)");
-    REFUSE(scene[1], '\n', "the name of the scene holds control characters");
-    REFUSE(method[0], '\33', "the name of the method holds control characters");
-    REFUSE(verdict[1], '\33', "the verdict holds control characters");
-    REFUSE(verdict[1], 0x7f, "the verdict holds control characters");
+    REFUSE(scene[1], '\n', "the name of the scene has the control character");
+    REFUSE(method[0], '\33', "the name of the method has the control character");
+    REFUSE(verdict[1], '\33', "the verdict has the control character");
+    REFUSE(verdict[1], 0x7f, "the verdict has the control character");
     REFUSE(verdict_frame, 4, "the verdict is on frame 4 of 4");
     REFUSE(verdict_frame, -2, "the verdict is on frame -2 of 4");
     REFUSE(verdict_body, 3, "the verdict is on body 3 of 3");

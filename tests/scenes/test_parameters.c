@@ -18,16 +18,16 @@ static float mass_of(const char *text) {
     return mass;
 }
 
-static void expect_mass(const char *chain, float expected) {
+static void expect_mass(const char *expression, float expected) {
     char text[2048];
-    snprintf(text, sizeof text, USES_BOTH MASS("%s") "parameters:\n" HEIGHT RATIO, chain);
+    snprintf(text, sizeof text, USES_BOTH MASS("%s") "parameters:\n" HEIGHT RATIO, expression);
     float found = mass_of(text);
     if (memcmp(&found, &expected, sizeof found) != 0)
-        fail_msg("%s is %.9g, not %.9g", chain, (double)found, (double)expected);
+        fail_msg("%s is %.9g, not %.9g", expression, (double)found, (double)expected);
 }
 
 /* From left to right in double, rounded once: 0.1 is the double 0.1 and no float. */
-TEST(chains_are_computed_from_left_to_right) {
+TEST(expressions_are_computed_from_left_to_right) {
     expect_mass("$height", 10);
     expect_mass("$ratio", (float)0.1);
     expect_mass("2*$height", 20);
@@ -42,6 +42,24 @@ TEST(chains_are_computed_from_left_to_right) {
     expect_mass("$ratio*3", (float)(0.1 * 3));
     expect_mass("1e30*1e30/1e30/1e30*7", 7);
     expect_mass("1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*2", 2);
+}
+
+TEST(products_go_before_sums_and_parentheses_before_both) {
+    expect_mass("$height + 0.25", 10.25F);
+    expect_mass("$height+0.25", 10.25F);
+    expect_mass("2 + 3 * $height", 32);
+    expect_mass("(2 + 3) * $height", 50);
+    expect_mass("$height - 3 - 2", 5);
+    expect_mass("$height - (3 - 2)", 9);
+    expect_mass("$height -3", 7);
+    expect_mass("60 / (2 * 3) / 5", 2);
+    expect_mass("1 - -$height", 11);
+    expect_mass("-(-$height)", 10);
+    expect_mass("-$ratio*-2", (float)(0.1 * 2));
+    expect_mass("( ( $height ) )", 10);
+    expect_mass("1e-1*$height + 1e+1", 11);
+    expect_mass("($height - 1)*($height + 1)/(2 - $ratio)", (float)(9.0 * 11.0 / (2.0 - 0.1)));
+    expect_mass("'$height*(1 + 1)'", 20);
 }
 
 /* The same bits whether the numbers are written or named, and as before there were names: division in float32. */
@@ -105,6 +123,77 @@ TEST(settings_take_the_place_of_values) {
     }
 }
 
+/* A bomb that flies at (3, -4) m/s, and one by a law. */
+#define BOMBED(velocity)                            \
+    BODY("size: [1, 1], position: [0, 0], mass: 1") \
+    "bomb: {x: 2, y: 12, size: [1, 1], mass: 5, frame: 30, velocity: " velocity "}\n"
+
+static Scene *set_one(const char *text, const char *name, double value) {
+    SceneSetting setting = {.value = value};
+    Error error;
+    strcpy(setting.name, name);
+    Scene *scene = read_with(text, &setting, 1, &error);
+    assert_ok(scene != NULL, error);
+    return scene;
+}
+
+TEST(what_every_scene_has_can_be_set) {
+    Scene *scene = set_one(BOMBED("[3, -4]"), "iterations", 7);
+    assert_int_equal(scene->iterations, 7);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "friction", 0.75);
+    assert_true(scene->bodies[0].friction == 0.75F && scene->bomb.body.friction == 0.75F);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "bomb_x", -2.5);
+    assert_near(scene->bomb.body.position.x, -2.5, 0);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "bomb_mass", 40);
+    assert_near(scene->bomb.body.mass, 40, 0);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "bomb_speed", 10);
+    assert_near(scene_bomb_body(scene).velocity.x, 6, 1e-6);
+    assert_near(scene_bomb_body(scene).velocity.y, -8, 1e-6);
+    scene_destroy(scene);
+    scene = set_one(BOMBED("{times_position: -1}"), "bomb_speed", 0.5);
+    assert_near(vec2_distance(scene_bomb_body(scene).velocity, vec2(0, 0)), 0.5, 1e-6);
+    scene_destroy(scene);
+}
+
+/* The run and the way to the bomb take as many seconds as before. */
+TEST(another_time_step_leaves_the_time) {
+    Scene *plain = good_scene(BOMBED("[0, -1]")), *scene = set_one(BOMBED("[0, -1]"), "dt", (double)plain->dt / 3);
+    assert_near(scene->frames, 3 * plain->frames, 0);
+    assert_near(scene->bomb.frame, 90, 0);
+    assert_near(scene->dt * 3, plain->dt, 1e-9);
+    scene_destroy(scene);
+    scene_destroy(plain);
+}
+
+TEST(a_parameter_of_that_name_goes_before) {
+    Scene *scene = set_one(MASS("$friction") "parameters: {friction: {value: 1, from: 0.5, to: 20}}\n", "friction", 20);
+    assert_true(scene->bodies[0].mass == 20 && scene->bodies[0].friction < 1);
+    assert_ptr_equal(scene_parameter(scene, "friction"), &scene->parameters[0]);
+    scene_destroy(scene);
+}
+
+TEST(what_no_scene_can_have_is_refused) {
+    static const struct {
+        const char *text;
+        SceneSetting setting;
+        const char *message;
+    } table[] = {
+        {BOMBED("[3, -4]"), {"iterations", 0}, "iterations must be a whole number from 1 to 1000000 (set to 0)"},
+        {BOMBED("[3, -4]"), {"iterations", 2.5}, "iterations must be a whole number from 1 to 1000000 (set to 2.5)"},
+        {BOMBED("[3, -4]"), {"friction", -1}, "friction must be a number from 0 to 10 (set to -1)"},
+        {BOMBED("[3, -4]"), {"dt", NAN}, "dt must be a number from 9.99999975e-06 to "},
+        {BOMBED("[3, -4]"), {"bomb_speed", 1e5}, "bomb_speed must be a number from 0 to 10000 m/s (set to 100000)"},
+        {BOMBED("[0, 0]"), {"bomb_speed", 1}, "bomb_speed cannot be set: the bomb is at rest, so it has no direction"},
+        {BOMBED("{times_position: 100}"), {"bomb_x", 1e3}, "with bomb_x = 1000 the bomb starts at 100007.2 m/s"},
+        {BASE GROUND, {"bomb_x", 1}, "bomb_x cannot be set: the scene has no bomb"}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        assert_refused(read_with(table[i].text, &table[i].setting, 1, &error), table[i].message);
+}
+
 TEST(bad_settings_are_refused) {
     static const struct {
         SceneSetting settings[2];
@@ -132,53 +221,75 @@ TEST(bad_settings_are_refused) {
     assert_string_equal(behind_path(&error), " error: 'height' is not a parameter; known: none");
     /* A value in its bounds may still be none for the number that is made of it. */
     assert_refused(read_with(SCENE("$height*$ratio"), &(SceneSetting){"ratio", -0.25}, 1, &error),
-                   "mass must be greater than 0 (got -2.5, from $height*$ratio with height = 10, "
+                   "mass must be greater than 0 (got -2.5 kg, from $height*$ratio with height = 10 boxes, "
                    "ratio = -0.25)");
 }
 
-#define CHAIN "must be a number or a chain of numbers and parameters such as 2*$name/3"
 #define EIGHT(text) text text text text text text text text
+#define OPERAND ": a number, a $name or '(' is expected here (got "
+#define OPERATOR ": an operator or the end is expected here (got "
 
-static const Refused chains[] = {
-    {SCENE("0*$height"), "6:44: error: mass must be greater than 0 (got 0, from 0*$height with height = 10)"},
-    {SCENE("1e9*$height"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+10, from 1e9*$height with "
-                           "height = 10)"},
-    {SCENE("1e38*$height*10"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+40, from 1e38*$height*10 "
-                               "with height = 10)"},
-    {SCENE("0/$height"), "6:44: error: mass must be greater than 0 (got 0, from 0/$height with height = 10)"},
-    {SCENE("$height/0"), "6:44: error: mass is divided by 0 (got $height/0 with height = 10)"},
-    {SCENE("1/0*$height"), "6:44: error: mass is divided by 0 (got 1/0*$height with height = 10)"},
-    {SCENE("1/1e-400"), "6:44: error: mass is divided by 0 (got 1/1e-400)"},
+static const Refused expressions[] = {
+    {SCENE("0*$height"), "6:44: error: mass must be greater than 0 (got 0 kg, from 0*$height with height = 10 boxes)"},
+    {SCENE("1e9*$height"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+10 kg, from 1e9*$height with "
+                           "height = 10 boxes)"},
+    {SCENE("1e38*$height*10"), "6:44: error: mass must be from 1e-06 to 1e+09 kg (got 1e+40 kg, from 1e38*$height*10 "
+                               "with height = 10 boxes)"},
+    {SCENE("2 - $height"),
+     "6:44: error: mass must be greater than 0 (got -8 kg, from 2 - $height with height = 10 boxes)"},
+    {SCENE("0/$height"), "6:44: error: mass must be greater than 0 (got 0 kg, from 0/$height with height = 10 boxes)"},
+    {SCENE("$height/0"), "6:51: error: mass is divided by 0 (got $height/0 with height = 10 boxes)"},
+    {SCENE("1/0*$height"), "6:45: error: mass is divided by 0 (got 1/0*$height with height = 10 boxes)"},
+    {SCENE("1/($height - 10)"), "6:45: error: mass is divided by 0 (got 1/($height - 10) with height = 10 boxes)"},
+    {SCENE("1/1e-400"), "6:45: error: mass is divided by 0 (got 1/1e-400)"},
     {SCENE("$"), "6:44: error: mass: a parameter's name must follow the '$' (got $)"},
-    {SCENE("2*$"), "6:44: error: mass: a parameter's name must follow the '$' (got 2*$)"},
+    {SCENE("2*$"), "6:46: error: mass: a parameter's name must follow the '$' (got 2*$)"},
     {SCENE("$*2"), "6:44: error: mass: a parameter's name must follow the '$' (got $*2)"},
     {SCENE("$Height"), "6:44: error: mass: a parameter's name must follow the '$' (got $Height)"},
-    {SCENE("2*$hieght"), "6:44: error: mass: '$hieght' is not a parameter; did you mean 'height'?"},
+    {SCENE("2*$hieght"), "6:46: error: mass: '$hieght' is not a parameter; did you mean 'height'?"},
     {SCENE("$speed"), "6:44: error: mass: '$speed' is not a parameter; known: height, ratio"},
     {MASS("$speed"), "6:44: error: mass: '$speed' is not a parameter; known: none"},
     {MASS("$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"),
      "6:44: error: mass: '$aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa' is not a parameter; known: none"},
-    {SCENE("2*"), "6:44: error: mass " CHAIN " (got 2*)"},
-    {SCENE("'*2'"), "6:45: error: mass " CHAIN " (got *2)"},
-    {SCENE("2**3"), "6:44: error: mass " CHAIN " (got 2**3)"},
-    {SCENE("2//3"), "6:44: error: mass " CHAIN " (got 2//3)"},
-    {SCENE("2 * 3"), "6:44: error: mass " CHAIN " (got 2 * 3)"},
-    {SCENE("-$height"), "6:44: error: mass " CHAIN " (got -$height)"},
-    {SCENE("2$height"), "6:44: error: mass " CHAIN " (got 2$height)"},
-    {SCENE("$height$ratio"), "6:44: error: mass " CHAIN " (got $height$ratio)"},
-    {SCENE("$height+1"), "6:44: error: mass " CHAIN " (got $height+1)"},
-    {SCENE("(2*$height)"), "6:44: error: mass " CHAIN " (got (2*$height))"},
-    {SCENE("2*inf"), "6:44: error: mass " CHAIN " (got 2*inf)"},
-    {SCENE("1e308*1e308"), "6:44: error: mass " CHAIN " (got 1e308*1e308)"},
-    {SCENE(EIGHT("1e38*") "1e38"), "6:44: error: mass has an intermediate result that is infinite (got "
+    {SCENE("2*"), "6:46: error: mass" OPERAND "2*)"},
+    {SCENE("'*2'"), "6:45: error: mass" OPERAND "*2)"},
+    {SCENE("2**3"), "6:46: error: mass" OPERAND "2**3)"},
+    {SCENE("2//3"), "6:46: error: mass" OPERAND "2//3)"},
+    {SCENE("2 + "), "6:47: error: mass" OPERAND "2 +)"},
+    {SCENE("2 * * 3"), "6:48: error: mass" OPERAND "2 * * 3)"},
+    {SCENE("()"), "6:45: error: mass" OPERAND "())"},
+    {SCENE("2$height"), "6:45: error: mass" OPERATOR "2$height with height = 10 boxes)"},
+    {SCENE("2 3*$height"), "6:46: error: mass" OPERATOR "2 3*$height with height = 10 boxes)"},
+    {SCENE("$height$ratio"), "6:51: error: mass" OPERATOR "$height$ratio with height = 10 boxes, ratio = 0.1)"},
+    {SCENE("(2)3"), "6:47: error: mass" OPERATOR "(2)3)"},
+    {SCENE("2*3)"), "6:47: error: mass" OPERATOR "2*3))"},
+    {SCENE("$height^2"), "6:51: error: mass" OPERATOR "$height^2 with height = 10 boxes)"},
+    {SCENE("2*(3+4"), "6:50: error: mass: an operator or ')' is expected here (got 2*(3+4)"},
+    {SCENE("2*inf"), "6:46: error: mass" OPERAND "2*inf)"},
+    {SCENE("2*abs(3)"), "6:46: error: mass" OPERAND "2*abs(3))"},
+    {SCENE("1e308*1e308"), "6:44: error: mass" OPERAND "1e308*1e308)"},
+    {SCENE(EIGHT("1e38*") "1e38"), "6:83: error: mass has an intermediate result that is infinite (got "
                                    "1e38*1e38*1e38*1e38*1e38*1e38*1e38*1e38*1...)"},
-    {SCENE(EIGHT("1*1*") "1"),
-     "6:44: error: mass: a chain must have at most 16 numbers (got 1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1)"},
-    {SCENE(EIGHT(EIGHT(EIGHT("2*3*"))) "1"),
-     "6:44: error: mass: a chain must have at most 16 numbers (got 2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2*3*2...)"},
+    {SCENE(EIGHT("1*1*") EIGHT("1*1*") "1"),
+     "6:108: error: mass: an expression has too many numbers, signs and parentheses (got "
+     "1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1*1...)"},
+    {SCENE(EIGHT(EIGHT(EIGHT("(((("))) "1"),
+     "6:76: error: mass: an expression has too many numbers, signs and parentheses (got "
+     "(((((((((((((((((((((((((((((((((((((((((...)"},
+    {SCENE(EIGHT(EIGHT("(-")) "1"), "6:76: error: mass: an expression has too many numbers, signs and parentheses (got "
+                                    "(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(-(...)"},
     {BODY("size: [1, $height], mass: 1, position: [0, 0]"),
      "6:16: error: size: '$height' is not a parameter; known: none"},
+    /* A text that is written otherwise than it is has the place of its begin. */
+    {SCENE("\"\\x32*$speed\""), "6:45: error: mass: '$speed' is not a parameter; known: height, ratio"},
 };
+
+TEST(the_caret_is_under_what_is_wrong) {
+    expect_refused(SCENE("($height + $ratoi)*2"), "6:55: error: mass: '$ratoi' is not a parameter; did you mean "
+                                                  "'ratio'?\n    6 |   - {size: [1, 1], position: [0, 0], mass: "
+                                                  "($height + $ratoi)*2}\n      | "
+                                                  "                                                      ^");
+}
 
 /* The value of a key of the scene, and a parameter half. */
 #define WHOLE(key)            \
@@ -195,8 +306,8 @@ static const Refused whole_numbers[] = {
     {WHOLE("iterations: $big*$big*$big*$big"),
      "2:13: error: iterations must be a whole number from 1 to 1000000 (got 1e+24, from $big*$big*$big*$big with big = "
      "1000000)"},
-    {WHOLE("iterations: 1/0"), "2:13: error: iterations is divided by 0 (got 1/0)"},
-    {WHOLE("iterations: 2*$haf"), "2:13: error: iterations: '$haf' is not a parameter; did you mean 'half'?"},
+    {WHOLE("iterations: 1/0"), "2:14: error: iterations is divided by 0 (got 1/0)"},
+    {WHOLE("iterations: 2*$haf"), "2:15: error: iterations: '$haf' is not a parameter; did you mean 'half'?"},
     {WHOLE("dt: $half*$half*$half"), "1:1: error: a scene needs the key 'iterations'"},
 };
 
@@ -241,7 +352,7 @@ static const Refused parameters[] = {
      "8:33: error: a scene must have at most 4 parameters"},
 };
 
-TEST(bad_chains_are_refused) { CHECK_TABLE(chains); }
+TEST(bad_expressions_are_refused) { CHECK_TABLE(expressions); }
 TEST(whole_numbers_are_checked_on_the_result) { CHECK_TABLE(whole_numbers); }
 TEST(bad_parameters_are_refused) { CHECK_TABLE(parameters); }
 

@@ -62,6 +62,7 @@ static void refuse(const char *text, const char *reason) {
 TEST(bad_lists_are_refused) {
     refuse("engin", "method: error: 'engin' is not a method");
     refuse("engine,", "is not a method");
+    refuse("engine:", "method: error: 'engine:' has no setting behind ':'");
     refuse("", "is not a method");
     refuse("engine:k=3,engine:k=3", "engine:k=3: error: is given twice");
     refuse("engine,engine:k=10", "is given twice");

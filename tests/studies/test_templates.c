@@ -56,6 +56,29 @@ TEST(stack) { check_template("stack"); }
 TEST(pyramid) { check_template("pyramid"); }
 TEST(arch) { check_template("arch"); }
 TEST(dominoes) { check_template("dominoes"); }
+TEST(towers) { check_template("towers"); }
+TEST(gate) { check_template("gate"); }
+TEST(cardhouse) { check_template("cardhouse"); }
+
+/* "At rest when the bomb comes." */
+TEST(the_pile_comes_to_rest) {
+    static const double values[][2] = {{0.3, 0.4}, {0, 0.4}, {0.7, 0.4}, {0.3, 0.2}, {0.3, 1}};
+    for (int i = 0; i < 5 * 3; i++) {
+        const SceneSetting settings[] = {{"tilt", values[i % 5][0]}, {"friction", values[i % 5][1]}};
+        VerdictReading reading;
+        Scene *scene = scene_read_with(SOURCE_DIR "/scenes/templates/pile.yaml", settings, 2, &error);
+        assert_ok(scene != NULL, error);
+        const Method method = method_named(methods[i / 5]);
+        scene->bomb.present = false;
+        scene->frames = scene->bomb.frame;
+        const VerdictRun run = verdict_run_of(scene);
+        assert_ok(verdict_run(&reading, scene, &method, &run, &error), error);
+        if (reading.verdict != VERDICT_SETTLES)
+            fail_msg("%s with tilt %g and friction %g: %s, body %d", methods[i / 5], values[i % 5][0], values[i % 5][1],
+                     verdict_name(reading.verdict), reading.body);
+        scene_destroy(scene);
+    }
+}
 
 /* "With 10 iterations it falls." */
 TEST(the_arch_needs_its_iterations) {

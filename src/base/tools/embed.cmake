@@ -1,7 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Writes the FILES of folder FROM as arrays of TYPE ("char", "unsigned char") into OUTPUT. With PREFIX shader_, shape.vert
 # becomes shader_shape_vert, ended by a 0; beside bytes (unsigned char) stands their number, NAME_size. HEADER declares them.
+# TYPE "script": all FILES are one text PREFIX, several of them in one scope. Beside it stands its SHA-256, PREFIX_sha256, by
+# which the policy of a page allows it.
 set(text "#include \"${HEADER}\"\n")
+if(TYPE STREQUAL "script")
+    set(script "")
+    foreach(file ${FILES})
+        file(READ "${FROM}/${file}" part)
+        string(APPEND script "${part}\n")
+    endforeach()
+    if(FILES MATCHES ";")
+        set(script "\"use strict\";\n{\n${script}}\n")
+    endif()
+    string(HEX "${script}" bytes)
+    string(SHA256 sum "${script}")
+    string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+    string(REGEX REPLACE "(..)" "0x\\1," sum "${sum}")
+    string(APPEND text "const char ${PREFIX}[] = {${bytes}0};\nconst unsigned char ${PREFIX}_sha256[] = {${sum}};\n")
+    set(FILES "")
+endif()
 foreach(file ${FILES})
     file(READ "${FROM}/${file}" bytes HEX)
     string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")

@@ -27,7 +27,7 @@ function(add_manual section name)
         DEPENDS ${script} ${folder}/pages.txt ${manual_DEPENDS}
         VERBATIM)
     set(manuals ${manuals} ${output} PARENT_SCOPE)
-    install(FILES ${output} DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section})
+    install(FILES ${output} DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section} OPTIONAL)
 endfunction()
 
 add_manual(1 twinbox SCRIPT ${folder}/command.sh $<TARGET_FILE:twinbox>
@@ -49,3 +49,6 @@ foreach(line ${lines})
 endforeach()
 
 add_custom_target(manuals ALL DEPENDS ${manuals})
+install(CODE "if(NOT EXISTS \"${PROJECT_BINARY_DIR}/man/man1/twinbox.1\")
+                  message(STATUS \"No manual pages, as they are not built: cmake --build BUILD --target manuals\")
+              endif()")

@@ -8,8 +8,8 @@ const of_run = (text, run) => text && `${names[run]} ${text}`;
 
 function where_apart({compared, why, differs, apart}) {
   if (!compared) return `cannot be compared (${cut(why, 200)})`;
-  const far = apart ? "1 mm at " + time_text(apart.frame) : "less than 1 mm";
-  return differs ? `differs in a bit at ${time_text(differs.frame)}, by ${far}` : "has the same bits";
+  const far = apart ? `1 mm from ${time_text(apart.frame)} on` : "less than 1 mm";
+  return differs ? `differs from ${time_text(differs.frame)} on, by ${far}` : "is equal, bit for bit";
 }
 
 ui.title.textContent = `${cut(data.title, 80)}: ${names.join(", ")}`;

@@ -67,8 +67,8 @@ add_event(CIRCLE, runs.length, {frame: data.impact}, "impact");
 runs.forEach((each, run) => {
   const {differs, apart, verdict} = each;
   each.ended = verdict?.text ?? "";
-  add_event(DIAMOND, run, differs, names[run] + " differs in a bit");
-  add_event(TRIANGLE, run, apart, names[run] + " is 1 mm apart");
+  add_event(DIAMOND, run, differs, names[run] + " differs from here on");
+  add_event(TRIANGLE, run, apart, names[run] + " is 1 mm away");
   add_event(SQUARE, run, verdict, names[run] + " " + short_verdict(run));
 });
 moments.splice(0, Infinity, ...moments.filter(moment => moment));
