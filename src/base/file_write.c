@@ -198,7 +198,7 @@ int file_draft(const char *path, Error *error) {
     char place[PATH_MAX];
     errno = ENAMETOOLONG;
     const int draft = draft_place(path, place) ? temporary_nameless(place) : -1;
-    if (draft < 0) error_system(error, path, "cannot write: %s", file_make_cause(path, errno));
+    if (draft < 0) error_system(error, place, "cannot write: %s", file_make_cause(place, errno));
     return draft;
 }
 

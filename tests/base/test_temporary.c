@@ -211,7 +211,7 @@ TEST(drafts_for_pipes_are_in_the_folder_for_temporary_files) {
     close(draft);
     assert_int_equal(setenv("TMPDIR", "/nonexistent", 1), 0);
     assert_int_equal(file_draft("-", &error), -1);
-    assert_error(error, ERROR_SYSTEM, "No such file or directory");
+    assert_error(error, ERROR_SYSTEM, "/nonexistent/draft: error: cannot write: its folder does not exist");
     unsetenv("TMPDIR");
 }
 

@@ -110,7 +110,7 @@ TEST(bad_heads_are_refused) {
     Example example;
     make_example(&example);
     expect_refused(&example, 0, "stack", "frame must be at least 1 (got 0)");
-    expect_refused(&example, 1, "st\033[2Jack", "control characters");
+    expect_refused(&example, 1, "st\033[2Jack", "control character U+001B");
 }
 
 TEST(bad_bodies_are_refused) {

@@ -175,7 +175,7 @@ TEST(sizes_and_slots_out_of_bounds_are_refused) {
                  {{"slot_a", NPZ_INT32, 1, {2}, falls}, "slot 1"},
                  {{"slot_b", NPZ_INT32, 1, {2}, beyond}, "slot 1"},
                  {{"slot_feature", NPZ_UINT32, 1, {2}, twice}, "slot 1"},
-                 {{"scene", NPZ_TEXT, 0, {0}, "\33[2J"}, "control characters"}};
+                 {{"scene", NPZ_TEXT, 0, {0}, "\33[2J"}, "control character U+001B"}};
     NetArrays arrays = two_slots();
     for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
         refuse_file(is_read, write_int(&arrays, scalars[i].name, scalars[i].number), scalars[i].text);

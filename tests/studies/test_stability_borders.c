@@ -58,7 +58,7 @@ TEST(methods_that_do_not_apply_are_left_out_and_named) {
     draw();
     check_svg("found = texts(read('borders'))\n"
               "assert 'engine' in found and 'not applicable' in found, found\n"
-              "assert not any('-net' in text for text in found), found\n"
+              "assert not any('-net' in text for text in found if not text.startswith('Left out')), found\n"
               "assert 'Left out, as not applicable: pair-net, scene-net:net=off.' in caption('borders')\n");
     start_afresh(MAPS ONE_CELL, BORDERS "a,engine,,h,,3,4,falls\na,pair-net,,h,,,1,falls\n");
     draw();
