@@ -16,8 +16,8 @@
    and UMFPACK of SuiteSparse solve the same matrix. CHOLMOD, with half the work, only solves its symmetric part.
 
        boxes      this         KLU            UMFPACK        CHOLMOD        analysis: this  KLU
-       10         1.2          3.2            15             3.6            0.9             4.3
-       66         12           64             292            54             7.7             36
+       10         1.4          3.7            17             3.9            1.0             4.8
+       66         12           70             311            61             7.1             37
        496        392          2,200          4,600          3,830          128             311
        5,050      30,800       138,000        124,000        68,500         1,370           3,560
 
