@@ -17,7 +17,7 @@
 
 enum { WIDTH = 1280, HEIGHT = 720 };
 
-/* s after the bomb is added in which it has struck: the view of the picture shows its way (pictures/picture.h). */
+/* s after the bomb is added in which it has struck: the picture shows its way. */
 static const double way = 3;
 
 typedef struct Options {
@@ -38,7 +38,7 @@ static const CommandSpec spec = {
     .inputs = {1, 1, "scene"},
     .help =
         "Validate a scene: all keys, boxes that start inside others, the launches of the bomb, the networks that it "
-        "names, and each parameter at both ends. Prints a summary and draws the first frame.\v"
+        "names, and each parameter at both ends. Prints a summary and draws the first frame with the way of the bomb.\v"
         "Example: twinbox check scenes/stack.yaml -o first.png"};
 
 static void print_bodies(FILE *out, const Scene *scene) {
@@ -93,6 +93,7 @@ static void print_lists(FILE *out, const Scene *scene) {
 
 static bool draw(const Trajectory *run, const char *path, Error *error) {
     RenderOptions render = draw_panels_defaults(NULL);
+    render.look.show = LOOK_APPROACH;
     render.width = WIDTH;
     render.height = HEIGHT;
     Renderer *renderer = renderer_create(&run, 1, &render, error);
@@ -104,8 +105,7 @@ static bool draw(const Trajectory *run, const char *path, Error *error) {
     return ok;
 }
 
-/* Runs the engine until the bomb has struck, as far as the scene goes, because the view depends on it; only one step if
-   that would take long. */
+/* Runs the engine until the bomb has struck, as far as the scene goes; only one step if that would take long. */
 static bool draw_first_frame(const Scene *scene, const char *path, Error *error) {
     const double most_states = 1e7, bodies = scene->body_count + 1;
     Scene shown = *scene;

@@ -31,7 +31,7 @@ static const Option option_table[] = {
     {"--moments", 0, "N", "Number of moments instead, evenly spaced from the first to the last",
      OPTION_INT(Options, figure.moments, 1, FIGURE_MOMENTS_MAX)},
     {"--camera", 0, "X,Y,W,H", CAMERA_OPTION_VIEW, OPTION_READ(camera_option_read, Options, figure.view)},
-    {"--view-from", 0, "RUN", "The view of this run (.npz) instead of the first's", OPTION_PATH(Options, view_from)},
+    {"--view-from", 0, "RUN", "The view of this run (.npz) instead of one for all runs", OPTION_PATH(Options, view_from)},
     {"--scene", 0, "SCENE", "divergence: scene of the first run, for the band of chaos",
      OPTION_PATH(Options, figure.scene)},
     {"--bodies", 0, "A,B,...",

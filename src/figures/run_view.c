@@ -229,11 +229,11 @@ static WorldWindow window_of_view(const CameraView *view) {
 
 WorldWindow run_window(const FigureSpec *spec, const int *frames, int count) {
     const double margin_share = 0.04, least_margin = 0.4; /* m */
-    const Trajectory *run = spec->view_from != NULL ? spec->view_from : spec->runs[0];
+    const Trajectory *const *runs = spec->view_from != NULL ? &spec->view_from : spec->runs;
     CameraView set;
     if (spec->view.width > 0) return window_of_view(&spec->view);
-    if (camera_view_of(run, &set)) return window_of_view(&set);
-    const Extent all = framing_in_frames(run, frames, count);
+    if (camera_view_of(runs[0], &set)) return window_of_view(&set);
+    const Extent all = framing_in_frames(runs, spec->view_from != NULL ? 1 : spec->run_count, frames, count);
     if (extent_is_empty(&all)) return (WorldWindow){-1, -1, 2, 2};
     double margin = fmax(margin_share * extent_side(&all), least_margin);
     return (WorldWindow){all.left - margin, all.bottom - margin, all.right - all.left + 2 * margin,

@@ -186,22 +186,38 @@ static bool extent_holds(const Extent *extent, const Trajectory *run, int frame,
 
 static const double FRAMING_MIN_SIDE = 2.0; /* m, of what stands, for the next two */
 /* Sides of what stands, around it. */
-static const double BOMB_REACH = 3; /* a bomb farther away is not framed, or it would be all that can be seen */
+static const double BOMB_REACH = 3; /* a bomb farther away is not shown, or it would be all that can be seen */
+static const double WAY_REACH = 8;  /* where its way is shown */
 static const double NEAR = 1;       /* a stack that falls over stays within this */
+static const double SETTLED_STEPS = 32;
+static const double SAG = 0.9; /* of its height: what stands higher has not fallen together */
+static const double BOMB_MARGIN = 0.1; /* of its size */
 
-/* The moving bodies in frame 0 without the bomb, and the ground below them. */
-static Extent standing_extent(const Trajectory *run) {
-    Extent all = extent_empty;
-    for (int body = 0; body < run->bodies; body++)
-        if (!run->fixed[body] && body != run->bomb) extent_include(&all, run, 0, body);
-    if (extent_is_empty(&all)) return all;
-    for (int body = 0; body < run->bodies; body++)
-        if (!run->fixed[body] && body != run->bomb) extent_include_ground(&all, run, 0, body);
-    return all;
+/* Whether a body stands in this frame, in a region (NULL: anywhere): it moves, and is not the bomb. */
+static bool stands(const Trajectory *run, int frame, int body, const Extent *region) {
+    return !run->fixed[body] && body != run->bomb && (region == NULL || extent_holds(region, run, frame, body));
 }
 
 static Extent surroundings(const Extent *extent, double sides) {
     return extent_widened(extent, sides * fmax(extent_side(extent), FRAMING_MIN_SIDE));
+}
+
+/* The bodies that stand, the ground below them, and static bodies near them that are no larger than all of them together, such as
+   the feet of an arch. */
+static Extent standing_extent(const Trajectory *run, int frame, const Extent *region) {
+    Extent all = extent_empty;
+    for (int body = 0; body < run->bodies; body++)
+        if (stands(run, frame, body, region)) extent_include(&all, run, frame, body);
+    if (extent_is_empty(&all)) return all;
+    const double largest = extent_side(&all);
+    const Extent near = surroundings(&all, NEAR);
+    for (int body = 0; body < run->bodies; body++) {
+        if (stands(run, frame, body, region)) extent_include_ground(&all, run, frame, body);
+        if (run->fixed[body] && extent_holds(&near, run, frame, body) &&
+            fmax(run->size[body].x, run->size[body].y) <= largest)
+            extent_include(&all, run, frame, body);
+    }
+    return all;
 }
 
 static Extent moving_extent(const Trajectory *run) {
@@ -231,85 +247,105 @@ static bool most_leave(const Extent *region, const Trajectory *run, int last) {
     return 2 * inside < all;
 }
 
-static int first_frame_of_bomb(const Trajectory *run) {
+int bomb_first_frame(const Trajectory *run) {
     int first = 0;
     while (first + 1 < run->frames && !trajectory_has(run, first, run->bomb)) first++;
     return first;
 }
 
-/* The bomb where it appears, and its way to the impact, as far as within reach. */
-static void include_bomb(Extent *extent, const Trajectory *run, const Extent *reach, int impact) {
-    if (run->bomb < 0) return;
-    const int first = first_frame_of_bomb(run);
-    for (int frame = first; frame == first || frame <= impact; frame++)
-        if (extent_holds(reach, run, frame, run->bomb)) extent_include(extent, run, frame, run->bomb);
+/* What falls together before the bomb strikes, as high as it is then. In steps, and not for a sag, so that runs that differ
+   little have the same view. */
+static Extent settled_extent(const Extent *standing, const Trajectory *run, int impact) {
+    const Extent then = standing_extent(run, impact - 1, standing);
+    const double height = standing->top - standing->bottom;
+    const double share = ceil(SETTLED_STEPS * (then.top - standing->bottom) / height) / SETTLED_STEPS;
+    Extent settled = *standing;
+    if (share < SAG) settled.top = standing->bottom + share * height;
+    return settled;
 }
 
-/* What is struck from the side falls to the far side, about as far as it is high. */
-static void include_far_side(Extent *extent, const Extent *standing, const Trajectory *run, const Extent *reach,
-                             int impact) {
-    if (run->bomb < 0 || impact < 1) return;
-    const int last = impact - 1;
-    int first = first_frame_of_bomb(run);
-    while (first < last && !extent_holds(reach, run, first, run->bomb)) first++;
-    if (first >= last) return;
-    const Vec2 *from = &run->position[(size_t)first * (size_t)run->bodies + (size_t)run->bomb];
-    const Vec2 *to = &run->position[(size_t)last * (size_t)run->bodies + (size_t)run->bomb];
-    const double along = (double)to->x - (double)from->x, height = standing->top - standing->bottom;
-    if (!(fabs(along) > fabs((double)to->y - (double)from->y))) return;
-    if (along > 0)
-        extent->right = fmax(extent->right, standing->right + height);
-    else
-        extent->left = fmin(extent->left, standing->left - height);
+/* Three quarters of what stands, at the start. */
+static bool most_are_in(const Extent *extent, const Trajectory *run) {
+    int inside = 0, all = 0;
+    for (int body = 0; body < run->bodies; body++)
+        all += stands(run, 0, body, NULL), inside += stands(run, 0, body, extent);
+    return 4 * inside >= 3 * all;
+}
+
+/* Where what stands falls if it is struck: to the far side if the bomb comes from the side, else to both; about as far as it is
+   high. */
+static Extent room_to_fall(const Trajectory *run, const Extent *standing, int impact) {
+    const int first = bomb_first_frame(run), last = impact - 1;
+    const double height = standing->top - standing->bottom;
+    Extent room = *standing;
+    if (first >= last) return room;
+    const Pose from = pose_stored(run, first, run->bomb), to = pose_stored(run, last, run->bomb);
+    const double along = to.x - from.x;
+    const bool sideways = fabs(along) > fabs(to.y - from.y);
+    if (!sideways || along > 0) room.right += sideways ? height : height / 2;
+    if (!sideways || along < 0) room.left -= sideways ? height : height / 2;
+    return room;
 }
 
 /* All that the moving bodies reach; without them, the static ones. */
-static Framing frame_whole_run(const Trajectory *run) {
-    Extent all = moving_extent(run);
-    if (extent_is_empty(&all)) all = fixed_extent(run);
-    if (extent_is_empty(&all)) all = (Extent){0, 0, 0, 0};
-    return (Framing){all, (all.left + all.right) / 2};
+static Extent whole_run(const Trajectory *run) {
+    const Extent moving = moving_extent(run), fixed = fixed_extent(run);
+    return !extent_is_empty(&moving) ? moving : !extent_is_empty(&fixed) ? fixed : (Extent){-1, 1, -1, 1};
 }
 
-static Framing framing_of(const Trajectory *run) {
-    const int impact = trajectory_impact(run);
-    const Extent standing = standing_extent(run);
-    if (extent_is_empty(&standing)) return frame_whole_run(run);
-    const Extent near = surroundings(&standing, NEAR), reach = surroundings(&standing, BOMB_REACH);
-    if (most_leave(&near, run, impact >= 0 ? impact : run->frames - 1)) return frame_whole_run(run);
-    Framing framing = {standing, (standing.left + standing.right) / 2};
-    include_bomb(&framing.extent, run, &reach, impact);
-    include_far_side(&framing.extent, &standing, run, &reach, impact);
-    return framing;
+static Extent bomb_extent(const Trajectory *run, int frame) {
+    Extent bomb = extent_empty;
+    extent_include(&bomb, run, frame, run->bomb);
+    return bomb;
 }
 
-static Extent extent_in_frames(const Trajectory *run, const int *frames, int count, const Extent *near,
-                               const Extent *reach) {
-    Extent all = extent_empty;
+/* When the bomb gets where something stood: until then it flies, so that the frame does not depend on how what stands sags. */
+static int strike_frame(const Trajectory *run, const Extent *standing, int impact) {
+    for (int frame = bomb_first_frame(run); frame < impact; frame++) {
+        const Extent bomb = bomb_extent(run, frame);
+        if (bomb.left < standing->right && bomb.right > standing->left && bomb.bottom < standing->top) return frame;
+    }
+    return impact;
+}
+
+/* With a margin; below, there is the ground. */
+static void include_bomb(Extent *extent, const Trajectory *run, int frame) {
+    Extent bomb = bomb_extent(run, frame);
+    bomb = extent_widened(&bomb, BOMB_MARGIN * extent_side(&bomb));
+    extent->left = fmin(extent->left, bomb.left), extent->right = fmax(extent->right, bomb.right);
+    extent->top = fmax(extent->top, bomb.top);
+}
+
+static Extent joined(Extent a, const Extent *b) {
+    return (Extent){fmin(a.left, b->left), fmax(a.right, b->right), fmin(a.bottom, b->bottom), fmax(a.top, b->top)};
+}
+
+static void include_frames(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *near,
+                           const Extent *reach) {
     for (int i = 0; i < count; i++) {
         const int frame = frames[i] < run->frames ? frames[i] : run->frames - 1;
         for (int body = 0; body < run->bodies; body++) {
             const Extent *region = body == run->bomb ? reach : near;
             if (!run->fixed[body] && (region == NULL || extent_holds(region, run, frame, body)))
-                extent_include(&all, run, frame, body);
+                extent_include(all, run, frame, body);
         }
     }
-    return all;
 }
 
-Extent framing_in_frames(const Trajectory *run, const int *frames, int count) {
-    const Extent standing = standing_extent(run);
+Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count) {
+    const Extent standing = standing_extent(runs[0], 0, NULL);
     const Extent near = surroundings(&standing, NEAR), reach = surroundings(&standing, BOMB_REACH);
-    Extent all = extent_empty;
-    if (!extent_is_empty(&standing)) all = extent_in_frames(run, frames, count, &near, &reach);
-    if (extent_is_empty(&all)) all = extent_in_frames(run, frames, count, NULL, NULL);
-    return extent_is_empty(&all) ? fixed_extent(run) : all;
+    /* Of the others what flies off or sinks into the ground does not count, or it would make all small. */
+    Extent others = surroundings(&standing, NEAR / 2), all = extent_empty;
+    others.bottom = standing.bottom;
+    for (int i = 0; i < run_count && !extent_is_empty(&standing); i++)
+        include_frames(&all, runs[i], frames, count, i == 0 ? &near : &others, i == 0 ? &reach : &others);
+    if (extent_is_empty(&all)) include_frames(&all, runs[0], frames, count, NULL, NULL);
+    return extent_is_empty(&all) ? fixed_extent(runs[0]) : all;
 }
 
-static const double MARGIN = 0.07;       /* of the larger side, around what is fitted */
-static const double LONGEST = 6;         /* shorter sides: a longer side has no wider margin, or it would be all */
-static const double MIN_SIDE = 2.0;      /* m */
-static const double MIN_VIEW = 1e-3;     /* m; the smallest view that can be set */
+static const double FILL = 0.82;     /* of a panel's width or height: what stands; 0.7 with the scale rounded down */
+static const double MIN_VIEW = 1e-3; /* m; the smallest view that can be set */
 static const double GROUND_SHARE = 0.05; /* of the panel's height, at most, that spare room adds below */
 static const double WHOLE_SCALE = 12.0;  /* from here on a whole number of pixels a metre costs little room */
 
@@ -333,46 +369,71 @@ bool camera_view_of(const Trajectory *run, CameraView *view) {
     return camera_view_is_usable(view);
 }
 
-Camera camera_show(const CameraView *view, int width, int height) {
-    return look_at(view->x, view->y, nice_scale(fmin(width / view->width, height / view->height)), width, height);
+/* With the margins that make it FILL; a narrow one below, where a strip of the ground is enough. */
+static Extent add_margins(const Extent *e) {
+    const double more = 1 / FILL - 1, side = more / 2 * (e->right - e->left), height = e->top - e->bottom;
+    const double below = GROUND_SHARE / FILL * height;
+    return (Extent){e->left - side, e->right + side, e->bottom - below, e->top + more * height - below};
 }
 
-/* With a margin; a narrow one below, where a strip of the ground is enough. */
-static Extent add_margin(const Extent *b) {
-    const double shorter = fmin(b->right - b->left, b->top - b->bottom);
-    double margin = MARGIN * fmax(fmin(extent_side(b), LONGEST * shorter), MIN_SIDE);
-    return (Extent){b->left - margin, b->right + margin, b->bottom - margin / 3, b->top + margin};
+CameraFrame camera_frame_of(const CameraView *view) {
+    const Extent held = {view->x - view->width / 2, view->x + view->width / 2, view->y - view->height / 2,
+                         view->y + view->height / 2};
+    return (CameraFrame){true, held, held, view->x};
 }
 
-CameraFrame camera_frame(const Trajectory *run) {
+CameraFrame camera_frame(const Trajectory *const *runs, int count) {
+    const Trajectory *run = runs[0];
     CameraView set;
-    if (camera_view_of(run, &set))
-        return (CameraFrame){.set = true,
-                             .left = set.x - set.width / 2,
-                             .right = set.x + set.width / 2,
-                             .bottom = set.y - set.height / 2,
-                             .top = set.y + set.height / 2,
-                             .middle = set.x};
-    const Framing framing = framing_of(run);
-    const Extent b = add_margin(&framing.extent);
-    return (CameraFrame){.left = b.left, .right = b.right, .bottom = b.bottom, .top = b.top, .middle = framing.middle};
+    if (camera_view_of(run, &set)) return camera_frame_of(&set);
+    const int impact = trajectory_impact(run);
+    Extent all = standing_extent(run, 0, NULL);
+    const Extent near = surroundings(&all, NEAR);
+    const bool leaves = extent_is_empty(&all) || most_leave(&near, run, impact >= 0 ? impact : run->frames - 1);
+    if (leaves) all = whole_run(run);
+    for (int i = 1; i < count; i++) {
+        const Extent other = standing_extent(runs[i], 0, leaves ? &all : &near);
+        all = joined(all, &other);
+    }
+    const bool struck = !leaves && impact >= 1;
+    const Extent settled = struck ? settled_extent(&all, run, impact) : all;
+    if (struck && most_are_in(&settled, run)) all = settled;
+    CameraFrame frame = {false, add_margins(&all), add_margins(&all), (all.left + all.right) / 2};
+    if (!struck) return frame;
+    const Extent fallen = room_to_fall(run, &all, impact);
+    const int strikes = strike_frame(run, &settled, impact);
+    if (extent_holds(&near, run, strikes, run->bomb)) include_bomb(&frame.held, run, strikes);
+    frame.room = add_margins(&fallen);
+    frame.room = joined(frame.room, &frame.held);
+    return frame;
 }
 
-Vec2 camera_needs(const Trajectory *run) {
-    CameraView set;
-    if (camera_view_of(run, &set)) return vec2((float)set.width, (float)set.height);
-    const CameraFrame b = camera_frame(run);
-    return vec2((float)(b.right - b.left), (float)(b.top - b.bottom));
+CameraFrame camera_frame_approach(const Trajectory *run) {
+    const int impact = trajectory_impact(run), last = impact >= 0 ? impact : run->frames - 1;
+    const CameraFrame frame = camera_frame(&run, 1);
+    Extent all = standing_extent(run, 0, NULL);
+    const Extent reach = surroundings(&all, WAY_REACH);
+    if (frame.set || extent_is_empty(&all) || run->bomb < 0) return frame;
+    for (int i = bomb_first_frame(run); i <= last; i++)
+        if (extent_holds(&reach, run, i, run->bomb)) extent_include(&all, run, i, run->bomb);
+    all = add_margins(&all);
+    return (CameraFrame){false, all, all, (all.left + all.right) / 2};
 }
 
-Camera camera_fit(const Trajectory *run, int width, int height) {
-    CameraView set;
-    if (camera_view_of(run, &set)) return camera_show(&set, width, height);
-    const CameraFrame b = camera_frame(run);
-    double scale = nice_scale(fmin(width / (b.right - b.left), height / (b.top - b.bottom)));
-    /* Spare width goes to both sides of what stands, spare height above: sky distracts less than ground. */
-    double half = width / scale / 2, x = fmin(fmax(b.middle, b.right - half), b.left + half);
-    double spare = height / scale - (b.top - b.bottom);
-    double below = fmin(spare / 2, GROUND_SHARE * height / scale);
-    return look_at(x, b.bottom - below + height / scale / 2, scale, width, height);
+Vec2 camera_needs(const CameraFrame *frame) {
+    return vec2((float)(frame->room.right - frame->room.left), (float)(frame->held.top - frame->held.bottom));
+}
+
+Camera camera_fit(const CameraFrame *frame, int width, int height) {
+    const Extent *held = &frame->held, *room = &frame->room;
+    const double needed = held->right - held->left, high = held->top - held->bottom;
+    const double scale = nice_scale(fmin(width / needed, height / high));
+    if (frame->set) return look_at(frame->middle, (held->bottom + held->top) / 2, scale, width, height);
+    /* Spare width goes to both sides of what stands, then to where it falls; spare height above: sky distracts less than
+       ground. */
+    const double half = width / scale / 2, reach = fmax(half, (room->right - room->left) / 2);
+    const double falls = fmin(fmax(frame->middle, room->right - reach), room->left + reach);
+    const double x = fmin(fmax(falls, held->right - half), held->left + half);
+    const double below = fmin((height / scale - high) / 2, GROUND_SHARE * height / scale);
+    return look_at(x, held->bottom - below + height / scale / 2, scale, width, height);
 }

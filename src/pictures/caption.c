@@ -143,7 +143,7 @@ static bool fits(const Font *font, const char *text, size_t length, int room) {
     return font_width(font, line) <= room;
 }
 
-/* Bytes of the first line: whole words, or what fits of the first word, but at least one character. */
+/* Bytes of the first line: whole words and settings, or what fits of the first word, but at least one character. */
 static size_t line_length(const Font *font, const char *text, int room) {
     size_t words = 0, characters = 0;
     for (const char *next = text; *next != '\0';) {
@@ -151,7 +151,7 @@ static size_t line_length(const Font *font, const char *text, int room) {
         const size_t length = (size_t)(next - text);
         if (!fits(font, text, without_spaces(text, length), room)) break;
         characters = length;
-        if (*next == ' ' || *next == '\0') words = length;
+        if (*next == ' ' || *next == '\0' || next[-1] == ':' || next[-1] == ',') words = length;
     }
     if (words > 0 || characters > 0) return words > 0 ? words : characters;
     const char *next = text;
@@ -161,7 +161,7 @@ static size_t line_length(const Font *font, const char *text, int room) {
 
 /* If no word fits beside the numbers, the text begins below them. */
 static bool begins_below(const Font *font, const char *text, int first, int others) {
-    const size_t word = strcspn(text, " ");
+    const size_t word = strcspn(text, " :,");
     return !fits(font, text, word, first) && first < others && fits(font, text, word, others);
 }
 

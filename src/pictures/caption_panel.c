@@ -68,7 +68,7 @@ static int add_method(const Card *card, int run, int baseline, int right, char n
     int pixels = card->row.glyphs != NULL ? card->row.pixels : (int)(ROW * card->unit) + 4;
     int x = body_draw_swatch(card->picture, run, hollow, card->left, baseline, pixels, card->drawing);
     x += card->row.pixels / 2;
-    return font_add_fitting(card->drawing, &card->row, title, x, baseline, right - x, card->picture->theme->ink);
+    return caption_name_draw(card->picture, &card->row, title, x, baseline, right - x, card->drawing);
 }
 
 TextLines card_head(const Picture *picture, MomentKind kind) {
@@ -103,7 +103,8 @@ static void draw_title(const Card *card) {
         int baseline = row_baseline(card, first, run) + (int)rint(0.03 * card->unit);
         int x = add_method(card, run, baseline, card->right, note) + card->row.pixels / 2;
         caption_notes(picture, run, note, text, sizeof text);
-        add(card, &card->cell, text, x, baseline, card->right, theme->ink_soft);
+        const bool fits = font_width(&card->cell, text) <= card->right - x;
+        add(card, fits ? &card->cell : &picture->layout.axis, text, x, baseline, card->right, theme->ink_soft);
     }
 }
 
@@ -172,9 +173,9 @@ void card_draw(const Picture *picture, Moment moment, Drawing *drawing) {
         draw_end(&card);
 }
 
-/* The line above a panel. */
+/* Above a panel. */
 
-enum { NOTE_EMS = 5 }; /* a description with less room says nothing */
+enum { OVERLAY_LINES = 3 }; /* with more, an overlay has names only */
 
 /* What a panel does not show, in full and in short. */
 typedef struct State {
@@ -195,55 +196,60 @@ static State describe_state(const Picture *picture, int panel, Moment moment) {
 
 static bool is_hollow(const Picture *picture, int run) { return picture->look.compare == LOOK_OVERLAY && run > 0; }
 
-/* The swatch and the space after it. Boxes coloured by their distance show their run's colour only in the timeline. */
-static int swatch_width(const Picture *picture, int run) {
+/* Of the swatch and the space after it. */
+static int swatch_room(const Picture *picture) {
     const int pixels = picture->layout.title.pixels;
-    const bool none =
-        picture_colors_distance(picture, run) && !is_hollow(picture, run) && (picture->look.show & LOOK_TIMELINE) == 0;
-    return none ? 0 : pixels * 3 / 4 + pixels / 2;
+    return pixels * 3 / 4 + pixels / 2;
 }
 
-static int name_width(const Picture *picture, int run) {
-    char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
-    caption_method(picture, run, name, note);
-    return swatch_width(picture, run) + font_width(&picture->layout.title, name);
+/* Boxes coloured by their distance show their run's colour only in the timeline. */
+static int swatch_width(const Picture *picture, int run) {
+    const bool none =
+        picture_colors_distance(picture, run) && !is_hollow(picture, run) && (picture->look.show & LOOK_TIMELINE) == 0;
+    return none ? 0 : swatch_room(picture);
+}
+
+static int panel_width(const Picture *picture) {
+    return picture->layout.panels[0].right - picture->layout.panels[0].left;
+}
+
+static bool has_distance(const Picture *picture, int run) { return run > 0 && !caption_is_pair(picture); }
+
+/* Of a run's distance and the space before it. */
+static int distance_width(const Picture *picture, int run, const char *label) {
+    const CaptionItem distance = caption_distance_item(label, 0);
+    const Font *font = &picture->layout.method;
+    return has_distance(picture, run) ? caption_item_width(font, &distance) + font->pixels : 0;
 }
 
 int caption_least_width(const Picture *picture, bool whole) {
     const Layout *layout = &picture->layout;
-    const CaptionItem distance = caption_distance_item("", 0);
     int least = 0;
     for (int run = 0; run < picture->count; run++) {
         char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
         caption_method(picture, run, name, note);
-        snprintf(name + method_name_head(name), 4, "\xE2\x80\xA6");
-        const int width = whole ? name_width(picture, run) + layout->title.pixels / 2 +
-                                      (run > 0 ? caption_item_width(&layout->method, &distance) : 0)
-                                : swatch_width(picture, run) + font_width(&layout->axis, name);
+        if (!whole) snprintf(name + method_name_head(name), 4, "\xE2\x80\xA6"); /* an ellipsis */
+        const int width = swatch_room(picture) + font_width(whole ? &layout->title : &layout->axis, name) +
+                          (whole ? distance_width(picture, run, "") : 0);
         if (width > least) least = width;
     }
     return least;
 }
 
-/* Room that a name keeps whatever stands beside it: all that it needs; but of very long settings only a part. */
-static int kept_width(const Picture *picture, int run) {
-    const Rect *panel = &picture->layout.panels[0];
-    const int most = (panel->right - panel->left) * 3 / 5, whole = name_width(picture, run);
-    char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
-    caption_method(picture, run, name, note);
-    snprintf(name + method_name_head(name), 4, "\xE2\x80\xA6"); /* an ellipsis */
-    const int head = swatch_width(picture, run) + font_width(&picture->layout.title, name);
-    return whole < most ? whole : most > head ? most : head < whole ? head : whole;
-}
+/* The name of a run, on one line in the larger font, or in the smaller one on as many as it needs. */
+typedef struct Name {
+    const Font *font;
+    TextLines text;
+} Name;
 
-/* Swatch and name in at most `room` pixels; returns the x where the name ends. */
-static int draw_name(const Picture *picture, int run, int x, int baseline, int room, Drawing *drawing) {
+static Name lay_out_name(const Picture *picture, int run) {
     const Layout *layout = &picture->layout;
-    const int swatch = swatch_width(picture, run);
+    const int room = panel_width(picture) - swatch_width(picture, run), first = room - distance_width(picture, run, "");
     char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
     caption_method(picture, run, name, note);
-    if (swatch > 0) body_draw_swatch(picture, run, is_hollow(picture, run), x, baseline, layout->title.pixels, drawing);
-    return caption_name_draw(picture, &layout->title, name, x + swatch, baseline, room - swatch, drawing);
+    const TextLines lines = text_lines(&layout->title, name, first, room);
+    if (lines.count == 1) return (Name){&layout->title, lines};
+    return (Name){&layout->axis, text_lines(&layout->axis, name, first, room)};
 }
 
 static void notes_of(const Picture *picture, int run, char text[4 * CAPTION_TEXT_SIZE]) {
@@ -252,119 +258,184 @@ static void notes_of(const Picture *picture, int run, char text[4 * CAPTION_TEXT
     caption_notes(picture, run, note, text, 4 * CAPTION_TEXT_SIZE);
 }
 
-static void draw_notes(const Picture *picture, int run, int left, int right, int baseline, Drawing *drawing) {
-    const Font *font = &picture->layout.method;
+/* From the left of a panel to the end of the first line of a name, and a space. */
+static int name_width(const Picture *picture, int run, const Name *name) {
+    return swatch_width(picture, run) + font_width(name->font, name->text.lines[0]) + picture->layout.title.pixels / 2;
+}
+
+/* Where the notes of all panels are: beside the names or on a line below, in this font; NULL: there are none. */
+typedef struct Notes {
+    const Font *font;
+    bool beside;
+} Notes;
+
+/* With room for a swatch, which a page always has. Beside a name, there is also room for a number of bodies out of view: nothing
+   depends on the frame, so that no text moves. */
+static bool has_room(const Picture *picture, int run, Notes notes) {
+    const Layout *layout = &picture->layout;
+    const Name name = lay_out_name(picture, run);
+    const int swatch = swatch_room(picture), beside = swatch - swatch_width(picture, run) +
+                                                      name_width(picture, run, &name) +
+                                                      distance_width(picture, run, "") +
+                                                      font_width(&layout->method, "00 out") + layout->title.pixels / 2;
     char text[4 * CAPTION_TEXT_SIZE];
     notes_of(picture, run, text);
-    if (right - left >= NOTE_EMS * font->pixels || font_width(font, text) <= right - left)
-        font_add_fitting(drawing, font, text, left, baseline, right - left, picture->theme->ink_soft);
+    if (text[0] == '\0') return true;
+    return (!notes.beside || name.text.count == 1) &&
+           font_width(notes.font, text) + (notes.beside ? beside : swatch) <= panel_width(picture);
 }
 
-/* How the runs of an overlay share the line above it, in pixels. */
-typedef struct Shares {
-    int names[RENDER_PANELS_MAX], notes[RENDER_PANELS_MAX]; /* of each run, with the space before */
-    int distance;                                           /* of each run but the first; 0: no room for them */
-    int spare;                                              /* what is left for each run */
-} Shares;
-
-/* Shares room by need: widths that are too large are cut to the same one. Returns what is left. */
-static int share(int *widths, int count, int room) {
-    const int most = caption_fair_width(widths, count, room > 0 ? room : 0);
-    for (int i = 0; i < count; i++) room -= widths[i] = widths[i] < most ? widths[i] : most;
-    return room > 0 ? room : 0;
+static Notes place_notes(const Picture *picture) {
+    const Font *const fonts[] = {&picture->layout.method, &picture->layout.axis};
+    for (int i = 0; i < 4; i++) {
+        const Notes notes = {fonts[i % 2], i < 2};
+        int fit = 0;
+        while (fit < picture->panel_count && has_room(picture, picture_run(picture, fit), notes)) fit++;
+        if (fit == picture->panel_count) return notes;
+    }
+    return (Notes){NULL, false};
 }
 
-/* Names first, then distances, all or none, then descriptions. */
-static Shares share_line(const Picture *picture, int room) {
-    const Font *font = &picture->layout.method;
-    const CaptionItem any = caption_distance_item("", 0);
-    const int count = picture->count, gap = picture->layout.title.pixels / 2;
-    Shares shares = {.distance = caption_item_width(font, &any) + gap};
-    for (int run = 0; run < count; run++) {
-        char text[4 * CAPTION_TEXT_SIZE];
+/* Where the runs of an overlay are in the lines above it, from the left; with or without notes. Returns the number of lines. */
+static int place_runs(const Picture *picture, bool notes, int lefts[RENDER_PANELS_MAX], int lines[RENDER_PANELS_MAX]) {
+    const Layout *layout = &picture->layout;
+    const int gap = layout->title.pixels / 2;
+    int x = 0, line = 0;
+    for (int run = 0; run < picture->count; run++) {
+        char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], text[4 * CAPTION_TEXT_SIZE];
+        caption_method(picture, run, name, note);
         notes_of(picture, run, text);
-        shares.names[run] = name_width(picture, run);
-        shares.notes[run] = text[0] != '\0' ? font_width(font, text) + gap : 0;
+        const int width = swatch_width(picture, run) + font_width(&layout->title, name) +
+                          distance_width(picture, run, "") +
+                          (notes && text[0] != '\0' ? gap + font_width(&layout->method, text) : 0);
+        if (x > 0 && x + width > panel_width(picture)) x = 0, line++;
+        lefts[run] = x, lines[run] = line;
+        x += width + 3 * gap;
     }
-    int left = share(shares.names, count, room);
-    if (left < (count - 1) * shares.distance) shares.distance = 0;
-    left = share(shares.notes, count, left - (count - 1) * shares.distance);
-    shares.spare = left / count;
-    return shares;
+    return line + 1;
 }
 
-/* All runs of an overlay on one line. */
-static void draw_overlay(const Picture *picture, Moment moment, int left, int right, int baseline, Drawing *drawing) {
-    const int between = picture->layout.title.pixels, gap = between / 2;
-    const Shares shares = share_line(picture, right - left - (picture->count - 1) * between);
-    for (int run = 0, x = left; run < picture->count; run++) {
-        draw_name(picture, run, x, baseline, shares.names[run], drawing);
-        x += shares.names[run];
-        if (run > 0 && shares.distance > 0) {
+int caption_lines(const Picture *picture) {
+    int most = 1, lefts[RENDER_PANELS_MAX], lines[RENDER_PANELS_MAX];
+    if (picture->layout.title.glyphs == NULL) return 1;
+    if (picture->look.compare == LOOK_OVERLAY) {
+        most = place_runs(picture, true, lefts, lines);
+        return most <= OVERLAY_LINES ? most : place_runs(picture, false, lefts, lines);
+    }
+    const Notes notes = place_notes(picture);
+    for (int panel = 0; panel < picture->panel_count; panel++) {
+        const int names = lay_out_name(picture, picture_run(picture, panel)).text.count;
+        if (names > most) most = names < TEXT_LINES_MAX ? names : TEXT_LINES_MAX;
+    }
+    return most + (notes.font != NULL && !notes.beside);
+}
+
+bool captions_fit(const Picture *picture, Error *error) {
+    for (int run = 0; run < picture->count && picture->layout.title.glyphs != NULL; run++) {
+        const int lines = lay_out_name(picture, run).text.count;
+        if (picture->captions[run] != NULL && lines > TEXT_LINES_MAX)
+            return error_input(error, "--caption",
+                               "the text needs %d lines in panels of this size, but at most %d fit: %s", lines,
+                               TEXT_LINES_MAX, picture->captions[run]);
+    }
+    return true;
+}
+
+static int draw_swatch(const Picture *picture, int run, int x, int baseline, Drawing *drawing) {
+    const int width = swatch_width(picture, run);
+    if (width > 0)
+        body_draw_swatch(picture, run, is_hollow(picture, run), x, baseline, picture->layout.title.pixels, drawing);
+    return x + width;
+}
+
+static void draw_overlay(const Picture *picture, Moment moment, const Rect *rect, int baseline, Drawing *drawing) {
+    const Layout *layout = &picture->layout;
+    const int gap = layout->title.pixels / 2;
+    int lefts[RENDER_PANELS_MAX], lines[RENDER_PANELS_MAX];
+    const bool notes = place_runs(picture, true, lefts, lines) <= OVERLAY_LINES;
+    if (!notes) place_runs(picture, false, lefts, lines);
+    for (int run = 0; run < picture->count; run++) {
+        char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], text[4 * CAPTION_TEXT_SIZE];
+        const int line = baseline + lines[run] * layout->caption_pitch;
+        int x = draw_swatch(picture, run, rect->left + lefts[run], line, drawing);
+        caption_method(picture, run, name, note);
+        notes_of(picture, run, text);
+        x = caption_name_draw(picture, &layout->title, name, x, line, rect->right - x, drawing) + gap;
+        if (run > 0) {
             const CaptionItem distance = caption_distance_item("", picture_run_distance(picture, run, moment));
-            caption_item_draw(picture, &picture->layout.method, &distance, x + gap, baseline, drawing);
-            x += shares.distance;
+            caption_item_draw(picture, &layout->method, &distance, x, line, drawing);
+            x += distance_width(picture, run, "");
         }
-        draw_notes(picture, run, x + gap, x + shares.notes[run], baseline, drawing);
-        x += shares.notes[run] + shares.spare + between;
+        if (notes) font_add(drawing, &layout->method, text, x, line, picture->theme->ink_soft);
     }
-}
-
-static bool has_distance(const Picture *picture, int panel) {
-    return picture_run(picture, panel) > 0 && !caption_is_pair(picture);
 }
 
 /* "distance " if it fits above every panel, also beside a number of bodies out of view: it must not come and go. */
-static const char *distance_label(const Picture *picture) {
-    const Layout *layout = &picture->layout;
-    const CaptionItem item = caption_distance_item("distance ", 0);
-    const int needed = caption_item_width(&layout->method, &item) + font_width(&layout->method, "00 out") +
-                       layout->method.pixels + 2 * layout->title.pixels;
-    for (int panel = 0; panel < picture->panel_count; panel++)
-        if (has_distance(picture, panel) && kept_width(picture, picture_run(picture, panel)) + needed >
-                                                layout->panels[0].right - layout->panels[0].left)
+static const char *distance_label(const Picture *picture, Notes notes) {
+    for (int panel = 0; panel < picture->panel_count; panel++) {
+        const int run = picture_run(picture, panel);
+        const Name name = lay_out_name(picture, run);
+        char text[4 * CAPTION_TEXT_SIZE];
+        notes_of(picture, run, text);
+        const int beside = notes.beside ? font_width(notes.font, text) + picture->layout.title.pixels / 2 : 0;
+        if (name_width(picture, run, &name) + beside + distance_width(picture, run, "distance ") +
+                font_width(&picture->layout.method, "00 out") >
+            panel_width(picture))
             return "";
+    }
     return "distance ";
 }
 
-/* In the panel's upper right corner, where the line above it has no room: what cannot be seen must be stated. */
-static void draw_state_inside(const Picture *picture, const Rect *panel, const char *text, Drawing *drawing) {
-    const Font *font = &picture->layout.axis;
-    const int inset = font->pixels / 2;
-    font_add(drawing, font, text, panel->right - inset - font_width(font, text), panel->top + inset + font->pixels,
-             picture->theme->ink_soft);
+/* At the right of the first line, where it begins, if there is room; otherwise in the panel's upper right corner, on its
+   colour: what cannot be seen must be stated. */
+static void draw_state(const Picture *picture, const Rect *panel, const State *state, int left, int right, int baseline,
+                       Drawing *drawing) {
+    const Font *font = &picture->layout.method, *small = &picture->layout.axis;
+    const char *text = font_width(font, state->full) <= right - left ? state->full : state->brief;
+    if (font_width(font, text) <= right - left) {
+        font_add(drawing, font, text, right - font_width(font, text), baseline, picture->theme->ink_soft);
+        return;
+    }
+    const int inset = small->pixels / 2, width = font_width(small, text), x = panel->right - inset - width;
+    const Rect ground = {x - 2, panel->top + inset, x + width + 2, panel->top + inset + small->pixels + 4};
+    drawing_add_rect(drawing, ground, picture->theme->panel);
+    font_add(drawing, small, text, x, panel->top + inset + small->pixels, picture->theme->ink_soft);
 }
 
 void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     const Layout *layout = &picture->layout;
     const Rect *rect = &layout->panels[panel];
-    const Font *font = &layout->method;
-    const int baseline = rect->top - layout->title_rise, gap = layout->title.pixels / 2;
-    const int run = picture_run(picture, panel);
+    const int run = picture_run(picture, panel), more = (layout->caption_lines - 1) * layout->caption_pitch;
+    const int baseline = rect->top - layout->title_rise - more;
     if (layout->title.glyphs == NULL) return;
     if (picture->look.compare == LOOK_OVERLAY) {
-        draw_overlay(picture, moment, rect->left, rect->right, baseline, drawing);
+        draw_overlay(picture, moment, rect, baseline, drawing);
         return;
     }
-    const int name_end = rect->left + kept_width(picture, run) + gap;
+    const Notes notes = place_notes(picture);
+    const Name name = lay_out_name(picture, run);
+    const int x = draw_swatch(picture, run, rect->left, baseline, drawing);
+    int left = rect->left + name_width(picture, run, &name), last = baseline;
+    for (int i = 0; i < name.text.count && i < TEXT_LINES_MAX; i++) {
+        last = baseline + i * layout->caption_pitch;
+        font_add_fitting(drawing, name.font, name.text.lines[i], x, last, rect->right - x, picture->theme->ink);
+    }
+    if (notes.font != NULL) {
+        char text[4 * CAPTION_TEXT_SIZE];
+        notes_of(picture, run, text);
+        const int end = font_add(drawing, notes.font, text, notes.beside ? left : x,
+                                 notes.beside ? last : last + layout->caption_pitch, picture->theme->ink_soft);
+        if (notes.beside) left = end + layout->title.pixels / 2;
+    }
     int right = rect->right;
-    if (has_distance(picture, panel)) {
-        const CaptionItem item =
-            caption_distance_item(distance_label(picture), picture_run_distance(picture, run, moment));
-        const int left = right - caption_item_width(font, &item);
-        if (left >= name_end) {
-            caption_item_draw(picture, font, &item, left, baseline, drawing);
-            right = left - font->pixels;
-        }
+    if (has_distance(picture, run)) {
+        const char *label = distance_label(picture, notes);
+        const CaptionItem item = caption_distance_item(label, picture_run_distance(picture, run, moment));
+        const int width = caption_item_width(&layout->method, &item);
+        if (width <= right - rect->left)
+            caption_item_draw(picture, &layout->method, &item, right - width, baseline, drawing);
+        right -= distance_width(picture, run, label);
     }
     const State state = describe_state(picture, panel, moment);
-    const char *text = font_width(font, state.full) <= right - name_end ? state.full : state.brief;
-    if (font_width(font, text) <= right - name_end && text[0] != '\0') {
-        right -= font_width(font, text);
-        font_add(drawing, font, text, right, baseline, picture->theme->ink_soft);
-        right -= gap;
-    } else if (text[0] != '\0')
-        draw_state_inside(picture, rect, text, drawing);
-    const int end = draw_name(picture, run, rect->left, baseline, right - rect->left, drawing);
-    draw_notes(picture, run, end + gap, right, baseline, drawing);
+    if (state.full[0] != '\0') draw_state(picture, rect, &state, left, right, baseline, drawing);
 }

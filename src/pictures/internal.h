@@ -58,7 +58,7 @@ Point panel_point(const Picture *picture, int panel, double x, double y);
 /* The shorter side of a panel in pixels; line thicknesses are relative to it. */
 double panel_side(const Picture *picture);
 
-/* The number of dynamic bodies whose centre is outside the panel. */
+/* The number of dynamic bodies whose centre is outside the panel, without the bomb: an arrow points to it. */
 int panel_count_out_of_view(const Picture *picture, int panel, Moment moment);
 
 /* The legend of outlines, colours, dots and arrows, in rows below the panels. */
@@ -123,10 +123,16 @@ extern const char *const part_names[];
 /* Fills `parts` and returns their number; 0 in a picture too small for text and without a timeline. */
 int parts_find(const Picture *picture, Part parts[PARTS_MAX]);
 
-/* Optional marks in a panel: trails below the bodies, contacts and arrows above. */
+/* Marks in a panel: trails below the bodies, contacts and arrows above, and what points to a bomb outside. */
 
 void marks_draw_below(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 void marks_draw_above(const Picture *picture, int panel, Moment moment, Drawing *drawing);
+
+/* The frame in which the bomb appears; the last one if it does not. */
+int bomb_first_frame(const Trajectory *run);
+
+/* The bomb's way until it strikes. */
+DashedLine approach_line(const Picture *picture);
 
 /* In pixels: radius of contact dots, thickness of trails and arrows. */
 double marks_dot_radius(const Picture *picture);
@@ -136,7 +142,7 @@ ArrowStyle marks_arrow_style(const Picture *picture, uint32_t color);
 /* The grid of panels in which the scene is largest, and their camera. */
 
 /* Sets the panels, from the look and the title, and the fixed camera; `legend`: its rows. Panels that a long or high scene
-   would leave almost empty have its shape. */
+   would leave almost empty have its shape. Three panels are in a row or a column; only of five, a cell is empty. */
 void panels_arrange(Picture *picture, int width, int height, int legend);
 
 /* The texts of the picture. They depend only on the trajectories and options, not on the machine or the time. */
@@ -145,10 +151,16 @@ void panels_arrange(Picture *picture, int width, int height, int legend);
    panels, their distance. */
 void caption_header(const Picture *picture, Moment moment, Drawing *drawing);
 
-/* Above a panel, its method and, if there are more than two runs, its distance from the first run. What does not fit is
-   shortened or left out in this order: the description, the label of the distance, the number of bodies out of view (which
-   then stands in the panel), the distance, the end of the name. */
+/* Above a panel, its method and, if there are more than two runs, its distance from the first run. Nothing is cut: a long name
+   goes on on further lines; descriptions stand beside the names, in smaller type, below the names, or nowhere, in all panels alike.
+   The number of bodies out of view stands in the panel if there is no room beside the name. */
 void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing);
+
+/* Of the longest caption, at the panels' width; of an overlay, lines that its runs share. */
+int caption_lines(const Picture *picture);
+
+/* Refuses captions that the options set and that need more than TEXT_LINES_MAX lines. */
+bool captions_fit(const Picture *picture, Error *error);
 
 /* The title in the header: its first line beside the numbers at the right, in any frame. */
 TextLines caption_header_title(const Picture *picture);

@@ -22,42 +22,40 @@ static int panels_of(LookCompare compare, int count) {
     return compare == LOOK_OVERLAY ? 1 : compare == LOOK_DIFFERENCE ? count - 1 : count;
 }
 
-/* The camera of the first run, unless the look has another. */
-static Camera fixed_camera(const Picture *picture, int width, int height) {
+/* That of the runs, unless the look has another. */
+static CameraFrame fixed_frame(const Picture *picture) {
     const RenderLook *look = &picture->look;
-    if (look->view.width > 0) return camera_show(&look->view, width, height);
-    return camera_fit(look->view_from != NULL ? look->view_from : picture->runs[0], width, height);
-}
-
-static Vec2 needs(const Picture *picture) {
-    const RenderLook *look = &picture->look;
-    if (look->view.width > 0) return vec2((float)look->view.width, (float)look->view.height);
-    return camera_needs(look->view_from != NULL ? look->view_from : picture->runs[0]);
+    if (look->view.width > 0) return camera_frame_of(&look->view);
+    if (look->show & LOOK_APPROACH) return camera_frame_approach(picture->runs[0]);
+    return look->view_from != NULL ? camera_frame(&look->view_from, 1) : camera_frame(picture->runs, picture->count);
 }
 
 static int width_of(const Rect *rect) { return rect->right - rect->left; }
 static int height_of(const Rect *rect) { return rect->bottom - rect->top; }
 
-static double scale_in(const Layout *layout, Vec2 size) {
-    const Rect *panel = &layout->panels[0];
-    return fmin(width_of(panel) / (double)size.x, height_of(panel) / (double)size.y);
+/* Between the scale in these panels and that at which what falls would stay in view. */
+static double scale_in(const Layout *layout, const CameraFrame *frame) {
+    const Extent *held = &frame->held, *room = &frame->room;
+    const double width = width_of(&layout->panels[0]), high = height_of(&layout->panels[0]) / (held->top - held->bottom);
+    return sqrt(fmin(width / (held->right - held->left), high) * fmin(width / (room->right - room->left), high));
 }
 
 /* A moving camera comes closer than the fixed view: it has the usual panels. */
-static Layout choose_grid(const Picture *picture, Vec2 size, int width, int height, LayoutRows rows) {
+static Layout choose_grid(const Picture *picture, const CameraFrame *frame, int width, int height, LayoutRows rows) {
     const int count = picture->panel_count, usual = layout_columns(width, height, count);
     Layout best = layout_make(width, height, count, usual, rows);
-    const double usual_scale = scale_in(&best, size);
+    const double usual_scale = scale_in(&best, frame);
     if (picture->look.camera != LOOK_FIT) return best;
     double largest = 0;
     for (int columns = 1; columns <= count; columns++) {
         const int lines = (count + columns - 1) / columns;
-        const bool wasteful = columns > 1 && (count + columns - 2) / (columns - 1) == lines;
+        const int empty = lines * columns - count;
         const Layout layout = layout_make(width, height, count, columns, rows);
         const Rect *panel = &layout.panels[0];
-        if (wasteful || width_of(panel) < caption_least_width(picture, false) || height_of(panel) <= 0) continue;
+        if (empty > (count > 3) || width_of(panel) < caption_least_width(picture, false) || height_of(panel) <= 0)
+            continue;
         const bool whole = width_of(panel) >= caption_least_width(picture, true);
-        const double scale = scale_in(&layout, size), worth = scale / (whole ? GAIN : GAIN_WITH_CUT_NAMES);
+        const double scale = scale_in(&layout, frame), worth = scale / (whole ? GAIN : GAIN_WITH_CUT_NAMES);
         if (worth <= usual_scale || worth <= largest) continue;
         largest = worth;
         best = layout;
@@ -72,11 +70,12 @@ static int shrink(int whole, double needed, double share, double least) {
 }
 
 /* The names of an overlay's runs need the whole width. */
-static void shrink_panels(Picture *picture, Vec2 size) {
+static void shrink_panels(Picture *picture, const CameraFrame *frame) {
     Layout *layout = &picture->layout;
-    const double scale = scale_in(layout, size),
-                 em = layout->title.glyphs != NULL ? layout->title.pixels : layout->left;
+    const Vec2 size = camera_needs(frame);
     const int width = width_of(&layout->panels[0]), height = height_of(&layout->panels[0]);
+    const double scale = camera_fit(frame, width, height).scale,
+                 em = layout->title.glyphs != NULL ? layout->title.pixels : layout->left;
     if (picture->look.camera != LOOK_FIT) return;
     const bool keep_width = picture->look.compare == LOOK_OVERLAY;
     const int narrow = keep_width ? width : shrink(width, scale * (double)size.x, LEAST_SHARE_X, LEAST_WIDTH * em);
@@ -86,15 +85,18 @@ static void shrink_panels(Picture *picture, Vec2 size) {
 
 void panels_arrange(Picture *picture, int width, int height, int legend) {
     picture->panel_count = panels_of(picture->look.compare, picture->count);
-    LayoutRows rows = {1, legend, (picture->look.show & LOOK_TIMELINE) != 0};
+    LayoutRows rows = {1, 1, legend, (picture->look.show & LOOK_TIMELINE) != 0};
     picture->layout = layout_make(width, height, 1, 1, rows); /* for the fonts */
     rows.title = caption_header_title(picture).count;
     if (rows.title > TEXT_LINES_MAX) rows.title = TEXT_LINES_MAX;
-    const Vec2 size = needs(picture);
-    picture->layout = choose_grid(picture, size, width, height, rows);
-    shrink_panels(picture, size);
+    const CameraFrame frame = fixed_frame(picture);
+    for (rows.caption = 1;; rows.caption++) { /* narrow panels need more lines */
+        picture->layout = choose_grid(picture, &frame, width, height, rows);
+        shrink_panels(picture, &frame);
+        if (caption_lines(picture) <= rows.caption) break;
+    }
     const Rect *first = &picture->layout.panels[0];
-    picture->camera = fixed_camera(picture, width_of(first), height_of(first));
+    picture->camera = camera_fit(&frame, width_of(first), height_of(first));
     picture->grid_scale = picture->camera.scale;
 }
 
@@ -424,7 +426,7 @@ int panel_count_out_of_view(const Picture *picture, int panel, Moment moment) {
     const Rect *rect = &picture->layout.panels[panel];
     int frame = pose_moment(trajectory, moment).frame;
     for (int body = 0; body < trajectory->bodies; body++) {
-        if (trajectory->fixed[body] || !trajectory_has(trajectory, frame, body)) continue;
+        if (trajectory->fixed[body] || body == trajectory->bomb || !trajectory_has(trajectory, frame, body)) continue;
         Pose pose = pose_at(trajectory, moment, body);
         Point at = panel_point(picture, panel, pose.x, pose.y);
         bool inside = at.x >= rect->left && at.x < rect->right && at.y >= rect->top && at.y < rect->bottom;

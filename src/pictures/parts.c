@@ -305,8 +305,57 @@ static void draw_contacts(const Picture *picture, int panel, int run, Moment mom
     }
 }
 
+static const double POINTER = 0.055,
+                    POINTER_LINE = 0.0075; /* relative to shorter side of the panel: length, thickness */
+static const double MIN_POINTER = 14, MIN_POINTER_LINE = 2; /* pixels */
+
+/* At the edge of a panel, an arrow in the bomb's colour to a bomb that is outside. */
+static void draw_pointer(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
+    const Trajectory *run = picture->runs[picture_run(picture, panel)];
+    const Rect *rect = &picture->layout.panels[panel];
+    if (run->bomb < 0 || !trajectory_has(run, pose_moment(run, moment).frame, run->bomb)) return;
+    const Pose pose = pose_at(run, moment, run->bomb);
+    const Point at = panel_point(picture, panel, pose.x, pose.y);
+    const Vec2 size = run->size[run->bomb];
+    const double reach = 0.5 * picture->camera.scale * (double)fminf(size.x, size.y);
+    const Point edge = {fmin(fmax(at.x, rect->left), rect->right), fmin(fmax(at.y, rect->top), rect->bottom)};
+    const double x = at.x - edge.x, y = at.y - edge.y, away = sqrt(x * x + y * y);
+    if (!(away > reach && away < HUGE_VAL)) return;
+    const double line = fmax(POINTER_LINE * panel_side(picture), MIN_POINTER_LINE);
+    const double tip = 2 * line / away, tail = tip + fmax(POINTER * panel_side(picture), MIN_POINTER) / away;
+    const ArrowStyle style = {line, picture->theme->bomb.fill, picture->theme->panel};
+    stroke_arrow(drawing, (Point){edge.x - tail * x, edge.y - tail * y}, (Point){edge.x - tip * x, edge.y - tip * y},
+                 false, &style, rect);
+}
+
+DashedLine approach_line(const Picture *picture) {
+    const double thickness = fmax(GHOST_OUTLINE * panel_side(picture), MIN_GHOST_OUTLINE);
+    return (DashedLine){.thickness = thickness, .color = picture->theme->bomb.fill, .dash = {.on = 4, .off = 3}};
+}
+
+/* Where the bomb appears, as outline, and a dashed line to where it strikes. */
+static void draw_approach(const Picture *picture, int panel, Drawing *drawing) {
+    const int index = picture_run(picture, panel);
+    const Trajectory *run = picture->runs[index];
+    if (run->bomb < 0) return;
+    const Rect *rect = &picture->layout.panels[panel];
+    const int impact = trajectory_impact(run), last = impact >= 0 ? impact : run->frames - 1;
+    int frame = bomb_first_frame(run);
+    Shape shape = body_shape(picture, panel, index, moment_stored(frame), run->bomb, &picture->theme->bomb);
+    DashedLine line = approach_line(picture);
+    shape.hollow = true, shape.line = line.color, shape.outline = line.thickness;
+    drawing_add_shape(drawing, &shape, rect);
+    for (; frame < last; frame++) {
+        const Pose from = pose_stored(run, frame, run->bomb), to = pose_stored(run, frame + 1, run->bomb);
+        stroke_dashed(drawing, panel_point(picture, panel, from.x, from.y), panel_point(picture, panel, to.x, to.y),
+                      &line, rect);
+    }
+}
+
 void marks_draw_above(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     int first = picture_run(picture, panel);
+    draw_pointer(picture, panel, moment, drawing);
+    if (picture->look.show & LOOK_APPROACH) draw_approach(picture, panel, drawing);
     for (int run = first; run < runs_end(picture, first); run++) {
         if (picture->look.show & LOOK_VELOCITIES) draw_velocities(picture, panel, run, moment, drawing);
         if (picture->look.show & (LOOK_CONTACTS | LOOK_IMPULSES)) draw_contacts(picture, panel, run, moment, drawing);
@@ -353,7 +402,8 @@ static int add(Part *parts, int count, PartKind kind, int panel, Rect rect) {
 /* Labels at an end of an axis reach beyond it by half their size. The left axis is beside the first column only. */
 static int add_panel(Part *parts, int count, const Layout *layout, int panel) {
     const Rect *rect = &layout->panels[panel];
-    const int baseline = rect->top - layout->title_rise, line = layout->hairline, half = layout->axis.pixels / 2;
+    const int baseline = rect->top - layout->title_rise - (layout->caption_lines - 1) * layout->caption_pitch,
+              line = layout->hairline, half = layout->axis.pixels / 2;
     count = add(parts, count, PART_CAPTION, panel,
                 (Rect){rect->left, baseline - above(&layout->title), rect->right, rect->top - line});
     count = add(parts, count, PART_AXIS, panel,

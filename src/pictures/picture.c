@@ -45,9 +45,12 @@ static Rect panel_size(const Layout *layout) {
                   (area->bottom - area->top - (layout->rows - 1) * layout->row_gap) / layout->rows};
 }
 
+/* A last row that is not full is in the middle. */
 static void place_panels(Layout *layout, int panels, int left, int top, int width, int height) {
+    const int empty = layout->rows * layout->columns - panels;
     for (int i = 0; i < panels; i++) {
-        const int x = left + i % layout->columns * (width + layout->gap);
+        const int in = i >= panels + empty - layout->columns ? empty * (width + layout->gap) / 2 : 0;
+        const int x = left + in + i % layout->columns * (width + layout->gap);
         const int y = top + i / layout->columns * (height + layout->row_gap);
         layout->panels[i] = (Rect){x, y, x + width, y + height};
     }
@@ -95,16 +98,19 @@ Layout layout_make(int width, int height, int panels, int columns, LayoutRows ro
     layout.tick = text ? pixels(0.006 * unit) : 0;
     layout.hairline = unit < 1500 ? 1 : pixels(unit / 1080);
     int gutter = text ? font_width(&layout.axis, "-50") + 2 * layout.tick : 0;
-    int title = text ? pixels(0.058 * unit) : 0, axis = text ? pixels(0.038 * unit) : 0;
+    layout.caption_lines = rows.caption;
+    layout.caption_pitch = text ? pixels(fmax(0.030 * unit, 1.2 * layout.title.pixels)) : 0;
+    int title = text ? pixels(0.058 * unit) : 0, captions = title + (rows.caption - 1) * layout.caption_pitch,
+        axis = text ? pixels(0.038 * unit) : 0;
     layout.header_lines = rows.title;
     layout.header_pitch = pixels(0.036 * unit);
     int last_line = layout.header_baseline + (rows.title - 1) * layout.header_pitch;
     int header = text ? last_line + pixels(0.006 * unit) : margin;
-    Rect area = {margin + gutter, header + title, width - margin, height - pixels(0.016 * unit) - axis};
+    Rect area = {margin + gutter, header + captions, width - margin, height - pixels(0.016 * unit) - axis};
     if (!text) area.bottom = height - margin;
     layout.area = place_rows(&layout, area, unit, rows, title, axis);
     layout.gap = margin;
-    layout.row_gap = text ? title + axis : margin;
+    layout.row_gap = text ? captions + axis : margin;
     const Rect size = panel_size(&layout);
     place_panels(&layout, panels, layout.area.left, layout.area.top, size.right, size.bottom);
     return layout;
@@ -205,12 +211,12 @@ bool picture_apply_options(Picture *picture, const RenderOptions *options, Error
     picture->theme = theme_get(options->look.theme);
     if (memcmp(&picture->look, &plain, sizeof plain) == 0) {
         panels_arrange(picture, picture->layout.width, picture->layout.height, 0);
-        return titles_fit(picture, error);
+        return titles_fit(picture, error) && captions_fit(picture, error);
     }
     if (!look_check(&picture->look, picture->runs, picture->count, error)) return false;
     picture->events = events_find(picture->runs, picture->count);
-    return arrange_rows(picture, options, error) && titles_fit(picture, error) && plan_path(picture, error) &&
-           timeline_plan(picture, error);
+    return arrange_rows(picture, options, error) && titles_fit(picture, error) && captions_fit(picture, error) &&
+           plan_path(picture, error) && timeline_plan(picture, error);
 }
 
 void picture_free(Picture *picture) {

@@ -30,23 +30,37 @@ bool camera_view_is_usable(const CameraView *view);
 /* The view that the run's scene sets; false if it sets none that is usable. */
 bool camera_view_of(const Trajectory *run, CameraView *view);
 
-/* Shows a usable view in the middle of a panel; width and height in pixels. */
-Camera camera_show(const CameraView *view, int width, int height);
+/* A part of the world that bodies cover, or that is shown. */
+typedef struct Extent {
+    double left, right, bottom, top; /* m */
+} Extent;
 
-/* Width and height in metres of what camera_fit() shows, with its margin. */
-Vec2 camera_needs(const Trajectory *run);
-
-/* What camera_fit() shows. */
+/* What a fixed camera shows. By default it frames what stands, so that this fills three quarters of a panel's width or height:
+   the moving bodies where they start, the ground below them, and the bomb when it strikes them. The bomb comes into the picture
+   from its edge. What happens after the impact does not count, so that runs with the same start have the same view: a body that
+   flies off leaves the picture and changes nothing in the frames before. Only if most of the first run's bodies go far away, as
+   on a slope, is it all that they reach in the whole run. */
 typedef struct CameraFrame {
-    bool set;                        /* by the scene: shown in the middle of a panel */
-    double left, right, bottom, top; /* m, with the margin */
-    double middle;                   /* m, x of the middle of what stands */
+    bool set;      /* given: shown in the middle of a panel */
+    Extent held;   /* in view whatever the panel's shape, with the margin */
+    Extent room;   /* in view as far as the panel has room: where what stands falls when the bomb strikes it */
+    double middle; /* m, x of the middle of what stands */
 } CameraFrame;
 
-CameraFrame camera_frame(const Trajectory *run);
+/* A usable view. */
+CameraFrame camera_frame_of(const CameraView *view);
 
-/* Shows the view that the run's scene sets, otherwise what stands and what strikes it (Framing). */
-Camera camera_fit(const Trajectory *run, int width, int height);
+/* The view that the first run's scene sets. Otherwise, what stands in the first run, and in the others what is near that. */
+CameraFrame camera_frame(const Trajectory *const *runs, int count);
+
+/* For LOOK_APPROACH: what stands at the start and the bomb's way to it, as far as it is not far away. */
+CameraFrame camera_frame_approach(const Trajectory *run);
+
+/* Width and height in metres that a panel should have room for. */
+Vec2 camera_needs(const CameraFrame *frame);
+
+/* For a panel of this size in pixels. */
+Camera camera_fit(const CameraFrame *frame, int width, int height);
 
 /* What a sequence shows besides the bodies, and how. All zero: panels side by side, light theme. */
 
@@ -74,14 +88,16 @@ enum {
     LOOK_CONTACTS = 8,    /* contact points */
     LOOK_IMPULSES = 16,   /* arrows: the contacts' impulses in the step */
     LOOK_VELOCITIES = 32, /* arrows from the centres of moving bodies */
-    LOOK_TIMELINE = 64    /* distance from the first run over time, below the panels */
+    LOOK_TIMELINE = 64,   /* distance from the first run over time, below the panels */
+    LOOK_APPROACH =
+        128 /* where the bomb appears and its way until it strikes, in every frame; not on the command line */
 };
 
 typedef struct RenderLook {
     LookCompare compare;
     LookCamera camera;
     CameraView view;             /* the fixed view, where a moving camera begins; width 0: that of `view_from` */
-    const Trajectory *view_from; /* the run that camera_fit() shows; NULL: the first */
+    const Trajectory *view_from; /* the run that the fixed camera shows; NULL: all */
     LookTheme theme;
     unsigned show;                    /* LOOK_GHOSTS | ... */
     const char *costs[LOOK_RUNS_MAX]; /* cost of each run, as text; NULL: none */
@@ -106,7 +122,7 @@ typedef struct BodyColors {
 } BodyColors;
 
 #define BOMB_COLORS \
-    { 0xB5371B, 0x5E1606, 0xFFE9DF }
+    { 0xA0200F, 0x4E0A03, 0xFFE9DF }
 static const BodyColors BOMB = BOMB_COLORS;
 
 /* The colours of a whole picture, 0xRRGGBB: light, as above, or dark. */
@@ -186,26 +202,27 @@ typedef struct RenderOptions {
 typedef struct Layout {
     Font scene, status, title, method, axis; /* without glyphs if the picture is too small for text */
     int columns, rows;
-    int left, right;                /* inner edges of the margins */
-    int header_baseline;            /* of the first line of the title */
-    int header_lines, header_pitch; /* number of its lines, and the distance between them */
-    int title_rise;                 /* from the top of a panel up to the baseline of its title */
-    int axis_drop;                  /* from the bottom of a panel down to the baseline of its axis */
-    int tick;                       /* length of a tick at the axis */
-    int hairline;                   /* the thinnest line */
-    Rect area;                      /* that the panels share, with the lines between them */
-    int gap, row_gap;               /* between panels */
-    Rect panels[RENDER_PANELS_MAX]; /* all of equal size */
-    int width, height;              /* of the picture */
-    int legend_baseline;            /* of the first row; 0: no legend */
-    int legend_rows, legend_pitch;  /* number of rows, and the distance between them */
-    int key_baseline;               /* of the key above the timeline */
-    Rect timeline;                  /* the curves; empty: none */
+    int left, right;                  /* inner edges of the margins */
+    int header_baseline;              /* of the first line of the title */
+    int header_lines, header_pitch;   /* number of its lines, and the distance between them */
+    int title_rise;                   /* from the top of a panel up to the last baseline of its caption */
+    int caption_lines, caption_pitch; /* number of its lines, and the distance between them */
+    int axis_drop;                    /* from the bottom of a panel down to the baseline of its axis */
+    int tick;                         /* length of a tick at the axis */
+    int hairline;                     /* the thinnest line */
+    Rect area;                        /* that the panels share, with the lines between them */
+    int gap, row_gap;                 /* between panels */
+    Rect panels[RENDER_PANELS_MAX];   /* all of equal size */
+    int width, height;                /* of the picture */
+    int legend_baseline;              /* of the first row; 0: no legend */
+    int legend_rows, legend_pitch;    /* number of rows, and the distance between them */
+    int key_baseline;                 /* of the key above the timeline */
+    Rect timeline;                    /* the curves; empty: none */
 } Layout;
 
 /* Rows above and below the panels. */
 typedef struct LayoutRows {
-    int title; /* lines of the header, at least 1 */
+    int title, caption; /* lines of the header and of captions, at least 1 */
     int legend;
     bool timeline;
 } LayoutRows;
@@ -352,10 +369,6 @@ double picture_distance(const Picture *picture, Moment moment);
 /* m; bodies that reach farther do not count, or nothing else could be made out. */
 #define EXTENT_FARTHEST 1e5
 
-typedef struct Extent {
-    double left, right, bottom, top; /* m */
-} Extent;
-
 extern const Extent extent_empty;
 
 bool extent_is_empty(const Extent *extent);
@@ -366,20 +379,9 @@ double extent_side(const Extent *extent);
 /* Widens the extent by a body's bounding box in this frame, unless it has no pose there or reaches too far. */
 void extent_include(Extent *extent, const Trajectory *run, int frame, int body);
 
-/* What the default camera frames: what stands and what strikes it. These are the moving bodies where they start, the
-   ground below them, and the bomb's way until it first touches one of them; if that way is longer sideways than up or
-   down, also room on the far side, as wide as what stands is high. What happens after the impact does not count, so that
-   runs with the same start have the same view: a body that flies off leaves the picture and changes nothing in the frames
-   before. Only if most of the bodies go far away, as on a slope, is it all that they reach in the whole run. */
-
-typedef struct Framing {
-    Extent extent;
-    double middle; /* m, x of the middle of what stands */
-} Framing;
-
-/* The moving bodies in these frames, without those that have gone far away from what stood at the start; the static bodies
-   if there are none. Empty if nothing can be framed. A frame beyond the run's last counts as the last. */
-Extent framing_in_frames(const Trajectory *run, const int *frames, int count);
+/* What runs show in these frames: the moving bodies, without those that have gone far away from what stood at the start in the
+   first run; the static bodies if there are none. Empty if nothing can be framed. A frame beyond a run's last counts as that. */
+Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count);
 
 /* Refuses a title or caption that is too long or cannot be drawn (pixels/type.h); `where`: its option. NULL passes. */
 bool caption_check(const char *text, const char *where, Error *error);

@@ -151,6 +151,7 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     json_put_text(json, "name", name);
     json_put_text(json, "note", note);
     json_put_number(json, "ems", ems(FONT_SEMIBOLD, name));
+    json_put_number(json, "note_ems", ems(FONT_REGULAR, note));
     json_put_text(json, "file", player->options->files[index]);
     json_put_hash(json, "hash", trajectory_hash(run));
     if (run->scene_hash != 0)
@@ -213,14 +214,16 @@ static void put_left_out(JsonWriter *json, const Player *player) {
     json_end(json);
 }
 
-static void put_framing(JsonWriter *json, const Trajectory *run) {
-    const CameraFrame frame = camera_frame(run);
+static void put_framing(JsonWriter *json, const Picture *picture) {
+    const CameraFrame frame = camera_frame(picture->runs, picture->count);
     json_begin_object(json, "framing", JSON_ONE_LINE);
     json_put_bool(json, "set", frame.set);
-    json_put_number(json, "left", frame.left);
-    json_put_number(json, "right", frame.right);
-    json_put_number(json, "bottom", frame.bottom);
-    json_put_number(json, "top", frame.top);
+    json_put_number(json, "left", frame.held.left);
+    json_put_number(json, "right", frame.held.right);
+    json_put_number(json, "bottom", frame.held.bottom);
+    json_put_number(json, "top", frame.held.top);
+    json_put_number(json, "room_left", frame.room.left);
+    json_put_number(json, "room_right", frame.room.right);
     json_put_number(json, "middle", frame.middle);
     json_end(json);
 }
@@ -263,8 +266,9 @@ static void put_data(FILE *file, const Player *player) {
     json_put_int(&json, "chunk", PLAYER_CHUNK);
     json_put_int(&json, "impact", player_stored(&player->frames, first_impact(&player->picture)));
     json_put_number(&json, "distance_ems", ems(FONT_REGULAR, "0.00 m"));
+    json_put_number(&json, "out_ems", ems(FONT_REGULAR, "00 out"));
     put_left_out(&json, player);
-    put_framing(&json, first);
+    put_framing(&json, &player->picture);
     put_measures(&json, player);
     json_begin_object(&json, "themes", JSON_LINES);
     put_theme(&json, "light", theme_get(LOOK_LIGHT));

@@ -104,7 +104,7 @@ static const Theme dark = {
     .velocity = 0xFF8AC4,
     .event = 0x77849A,
     .ghost_is_band = true,
-    .bomb = {0xE4573A, 0x3D0D03, 0xFFF1EA},
+    .bomb = {0xCC3620, 0x3D0D03, 0xFFF1EA},
     .bodies =
         {
             [METHOD_BLUE] = {0x2A86C4, 0x061D2D, 0x8CCBF0},
@@ -209,6 +209,19 @@ static void add_trail(Row *row) {
     end_entry(row);
 }
 
+static void add_approach(Row *row) {
+    const Trajectory *run = row->picture->runs[0];
+    DashedLine line = approach_line(row->picture);
+    char text[64];
+    const int width = row->font->pixels * 2;
+    stroke_dashed(row->drawing, (Point){row->x, row->middle}, (Point){row->x + width, row->middle}, &line, &row->clip);
+    row->x += width + row->font->pixels / 2;
+    snprintf(text, sizeof text, "way of the bomb, from %.3g s until it strikes",
+             bomb_first_frame(run) * (double)run->dt);
+    add_text(row, text);
+    end_entry(row);
+}
+
 static void add_dot(Row *row) {
     double radius = fmax(marks_dot_radius(row->picture), DOT * row->font->pixels);
     stroke_dot(row->drawing, (Point){row->x + radius, row->middle}, radius, row->picture->theme->panel,
@@ -280,6 +293,7 @@ static int place_entries(const Picture *picture, Drawing *drawing) {
     if (difference || (look->show & LOOK_GHOSTS && look->compare == LOOK_SPLIT)) place_entry(&row, add_outline);
     if (difference || look->show & LOOK_DISTANCE) place_entry(&row, add_colors);
     if (look->show & LOOK_TRAILS) place_entry(&row, add_trail);
+    if (look->show & LOOK_APPROACH && picture->runs[0]->bomb >= 0) place_entry(&row, add_approach);
     if (look->show & LOOK_CONTACTS) place_entry(&row, add_dot);
     if (look->show & LOOK_IMPULSES) place_entry(&row, add_impulse);
     if (look->show & LOOK_VELOCITIES) place_entry(&row, add_velocity);

@@ -60,9 +60,13 @@ equal "the summary on standard error" "$(cat err)" "$(head -n 6 expected)"
 run 2 check tower.yaml -o first.jpg
 complains "first.jpg: error: the name of the picture must end in .png"
 
-# The picture is what render draws of that frame, in the same view.
+# The picture is what render draws of that frame. The way of the bomb is in it, too.
 run 0 render tower.yaml -o frames --frames 0 --size 1280x720
-run 0 compare first.png frames/frame_000000.png
+run 1 compare first.png frames/frame_000000.png
+sed '/^bomb:/d; s/^frames: .*/frames: 1/' tower.yaml >still.yaml
+run 0 check still.yaml -o still.png
+run 0 render still.yaml -o still --frames 0 --size 1280x720
+run 0 compare still.png still/frame_000000.png
 run 0 check "$scenes/stack.yaml" -o stack.png
 says "    network of pair-net: "
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A method's name stands in every picture, whatever else has to go. */
+/* A method's name stands in every picture, whatever else has to go, and no caption is cut. */
 #include "testing.h"
 
 #include "methods/methods.h"
@@ -75,13 +75,92 @@ TEST_WITH(every_name_is_in_every_picture, make, destroy) {
             assert_int_equal(count_names(count, sizes[i][0], sizes[i][1], &(RenderLook){0}, false), count);
 }
 
-/* Short ones next to long ones give their room to these. */
 TEST_WITH(names_are_whole_where_there_is_room, make, destroy) {
     for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
         assert_int_equal(count_names(count, 1280, 720, &(RenderLook){0}, true), count);
         if (count > 1)
             assert_int_equal(count_names(count, 960, 540, &(RenderLook){.compare = LOOK_OVERLAY}, true), count);
     }
+}
+
+/* Whether all words stand in the drawing, in one of the fonts of captions. */
+static bool has_words(const Drawing *drawing, const Layout *layout, const char *text) {
+    char words[CAPTION_TEXT_SIZE], *rest = NULL;
+    snprintf(words, sizeof words, "%s", text);
+    for (char *word = strtok_r(words, " ", &rest); word != NULL; word = strtok_r(NULL, " ", &rest))
+        if (!has_text(drawing, &layout->method, word) && !has_text(drawing, &layout->axis, word)) return false;
+    return true;
+}
+
+/* Draws the captions of `count` methods from this one on; the number of descriptions that are left out. */
+static int check_captions(int first, int count, const int size[2], LookCompare compare) {
+    Error error = {0};
+    Picture picture;
+    Drawing drawing = {0};
+    int kinds = 0, left_out = 0;
+    const RenderOptions options = {
+        .width = size[0], .height = size[1], .look.compare = compare, .describe = method_describe};
+    while (method_kinds[kinds].description != NULL) kinds++;
+    for (int i = 0; i < count; i++) strcpy(runs[i]->method, method_kinds[(first + i) % kinds].description->name);
+    assert_ok(picture_plan(&picture, panels, count, size[0], size[1], &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
+    const Layout *layout = &picture.layout;
+    for (int panel = 0; panel < picture.panel_count; panel++)
+        caption_panel(&picture, panel, moment_stored(8), &drawing);
+    for (int i = compare == LOOK_DIFFERENCE; i < count; i++) {
+        const MethodDescription *method = picture.methods[i];
+        if (!has_name(&drawing, layout, method->name)) fail_msg("%d x %d: no %s", size[0], size[1], method->name);
+        left_out += !has_words(&drawing, layout, method->caption);
+    }
+    if (has_text(&drawing, &layout->title, "\xE2\x80\xA6") || has_text(&drawing, &layout->method, "\xE2\x80\xA6") ||
+        has_text(&drawing, &layout->axis, "\xE2\x80\xA6"))
+        fail_msg("%d x %d, %d runs from %s: a caption is cut", size[0], size[1], count, runs[0]->method);
+    Part parts[PARTS_MAX];
+    const int part_count = parts_find(&picture, parts);
+    for (size_t i = 0; i < drawing.glyph_count; i++) {
+        const int32_t *box = drawing.glyphs[i].box;
+        bool inside = false;
+        for (int k = 0; k < part_count; k++)
+            inside |= parts[k].kind == PART_CAPTION && box[0] >= parts[k].rect.left && box[1] >= parts[k].rect.top &&
+                      box[0] + box[2] <= parts[k].rect.right + 1 && box[1] + box[3] <= parts[k].rect.bottom;
+        if (!inside)
+            fail_msg("%d x %d, %d runs from %s: a letter is outside", size[0], size[1], count, runs[0]->method);
+    }
+    drawing_free(&drawing);
+    picture_free(&picture);
+    return left_out;
+}
+
+/* In the smallest pictures that have text, descriptions may go. */
+TEST_WITH(no_caption_of_a_method_is_cut, make, destroy) {
+    static const int sizes[][2] = {{1280, 720}, {1080, 1080}, {720, 1280}, {640, 360}, {480, 320}};
+    for (int i = 0; i < RENDER_PANELS_MAX; i++) /* all bodies are in view: only captions are drawn */
+        for (int frame = 6; frame < runs[i]->frames && i > 0; frame++)
+            for (int body = FIRST_BOX; body <= BOMB_BODY; body++) run_position(runs[i], frame, body)->x -= 700;
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++)
+        for (int count = 1; count <= RENDER_PANELS_MAX; count++)
+            for (int first = 0; method_kinds[first].description != NULL; first++)
+                for (int compare = LOOK_SPLIT; compare <= (count > 1 ? LOOK_DIFFERENCE : LOOK_SPLIT); compare++) {
+                    const int left_out = check_captions(first, count, sizes[i], (LookCompare)compare);
+                    if (left_out > 0 && sizes[i][0] > 640)
+                        fail_msg("%d x %d, %d runs: %d descriptions left out", sizes[i][0], sizes[i][1], count,
+                                 left_out);
+                }
+}
+
+TEST_WITH(a_caption_of_the_options_is_whole_or_refused, make, destroy) {
+    static const char words[] =
+        "Sequential impulses with a warm start, ten sweeps per step, and the friction of Coulomb";
+    RenderOptions options = {.width = 1280, .height = 720, .captions = {NULL, words}};
+    Picture picture;
+    Drawing drawing = {0};
+    assert_ok(picture_plan(&picture, panels, 6, 1280, 720, &error), error);
+    assert_ok(picture_apply_options(&picture, &options, &error), error);
+    caption_panel(&picture, 1, moment_stored(0), &drawing);
+    assert_true(has_words(&drawing, &picture.layout, words));
+    drawing_free(&drawing);
+    options.width = 480, options.height = 320;
+    assert_refused(picture_check(panels, 6, &options, &error), "--caption", "lines in panels of this size");
 }
 
 TEST(room_is_shared_fairly) {

@@ -15,7 +15,7 @@ static bool has_room_for_its_rows(const Trajectory *const *runs, const RenderLoo
     const RenderOptions options = {.width = width, .height = height, .look = *look};
     assert_ok(picture_plan(&picture, runs, 2, width, height, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);
-    const LayoutRows rows = {1, legend_rows(&picture), false};
+    const LayoutRows rows = {1, 1, legend_rows(&picture), false};
     const Layout layout = layout_make(width, height, picture.panel_count, picture.layout.columns, rows);
     const bool same = layout.legend_baseline == picture.layout.legend_baseline;
     if (!same) print_error("%d x %d: not the layout for %d rows\n", width, height, rows.legend);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact points and arrows are in proportion to the panel, but never cover the boxes. */
+/* Contact points and arrows are in proportion to the panel, but never cover the boxes; an arrow points to a bomb outside. */
 #include "testing.h"
 
 #include "pictures/internal.h"
@@ -49,6 +49,38 @@ TEST(a_thin_arrow_is_drawn_once) {
                          thickness < 1.01 ? 3 : 6); /* a shaft and two sides of the head, each time */
         drawing_free(&drawing);
     }
+}
+
+/* Where the pointer to the bomb is in the panel, from 0 to 1 on each axis, x from the bomb's; false if there is none. */
+static bool find_pointer(Vec2 bomb, double *x, double *y) {
+    Picture picture;
+    Error error = {0};
+    Drawing drawing = {0};
+    *run_position(runs[0], 5, BOMB_BODY) = bomb;
+    assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
+    marks_draw_above(&picture, 0, moment_stored(5), &drawing);
+    const Rect *panel = &picture.layout.panels[0];
+    const bool found = drawing.shape_count > 0;
+    if (found) { /* the last shape of an arrow is a side of its head */
+        const int32_t *bounds = drawing.shapes[drawing.shape_count - 1].bounds;
+        *x = ((bounds[0] + bounds[2]) / 2.0 - panel->left) / (panel->right - panel->left);
+        *y = ((bounds[1] + bounds[3]) / 2.0 - panel->top) / (panel->bottom - panel->top);
+        assert_true(*x > 0 && *x < 1 && *y > 0 && *y < 1);
+    }
+    *x -= fmin(fmax(picture.camera.left + picture.camera.scale * (double)bomb.x, 0) / (panel->right - panel->left), 1);
+    drawing_free(&drawing);
+    return found;
+}
+
+TEST_WITH(an_arrow_at_the_edge_points_to_a_bomb_outside, make, destroy) {
+    double x, y;
+    assert_false(find_pointer(vec2(1, 2), &x, &y));
+    assert_false(find_pointer(vec2(NAN, NAN), &x, &y));
+    assert_false(find_pointer(vec2(0, INFINITY), &x, &y));
+    assert_true(find_pointer(vec2(0, 300), &x, &y) && fabs(x) < 0.02 && y < 0.15);
+    assert_true(find_pointer(vec2(0, -300), &x, &y) && fabs(x) < 0.02 && y > 0.85);
+    assert_true(find_pointer(vec2(-300, 1), &x, &y) && fabs(x) < 0.05 && y < 0.85);
+    assert_true(find_pointer(vec2(300, 300), &x, &y) && fabs(x) < 0.1 && y < 0.15);
 }
 
 RUN_TESTS(NULL, NULL)

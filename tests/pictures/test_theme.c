@@ -65,4 +65,19 @@ TEST(grey_tells_boxes_from_the_engines_and_the_page) {
     }
 }
 
+/* The bomb also has a sign on it, but every method's boxes meet it. */
+TEST(the_bomb_differs_from_all_boxes_and_the_page) {
+    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
+        const Theme *theme = theme_get((LookTheme)t);
+        for (int sight = 0; sight < 4; sight++) {
+            const Lab bomb = seen(theme->bomb.fill, sight);
+            for (int i = METHOD_BLUE; i < METHOD_COLOURS; i++) {
+                const double d = distance(bomb, seen(theme->bodies[i].fill, sight));
+                if (d < 15) fail_msg("theme %d, sight %d: colour %d is %.1f from the bomb's", t, sight, i, d);
+            }
+            assert_true(distance(bomb, seen(theme->panel, sight)) > 30);
+        }
+    }
+}
+
 RUN_TESTS(NULL, NULL)

@@ -62,9 +62,9 @@ TEST_WITH(the_header_is_as_high_as_its_title, make, destroy) {
     const Picture one = plan(NULL, NULL, 960, 540), more = plan(LONG_TITLE, NULL, 960, 540);
     assert_int_equal(one.layout.header_lines, 1);
     assert_true(more.layout.header_lines > 1);
-    assert_int_equal(more.layout.panels[0].top - one.layout.panels[0].top,
+    assert_int_equal(more.layout.area.top - one.layout.area.top,
                      (more.layout.header_lines - 1) * more.layout.header_pitch);
-    assert_int_equal(more.layout.panels[0].bottom, one.layout.panels[0].bottom);
+    assert_int_equal(more.layout.area.bottom, one.layout.area.bottom);
 }
 
 TEST_WITH(too_long_a_title_is_an_error, make, destroy) {

@@ -1,9 +1,12 @@
 /* The texts: src/pictures/caption*.c. */
 
-function write(font, text, x, baseline, colour = look.ink_soft) {
+const LEAST_WIDTH = 0.7; /* of its letters; a longer name is cut: it is whole in the page's title */
+
+/* A text in at most `room` pixels: in the reader's font it may be wider than planned, and is narrowed. */
+function write(font, text, x, baseline, colour = look.ink_soft, room = lay.width) {
   pen.font = font.css;
   pen.fillStyle = colour;
-  pen.fillText(text, x, baseline);
+  pen.fillText(text, x, baseline, max(room, 1));
 }
 
 /* A number with its label and unit. The width of digits does not depend on their values, so that text does not move between
@@ -39,42 +42,77 @@ function draw_header() {
 }
 
 const swatch_side = font => trunc(font.em * 3 / 4);
-const name_width = name => swatch_side(lay.title) + (lay.title.em >> 1) + text_width(lay.title, name);
+
+/* Pixels for a run's distance from the first, and for its caption with its note in this font: in `render`'s font, because what is
+   where must not depend on the reader's. */
+const distance_width = run =>
+  others.includes(run) && !lay.pair ? ceil(data.distance_ems * lay.method.em) + lay.method.em : 0;
+function caption_width(run, font) {
+  const {title} = lay, gap = title.em >> 1, {ems, note, note_ems} = runs[run];
+  return swatch_side(title) + gap + ceil(ems * title.em) + distance_width(run) +
+    (font && note ? gap + ceil(note_ems * font.em) : 0);
+}
+
+/* Notes are beside the names if all have room there, with a number of bodies out of view; otherwise below; otherwise nowhere. The
+   runs of an overlay share lines. */
+function lay_captions(width) {
+  const {panels: [{run, outlines}], title, method, axis} = lay, gap = title.em >> 1, fonts = [method, axis];
+  if (!lay.overlay) {
+    const every = fits => lay.panels.every(panel => !runs[panel.run].note || fits(panel.run)), out = ceil(data.out_ems * method.em);
+    const beside = fonts.find(font => every(each => caption_width(each, font) + gap + out <= width));
+    const below = !beside && fonts.find(font =>
+      every(each => swatch_side(title) + gap + ceil(runs[each].note_ems * font.em) <= width));
+    const label = lay.panels.every(({run}) => caption_width(run, beside) + gap + out + 5 * method.em <= width);
+    return {beside, below, label: label ? "distance " : "", lines: below ? 2 : 1, at: [{x: 0, line: 0}]};
+  }
+  const flow = beside => {
+    let x = 0, line = 0;
+    const at = [run, ...outlines].map(each => {
+      const needed = caption_width(each, beside);
+      if (x > 0 && x + needed > width) [x, line] = [0, line + 1];
+      const place = {x, line};
+      x += needed + 3 * gap;
+      return place;
+    });
+    return {beside, label: "", lines: line + 1, at};
+  };
+  const whole = flow(method);
+  return whole.lines <= 3 ? whole : flow();
+}
 
 /* What a panel does not show. */
 function state_of(run) {
-  const {fixed, frames} = runs[run], is_unseen = (still, body) =>
-    !still && exists(run, now, body) && !is_inside(here, place(pose(run, now, body)));
+  const {fixed, frames, bomb} = runs[run], is_unseen = (still, body) =>
+    !still && body !== bomb && exists(run, now, body) && !is_inside(here, place(pose(run, now, body)));
   const unseen = fixed.filter(is_unseen).length, end = now >= frames ? ["ended"] : [];
   return [...unseen > 0 ? [unseen + " out of view"] : [], ...end].join(", ");
 }
 
-/* Of a run, between two edges: its name, description and distance from the first run, and what cannot be seen. The name keeps
-   its width, but of very long settings only a part. */
-function draw_caption(run, hollow, left, right, state) {
-  const {title, axis, method} = lay, gap = title.em >> 1, name = names[run], {note} = runs[run];
-  const start = left + swatch_side(title) + gap, baseline = here.top - lay.rise, room = text_width(method, state);
-  const kept = left + gap + min(name_width(name), trunc((right - left) * 3 / 5));
-  if (others.includes(run) && !lay.pair) {
-    const {width, draw} = distance_item(method, right - left > 25 * title.em ? "distance " : "", largest(run, now));
-    if (right - width >= kept) {
-      draw(right - width, baseline);
-      right -= width + method.em;
-    }
+/* Of a run: its name, description and distance from the first run, and what cannot be seen. */
+function draw_caption(run, i) {
+  const {title, axis, method, captions, overlay} = lay, gap = title.em >> 1, {note, note_ems} = runs[run], {x, line} = captions.at[i];
+  const left = here.left + x, start = left + swatch_side(title) + gap, end = here.left + here.width;
+  const baseline = here.top - lay.rise - (captions.lines - 1 - line) * lay.line;
+  const most = end - start - distance_width(run), font = text_width(title, names[run]) <= most ? title : axis;
+  let next = start + min(most, text_width(font, names[run])) + gap, right = end;
+  draw_swatch(run, i > 0, left, baseline, swatch_side(title));
+  write(font, fitting(font, names[run], most / LEAST_WIDTH), start, baseline, look.ink, most);
+  if (distance_width(run) > 0) {
+    const {width, draw} = distance_item(method, captions.label, largest(run, now));
+    draw(overlay ? next : end - width, baseline);
+    if (overlay) next += distance_width(run);
+    else right -= width + method.em;
   }
-  if (state && room <= right - kept) {
-    right -= room + gap;
-    write(method, state, right + gap, baseline);
-  } else if (state) /* in the panel: what cannot be seen must be stated */
-    write(axis, state, here.left + here.width - gap - text_width(axis, state), here.top + gap + axis.em);
-  draw_swatch(run, hollow, left, baseline, swatch_side(title));
-  const text = fitting(title, name, right - start), end = start + text_width(title, text) + gap;
-  write(title, text, start, baseline, look.ink);
-  if (right - end >= 5 * method.em) write(method, fitting(method, note, right - end), end, baseline);
-}
-
-/* The runs of an overlay share the line above it. */
-function draw_captions(all) {
-  const space = lay.title.em, at = i => trunc(here.left + i * (here.width + space) / all.length);
-  all.forEach((run, i) => draw_caption(run, i > 0, at(i), at(i + 1) - space, all.length > 1 ? "" : state_of(run)));
+  if (captions.beside) {
+    const room = overlay ? ceil(note_ems * method.em) : right - next;
+    write(captions.beside, note, next, baseline, look.ink_soft, room);
+    next += min(room, text_width(captions.beside, note)) + gap;
+  } else if (captions.below) write(captions.below, note, start, baseline + lay.line, look.ink_soft, end - start);
+  const state = overlay ? "" : state_of(run), room = text_width(method, state);
+  if (state && room <= right - next) write(method, state, right - room, baseline);
+  else if (state) { /* in the panel, on its colour: what cannot be seen must be stated */
+    const wide = text_width(axis, state), x = end - gap - wide, y = here.top + gap;
+    bar(x - 2, y, wide + 4, axis.em + 4, look.panel);
+    write(axis, state, x, y + axis.em);
+  }
 }

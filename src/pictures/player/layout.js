@@ -27,19 +27,20 @@ function fitting(font, text, room) {
   return letters.length > 0 ? cut : "";
 }
 
-function measures(width, height, legend_rows) {
+function measures(width, height, legend_rows, lines) {
   const unit = min(height, 0.75 * width), of = share => rint(share * max(unit, LEAST));
   const font = (weight, share) => { /* the sizes that `render` has: 12, 13 .. 16, 18 .. 32, 36 .. */
     const size = max(share * unit, 12), step = size < 17 ? 1 : size < 34 ? 2 : 4, em = floor(size / step) * step;
     return {em, css: `${weight} ${em}px Inter, system-ui, sans-serif`};
   };
   const margin = max(rint(0.03 * unit), 4), header = margin + of(0.026), end = height - rint(0.016 * unit);
-  const title_row = of(0.058), axis_row = of(0.038), tick = of(0.006), axis = font(400, 0.017);
+  const title = font(600, 0.0225), line = max(of(0.03), rint(1.2 * title.em));
+  const title_row = of(0.058) + (lines - 1) * line, axis_row = of(0.038), tick = of(0.006), axis = font(400, 0.017);
   const pitch = of(0.035), more = (legend_rows - 1) * pitch;
   return {
-    width, height, margin, header, axis, tick, pitch, rise: of(0.016), drop: of(0.0275), row_gap: title_row + axis_row,
+    width, height, margin, header, axis, tick, pitch, rise: of(0.016), line, drop: of(0.0275), row_gap: title_row + axis_row,
     overlay: view.compare === "overlay", difference: view.compare === "difference",
-    scene: font(600, 0.03), status: font(400, 0.0225), title: font(600, 0.0225), method: font(400, 0.0205),
+    scene: font(600, 0.03), status: font(400, 0.0225), title, method: font(400, 0.0205),
     left: margin + ceil(NUMBER_EMS * axis.em) + 2 * tick, right: width - margin, top: header + of(0.006) + title_row,
     bottom: end - axis_row - (legend_rows > 0 ? of(0.046) + more : 0), legend: end - of(0.012) - more,
   };
@@ -55,50 +56,59 @@ function grid_of(count, columns) {
   };
 }
 
-const scale_in = ({width, height}, needs) => min(width / needs.x, height / needs.y);
+/* Between the scale in these panels and that at which what falls would stay in view. */
+function scale_in({width, height}) {
+  const {left, right, room_left, room_right, bottom, top} = data.framing, high = height / (top - bottom);
+  return Math.sqrt(min(width / (right - left), high) * min(width / (room_right - room_left), high));
+}
 
 /* The grid in which the scene is largest; an unusual one only if the scene gains, more where names would be cut. Their widths
    are those of `render`'s font. */
-function choose_grid(count, needs) {
+function choose_grid(count) {
   const few = count > 3 ? 2 : 1, usual = grid_of(count, lay.height > lay.width ? few : ceil(count / few));
-  const {title, method} = lay, distance = ceil(data.distance_ems * method.em);
-  const wide = max(...runs.map(({ems}, run) => ceil(ems * title.em) + (run > 0 ? distance : 0))) +
-    swatch_side(title) + 2 * (title.em >> 1);
-  let best = usual, most = scale_in(usual, needs);
+  const wide = max(...runs.map((_, run) => caption_width(run)));
+  let best = usual, most = scale_in(usual);
   for (let columns = 1; columns <= count; columns++) {
-    const grid = grid_of(count, columns), worth = scale_in(grid, needs) / (grid.width >= wide ? 1.05 : 1.5);
-    if (worth > most) [most, best] = [worth, grid];
+    const grid = grid_of(count, columns), worth = scale_in(grid) / (grid.width >= wide ? 1.05 : 1.5);
+    if (grid.rows * columns - count <= (count > 3) && worth > most) [most, best] = [worth, grid];
   }
   return best;
 }
 
 /* Panels that a long or high scene would leave almost empty have its shape. The names of an overlay need all the width. */
 function shrink(grid, needs) {
-  const {left, top, columns, rows} = grid, scale = scale_in(grid, needs), {em} = lay.title;
+  const {left, top, columns, rows} = grid, {scale} = fit_camera(grid), {em} = lay.title;
   const side = (whole, needed, share, ems) =>
     needed >= share * whole ? whole : min(whole, ceil(max(needed / 0.65, ems * em)));
   const width = lay.overlay ? grid.width : side(grid.width, scale * needs.x, 0.2, 22);
   const height = side(grid.height, scale * needs.y, 0.4, 5);
-  return {columns, width, height, left: left + trunc(columns * (grid.width - width) / 2),
+  return {columns, rows, width, height, left: left + trunc(columns * (grid.width - width) / 2),
     top: top + trunc(rows * (grid.height - height) / 2)};
 }
 
 /* What a panel shows: the bodies of a run, and those of others as outlines. Runs that cannot be compared have their own. */
-function arrange(width, height, legend_rows) {
-  const {left, right, bottom, top} = data.framing;
-  const needs = {x: Math.fround(right - left), y: Math.fround(top - bottom)};
-  lay = measures(width, height, legend_rows);
+function arrange(width, height, legend_rows, lines = 1) {
+  const {room_left, room_right, bottom, top} = data.framing;
+  const needs = {x: Math.fround(room_right - room_left), y: Math.fround(top - bottom)};
+  lay = measures(width, height, legend_rows, lines);
   const {overlay, difference} = lay, shown = runs.map((_, run) => run)
     .filter(run => overlay ? !others.includes(run) : run > 0 || !difference);
   const ghosts = difference || shows("ghosts") ? [0] : [];
   lay.pair = runs.length === 2 && others.length === 1 && shown.length === 2;
-  const grid = lay.grid = shrink(choose_grid(shown.length, needs), needs);
+  const grid = lay.grid = shrink(choose_grid(shown.length), needs);
   lay.side = min(grid.width, grid.height);
+  const {columns, rows} = grid, empty = rows * columns - shown.length, x_step = grid.width + lay.margin;
+  const middle = i => i >= shown.length + empty - columns ? trunc(empty * x_step / 2) : 0; /* a last row that is not full */
   lay.panels = shown.map((run, i) => ({
-    run, outlines: overlay ? (run === 0 ? others : []) : others.includes(run) ? ghosts : [],
-    left: grid.left + i % grid.columns * (grid.width + lay.margin), width: grid.width, height: grid.height,
-    top: grid.top + trunc(i / grid.columns) * (grid.height + lay.row_gap),
+    run, outlines: overlay ? (run === 0 ? others : []) : others.includes(run) ? ghosts : [], first: i % columns === 0,
+    left: grid.left + middle(i) + i % columns * x_step, width: grid.width, height: grid.height,
+    top: grid.top + trunc(i / columns) * (grid.height + lay.row_gap),
   }));
+  lay.captions = lay_captions(grid.width);
+  if (lay.captions.lines > lines) {
+    arrange(width, height, legend_rows, lines + 1);
+    return;
+  }
   lay.fit = fit_camera(grid);
   sizes = mark_sizes(lay.fit.scale);
 }

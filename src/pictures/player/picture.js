@@ -19,11 +19,12 @@ function draw_panel(columns, rows) {
   if (shows("trails")) all.forEach(draw_trails);
   draw_bodies(false);
   outlines.forEach(draw_outlines);
+  draw_pointer(run);
   all.forEach(draw_marks);
   draw_pinned();
   pen.restore();
-  draw_axes(columns, here.left === lay.grid.left ? rows : []);
-  draw_captions(all);
+  draw_axes(columns, here.first ? rows : []);
+  all.forEach(draw_caption);
 }
 
 /* Draws a moment. The context's transform scales CSS pixels. */

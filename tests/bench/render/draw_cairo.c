@@ -53,7 +53,7 @@ static void draw_body(cairo_t *cairo, double width, double height, bool plain, c
 }
 
 static void draw_panel(cairo_t *cairo, const Picture *picture, int panel, int frame) {
-    static const uint32_t ground[] = {0xD3D8DF, 0x5A6472, 0}, bomb[] = {0xB5371B, 0x5E1606, 0xFFE9DF};
+    static const uint32_t ground[] = {0xD3D8DF, 0x5A6472, 0}, bomb[] = {0xA0200F, 0x4E0A03, 0xFFE9DF};
     static const uint32_t boxes[][3] = {{0x0072B2, 0x00395C, 0x4FA6D8}, {0xE69F00, 0x7A4F00, 0xFFD47A}};
     const Trajectory *run = picture->runs[panel];
     const Camera *camera = &picture->camera;
