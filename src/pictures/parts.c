@@ -318,14 +318,14 @@ static void draw_pointer(const Picture *picture, int panel, Moment moment, Drawi
     const Point at = panel_point(picture, panel, pose.x, pose.y);
     const Vec2 size = run->size[run->bomb];
     const double reach = 0.5 * picture->camera.scale * (double)fminf(size.x, size.y);
-    const Point edge = {fmin(fmax(at.x, rect->left), rect->right), fmin(fmax(at.y, rect->top), rect->bottom)};
+    const double line = fmax(POINTER_LINE * panel_side(picture), MIN_POINTER_LINE), inset = 3 * line; /* half its head */
+    const Point edge = {fmin(fmax(at.x, rect->left + inset), rect->right - inset),
+                        fmin(fmax(at.y, rect->top + inset), rect->bottom - inset)};
     const double x = at.x - edge.x, y = at.y - edge.y, away = sqrt(x * x + y * y);
-    if (!(away > reach && away < HUGE_VAL)) return;
-    const double line = fmax(POINTER_LINE * panel_side(picture), MIN_POINTER_LINE);
-    const double tip = 2 * line / away, tail = tip + fmax(POINTER * panel_side(picture), MIN_POINTER) / away;
+    if (!(away > reach + inset && away < HUGE_VAL)) return;
+    const double tail = fmax(POINTER * panel_side(picture), MIN_POINTER) / away;
     const ArrowStyle style = {line, picture->theme->bomb.fill, picture->theme->panel};
-    stroke_arrow(drawing, (Point){edge.x - tail * x, edge.y - tail * y}, (Point){edge.x - tip * x, edge.y - tip * y},
-                 false, &style, rect);
+    stroke_arrow(drawing, (Point){edge.x - tail * x, edge.y - tail * y}, edge, false, &style, rect);
 }
 
 DashedLine approach_line(const Picture *picture) {

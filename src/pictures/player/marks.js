@@ -95,12 +95,11 @@ function draw_vector(what, at, x, y) {
 function draw_pointer(run) {
   const {bomb, size} = runs[run];
   if (bomb < 0 || !exists(run, now, bomb)) return;
-  const at = place(pose(run, now, bomb)), {left, top} = here, line = max(0.0075 * lay.side, 2);
-  const edge = {x: min(max(at.x, left), left + here.width), y: min(max(at.y, top), top + here.height)};
-  const x = at.x - edge.x, y = at.y - edge.y, away = hypot(x, y);
-  const back = pixels => ({x: edge.x - pixels / away * x, y: edge.y - pixels / away * y});
-  if (away > eye.scale * min(...size[bomb]) / 2 && away < 1e9)
-    draw_arrow(back(2 * line + max(0.055 * lay.side, 14)), back(2 * line), false, line, look.bomb.fill, look.panel);
+  const at = place(pose(run, now, bomb)), {left, top, width, height} = here, line = max(0.0075 * lay.side, 2), inset = 3 * line;
+  const edge = {x: min(max(at.x, left + inset), left + width - inset), y: min(max(at.y, top + inset), top + height - inset)};
+  const x = at.x - edge.x, y = at.y - edge.y, away = hypot(x, y), tail = max(0.055 * lay.side, 14) / away;
+  if (away > eye.scale * min(...size[bomb]) / 2 + inset && away < 1e9)
+    draw_arrow({x: edge.x - tail * x, y: edge.y - tail * y}, edge, false, line, look.bomb.fill, look.panel);
 }
 
 /* An impulse is that on body b; body a receives the opposite. */
