@@ -60,7 +60,7 @@ complains "scenes/none.yaml: error:"
 cd ..
 pages=second/share/doc/twinbox
 for file in README.md LICENSE OFL.txt; do [ -s $pages/$file ] || fail "no $file"; done
-pictures=$(grep -o '([^():]*\.png)' $pages/README.md | tr -d '()')
+pictures=$(grep -oE '[("][^()":]*\.(png|gif)[)"]' $pages/README.md | tr -d '()"')
 equal "a page has pictures" "$([ -n "$pictures" ] && echo yes)" yes
 for picture in $pictures; do [ -s "$pages/$picture" ] || fail "README.md shows $picture, which is not installed"; done
 for scene in "$sources"/scenes/*.yaml "$sources"/scenes/stability/*.yaml "$sources"/scenes/large/*.yaml; do
