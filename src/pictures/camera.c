@@ -190,7 +190,7 @@ static const double BOMB_REACH = 3; /* a bomb farther away is not shown, or it w
 static const double WAY_REACH = 8;  /* where its way is shown */
 static const double NEAR = 1;       /* a stack that falls over stays within this */
 static const double SETTLED_STEPS = 32;
-static const double SAG = 0.9; /* of its height: what stands higher has not fallen together */
+static const double SAG = 0.9;         /* of its height: what stands higher has not fallen together */
 static const double BOMB_MARGIN = 0.1; /* of its size */
 
 /* Whether a body stands in this frame, in a region (NULL: anywhere): it moves, and is not the bomb. */
@@ -202,8 +202,8 @@ static Extent surroundings(const Extent *extent, double sides) {
     return extent_widened(extent, sides * fmax(extent_side(extent), FRAMING_MIN_SIDE));
 }
 
-/* The bodies that stand, the ground below them, and static bodies near them that are no larger than all of them together, such as
-   the feet of an arch. */
+/* The bodies that stand, the ground below them, and static bodies near them that are no larger than all of them
+   together, such as the feet of an arch. */
 static Extent standing_extent(const Trajectory *run, int frame, const Extent *region) {
     Extent all = extent_empty;
     for (int body = 0; body < run->bodies; body++)
@@ -253,8 +253,8 @@ int bomb_first_frame(const Trajectory *run) {
     return first;
 }
 
-/* What falls together before the bomb strikes, as high as it is then. In steps, and not for a sag, so that runs that differ
-   little have the same view. */
+/* What falls together before the bomb strikes, as high as it is then. In steps, and not for a sag, so that runs that
+   differ little have the same view. */
 static Extent settled_extent(const Extent *standing, const Trajectory *run, int impact) {
     const Extent then = standing_extent(run, impact - 1, standing);
     const double height = standing->top - standing->bottom;
@@ -272,8 +272,8 @@ static bool most_are_in(const Extent *extent, const Trajectory *run) {
     return 4 * inside >= 3 * all;
 }
 
-/* Where what stands falls if it is struck: to the far side if the bomb comes from the side, else to both; about as far as it is
-   high. */
+/* Where what stands falls if it is struck: to the far side if the bomb comes from the side, else to both; about as far
+   as it is high. */
 static Extent room_to_fall(const Trajectory *run, const Extent *standing, int impact) {
     const int first = bomb_first_frame(run), last = impact - 1;
     const double height = standing->top - standing->bottom;
@@ -299,7 +299,8 @@ static Extent bomb_extent(const Trajectory *run, int frame) {
     return bomb;
 }
 
-/* When the bomb gets where something stood: until then it flies, so that the frame does not depend on how what stands sags. */
+/* When the bomb gets where something stood: until then it flies, so that the frame does not depend on how what stands
+   sags. */
 static int strike_frame(const Trajectory *run, const Extent *standing, int impact) {
     for (int frame = bomb_first_frame(run); frame < impact; frame++) {
         const Extent bomb = bomb_extent(run, frame);
@@ -429,8 +430,8 @@ Camera camera_fit(const CameraFrame *frame, int width, int height) {
     const double needed = held->right - held->left, high = held->top - held->bottom;
     const double scale = nice_scale(fmin(width / needed, height / high));
     if (frame->set) return look_at(frame->middle, (held->bottom + held->top) / 2, scale, width, height);
-    /* Spare width goes to both sides of what stands, then to where it falls; spare height above: sky distracts less than
-       ground. */
+    /* Spare width goes to both sides of what stands, then to where it falls; spare height above: sky distracts less
+       than ground. */
     const double half = width / scale / 2, reach = fmax(half, (room->right - room->left) / 2);
     const double falls = fmin(fmax(frame->middle, room->right - reach), room->left + reach);
     const double x = fmin(fmax(falls, held->right - half), held->left + half);

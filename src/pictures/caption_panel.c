@@ -269,8 +269,8 @@ typedef struct Notes {
     bool beside;
 } Notes;
 
-/* With room for a swatch, which a page always has. Beside a name, there is also room for a number of bodies out of view: nothing
-   depends on the frame, so that no text moves. */
+/* With room for a swatch, which a page always has. Beside a name, there is also room for a number of bodies out of
+   view: nothing depends on the frame, so that no text moves. */
 static bool has_room(const Picture *picture, int run, Notes notes) {
     const Layout *layout = &picture->layout;
     const Name name = lay_out_name(picture, run);
@@ -296,7 +296,8 @@ static Notes place_notes(const Picture *picture) {
     return (Notes){NULL, false};
 }
 
-/* Where the runs of an overlay are in the lines above it, from the left; with or without notes. Returns the number of lines. */
+/* Where the runs of an overlay are in the lines above it, from the left; with or without notes. Returns the number of
+   lines. */
 static int place_runs(const Picture *picture, bool notes, int lefts[RENDER_PANELS_MAX], int lines[RENDER_PANELS_MAX]) {
     const Layout *layout = &picture->layout;
     const int gap = layout->title.pixels / 2;
@@ -386,8 +387,8 @@ static const char *distance_label(const Picture *picture, Notes notes) {
     return "distance ";
 }
 
-/* At the right of the first line, where it begins, if there is room; otherwise in the panel's upper right corner, on its
-   colour: what cannot be seen must be stated. */
+/* At the right of the first line, where it begins, if there is room; otherwise in the panel's upper right corner, on
+   its colour: what cannot be seen must be stated. */
 static void draw_state(const Picture *picture, const Rect *panel, const State *state, int left, int right, int baseline,
                        Drawing *drawing) {
     const Font *font = &picture->layout.method, *small = &picture->layout.axis;

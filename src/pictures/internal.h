@@ -151,9 +151,10 @@ void panels_arrange(Picture *picture, int width, int height, int legend);
    panels, their distance. */
 void caption_header(const Picture *picture, Moment moment, Drawing *drawing);
 
-/* Above a panel, its method and, if there are more than two runs, its distance from the first run. Nothing is cut: a long name
-   goes on on further lines; descriptions stand beside the names, in smaller type, below the names, or nowhere, in all panels alike.
-   The number of bodies out of view stands in the panel if there is no room beside the name. */
+/* Above a panel, its method and, if there are more than two runs, its distance from the first run. Nothing is cut: a
+   long name goes on on further lines; descriptions stand beside the names, in smaller type, below the names, or
+   nowhere, in all panels alike. The number of bodies out of view stands in the panel if there is no room beside the
+   name. */
 void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 
 /* Of the longest caption, at the panels' width; of an overlay, lines that its runs share. */

@@ -36,7 +36,8 @@ static int height_of(const Rect *rect) { return rect->bottom - rect->top; }
 /* Between the scale in these panels and that at which what falls would stay in view. */
 static double scale_in(const Layout *layout, const CameraFrame *frame) {
     const Extent *held = &frame->held, *room = &frame->room;
-    const double width = width_of(&layout->panels[0]), high = height_of(&layout->panels[0]) / (held->top - held->bottom);
+    const double width = width_of(&layout->panels[0]),
+                 high = height_of(&layout->panels[0]) / (held->top - held->bottom);
     return sqrt(fmin(width / (held->right - held->left), high) * fmin(width / (room->right - room->left), high));
 }
 

@@ -318,11 +318,12 @@ static void draw_pointer(const Picture *picture, int panel, Moment moment, Drawi
     const Point at = panel_point(picture, panel, pose.x, pose.y);
     const Vec2 size = run->size[run->bomb];
     const double reach = 0.5 * picture->camera.scale * (double)fminf(size.x, size.y);
-    const double line = fmax(POINTER_LINE * panel_side(picture), MIN_POINTER_LINE), inset = 3 * line; /* half its head */
+    const double line = fmax(POINTER_LINE * panel_side(picture), MIN_POINTER_LINE),
+                 inset = 3 * line; /* half its head */
     const Point edge = {fmin(fmax(at.x, rect->left + inset), rect->right - inset),
                         fmin(fmax(at.y, rect->top + inset), rect->bottom - inset)};
     const double x = at.x - edge.x, y = at.y - edge.y, away = sqrt(x * x + y * y);
-    if (!(away > reach + inset && away < HUGE_VAL)) return;
+    if (!(away > reach + inset)) return;
     const double tail = fmax(POINTER * panel_side(picture), MIN_POINTER) / away;
     const ArrowStyle style = {line, picture->theme->bomb.fill, picture->theme->panel};
     stroke_arrow(drawing, (Point){edge.x - tail * x, edge.y - tail * y}, edge, false, &style, rect);

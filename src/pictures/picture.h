@@ -35,11 +35,11 @@ typedef struct Extent {
     double left, right, bottom, top; /* m */
 } Extent;
 
-/* What a fixed camera shows. By default it frames what stands, so that this fills three quarters of a panel's width or height:
-   the moving bodies where they start, the ground below them, and the bomb when it strikes them. The bomb comes into the picture
-   from its edge. What happens after the impact does not count, so that runs with the same start have the same view: a body that
-   flies off leaves the picture and changes nothing in the frames before. Only if most of the first run's bodies go far away, as
-   on a slope, is it all that they reach in the whole run. */
+/* What a fixed camera shows. By default it frames what stands, so that this fills three quarters of a panel's width or
+   height: the moving bodies where they start, the ground below them, and the bomb when it strikes them. The bomb comes
+   into the picture from its edge. What happens after the impact does not count, so that runs with the same start have
+   the same view: a body that flies off leaves the picture and changes nothing in the frames before. Only if most of the
+   first run's bodies go far away, as on a slope, is it all that they reach in the whole run. */
 typedef struct CameraFrame {
     bool set;      /* given: shown in the middle of a panel */
     Extent held;   /* in view whatever the panel's shape, with the margin */
@@ -50,7 +50,8 @@ typedef struct CameraFrame {
 /* A usable view. */
 CameraFrame camera_frame_of(const CameraView *view);
 
-/* The view that the first run's scene sets. Otherwise, what stands in the first run, and in the others what is near that. */
+/* The view that the first run's scene sets. Otherwise, what stands in the first run, and in the others what is near
+   that. */
 CameraFrame camera_frame(const Trajectory *const *runs, int count);
 
 /* For LOOK_APPROACH: what stands at the start and the bomb's way to it, as far as it is not far away. */
@@ -108,9 +109,8 @@ typedef struct RenderLook {
 extern const char *const look_compare_names[], *const look_camera_names[], *const look_theme_names[],
                                                                                *const look_show_names[];
 
-/* The light theme's colours, 0xRRGGBB. The colours of bodies follow Okabe and Ito, distinguishable with all common
-   kinds of colour blindness. Blue is the darkest, and the bomb is darker than any network's boxes, so that grey
-   prints work. */
+/* The light theme's colours, 0xRRGGBB. The colours of bodies follow Okabe and Ito: they differ with all common kinds of
+   colour blindness, and in grey prints. */
 
 static const uint32_t PAGE = 0xF5F6F8, PANEL = 0xFFFFFF, FRAME = 0xC3C9D2;
 static const uint32_t GRID = 0xF0F2F5, GRID_STRONG = 0xDFE3E9;
@@ -379,8 +379,9 @@ double extent_side(const Extent *extent);
 /* Widens the extent by a body's bounding box in this frame, unless it has no pose there or reaches too far. */
 void extent_include(Extent *extent, const Trajectory *run, int frame, int body);
 
-/* What runs show in these frames: the moving bodies, without those that have gone far away from what stood at the start in the
-   first run; the static bodies if there are none. Empty if nothing can be framed. A frame beyond a run's last counts as that. */
+/* What runs show in these frames: the moving bodies, without those that have gone far away from what stood at the start
+   in the first run; the static bodies if there are none. Empty if nothing can be framed. A frame beyond a run's last
+   counts as that. */
 Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count);
 
 /* Refuses a title or caption that is too long or cannot be drawn (pixels/type.h); `where`: its option. NULL passes. */

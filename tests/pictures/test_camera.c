@@ -168,8 +168,8 @@ static Camera dropped(float spacing, float height) {
     return fitted(900, 900);
 }
 
-/* Boxes that fall together before they are struck may begin above the picture, but not most of them; in steps, so that a little
-   less is the same view. A sag changes nothing. */
+/* Boxes that fall together before they are struck may begin above the picture, but not most of them; in steps, so that
+   a little less is the same view. A sag changes nothing. */
 TEST_WITH(what_falls_together_is_framed_as_it_is_struck, make, destroy) {
     const Camera stands = dropped(1, 8), falls = dropped(1.25F, 8), little = dropped(1.25F, 7.98F), far = dropped(2, 8);
     const Camera loose = dropped(1.25F, 9.75F), sags = dropped(1.25F, 9);

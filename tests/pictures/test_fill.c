@@ -23,8 +23,8 @@ static void include_body(Extent *seen, const Camera *camera, const Trajectory *r
     seen->bottom = fmin(seen->bottom, camera->scale * all.bottom - camera->top);
 }
 
-/* The share of a panel's width or height, the larger, that the boxes and static bodies in view cover together; from the ground, which is at 0 m
-   or below, if they are in the air. */
+/* The share of a panel's width or height, the larger, that the boxes and static bodies in view cover together; from the
+   ground, which is at 0 m or below, if they are in the air. */
 static double share_filled(const Picture *picture, int frame, bool with_bomb) {
     const Trajectory *run = picture->runs[0];
     const Rect *panel = &picture->layout.panels[0];
@@ -51,17 +51,14 @@ static Trajectory *run_of_scene(const char *path) {
     return run;
 }
 
-/* At the start, and when the bomb strikes: a single box has fallen by then. One scene has a view of its own, as only its bomb
-   moves, and is a slab wide: it fills the pictures whose panels are not wider than that. */
+/* At the start, and when the bomb strikes: a single box has fallen by then. */
 static int check_scene(const char *path) {
     Trajectory *run = run_of_scene(path);
-    const bool set = run->camera_size.x > 0;
-    assert_true(!set || strstr(path, "/bomb_speed.yaml") != NULL);
     const Trajectory *const runs[RENDER_PANELS_MAX] = {run, run, run, run, run, run};
     const int impact = trajectory_impact(run), struck = strstr(path, "/single.yaml") == NULL && impact > 0 ? impact : 0;
     int bare = 0;
     for (int i = 0; i < SIZES; i++)
-        for (int count = 1; count <= (set ? 1 : RENDER_PANELS_MAX); count++) {
+        for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
             Error error = {0};
             Picture picture;
             assert_ok(picture_plan(&picture, runs, count, sizes[i][0], sizes[i][1], &error), error);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contact points and arrows are in proportion to the panel, but never cover the boxes; an arrow points to a bomb outside. */
+/* Contact points and arrows are in proportion to the panel, but never cover the boxes; an arrow points to a bomb
+   outside. */
 #include "testing.h"
 
 #include "pictures/internal.h"
@@ -51,7 +52,8 @@ TEST(a_thin_arrow_is_drawn_once) {
     }
 }
 
-/* Where the pointer to the bomb is in the panel, from 0 to 1 on each axis, x from the bomb's; false if there is none. */
+/* Where the pointer to the bomb is in the panel, from 0 to 1 on each axis, x from the bomb's; false if there is none.
+   */
 static bool find_pointer(Vec2 bomb, double *x, double *y) {
     Picture picture;
     Error error = {0};

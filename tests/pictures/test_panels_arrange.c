@@ -80,6 +80,26 @@ TEST(the_grid_is_the_one_with_the_largest_scene) {
     }
 }
 
+/* No grid has an empty cell: only five panels can have a last row that is not full, and it is in the middle. */
+TEST(no_cell_is_empty) {
+    static const float scenes[][2] = {{3, 60}, {60, 3}, {10, 10}, {5, 20}, {20, 5}};
+    for (size_t scene = 0; scene < sizeof scenes / sizeof scenes[0]; scene++) {
+        make(scenes[scene][0], scenes[scene][1]);
+        for (int i = 0; i < SIZES; i++)
+            for (int count = 1; count <= RENDER_PANELS_MAX; count++) {
+                const Picture picture = plan(count, sizes[i], &(RenderLook){0});
+                const Layout *layout = &picture.layout;
+                const int empty = layout->rows * layout->columns - count, last = count - layout->columns + empty;
+                if (empty > (count == 5))
+                    fail_msg("%d x %d, %d panels: %d empty cells", sizes[i][0], sizes[i][1], count, empty);
+                const int left = layout->panels[last].left - layout->panels[0].left,
+                          right = layout->panels[layout->columns - 1].right - layout->panels[count - 1].right;
+                assert_true(abs(left - right) <= 1);
+            }
+        destroy();
+    }
+}
+
 /* In a row, or in a column, the scene has 78% of the length of the panel but for the rounding of the scale. */
 TEST(long_scenes_fill_their_panels) {
     for (int wide = 0; wide < 2; wide++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The colours of methods differ for all readers: distances in CIELAB between colours as they are seen. Simulation of the
+/* Colours differ for all readers: distances in CIELAB between colours as they are seen. Simulation of the
    three kinds of colour blindness: Machado, Oliveira, Fernandes, "A physiologically-based model for simulation of color
    vision deficiency" (2009), severity 1. */
 #include "testing.h"
@@ -39,45 +39,70 @@ static Lab seen(uint32_t colour, int sight) {
 
 static double distance(Lab a, Lab b) { return sqrt(pow(a.l - b.l, 2) + pow(a.a - b.a, 2) + pow(a.b - b.b, 2)); }
 
-/* 2.3 is what a trained eye just notices; boxes are small and apart. */
-TEST(colours_differ_for_all_readers) {
-    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
-        const Theme *theme = theme_get((LookTheme)t);
-        for (int sight = 0; sight < 4; sight++)
-            for (int i = METHOD_BLUE; i < METHOD_COLOURS; i++)
+enum { SIGHTS = 4, COLOURS_MAX = METHOD_COLOURS + 2 };
+
+/* Of each method, from METHOD_BLUE on, of the bomb, of contacts. */
+static void colours_of(const Theme *theme, uint32_t colours[COLOURS_MAX]) {
+    for (int i = METHOD_BLUE; i < METHOD_COLOURS; i++) colours[i] = theme->bodies[i].fill;
+    colours[METHOD_COLOURS] = theme->bomb.fill;
+    colours[METHOD_COLOURS + 1] = theme->impulse;
+}
+
+/* 2.3 is what a trained eye just notices; boxes are small and apart. The bomb also has a sign on it. */
+TEST(colours_of_boxes_and_the_bomb_differ_for_all_readers) {
+    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++)
+        for (int sight = 0; sight < SIGHTS; sight++)
+            for (int i = METHOD_ORANGE; i <= METHOD_COLOURS; i++)
                 for (int k = METHOD_BLUE; k < i; k++) {
-                    const double d = distance(seen(theme->bodies[i].fill, sight), seen(theme->bodies[k].fill, sight));
-                    if (d < 13) fail_msg("theme %d, sight %d: colours %d and %d are %.1f apart", t, sight, k, i, d);
+                    uint32_t colours[COLOURS_MAX];
+                    colours_of(theme_get((LookTheme)t), colours);
+                    const double d = distance(seen(colours[i], sight), seen(colours[k], sight));
+                    if (d < 14.5) fail_msg("theme %d, sight %d: colours %d and %d are %.1f apart", t, sight, k, i, d);
                 }
-    }
 }
 
-/* In grey the engine differs from every other method's boxes, and all boxes from their panel. */
-TEST(grey_tells_boxes_from_the_engines_and_the_page) {
-    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
-        const Theme *theme = theme_get((LookTheme)t);
-        const double blue = seen(theme->bodies[METHOD_BLUE].fill, 0).l, panel = seen(theme->panel, 0).l;
-        for (int i = METHOD_ORANGE; i < METHOD_COLOURS; i++) {
-            const double grey = seen(theme->bodies[i].fill, 0).l;
-            assert_true(fabs(grey - blue) > 6);
-            assert_true(fabs(grey - panel) > 20);
-        }
-    }
-}
-
-/* The bomb also has a sign on it, but every method's boxes meet it. */
-TEST(the_bomb_differs_from_all_boxes_and_the_page) {
-    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
-        const Theme *theme = theme_get((LookTheme)t);
-        for (int sight = 0; sight < 4; sight++) {
-            const Lab bomb = seen(theme->bomb.fill, sight);
-            for (int i = METHOD_BLUE; i < METHOD_COLOURS; i++) {
-                const double d = distance(bomb, seen(theme->bodies[i].fill, sight));
-                if (d < 15) fail_msg("theme %d, sight %d: colour %d is %.1f from the bomb's", t, sight, i, d);
+/* In grey any two methods differ, and the engine more from every other. */
+TEST(grey_tells_methods_apart) {
+    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++)
+        for (int i = METHOD_ORANGE; i < METHOD_COLOURS; i++)
+            for (int k = METHOD_BLUE; k < i; k++) {
+                const BodyColors *bodies = theme_get((LookTheme)t)->bodies;
+                const double d = fabs(seen(bodies[i].fill, 0).l - seen(bodies[k].fill, 0).l);
+                if (d < (k == METHOD_BLUE ? 6 : 4)) fail_msg("theme %d: %d and %d are %.1f apart in grey", t, k, i, d);
             }
-            assert_true(distance(bomb, seen(theme->panel, sight)) > 30);
-        }
+}
+
+/* Boxes, the bomb and contacts stand out from what is behind them, for all readers and in grey; least from the ground.
+   */
+TEST(colours_differ_from_what_is_behind_them) {
+    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
+        const Theme *theme = theme_get((LookTheme)t);
+        const uint32_t behind[] = {theme->panel, theme->page, theme->ground};
+        uint32_t colours[COLOURS_MAX];
+        colours_of(theme, colours);
+        for (int i = METHOD_BLUE; i < COLOURS_MAX; i++)
+            for (int k = 0; k < 3; k++) {
+                for (int sight = 0; sight < SIGHTS; sight++)
+                    assert_true(distance(seen(colours[i], sight), seen(behind[k], sight)) > (k < 2 ? 25 : 17));
+                assert_true(fabs(seen(colours[i], 0).l - seen(behind[k], 0).l) > (k < 2 ? 20 : 11));
+            }
     }
+}
+
+/* A contact is a dot in a ring of the panel's colour: where a box is as dark as the dot, the ring shows it. */
+TEST(contacts_stand_out_from_boxes_and_the_bomb) {
+    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++)
+        for (int sight = 0; sight < SIGHTS; sight++) {
+            const Theme *theme = theme_get((LookTheme)t);
+            const Lab dot = seen(theme->impulse, sight), ring = seen(theme->panel, sight);
+            uint32_t colours[COLOURS_MAX];
+            colours_of(theme, colours);
+            assert_true(distance(dot, ring) > 60);
+            for (int i = METHOD_BLUE; i <= METHOD_COLOURS; i++) {
+                const Lab box = seen(colours[i], sight);
+                assert_true(fmax(distance(box, dot), distance(box, ring)) > 40);
+            }
+        }
 }
 
 RUN_TESTS(NULL, NULL)

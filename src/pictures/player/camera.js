@@ -8,9 +8,11 @@ function look_at(x, y, w, h, {width, height}) {
   return {scale, left: rint(width / 2 - scale * x), top: rint(height / 2 + scale * y)};
 }
 
-/* Spare width goes to both sides of what stands, then to where it falls; spare height above: sky distracts less than ground. */
+/* Spare width goes to both sides of what stands, then to where it falls; spare height above: sky distracts less than
+   ground. */
 function fit_camera(grid) {
-  const {set, left, right, bottom, top, room_left, room_right, middle} = data.framing, w = right - left, h = top - bottom;
+  const {set, left, right, bottom, top, room_left, room_right, middle} = data.framing;
+  const w = right - left, h = top - bottom;
   const centred = look_at(left + w / 2, bottom + h / 2, w, h, grid), {scale} = centred;
   const half = grid.width / scale / 2, reach = max(half, (room_right - room_left) / 2);
   const falls = min(max(middle, room_right - reach), room_left + reach), x = min(max(falls, right - half), left + half);

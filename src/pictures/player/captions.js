@@ -43,8 +43,8 @@ function draw_header() {
 
 const swatch_side = font => trunc(font.em * 3 / 4);
 
-/* Pixels for a run's distance from the first, and for its caption with its note in this font: in `render`'s font, because what is
-   where must not depend on the reader's. */
+/* Pixels for a run's distance from the first, and for its caption with its note in this font: in `render`'s font,
+   because what is where must not depend on the reader's. */
 const distance_width = run =>
   others.includes(run) && !lay.pair ? ceil(data.distance_ems * lay.method.em) + lay.method.em : 0;
 function caption_width(run, font) {
@@ -53,12 +53,12 @@ function caption_width(run, font) {
     (font && note ? gap + ceil(note_ems * font.em) : 0);
 }
 
-/* Notes are beside the names if all have room there, with a number of bodies out of view; otherwise below; otherwise nowhere. The
-   runs of an overlay share lines. */
+/* Notes are beside the names if all have room there, with a number of bodies out of view; otherwise below; otherwise
+   nowhere. The runs of an overlay share lines. */
 function lay_captions(width) {
   const {panels: [{run, outlines}], title, method, axis} = lay, gap = title.em >> 1, fonts = [method, axis];
   if (!lay.overlay) {
-    const every = fits => lay.panels.every(panel => !runs[panel.run].note || fits(panel.run)), out = ceil(data.out_ems * method.em);
+    const every = fits => lay.panels.every(({run}) => !runs[run].note || fits(run)), out = ceil(data.out_ems * method.em);
     const beside = fonts.find(font => every(each => caption_width(each, font) + gap + out <= width));
     const below = !beside && fonts.find(font =>
       every(each => swatch_side(title) + gap + ceil(runs[each].note_ems * font.em) <= width));
@@ -90,7 +90,8 @@ function state_of(run) {
 
 /* Of a run: its name, description and distance from the first run, and what cannot be seen. */
 function draw_caption(run, i) {
-  const {title, axis, method, captions, overlay} = lay, gap = title.em >> 1, {note, note_ems} = runs[run], {x, line} = captions.at[i];
+  const {title, axis, method, captions, overlay} = lay, gap = title.em >> 1;
+  const {note, note_ems} = runs[run], {x, line} = captions.at[i];
   const left = here.left + x, start = left + swatch_side(title) + gap, end = here.left + here.width;
   const baseline = here.top - lay.rise - (captions.lines - 1 - line) * lay.line;
   const most = end - start - distance_width(run), font = text_width(title, names[run]) <= most ? title : axis;

@@ -38,7 +38,8 @@ function measures(width, height, legend_rows, lines) {
   const title_row = of(0.058) + (lines - 1) * line, axis_row = of(0.038), tick = of(0.006), axis = font(400, 0.017);
   const pitch = of(0.035), more = (legend_rows - 1) * pitch;
   return {
-    width, height, margin, header, axis, tick, pitch, rise: of(0.016), line, drop: of(0.0275), row_gap: title_row + axis_row,
+    width, height, margin, header, axis, tick, pitch, rise: of(0.016), line, drop: of(0.0275),
+    row_gap: title_row + axis_row,
     overlay: view.compare === "overlay", difference: view.compare === "difference",
     scene: font(600, 0.03), status: font(400, 0.0225), title, method: font(400, 0.0205),
     left: margin + ceil(NUMBER_EMS * axis.em) + 2 * tick, right: width - margin, top: header + of(0.006) + title_row,
@@ -98,7 +99,8 @@ function arrange(width, height, legend_rows, lines = 1) {
   const grid = lay.grid = shrink(choose_grid(shown.length), needs);
   lay.side = min(grid.width, grid.height);
   const {columns, rows} = grid, empty = rows * columns - shown.length, x_step = grid.width + lay.margin;
-  const middle = i => i >= shown.length + empty - columns ? trunc(empty * x_step / 2) : 0; /* a last row that is not full */
+  /* A last row that is not full is in the middle. */
+  const middle = i => i >= shown.length + empty - columns ? trunc(empty * x_step / 2) : 0;
   lay.panels = shown.map((run, i) => ({
     run, outlines: overlay ? (run === 0 ? others : []) : others.includes(run) ? ghosts : [], first: i % columns === 0,
     left: grid.left + middle(i) + i % columns * x_step, width: grid.width, height: grid.height,

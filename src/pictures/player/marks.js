@@ -95,10 +95,12 @@ function draw_vector(what, at, x, y) {
 function draw_pointer(run) {
   const {bomb, size} = runs[run];
   if (bomb < 0 || !exists(run, now, bomb)) return;
-  const at = place(pose(run, now, bomb)), {left, top, width, height} = here, line = max(0.0075 * lay.side, 2), inset = 3 * line;
-  const edge = {x: min(max(at.x, left + inset), left + width - inset), y: min(max(at.y, top + inset), top + height - inset)};
+  const at = place(pose(run, now, bomb)), {left, top, width, height} = here;
+  const line = max(0.0075 * lay.side, 2), inset = 3 * line, inside = (at, low, side) =>
+    min(max(at, low + inset), low + side - inset);
+  const edge = {x: inside(at.x, left, width), y: inside(at.y, top, height)};
   const x = at.x - edge.x, y = at.y - edge.y, away = hypot(x, y), tail = max(0.055 * lay.side, 14) / away;
-  if (away > eye.scale * min(...size[bomb]) / 2 + inset && away < 1e9)
+  if (away > eye.scale * min(...size[bomb]) / 2 + inset)
     draw_arrow({x: edge.x - tail * x, y: edge.y - tail * y}, edge, false, line, look.bomb.fill, look.panel);
 }
 
