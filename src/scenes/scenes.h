@@ -121,6 +121,10 @@ Scene *scene_read(const char *path, Error *error);
    parameter's bounds or not whole where they must be: "path: error: what". */
 Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error);
 
+/* The same from the tree of a file, which stays the caller's and may be read again. */
+struct YamlTree;
+Scene *scene_of_tree(struct YamlTree *tree, const SceneSetting *settings, int count, Error *error);
+
 void scene_destroy(Scene *scene);
 
 /* The parameter, or what every scene has, with this name; NULL: none. */
