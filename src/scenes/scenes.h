@@ -134,6 +134,11 @@ const SceneParameter *scene_parameter(const Scene *scene, const char *name);
  */
 World *scene_world(const Scene *scene, Error *error);
 
+/* Whether a run of the scene gets a bomb before it ends. */
+static inline bool scene_has_launch(const Scene *scene) {
+    return scene->bomb.present && scene->bomb.frame <= scene->frames;
+}
+
 /* The bomb with its start velocity: the velocity law applied to its position. */
 BodyDef scene_bomb_body(const Scene *scene);
 
