@@ -65,12 +65,6 @@ struct Option {
     .read = option_paths, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \
     .most = sizeof((T *)NULL)->array / sizeof *((T *)NULL)->array
 
-/* The values of all --set options. Has room for one more than a scene can have, which the scene then refuses. */
-typedef struct SceneSettings {
-    int count;
-    SceneSetting items[SCENE_MAX_PARAMETERS + 1];
-} SceneSettings;
-
 #define OPTION_SET(T, member)                                                                                          \
     "--set", 0, "NAME=VALUE",                                                                                          \
         "Value of a parameter of the scene, or of what every scene has: iterations, dt, friction, bomb_x, bomb_mass, " \

@@ -391,6 +391,18 @@ bool parameters_set(Parameters *parameters, const char *path, const SceneSetting
     return true;
 }
 
+bool scene_settings_add(SceneSettings *settings, const char *text) {
+    if (settings->count == SCENE_SETTINGS_MAX) return true;
+    SceneSetting *setting = &settings->items[settings->count];
+    const char *number = strchr(text, '=');
+    const size_t length = number == NULL ? 0 : (size_t)(number - text);
+    if (length == 0 || length >= sizeof setting->name || !parse_double(number + 1, &setting->value)) return false;
+    memcpy(setting->name, text, length);
+    setting->name[length] = '\0';
+    settings->count++;
+    return true;
+}
+
 bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Error *error) {
     for (int i = 0; i < parameters->count; i++)
         if (!parameters->used[i])

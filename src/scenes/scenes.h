@@ -91,6 +91,17 @@ typedef struct SceneSetting {
     double value;
 } SceneSetting;
 
+/* Values for several. Has room for one more than a scene can have, which the scene then refuses. */
+enum { SCENE_SETTINGS_MAX = SCENE_MAX_PARAMETERS + SCENE_COMMON_MAX + 1 };
+
+typedef struct SceneSettings {
+    int count;
+    SceneSetting items[SCENE_SETTINGS_MAX];
+} SceneSettings;
+
+/* Adds "NAME=VALUE". False if it is no such text; of more settings than there is room for, none is added. */
+bool scene_settings_add(SceneSettings *settings, const char *text);
+
 typedef struct Scene {
     char name[SCENE_NAME_SIZE]; /* file name without folder and ending */
     Vec2 gravity;               /* m/s^2 */
