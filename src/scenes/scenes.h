@@ -81,9 +81,9 @@ typedef struct SceneParameter {
 } SceneParameter;
 
 /* What every scene has, and settings and studies take beside its parameters: iterations, dt (the run and the time of the bomb
-   stay as long, in seconds), friction of all boxes; and in a scene with a bomb its x, mass and speed as bomb_x, bomb_mass and
-   bomb_speed. A parameter of the scene with such a name goes before. */
-enum { SCENE_COMMON_MAX = 6 };
+   stay as long, in seconds), friction of all boxes; and in a scene with a bomb its position, mass and speed as bomb_x, bomb_y,
+   bomb_mass and bomb_speed. A parameter of the scene with such a name goes before. */
+enum { SCENE_COMMON_MAX = 7 };
 
 /* A value for a parameter, instead of the file's. */
 typedef struct SceneSetting {
