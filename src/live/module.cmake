@@ -48,8 +48,8 @@ set(module_sources
     scenes/parameters scenes/scene scenes/scene_read scenes/scene_world scenes/shapes)
 # Where most of the time is spent; the rest is made small.
 set(module_fast
-    engine/box engine/broad_phase engine/contact_problem engine/world methods/block_lu methods/interior_scalar
-    methods/momentum methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/soft_step
+    engine/box engine/broad_phase engine/contact_problem engine/world methods/block_lu methods/interior
+    methods/interior_point methods/interior_scalar methods/islands methods/momentum methods/order methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/soft_step
     nets/kernels_scalar nets/row_kernels_scalar)
 
 if(TWINBOX_LIVE)
