@@ -32,16 +32,19 @@
 #define LIVE_EXPORT(name)
 #endif
 
-/* The methods that a page can run: the registry of the module. */
-#define LIVE_METHODS(SOLVER, STEPPING) \
-    SOLVER(engine)                     \
-    SOLVER(momentum)                   \
-    SOLVER(pair_net)                   \
-    SOLVER(contact_net)                \
-    SOLVER(scene_net)                  \
-    SOLVER(relu_net)                   \
-    STEPPING(soft_step)                \
+/* The methods that a page can run: the registry of the module. There are two modules: the plain one has no networks, and is a
+   fifth smaller. */
+#define LIVE_PLAIN_METHODS(SOLVER, STEPPING) \
+    SOLVER(engine)                           \
+    SOLVER(momentum)                         \
+    STEPPING(soft_step)                      \
     SOLVER(interior)
+#define LIVE_METHODS(SOLVER, STEPPING)   \
+    LIVE_PLAIN_METHODS(SOLVER, STEPPING) \
+    SOLVER(pair_net)                     \
+    SOLVER(contact_net)                  \
+    SOLVER(scene_net)                    \
+    SOLVER(relu_net)
 
 /* The functions of the module. */
 
@@ -117,12 +120,21 @@ LIVE_EXPORT(live_verdict) const char *live_verdict(const LiveRun *run);
 
 /* The functions of the program. */
 
-/* The module, as it is embedded in a page; size 0: this build is without it. */
-extern const unsigned char live_module_wasm[];
-extern const size_t live_module_wasm_size;
+/* A module, as it is embedded in a page: not compressed. */
+typedef struct LiveModule {
+    const unsigned char *bytes;
+    size_t size; /* 0: this build is without it (TWINBOX_LIVE) */
+} LiveModule;
 
-/* Whether the module has this method. */
+/* The plain module, or that with networks. */
+LiveModule live_module(bool networks);
+
+/* Whether the module with networks has this method. */
 bool live_has_method(const MethodDescription *description);
+
+/* What live_module() returns. */
+extern const unsigned char live_networks_wasm[], live_plain_wasm[];
+extern const size_t live_networks_wasm_size, live_plain_wasm_size;
 
 /* A bundle: the scene file and the networks of these methods [count], as on the command line. The paths in it are without the
    scene's folder. *bundle: to be freed. ERROR_INPUT also for a method that the module does not have. */

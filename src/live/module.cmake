@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The module that a page runs (live/live.h), by clang for WebAssembly whatever the compiler of the program is, and embedded as
-# live_module_wasm. Without the option TWINBOX_LIVE, or without what it needs, live_module_wasm_size is 0.
+# The modules that a page runs (live/live.h), by clang for WebAssembly whatever the compiler of the program is. Without the
+# option TWINBOX_LIVE they are empty.
 set(module_folder ${CMAKE_CURRENT_BINARY_DIR}/live)
 file(MAKE_DIRECTORY ${module_folder}/include)
 
@@ -33,12 +33,16 @@ if(NOT DEFINED TWINBOX_LIVE_FOUND)
 endif()
 option(TWINBOX_LIVE "Build the module for live pages (default: if clang, lld and wasi-libc for wasm32 are installed)"
        ${TWINBOX_LIVE_FOUND})
+set(module_needs "clang, lld, wasi-libc and libclang-rt-dev-wasm32 (tests/setup --tests installs them)")
+if(TWINBOX_LIVE AND NOT TWINBOX_LIVE_FOUND)
+    message(FATAL_ERROR "TWINBOX_LIVE needs ${module_needs}; then configure in a fresh folder")
+endif()
 
 # What is compiled: the rooms below `live`, without files, threads, YAML and zip.
 set(module_sources
     base/base base/hash base/json_write base/npy base/npz base/parse base/path base/stream base/yaml
     engine/box engine/broad_phase engine/contact_problem engine/world
-    live/bundle live/describe live/live live/module/methods live/module/npz_bundle live/module/wasi
+    live/bundle live/describe live/live live/module/npz_bundle live/module/wasi
     methods/block_lu methods/block_order methods/engine methods/interior methods/interior_point methods/interior_scalar
     methods/islands methods/method methods/momentum methods/order methods/pair methods/pair_net methods/reference_point
     methods/reference_scalar methods/scene_net methods/soft_step methods/steppers methods/stopping methods/sweeps
@@ -55,27 +59,37 @@ set(module_fast
 if(TWINBOX_LIVE)
     # Only this header of the host: those of its C library would be taken for wasi-libc's.
     configure_file(${TWINBOX_WASM_XXHASH}/xxhash.h ${module_folder}/include/xxhash.h COPYONLY)
-    set(objects)
-    foreach(name ${module_sources})
-        set(level -Oz)
-        if(name IN_LIST module_fast)
-            set(level -O2)
-        endif()
-        string(REPLACE "/" "_" object ${name})
-        set(object ${module_folder}/${object}.o)
+    # module_object(<name of the source> <object> <flags>...)
+    function(module_object name object)
         add_custom_command(
             OUTPUT ${object}
-            COMMAND ${CMAKE_C_COMPILER_LAUNCHER} ${TWINBOX_WASM_CLANG} ${module_flags} ${level} -I${CMAKE_CURRENT_SOURCE_DIR}
+            COMMAND ${CMAKE_C_COMPILER_LAUNCHER} ${TWINBOX_WASM_CLANG} ${module_flags} ${ARGN} -I${CMAKE_CURRENT_SOURCE_DIR}
                     -isystem ${module_folder}/include -MD -MF ${object}.d -o ${object} -c ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c
             DEPENDS ${name}.c DEPFILE ${object}.d COMMENT "Building ${name}.c for pages" VERBATIM)
+    endfunction()
+    set(objects)
+    foreach(name ${module_sources})
+        string(REPLACE "/" "_" object ${name})
+        set(object ${module_folder}/${object}.o)
+        if(name IN_LIST module_fast)
+            module_object(${name} ${object} -O2)
+        else()
+            module_object(${name} ${object} -Oz)
+        endif()
         list(APPEND objects ${object})
     endforeach()
-    add_custom_command(
-        OUTPUT ${module_folder}/module.wasm
-        COMMAND ${TWINBOX_WASM_CLANG} ${module_link_flags} -o ${module_folder}/module.wasm ${objects} -lm
-        DEPENDS ${objects} COMMENT "Linking the module for pages" VERBATIM)
+    module_object(live/module/methods ${module_folder}/networks.o -Oz)
+    module_object(live/module/methods ${module_folder}/plain.o -Oz -DLIVE_PLAIN)
+    foreach(module networks plain)
+        add_custom_command(
+            OUTPUT ${module_folder}/${module}.wasm
+            COMMAND ${TWINBOX_WASM_CLANG} ${module_link_flags} -o ${module_folder}/${module}.wasm ${objects}
+                    ${module_folder}/${module}.o -lm
+            DEPENDS ${objects} ${module_folder}/${module}.o COMMENT "Linking ${module}.wasm" VERBATIM)
+    endforeach()
 else()
-    message(STATUS "No live pages: they need clang, lld, wasi-libc and libclang-rt-dev-wasm32 (tests/setup --tests installs them)")
-    file(WRITE ${module_folder}/module.wasm "")
+    message(STATUS "No live pages (TWINBOX_LIVE): they need ${module_needs}")
+    file(WRITE ${module_folder}/networks.wasm "")
+    file(WRITE ${module_folder}/plain.wasm "")
 endif()
-embed(live_module.c live/live.h "unsigned char" live_ ${module_folder} module.wasm)
+embed(live_modules.c live/live.h "unsigned char" live_ ${module_folder} networks.wasm plain.wasm)

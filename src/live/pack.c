@@ -13,6 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+LiveModule live_module(bool networks) {
+    return networks ? (LiveModule){live_networks_wasm, live_networks_wasm_size}
+                    : (LiveModule){live_plain_wasm, live_plain_wasm_size};
+}
+
 bool live_has_method(const MethodDescription *description) {
 #define SOLVER_LISTED(name) &solver_##name.description,
 #define STEPPING_LISTED(name) &stepping_##name.description,

@@ -8,9 +8,11 @@ trap 'rm -rf "$folder"' EXIT
 cd "$2"
 
 skip() { echo "skipped: $1"; exit 77; }
-"$build/tests/pack_live" "$folder/module.wasm"
-[ -s "$folder/module.wasm" ] || skip "this build is without the module for live pages (TWINBOX_LIVE)"
+for module in networks plain; do
+    "$build/tests/pack_live" "$folder/$module.wasm" $module
+done
+[ -s "$folder/plain.wasm" ] || skip "this build is without the module for live pages (TWINBOX_LIVE)"
 command -v node >/dev/null || skip "there is no node (Debian: nodejs)"
 
-node tests/live/check.mjs "$folder/module.wasm" "$1" "$build/tests/pack_live" "$launches"
-node tests/live/hostile.mjs "$folder/module.wasm" "$build/tests/pack_live"
+node tests/live/check.mjs "$folder/networks.wasm" "$1" "$build/tests/pack_live" "$launches"
+node tests/live/hostile.mjs "$folder/networks.wasm" "$folder/plain.wasm" "$build/tests/pack_live"
