@@ -293,7 +293,7 @@ static const Option option_table[] = {
      OPTION_TEXT(Options, study.methods)},
     {"--vary", 0, "NAME[=FROM:TO[:STEP]]",
      "Vary a parameter of SCENE, by default between its bounds, or what every scene has: iterations, dt, friction, "
-     "bomb_x, "
+     "bomb_x, bomb_y, "
      "bomb_mass, bomb_speed; with STEP at every such value, up to 128; two of them give their map, too",
      OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
@@ -420,10 +420,10 @@ static bool check_options(const Options *options, Error *error) {
     if (options->scene == NULL)
         return options->vary_count == 0 || error_input(error, "--vary", "a scene is needed: its parameters are varied");
     if (options->vary_count == 0)
-        return error_input(
-            error, options->scene,
-            "--vary NAME is needed: a parameter of the scene, or iterations, dt, friction, bomb_x, bomb_mass or "
-            "bomb_speed");
+        return error_input(error, options->scene,
+                           "--vary NAME is needed: a parameter of the scene, or iterations, dt, friction, bomb_x, "
+                           "bomb_y, bomb_mass or "
+                           "bomb_speed");
     return options->study.name_count == 0 ||
            error_input(error, "--study", "is for the studies without SCENE; '%s' is given", options->scene);
 }

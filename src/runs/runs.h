@@ -12,6 +12,26 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* A run in progress, step by step. */
+
+typedef struct Simulation {
+    const Scene *scene;
+    World *world;
+    Stepper *stepper;
+} Simulation;
+
+/* The world before the first step. The scene outlives the run. On failure there is nothing to end. ERROR_INPUT also if the
+   bomb would start inside a body. */
+bool simulation_begin(Simulation *run, const Scene *scene, const Method *method, Error *error);
+
+/* Step `frame`: 1, 2, ... in order. */
+bool simulation_step(Simulation *run, int frame, Error *error);
+void simulation_end(Simulation *run);
+
+/* One step of a run. Then adds the bomb or removes the last body, if the scene does so after this step. On failure the
+   error names scene and step. */
+bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error);
+
 /* Runs a scene with a method and records the trajectory. */
 
 /* Called with the world after every step; frame: number of the step, 1 .. frames. */
@@ -30,10 +50,6 @@ typedef struct RunWatch {
     NetworkFallbacks *fallbacks; /* those of all steps are added */
     const Progress *progress;
 } RunWatch;
-
-/* One step of a run. Then adds the bomb or removes the last body, if the scene does so after this step. On failure the
-   error names scene and step. */
-bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error);
 
 /* Runs the scene. False with error set if the method cannot be created, a body's state becomes NaN or infinite, an
    observer fails, or progress requests a stop. */
@@ -57,6 +73,13 @@ bool scene_check_networks(const Scene *scene, Error *error);
 /* Reads the scene at `path` with each parameter at either end, the others as in the file, and checks the launches. The
    error ends with the parameter: "(with height = 20, an end of its range)". */
 bool scene_check_ends(const char *path, const Scene *scene, Error *error);
+
+/* A trajectory of a scene and a method in memory, with room for this many frames; none is filled. NULL with error set. */
+Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int frames, Error *error);
+
+/* Fills a frame from the world; the contacts are those of the step that led to it, in rising order of frames. */
+void trajectory_set_bodies(Trajectory *trajectory, int frame, const World *world);
+bool trajectory_set_contacts(Trajectory *trajectory, int frame, const World *world, Error *error);
 
 /* Records a run: into a trajectory in memory, or into files while the run is made, in bounded memory. Files are written
    by a second thread. */

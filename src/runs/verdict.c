@@ -63,7 +63,7 @@ static bool starts_at_rest(const Scene *scene) {
 }
 
 VerdictRun verdict_run_of(const Scene *scene) {
-    const bool rests = starts_at_rest(scene), bomb = scene->bomb.present && scene->bomb.frame <= scene->frames;
+    const bool rests = starts_at_rest(scene), bomb = scene_has_launch(scene);
     return (VerdictRun){.gravity = scene->gravity,
                         .dt = scene->dt,
                         .frames = scene->frames,

@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "runs/runs.h"
 #include "scenes/scenes.h"
 
 #include <stddef.h>
@@ -254,3 +255,30 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch);
    with error set if the method cannot be created or memory is short. */
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
                  Error *error);
+
+/* The verdict on one run in words, found while its steps are made. */
+
+/* Begin with simulate_verdict_begin(); free with simulate_verdict_free(). */
+typedef struct SimulateVerdict {
+    const Scene *scene;
+    const char *method;
+    VerdictWatch watch;
+    VerdictReading reading; /* after simulate_verdict_end() */
+} SimulateVerdict;
+
+/* The scene and the method's text outlive the verdict. */
+bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error);
+
+/* To be called after every step; outlived by the verdict. */
+StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
+
+/* After the run; failure: why it failed, if it did. False if there is no verdict: the run failed for another reason than
+   a NaN or infinite state. */
+bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
+void simulate_verdict_free(SimulateVerdict *verdict);
+
+/* After simulate_verdict_end(): "falls at 4.22 s (body 7, 0.53 m lower)". */
+void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]);
+
+/* The number of dynamic bodies but the bomb, and how many of them have fallen. */
+int simulate_verdict_bodies(const SimulateVerdict *verdict, int *fallen);
