@@ -40,6 +40,7 @@ static Trajectory *trajectory_of_scene(const Scene *scene, const Method *method,
     if (trajectory == NULL) return NULL;
     snprintf(trajectory->scene, sizeof trajectory->scene, "%s", scene->name);
     snprintf(trajectory->method, sizeof trajectory->method, "%s", method->text);
+    trajectory->no_contacts = method->kind->description->external;
     trajectory->scene_hash = scene_hash(scene);
     trajectory->iterations = scene->iterations;
     trajectory->dt = scene->dt;
@@ -107,7 +108,7 @@ Recorder *recorder_create_to(const Scene *scene, const Method *method, const Rec
         recorder->parts[i] = trajectory_of_scene(scene, method, recorder->capacity, error);
         done = recorder->parts[i] != NULL;
         if (!done) break;
-        recorder->parts[i]->no_contacts = no_contacts;
+        recorder->parts[i]->no_contacts |= no_contacts;
         trajectory_restart_contacts(recorder->parts[i]);
     }
     if (done && open_outputs(recorder, outputs, count, scene->frames + 1, error)) return recorder;
@@ -183,6 +184,14 @@ bool recorder_record(Recorder *recorder, int frame, const World *world, Error *e
     const int row = recorder->used++;
     record_bodies(part, row, world);
     return frame == 0 || part->no_contacts || record_contacts(part, row, world, error);
+}
+
+void recorder_name_program(Recorder *recorder, const Method *method) {
+    ProgramName name;
+    if (!method_program(method, &name)) return;
+    char *program = recorder->parts[0]->program;
+    snprintf(program, TRAJECTORY_NAME_SIZE, "%s %s", name.name, name.version);
+    for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_program(recorder->streams[i], program);
 }
 
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body) {
