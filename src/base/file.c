@@ -4,7 +4,6 @@
 
 #include "base/base.h"
 
-#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -21,8 +20,6 @@ static int copy_of_input = -1, reserved_output = -1;
 
 /* Readers accept no larger file. */
 static const uint64_t MOST = (UINT64_C(1) << 31) + 1;
-
-bool path_is_standard(const char *path) { return strcmp(path, "-") == 0; }
 
 static bool copy_input(int copy, Error *error) {
     char block[1 << 16];
@@ -207,22 +204,6 @@ bool file_path(char *path, size_t size, Error *error, const char *format, ...) {
     va_end(arguments);
     return (length >= 0 && (size_t)length < size) ||
            error_input(error, "path", "%.200s... is longer than %zu bytes", path, size - 1);
-}
-
-bool file_name_ends_with(const char *name, const char *ending) {
-    const size_t length = strlen(name), tail = strlen(ending);
-    return length > tail && strcmp(name + length - tail, ending) == 0;
-}
-
-size_t file_folder_length(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash == NULL ? 0 : (size_t)(slash - path) + 1;
-}
-
-void file_name_clean(char *name) {
-    for (char *c = name; *c != '\0'; c++)
-        if (!isalnum((unsigned char)*c) && strchr("-_.=", *c) == NULL) *c = '_';
-    if (name[0] == '.') name[0] = '_';
 }
 
 bool folder_error(const char *path, Error *error) {

@@ -4,6 +4,10 @@
 /* The same values with the widest vectors of the processor, in half the time. */
 #ifdef TWINBOX_AVX
 #include <xxh_x86dispatch.h>
+#elif defined(__wasm__) /* there is no library to link */
+#define XXH_INLINE_ALL
+#define XXH_VECTOR 0 /* XXH_SCALAR */
+#include <xxhash.h>
 #else
 #include <xxhash.h>
 #endif

@@ -25,6 +25,9 @@ typedef struct Source {
    Returns false. */
 bool source_error(const Source *source, Place place, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
 
+/* The byte at a place; beyond the end of a line, its end. */
+size_t source_offset(const Source *source, Place place);
+
 /* Copies UTF-8 text for a message: non-printable characters become '?', text that does not fit ends with "...". */
 void source_printable(char *out, size_t room, const char *text);
 

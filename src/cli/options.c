@@ -134,16 +134,8 @@ bool option_range(const Option *option, const char *text, void *value, Error *er
 }
 
 bool option_set(const Option *option, const char *text, void *value, Error *error) {
-    SceneSettings *settings = value;
-    if (settings->count > SCENE_MAX_PARAMETERS) return true;
-    SceneSetting *setting = &settings->items[settings->count++];
-    const char *number = strchr(text, '=');
-    const size_t length = number == NULL ? 0 : (size_t)(number - text);
-    if (length == 0 || length >= sizeof setting->name || !parse_double(number + 1, &setting->value))
-        return error_input(error, option->name, "'%.64s' is not NAME=VALUE with a number after '='", text);
-    memcpy(setting->name, text, length);
-    setting->name[length] = '\0';
-    return true;
+    return scene_settings_add(value, text) ||
+           error_input(error, option->name, "'%.64s' is not NAME=VALUE with a number after '='", text);
 }
 
 enum { FIRST_KEY = 256, SHOWN_SIZE = 72 };

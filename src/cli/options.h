@@ -65,16 +65,11 @@ struct Option {
     .read = option_paths, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \
     .most = sizeof((T *)NULL)->array / sizeof *((T *)NULL)->array
 
-/* The values of all --set options. Has room for one more than a scene can have, which the scene then refuses. */
-typedef struct SceneSettings {
-    int count;
-    SceneSetting items[SCENE_MAX_PARAMETERS + 1];
-} SceneSettings;
-
-#define OPTION_SET(T, member)                                                                                          \
-    "--set", 0, "NAME=VALUE",                                                                                          \
-        "Value of a parameter of the scene, or of what every scene has: iterations, dt, friction, bomb_x, bomb_mass, " \
-        "bomb_speed (may be repeated)",                                                                                \
+#define OPTION_SET(T, member)                                                                                       \
+    "--set", 0, "NAME=VALUE",                                                                                       \
+        "Value of a parameter of the scene, or of what every scene has: iterations, dt, friction, bomb_x, bomb_y, " \
+        "bomb_mass, "                                                                                               \
+        "bomb_speed (may be repeated)",                                                                             \
         OPTION_READ(option_set, T, member)
 
 OptionRead option_text, option_path, option_flag, option_seed, option_range, option_int, option_float, option_double,

@@ -58,31 +58,10 @@ typedef bool CompareRun(const CompareOptions *options, Error *error);
    what the last comparison that ended returned, with its error. */
 bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error);
 
-/* The verdict on the run of `simulate`, found while its steps are made. */
-
-/* Begin with simulate_verdict_begin(); free with simulate_verdict_free(). */
-typedef struct SimulateVerdict {
-    const Scene *scene;
-    const char *method;
-    VerdictWatch watch;
-    VerdictReading reading; /* after simulate_verdict_end() */
-} SimulateVerdict;
-
-/* The scene and the method's text outlive the verdict. */
-bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error);
-
-/* To be called after every step; outlived by the verdict. */
-StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
-
-/* After the run; failure: why it failed, if it did. False if there is no verdict: the run failed for another reason than
-   a NaN or infinite state. */
-bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
-void simulate_verdict_free(SimulateVerdict *verdict);
-
 /* simulate() with the verdict in the run. */
 Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error);
 
-/* Writes that object as a file. */
+/* Writes the verdict with all its figures as a file. */
 bool simulate_verdict_write(const SimulateVerdict *verdict, const char *path, Error *error);
 
 /* The tables of a study of stability, for the terminal. */

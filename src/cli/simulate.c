@@ -29,92 +29,6 @@ typedef struct SimulateResult {
     bool judged; /* there is a verdict */
 } SimulateResult;
 
-enum { FIGURE_SIZE = 160 };
-
-bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error) {
-    *verdict = (SimulateVerdict){.scene = scene, .method = method};
-    const VerdictRun run = verdict_run_of(scene);
-    World *start = scene_world(scene, error);
-    bool ok = start != NULL &&
-              verdict_watch_begin(&verdict->watch, &run, world_bodies(start), world_body_count(start), error);
-    world_destroy(start);
-    return ok;
-}
-
-StepObserver simulate_verdict_observer(SimulateVerdict *verdict) {
-    return (StepObserver){verdict_watch_observe, &verdict->watch};
-}
-
-bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure) {
-    if (failure->kind != ERROR_NONE && !verdict_is_non_finite(failure)) return false;
-    if (failure->kind != ERROR_NONE) verdict_watch_failed(&verdict->watch, verdict->watch.frame + 1);
-    verdict->reading = verdict_watch_end(&verdict->watch);
-    return true;
-}
-
-void simulate_verdict_free(SimulateVerdict *verdict) { verdict_watch_free(&verdict->watch); }
-
-/* The dynamic bodies but the bomb, and how many of them have fallen. */
-static int count_bodies(const SimulateVerdict *verdict, int *fallen) {
-    const Scene *scene = verdict->scene;
-    int count = 0;
-    *fallen = 0;
-    for (int i = 0; i < scene->body_count && i < verdict->watch.body_count; i++) {
-        if (scene->bodies[i].fixed) continue;
-        count++;
-        *fallen += verdict->watch.bodies[i].fallen;
-    }
-    return count;
-}
-
-static bool runs_to_the_end(const SimulateVerdict *verdict) { return verdict->reading.frame >= verdict->watch.frame; }
-
-/* "body 7, 0.53 m lower" */
-static void write_figure(const SimulateVerdict *verdict, char figure[FIGURE_SIZE]) {
-    const VerdictReading *reading = &verdict->reading;
-    const double value = reading->value;
-    const int body = reading->body;
-    const bool turned = strcmp(reading->unit, "deg") == 0;
-    switch (reading->verdict) {
-    case VERDICT_CREEPS:
-        snprintf(figure, FIGURE_SIZE, "body %d, %.3g m in %d s", body, value, VERDICT_CREEP_SECONDS);
-        return;
-    case VERDICT_FALLS:
-        snprintf(figure, FIGURE_SIZE, turned ? "body %d, rotated by %.3g degrees" : "body %d, %.3g m lower", body,
-                 value);
-        return;
-    case VERDICT_SINKS:
-        snprintf(figure, FIGURE_SIZE, "body %d, %.3g m deep for %g s", body, value, VERDICT_SINK_TIME);
-        return;
-    case VERDICT_TUNNELS:
-        snprintf(figure, FIGURE_SIZE, "body %d, at %.3g m/s through a static box", body, value);
-        return;
-    case VERDICT_EXPLODES:
-        snprintf(figure, FIGURE_SIZE, "body %d is the most energetic, %.3g J gained", body, value);
-        return;
-    case VERDICT_NON_FINITE:
-        snprintf(figure, FIGURE_SIZE, "a body's state is NaN or infinite; fastest body before: %.3g m/s", value);
-        return;
-    default: snprintf(figure, FIGURE_SIZE, "kinetic energy %.3g J per body", value);
-    }
-}
-
-/* "falls at 4.22 s (body 7, 0.53 m lower)" */
-static void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
-    const VerdictReading *reading = &verdict->reading;
-    const double time = reading->frame * (double)verdict->scene->dt;
-    char figure[FIGURE_SIZE];
-    int fallen;
-    const int count = count_bodies(verdict, &fallen);
-    write_figure(verdict, figure);
-    const char *when = reading->verdict != VERDICT_SWAYS ? " at"
-                       : runs_to_the_end(verdict)        ? ": still moves at the end,"
-                                                         : ": moves until";
-    snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s%s %.3g s (%s)", verdict_name(reading->verdict), when, time, figure);
-    if (!verdict->watch.run.stands && fallen > 0)
-        text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d of %d bodies have fallen", fallen, count);
-}
-
 /* Prints "    verdict: " and these words. */
 static void simulate_verdict_print(const SimulateVerdict *verdict) {
     char words[TRAJECTORY_VERDICT_SIZE];
@@ -151,6 +65,7 @@ static const char *quantity(const VerdictReading *reading) {
         [VERDICT_TUNNELS] = "speed",
         [VERDICT_EXPLODES] = "energy gained",
         [VERDICT_NON_FINITE] = "highest speed before",
+        [VERDICT_ADAPTER_FAILED] = "highest speed before",
     };
     if (reading->verdict == VERDICT_FALLS) return strcmp(reading->unit, "deg") == 0 ? "rotation" : "descent";
     return quantities[reading->verdict];
@@ -158,7 +73,7 @@ static const char *quantity(const VerdictReading *reading) {
 
 static void write_fallen(const SimulateVerdict *verdict, JsonWriter *json) {
     int fallen;
-    json_put_int(json, "bodies", count_bodies(verdict, &fallen));
+    json_put_int(json, "bodies", simulate_verdict_bodies(verdict, &fallen));
     json_begin_array(json, "fallen", JSON_ONE_LINE);
     for (int i = 0; i < verdict->scene->body_count && i < verdict->watch.body_count; i++)
         if (verdict->watch.bodies[i].fallen) json_put_int(json, NULL, i);
@@ -178,6 +93,7 @@ static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     json_put_text(json, "quantity", quantity(reading));
     json_put_number(json, "value", reading->value);
     json_put_text(json, "unit", reading->unit);
+    if (reading->reason[0] != '\0') json_put_text(json, "reason", reading->reason);
 }
 
 /* Puts it with all figures as an object into JSON (src/studies/README.md, The verdict on one run). */
@@ -303,13 +219,14 @@ static const CommandSpec spec = {
     .options = option_table,
     .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
     .inputs = {1, 1, "scene"},
-    .help =
-        "Run a scene with one method and store the trajectory.\v"
-        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-        "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
-        "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
-        "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite.\n"
-        "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
+    .help = "Run a scene with one method and store the trajectory.\v"
+            "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+            "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
+            "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
+            "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite, "
+            "adapter "
+            "failed.\n"
+            "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
 static bool override_bomb(SceneBomb *bomb, const Options *options, Error *error) {
     const bool launched = !isnan(options->bomb_x) || options->bomb_frame >= 0;
@@ -373,7 +290,7 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
 
 /* A run that ends in a NaN or infinite state has a verdict, too; one that was interrupted has none. */
 static bool judge(SimulateResult *result, const Options *options, Error *error) {
-    if (!result->judged || (error->kind != ERROR_NONE && !verdict_is_non_finite(error))) return false;
+    if (!result->judged || (error->kind != ERROR_NONE && !verdict_is_failure(error))) return false;
     if (!options->json) simulate_verdict_print(&result->verdict);
     return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);
 }

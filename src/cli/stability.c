@@ -155,7 +155,7 @@ static bool add_run(const Making *making, const Scene *scene, const MapCell *row
 static bool run_row(const Making *making, Scene *scene, const MapCell *row, int shown, Error *error) {
     Error failure = {0};
     int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;
-    scene->frames = row->verdict == VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
+    scene->frames = row->verdict >= VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
     if (add_run(making, scene, row, &failure)) return true;
     if (row->verdict != VERDICT_EXPLODES || failure.kind != ERROR_INPUT || decided >= shown) {
         *error = failure;
@@ -293,7 +293,7 @@ static const Option option_table[] = {
      OPTION_TEXT(Options, study.methods)},
     {"--vary", 0, "NAME[=FROM:TO[:STEP]]",
      "Vary a parameter of SCENE, by default between its bounds, or what every scene has: iterations, dt, friction, "
-     "bomb_x, "
+     "bomb_x, bomb_y, "
      "bomb_mass, bomb_speed; with STEP at every such value, up to 128; two of them give their map, too",
      OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
@@ -420,10 +420,10 @@ static bool check_options(const Options *options, Error *error) {
     if (options->scene == NULL)
         return options->vary_count == 0 || error_input(error, "--vary", "a scene is needed: its parameters are varied");
     if (options->vary_count == 0)
-        return error_input(
-            error, options->scene,
-            "--vary NAME is needed: a parameter of the scene, or iterations, dt, friction, bomb_x, bomb_mass or "
-            "bomb_speed");
+        return error_input(error, options->scene,
+                           "--vary NAME is needed: a parameter of the scene, or iterations, dt, friction, bomb_x, "
+                           "bomb_y, bomb_mass or "
+                           "bomb_speed");
     return options->study.name_count == 0 ||
            error_input(error, "--study", "is for the studies without SCENE; '%s' is given", options->scene);
 }

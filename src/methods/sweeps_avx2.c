@@ -83,7 +83,7 @@ TARGET void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, cons
         run_levels_extrapolating(sweeps, schedule, factors);
 }
 
-#else
+#elif !defined(__wasm_simd128__) /* sweeps_simd128.c */
 
 #include <assert.h>
 

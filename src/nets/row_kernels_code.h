@@ -2,11 +2,11 @@
 #include "nets/kernels.h"
 #include "nets/nets.h"
 
-#include <immintrin.h>
 #include <string.h>
 
 /* The code of RowKernels (kernels.h); included once by each row_kernels_*.c, which defines VECTOR_BYTES. */
 #if VECTOR_BYTES > 16
+#include <immintrin.h>
 #endif
 
 typedef float Floats __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(float)), may_alias));

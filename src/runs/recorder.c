@@ -26,33 +26,8 @@ struct Recorder {
     Background *background; /* NULL: nothing is written */
 };
 
-static void describe_body(Trajectory *trajectory, int body, const BodyDef *def) {
-    trajectory->size[body] = def->size;
-    trajectory->fixed[body] = def->fixed;
-}
-
-static bool has_bomb(const Scene *scene) { return scene->bomb.present && scene->bomb.frame <= scene->frames; }
-
-/* A trajectory without frames yet, with room for some of them. */
-static Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int frames, Error *error) {
-    const bool bomb = has_bomb(scene);
-    Trajectory *trajectory = trajectory_create(frames, scene->body_count + bomb, error);
-    if (trajectory == NULL) return NULL;
-    snprintf(trajectory->scene, sizeof trajectory->scene, "%s", scene->name);
-    snprintf(trajectory->method, sizeof trajectory->method, "%s", method->text);
-    trajectory->scene_hash = scene_hash(scene);
-    trajectory->iterations = scene->iterations;
-    trajectory->dt = scene->dt;
-    trajectory->camera_center = scene->camera_center;
-    trajectory->camera_size = scene->camera_size;
-    for (int i = 0; i < scene->body_count; i++) describe_body(trajectory, i, &scene->bodies[i]);
-    trajectory->bomb = bomb ? scene->body_count : -1;
-    if (bomb) describe_body(trajectory, trajectory->bomb, &scene->bomb.body);
-    return trajectory;
-}
-
 static bool check_length(const Scene *scene, Error *error) {
-    const int bodies = scene->body_count + has_bomb(scene);
+    const int bodies = scene->body_count + scene_has_launch(scene);
     if (((int64_t)scene->frames + 1) * bodies <= SIMULATE_MAX_STATES) return true;
     return error_input(error, scene->name, "%d frames of %d bodies are too many to record; at most %d states of a body",
                        scene->frames, bodies, SIMULATE_MAX_STATES);
@@ -92,7 +67,7 @@ static bool open_outputs(Recorder *recorder, const RecorderOutput *outputs, int 
 }
 
 static int part_frames(const Scene *scene) {
-    const int bodies = scene->body_count + has_bomb(scene);
+    const int bodies = scene->body_count + scene_has_launch(scene);
     const int frames = PART_BYTES / (int)(6 * sizeof(float)) / (bodies > 0 ? bodies : 1);
     return frames < 1 ? 1 : frames > scene->frames + 1 ? scene->frames + 1 : frames;
 }
@@ -107,7 +82,7 @@ Recorder *recorder_create_to(const Scene *scene, const Method *method, const Rec
         recorder->parts[i] = trajectory_of_scene(scene, method, recorder->capacity, error);
         done = recorder->parts[i] != NULL;
         if (!done) break;
-        recorder->parts[i]->no_contacts = no_contacts;
+        recorder->parts[i]->no_contacts |= no_contacts;
         trajectory_restart_contacts(recorder->parts[i]);
     }
     if (done && open_outputs(recorder, outputs, count, scene->frames + 1, error)) return recorder;
@@ -121,40 +96,6 @@ void recorder_destroy(Recorder *recorder) {
     for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_destroy(recorder->streams[i]);
     for (int i = 0; i < 2; i++) trajectory_destroy(recorder->parts[i]);
     free(recorder);
-}
-
-static void record_bodies(Trajectory *trajectory, int frame, const World *world) {
-    const Body *bodies = world_bodies(world);
-    const size_t row = (size_t)frame * (size_t)trajectory->bodies;
-    const int count = world_body_count(world);
-    for (int i = 0; i < count; i++) {
-        trajectory->position[row + (size_t)i] = bodies[i].position;
-        trajectory->angle[row + (size_t)i] = bodies[i].angle;
-        trajectory->velocity[row + (size_t)i] = bodies[i].velocity;
-        trajectory->angular_velocity[row + (size_t)i] = bodies[i].angular_velocity;
-    }
-    for (size_t i = row + (size_t)count; i < row + (size_t)trajectory->bodies; i++) {
-        trajectory->position[i] = trajectory->velocity[i] = vec2(NAN, NAN);
-        trajectory->angle[i] = trajectory->angular_velocity[i] = NAN;
-    }
-}
-
-static bool record_contacts(Trajectory *trajectory, int frame, const World *world, Error *error) {
-    const ContactProblem *problem = world_problem(world);
-    const ContactSolution *solution = world_solution(world);
-    TrajectoryContact *records = trajectory_add_contacts(trajectory, frame, problem->contact_count, error);
-    if (records == NULL) return false;
-    for (int i = 0; i < problem->contact_count; i++) {
-        const ContactPoint *contact = &problem->contacts[i];
-        records[i] = (TrajectoryContact){.a = contact->a,
-                                         .b = contact->b,
-                                         .feature = contact->feature,
-                                         .point = contact->position,
-                                         .normal = contact->normal,
-                                         .normal_impulse = solution->impulses[i].normal,
-                                         .tangent_impulse = solution->impulses[i].tangent};
-    }
-    return true;
 }
 
 /* Gives the part to the second thread, which has then ended the part before: that one is recorded next. */
@@ -181,8 +122,16 @@ bool recorder_record(Recorder *recorder, int frame, const World *world, Error *e
     if (!whole && is_full(recorder) && !flush(recorder, error)) return false;
     Trajectory *part = recorder->parts[recorder->current];
     const int row = recorder->used++;
-    record_bodies(part, row, world);
-    return frame == 0 || part->no_contacts || record_contacts(part, row, world, error);
+    trajectory_set_bodies(part, row, world);
+    return frame == 0 || part->no_contacts || trajectory_set_contacts(part, row, world, error);
+}
+
+void recorder_name_program(Recorder *recorder, const Method *method) {
+    ProgramName name;
+    if (!method_program(method, &name)) return;
+    char *program = recorder->parts[0]->program;
+    snprintf(program, TRAJECTORY_NAME_SIZE, "%s %s", name.name, name.version);
+    for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_program(recorder->streams[i], program);
 }
 
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body) {

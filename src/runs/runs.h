@@ -12,6 +12,26 @@
 #include <stddef.h>
 #include <stdio.h>
 
+/* A run in progress, step by step. */
+
+typedef struct Simulation {
+    const Scene *scene;
+    World *world;
+    Stepper *stepper;
+} Simulation;
+
+/* The world before the first step. The scene outlives the run. On failure there is nothing to end. ERROR_INPUT also if the
+   bomb would start inside a body. */
+bool simulation_begin(Simulation *run, const Scene *scene, const Method *method, Error *error);
+
+/* Step `frame`: 1, 2, ... in order. */
+bool simulation_step(Simulation *run, int frame, Error *error);
+void simulation_end(Simulation *run);
+
+/* One step of a run. Then adds the bomb or removes the last body, if the scene does so after this step. On failure the
+   error names scene and step. */
+bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error);
+
 /* Runs a scene with a method and records the trajectory. */
 
 /* Called with the world after every step; frame: number of the step, 1 .. frames. */
@@ -31,10 +51,6 @@ typedef struct RunWatch {
     const Progress *progress;
 } RunWatch;
 
-/* One step of a run. Then adds the bomb or removes the last body, if the scene does so after this step. On failure the
-   error names scene and step. */
-bool simulate_step(Stepper *stepper, World *world, const Step *step, Error *error);
-
 /* Runs the scene. False with error set if the method cannot be created, a body's state becomes NaN or infinite, an
    observer fails, or progress requests a stop. */
 bool simulate_watched(const Scene *scene, const Method *method, const RunWatch *watch, Error *error);
@@ -45,6 +61,9 @@ bool simulate_observed(const Scene *scene, const Method *method, const StepObser
 /* Runs the scene and records it in memory (a Recorder also records to files). NULL with error set for the same
    reasons, or if memory is short. */
 Trajectory *simulate(const Scene *scene, const Method *method, const Progress *progress, Error *error);
+
+/* Writes the scene as JSON, with patterns and parameters written out: src/runs/README.md lists the keys. */
+bool scene_flat_write(const Scene *scene, const char *path, Error *error);
 
 /* What reading a scene does not check: its launches, its networks, and its parameters at their ends. */
 
@@ -57,6 +76,13 @@ bool scene_check_networks(const Scene *scene, Error *error);
 /* Reads the scene at `path` with each parameter at either end, the others as in the file, and checks the launches. The
    error ends with the parameter: "(with height = 20, an end of its range)". */
 bool scene_check_ends(const char *path, const Scene *scene, Error *error);
+
+/* A trajectory of a scene and a method in memory, with room for this many frames; none is filled. NULL with error set. */
+Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int frames, Error *error);
+
+/* Fills a frame from the world; the contacts are those of the step that led to it, in rising order of frames. */
+void trajectory_set_bodies(Trajectory *trajectory, int frame, const World *world);
+bool trajectory_set_contacts(Trajectory *trajectory, int frame, const World *world, Error *error);
 
 /* Records a run: into a trajectory in memory, or into files while the run is made, in bounded memory. Files are written
    by a second thread. */
@@ -84,7 +110,9 @@ void recorder_destroy(Recorder *recorder);
 /* Records a frame; 0: before the first step. Frames in rising order, without gaps. RunWatch does it. */
 bool recorder_record(Recorder *recorder, int frame, const World *world, Error *error);
 
-/* After the run, before recorder_finish() or recorder_take(): the verdict on it (trajectory_judge). */
+/* After the run, before recorder_finish() or recorder_take(): what its program states (method_program), and the verdict on it
+   (trajectory_judge). */
+void recorder_name_program(Recorder *recorder, const Method *method);
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body);
 
 /* After the run: the files are written. */

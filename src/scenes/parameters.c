@@ -247,7 +247,7 @@ bool parameters_read(Parameters *parameters, const YamlTree *tree, Error *error)
 
 /* What every scene has. */
 
-enum { ITERATIONS, DT, FRICTION, BOMB_X, BOMB_MASS, BOMB_SPEED, COMMON };
+enum { ITERATIONS, DT, FRICTION, BOMB_X, BOMB_Y, BOMB_MASS, BOMB_SPEED, COMMON };
 
 static const struct {
     const char *name, *unit;
@@ -256,6 +256,7 @@ static const struct {
                     [DT] = {"dt", "s", (double)SCENE_MIN_DT, (double)SCENE_MAX_DT},
                     [FRICTION] = {"friction", "", 0, 10},
                     [BOMB_X] = {"bomb_x", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
+                    [BOMB_Y] = {"bomb_y", "m", -(double)SCENE_MAX_POSITION, (double)SCENE_MAX_POSITION},
                     [BOMB_MASS] = {"bomb_mass", "kg", 1e-6, 1e9},
                     [BOMB_SPEED] = {"bomb_speed", "m/s", 0, 1e4}};
 
@@ -274,6 +275,7 @@ static double common_value(const Scene *scene, int which) {
     case DT: return (double)scene->dt;
     case FRICTION: return (double)scene->bodies[scene->body_count - 1].friction;
     case BOMB_X: return (double)scene->bomb.body.position.x;
+    case BOMB_Y: return (double)scene->bomb.body.position.y;
     case BOMB_MASS: return (double)scene->bomb.body.mass;
     default: return bomb_speed(scene);
     }
@@ -309,6 +311,7 @@ static void change(Scene *scene, int which, double value) {
         scene->bomb.body.friction = (float)value;
         break;
     case BOMB_X: scene->bomb.body.position.x = (float)value; break;
+    case BOMB_Y: scene->bomb.body.position.y = (float)value; break;
     case BOMB_MASS: scene->bomb.body.mass = (float)value; break;
     default: change_speed(scene, value);
     }
@@ -346,6 +349,7 @@ void common_list(Scene *scene) {
                                           [DT] = {value / 4, value * 4},
                                           [FRICTION] = {0, 1},
                                           [BOMB_X] = {value - 5, value + 5},
+                                          [BOMB_Y] = {value - 5, value + 5},
                                           [BOMB_MASS] = {value / 10, value * 10},
                                           [BOMB_SPEED] = {0, 3 * value}};
         SceneParameter *parameter = &scene->common[scene->common_count++];
@@ -388,6 +392,18 @@ bool parameters_set(Parameters *parameters, const char *path, const SceneSetting
                 return error_input(error, path, "the parameter '%s' is set twice", settings[i].name);
         if (!set(parameters, path, &settings[i], error)) return false;
     }
+    return true;
+}
+
+bool scene_settings_add(SceneSettings *settings, const char *text) {
+    if (settings->count == SCENE_SETTINGS_MAX) return true;
+    SceneSetting *setting = &settings->items[settings->count];
+    const char *number = strchr(text, '=');
+    const size_t length = number == NULL ? 0 : (size_t)(number - text);
+    if (length == 0 || length >= sizeof setting->name || !parse_double(number + 1, &setting->value)) return false;
+    memcpy(setting->name, text, length);
+    setting->name[length] = '\0';
+    settings->count++;
     return true;
 }
 

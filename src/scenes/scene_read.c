@@ -439,22 +439,27 @@ static void trace(const Scene *scene) {
     }
 }
 
+Scene *scene_of_tree(YamlTree *tree, const SceneSetting *settings, int count, Error *error) {
+    Scene *scene = calloc(1, sizeof *scene);
+    if (scene == NULL) {
+        error_memory(error, tree->source.path);
+        return NULL;
+    }
+    scene->warm_starting = scene->accumulate_impulses = scene->position_correction = true;
+    name_scene(scene, tree->source.path);
+    if (read_tree(tree, scene, settings, count, error)) {
+        trace(scene);
+        return scene;
+    }
+    scene_destroy(scene);
+    return NULL;
+}
+
 Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error) {
     YamlTree tree;
     if (!yaml_read(&tree, path, error)) return NULL;
-    Scene *scene = calloc(1, sizeof *scene);
-    if (scene == NULL) {
-        error_memory(error, path);
-    } else {
-        scene->warm_starting = scene->accumulate_impulses = scene->position_correction = true;
-        name_scene(scene, path);
-        if (!read_tree(&tree, scene, settings, count, error)) {
-            scene_destroy(scene);
-            scene = NULL;
-        }
-    }
+    Scene *scene = scene_of_tree(&tree, settings, count, error);
     yaml_tree_free(&tree);
-    if (scene != NULL) trace(scene);
     return scene;
 }
 

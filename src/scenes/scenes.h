@@ -81,15 +81,26 @@ typedef struct SceneParameter {
 } SceneParameter;
 
 /* What every scene has, and settings and studies take beside its parameters: iterations, dt (the run and the time of the bomb
-   stay as long, in seconds), friction of all boxes; and in a scene with a bomb its x, mass and speed as bomb_x, bomb_mass and
-   bomb_speed. A parameter of the scene with such a name goes before. */
-enum { SCENE_COMMON_MAX = 6 };
+   stay as long, in seconds), friction of all boxes; and in a scene with a bomb its position, mass and speed as bomb_x, bomb_y,
+   bomb_mass and bomb_speed. A parameter of the scene with such a name goes before. */
+enum { SCENE_COMMON_MAX = 7 };
 
 /* A value for a parameter, instead of the file's. */
 typedef struct SceneSetting {
     char name[SCENE_PARAMETER_SIZE];
     double value;
 } SceneSetting;
+
+/* Values for several. Has room for one more than a scene can have, which the scene then refuses. */
+enum { SCENE_SETTINGS_MAX = SCENE_MAX_PARAMETERS + SCENE_COMMON_MAX + 1 };
+
+typedef struct SceneSettings {
+    int count;
+    SceneSetting items[SCENE_SETTINGS_MAX];
+} SceneSettings;
+
+/* Adds "NAME=VALUE". False if it is no such text; of more settings than there is room for, none is added. */
+bool scene_settings_add(SceneSettings *settings, const char *text);
 
 typedef struct Scene {
     char name[SCENE_NAME_SIZE]; /* file name without folder and ending */
@@ -121,6 +132,10 @@ Scene *scene_read(const char *path, Error *error);
    parameter's bounds or not whole where they must be: "path: error: what". */
 Scene *scene_read_with(const char *path, const SceneSetting *settings, int count, Error *error);
 
+/* The same from the tree of a file, which stays the caller's and may be read again. */
+struct YamlTree;
+Scene *scene_of_tree(struct YamlTree *tree, const SceneSetting *settings, int count, Error *error);
+
 void scene_destroy(Scene *scene);
 
 /* The parameter, or what every scene has, with this name; NULL: none. */
@@ -129,6 +144,11 @@ const SceneParameter *scene_parameter(const Scene *scene, const char *name);
 /* A world with the scene's bodies (and the bomb if its frame is 0). NULL with error set when memory is short.
  */
 World *scene_world(const Scene *scene, Error *error);
+
+/* Whether a run of the scene gets a bomb before it ends. */
+static inline bool scene_has_launch(const Scene *scene) {
+    return scene->bomb.present && scene->bomb.frame <= scene->frames;
+}
 
 /* The bomb with its start velocity: the velocity law applied to its position. */
 BodyDef scene_bomb_body(const Scene *scene);

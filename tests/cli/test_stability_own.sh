@@ -134,7 +134,7 @@ refused "the unit 'm;' of rows cannot stand in a table" walls.yaml --vary rows
 refused "this is the scene for --vary with gap = 0.5" walls.yaml --vary gap
 refused "the parameter 'gap' is given twice" walls.yaml --vary gap=1:2 --vary gap=1:3
 refused "at most 2 parameters" "$ramp" --vary slope --vary friction --vary slope
-refused "'height' is not a parameter of the scene; known: iterations, dt, friction, bomb_x, bomb_mass, bomb_speed" \
+refused "'height' is not a parameter of the scene; known: iterations, dt, friction, bomb_x, bomb_y, bomb_mass, bomb_speed" \
     "$scenes/stack.yaml" --vary height
 refused "bomb_mass must be a number from 1e-06 to 1e+09 kg (set to -1)" "$scenes/stack.yaml" --vary bomb_mass=-1:1
 refused "'bomb_x' is not a parameter of the scene; known: gap, rows, iterations, dt, friction" walls.yaml --vary bomb_x

@@ -147,6 +147,9 @@ TEST(what_every_scene_has_can_be_set) {
     scene = set_one(BOMBED("[3, -4]"), "bomb_x", -2.5);
     assert_near(scene->bomb.body.position.x, -2.5, 0);
     scene_destroy(scene);
+    scene = set_one(BOMBED("[3, -4]"), "bomb_y", 8.25);
+    assert_near(scene->bomb.body.position.y, 8.25, 0);
+    scene_destroy(scene);
     scene = set_one(BOMBED("[3, -4]"), "bomb_mass", 40);
     assert_near(scene->bomb.body.mass, 40, 0);
     scene_destroy(scene);
@@ -157,6 +160,22 @@ TEST(what_every_scene_has_can_be_set) {
     scene = set_one(BOMBED("{times_position: -1}"), "bomb_speed", 0.5);
     assert_near(vec2_distance(scene_bomb_body(scene).velocity, vec2(0, 0)), 0.5, 1e-6);
     scene_destroy(scene);
+}
+
+TEST(settings_are_read_from_text) {
+    static const char *const good[] = {"iterations=7", "dt=0.01",      "friction=0.5",   "bomb_x=-2.5",
+                                       "bomb_y=8.25",  "bomb_mass=40", "bomb_speed=1e-1"};
+    SceneSettings settings = {0};
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) assert_true(scene_settings_add(&settings, good[i]));
+    assert_int_equal(settings.count, 7);
+    Scene *scene = read_with(BOMBED("[3, -4]"), settings.items, settings.count, &error);
+    assert_ok(scene != NULL, error);
+    assert_near(scene->bomb.body.mass, 40, 0);
+    scene_destroy(scene);
+    static const char *const bad[] = {"", "x", "=1", "x=", "x=1e999", "x=NaN", "x= 1", "x=1,y=2", "x=0x1p3"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) assert_false(scene_settings_add(&settings, bad[i]));
+    for (int i = 0; i < 100; i++) assert_true(scene_settings_add(&settings, "height=1"));
+    assert_int_equal(settings.count, SCENE_SETTINGS_MAX);
 }
 
 /* The run and the way to the bomb take as many seconds as before. */

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The modules that a page runs (live/live.h), by clang for WebAssembly whatever the compiler of the program is. Without the
+# option TWINBOX_LIVE they are empty.
+set(module_folder ${CMAKE_CURRENT_BINARY_DIR}/live)
+file(MAKE_DIRECTORY ${module_folder}/include)
+
+# Fixed arithmetic: nothing contracted, nothing reordered, and no relaxed vectors, whose results are the machine's choice.
+set(module_flags --target=wasm32-wasi -std=c17 -D_XOPEN_SOURCE=700 -DNDEBUG -msimd128 -ffp-contract=off -fno-trapping-math
+    -fvisibility=hidden -ffunction-sections -fdata-sections -Wall -Wextra -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.)
+# The stack comes first, so that one that is too small traps instead of overwriting data. Memory ends at 1 GiB, beyond which
+# malloc() fails: a page must not take the machine's.
+set(module_link_flags --target=wasm32-wasi -mexec-model=reactor -Wl,--gc-sections,--strip-all,--stack-first,-z,stack-size=262144
+    -Wl,--max-memory=1073741824,--export=_initialize)
+
+# Debian: clang, lld, wasi-libc, libclang-rt-14-dev-wasm32. Sets TWINBOX_LIVE_FOUND.
+find_program(TWINBOX_WASM_CLANG NAMES clang clang-19 clang-14)
+find_program(TWINBOX_WASM_LINKER NAMES wasm-ld wasm-ld-19 wasm-ld-14)
+find_path(TWINBOX_WASM_XXHASH xxhash.h HINTS ${XXHASH_INCLUDEDIR})
+mark_as_advanced(TWINBOX_WASM_CLANG TWINBOX_WASM_LINKER TWINBOX_WASM_XXHASH)
+if(NOT DEFINED TWINBOX_LIVE_FOUND)
+    set(found OFF)
+    if(TWINBOX_WASM_CLANG AND TWINBOX_WASM_LINKER AND TWINBOX_WASM_XXHASH)
+        file(WRITE ${module_folder}/probe.c
+             "#include <math.h>\n#include <stdlib.h>\nvoid _start(void) { free(malloc((size_t)sin(getenv(\"x\") != NULL))); }\n")
+        execute_process(COMMAND ${TWINBOX_WASM_CLANG} --target=wasm32-wasi -nostartfiles -o ${module_folder}/probe.wasm
+                                ${module_folder}/probe.c -lm
+                        RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+        if(NOT failed)
+            set(found ON)
+        endif()
+    endif()
+    set(TWINBOX_LIVE_FOUND ${found} CACHE INTERNAL "clang, lld and wasi-libc can make a WebAssembly module")
+endif()
+option(TWINBOX_LIVE "Build the module for live pages (default: if clang, lld and wasi-libc for wasm32 are installed)"
+       ${TWINBOX_LIVE_FOUND})
+set(module_needs "clang, lld, wasi-libc and libclang-rt-dev-wasm32 (tests/setup --tests installs them)")
+if(TWINBOX_LIVE AND NOT TWINBOX_LIVE_FOUND)
+    message(FATAL_ERROR "TWINBOX_LIVE needs ${module_needs}; then configure in a fresh folder")
+endif()
+
+# What is compiled: the rooms below `live`, without files, threads, YAML and zip.
+set(module_sources
+    base/base base/hash base/json_write base/npy base/npz base/parse base/path base/stream base/yaml
+    engine/box engine/broad_phase engine/contact_problem engine/world
+    live/bundle live/describe live/live live/module/npz_bundle live/module/wasi
+    methods/block_lu methods/block_order methods/engine methods/interior methods/interior_point methods/interior_scalar
+    methods/islands methods/method methods/momentum methods/order methods/pair methods/pair_net methods/reference_point
+    methods/reference_scalar methods/scene_net methods/soft_step methods/steppers methods/stopping methods/sweeps
+    methods/sweeps_scalar methods/sweeps_simd128
+    nets/kernels nets/kernels_scalar nets/net_file nets/network nets/row_kernels_scalar nets/slot_network
+    runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks runs/verdict_words
+    scenes/parameters scenes/scene scenes/scene_read scenes/scene_world scenes/shapes)
+# Where most of the time is spent; the rest is made small.
+set(module_fast
+    engine/box engine/broad_phase engine/contact_problem engine/world methods/block_lu methods/interior
+    methods/interior_point methods/interior_scalar methods/islands methods/momentum methods/order methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/soft_step
+    nets/kernels_scalar nets/row_kernels_scalar)
+
+if(TWINBOX_LIVE)
+    # Only this header of the host: those of its C library would be taken for wasi-libc's.
+    configure_file(${TWINBOX_WASM_XXHASH}/xxhash.h ${module_folder}/include/xxhash.h COPYONLY)
+    # module_object(<name of the source> <object> <flags>...)
+    function(module_object name object)
+        add_custom_command(
+            OUTPUT ${object}
+            COMMAND ${CMAKE_C_COMPILER_LAUNCHER} ${TWINBOX_WASM_CLANG} ${module_flags} ${ARGN} -I${CMAKE_CURRENT_SOURCE_DIR}
+                    -isystem ${module_folder}/include -MD -MF ${object}.d -o ${object} -c ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c
+            DEPENDS ${name}.c DEPFILE ${object}.d COMMENT "Building ${name}.c for pages" VERBATIM)
+    endfunction()
+    set(objects)
+    foreach(name ${module_sources})
+        string(REPLACE "/" "_" object ${name})
+        set(object ${module_folder}/${object}.o)
+        if(name IN_LIST module_fast)
+            module_object(${name} ${object} -O2)
+        else()
+            module_object(${name} ${object} -Oz)
+        endif()
+        list(APPEND objects ${object})
+    endforeach()
+    module_object(live/module/methods ${module_folder}/networks.o -Oz)
+    module_object(live/module/methods ${module_folder}/plain.o -Oz -DLIVE_PLAIN)
+    foreach(module networks plain)
+        add_custom_command(
+            OUTPUT ${module_folder}/${module}.wasm
+            COMMAND ${TWINBOX_WASM_CLANG} ${module_link_flags} -o ${module_folder}/${module}.wasm ${objects}
+                    ${module_folder}/${module}.o -lm
+            DEPENDS ${objects} ${module_folder}/${module}.o COMMENT "Linking ${module}.wasm" VERBATIM)
+    endforeach()
+else()
+    message(STATUS "No live pages (TWINBOX_LIVE): they need ${module_needs}")
+    file(WRITE ${module_folder}/networks.wasm "")
+    file(WRITE ${module_folder}/plain.wasm "")
+endif()
+embed(live_modules.c live/live.h "unsigned char" live_ ${module_folder} networks.wasm plain.wasm)
