@@ -321,26 +321,40 @@ static Extent joined(Extent a, const Extent *b) {
     return (Extent){fmin(a.left, b->left), fmax(a.right, b->right), fmin(a.bottom, b->bottom), fmax(a.top, b->top)};
 }
 
+static int shown_frame(const Trajectory *run, int frame) { return frame < run->frames ? frame : run->frames - 1; }
+
 static void include_frames(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *near,
                            const Extent *reach) {
-    for (int i = 0; i < count; i++) {
-        const int frame = frames[i] < run->frames ? frames[i] : run->frames - 1;
+    for (int i = 0; i < count; i++)
         for (int body = 0; body < run->bodies; body++) {
             const Extent *region = body == run->bomb ? reach : near;
+            const int frame = shown_frame(run, frames[i]);
             if (!run->fixed[body] && (region == NULL || extent_holds(region, run, frame, body)))
                 extent_include(all, run, frame, body);
         }
+}
+
+/* What flies off or sinks into the ground counts in no frame, or it would make all small. */
+static void include_staying(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *region) {
+    for (int body = 0; body < run->bodies; body++) {
+        bool stays = !run->fixed[body];
+        for (int i = 0; i < count && stays; i++) {
+            const int frame = shown_frame(run, frames[i]);
+            stays = extent_holds(region, run, frame, body) || !trajectory_has(run, frame, body);
+        }
+        for (int i = 0; i < count && stays; i++) extent_include(all, run, shown_frame(run, frames[i]), body);
     }
 }
 
 Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count) {
     const Extent standing = standing_extent(runs[0], 0, NULL);
     const Extent near = surroundings(&standing, NEAR), reach = surroundings(&standing, BOMB_REACH);
-    /* Of the others what flies off or sinks into the ground does not count, or it would make all small. */
-    Extent others = surroundings(&standing, NEAR / 2), all = extent_empty;
-    others.bottom = standing.bottom;
-    for (int i = 0; i < run_count && !extent_is_empty(&standing); i++)
-        include_frames(&all, runs[i], frames, count, i == 0 ? &near : &others, i == 0 ? &reach : &others);
+    const Extent above = {near.left, near.right, standing.bottom, near.top};
+    Extent all = extent_empty;
+    if (!extent_is_empty(&standing)) {
+        include_frames(&all, runs[0], frames, count, &near, &reach);
+        for (int i = 1; i < run_count; i++) include_staying(&all, runs[i], frames, count, &above);
+    }
     if (extent_is_empty(&all)) include_frames(&all, runs[0], frames, count, NULL, NULL);
     return extent_is_empty(&all) ? fixed_extent(runs[0]) : all;
 }

@@ -379,9 +379,9 @@ double extent_side(const Extent *extent);
 /* Widens the extent by a body's bounding box in this frame, unless it has no pose there or reaches too far. */
 void extent_include(Extent *extent, const Trajectory *run, int frame, int body);
 
-/* What runs show in these frames: the moving bodies, without those that have gone far away from what stood at the start
-   in the first run; the static bodies if there are none. Empty if nothing can be framed. A frame beyond a run's last
-   counts as that. */
+/* What runs show in these frames: the moving bodies of the first run, where they are near what stood at its start, and
+   those of the others that stay near it; the static bodies if there are none. Empty if nothing can be framed. A frame
+   beyond a run's last counts as that. */
 Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count);
 
 /* Refuses a title or caption that is too long or cannot be drawn (pixels/type.h); `where`: its option. NULL passes. */
