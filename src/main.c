@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "base/base.h"
 #include "cli/cli.h"
+#include "methods/methods.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -74,6 +75,7 @@ static bool ended; /* the command */
 static int run(const Command *command, int argc, char **argv) {
     char name[64];
     Error error = {0};
+    programs_allow(argc, argv);
     snprintf(name, sizeof name, "twinbox %s", command->name);
     argv[0] = name;
     const bool same = command->run(argc, argv, &error);

@@ -211,7 +211,7 @@ typedef enum SettingType {
     SETTING_IS_BOOL /* on|off */
 } SettingType;
 
-/* A key that a method knows, what it means, and the member that gets its value; a table of these ends with {0}. */
+/* A key that a method knows ("*": any), what it means, and the member that gets its value; a table of these ends with {0}. */
 typedef struct SettingSpec {
     const char *key, *summary;
     SettingType type;   /* type and what follows: one of the macros below */

@@ -117,3 +117,36 @@ bool process_finish(Process *process, char *text, size_t size, Error *error);
 
 /* Kills it. */
 void process_kill(Process *process);
+
+/* Talks with another program, which answers on its standard output, without a shell. It has a process group of its own, which
+   ends as a whole. Nothing here waits longer than `until`, by clock_seconds(), or takes more memory than it is told. */
+
+enum { TALK_WHY_SIZE = 400, TALK_COMPLAINT_SIZE = 4096 };
+
+typedef struct Talk {
+    pid_t pid;
+    int input, output,
+        complaints; /* connected to its standard input, output and error; complaints -1: it closed that one */
+    char *unread;   /* [end] of its output, from `begin` on */
+    size_t begin, end, capacity;
+    char complaint[TALK_COMPLAINT_SIZE]; /* what it wrote to standard error first; the rest is read and forgotten */
+    size_t complaint_size;
+    char why[TALK_WHY_SIZE]; /* after a failure: what it did, "has ended (status 1)" */
+} Talk;
+
+/* Starts argv[0], found in PATH; argv ends with NULL. After a failure there is nothing to end. */
+bool talk_start(Talk *talk, const char *const *argv);
+
+/* Sends all of it, while the program reads. */
+bool talk_send(Talk *talk, const void *data, size_t size, double until);
+
+/* The next `size` bytes of its answer, or its next line, ended by NUL instead of its line end (LF or CRLF) and of at most
+   `most` bytes; valid until the next call. NULL after a failure. */
+char *talk_read(Talk *talk, size_t size, double until);
+char *talk_line(Talk *talk, size_t most, double until);
+
+/* Whether it runs, and has written nothing that was not read. */
+bool talk_is_quiet(Talk *talk);
+
+/* Kills the program and all of its process group. */
+void talk_end(Talk *talk);

@@ -139,7 +139,7 @@ static const Setting *find(const Settings *settings, const char *key) {
 
 bool settings_known(const SettingSpec *known, const char *key) {
     for (; known != NULL && known->key != NULL; known++)
-        if (strcmp(known->key, key) == 0) return true;
+        if (strcmp(known->key, key) == 0 || strcmp(known->key, "*") == 0) return true;
     return false;
 }
 

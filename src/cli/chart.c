@@ -295,6 +295,7 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
     const NameList left_out = contenders_left_out(options->quick ? STUDY_CHART_QUICK : STUDY_CHART);
     if (options->methods == NULL && left_out.text[0] != '\0')
         printf("left out unless named in --methods: %s\n", left_out.text);
+    if (programs_failure() != NULL) note_print("runs ended early: %s", programs_failure());
     if (options->pages && !chart_pages_write(options, scenes, key, error)) return false;
     if (options->scene_count == 1)
         next_print((const char *const[]){"stability", options->scenes[0], "--vary", "iterations", "--quick", "-o",

@@ -5,7 +5,9 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "pictures/render.h"
+#include "runs/runs.h"
 #include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -136,23 +138,31 @@ bool note_foreign_files(const char *directory, const RenderResult *result, const
 
 typedef struct Options {
     const char *input, *output;
+    bool flat;
+    SceneSettings set;
 } Options;
 
-static const Option option_table[] = {{"--output", 'o', "FILE",
-                                       "File to write; its ending states the format: .csv, .json or .blend.py",
-                                       OPTION_OUTPUT(Options, output), .needed = "-o FILE is needed"},
-                                      {0}};
+static const Option option_table[] = {
+    {"--output", 'o', "FILE", "File to write; its ending states the format: .csv, .json or .blend.py",
+     OPTION_OUTPUT(Options, output), .needed = "-o FILE is needed"},
+    {"--flat", 0, NULL, "The input is a scene: write its bodies as JSON, patterns and parameters written out",
+     OPTION_FLAG(Options, flat)},
+    {OPTION_SET(Options, set)},
+    {0}};
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "RUN", .needed = "a run (.npz) is needed", OPTION_PATH(Options, input)},
+    .input = {.value = "RUN", .needed = "a run (.npz), or a scene with --flat, is needed", OPTION_PATH(Options, input)},
     .inputs = {1, 1, "run"},
     .help =
         "Write a run for other programs: as CSV, which twinbox import reads back; as JSON; or as a script that builds "
-        "the run as an animation in Blender. Contacts are left out, but of JSON.\v"
+        "the run as an animation in Blender. Contacts are left out, but of JSON.\n"
+        "With --flat, write a scene for a program that does not read YAML: gravity, time step, and all bodies and the "
+        "bomb with their numbers.\v"
         "Example: twinbox export engine.npz -o engine.csv\n"
         "         twinbox export engine.npz -o engine.blend.py\n"
-        "         blender --python engine.blend.py"};
+        "         blender --python engine.blend.py\n"
+        "         twinbox export scenes/stack.yaml --flat -o stack.json"};
 
 static const struct {
     const char *ending;
@@ -171,9 +181,23 @@ static int find_format(const char *path) {
     return -1;
 }
 
+static bool export_scene(const Options *options, Error *error) {
+    if (!path_is_standard(options->output) && !file_name_ends_with(options->output, ".json"))
+        return error_input(error, options->output, "the name of a flat scene must end in .json");
+    Scene *scene = scene_read_with(options->input, options->set.items, options->set.count, error);
+    const bool ok = scene != NULL && scene_flat_write(scene, options->output, error);
+    if (ok)
+        printf("%s: %d bodies%s -> %s\n", scene->name, scene->body_count, scene->bomb.present ? " and a bomb" : "",
+               options->output);
+    scene_destroy(scene);
+    return ok;
+}
+
 bool command_export(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (options.flat) return export_scene(&options, error);
+    if (options.set.count > 0) return error_input(error, "--set", "is for a scene: --flat is needed");
     const int format = find_format(options.output);
     if (format < 0) return error_input(error, options.output, "the name must end in .csv, .json or .blend.py");
     Trajectory *run = trajectory_read(options.input, error);

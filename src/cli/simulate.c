@@ -65,6 +65,7 @@ static const char *quantity(const VerdictReading *reading) {
         [VERDICT_TUNNELS] = "speed",
         [VERDICT_EXPLODES] = "energy gained",
         [VERDICT_NON_FINITE] = "highest speed before",
+        [VERDICT_ADAPTER_FAILED] = "highest speed before",
     };
     if (reading->verdict == VERDICT_FALLS) return strcmp(reading->unit, "deg") == 0 ? "rotation" : "descent";
     return quantities[reading->verdict];
@@ -92,6 +93,7 @@ static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     json_put_text(json, "quantity", quantity(reading));
     json_put_number(json, "value", reading->value);
     json_put_text(json, "unit", reading->unit);
+    if (reading->reason[0] != '\0') json_put_text(json, "reason", reading->reason);
 }
 
 /* Puts it with all figures as an object into JSON (src/studies/README.md, The verdict on one run). */
@@ -217,13 +219,14 @@ static const CommandSpec spec = {
     .options = option_table,
     .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
     .inputs = {1, 1, "scene"},
-    .help =
-        "Run a scene with one method and store the trajectory.\v"
-        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-        "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
-        "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
-        "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite.\n"
-        "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
+    .help = "Run a scene with one method and store the trajectory.\v"
+            "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+            "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
+            "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
+            "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite, "
+            "adapter "
+            "failed.\n"
+            "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
 static bool override_bomb(SceneBomb *bomb, const Options *options, Error *error) {
     const bool launched = !isnan(options->bomb_x) || options->bomb_frame >= 0;
@@ -287,7 +290,7 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
 
 /* A run that ends in a NaN or infinite state has a verdict, too; one that was interrupted has none. */
 static bool judge(SimulateResult *result, const Options *options, Error *error) {
-    if (!result->judged || (error->kind != ERROR_NONE && !verdict_is_non_finite(error))) return false;
+    if (!result->judged || (error->kind != ERROR_NONE && !verdict_is_failure(error))) return false;
     if (!options->json) simulate_verdict_print(&result->verdict);
     return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);
 }

@@ -155,7 +155,7 @@ static bool add_run(const Making *making, const Scene *scene, const MapCell *row
 static bool run_row(const Making *making, Scene *scene, const MapCell *row, int shown, Error *error) {
     Error failure = {0};
     int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;
-    scene->frames = row->verdict == VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
+    scene->frames = row->verdict >= VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
     if (add_run(making, scene, row, &failure)) return true;
     if (row->verdict != VERDICT_EXPLODES || failure.kind != ERROR_INPUT || decided >= shown) {
         *error = failure;

@@ -18,6 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { LABEL_SIZE = 512, VALUE_SIZE = 32, LINE_WIDTH = 79, LABEL_WIDTH = 24 };
 
@@ -42,7 +43,13 @@ static void describe(const BorderRow *row, char text[LABEL_SIZE]) {
 }
 
 static void write_label(char label[LABEL_SIZE], const char *method, const char *setting) {
-    snprintf(label, LABEL_SIZE, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
+    const MethodDescription *description = method_describe(method);
+    char whole[LABEL_SIZE];
+    snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
+    if (description != NULL && description->external)
+        method_name(label, LABEL_SIZE, whole); /* the setting `name` */
+    else
+        strcpy(label, whole);
 }
 
 /* The borders of one method, from row i on, in as many lines as needed. Returns the row after them. */
@@ -112,8 +119,29 @@ static bool print_rest(const char *folder, Error *error) {
     return true;
 }
 
+/* If there is such a table. */
+static bool print_engines(const char *folder, Error *error) {
+    CsvTable table;
+    char path[CSV_PATH_SIZE];
+    if (!csv_table_path(path, folder, &engine_layout, error)) return false;
+    if (access(path, F_OK) != 0) return true;
+    if (!csv_table_read_from(&table, folder, &engine_layout, error)) return false;
+    for (int i = 0; i < table.count; i++) {
+        const EngineRow *row = (const EngineRow *)table.rows + i;
+        char label[LABEL_SIZE];
+        write_label(label, row->method, row->setting);
+        printf("%s: %s is %s %s", row->study, label, row->engine[0] != '\0' ? row->engine : "unknown", row->version);
+        if (row->failed > 0) printf("; the adapter failed in %d of %d runs: %s", row->failed, row->runs, row->reason);
+        if (!isnan(row->differs)) printf("; not deterministic: two runs at %s differ", show(row->differs).text);
+        printf("\n");
+    }
+    csv_table_free(&table);
+    printf("programs and their failures -> %s\n", path);
+    return true;
+}
+
 bool stability_print(const char *folder, Error *error) {
-    if (!print_borders(folder, error) || !print_rest(folder, error)) return false;
+    if (!print_borders(folder, error) || !print_rest(folder, error) || !print_engines(folder, error)) return false;
     printf("borders -> %s/stability.csv; maps -> %s/maps.csv\n", folder, folder);
     printf("their figures -> %s/borders.png, %s/map-NAME.png\n", folder, folder);
     printf("why methods do not apply -> %s/refusals.csv\n", folder);

@@ -11,12 +11,20 @@
 #include <string.h>
 
 size_t method_name(char *name, size_t size, const char *text) {
+    const MethodDescription *method = method_describe(text);
+    const bool external = method != NULL && method->external;
+    const char *given = external ? strstr(text, ",name=") : NULL;
     size_t used = 0;
     name[0] = '\0';
+    if (given != NULL && given[strlen(",name=")] != '\0') {
+        given += strlen(",name=");
+        const int written = snprintf(name, size, "%.*s", (int)strcspn(given, ","), given);
+        return (size_t)written < size ? (size_t)written : size - 1;
+    }
     while (*text != '\0' && used < size) {
-        size_t length = strcspn(text, ":=,");
+        size_t length = strcspn(text, external ? ":=, " : ":=,");
         const char *end = text + length, *start = text;
-        if (length > 4 && strncmp(end - 4, ".npz", 4) == 0)
+        if (external || (length > 4 && strncmp(end - 4, ".npz", 4) == 0))
             for (const char *c = text; c < end; c++)
                 if (*c == '/') start = c + 1;
         if (*end != '\0') end++;
@@ -64,6 +72,17 @@ static bool unknown_method(const char *text, Error *error) {
     return error_unknown(error, "method", text, "a method", &known);
 }
 
+/* ":node planck.mjs,k=8": the words before the settings are those of a command. */
+static bool parse_program(Method *method, const char *text, Error *error) {
+    const MethodDescription *description = method->kind->description;
+    char all[METHOD_TEXT_SIZE + sizeof "program="];
+    if (text[strspn(text, ": ")] == '\0' || text[strspn(text, ": ")] == ',')
+        return error_input(error, description->name, "needs a program, as in '%s:node planck.mjs,name=Planck'",
+                           description->name);
+    snprintf(all, sizeof all, "program=%s", text + 1);
+    return settings_parse(&method->settings, all, description->settings, description->name, error);
+}
+
 bool method_parse(Method *method, const char *text, Error *error) {
     if (strlen(text) >= sizeof method->text)
         return error_input(error, text, "a method's text has at most %zu characters", sizeof method->text - 1);
@@ -74,6 +93,7 @@ bool method_parse(Method *method, const char *text, Error *error) {
     name[length] = '\0';
     method->kind = find(text);
     if (method->kind == NULL) return unknown_method(name, error);
+    if (method->kind->description->external) return parse_program(method, text + length, error);
     if (strcmp(text + length, ":") == 0) return error_input(error, "method", "'%s' has no setting behind ':'", text);
     return settings_parse(&method->settings, text[length] == ':' ? text + length + 1 : "",
                           method->kind->description->settings, name, error);

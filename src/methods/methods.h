@@ -65,11 +65,14 @@ typedef struct MethodDescription {
     const char *caption;         /* in frames, after the method's text: "sequential impulses"; NULL: nothing */
     MethodLook look;
     MethodRole role;
-    bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
+    bool no_push_out; /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
                             that it is scored against have none of position correction either */
-    bool no_contacts;   /* it moves bodies without contacts: collision detection in its step serves measurement and
+    bool no_contacts; /* it moves bodies without contacts: collision detection in its step serves measurement and
                             pictures only, so that its time is that of solve(), not the whole step's */
-    bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
+    bool falls_back;  /* sweeps may solve a step instead; results report how often, as for networks */
+    bool
+        external; /* a program of others, which the text names behind ':': it runs whole scenes only, and its time is what
+                            it reports */
     bool needs_network; /* runs only if the setting `network` or the scene names a file */
     const char *twin;   /* of a learned method: its ablation, as on the command line ("sain:net=off"); it takes the same
                             settings otherwise. NULL: nothing is learned */
@@ -120,7 +123,8 @@ typedef struct ContactSolver {
     SOLVER(sain)                  \
     SOLVER(hybrid)                \
     STEPPING(gns)                 \
-    STEPPING(subspace)
+    STEPPING(subspace)            \
+    STEPPING(exec)
 
 #define METHOD_OMITTED(name)
 #define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;
@@ -133,6 +137,7 @@ METHODS(SOLVER_DECLARED, METHOD_OMITTED)
 typedef struct StepMeter {
     int64_t (*now)(void); /* current count: time, instructions, ... */
     int64_t solving;      /* out: the count between contact problem and solution */
+    int64_t reported;     /* out, of an external method: ns that its engine says it took; 0: unknown */
 } StepMeter;
 
 /* The step that a method takes. */
@@ -226,6 +231,23 @@ bool method_lacks_network(const Method *method, const Scene *scene);
 /* The file in the setting `network`, else the scene's for the method of that name (scene: may be NULL); NULL with error
    set. */
 const char *method_network(const Settings *settings, const Scene *scene, const char *name, Error *error);
+
+/* Programs of the method `exec`. Files may name methods, too: of runs that are to be repeated, of tables. So only a program
+   is started that a word of this command line names, "exec:PROGRAM". Without a call, none is. */
+void programs_allow(int argc, char **argv);
+
+enum { PROGRAM_NAME_SIZE = 48 };
+
+/* What a program says that it is. */
+typedef struct ProgramName {
+    char name[PROGRAM_NAME_SIZE], version[PROGRAM_NAME_SIZE];
+} ProgramName;
+
+/* The first failure of a program in this process; NULL: none. For studies, in which it only ends a run. */
+const char *programs_failure(void);
+
+/* False for methods that are no program, or one that has not run yet. */
+bool method_program(const Method *method, ProgramName *name);
 
 /* A method in use. It steps worlds of one scene, with any launch, one world after the other. */
 typedef struct Stepper Stepper;

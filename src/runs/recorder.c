@@ -82,7 +82,7 @@ Recorder *recorder_create_to(const Scene *scene, const Method *method, const Rec
         recorder->parts[i] = trajectory_of_scene(scene, method, recorder->capacity, error);
         done = recorder->parts[i] != NULL;
         if (!done) break;
-        recorder->parts[i]->no_contacts = no_contacts;
+        recorder->parts[i]->no_contacts |= no_contacts;
         trajectory_restart_contacts(recorder->parts[i]);
     }
     if (done && open_outputs(recorder, outputs, count, scene->frames + 1, error)) return recorder;
@@ -124,6 +124,14 @@ bool recorder_record(Recorder *recorder, int frame, const World *world, Error *e
     const int row = recorder->used++;
     trajectory_set_bodies(part, row, world);
     return frame == 0 || part->no_contacts || trajectory_set_contacts(part, row, world, error);
+}
+
+void recorder_name_program(Recorder *recorder, const Method *method) {
+    ProgramName name;
+    if (!method_program(method, &name)) return;
+    char *program = recorder->parts[0]->program;
+    snprintf(program, TRAJECTORY_NAME_SIZE, "%s %s", name.name, name.version);
+    for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_program(recorder->streams[i], program);
 }
 
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body) {

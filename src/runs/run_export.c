@@ -3,7 +3,9 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "engine/engine.h"
+#include "runs/runs.h"
 #include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <stdlib.h>
 
@@ -26,6 +28,7 @@ static void put_head(JsonWriter *json, const Trajectory *run) {
     json_put_int(json, "version", TRAJECTORY_VERSION);
     json_put_text(json, "scene", run->scene);
     json_put_text(json, "method", run->method);
+    if (run->program[0] != '\0') json_put_text(json, "program", run->program);
     if (run->scene_hash != 0) json_put_hash(json, "scene_hash", run->scene_hash);
     put_float(json, "dt", run->dt);
     if (run->bomb >= 0) json_put_int(json, "bomb", run->bomb);
@@ -103,6 +106,45 @@ static void json_run_print_run(FILE *out, const void *context) { json_run_print(
 
 bool json_run_write(const Trajectory *run, const char *path, Error *error) {
     return file_write_text(path, json_run_print_run, run, error);
+}
+
+static void put_body(JsonWriter *json, const char *key, const BodyDef *body, int frame) {
+    json_begin_object(json, key, JSON_ONE_LINE);
+    if (frame >= 0) json_put_int(json, "frame", frame);
+    json_put_bool(json, "static", body->fixed);
+    put_vector(json, "size", body->size);
+    put_vector(json, "position", body->position);
+    put_float(json, "angle", body->angle);
+    put_vector(json, "velocity", body->velocity);
+    put_float(json, "angular_velocity", body->angular_velocity);
+    put_float(json, "mass", body->fixed ? 0 : body->mass);
+    put_float(json, "friction", body->friction);
+    json_end(json);
+}
+
+static void scene_flat_print(FILE *out, const void *context) {
+    const Scene *scene = context;
+    JsonWriter json = {.out = out};
+    json_begin_object(&json, NULL, JSON_LINES);
+    json_put_text(&json, "format", "twinbox scene");
+    json_put_int(&json, "version", 1);
+    json_put_text(&json, "scene", scene->name);
+    json_put_hash(&json, "scene_hash", scene_hash(scene));
+    put_vector(&json, "gravity", scene->gravity);
+    put_float(&json, "dt", scene->dt);
+    json_put_int(&json, "frames", scene->frames);
+    json_put_int(&json, "iterations", scene->iterations);
+    if (scene->last_body_until > 0) json_put_int(&json, "last_body_until", scene->last_body_until);
+    json_begin_array(&json, "bodies", JSON_LINES);
+    for (int i = 0; i < scene->body_count; i++) put_body(&json, NULL, &scene->bodies[i], -1);
+    json_end(&json);
+    const BodyDef bomb = scene->bomb.present ? scene_bomb_body(scene) : (BodyDef){.fixed = true};
+    if (scene->bomb.present) put_body(&json, "bomb", &bomb, scene->bomb.frame);
+    json_end(&json);
+}
+
+bool scene_flat_write(const Scene *scene, const char *path, Error *error) {
+    return file_write_text(path, scene_flat_print, scene, error);
 }
 
 /* x stays, y becomes Blender's z, and the view is along its y. A body is hidden while it is absent. */

@@ -62,6 +62,9 @@ bool simulate_observed(const Scene *scene, const Method *method, const StepObser
    reasons, or if memory is short. */
 Trajectory *simulate(const Scene *scene, const Method *method, const Progress *progress, Error *error);
 
+/* Writes the scene as JSON, with patterns and parameters written out: src/runs/README.md lists the keys. */
+bool scene_flat_write(const Scene *scene, const char *path, Error *error);
+
 /* What reading a scene does not check: its launches, its networks, and its parameters at their ends. */
 
 /* The launch of a single run and those of training and scoring: none puts the bomb inside a body. */
@@ -107,7 +110,9 @@ void recorder_destroy(Recorder *recorder);
 /* Records a frame; 0: before the first step. Frames in rising order, without gaps. RunWatch does it. */
 bool recorder_record(Recorder *recorder, int frame, const World *world, Error *error);
 
-/* After the run, before recorder_finish() or recorder_take(): the verdict on it (trajectory_judge). */
+/* After the run, before recorder_finish() or recorder_take(): what its program states (method_program), and the verdict on it
+   (trajectory_judge). */
+void recorder_name_program(Recorder *recorder, const Method *method);
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body);
 
 /* After the run: the files are written. */

@@ -26,6 +26,7 @@ bool simulate_watched(const Scene *scene, const Method *method, const RunWatch *
     for (int frame = 1; ok && frame <= scene->frames; frame++)
         ok = simulation_step(&run, frame, error) && observe(&run, frame, watch, error);
     simulation_end(&run);
+    if (ok && watch->recorder != NULL) recorder_name_program(watch->recorder, method);
     return ok;
 }
 

@@ -150,6 +150,7 @@ static int kept_frame(const Trajectory *to, int frame, int step) {
 static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     memcpy(to->scene, from->scene, sizeof to->scene);
     memcpy(to->method, from->method, sizeof to->method);
+    memcpy(to->program, from->program, sizeof to->program);
     to->scene_hash = from->scene_hash;
     to->iterations = from->iterations;
     to->dt = from->dt * (float)step;

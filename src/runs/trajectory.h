@@ -24,24 +24,25 @@ typedef struct TrajectoryContact {
 } TrajectoryContact;
 
 typedef struct Trajectory {
-    char scene[TRAJECTORY_NAME_SIZE];  /* name, without folder and ending */
-    char method[TRAJECTORY_NAME_SIZE]; /* as on the command line: "engine", "pair-net:network=..." */
-    uint64_t scene_hash;               /* of the scene's contents: equal physics, equal hash */
-    int iterations;                    /* the scene's sweeps per step, unless the method sets its own; 0: unknown */
-    float dt;                          /* s */
-    int frames;                        /* T: steps + 1 */
-    int bodies;                        /* N, static bodies and the bomb included */
-    int bomb;                          /* index of the bomb, or -1 */
-    Vec2 camera_center;                /* m; the view that the scene sets */
-    Vec2 camera_size;                  /* m, width and height; 0, 0: chosen by the renderer */
-    Vec2 *size;                        /* [N] full width and height, m */
-    uint8_t *fixed;                    /* [N] 1: static */
-    Vec2 *position;                    /* [T, N]; NaN while the body does not exist, as in the next three */
-    float *angle;                      /* [T, N] */
-    Vec2 *velocity;                    /* [T, N] m/s */
-    float *angular_velocity;           /* [T, N] rad/s */
-    bool no_velocities;                /* both are unknown: all NaN; files do not have them */
-    bool no_contacts;                  /* contacts were not recorded: none are here, nor in files */
+    char scene[TRAJECTORY_NAME_SIZE];   /* name, without folder and ending */
+    char method[TRAJECTORY_NAME_SIZE];  /* as on the command line: "engine", "pair-net:network=..." */
+    char program[TRAJECTORY_NAME_SIZE]; /* of the method exec: name and version that the program states; else empty */
+    uint64_t scene_hash;                /* of the scene's contents: equal physics, equal hash */
+    int iterations;                     /* the scene's sweeps per step, unless the method sets its own; 0: unknown */
+    float dt;                           /* s */
+    int frames;                         /* T: steps + 1 */
+    int bodies;                         /* N, static bodies and the bomb included */
+    int bomb;                           /* index of the bomb, or -1 */
+    Vec2 camera_center;                 /* m; the view that the scene sets */
+    Vec2 camera_size;                   /* m, width and height; 0, 0: chosen by the renderer */
+    Vec2 *size;                         /* [N] full width and height, m */
+    uint8_t *fixed;                     /* [N] 1: static */
+    Vec2 *position;                     /* [T, N]; NaN while the body does not exist, as in the next three */
+    float *angle;                       /* [T, N] */
+    Vec2 *velocity;                     /* [T, N] m/s */
+    float *angular_velocity;            /* [T, N] rad/s */
+    bool no_velocities;                 /* both are unknown: all NaN; files do not have them */
+    bool no_contacts;                   /* contacts were not recorded: none are here, nor in files */
     int64_t *contact_start;      /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
     TrajectoryContact *contacts; /* [contact_start[T]] */
     char verdict
@@ -93,8 +94,8 @@ Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *erro
 
 /* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],
    angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
-   contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], verdict, verdict_frame, verdict_body.
-   Without the velocities, the contacts or the verdict where they are unknown. */
+   contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], program, verdict, verdict_frame,
+   verdict_body. Without the velocities, the contacts, the program or the verdict where they are unknown. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the others
@@ -279,6 +280,9 @@ typedef enum TrajectoryFormat { TRAJECTORY_NPZ, TRAJECTORY_CSV, TRAJECTORY_HASHE
 TrajectoryStream *trajectory_stream_create(const Trajectory *head, int frames, TrajectoryFormat format,
                                            const char *path, Error *error);
 bool trajectory_stream_add(TrajectoryStream *stream, const Trajectory *part, Error *error);
+
+/* Sets what the program that makes the run states, which is known when it has begun. Only .npz has it. */
+void trajectory_stream_program(TrajectoryStream *stream, const char *program);
 
 /* Sets the verdict on the run, which is known when all frames have been added (trajectory_judge). Only .npz has it. */
 void trajectory_stream_judge(TrajectoryStream *stream, const char *words, int frame, int body);

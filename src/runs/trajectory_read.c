@@ -228,7 +228,8 @@ static bool read_names(Trajectory *t, NpzFile *file, const char *path, Error *er
     trajectory_name_from_path(path, t->scene);
     trajectory_name_from_path(path, t->method);
     return (!npz_has(file, "scene") || npz_read_name(file, "scene", t->scene, sizeof t->scene, error)) &&
-           (!npz_has(file, "method") || npz_read_name(file, "method", t->method, sizeof t->method, error));
+           (!npz_has(file, "method") || npz_read_name(file, "method", t->method, sizeof t->method, error)) &&
+           (!npz_has(file, "program") || npz_read_name(file, "program", t->program, sizeof t->program, error));
 }
 
 static bool read_verdict(Trajectory *t, NpzFile *file, Error *error) {

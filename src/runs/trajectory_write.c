@@ -22,7 +22,7 @@ typedef struct TrajectoryNpz TrajectoryNpz;
 enum { POSITION, ANGLE, VELOCITY, ANGULAR_VELOCITY, CONTACT_START, BODIES, FEATURE, POINT, NORMAL, IMPULSE, GROWING };
 
 /* Those that do not. */
-enum { KNOWN = 10, TRAJECTORY_NPZ_VERDICT = 3 };
+enum { KNOWN = 10, LAST = 4 };
 
 /* Contacts that are split at a time; their arrays stay in the cache. */
 enum { BLOCK = 1024 };
@@ -44,7 +44,7 @@ struct TrajectoryNpz {
     double bytes;     /* of all arrays so far */
     char path[512];   /* for messages */
     /* What the stream reads when it is finished: */
-    char scene[TRAJECTORY_NAME_SIZE], method[TRAJECTORY_NAME_SIZE];
+    char scene[TRAJECTORY_NAME_SIZE], method[TRAJECTORY_NAME_SIZE], program[TRAJECTORY_NAME_SIZE];
     uint64_t scene_hash;
     float dt;
     int32_t version, iterations, bomb;
@@ -80,6 +80,7 @@ static bool copy_head(TrajectoryNpz *npz, const Trajectory *head) {
     memcpy(npz->fixed, head->fixed, bodies * sizeof *npz->fixed);
     memcpy(npz->scene, head->scene, sizeof npz->scene);
     memcpy(npz->method, head->method, sizeof npz->method);
+    memcpy(npz->program, head->program, sizeof npz->program);
     npz->scene_hash = head->scene_hash;
     npz->iterations = head->iterations;
     npz->dt = head->dt;
@@ -140,7 +141,7 @@ static TrajectoryNpz *trajectory_npz_create(const Trajectory *head, const char *
     TrajectoryNpz *npz = calloc(1, sizeof *npz);
     bool done = (npz != NULL && copy_head(npz, head)) || error_memory(error, path);
     if (done) snprintf(npz->path, sizeof npz->path, "%s", path);
-    done = done && (npz->stream = npz_stream_create(path, KNOWN + GROWING + TRAJECTORY_NPZ_VERDICT, error)) != NULL &&
+    done = done && (npz->stream = npz_stream_create(path, KNOWN + GROWING + LAST, error)) != NULL &&
            add_arrays(npz, error);
     if (done) return npz;
     trajectory_npz_destroy(npz);
@@ -191,20 +192,22 @@ static bool trajectory_npz_add(TrajectoryNpz *npz, const Trajectory *part, Error
            (npz->no_contacts || add_contacts(npz, part, error));
 }
 
-/* The last arrays of the file: a verdict is known after the run. */
-static bool add_verdict(TrajectoryNpz *npz, Error *error) {
-    const NpzArray arrays[TRAJECTORY_NPZ_VERDICT] = {
+/* The last arrays of the file: what is known after the run. */
+static bool add_last(TrajectoryNpz *npz, Error *error) {
+    const NpzArray arrays[LAST] = {
+        {"program", NPZ_TEXT, 0, {0}, npz->program},
         {"verdict", NPZ_TEXT, 0, {0}, npz->verdict},
         {"verdict_frame", NPZ_INT32, 0, {0}, &npz->verdict_frame},
         {"verdict_body", NPZ_INT32, 0, {0}, &npz->verdict_body},
     };
-    for (int i = 0; i < TRAJECTORY_NPZ_VERDICT && npz->verdict[0] != '\0'; i++)
-        if (npz_stream_add(npz->stream, &arrays[i], error) < 0) return false;
+    for (int i = 0; i < LAST; i++)
+        if ((i == 0 ? npz->program : npz->verdict)[0] != '\0' && npz_stream_add(npz->stream, &arrays[i], error) < 0)
+            return false;
     return true;
 }
 
 static bool trajectory_npz_finish(TrajectoryNpz *npz, Error *error) {
-    return add_verdict(npz, error) && npz_stream_finish(npz->stream, error);
+    return add_last(npz, error) && npz_stream_finish(npz->stream, error);
 }
 
 struct TrajectoryStream {
@@ -301,6 +304,10 @@ void trajectory_stream_judge(TrajectoryStream *stream, const char *words, int fr
     if (stream->npz != NULL) trajectory_npz_judge(stream->npz, words, frame, body);
 }
 
+void trajectory_stream_program(TrajectoryStream *stream, const char *program) {
+    if (stream->npz != NULL) snprintf(stream->npz->program, sizeof stream->npz->program, "%s", program);
+}
+
 bool trajectory_stream_finish(TrajectoryStream *stream, Error *error) {
     assert(stream->added == stream->frames);
     if (stream->npz != NULL) return trajectory_npz_finish(stream->npz, error);
@@ -360,6 +367,7 @@ static const struct {
     {"contact_point", CONTACTS, {NULL}},
     {"contact_normal", CONTACTS, {NULL}},
     {"contact_impulse", CONTACTS, {NULL}},
+    {"program", ALONE, {NULL}},
     {"verdict", RUN_ARRAYS_VERDICT, {NULL}},
     {"verdict_frame", RUN_ARRAYS_VERDICT, {NULL}},
     {"verdict_body", RUN_ARRAYS_VERDICT, {NULL}},

@@ -2,6 +2,7 @@
 #include "runs/verdict.h"
 
 #include "base/base.h"
+#include "base/hash.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "runs/internal.h"
@@ -12,8 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const verdict_words[VERDICTS + 2] = {"settles", "sways",    "creeps",     "falls",         "sinks",
-                                                 "tunnels", "explodes", "non-finite", "not applicable"};
+const char *const verdict_words[VERDICTS + 2] = {"settles",        "sways",         "creeps",   "falls",
+                                                 "sinks",          "tunnels",       "explodes", "non-finite",
+                                                 "adapter failed", "not applicable"};
 
 const char *verdict_name(Verdict verdict) { return verdict_words[verdict]; }
 
@@ -92,7 +94,7 @@ static void store_rested(VerdictWatch *watch) {
 }
 
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error) {
-    if (watch->worst.verdict == VERDICT_NON_FINITE) return true;
+    if (watch->worst.verdict >= VERDICT_NON_FINITE) return true;
     watch->frame = step->frame;
     if (!check_finite(watch, step)) return true;
     check_energy(watch, step);
@@ -118,14 +120,31 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
     return verdict_watch_step(watch, &step, error);
 }
 
+/* The words of exec.c. */
+static const char adapter_failed[] = "adapter failed: ";
+
 /* The words of world.c, soft_step.c and avbd.c. */
-bool verdict_is_non_finite(const Error *failure) {
-    return failure->kind == ERROR_INPUT && strstr(failure->message, "NaN or infinite") != NULL;
+bool verdict_is_failure(const Error *failure) {
+    return failure->kind == ERROR_INPUT &&
+           (strstr(failure->message, "NaN or infinite") != NULL || strstr(failure->message, adapter_failed) != NULL);
 }
 
-void verdict_watch_failed(VerdictWatch *watch, int frame) {
+/* Without the place, which is that of the verdict. */
+static void copy_reason(char reason[VERDICT_REASON_SIZE], const char *text) {
+    const char *place = NULL;
+    for (const char *at = strstr(text, ", in step "); at != NULL; at = strstr(at + 1, ", in step ")) place = at;
+    const size_t length = place != NULL ? (size_t)(place - text) : strlen(text);
+    char whole[sizeof((Error *)NULL)->message];
+    snprintf(whole, sizeof whole, "%.*s", (int)length, text);
+    snprintf(reason, VERDICT_REASON_SIZE, "%.*s", (int)utf8_cut(whole, VERDICT_REASON_SIZE - 1), whole);
+}
+
+void verdict_watch_failed(VerdictWatch *watch, int frame, const Error *failure) {
+    const char *adapter = strstr(failure->message, adapter_failed);
+    if (watch->worst.verdict >= VERDICT_NON_FINITE) return;
     watch->frame = frame;
-    verdict_note(watch, VERDICT_NON_FINITE, -1, watch->speed, "m/s");
+    verdict_note(watch, adapter != NULL ? VERDICT_ADAPTER_FAILED : VERDICT_NON_FINITE, -1, watch->speed, "m/s");
+    if (adapter != NULL) copy_reason(watch->worst.reason, adapter + strlen(adapter_failed));
 }
 
 bool verdict_watch_is_final(const VerdictWatch *watch) { return watch->worst.verdict >= VERDICT_EXPLODES; }
@@ -151,12 +170,18 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     return reading;
 }
 
-/* An input error during the run means that the state became NaN or infinite. That is a valid result. */
+/* A body has no padding: eleven floats. */
+static uint64_t hash_bodies(const Body *bodies, int count) {
+    return count > 0 ? hash_fnv1a64(FNV1A64_START, bodies, (size_t)count * sizeof *bodies) : FNV1A64_START;
+}
+
+/* An input error during the run means that the state became NaN or infinite, or that a program failed. That is a valid
+   result. */
 static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const Step *step, Error *error) {
     Error failure = {0};
     if (simulate_step(stepper, world, step, &failure)) return verdict_watch_observe(watch, step->frame, world, error);
     if (failure.kind == ERROR_INPUT)
-        verdict_watch_failed(watch, step->frame);
+        verdict_watch_failed(watch, step->frame, &failure);
     else
         *error = failure;
     return failure.kind == ERROR_INPUT;
@@ -175,6 +200,7 @@ bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *meth
     }
     if (ok) {
         *reading = verdict_watch_end(&watch);
+        reading->state = hash_bodies(world_bodies(world), world_body_count(world));
         reading->steps = watch.frame;
         reading->fallbacks = fallbacks;
     }

@@ -8,6 +8,7 @@
 #include "scenes/scenes.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 /* The energy that the bodies of a run have, and how much of it is available to be lost. */
 
@@ -70,6 +71,7 @@ typedef enum Verdict {
     VERDICT_TUNNELS,
     VERDICT_EXPLODES,
     VERDICT_NON_FINITE,
+    VERDICT_ADAPTER_FAILED, /* the program of the method `exec`; nothing is known of the physics */
     VERDICTS
 } Verdict;
 
@@ -112,12 +114,14 @@ enum { VERDICT_CREEP_SECONDS = 10, VERDICT_CREEP_FROM = 10 };
 #define VERDICT_LEAST_LIFT 0.1
 #define VERDICT_START_OVERLAP 0.0105
 
-/* "settles", ... "non-finite"; then "not applicable", for cells and borders without a verdict; then NULL. */
+/* "settles", ... "non-finite", "adapter failed"; then "not applicable", for cells and borders without a verdict; then NULL. */
 extern const char *const verdict_words[VERDICTS + 2];
 const char *verdict_name(Verdict verdict);
 
 /* Settles, sways or creeps. */
 bool verdict_holds(Verdict verdict);
+
+enum { VERDICT_REASON_SIZE = 200 };
 
 typedef struct VerdictReading {
     Verdict verdict;
@@ -125,9 +129,11 @@ typedef struct VerdictReading {
     int body;  /* or -1 */
     /* The deciding quantity at that frame. Settles, sways: mean kinetic energy of a dynamic body. Creeps: distance in
        10 s. Falls: m lower, or degrees rotated. Sinks: penetration. Tunnels: speed. Explodes: excess energy (`body` has
-       the most kinetic energy). Non-finite: the highest speed before. */
+       the most kinetic energy). Non-finite, adapter failed: the highest speed before. */
     double value;
-    const char *unit; /* "J", "m", "deg", "m/s" */
+    const char *unit;                 /* "J", "m", "deg", "m/s" */
+    char reason[VERDICT_REASON_SIZE]; /* adapter failed: how; else empty */
+    uint64_t state;                   /* set by verdict_run() only: FNV-1a of the bodies after the last step */
     /* Since VERDICT_CREEP_FROM seconds; NaN if the run is not longer. m: largest distance moved by a body that existed
        then. J: energy gained. */
     double drift, gained;
@@ -239,13 +245,14 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *err
 /* The same for a world; a StepObserver callback. */
 bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error);
 
-/* True if a run failed because a body's state became NaN or infinite: that is a verdict, and other failures are not. */
-bool verdict_is_non_finite(const Error *failure);
+/* True if a run failed because a body's state became NaN or infinite, or because the program of the method `exec` failed: that
+   is a verdict, and other failures are not. */
+bool verdict_is_failure(const Error *failure);
 
-/* The step to `frame` failed because a body's state became NaN or infinite. Later steps are ignored. */
-void verdict_watch_failed(VerdictWatch *watch, int frame);
+/* The step to `frame` failed in such a way. Later steps are ignored. */
+void verdict_watch_failed(VerdictWatch *watch, int frame, const Error *failure);
 
-/* True if the run can be stopped: it explodes or is non-finite. */
+/* True if the run can be stopped: it explodes, is non-finite, or its adapter failed. */
 bool verdict_watch_is_final(const VerdictWatch *watch);
 
 /* The verdict on the run up to the last step. A run shorter than VERDICT_CALM_FRAMES cannot settle. */

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FIGURE_SIZE = 160 };
+enum { FIGURE_SIZE = VERDICT_REASON_SIZE };
 
 bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error) {
     *verdict = (SimulateVerdict){.scene = scene, .method = method};
@@ -26,8 +26,8 @@ StepObserver simulate_verdict_observer(SimulateVerdict *verdict) {
 }
 
 bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure) {
-    if (failure->kind != ERROR_NONE && !verdict_is_non_finite(failure)) return false;
-    if (failure->kind != ERROR_NONE) verdict_watch_failed(&verdict->watch, verdict->watch.frame + 1);
+    if (failure->kind != ERROR_NONE && !verdict_is_failure(failure)) return false;
+    if (failure->kind != ERROR_NONE) verdict_watch_failed(&verdict->watch, verdict->watch.frame + 1, failure);
     verdict->reading = verdict_watch_end(&verdict->watch);
     return true;
 }
@@ -74,6 +74,7 @@ static void write_figure(const SimulateVerdict *verdict, char figure[FIGURE_SIZE
     case VERDICT_NON_FINITE:
         snprintf(figure, FIGURE_SIZE, "a body's state is NaN or infinite; fastest body before: %.3g m/s", value);
         return;
+    case VERDICT_ADAPTER_FAILED: snprintf(figure, FIGURE_SIZE, "%s", reading->reason); return;
     default: snprintf(figure, FIGURE_SIZE, "kinetic energy %.3g J per body", value);
     }
 }

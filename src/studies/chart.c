@@ -239,7 +239,8 @@ static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
             row->error_worst = scores->worst[phase];
             scene_row_measures(row, scores->measures, study->launch_count);
         }
-    assembly->solves->frozen = steps[PROTOCOL_FROZEN] + assembly->solves->frozen_unconverged;
+    if (!study->contenders[contender]->method.kind->description->external)
+        assembly->solves->frozen = steps[PROTOCOL_FROZEN] + assembly->solves->frozen_unconverged;
     assembly->solves->closed += steps[PROTOCOL_CLOSED] + scores->unconverged;
     assembly->solves->closed_unconverged += scores->unconverged;
     method_scores_free(scores);
@@ -348,8 +349,9 @@ bool study_do(Pieces *pieces, const char *folder, const StudyKey *key, const Pie
 }
 
 /* Hashes everything that determines the result: the program, the options and the files. */
-static bool find_key(const SpeedAccuracyOptions *options, StudyKey *key, Error *error) {
-    if (!study_key_begin(key, error)) return false;
+static bool find_key(const SpeedAccuracyOptions *options, const ContenderList *contenders, StudyKey *key,
+                     Error *error) {
+    if (!study_key_begin(key, error) || !contenders_add_to_key(contenders, key, error)) return false;
     study_key_add(key, &options->quick, sizeof options->quick);
     if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
     const LaunchChoice *launches = &options->launches;
@@ -407,7 +409,7 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, con
         return false;
     const bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders,
                                     &options->launches, speed_accuracy_size(options->quick), error) &&
-                    find_key(options, &key, error) &&
+                    find_key(options, &run.contenders, &key, error) &&
                     study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
                     (pieces->mode == PIECES_SHARD || finish(&run, pieces, error));
     pieces->plan = NULL;

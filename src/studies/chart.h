@@ -183,9 +183,11 @@ typedef struct ChartRow {
     double energy;                                /* above the converged run's, J */
     double moved;                                 /* boxes that moved more than 0.5 m */
     const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
+    double
+        us_engine; /* of an external method, which has no other times: what its engine says that a step took; median */
 } ChartRow;
 
-/* The header is exact, but that the last column, cpu, may be missing. Refused: a median time outside its quartiles. */
+/* The header is exact, but that the last columns, cpu and us_engine, may be missing. Refused: a median time outside its quartiles. */
 extern const CsvLayout chart_layout;
 
 static inline const ChartRow *chart_row(const CsvTable *table, int i) { return (const ChartRow *)table->rows + i; }
@@ -212,6 +214,9 @@ typedef enum ContenderStudy { STUDY_CHART, STUDY_CHART_QUICK, STUDY_STABILITY } 
 bool contenders_parse(ContenderList *list, const char *text, ContenderStudy study, Error *error);
 
 void contenders_free(ContenderList *list);
+
+/* Adds the files among the words of external methods to the key: what the programs do depends on them. */
+bool contenders_add_to_key(const ContenderList *list, StudyKey *key, Error *error);
 
 /* The registered methods that the study leaves out by default. */
 NameList contenders_left_out(ContenderStudy study);
@@ -422,6 +427,7 @@ bool closed_loop_time(const Method *method, const SnapshotList *states, int repe
 typedef struct StepCost {
     double solver, solver_q1, solver_q3; /* of the solver alone: median, quartiles */
     double step;                         /* of the whole step: median */
+    double engine;                       /* of an external method, instead of all others: median; else NaN */
     int steps;                           /* of the phase, in each repetition */
     double instructions;                 /* of the solver; NaN if they cannot be counted */
 } StepCost;

@@ -61,9 +61,9 @@ static bool write_page(const char *path, void (*put)(FILE *out, const void *html
 
 /* A letter for each verdict: colours alone would not do. */
 static const char letters[VERDICT_LOOKS] = {
-    [VERDICT_SETTLES] = 's',     [VERDICT_SWAYS] = 'w',   [VERDICT_CREEPS] = 'c',   [VERDICT_FALLS] = 'F',
-    [VERDICT_SINKS] = 'S',       [VERDICT_TUNNELS] = 'T', [VERDICT_EXPLODES] = 'E', [VERDICT_NON_FINITE] = 'N',
-    [LOOK_NOT_APPLICABLE] = '-', [LOOK_MISSING] = ' ',
+    [VERDICT_SETTLES] = 's',        [VERDICT_SWAYS] = 'w',       [VERDICT_CREEPS] = 'c',   [VERDICT_FALLS] = 'F',
+    [VERDICT_SINKS] = 'S',          [VERDICT_TUNNELS] = 'T',     [VERDICT_EXPLODES] = 'E', [VERDICT_NON_FINITE] = 'N',
+    [VERDICT_ADAPTER_FAILED] = 'A', [LOOK_NOT_APPLICABLE] = '-', [LOOK_MISSING] = ' ',
 };
 
 typedef struct StabilityHtml {

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static MethodRuns default_runs(const MethodDescription *method, ContenderStudy study) {
     static const char *const one_run[] = {"", NULL};
@@ -114,6 +115,19 @@ bool contenders_parse(ContenderList *list, const char *text, ContenderStudy stud
 void contenders_free(ContenderList *list) {
     free(list->items);
     *list = (ContenderList){0};
+}
+
+bool contenders_add_to_key(const ContenderList *list, StudyKey *key, Error *error) {
+    for (int i = 0; i < list->count; i++) {
+        const Method *method = &list->items[i].method;
+        char program[SETTING_VALUE_SIZE], *rest = program;
+        struct stat file;
+        if (!method->kind->description->external) continue;
+        snprintf(program, sizeof program, "%s", settings_get(&method->settings, "program"));
+        for (char *word; (word = strtok_r(rest, " ", &rest)) != NULL;)
+            if (stat(word, &file) == 0 && S_ISREG(file.st_mode) && !study_key_add_file(key, word, error)) return false;
+    }
+    return true;
 }
 
 NameList contenders_left_out(ContenderStudy study) {

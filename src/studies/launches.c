@@ -159,7 +159,9 @@ static bool score_with(LaunchPiece *piece, Stepper *stepper, LaunchScores *score
     bool ok = rollout_run(&rollout, stepper, &piece->launched, &piece->study->size.closed,
                           scores->steps[PROTOCOL_CLOSED], error);
     if (ok) scores->measures = run_measures(&rollout.log, &piece->converged, &piece->launched);
-    ok = ok && snapshots_score(&piece->snapshots, stepper, rollout.world, scores->steps[PROTOCOL_FROZEN], error);
+    const bool frozen = !stepper_describe(stepper)->external;
+    ok = ok &&
+         (!frozen || snapshots_score(&piece->snapshots, stepper, rollout.world, scores->steps[PROTOCOL_FROZEN], error));
     scores->unconverged = rollout.unconverged;
     rollout_free(&rollout);
     return ok;
@@ -462,8 +464,8 @@ bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *p
         for (int p = 0; p < PROTOCOLS; p++)
             for (int phase = 0; phase < PHASES; phase++) {
                 const StepCost *cost = &times.costs[p][i][phase];
-                const double stored[] = {cost->solver, cost->solver_q1, cost->solver_q3, cost->step,
-                                         cost->instructions};
+                const double stored[] = {cost->solver, cost->solver_q1,    cost->solver_q3,
+                                         cost->step,   cost->instructions, cost->engine};
                 fwrite(stored, sizeof stored, 1, results);
             }
     scene_times_end(&times);
@@ -475,11 +477,11 @@ static bool is_time(double value) { return !(value < 0); }
 /* What chart.csv can have. */
 static bool is_cost(const StepCost *cost) {
     return is_time(cost->solver_q1) && !(cost->solver_q1 > cost->solver) && !(cost->solver > cost->solver_q3) &&
-           is_time(cost->step) && is_time(cost->instructions);
+           is_time(cost->step) && is_time(cost->instructions) && is_time(cost->engine);
 }
 
 MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const char *bytes, size_t size, Error *error) {
-    double stored[5];
+    double stored[6];
     const size_t count = (size_t)study->contender_count;
     MethodTimes *times = calloc(count + 1, sizeof *times);
     if (times == NULL) {
@@ -490,7 +492,7 @@ MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const c
     for (size_t i = 0; whole && i < count * PROTOCOLS * PHASES; i++) {
         memcpy(stored, bytes + i * sizeof stored, sizeof stored);
         StepCost *cost = &times[i / (PROTOCOLS * PHASES)].costs[i / PHASES % PROTOCOLS][i % PHASES];
-        *cost = (StepCost){stored[0], stored[1], stored[2], stored[3], .instructions = stored[4]};
+        *cost = (StepCost){stored[0], stored[1], stored[2], stored[3], .instructions = stored[4], .engine = stored[5]};
         whole = is_cost(cost);
     }
     if (whole) return times;

@@ -230,7 +230,8 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .drift = NAN,
                       .energy = NAN,
                       .moved = NAN,
-                      .cpu = ""};
+                      .cpu = "",
+                      .us_engine = NAN};
 }
 
 void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {
@@ -239,7 +240,8 @@ void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {
     row->us_solver_q3 = cost->solver_q3;
     row->us_step = cost->step;
     row->instructions = cost->instructions;
-    if (!isnan(cost->solver)) row->cpu = cpu;
+    row->us_engine = cost->engine;
+    if (!isnan(cost->solver) || !isnan(cost->engine)) row->cpu = cpu;
 }
 
 static void sweep(const FloatRange *bomb_x, const Scene *scene, Launch *out) {
@@ -305,7 +307,10 @@ bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row) {
 }
 
 /* A row has both a time and an error, or its phase did not occur. */
-static bool is_left_out(const ChartRow *row) { return isnan(row->us_solver) && !isnan(row->error_mean); }
+static bool is_left_out(const ChartRow *row) {
+    const MethodDescription *method = method_describe(row->method);
+    return isnan(row->us_solver) && !isnan(row->error_mean) && (method == NULL || !method->external);
+}
 
 void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count) {
     const char *cpu = NULL;
@@ -360,6 +365,7 @@ static const CsvColumn columns[] = {
     FIGURE(energy, -INFINITY, INFINITY),
     FIGURE(moved, 0, INFINITY),
     CSV_MEMBER(ChartRow, cpu, CSV_TEXT, .maximum = CPU_NAME_SIZE - 1, .optional = true),
+    CSV_MEMBER(ChartRow, us_engine, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
 };
 
 enum { SOLVER_MEDIAN = 6 };

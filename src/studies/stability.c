@@ -297,7 +297,7 @@ static bool add_map_to_key(const Run *run, const StabilityMap *map, StudyKey *ke
 /* Hashes everything that determines the result: the program, the options, the scenes. */
 static bool find_key(const Run *run, StudyKey *key, Error *error) {
     const StabilityOptions *options = run->options;
-    if (!study_key_begin(key, error)) return false;
+    if (!study_key_begin(key, error) || !contenders_add_to_key(&run->methods, key, error)) return false;
     study_key_add(key, &options->quick, sizeof options->quick);
     if (options->methods != NULL) study_key_add(key, options->methods, strlen(options->methods));
     for (int i = 0; i < run->study_count; i++)
@@ -308,10 +308,12 @@ static bool find_key(const Run *run, StudyKey *key, Error *error) {
 }
 
 static bool write_tables(const Run *run, const Pieces *pieces, Error *error) {
-    static const CsvLayout *const layouts[] = {&border_layout, &map_layout, &refusal_layout, &fallback_layout,
-                                               &rest_layout};
-    return piece_tables_write(pieces, run->options->folder, layouts, sizeof layouts / sizeof *layouts, run->plan.pieces,
-                              run->plan.count, error);
+    static const CsvLayout *const layouts[] = {&border_layout,   &map_layout,  &refusal_layout,
+                                               &fallback_layout, &rest_layout, &engine_layout};
+    bool external = false;
+    for (int i = 0; i < run->methods.count; i++) external |= run->methods.items[i].method.kind->description->external;
+    const int count = (int)(sizeof layouts / sizeof *layouts) - !external;
+    return piece_tables_write(pieces, run->options->folder, layouts, count, run->plan.pieces, run->plan.count, error);
 }
 
 /* What follows from the pieces, once all are there. */

@@ -279,10 +279,20 @@ typedef struct RunRow {
     int not_finite, outside_cone, beyond_training, by_sweeps; /* fallbacks.csv: as in NetworkFallbacks */
 } RunRow;
 
+/* engines.csv: a program of the method exec, in a study; the table is there if there is such a method. */
+typedef struct EngineRow {
+    const char *study, *method, *setting;
+    const char *engine, *version; /* as the program states; "": it did not get so far */
+    int runs, failed;             /* without a shift; of them, those whose adapter failed */
+    const char *reason;           /* of the failure at the lowest value */
+    double
+        differs; /* value of the parameter at which two equal runs had different ends; NAN: none of the repeated runs */
+} EngineRow;
+
 /* Refused: a map whose name is not a file name, maps (or methods of a map) whose rows are not together, and more than
    STABILITY_MAX_PANELS methods of maps; rows that give a study another parameter, and verdicts that contradict their
    values: a method that fails somewhere cannot hold, and one that does not apply has no values. */
-extern const CsvLayout map_layout, border_layout, refusal_layout, rest_layout, fallback_layout;
+extern const CsvLayout map_layout, border_layout, refusal_layout, rest_layout, fallback_layout, engine_layout;
 
 static inline const MapCell *map_cell(const CsvTable *table, int i) { return (const MapCell *)table->rows + i; }
 static inline const BorderRow *border_row(const CsvTable *table, int i) { return (const BorderRow *)table->rows + i; }

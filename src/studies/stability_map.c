@@ -188,6 +188,7 @@ const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [VERDICT_TUNNELS] = {"tunnels", 0xA83232, 0xFFFFFF, METHOD_DIAMOND, true, 0.95},
     [VERDICT_EXPLODES] = {"explodes", 0x6E1650, 0xFFFFFF, PLOT_STAR, false, 1.1},
     [VERDICT_NON_FINITE] = {"non-finite", 0x140A1C, 0xFFFFFF, PLOT_CROSS, false, 1.1},
+    [VERDICT_ADAPTER_FAILED] = {"adapter failed", 0xB4B4B4, 0x202020, METHOD_TRIANGLE, true, 0.9}, /* no physics */
     [LOOK_NOT_APPLICABLE] = {"not applicable", NO_COLOUR, 0x909090, VERDICT_STROKE, false, 1},
     [LOOK_MISSING] = {"not run", NO_COLOUR, 0x909090, VERDICT_BARE, false, 1},
 };

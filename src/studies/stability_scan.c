@@ -33,6 +33,7 @@ typedef struct Result {
     ScanRun *runs; /* [run_count] */
     size_t run_capacity;
     int run_count;
+    double differs; /* value at which a repeated run ended otherwise; NAN: none */
 } Result;
 
 typedef struct Run {
@@ -97,6 +98,28 @@ static bool probe_value(void *context, double value, int seed, Verdict *verdict,
     return run_counter_add(&run->counter, run->scan->study->name, error);
 }
 
+static bool is_side(const BorderList *borders, double value) {
+    for (int i = 0; i < borders->count; i++)
+        if (borders->items[i].holds_at == value || borders->items[i].fails_at == value) return true;
+    return false;
+}
+
+/* Other programs may give another result each time: on both sides of a border it would matter most. */
+static bool repeat_runs(const ProbeContext *probed, Error *error) {
+    Run *run = probed->run;
+    Result *result = probed->result;
+    for (int i = 0; i < result->run_count; i++) {
+        const ScanRun *first = &result->runs[i];
+        VerdictReading again;
+        if (first->reading.verdict == VERDICT_ADAPTER_FAILED || !is_side(&result->borders, first->value)) continue;
+        if (!stability_scan_run(run->scan, probed->method, first->value, 0, &run->context->converged, &again, error) ||
+            !run_counter_add(&run->counter, run->scan->study->name, error))
+            return false;
+        if (again.state != first->reading.state || again.steps != first->reading.steps) result->differs = first->value;
+    }
+    return true;
+}
+
 /* Tests both ends of the scan: a network may fit the bodies of one value only. */
 static bool applies(const StabilityScan *scan, const Method *method, Error *reason) {
     const double ends[] = {scan->study->scan.from, scan->study->scan.to};
@@ -116,6 +139,7 @@ static bool study_method(void *context, int i, Error *error) {
     Result *result = &run->results[i];
     const StabilityStudy *study = run->scan->study;
     ProbeContext probed = {run, &contender_of(run, i)->method, result};
+    result->differs = NAN;
     if (study->iterations && !stability_takes_iterations(probed.method)) {
         result->part = PART_LEFT_OUT;
         return true;
@@ -125,7 +149,8 @@ static bool study_method(void *context, int i, Error *error) {
         return result->reason.kind == ERROR_INPUT || error_system(error, study->name, "%s", result->reason.message);
     }
     const BorderProbe probe = {probe_value, &probed, study->unshifted ? 1 : BORDER_SEEDS};
-    return border_search(&result->borders, &study->scan, &probe, error);
+    return border_search(&result->borders, &study->scan, &probe, error) &&
+           (!probed.method->kind->description->external || repeat_runs(&probed, error));
 }
 
 static bool write_border(const Run *run, int i, const Border *border, FILE *lines, Error *error) {
@@ -190,12 +215,35 @@ static bool write_refusal(const Run *run, int i, FILE *lines, Error *error) {
     return write_border(run, i, NULL, lines, error) && piece_tables_print(lines, &refusal_layout, -1, &row, error);
 }
 
+/* Runs are ordered by their value. */
+static bool write_engine(const Run *run, int i, FILE *lines, Error *error) {
+    const Contender *contender = contender_of(run, i);
+    const Result *result = &run->results[i];
+    ProgramName program = {"", ""};
+    EngineRow row = {.study = run->scan->study->name,
+                     .method = contender->name,
+                     .setting = contender->setting,
+                     .engine = program.name,
+                     .version = program.version,
+                     .runs = result->run_count,
+                     .reason = "",
+                     .differs = result->differs};
+    if (!contender->method.kind->description->external) return true;
+    method_program(&contender->method, &program);
+    for (int k = 0; k < result->run_count; k++) {
+        const VerdictReading *reading = &result->runs[k].reading;
+        if (reading->verdict == VERDICT_ADAPTER_FAILED && row.failed++ == 0) row.reason = reading->reason;
+    }
+    return piece_tables_print(lines, &engine_layout, -1, &row, error);
+}
+
 static bool write_result(const Run *run, int i, FILE *lines, Error *error) {
     const Result *result = &run->results[i];
     if (result->part == PART_LEFT_OUT) return true;
     for (int k = 0; result->part == PART_STUDIED && k < result->borders.count; k++)
         if (!write_border(run, i, &result->borders.items[k], lines, error)) return false;
-    return write_runs(run, i, lines, error) && (result->part != PART_REFUSED || write_refusal(run, i, lines, error));
+    return write_runs(run, i, lines, error) && write_engine(run, i, lines, error) &&
+           (result->part != PART_REFUSED || write_refusal(run, i, lines, error));
 }
 
 bool stability_scan_begin(ScanContext *context, const StabilityScan *scan, Error *error) {

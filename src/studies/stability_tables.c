@@ -173,6 +173,16 @@ static const CsvColumn fallback_columns[] = {
     COUNT(RunRow, by_sweeps, 0),
 };
 
+static const CsvColumn engine_columns[] = {
+    METHOD_COLUMNS(EngineRow),
+    TEXT(EngineRow, engine, PROGRAM_NAME_SIZE),
+    TEXT(EngineRow, version, PROGRAM_NAME_SIZE),
+    COUNT(EngineRow, runs, 0),
+    COUNT(EngineRow, failed, 0),
+    TEXT(EngineRow, reason, REASON_SIZE),
+    NUMBER(EngineRow, differs, CSV_OPTIONAL, -LARGEST, LARGEST, VALUE_DIGITS),
+};
+
 static const CsvColumn page_columns[] = {
     NAME(MapPage, map),
     NAME(MapPage, method),
@@ -193,5 +203,6 @@ const CsvLayout border_layout =
 const CsvLayout refusal_layout = CSV_LAYOUT("refusals", refusal_columns, RefusalRow, .max_rows = STABILITY_MAX_RUNS);
 const CsvLayout rest_layout = CSV_LAYOUT("rest", rest_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
 const CsvLayout fallback_layout = CSV_LAYOUT("fallbacks", fallback_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
+const CsvLayout engine_layout = CSV_LAYOUT("engines", engine_columns, EngineRow, .max_rows = STABILITY_MAX_RUNS);
 const CsvLayout map_page_layout =
     CSV_LAYOUT("map_pages", page_columns, MapPage, .max_rows = STABILITY_MAX_CELLS, .header = CSV_EXACT);

@@ -142,7 +142,7 @@ typedef struct Meter {
 
 /* The times of steps, in the order in which they ran: the same in all repetitions. */
 typedef struct StepTime {
-    int64_t solver, step;
+    int64_t solver, step, engine;
     Phase phase;
 } StepTime;
 
@@ -153,7 +153,7 @@ typedef struct StepLog {
 } StepLog;
 
 typedef struct Cost {
-    int64_t solver, step;
+    int64_t solver, step, engine; /* engine: ns that it reports; 0: unknown */
 } Cost;
 
 static bool metered_step(Stepper *stepper, World *world, Step step, const Meter *meter, Cost *cost, Error *error) {
@@ -163,13 +163,14 @@ static bool metered_step(Stepper *stepper, World *world, Step step, const Meter 
     if (!simulate_step(stepper, world, &step, error)) return false;
     cost->step = meter_without(meter->now() - begun, 3 * meter->overhead); /* with two calls inside the step */
     cost->solver = meter_without(inner.solving, meter->overhead);
+    cost->engine = inner.reported;
     return true;
 }
 
 static bool log_step(StepLog *log, const Cost *cost, Phase phase, Error *error) {
     if (!array_reserve((void **)&log->items, &log->capacity, (size_t)log->count + 1, sizeof *log->items))
         return error_memory(error, "timing");
-    log->items[log->count++] = (StepTime){cost->solver, cost->step, phase};
+    log->items[log->count++] = (StepTime){cost->solver, cost->step, cost->engine, phase};
     return true;
 }
 
@@ -222,13 +223,15 @@ typedef struct Timing {
     double *times; /* scratch, [repetitions] */
 } Timing;
 
+static bool is_external(const Timed *timed) { return stepper_describe(timed->stepper)->external; }
+
 static bool run_both(const Timing *timing, const Timed *timed, const Meter *meter, StepLog *closed, StepLog *frozen,
                      Error *error) {
     for (int i = 0; i < timing->options->launch_count; i++)
         if (!run_closed(timed->stepper, &timing->options->launches[i], timing->options->last_frame, meter, closed,
                         error))
             return false;
-    return run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
+    return is_external(timed) || run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
 }
 
 static bool repeat(Timing *timing, int repetition, const Meter *meter, Error *error) {
@@ -260,11 +263,12 @@ static bool count_instructions(Timing *timing, Error *error) {
     bool ok = true;
     for (int i = 0; ok && i < timing->count; i++) {
         StepLog logs[PROTOCOLS] = {0};
-        if (can)
+        const bool counts = can && !is_external(&timing->items[i]); /* those of this thread are not the engine's */
+        if (counts)
             ok = run_both(timing, &timing->items[i], &meter, &logs[PROTOCOL_CLOSED], &logs[PROTOCOL_FROZEN], error);
         for (int p = 0; p < PROTOCOLS; p++) {
             for (int phase = 0; phase < PHASES; phase++)
-                timing->items[i].instructions[p][phase] = can ? mean_count(&logs[p], phase) : NAN;
+                timing->items[i].instructions[p][phase] = counts ? mean_count(&logs[p], phase) : NAN;
             free(logs[p].items);
         }
     }
@@ -281,6 +285,8 @@ static void add_step(StepCost *sum, const StepLog *logs, int repetitions, int i,
     sum->solver += statistics_quantile(times, repetitions, 0.5);
     sum->solver_q1 += statistics_quantile(times, repetitions, 0.25);
     sum->solver_q3 += statistics_quantile(times, repetitions, 0.75);
+    for (int r = 0; r < repetitions; r++) times[r] = (double)logs[r].items[i].engine / 1000;
+    sum->engine += statistics_quantile(times, repetitions, 0.5);
 }
 
 static int fewest(const StepLog *logs, int repetitions) {
@@ -299,12 +305,15 @@ static StepCost summarise(const Timed *timed, int protocol, int phase, int repet
         add_step(&sum, logs, repetitions, i, times);
         steps++;
     }
-    if (steps == 0)
-        return (StepCost){.solver = NAN, .solver_q1 = NAN, .solver_q3 = NAN, .step = NAN, .instructions = NAN};
+    StepCost unknown = {
+        .solver = NAN, .solver_q1 = NAN, .solver_q3 = NAN, .step = NAN, .engine = NAN, .instructions = NAN};
+    if (is_external(timed) && sum.engine > 0) unknown.engine = sum.engine / steps;
+    if (steps == 0 || is_external(timed)) return unknown;
     return (StepCost){.solver = sum.solver / steps,
                       .solver_q1 = sum.solver_q1 / steps,
                       .solver_q3 = sum.solver_q3 / steps,
                       .step = sum.step / steps,
+                      .engine = NAN,
                       .steps = steps,
                       .instructions = timed->instructions[protocol][phase]};
 }

@@ -26,7 +26,7 @@ static const char *const six[] = {"trajectories/stack-engine",
                                   NULL};
 static const char *const three[] = {"gallery/stack-reference", "trajectories/stack-engine", "gallery/stack-momentum",
                                     NULL};
-/* By other engines: scenes/import. */
+/* By other engines: scenes/engines. */
 static const char *const stacks[] = {"trajectories/stack-engine", "gallery/stack-chipmunk", "gallery/stack-box2d",
                                      NULL};
 static const char *const engines[] = {"trajectories/pyramid-engine", "gallery/pyramid-chipmunk",

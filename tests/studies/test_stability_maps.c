@@ -6,7 +6,7 @@
 
 /* One cell of each verdict, and one sample in the legend. */
 TEST(each_verdict_has_its_tile) {
-    char *maps = make_map(1, 3, 3);
+    char *maps = make_map(1, 5, 2);
     start_afresh(maps, BORDERS ONE_BORDER);
     free(maps);
     draw();

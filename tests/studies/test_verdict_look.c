@@ -21,7 +21,7 @@ static double luminance(uint32_t rgb) {
 static double lightness(uint32_t colour) { return 116 * cbrt(luminance(colour)) - 16; }
 
 TEST(the_worse_the_darker) {
-    for (int look = 1; look < VERDICTS; look++) {
+    for (int look = 1; look <= VERDICT_NON_FINITE; look++) { /* a program that failed says nothing of the physics */
         double step = lightness(verdict_looks[look - 1].fill) - lightness(verdict_looks[look].fill);
         if (step < 6) fail_msg("%s is darker than the one before by %g only", verdict_looks[look].name, step);
     }
