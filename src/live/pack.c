@@ -126,15 +126,17 @@ typedef struct Views {
 static bool put_network_of(Writer *writer, const Views *views, const char *text, Error *error) {
     Method method;
     if (!method_parse(&method, text, error)) return false;
-    const char *name = method.kind->description->name, *path = settings_get(&method.settings, "network");
-    if (!live_has_method(method.kind->description))
+    const MethodDescription *description = method.kind->description;
+    if (!live_has_method(description))
         return error_input(error, text, "a page cannot run this method; it can show recorded runs of it");
-    if (!method.kind->description->needs_network) return true;
-    const char *there = path != NULL ? path : scene_network(views->there, name);
-    Bundle packed = {(const unsigned char *)writer->bytes, writer->size}, found;
-    if (there != NULL && bundle_find(packed, there, &found)) return true;
-    path = method_network(&method.settings, views->here, name, error);
-    return path != NULL && put_network(writer, there, path, error);
+    if (!description->needs_network) return true;
+    const char *path = method_network(&method.settings, views->here, description->name, error);
+    if (path == NULL) return false;
+    const bool set = settings_get(&method.settings, "network") != NULL;
+    const char *there = set ? path : scene_network(views->there, description->name);
+    const Bundle packed = {(const unsigned char *)writer->bytes, writer->size};
+    Bundle found;
+    return there != NULL && (bundle_find(packed, there, &found) || put_network(writer, there, path, error));
 }
 
 static bool pack(Writer *writer, YamlTree *tree, const char *path, const char *const *methods, int count,
