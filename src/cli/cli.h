@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The list of the commands, and what they share: notes, progress, outputs, options, panels, drawing, pages. */
 #pragma once
-#include "base/base.h"
 #include "base/csv.h"
 #include "base/json.h"
 #include "base/machine.h"
@@ -11,7 +10,6 @@
 #include "pictures/render.h"
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
-#include "scenes/scenes.h"
 
 #include <stdbool.h>
 #include <stddef.h>

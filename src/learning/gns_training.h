@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of gns: examples of recorded launches, the gradient, the fit. */
 #pragma once
-#include "base/base.h"
-#include "base/machine.h"
-#include "engine/engine.h"
 #include "learning/dataset.h"
-#include "methods/methods.h"
 #include "methods/steppers.h"
 #include "nets/kinds.h"
-#include "scenes/scenes.h"
 
 #include <stdint.h>
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The kinds of networks beyond layers: gns, scene networks with slots, subspace; their shapes and files. */
 #pragma once
-#include "base/base.h"
 #include "nets/kernels.h"
 
 #include <math.h>

@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/base.h"
 #include "base/file.h"
-#include "pixels/png.h"
-#include "regression/compare.h"
-#include "regression/flip.h"
 #include "regression/internal.h"
-#include "regression/regression.h"
 
 #include <limits.h>
 #include <math.h>

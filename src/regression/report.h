@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a comparison writes, and what approve accepts. */
 #pragma once
-#include "base/base.h"
 #include "base/json.h"
-#include "base/machine.h"
 #include "regression/regression.h"
 
 #include <stddef.h>

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/json.h"

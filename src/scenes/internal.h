@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reading of scene files: fields, patterns, expressions, bodies, overlaps. */
 #pragma once
-#include "base/base.h"
 #include "base/yaml.h"
-#include "engine/engine.h"
 #include "scenes/scenes.h"
 
 #include <stdint.h>
