@@ -98,6 +98,15 @@ void text_add(char *text, size_t size, const char *format, ...) {
     va_end(arguments);
 }
 
+void text_join(char *text, size_t size, const char *between, const char *format, ...) {
+    va_list arguments;
+    if (text[0] != '\0') text_add(text, size, "%s", between);
+    const size_t used = strlen(text);
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
 /* A character as it is shown. */
 typedef struct Shown {
     char text[8];

@@ -85,6 +85,9 @@ void trace_line(const char *format, ...) PRINTF_LIKE(1, 2);
 /* Appends as printf does; what does not fit is cut off. */
 void text_add(char *text, size_t size, const char *format, ...) PRINTF_LIKE(3, 4);
 
+/* The same, with `between` before it if there is a text already. */
+void text_join(char *text, size_t size, const char *between, const char *format, ...) PRINTF_LIKE(4, 5);
+
 /* The ending of a noun: "1 frame", "2 frames". */
 static inline const char *plural(int count) { return count == 1 ? "" : "s"; }
 

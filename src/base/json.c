@@ -97,10 +97,8 @@ const json_t *json_read_value(JsonReader *reader, Error *error) {
     json_error_t failure;
     skip_space(reader);
     size_t left = (size_t)(reader->end - reader->at), size = left < JSON_VALUE_SIZE ? left : JSON_VALUE_SIZE;
-    if (!load(reader->memory, reader->at, size, &value, &failure)) {
-        json_read_error(reader, error, "a value must take at most %d bytes of memory", JSON_VALUE_MEMORY);
-        return NULL;
-    }
+    if (!load(reader->memory, reader->at, size, &value, &failure))
+        return json_read_error(reader, error, "a value must take at most %d bytes of memory", JSON_VALUE_MEMORY), NULL;
     if (value != NULL)
         advance(reader, (size_t)failure.position);
     else if (size < left && (size_t)failure.position + 4 > size) /* or in the middle of a character of 4 bytes */
@@ -213,6 +211,11 @@ void json_put_text(JsonWriter *writer, const char *key, const char *text) {
         fputs("null", writer->out);
     else
         put_quoted(writer->out, text);
+}
+
+bool json_put_absent(JsonWriter *writer, const char *key, bool absent) {
+    if (absent) json_put_text(writer, key, NULL);
+    return absent;
 }
 
 void json_put_int(JsonWriter *writer, const char *key, int64_t value) {

@@ -141,10 +141,7 @@ static void *run(void *argument) {
 
 Background *background_start(BackgroundWork *work, void *context, Error *error) {
     Background *background = calloc(1, sizeof *background);
-    if (background == NULL) {
-        error_memory(error, "second thread");
-        return NULL;
-    }
+    if (background == NULL) return error_memory(error, "second thread"), NULL;
     background->work = work;
     background->context = context;
     pthread_mutex_init(&background->mutex, NULL);
@@ -211,7 +208,6 @@ static bool spawn(Process *process, const char *const *argv, int child_input, Er
         if (code == 0) code = posix_spawnp(&process->pid, argv[0], &actions, NULL, (char *const *)argv, environ);
         posix_spawn_file_actions_destroy(&actions);
     }
-    process->missing = code == ENOENT;
     if (code != 0)
         return error_system(error, argv[0], "cannot be run: %s%s", strerror(code),
                             code == ENOENT ? "; is its package installed?" : "");

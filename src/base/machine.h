@@ -101,7 +101,6 @@ typedef struct Process {
     pid_t pid;
     int input;    /* connected to its standard input */
     FILE *output; /* its standard output and error */
-    bool missing; /* there is no such program */
     int unsent;   /* errno, if the system kept input from it; 0: none */
 } Process;
 

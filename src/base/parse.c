@@ -233,10 +233,7 @@ bool settings_read(const Settings *settings, const SettingSpec *known, void *val
 void *settings_make(const Settings *settings, const SettingSpec *known, const void *standard, size_t size,
                     const char *what, Error *error) {
     void *values = malloc(size);
-    if (values == NULL) {
-        error_memory(error, what);
-        return NULL;
-    }
+    if (values == NULL) return error_memory(error, what), NULL;
     memcpy(values, standard, size);
     if (settings_read(settings, known, values, error)) return values;
     free(values);

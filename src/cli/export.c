@@ -159,11 +159,8 @@ enum { FORMATS = sizeof formats / sizeof *formats };
 /* -1: none has this ending. */
 static int find_format(const char *path) {
     if (path_is_standard(path)) return 0;
-    const size_t length = strlen(path);
-    for (int i = 0; i < FORMATS; i++) {
-        const size_t tail = strlen(formats[i].ending);
-        if (length > tail && strcmp(path + length - tail, formats[i].ending) == 0) return i;
-    }
+    for (int i = 0; i < FORMATS; i++)
+        if (file_name_ends_with(path, formats[i].ending)) return i;
     return -1;
 }
 

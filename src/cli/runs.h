@@ -112,6 +112,9 @@ bool cell_runs_make(CellRuns *runs, const ClipMap *map, const CsvTable *table, c
                     const Progress *progress, Error *error);
 void cell_runs_free(CellRuns *runs);
 
+/* The map of that name; NULL with error set, of `option`, if there is none. */
+const ClipMap *clip_map_find(const ClipMap *maps, int count, const char *name, const char *option, Error *error);
+
 /* A cell of a stability map, as named on the command line. */
 
 /* "MAP:METHOD:X,Y". The method may have settings, so it goes up to the last ':'. */

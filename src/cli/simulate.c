@@ -105,13 +105,6 @@ static void simulate_verdict_words(const SimulateVerdict *verdict, char words[TR
         text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d of %d bodies have fallen", fallen, count);
 }
 
-/* Prints "    verdict: " and these words. */
-static void simulate_verdict_print(const SimulateVerdict *verdict) {
-    char words[TRAJECTORY_VERDICT_SIZE];
-    simulate_verdict_words(verdict, words);
-    printf("    verdict: %s\n", words);
-}
-
 Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error) {
     SimulateVerdict verdict;
     char words[TRAJECTORY_VERDICT_SIZE];
@@ -161,10 +154,7 @@ static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     json_put_bool(json, "holds", verdict_holds(reading->verdict));
     json_put_int(json, "frame", reading->frame);
     json_put_number(json, "time", reading->frame * (double)verdict->scene->dt);
-    if (reading->body >= 0)
-        json_put_int(json, "body", reading->body);
-    else
-        json_put_text(json, "body", NULL);
+    if (!json_put_absent(json, "body", reading->body < 0)) json_put_int(json, "body", reading->body);
     json_put_text(json, "quantity", quantity(reading));
     json_put_number(json, "value", reading->value);
     json_put_text(json, "unit", reading->unit);
@@ -247,10 +237,6 @@ static void write_result(JsonWriter *json, const void *context) {
     for (int i = 0; i < FALLBACKS; i++) json_put_int(json, fallbacks[i].key, fallbacks[i].count);
     json_end(json);
     simulate_verdict_put(&result->verdict, json, "verdict");
-}
-
-static bool simulate_result_json(const SimulateResult *result, Error *error) {
-    return json_output("twinbox simulate 1", write_result, result, error);
 }
 
 typedef struct Options {
@@ -363,8 +349,10 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
 
 /* A run that ends in a NaN or infinite state has a verdict, too; one that was interrupted has none. */
 static bool judge(SimulateResult *result, const Options *options, Error *error) {
+    char words[TRAJECTORY_VERDICT_SIZE];
     if (!result->judged || (error->kind != ERROR_NONE && !verdict_is_non_finite(error))) return false;
-    if (!options->json) simulate_verdict_print(&result->verdict);
+    simulate_verdict_words(&result->verdict, words);
+    if (!options->json) printf("    verdict: %s\n", words);
     return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);
 }
 
@@ -375,7 +363,7 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
     bool ok = record(scene, method, options, &result, error);
     if (ok && !options->json) simulate_result_print(&result);
     ok = judge(&result, options, error) && ok;
-    ok = ok && (!options->json || simulate_result_json(&result, error));
+    ok = ok && (!options->json || json_output("twinbox simulate 1", write_result, &result, error));
     if (ok && !options->json && options->output != NULL && file_name_ends_with(options->output, ".npz"))
         next_film(options->output);
     simulate_verdict_free(&result.verdict);

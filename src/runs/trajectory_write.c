@@ -199,10 +199,6 @@ static bool add_verdict(TrajectoryNpz *npz, Error *error) {
     return true;
 }
 
-static bool trajectory_npz_finish(TrajectoryNpz *npz, Error *error) {
-    return add_verdict(npz, error) && npz_stream_finish(npz->stream, error);
-}
-
 struct TrajectoryStream {
     TrajectoryFormat format;
     char *path;
@@ -299,7 +295,7 @@ void trajectory_stream_judge(TrajectoryStream *stream, const char *words, int fr
 
 bool trajectory_stream_finish(TrajectoryStream *stream, Error *error) {
     assert(stream->added == stream->frames);
-    if (stream->npz != NULL) return trajectory_npz_finish(stream->npz, error);
+    if (stream->npz != NULL) return add_verdict(stream->npz, error) && npz_stream_finish(stream->npz->stream, error);
     FILE *out = stream->out;
     stream->out = NULL;
     if (fclose(out) != 0) return text_failed(stream, error);
