@@ -264,6 +264,9 @@ bool parse_leading_double(const char *text, double *value, const char **rest);
 
 bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value);
 
+/* The same of the number that text begins with; *rest is what follows it. */
+bool parse_leading_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value, const char **rest);
+
 /* "A:B:STEP", three floats with STEP > 0 and A <= B. Value i of the range is the decimal A + i * STEP (computed
    in double, then rounded to float32, so that -5:5:0.05 gives the floats of the decimals -5.00, -4.95, ...). */
 typedef struct FloatRange {

@@ -15,9 +15,6 @@
 #include "base/base.h"
 
 #include <jansson.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
 /* Bytes of one value in the file, and in memory. */

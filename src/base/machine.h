@@ -3,8 +3,6 @@
 #pragma once
 #include "base/base.h"
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <sys/types.h>
 

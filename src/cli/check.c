@@ -6,7 +6,6 @@
 #include "runs/runs.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { WIDTH = 1280, HEIGHT = 720 };

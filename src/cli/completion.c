@@ -5,7 +5,6 @@
 #include "methods/methods.h"
 
 #include <ctype.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { COMPLETION_WORD_SIZE = 1024 }; /* a longer word has no completion */

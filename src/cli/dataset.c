@@ -5,7 +5,6 @@
 #include "methods/pair.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 
 typedef struct Options {
     DatasetOptions dataset;

@@ -2,8 +2,6 @@
 #include "cli/cli.h"
 #include "methods/methods.h"
 
-#include <stdio.h>
-
 typedef struct Options {
     bool json;
 } Options;

@@ -2,7 +2,6 @@
 #include "base/file.h"
 #include "cli/cli.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #define TEMPLATE_NAME(name) #name,

@@ -3,7 +3,6 @@
 #include "cli/cli.h"
 
 #include <limits.h>
-#include <stdio.h>
 
 typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX], *output;

@@ -4,8 +4,6 @@
 #include "paper/paper.h"
 #include "paper/report.h"
 
-#include <stdio.h>
-
 typedef struct Options {
     PaperOptions study;
     const char *shard; /* or NULL */

@@ -4,7 +4,6 @@
 #include "pixels/gl.h"
 
 #include <limits.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct Options {

@@ -9,9 +9,6 @@
 #include "runs/verdict.h"
 #include "studies/stability.h"
 
-#include <stdbool.h>
-#include <stdint.h>
-
 /* twinbox compare: its options, results and --watch. */
 
 typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;

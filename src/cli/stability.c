@@ -6,7 +6,6 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -145,10 +144,8 @@ static bool run_row(const Making *making, Scene *scene, const MapCell *row, int 
     int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;
     scene->frames = row->verdict == VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
     if (add_run(making, scene, row, &failure)) return true;
-    if (row->verdict != VERDICT_EXPLODES || failure.kind != ERROR_INPUT || decided >= shown) {
-        *error = failure;
-        return false;
-    }
+    if (row->verdict != VERDICT_EXPLODES || failure.kind != ERROR_INPUT || decided >= shown)
+        return *error = failure, false;
     scene->frames = decided;
     return add_run(making, scene, row, error);
 }

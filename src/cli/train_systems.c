@@ -14,7 +14,6 @@
 #include "nets/kinds.h"
 #include "nets/nets.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum { SAIN_LIST_SIZE = 2048, STEPS_SAVED = 100 };

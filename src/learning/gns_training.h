@@ -5,8 +5,6 @@
 #include "methods/steppers.h"
 #include "nets/kinds.h"
 
-#include <stdint.h>
-
 /* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix of
    nets/kinds.h's.
 

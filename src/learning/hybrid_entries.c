@@ -5,7 +5,6 @@
 #include "methods/sweeps.h"
 #include "nets/kernels.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

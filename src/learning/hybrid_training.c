@@ -7,8 +7,6 @@
 #include "learning/scene_training_internal.h"
 #include "runs/runs.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,7 +2,6 @@
 /* Training of sain: the loss and its gradient, normalisation and ranges, steps, held-out errors. */
 #include "learning/sain_training.h"
 
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 #include "learning/scene_training_internal.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* Sweeps of the timed rivals, between which time is linear; most sweeps; turns of all rivals. */

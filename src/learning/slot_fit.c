@@ -6,8 +6,6 @@
 #include "nets/kernels.h"
 
 #include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>

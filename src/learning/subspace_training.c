@@ -5,7 +5,6 @@
 #include "learning/learning.h"
 #include "methods/steppers.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,6 @@
 #include "nets/kinds.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static int take(int *next, int count) {
     const int at = *next;

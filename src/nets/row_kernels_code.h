@@ -2,7 +2,6 @@
 #include "nets/kernels.h"
 
 #include <immintrin.h>
-#include <string.h>
 
 /* The code of RowKernels (kernels.h); included once by each row_kernels_*.c, which defines VECTOR_BYTES. */
 #if VECTOR_BYTES > 16

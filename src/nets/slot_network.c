@@ -3,7 +3,6 @@
 #include "nets/kinds.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static bool widths_are_whole(int width) { return width > 0 && width <= SLOT_WIDTH_MAX && width % ROW_LANES == 0; }
 

@@ -2,10 +2,8 @@
 /* Subspace networks: memory, files, and steps in the subspace. */
 #include "nets/kinds.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { POSE = 3 }; /* x, y, angle */
 

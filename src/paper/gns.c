@@ -8,7 +8,6 @@
 #include "runs/runs.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* s after the bomb's launch */

@@ -7,7 +7,6 @@
 #include "paper/report_internal.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* The launches have numbers from UNLEARNED on, which no learning reaches. */

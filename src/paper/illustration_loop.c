@@ -7,7 +7,6 @@
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

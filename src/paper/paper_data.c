@@ -4,7 +4,6 @@
 #include "paper/paper_internal.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* A value beyond these limits is an error in the file. */

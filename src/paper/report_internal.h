@@ -6,7 +6,6 @@
 #include "paper/paper_internal.h"
 
 #include <stddef.h>
-#include <stdio.h>
 
 /* A text of the report is complete in memory before it becomes a file. */
 

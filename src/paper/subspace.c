@@ -6,7 +6,6 @@
 #include "paper/report_internal.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum {

@@ -5,9 +5,6 @@
 #include "regression/regression.h"
 
 #include <limits.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
 /* The steps of regression_run(). */

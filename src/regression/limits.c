@@ -2,9 +2,7 @@
 #include "base/file.h"
 #include "regression/internal.h"
 
-#include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -7,7 +7,6 @@
 #include "regression/internal.h"
 
 #include <assert.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,9 +6,7 @@
 #include "regression/internal.h"
 #include "regression/report.h"
 
-#include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -69,10 +67,8 @@ static void put_escaped(FILE *out, const char *text, const char *special) {
 static void put_property(FILE *out, const char *text) { put_escaped(out, text, ":,"); }
 static void put_message(FILE *out, const char *text) { put_escaped(out, text, ""); }
 
-void github_annotate_message(FILE *out, const char *title, const char *message) {
-    fputs("::error title=", out);
-    put_property(out, title);
-    fputs("::", out);
+void github_annotate_message(FILE *out, const char *message) {
+    fputs("::error title=twinbox compare::", out);
     put_message(out, message);
     fputc('\n', out);
 }
@@ -131,7 +127,7 @@ void github_annotate(FILE *out, const Regression *regression) {
     if (left_out == 0) return;
     char message[128];
     snprintf(message, sizeof message, "%d more failures; the step summary and the report list them", left_out);
-    github_annotate_message(out, "twinbox compare", message);
+    github_annotate_message(out, message);
 }
 
 /* The step summary of GitHub Actions, in Markdown. */

@@ -7,8 +7,6 @@
 #include "runs/verdict.h"
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 /* The pieces that a merge does not find, and the shards that are to do them. */
 

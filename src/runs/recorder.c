@@ -3,7 +3,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* Of a part, poses and contacts each. Smaller parts make the two threads wait for each other more often: with a quarter

@@ -7,8 +7,6 @@
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdio.h>
 
 /* Runs a scene with a method and records the trajectory. */
 

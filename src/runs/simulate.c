@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runs/runs.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* A run in progress. */

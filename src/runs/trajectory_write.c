@@ -7,7 +7,6 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <locale.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

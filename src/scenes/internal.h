@@ -4,8 +4,6 @@
 #include "base/yaml.h"
 #include "scenes/scenes.h"
 
-#include <stdint.h>
-
 /* The types of values in scene files; base/yaml.h reads the mappings. */
 
 /* The ranges keep a scene within what float32 can compute: no product of them is infinite, and no inverse. */

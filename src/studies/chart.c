@@ -4,7 +4,6 @@
 #include "base/file.h"
 #include "studies/chart_internal.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -4,7 +4,6 @@
 #include "figures/sketch.h"
 #include "studies/chart.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 
 /* The scores of the methods on the launches of a scene. Those of one launch are stored as bytes of this machine: the number of

@@ -5,7 +5,6 @@
 #include "runs/runs.h"
 #include "studies/stability_internal.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
