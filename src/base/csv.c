@@ -2,6 +2,7 @@
 /* Reads RFC 4180 in one pass: fields are unquoted in place and end in NUL. Writes a field. */
 #include "base/csv.h"
 
+#include "base/base.h"
 #include "base/file.h"
 
 #include <stdarg.h>

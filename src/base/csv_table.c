@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows of structs and the lines of CSV files that hold them. */
+#include "base/base.h"
 #include "base/csv.h"
 #include "base/file.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Writes whole files: beside the name, then fsync and rename, or as a draft that is written piece by piece. */
+#include "base/base.h"
 #include "base/file.h"
 
 #include <errno.h>

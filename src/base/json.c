@@ -2,6 +2,7 @@
 /* Reads JSON value by value, and writes it as a stream. */
 #include "base/json.h"
 
+#include "base/base.h"
 #include "base/file.h"
 
 #include <assert.h>

@@ -2,6 +2,7 @@
 /* The machine and the process, by POSIX and OpenMP. */
 #include "base/machine.h"
 
+#include "base/base.h"
 #include "base/file.h"
 
 #include <ctype.h>

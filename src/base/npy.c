@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One .npy array: its header, written and parsed, and the conversion of its numbers. */
+#include "base/base.h"
 #include "base/npz.h"
 
 #include <inttypes.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Temporary files, the removal of those that killed processes left, and reservations of files and folders. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/machine.h"

@@ -1,11 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox chart: the command, and the pages of a chart, each of which plays the launch that was worst for a point beside the
    converged run. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "methods/methods.h"
+#include "pictures/player.h"
 #include "pixels/type.h"
+#include "runs/pieces.h"
 #include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 #include <inttypes.h>

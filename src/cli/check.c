@@ -1,9 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "engine/engine.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
 #include "pixels/png.h"
 #include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The list of the commands, and what they share: notes, progress, outputs, options, panels, drawing, pages. */
 #pragma once
+#include "base/base.h"
 #include "base/csv.h"
 #include "base/json.h"
 #include "base/machine.h"
@@ -10,6 +11,7 @@
 #include "pictures/render.h"
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The table of the commands, and the contexts that --version -v lists. */
+#include "base/base.h"
 #include "cli/cli.h"
 #include "pixels/gl.h"
 

@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Options that several commands have, and the checks of their outputs. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"
 #include "cli/cli.h"
+#include "cli/options.h"
+#include "pictures/picture.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/runs.h"
 #include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/regression.h"
 #include "regression/report.h"
 
 #include <inttypes.h>

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What compare prints about pictures, and how it watches. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/json.h"
+#include "cli/cli.h"
 #include "cli/runs.h"
 #include "regression/naming.h"
+#include "regression/regression.h"
 #include "regression/report.h"
 
 #include <inttypes.h>

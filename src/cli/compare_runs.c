@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How twinbox compare compares two runs: why and how fast they diverge, as text and as JSON. */
+#include "base/base.h"
+#include "base/json.h"
+#include "cli/cli.h"
 #include "cli/runs.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
 
 #include <inttypes.h>
 #include <math.h>

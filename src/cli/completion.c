@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Completion of command lines. The scripts for the shells (src/cli/completion) call `twinbox completion words`, which
    answers from the option tables. */
+#include "base/base.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "methods/methods.h"
+#include "scenes/scenes.h"
 
 #include <ctype.h>
 #include <string.h>

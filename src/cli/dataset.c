@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "learning/dataset.h"
 #include "methods/pair.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
 
 #include <inttypes.h>
 

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox export; and the note about files in the folder of a sequence that could be mistaken for a part of it. */
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
+#include "pictures/render.h"
+#include "runs/trajectory.h"
 
 #include <dirent.h>
 #include <errno.h>

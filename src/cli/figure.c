@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "figures/figure.h"
 #include "figures/sketch.h"
+#include "pictures/picture.h"
 #include "pixels/type.h"
+#include "runs/trajectory.h"
 
 #include <string.h>
 #include <unistd.h>

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <string.h>
 

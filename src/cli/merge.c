@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
+#include "runs/pieces.h"
 
 #include <errno.h>
 #include <limits.h>

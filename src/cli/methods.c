@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/json.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "methods/methods.h"
 
 typedef struct Options {

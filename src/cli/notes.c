@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Standard error and signals: notes, interrupts, the time that is left, the progress bar. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/machine.h"
 #include "cli/cli.h"
 #include "nets/kernels.h"
+#include "runs/trajectory.h"
 
 #include <omp.h>
 #include <signal.h>

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Options as tables: the values of each kind, and the reading of a command line. */
+#include "cli/options.h"
 
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "scenes/scenes.h"
 
 #include <argp.h>
 #include <assert.h>

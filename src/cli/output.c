@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Results as JSON, the pages of a study, and the installed scenes. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/json.h"
+#include "base/machine.h"
 #include "cli/cli.h"
+#include "pictures/player.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
 #include "studies/chart.h"
 
 #include <inttypes.h>

@@ -1,8 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The runs of a picture, what they cost, their notes, and the drawing of frames and videos. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/runs.h"
+#include "methods/methods.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
 #include "pixels/type.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 #include <inttypes.h>

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "paper/paper.h"
 #include "paper/report.h"
+#include "runs/pieces.h"
 
 typedef struct Options {
     PaperOptions study;

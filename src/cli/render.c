@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "cli/options.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
 #include "pixels/gl.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
 
 #include <limits.h>
 #include <string.h>

@@ -1,12 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the larger commands: compare, simulate, stability, train. */
 #pragma once
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/json.h"
+#include "base/machine.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "methods/methods.h"
 #include "regression/compare.h"
 #include "regression/regression.h"
+#include "runs/pieces.h"
 #include "runs/runs.h"
+#include "runs/trajectory.h"
 #include "runs/verdict.h"
+#include "scenes/scenes.h"
 #include "studies/stability.h"
 
 /* twinbox compare: its options, results and --watch. */

@@ -1,8 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox simulate: the verdict on its run, what it prints (a line, or with --json an object: src/runs/README.md), the command. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/json.h"
+#include "base/machine.h"
+#include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/runs.h"
 #include "engine/engine.h"
+#include "methods/methods.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
 
 #include <inttypes.h>
 #include <math.h>

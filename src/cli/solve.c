@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox solve: takes a contact problem from a file, or from a step of a scene; writes it, and scores methods on it. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "cli/cli.h"
+#include "cli/options.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox stability: the cells of its maps, the runs and clips that show them, the command. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/runs.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
 #include "studies/chart.h"
+#include "studies/stability.h"
 
 #include <limits.h>
 #include <math.h>

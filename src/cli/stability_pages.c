@@ -1,7 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What stability prints, and the pages of its maps. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "cli/cli.h"
 #include "cli/runs.h"
+#include "methods/methods.h"
+#include "pictures/player.h"
+#include "runs/pieces.h"
+#include "runs/trajectory.h"
+#include "runs/verdict.h"
 #include "studies/chart.h"
+#include "studies/stability.h"
 
 #include <inttypes.h>
 #include <math.h>

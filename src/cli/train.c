@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox train: requests, the kind pair-net, and the command, which has the options of all kinds. */
+#include "base/base.h"
 #include "base/file.h"
+#include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/runs.h"
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 #include "nets/nets.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
 
 #include <assert.h>
 #include <string.h>

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The kinds of twinbox train that learn from launches of scenes: sain, hybrid, gns, subspace and scene-net. */
+#include "base/base.h"
 #include "base/file.h"
+#include "cli/cli.h"
+#include "cli/options.h"
 #include "cli/runs.h"
 #include "learning/gns_training.h"
 #include "learning/hybrid_training.h"
@@ -13,6 +16,8 @@
 #include "nets/kernels.h"
 #include "nets/kinds.h"
 #include "nets/nets.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
 
 #include <string.h>
 

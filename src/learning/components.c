@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Principal components of poses: eigenvectors by Jacobi rotations, the rows of recorded launches, the basis of a subspace. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "learning/dataset.h"
 #include "learning/subspace_training.h"
 #include "methods/steppers.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,9 +2,14 @@
 /* Datasets: the rows of a launch, subsets, and the launches that are drawn. */
 #include "learning/dataset.h"
 
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/pair.h"
 #include "methods/reference.h"
 #include "methods/sweeps.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of datasets: kind "dataset"; scenes are names in lines, and context is there if it was recorded. */
+#include "base/base.h"
+#include "base/npz.h"
 #include "learning/dataset.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
+#include "scenes/scenes.h"
 
 #include <float.h>
 #include <limits.h>

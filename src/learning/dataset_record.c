@@ -1,8 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Recording of many launches: datasets in memory, datasets in pieces, and poses. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "base/npz.h"
+#include "engine/engine.h"
 #include "learning/dataset.h"
+#include "methods/methods.h"
+#include "methods/pair.h"
+#include "runs/pieces.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Adam, and the course of a training that keeps its state on disk. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"
 #include "learning/learning.h"

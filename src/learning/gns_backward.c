@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The backward pass of gns: the steps of the forward pass in reverse. */
+#include "base/base.h"
 #include "learning/gns_training.h"
+#include "methods/steppers.h"
 #include "nets/kernels.h"
+#include "nets/kinds.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Examples of gns: frames of recorded launches, with noise, and the accelerations that correct it. */
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/dataset.h"
 #include "learning/gns_training.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
 
 #include <stdlib.h>
 #include <string.h>

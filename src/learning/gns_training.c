@@ -2,7 +2,14 @@
 /* Training of gns: the loss of a batch on all threads, first weights and units, steps and scores. */
 #include "learning/gns_training.h"
 
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/learning.h"
+#include "methods/methods.h"
+#include "methods/steppers.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
 
 #include <omp.h>
 #include <stdlib.h>

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of gns: examples of recorded launches, the gradient, the fit. */
 #pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/dataset.h"
+#include "methods/methods.h"
 #include "methods/steppers.h"
 #include "nets/kinds.h"
+#include "scenes/scenes.h"
 
 /* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix of
    nets/kinds.h's.

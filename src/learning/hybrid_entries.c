@@ -1,9 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the memory of hybrid learns from a step, and the runs whose steps it learns. */
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/hybrid_training.h"
 #include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/solvers.h"
 #include "methods/sweeps.h"
+#include "methods/tabulation.h"
 #include "nets/kernels.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

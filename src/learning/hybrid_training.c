@@ -2,10 +2,19 @@
 /* Training of hybrid, launch after launch, and a network that learns from the same steps. */
 #include "learning/hybrid_training.h"
 
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/learning.h"
+#include "learning/scene_training.h"
 #include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/solvers.h"
+#include "methods/tabulation.h"
+#include "nets/kinds.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The optimisers of pair networks: adam, gd, lm with its Gauss-Newton products, bfgs. */
+#include "base/base.h"
 #include "learning/learning.h"
 #include "learning/pair_training_internal.h"
+#include "nets/nets.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of pair networks: laws of physics and their terms, the loss, and checks of the options. */
+#include "base/base.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
 #include "learning/pair_training_internal.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
 
 #include <math.h>
 #include <stdlib.h>

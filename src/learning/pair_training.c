@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of pair networks: rows in normalised blocks, option words, first weights, visits of the optimiser, scores. */
+#include "learning/pair_training.h"
 
+#include "base/base.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
 #include "learning/pair_training_internal.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
 
 #include <float.h>
 #include <gsl/gsl_errno.h>

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of pair networks: losses, laws of physics, optimisers. */
 #pragma once
+#include "base/base.h"
+#include "base/machine.h"
 #include "learning/dataset.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
 
 /* Physical laws for one touching pair: the violation of each law by a change of the pair's velocities, and the gradient
    of the violation with respect to that change. The change of a static body is ignored.

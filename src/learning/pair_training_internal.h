@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the training of pair networks. */
 #pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
 #include "learning/pair_training.h"
+#include "nets/nets.h"
 
 /* Dataset rows prepared for training: normalised inputs and targets, in the layout of NetworkBlock. */
 

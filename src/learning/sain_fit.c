@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of sain: the loss and its gradient, normalisation and ranges, steps, held-out errors. */
+#include "base/base.h"
+#include "learning/learning.h"
 #include "learning/sain_training.h"
+#include "methods/relation_view.h"
+#include "methods/solvers.h"
+#include "nets/nets.h"
 
 #include <omp.h>
 #include <stdlib.h>

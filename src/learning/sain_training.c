@@ -2,6 +2,17 @@
 /* Training of sain: samples, recorded problems, and the rounds of each form. */
 #include "learning/sain_training.h"
 
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/learning.h"
+#include "learning/scene_training.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "methods/relation_view.h"
+#include "methods/solvers.h"
+#include "scenes/scenes.h"
+
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of sain: recorded launches, samples, loss, rounds. */
 #pragma once
+#include "base/base.h"
+#include "base/machine.h"
 #include "learning/learning.h"
 #include "learning/scene_training.h"
 #include "methods/methods.h"
 #include "methods/relation_view.h"
+#include "methods/solvers.h"
 #include "nets/nets.h"
+#include "scenes/scenes.h"
 
 /* Training data of a form of sain: what its network sees of each receiver in recorded problems, and the correction that
    would make its velocity converged. */

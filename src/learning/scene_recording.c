@@ -1,8 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What scene-net and sain learn from: problems with their references, and the launches of scene-net's rounds, run or read
    from pieces. */
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/scene_training.h"
 #include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "methods/solvers.h"
+#include "nets/kinds.h"
+#include "runs/pieces.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <gsl/gsl_errno.h>
 #include <inttypes.h>

@@ -1,7 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of scene-net: rounds of recording and fitting, scores, and the verdict against momentum at equal time. */
+#include "learning/scene_training.h"
 
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "methods/solvers.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

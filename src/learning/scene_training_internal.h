@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the training of scene-net. */
 #pragma once
+#include "base/base.h"
+#include "base/machine.h"
 #include "learning/scene_training.h"
 #include "methods/methods.h"
+#include "nets/kinds.h"
+#include "scenes/scenes.h"
 
 /* Products C Q of directions Q with the covariance C of the columns of n sparse rows A:
 

@@ -1,9 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fits a slot network: sweeps that are unrolled and differentiated, the loss of a sample, mini-batches. */
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/learning.h"
+#include "learning/scene_training.h"
 #include "learning/scene_training_internal.h"
+#include "methods/reference.h"
 #include "methods/sweeps.h"
 #include "nets/kernels.h"
+#include "nets/kinds.h"
 
 #include <gsl/gsl_randist.h>
 #include <omp.h>

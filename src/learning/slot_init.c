@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The first slot network, from samples: its slots, projections, scales and weights. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "learning/scene_training.h"
 #include "learning/scene_training_internal.h"
+#include "methods/solvers.h"
+#include "nets/kinds.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>

@@ -1,9 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Samples of scene-net: copies of problems, labels, inputs, bytes; and the launches that they are from. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/scene_training.h"
 #include "learning/scene_training_internal.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "methods/solvers.h"
 #include "methods/sweeps.h"
+#include "nets/kinds.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <assert.h>
 #include <omp.h>

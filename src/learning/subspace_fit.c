@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Fits a predictor of subspace: its linear term, its scales, and slopes through windows of predictions. */
+#include "base/base.h"
 #include "learning/subspace_training.h"
+#include "nets/kinds.h"
+#include "nets/nets.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,16 @@
 /* Training of subspace: errors of predictors, recording, components, and a fit for each number of components. */
 #include "learning/subspace_training.h"
 
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "learning/dataset.h"
 #include "learning/learning.h"
+#include "methods/methods.h"
 #include "methods/steppers.h"
+#include "nets/kinds.h"
+#include "nets/nets.h"
+#include "scenes/scenes.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Training of subspace: components of recorded launches, windows of frames, the fit of the predictors. */
 #pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/dataset.h"
 #include "nets/kinds.h"
+#include "nets/nets.h"
+#include "scenes/scenes.h"
 
 #include <stdbool.h>
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Networks of gns: where the parameters of each perceptron are, and files of kind "gns". */
+#include "base/base.h"
+#include "base/npz.h"
 #include "nets/kinds.h"
+#include "nets/nets.h"
 
 #include <stdlib.h>
 

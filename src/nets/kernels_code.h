@@ -3,6 +3,7 @@
    them without changing the order of sums. In the gradient, each forward step is next to its backward step; B stands
    for BLOCK_ROWS. */
 #include "nets/kernels.h"
+#include "nets/nets.h"
 
 /* One register, loaded from any address. Explicit, because the compiler keeps an array of sums in memory. */
 typedef float Floats __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(float)), may_alias));

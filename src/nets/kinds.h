@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The kinds of networks beyond layers: gns, scene networks with slots, subspace; their shapes and files. */
 #pragma once
+#include "base/base.h"
 #include "nets/kernels.h"
 
 /* The network of gns (methods/gns.c): a graph network over particles. Source: Sanchez-Gonzalez, Godwin, Pfaff, Ying,

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Files of networks: one list of fields for writing, for a look at the shapes, and for reading. */
+#include "base/base.h"
+#include "base/npz.h"
 #include "nets/nets.h"
 
 #include <float.h>

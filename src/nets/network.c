@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Networks of layers: the block of a training, memory, inference in a fixed order of sums, files. */
+#include "base/base.h"
+#include "base/npz.h"
 #include "nets/kernels.h"
+#include "nets/nets.h"
 
 #include <stdio.h>
 #include <stdlib.h>

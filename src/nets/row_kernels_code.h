@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "nets/kernels.h"
+#include "nets/nets.h"
 
 #include <immintrin.h>
 

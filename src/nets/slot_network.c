@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Slot networks: memory, slots, inference, files. */
+#include "base/base.h"
+#include "base/npz.h"
+#include "nets/kernels.h"
 #include "nets/kinds.h"
+#include "nets/nets.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Subspace networks: memory, files, and steps in the subspace. */
+#include "base/base.h"
+#include "base/npz.h"
+#include "nets/kernels.h"
 #include "nets/kinds.h"
+#include "nets/nets.h"
 
 #include <stdio.h>
 #include <stdlib.h>

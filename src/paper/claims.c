@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the papers of the systems claim: the table of all claims, then the rules by which those of each system are judged
    from its table. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "learning/subspace_training.h"
+#include "methods/relation_view.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 
 #include <math.h>

@@ -1,7 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the report states beyond the study's tables: the summary, aims, factors, claims, systems; and the writing of all. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "methods/pair.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <limits.h>
 #include <math.h>

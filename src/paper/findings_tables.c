@@ -1,6 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study's tables read again, and the findings with rows of their own: targets, transfer, laws, definitions. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "learning/pair_training.h"
+#include "methods/pair.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,11 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study of gns: rollouts beside the taught runs, and what networks cost, whatever they have learned. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/gns_training.h"
+#include "methods/methods.h"
 #include "methods/steppers.h"
 #include "nets/kinds.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <stdlib.h>

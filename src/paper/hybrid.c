@@ -1,10 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study of hybrid: errors and times of a memory on launches that it has not learned, while it learns others. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "engine/engine.h"
 #include "learning/hybrid_training.h"
+#include "methods/methods.h"
 #include "methods/solvers.h"
 #include "methods/tabulation.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <stdlib.h>

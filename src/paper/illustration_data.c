@@ -1,10 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figure 3: how training data are made. Left: the bomb's paths in some launches of the sweep. Right: one of the
    recorded rows, with the state of a pair and the change by its own impulses. */
+#include "base/base.h"
+#include "engine/engine.h"
 #include "figures/figure.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "methods/pair.h"
 #include "paper/report_internal.h"
+#include "pictures/picture.h"
 #include "pixels/png.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 

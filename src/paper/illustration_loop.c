@@ -1,11 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figure 4: the three scenes with the bomb in flight, rendered, with the bomb's path drawn over them. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "methods/pair.h"
 #include "paper/report_internal.h"
+#include "pictures/picture.h"
 #include "pictures/render.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The paper's figures: the engine's run that they follow, the one of the narrow phase, and the drawing of all. */
+#include "base/base.h"
 #include "base/file.h"
+#include "engine/engine.h"
 #include "figures/figure.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "methods/pair.h"
 #include "paper/report.h"
 #include "paper/report_internal.h"
+#include "pictures/picture.h"
 #include "pixels/png.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <limits.h>
 #include <math.h>

@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rates of right predictions of a network, of the constant predictor and of the engine with fewer sweeps. */
+#include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "methods/pair.h"
 #include "methods/reference.h"
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 #include "paper/paper_internal.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <stdlib.h>

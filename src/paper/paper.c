@@ -1,8 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The whole study: its sizes and aims, what its parts share, and its tables from the parts. */
+#include "paper/paper.h"
 
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
 #include "paper/paper_internal.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <stdlib.h>
 

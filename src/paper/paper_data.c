@@ -1,7 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables of the study, and the datasets that its parts train on. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
+#include "methods/pair.h"
+#include "paper/paper.h"
 #include "paper/paper_internal.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <string.h>

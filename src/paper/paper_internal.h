@@ -1,10 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The studies of the paper: networks, scores, rates, transfer, laws, and the systems that it cites. */
 #pragma once
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
 #include "learning/pair_training.h"
+#include "methods/pair.h"
 #include "methods/relation_view.h"
 #include "nets/nets.h"
 #include "paper/paper.h"
+#include "runs/pieces.h"
 #include "scenes/scenes.h"
 #include "studies/chart.h"
 

@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the study, in the order in which they are done. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "methods/pair.h"
+#include "paper/paper.h"
 #include "paper/paper_internal.h"
+#include "runs/pieces.h"
 
 #include <stdlib.h>
 #include <string.h>

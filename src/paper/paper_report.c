@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Memory for cmark-gfm, which aborts the program where malloc() fails. */
+#include "base/base.h"
 #include "base/file.h"
 #include "paper/report.h"
 #include "paper/report_internal.h"

@@ -1,8 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Transfer, laws in the loss, and the scores of the study's networks in a scene. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
 #include "methods/methods.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
+#include "paper/paper.h"
 #include "paper/paper_internal.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The networks of the study, each trained, scored and stored. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/machine.h"
+#include "learning/dataset.h"
+#include "learning/pair_training.h"
+#include "methods/pair.h"
+#include "nets/nets.h"
+#include "paper/paper.h"
 #include "paper/paper_internal.h"
+#include "studies/chart.h"
 
 #include <inttypes.h>
 #include <math.h>

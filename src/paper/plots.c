@@ -1,8 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plots of the study: rates of right predictions, losses, laws; and the drawing of all plots. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "figures/sketch.h"
+#include "learning/pair_training.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report.h"
 #include "paper/report_internal.h"
+#include "scenes/scenes.h"
 
 #include <limits.h>
 #include <math.h>

@@ -1,7 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plots of the study's networks: their errors by factor, transfer, and runs in closed loop. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "figures/sketch.h"
+#include "methods/pair.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 #include "pixels/png.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <stdlib.h>

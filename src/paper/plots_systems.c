@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The plots of the systems that the paper cites. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "figures/sketch.h"
 #include "learning/subspace_training.h"
+#include "methods/relation_view.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
 
 #include <assert.h>

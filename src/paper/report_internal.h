@@ -1,9 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the report: template, findings, tables, plots, illustrations. */
 #pragma once
+#include "base/base.h"
+#include "base/csv.h"
 #include "engine/engine.h"
+#include "figures/sketch.h"
 #include "methods/methods.h"
+#include "methods/pair.h"
+#include "paper/paper.h"
 #include "paper/paper_internal.h"
+#include "scenes/scenes.h"
 
 #include <stddef.h>
 

@@ -1,10 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study of sain: trainings on few launches of the stack, scored on held-out ones of two scenes. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
 #include "learning/learning.h"
 #include "learning/sain_training.h"
 #include "learning/scene_training.h"
+#include "methods/relation_view.h"
 #include "methods/solvers.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <stdlib.h>
 

@@ -1,9 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The study of subspace: errors and times of its sizes beside those of the engines that it replaces. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "learning/subspace_training.h"
+#include "methods/methods.h"
 #include "nets/kinds.h"
+#include "paper/paper.h"
+#include "paper/paper_internal.h"
 #include "paper/report_internal.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,12 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The frame of the systems that the paper cites: their scores beside those of rivals, their strips, their list. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "figures/figure.h"
+#include "figures/sketch.h"
 #include "methods/methods.h"
+#include "paper/paper.h"
 #include "paper/paper_internal.h"
+#include "pictures/picture.h"
 #include "pictures/player.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 
 #include <assert.h>
 #include <limits.h>

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Values as Markdown. No character of them has a meaning to Markdown, nor in a table's cell. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
 #include "paper/report_internal.h"
 

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Approval: folders in which no link is followed, the list of results.json, and the changes. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/json.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
 #include "regression/report.h"
 

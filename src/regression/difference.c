@@ -2,6 +2,10 @@
 /* Connected components in one pass from top to bottom. Of the rows above, only the last differing pixel of each column
    matters: an earlier one within reach is in the same region. Regions are joined by union-find; those that no column
    reaches any more are complete, and their nodes are used again. */
+#include "base/base.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/flip.h"
 #include "regression/internal.h"
 
 #include <stdlib.h>

@@ -2,6 +2,9 @@
 /* FLIP: colours, filters, tiles around differences, and their mean and percentile. */
 #include "regression/flip.h"
 
+#include "base/base.h"
+#include "pixels/png.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The numbers of the comments are those of the header. */
+#include "pixels/png.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
 
 #include <stdlib.h>

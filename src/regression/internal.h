@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of this room: the steps of a comparison, pixels that do not count, the naming of changes, the report, approval. */
 #pragma once
+#include "base/base.h"
+#include "base/machine.h"
 #include "pictures/player.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/flip.h"
+#include "regression/naming.h"
 #include "regression/regression.h"
+#include "runs/trajectory.h"
 
 #include <limits.h>
 #include <stdio.h>

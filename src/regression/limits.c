@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/flip.h"
 #include "regression/internal.h"
+#include "regression/regression.h"
 
 #include <math.h>
 #include <stdlib.h>

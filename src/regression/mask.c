@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Masks: rectangles, colours and pictures that hide pixels from a comparison. */
+#include "base/base.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
 
 #include <stdlib.h>

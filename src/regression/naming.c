@@ -1,8 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Every differing pixel gets an owner: a text, a body, or the rest of its panel. A region has the name of the change that
    owns most of its pixels, and is not of several bodies. */
+#include "regression/naming.h"
 
+#include "base/base.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
+#include "runs/trajectory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What compare names in twinbox's own pictures: the view of a frame, bodies, texts, regions. */
 #pragma once
+#include "base/base.h"
 #include "regression/compare.h"
 #include "runs/trajectory.h"
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Explains what differs at one drawn box: it moved, or its colours or its lines changed. */
+#include "pixels/png.h"
 #include "regression/internal.h"
+#include "regression/naming.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A panel of a picture as naming sees it: its bodies as drawn, what is on top, and the pixels that tell of one body. */
+#include "base/base.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
+#include "regression/naming.h"
+#include "runs/trajectory.h"
 
 #include <math.h>
 #include <stdlib.h>

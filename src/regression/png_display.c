@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "pixels/png.h"
 #include "regression/compare.h"
 
 #include <stdio.h>

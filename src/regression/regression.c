@@ -1,8 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Compares two folders: each frame with its accepted pictures, then what that means for the whole. */
+#include "regression/regression.h"
 
+#include "base/base.h"
 #include "base/hash.h"
+#include "base/machine.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
+#include "regression/naming.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A comparison of two folders: limits, rules, states, causes, the verdict. */
 #pragma once
+#include "base/base.h"
 #include "base/machine.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
 #include "regression/flip.h"
 #include "regression/naming.h"
+#include "runs/trajectory.h"
 
 /* How far a picture may differ and still pass. Nothing given: every pixel must be equal. */
 

@@ -2,9 +2,17 @@
 /* Writes a report: makes its pictures, writes the pages of runs, then the four files. */
 #include "regression/report.h"
 
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/machine.h"
+#include "pictures/player.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/flip.h"
 #include "regression/internal.h"
+#include "regression/regression.h"
+#include "runs/trajectory.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a comparison writes, and what approve accepts. */
 #pragma once
+#include "base/base.h"
 #include "base/json.h"
+#include "base/machine.h"
 #include "regression/regression.h"
 
 #include <stdio.h>

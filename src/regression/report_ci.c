@@ -2,8 +2,12 @@
 /* The results of a comparison for other programs: annotations and summary of GitHub Actions, junit.xml, results.tap,
    results.json. */
 #include "base/file.h"
+#include "base/json.h"
 #include "pictures/page.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
+#include "regression/naming.h"
+#include "regression/regression.h"
 #include "regression/report.h"
 
 #include <math.h>

@@ -3,6 +3,8 @@
    they keep their size on any screen and are never clipped. */
 #include "pictures/page.h"
 #include "regression/internal.h"
+#include "regression/regression.h"
+#include "runs/trajectory.h"
 
 #include <ctype.h>
 #include <math.h>

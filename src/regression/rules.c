@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The rules of a comparison in memory. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/yaml.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
+#include "regression/regression.h"
 
 #include <fnmatch.h>
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pictures of a folder in order, and the pairs that two folders have. */
+#include "base/base.h"
 #include "base/file.h"
 #include "regression/compare.h"
 

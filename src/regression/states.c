@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is behind the pictures: the runs, whether their states differ, the names of what changed, and the causes. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/machine.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
+#include "regression/naming.h"
+#include "regression/regression.h"
+#include "runs/trajectory.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The results of a comparison as text. */
 /* A comparison in words: changes and regions, frames, runs, causes, the verdict, notes. */
+#include "base/base.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
 #include "regression/internal.h"
+#include "regression/naming.h"
+#include "regression/regression.h"
+#include "runs/trajectory.h"
 
 #include <inttypes.h>
 #include <math.h>

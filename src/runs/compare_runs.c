@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where two trajectories differ. */
+#include "base/base.h"
 #include "runs/trajectory.h"
 
 #include <math.h>

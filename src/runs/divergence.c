@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
 #include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <gsl/gsl_fit.h>
 #include <inttypes.h>

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of this room: pieces that are missing, arrays and rows of runs, checks of verdicts. */
 #pragma once
+#include "base/base.h"
 #include "base/npz.h"
+#include "engine/engine.h"
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
+#include "scenes/scenes.h"
 
 #include <stdbool.h>
 

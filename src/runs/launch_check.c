@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "runs/pieces.h"
 
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/machine.h"
 #include "runs/internal.h"
 
 #include <dirent.h>

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "runs/internal.h"
+#include "runs/pieces.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The arrays that a problem file holds for bodies and contacts. */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"
+#include "engine/engine.h"
 #include "runs/runs.h"
 
 #include <assert.h>

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/npz.h"
+#include "engine/engine.h"
 #include "runs/internal.h"
+#include "runs/trajectory.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "engine/engine.h"
 #include "runs/trajectory.h"
 
 #include <stdlib.h>

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
 #include "base/csv.h"
+#include "engine/engine.h"
 #include "runs/internal.h"
+#include "runs/trajectory.h"
 
 #include <inttypes.h>
 #include <stdarg.h>

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs: a scene stepped with a method and recorded; checks of launches; problem files; growth of distances. */
 #pragma once
+#include "base/base.h"
 #include "base/machine.h"
+#include "engine/engine.h"
 #include "methods/methods.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"

@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
 #include "runs/runs.h"
+#include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <string.h>
 

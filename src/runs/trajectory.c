@@ -2,8 +2,10 @@
 /* The trajectory in memory. */
 #include "runs/trajectory.h"
 
+#include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "engine/engine.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A trajectory as .npz, part by part. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/npz.h"
+#include "engine/engine.h"
 #include "runs/internal.h"
+#include "runs/trajectory.h"
 
 #include <assert.h>
 #include <errno.h>

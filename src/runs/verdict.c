@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "runs/verdict.h"
 
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
 #include "runs/internal.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
 #include "runs/internal.h"
 #include "runs/runs.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdlib.h>

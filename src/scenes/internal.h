@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The reading of scene files: fields, patterns, expressions, bodies, overlaps. */
 #pragma once
+#include "base/base.h"
 #include "base/yaml.h"
+#include "engine/engine.h"
 #include "scenes/scenes.h"
 
 /* The types of values in scene files; base/yaml.h reads the mappings. */

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/yaml.h"
 #include "scenes/internal.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/yaml.h"
+#include "engine/engine.h"
 #include "scenes/internal.h"
+#include "scenes/scenes.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The key `bomb` of a scene. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/yaml.h"
+#include "engine/engine.h"
 #include "scenes/internal.h"
+#include "scenes/scenes.h"
 
 #include <inttypes.h>
 #include <limits.h>

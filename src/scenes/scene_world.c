@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Creates worlds from a scene, and computes the scene's hash. */
+#include "base/base.h"
 #include "base/hash.h"
+#include "engine/engine.h"
 #include "scenes/scenes.h"
 
 #include <string.h>

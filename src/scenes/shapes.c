@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows, stacks and pyramids. Every position is computed in float32 from the first one and not from its
    neighbour, so that rounding does not add up. */
+#include "base/base.h"
+#include "engine/engine.h"
 #include "scenes/internal.h"
+#include "scenes/scenes.h"
 
 #include <stddef.h>
 

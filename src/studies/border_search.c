@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The search for borders along a parameter: a coarse scan, bisection, and the seeds on both sides. */
+#include "base/base.h"
+#include "runs/verdict.h"
 #include "studies/stability.h"
 
 #include <math.h>

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The axis of a study in the borders figure. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "figures/sketch.h"
+#include "pixels/png.h"
+#include "runs/verdict.h"
 #include "studies/chart_internal.h"
+#include "studies/stability.h"
 #include "studies/stability_internal.h"
 
 #include <math.h>

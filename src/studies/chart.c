@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The speed-accuracy study: its scenes, their pieces, and chart.csv from what the pieces stored. */
+#include "studies/chart.h"
 
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "runs/pieces.h"
+#include "scenes/scenes.h"
 #include "studies/chart_internal.h"
 
 #include <stdlib.h>

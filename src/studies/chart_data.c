@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The data of a chart of one scene: its lines, its marks, and what is left out. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
 #include "pixels/type.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 #include "studies/chart_internal.h"
 
 #include <math.h>

@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pages of studies: charts and maps whose points and cells link to pages of runs. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "figures/sketch.h"
 #include "pictures/page.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 #include "studies/chart_internal.h"
 #include "studies/stability.h"
 

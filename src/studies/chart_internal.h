@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the chart study and of its drawings. */
 #pragma once
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
 #include "figures/sketch.h"
+#include "methods/methods.h"
+#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 #include <stdio.h>

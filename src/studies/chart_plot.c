@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Charts of speed against accuracy: legend, labels of marks, lines and the Pareto front. */
+#include "base/base.h"
 #include "base/file.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
+#include "studies/chart.h"
 #include "studies/chart_internal.h"
 
 #include <limits.h>

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs in closed loop: their logs and measures, the scores of their steps, a method beside the engine. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 #include <math.h>

@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Errors at equal time: the curves of rivals, and the tables in which each method stands beside its best rival. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "methods/methods.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 #include "studies/chart_internal.h"
 
 #include <limits.h>

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The grid of scenes and methods that the figure of errors at equal time shows. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
+#include "studies/chart.h"
 #include "studies/chart_internal.h"
 
 #include <limits.h>

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The frozen protocol: the methods that are compared, and the steps of the engine that all of them solve. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 #include <assert.h>

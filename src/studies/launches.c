@@ -1,8 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The pieces of a chart: the launch that is worst for a method, launches scored by all methods, the tables that pieces make,
    and the times of a scene. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "runs/pieces.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 #include "studies/chart_internal.h"
 
 #include <errno.h>

@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Statistics, the Pareto front, curves of error over time, and the converged solution of a step. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
+#include "methods/reference.h"
+#include "studies/chart.h"
 #include "studies/chart_internal.h"
 
 #include <gsl/gsl_sort.h>

@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The scores of launches as they are stored, the rows of chart.csv that are made of them, and what charts read there. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
 #include "studies/chart_internal.h"
 
 #include <assert.h>

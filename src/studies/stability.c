@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The stability study in pieces (runs/pieces.h): some methods of a study along one parameter, or some cells of a map. */
+#include "studies/stability.h"
 
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "runs/pieces.h"
+#include "studies/chart.h"
 #include "studies/stability_internal.h"
 
 #include <assert.h>

@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One run of a stability study: its scene, how it is judged, the converged run beside it; and maps, which have such a run in
    each cell. */
+#include "base/base.h"
 #include "base/file.h"
+#include "base/machine.h"
+#include "methods/methods.h"
 #include "runs/runs.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+#include "studies/stability.h"
 #include "studies/stability_internal.h"
 
 #include <stdlib.h>

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The parts of the stability figures. */
 #pragma once
+#include "base/base.h"
+#include "base/machine.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
 #include "studies/chart.h"
 #include "studies/stability.h"
 

@@ -1,7 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The figures of a stability study. A map has one place for each value, whatever the distance of the values. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/machine.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "pixels/png.h"
 #include "pixels/type.h"
+#include "runs/verdict.h"
 #include "studies/chart_internal.h"
+#include "studies/stability.h"
 #include "studies/stability_internal.h"
 
 #include <math.h>

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The studies of one scene file, from the texts of --vary. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "scenes/scenes.h"
 #include "studies/stability.h"
 
 #include <ctype.h>

@@ -1,5 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A stability study along one parameter: the borders of each method, its refusals and its runs. */
+#include "base/base.h"
+#include "base/machine.h"
+#include "methods/methods.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
+#include "studies/chart.h"
+#include "studies/stability.h"
 #include "studies/stability_internal.h"
 
 #include <math.h>

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The tables of the stability study: names and texts of their rows, what they may hold, their layouts. */
+#include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "runs/verdict.h"
+#include "scenes/scenes.h"
 #include "studies/chart_internal.h"
 #include "studies/stability.h"
 

@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The cost of methods: the meter of time and instructions, the steppers that threads share, and the timing of contenders. */
 #define _GNU_SOURCE
+#include "base/base.h"
+#include "base/machine.h"
+#include "engine/engine.h"
+#include "methods/methods.h"
 #include "runs/runs.h"
+#include "scenes/scenes.h"
 #include "studies/chart.h"
 
 #include <linux/perf_event.h>

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The words of a figure, explained in its caption: names of methods and keys of their settings. */
+#include "base/base.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
 #include "pixels/type.h"
 #include "studies/chart_internal.h"
 
