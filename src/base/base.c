@@ -4,9 +4,6 @@
 
 #include <errno.h>
 #include <stdarg.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -93,6 +90,15 @@ void trace_line(const char *format, ...) {
 void text_add(char *text, size_t size, const char *format, ...) {
     size_t used = strlen(text);
     va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + used, size - used, format, arguments);
+    va_end(arguments);
+}
+
+void text_join(char *text, size_t size, const char *between, const char *format, ...) {
+    va_list arguments;
+    if (text[0] != '\0') text_add(text, size, "%s", between);
+    const size_t used = strlen(text);
     va_start(arguments, format);
     vsnprintf(text + used, size - used, format, arguments);
     va_end(arguments);

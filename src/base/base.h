@@ -85,6 +85,9 @@ void trace_line(const char *format, ...) PRINTF_LIKE(1, 2);
 /* Appends as printf does; what does not fit is cut off. */
 void text_add(char *text, size_t size, const char *format, ...) PRINTF_LIKE(3, 4);
 
+/* The same, with `between` before it if there is a text already. */
+void text_join(char *text, size_t size, const char *between, const char *format, ...) PRINTF_LIKE(4, 5);
+
 /* The ending of a noun: "1 frame", "2 frames". */
 static inline const char *plural(int count) { return count == 1 ? "" : "s"; }
 
@@ -260,6 +263,9 @@ bool parse_double(const char *text, double *value);
 bool parse_leading_double(const char *text, double *value, const char **rest);
 
 bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value);
+
+/* The same of the number that text begins with; *rest is what follows it. */
+bool parse_leading_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value, const char **rest);
 
 /* "A:B:STEP", three floats with STEP > 0 and A <= B. Value i of the range is the decimal A + i * STEP (computed
    in double, then rounded to float32, so that -5:5:0.05 gives the floats of the decimals -5.00, -4.95, ...). */

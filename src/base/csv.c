@@ -56,15 +56,10 @@ static char step(Reader *reader) {
 
 static bool ends_field(const char *at) { return *at == ',' || *at == '\n' || *at == '\0' || *at == '\r'; }
 
-static char *fail_text(const Reader *reader, int column, Error *error, const char *what) {
-    fail(reader, column, error, what);
-    return NULL;
-}
-
 static char *take_plain(Reader *reader, Error *error) {
     while (!ends_field(reader->at))
         if (step(reader) == '"')
-            return fail_text(reader, reader->column - 1, error, "a quote inside a field that does not begin with one");
+            return fail(reader, reader->column - 1, error, "a quote inside a field that does not begin with one"), NULL;
     return reader->at;
 }
 
@@ -74,15 +69,14 @@ static char *take_quoted(Reader *reader, Error *error) {
     step(reader);
     for (;;) {
         if (*reader->at == '\0' || *reader->at == '\n' || *reader->at == '\r')
-            return fail_text(reader, start, error, "this quote is not closed on its line");
+            return fail(reader, start, error, "this quote is not closed on its line"), NULL;
         char c = step(reader);
         if (c == '"' && *reader->at != '"') break;
         if (c == '"') step(reader);
         *write++ = c;
     }
-    return ends_field(reader->at)
-               ? write
-               : fail_text(reader, reader->column, error, "expected a comma after the closing quote");
+    if (ends_field(reader->at)) return write;
+    return fail(reader, reader->column, error, "expected a comma after the closing quote"), NULL;
 }
 
 /* *separator is what ended the field: a comma, or the line. */

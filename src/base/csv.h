@@ -3,7 +3,6 @@
 #pragma once
 #include "base/base.h"
 
-#include <stddef.h>
 #include <stdio.h>
 
 /* A header line, then rows with the same number of fields. Fields are separated by commas. A field in double quotes may

@@ -4,8 +4,6 @@
 #include "base/base.h"
 
 #include <limits.h>
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <sys/types.h>
 

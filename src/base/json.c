@@ -7,7 +7,6 @@
 
 #include <assert.h>
 #include <inttypes.h>
-#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -98,10 +97,8 @@ const json_t *json_read_value(JsonReader *reader, Error *error) {
     json_error_t failure;
     skip_space(reader);
     size_t left = (size_t)(reader->end - reader->at), size = left < JSON_VALUE_SIZE ? left : JSON_VALUE_SIZE;
-    if (!load(reader->memory, reader->at, size, &value, &failure)) {
-        json_read_error(reader, error, "a value must take at most %d bytes of memory", JSON_VALUE_MEMORY);
-        return NULL;
-    }
+    if (!load(reader->memory, reader->at, size, &value, &failure))
+        return json_read_error(reader, error, "a value must take at most %d bytes of memory", JSON_VALUE_MEMORY), NULL;
     if (value != NULL)
         advance(reader, (size_t)failure.position);
     else if (size < left && (size_t)failure.position + 4 > size) /* or in the middle of a character of 4 bytes */

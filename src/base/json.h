@@ -16,9 +16,6 @@
 #include "base/json_write.h"
 
 #include <jansson.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
 /* Bytes of one value in the file, and in memory. */

@@ -79,6 +79,11 @@ void json_put_text(JsonWriter *writer, const char *key, const char *text) {
         put_quoted(writer->out, text);
 }
 
+bool json_put_absent(JsonWriter *writer, const char *key, bool absent) {
+    if (absent) json_put_text(writer, key, NULL);
+    return absent;
+}
+
 void json_put_int(JsonWriter *writer, const char *key, int64_t value) {
     begin_value(writer, key);
     fprintf(writer->out, "%" PRId64, value);

@@ -41,5 +41,8 @@ void json_put_int(JsonWriter *writer, const char *key, int64_t value);
 void json_put_number(JsonWriter *writer, const char *key, double value);
 void json_put_bool(JsonWriter *writer, const char *key, bool value);
 
+/* null where there is no value; returns whether it is absent. */
+bool json_put_absent(JsonWriter *writer, const char *key, bool absent);
+
 /* 16 hex digits, as text: not every reader keeps 64 bits of a number. */
 void json_put_hash(JsonWriter *writer, const char *key, uint64_t hash);

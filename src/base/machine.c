@@ -9,7 +9,6 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <omp.h>
 #include <poll.h>
 #include <pthread.h>
@@ -17,7 +16,6 @@
 #include <spawn.h>
 #include <stdarg.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -145,10 +143,7 @@ static void *run(void *argument) {
 
 Background *background_start(BackgroundWork *work, void *context, Error *error) {
     Background *background = calloc(1, sizeof *background);
-    if (background == NULL) {
-        error_memory(error, "second thread");
-        return NULL;
-    }
+    if (background == NULL) return error_memory(error, "second thread"), NULL;
     background->work = work;
     background->context = context;
     pthread_mutex_init(&background->mutex, NULL);
@@ -225,7 +220,6 @@ static int spawn(pid_t *pid, const char *const *argv, const int streams[3], bool
 static bool start(Process *process, const char *const *argv, int child_input, Error *error) {
     const int output = fileno(process->output);
     const int code = spawn(&process->pid, argv, (const int[]){child_input, output, output}, false);
-    process->missing = code == ENOENT;
     if (code == 0) return true;
     return error_system(error, argv[0], "cannot be run: %s%s", strerror(code),
                         code == ENOENT ? "; is its package installed?" : "");

@@ -3,8 +3,6 @@
 #pragma once
 #include "base/base.h"
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <sys/types.h>
 
@@ -101,7 +99,6 @@ typedef struct Process {
     pid_t pid;
     int input;    /* connected to its standard input */
     FILE *output; /* its standard output and error */
-    bool missing; /* there is no such program */
     int unsent;   /* errno, if the system kept input from it; 0: none */
 } Process;
 

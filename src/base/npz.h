@@ -5,10 +5,6 @@
 #pragma once
 #include "base/base.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 typedef enum NpzType {
     NPZ_FLOAT32,
     NPZ_FLOAT64,

@@ -6,7 +6,6 @@
 #include <inttypes.h>
 #include <locale.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,14 +96,23 @@ bool parse_leading_double(const char *text, double *value, const char **rest) {
     return true;
 }
 
-bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value) {
+bool parse_leading_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value, const char **rest) {
     const char *digits = skip_sign(text), *end = skip_digits(digits);
-    if (end == digits || *end != '\0') return false;
+    if (end == digits) return false;
     errno = 0;
     intmax_t number = strtoimax(text, NULL, 10);
     if (errno != 0 || number < minimum || number > maximum) return false;
     *value = number;
+    *rest = end;
     return true;
+}
+
+bool parse_int(const char *text, int64_t minimum, int64_t maximum, int64_t *value) {
+    int64_t number;
+    const char *rest;
+    const bool whole = parse_leading_int(text, minimum, maximum, &number, &rest) && *rest == '\0';
+    if (whole) *value = number;
+    return whole;
 }
 
 /* In steps: a value this far past the end still counts as the end, one this near zero as zero. A, B and STEP are
@@ -233,10 +241,7 @@ bool settings_read(const Settings *settings, const SettingSpec *known, void *val
 void *settings_make(const Settings *settings, const SettingSpec *known, const void *standard, size_t size,
                     const char *what, Error *error) {
     void *values = malloc(size);
-    if (values == NULL) {
-        error_memory(error, what);
-        return NULL;
-    }
+    if (values == NULL) return error_memory(error, what), NULL;
     memcpy(values, standard, size);
     if (settings_read(settings, known, values, error)) return values;
     free(values);

@@ -4,10 +4,8 @@
 #include "base/file.h"
 
 #include <locale.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/types.h>
 
 typedef struct MemoryStream {
     char **text;

@@ -11,7 +11,6 @@
 #include <inttypes.h>
 #include <pthread.h>
 #include <signal.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -138,7 +137,7 @@ int temporary_nameless(const char *path) {
     return -1;
 }
 
-static bool link_to(const TemporaryFile *temporary, const char *path) {
+bool temporary_link(TemporaryFile *temporary, const char *path) {
     char descriptor[64];
     if (temporary->name[0] != '\0') return linkat(temporary->at, temporary->name, temporary->at, path, 0) == 0;
     snprintf(descriptor, sizeof descriptor, "/proc/self/fd/%d", temporary->file);
@@ -150,7 +149,7 @@ static bool give_name(TemporaryFile *temporary, const char *path) {
     flock(temporary->file, LOCK_EX | LOCK_NB);
     TemporaryFile named = *temporary;
     for (unsigned attempt = 0; attempt <= ATTEMPTS && print_name(&named, path, attempt); attempt++) {
-        if (link_to(temporary, named.name)) {
+        if (temporary_link(temporary, named.name)) {
             *temporary = named;
             return true;
         }
@@ -162,15 +161,13 @@ static bool give_name(TemporaryFile *temporary, const char *path) {
 bool temporary_rename(TemporaryFile *temporary, const char *path) {
     if (temporary->name[0] == '\0') {
         /* A link, unlike a rename, needs no other name before, but cannot replace a file. */
-        if (link_to(temporary, path)) return true;
+        if (temporary_link(temporary, path)) return true;
         if (errno != EEXIST || !give_name(temporary, path)) return false;
     }
     if (renameat(temporary->at, temporary->name, temporary->at, path) != 0) return false;
     temporary->name[0] = '\0';
     return true;
 }
-
-bool temporary_link(TemporaryFile *temporary, const char *path) { return link_to(temporary, path); }
 
 bool temporary_remove_name(TemporaryFile *temporary) {
     const bool done = temporary->name[0] == '\0' || unlinkat(temporary->at, temporary->name, 0) == 0;

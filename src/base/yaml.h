@@ -3,9 +3,6 @@
 #pragma once
 #include "base/base.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-
 /* The text of a YAML file, and messages that show a place in it, as a compiler does. */
 
 enum { SOURCE_MAX_SIZE = 3 << 19 }; /* bytes: 157 for each of 10,000 bodies, one per line; patterns make more */

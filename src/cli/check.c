@@ -12,7 +12,6 @@
 #include "scenes/scenes.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { WIDTH = 1280, HEIGHT = 720 };
@@ -155,10 +154,7 @@ static void write_result(JsonWriter *json, const void *context) {
     json_put_number(json, "dt", (double)scene->dt);
     json_put_int(json, "iterations", scene->iterations);
     json_put_bool(json, "overlaps_allowed", scene->overlaps_allowed);
-    if (scene->bomb.present)
-        put_bomb(json, scene);
-    else
-        json_put_text(json, "bomb", NULL);
+    if (!json_put_absent(json, "bomb", !scene->bomb.present)) put_bomb(json, scene);
     json_begin_array(json, "parameters", JSON_LINES);
     for (int i = 0; i < scene->parameter_count; i++) {
         const SceneParameter *parameter = &scene->parameters[i];

@@ -14,7 +14,6 @@
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdio.h>
 
 /* The commands of twinbox. Each is one file, with its option table and glue only, and one line here: name, summary, and

@@ -12,7 +12,6 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -46,12 +45,9 @@ bool camera_option_load(const char *path, const CameraView *view, Trajectory **r
 }
 
 bool frames_option_split(const char *text, char separator, int minimum, int maximum, int64_t numbers[2]) {
-    const char *middle = strchr(text, separator);
-    char first[24] = "";
-    if (middle == NULL || middle - text >= (int)sizeof first) return false;
-    memcpy(first, text, (size_t)(middle - text));
-    return (first[0] == '\0' || parse_int(first, minimum, maximum, &numbers[0])) &&
-           (middle[1] == '\0' || parse_int(middle + 1, minimum, maximum, &numbers[1]));
+    const char *middle = text;
+    if (*text != separator && !parse_leading_int(text, minimum, maximum, &numbers[0], &middle)) return false;
+    return *middle == separator && (middle[1] == '\0' || parse_int(middle + 1, minimum, maximum, &numbers[1]));
 }
 
 bool frames_option_read(const Option *option, const char *text, void *value, Error *error) {

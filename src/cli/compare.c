@@ -12,7 +12,6 @@
 
 #include <inttypes.h>
 #include <limits.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -101,16 +100,11 @@ static const CommandSpec spec = {
 
 /* "X,Y,W,H"; false for anything else. */
 static bool parse_rectangle(const char *text, int numbers[4]) {
-    char part[16];
-    for (int i = 0; i < 4; i++) {
-        size_t length = strcspn(text, ",");
+    for (int i = 0; i < 4; i++, text++) {
         int64_t value;
-        if (length >= sizeof part || (text[length] == ',') != (i < 3)) return false;
-        memcpy(part, text, length);
-        part[length] = '\0';
-        if (!parse_int(part, i < 2 ? -1000000 : 1, 1000000, &value)) return false;
+        if (!parse_leading_int(text, i < 2 ? -1000000 : 1, 1000000, &value, &text) || *text != (i < 3 ? ',' : '\0'))
+            return false;
         numbers[i] = (int)value;
-        text += length + 1;
     }
     return true;
 }
@@ -130,12 +124,10 @@ static bool parse_share(const char *text, double *share) {
 
 static bool read_fuzzy(const Option *option, const char *text, void *value, Error *error) {
     Tolerance *tolerance = value;
-    const char *comma = strchr(text, ',');
-    char largest[8] = "";
+    const char *rest;
     int64_t difference;
     double share;
-    if (comma != NULL && comma - text < (int)sizeof largest) memcpy(largest, text, (size_t)(comma - text));
-    if (!parse_int(largest, 0, 255, &difference) || !parse_share(comma + 1, &share))
+    if (!parse_leading_int(text, 0, 255, &difference, &rest) || *rest != ',' || !parse_share(rest + 1, &share))
         return error_input(error, option->name, "'%s' is not MAX,SHARE with MAX from 0 to 255 and SHARE from 0 to 1",
                            text);
     tolerance->given |= LIMIT_FUZZY;
@@ -270,7 +262,7 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
 static bool compare(const CompareOptions *options, Error *error) {
     bool same = is_trajectory(options->paths[0]) ? compare_runs(options, error) : compare_pictures(options, error);
     if (error->kind != ERROR_NONE && options->annotations == ANNOTATE_GITHUB)
-        github_annotate_message(stdout, "twinbox compare", error->message);
+        github_annotate_message(stdout, error->message);
     return same;
 }
 

@@ -9,7 +9,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 typedef struct Comparison {
@@ -42,10 +41,7 @@ static void write_run(JsonWriter *json, const char *key, const char *path, const
 
 /* The number of a frame; negative: no frame. */
 static void put_frame(JsonWriter *json, const char *key, int frame) {
-    if (frame >= 0)
-        json_put_int(json, key, frame);
-    else
-        json_put_text(json, key, NULL);
+    if (!json_put_absent(json, key, frame < 0)) json_put_int(json, key, frame);
 }
 
 /* The only run that has it. */
@@ -55,10 +51,7 @@ static void write_only_in(JsonWriter *json, bool in_first, bool in_second) {
 
 static void write_parted(JsonWriter *json, const char *key, const Comparison *c, const PartedBody *parted) {
     const Trajectory *a = c->runs[0];
-    if (parted->frame < 0) {
-        json_put_text(json, key, NULL);
-        return;
-    }
+    if (json_put_absent(json, key, parted->frame < 0)) return;
     const bool both = parted->by.in_a && parted->by.in_b, moves = both && !c->parting.poses_only;
     json_begin_object(json, key, JSON_ONE_LINE);
     json_put_int(json, "frame", parted->frame);
@@ -75,10 +68,7 @@ static void write_parted(JsonWriter *json, const char *key, const Comparison *c,
 
 static void write_contact(JsonWriter *json, const ContactDifference *contacts) {
     const bool only = contacts->only_a + contacts->only_b > 0;
-    if (!only && contacts->changed == 0) {
-        json_put_text(json, "contact", NULL);
-        return;
-    }
+    if (json_put_absent(json, "contact", !only && contacts->changed == 0)) return;
     const TrajectoryContact *a = only ? &contacts->only : &contacts->largest_a;
     const TrajectoryContact *b = only ? &contacts->only : &contacts->largest_b;
     const bool in_first = !only || contacts->only_first_a, in_second = !only || !contacts->only_first_a;
@@ -96,10 +86,7 @@ static void write_contact(JsonWriter *json, const ContactDifference *contacts) {
 }
 
 static void write_contacts(JsonWriter *json, const char *key, int step, const ContactDifference *contacts) {
-    if (step < 0) {
-        json_put_text(json, key, NULL);
-        return;
-    }
+    if (json_put_absent(json, key, step < 0)) return;
     json_begin_object(json, key, JSON_ONE_LINE);
     json_put_int(json, "step", step);
     json_put_int(json, "changed", contacts->changed);
@@ -141,10 +128,7 @@ static void write_chaos(JsonWriter *json, const Comparison *c, double dt) {
 }
 
 static void write_largest(JsonWriter *json, const TrajectoryDifference *difference) {
-    if (difference->max_frame < 0) {
-        json_put_text(json, "largest", NULL);
-        return;
-    }
+    if (json_put_absent(json, "largest", difference->max_frame < 0)) return;
     json_begin_object(json, "largest", JSON_ONE_LINE);
     json_put_int(json, "frame", difference->max_frame);
     json_put_int(json, "body", difference->max_body);
@@ -179,14 +163,8 @@ static void write_comparison(JsonWriter *json, const void *context) {
     write_contacts(json, "contacts", parting->step, &parting->contacts);
     write_parted(json, "beyond", c, &parting->beyond);
     write_contacts(json, "beyond_contacts", beyond ? parting->beyond.frame : -1, &parting->beyond_contacts);
-    if (differ)
-        write_growth(json, "growth", &c->growth, (double)a->dt);
-    else
-        json_put_text(json, "growth", NULL);
-    if (differ && c->chaos.distance != NULL)
-        write_chaos(json, c, (double)a->dt);
-    else
-        json_put_text(json, "shifted", NULL);
+    if (!json_put_absent(json, "growth", !differ)) write_growth(json, "growth", &c->growth, (double)a->dt);
+    if (!json_put_absent(json, "shifted", !differ || c->chaos.distance == NULL)) write_chaos(json, c, (double)a->dt);
 }
 
 static void print_runs(const char *const paths[2], const Trajectory *a, const Trajectory *b) {
@@ -329,11 +307,6 @@ static void print_rate(const Growth *growth, double dt) {
     printf("; scatter: a factor of %.2g\n", exp(growth->scatter));
 }
 
-static void print_growth(const Growth *growth, double dt) {
-    printf("growth of the largest distance: ");
-    print_rate(growth, dt);
-}
-
 static void print_chaos(const Chaos *chaos, const Growth *growth, const Growth *shifted, double dt) {
     static const char *const verdicts[] = {
         [GROWTH_UNKNOWN] = "unknown, one of the two has no rate",
@@ -360,7 +333,8 @@ static void print(const Comparison *c) {
     }
     print_parting(c);
     if (c->parting.first.frame < 0) return;
-    print_growth(&c->growth, (double)a->dt);
+    printf("growth of the largest distance: ");
+    print_rate(&c->growth, (double)a->dt);
     if (c->chaos.distance != NULL)
         print_chaos(&c->chaos, &c->growth, &c->shifted, (double)a->dt);
     else if (a->scene_hash != 0)

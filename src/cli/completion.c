@@ -8,7 +8,6 @@
 #include "scenes/scenes.h"
 
 #include <ctype.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { COMPLETION_WORD_SIZE = 1024 }; /* a longer word has no completion */
@@ -164,7 +163,7 @@ static void find_endings(const char *text, char endings[64]) {
         const size_t length = strlen(known[i]);
         for (const char *dot = strchr(text, '.'); dot != NULL; dot = strchr(dot + 1, '.')) {
             if (strncmp(dot + 1, known[i], length) != 0 || isalnum((unsigned char)dot[1 + length])) continue;
-            snprintf(endings + strlen(endings), 64 - strlen(endings), "%s%s", endings[0] != '\0' ? " " : "", known[i]);
+            text_join(endings, 64, " ", "%s", known[i]);
             break;
         }
     }

@@ -9,7 +9,6 @@
 #include "scenes/scenes.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 
 typedef struct Options {
     DatasetOptions dataset;

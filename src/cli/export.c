@@ -12,17 +12,11 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 enum { SHOWN_MAX = 5, TEXT_SIZE = 1024 };
-
-typedef struct Names {
-    char **list;
-    size_t count, capacity;
-} Names;
 
 /* The number of a frame's file, or -1. */
 static int frame_of(const char *name) {
@@ -63,17 +57,18 @@ static bool is_input(const char *directory, const char *name, const Panels *pane
     return false;
 }
 
-static bool add(Names *names, const char *name, Error *error) {
+static bool add(FolderList *names, const char *name, Error *error) {
     char *copy = strdup(name);
-    if (copy != NULL && array_reserve((void **)&names->list, &names->capacity, names->count + 1, sizeof *names->list)) {
-        names->list[names->count++] = copy;
+    if (copy != NULL &&
+        array_reserve((void **)&names->names, &names->capacity, names->count + 1, sizeof *names->names)) {
+        names->names[names->count++] = copy;
         return true;
     }
     free(copy);
     return error_memory(error, "render");
 }
 
-static bool collect_entry(Names *names, const char *directory, const char *name, const RenderResult *result,
+static bool collect_entry(FolderList *names, const char *directory, const char *name, const RenderResult *result,
                           const Panels *panels, Error *error) {
     if (name[0] == '.' || (!file_name_ends_with(name, ".png") && !file_name_ends_with(name, ".npz")) ||
         is_of_sequence(name, result, panels) || is_input(directory, name, panels, error))
@@ -81,7 +76,7 @@ static bool collect_entry(Names *names, const char *directory, const char *name,
     return error->kind == ERROR_NONE && add(names, name, error);
 }
 
-static bool collect(Names *names, const char *directory, const RenderResult *result, const Panels *panels,
+static bool collect(FolderList *names, const char *directory, const RenderResult *result, const Panels *panels,
                     Error *error) {
     DIR *folder = opendir(directory);
     if (folder == NULL) return folder_error(directory, error);
@@ -102,37 +97,36 @@ static bool collect(Names *names, const char *directory, const RenderResult *res
 static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
 
 /* Frames that follow each other are named by the first and the last. */
-static size_t end_of_range(const Names *names, size_t first) {
+static size_t end_of_range(const FolderList *names, size_t first) {
     size_t last = first;
-    const int frame = frame_of(names->list[first]);
-    while (frame >= 0 && last + 1 < names->count && frame_of(names->list[last + 1]) == frame + (int)(last + 1 - first))
+    const int frame = frame_of(names->names[first]);
+    while (frame >= 0 && last + 1 < names->count && frame_of(names->names[last + 1]) == frame + (int)(last + 1 - first))
         last++;
     return last;
 }
 
-static void describe(const Names *names, char text[TEXT_SIZE]) {
+static void describe(const FolderList *names, char text[TEXT_SIZE]) {
     size_t i = 0;
     for (int shown = 0; shown < SHOWN_MAX && i < names->count; shown++) {
         const size_t last = end_of_range(names, i);
-        text_add(text, TEXT_SIZE, "%s%.100s", shown > 0 ? ", " : "", names->list[i]);
-        if (last > i) text_add(text, TEXT_SIZE, "%s%s", last > i + 1 ? " ... " : ", ", names->list[last]);
+        text_add(text, TEXT_SIZE, "%s%.100s", shown > 0 ? ", " : "", names->names[i]);
+        if (last > i) text_add(text, TEXT_SIZE, "%s%s", last > i + 1 ? " ... " : ", ", names->names[last]);
         i = last + 1;
     }
     if (i < names->count) text_add(text, TEXT_SIZE, " and %zu more", names->count - i);
 }
 
 bool note_foreign_files(const char *directory, const RenderResult *result, const Panels *panels, Error *error) {
-    Names names = {0};
+    FolderList names = {0};
     char text[TEXT_SIZE] = "";
     const bool ok = collect(&names, directory, result, panels, error);
     if (ok && names.count > 0) {
-        qsort(names.list, names.count, sizeof *names.list, by_name);
+        qsort(names.names, names.count, sizeof *names.names, by_name);
         describe(&names, text);
         note_print("%s also has %zu file%s that %s not of this sequence: %s", directory, names.count,
                    plural((int)names.count), names.count > 1 ? "are" : "is", text);
     }
-    for (size_t i = 0; i < names.count; i++) free(names.list[i]);
-    free(names.list);
+    folder_list_free(&names);
     return ok;
 }
 
@@ -173,11 +167,8 @@ enum { FORMATS = sizeof formats / sizeof *formats };
 /* -1: none has this ending. */
 static int find_format(const char *path) {
     if (path_is_standard(path)) return 0;
-    const size_t length = strlen(path);
-    for (int i = 0; i < FORMATS; i++) {
-        const size_t tail = strlen(formats[i].ending);
-        if (length > tail && strcmp(path + length - tail, formats[i].ending) == 0) return i;
-    }
+    for (int i = 0; i < FORMATS; i++)
+        if (file_name_ends_with(path, formats[i].ending)) return i;
     return -1;
 }
 

@@ -9,7 +9,6 @@
 #include "pixels/type.h"
 #include "runs/trajectory.h"
 
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -63,16 +62,13 @@ enum { HELP_SIZE = 4096, KINDS_MAX = 31 };
 /* All kinds, each with an example. */
 static void write_help(char help[HELP_SIZE]) {
     const FigureKind *const *kinds = figure_kinds();
-    int used =
-        snprintf(help, HELP_SIZE,
-                 "Draw a figure for a paper from stored runs (.npz). In SVG and PDF, scenes are pixels, text and lines "
-                 "are vectors. The same runs give the same bytes.\n");
+    snprintf(help, HELP_SIZE,
+             "Draw a figure for a paper from stored runs (.npz). In SVG and PDF, scenes are pixels, text and lines "
+             "are vectors. The same runs give the same bytes.\n");
+    for (int i = 0; kinds[i] != NULL; i++) text_add(help, HELP_SIZE, "\n  %-13s %s", kinds[i]->name, kinds[i]->summary);
     for (int i = 0; kinds[i] != NULL; i++)
-        used += snprintf(help + used, (size_t)(HELP_SIZE - used), "\n  %-13s %s", kinds[i]->name, kinds[i]->summary);
-    for (int i = 0; kinds[i] != NULL; i++)
-        used += snprintf(help + used, (size_t)(HELP_SIZE - used), "%s twinbox figure %s",
-                         i == 0 ? "\vExample:" : "\n        ", kinds[i]->example);
-    snprintf(help + used, (size_t)(HELP_SIZE - used), "\n");
+        text_add(help, HELP_SIZE, "%s twinbox figure %s", i == 0 ? "\vExample:" : "\n        ", kinds[i]->example);
+    text_add(help, HELP_SIZE, "\n");
 }
 
 /* The kind, then runs. */
@@ -120,16 +116,13 @@ static bool read_bodies(const Option *option, const char *text, void *value, Err
     FigureSpec *spec = value;
     spec->body_count = 0;
     for (const char *rest = text;; rest++) {
-        const size_t length = strcspn(rest, ",");
-        char number[16] = "";
         int64_t body;
-        if (length < sizeof number) memcpy(number, rest, length);
-        if (!parse_int(number, 0, INT32_MAX, &body) || has_body(spec, body))
+        if (!parse_leading_int(rest, 0, INT32_MAX, &body, &rest) || (*rest != ',' && *rest != '\0') ||
+            has_body(spec, body))
             return error_input(error, option->name, "'%s' is not a list of different bodies such as 3,11", text);
         if (spec->body_count == FIGURE_BODIES_MAX)
             return error_input(error, option->name, "more than %d bodies", FIGURE_BODIES_MAX);
         spec->bodies[spec->body_count++] = (int)body;
-        rest += length;
         if (*rest == '\0') return true;
     }
 }
@@ -246,6 +239,7 @@ bool command_figure(int argc, char **argv, Error *error) {
         .help = help};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     const FigureKind *kind = figure_kind(options.kind, error);
-    if (kind != NULL && options.output == NULL) error_input(error, "figure", "-o FILE is needed");
-    return error->kind == ERROR_NONE && check_options(kind, &options, error) && read_and_draw(kind, &options, error);
+    if (kind == NULL) return false;
+    if (options.output == NULL) return error_input(error, "figure", "-o FILE is needed");
+    return check_options(kind, &options, error) && read_and_draw(kind, &options, error);
 }

@@ -6,7 +6,6 @@
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
-#include <stdio.h>
 #include <string.h>
 
 typedef struct Options {
@@ -63,8 +62,7 @@ static bool import_run(const Options *options, Error *error) {
 bool command_import(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    const size_t length = strlen(options.output);
-    if (!path_is_standard(options.output) && (length <= 4 || strcmp(options.output + length - 4, ".npz") != 0))
+    if (!path_is_standard(options.output) && !file_name_ends_with(options.output, ".npz"))
         return error_input(error, options.output, "the name of a run must end in .npz");
     return import_run(&options, error);
 }

@@ -5,8 +5,6 @@
 #include "cli/options.h"
 #include "methods/methods.h"
 
-#include <stdio.h>
-
 typedef struct Options {
     bool json;
 } Options;

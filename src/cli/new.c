@@ -4,7 +4,6 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #define TEMPLATE_NAME(name) #name,

@@ -12,9 +12,6 @@
 #include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -31,9 +28,7 @@ static void print_line(const char *kind, const char *line, VisibleLines lines) {
     fprintf(stderr, "twinbox: %s%s\n", kind, shown);
 }
 
-static void print(const char *kind, const char *format, va_list arguments) PRINTF_LIKE(2, 0);
-
-static void print(const char *kind, const char *format, va_list arguments) {
+PRINTF_LIKE(2, 0) static void print(const char *kind, const char *format, va_list arguments) {
     char text[2048];
     vsnprintf(text, sizeof text, format, arguments);
     print_line(kind, text, strchr(format, '\n') != NULL ? VISIBLE_LINES : VISIBLE_ONE_LINE);

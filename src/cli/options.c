@@ -9,7 +9,6 @@
 
 #include <argp.h>
 #include <assert.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

@@ -8,7 +8,6 @@
 #include "runs/trajectory.h"
 
 #include <limits.h>
-#include <stdio.h>
 
 typedef struct Options {
     const char *inputs[RENDER_PANELS_MAX], *output;

@@ -7,8 +7,6 @@
 #include "paper/report.h"
 #include "runs/pieces.h"
 
-#include <stdio.h>
-
 typedef struct Options {
     PaperOptions study;
     const char *shard; /* or NULL */

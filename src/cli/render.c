@@ -10,7 +10,6 @@
 #include "runs/trajectory.h"
 
 #include <limits.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct Options {

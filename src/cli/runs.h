@@ -17,9 +17,6 @@
 #include "scenes/scenes.h"
 #include "studies/stability.h"
 
-#include <stdbool.h>
-#include <stdint.h>
-
 /* twinbox compare: its options, results and --watch. */
 
 typedef enum CompareAnnotations { ANNOTATE_NONE, ANNOTATE_GITHUB } CompareAnnotations;
@@ -98,6 +95,9 @@ enum { CELL_NOTE_SIZE = 160 };
 bool cell_runs_make(CellRuns *runs, const ClipMap *map, const CsvTable *table, const MapCell *cell, const char *input,
                     const Progress *progress, Error *error);
 void cell_runs_free(CellRuns *runs);
+
+/* The map of that name; NULL with error set, of `option`, if there is none. */
+const ClipMap *clip_map_find(const ClipMap *maps, int count, const char *name, const char *option, Error *error);
 
 /* A cell of a stability map, as named on the command line. */
 

@@ -16,7 +16,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct SimulateResult {
@@ -86,10 +85,7 @@ static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     json_put_bool(json, "holds", verdict_holds(reading->verdict));
     json_put_int(json, "frame", reading->frame);
     json_put_number(json, "time", reading->frame * (double)verdict->scene->dt);
-    if (reading->body >= 0)
-        json_put_int(json, "body", reading->body);
-    else
-        json_put_text(json, "body", NULL);
+    if (!json_put_absent(json, "body", reading->body < 0)) json_put_int(json, "body", reading->body);
     json_put_text(json, "quantity", quantity(reading));
     json_put_number(json, "value", reading->value);
     json_put_text(json, "unit", reading->unit);
@@ -173,10 +169,6 @@ static void write_result(JsonWriter *json, const void *context) {
     for (int i = 0; i < FALLBACKS; i++) json_put_int(json, fallbacks[i].key, fallbacks[i].count);
     json_end(json);
     simulate_verdict_put(&result->verdict, json, "verdict");
-}
-
-static bool simulate_result_json(const SimulateResult *result, Error *error) {
-    return json_output("twinbox simulate 1", write_result, result, error);
 }
 
 typedef struct Options {
@@ -302,7 +294,7 @@ static bool run_scene(Scene *scene, const Method *method, const Options *options
     bool ok = record(scene, method, options, &result, error);
     if (ok && !options->json) simulate_result_print(&result);
     ok = judge(&result, options, error) && ok;
-    ok = ok && (!options->json || simulate_result_json(&result, error));
+    ok = ok && (!options->json || json_output("twinbox simulate 1", write_result, &result, error));
     if (ok && !options->json && options->output != NULL && file_name_ends_with(options->output, ".npz"))
         next_film(options->output);
     simulate_verdict_free(&result.verdict);

@@ -12,7 +12,6 @@
 #include "scenes/scenes.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 enum { MAX_METHODS = 64 };

@@ -17,7 +17,6 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -129,14 +128,13 @@ static Scene *read_scene(const Making *making, Error *error) {
 
 /* "falls at 4.22 s (0.53 m, body 7)" */
 static void cell_note(char note[CELL_NOTE_SIZE], const MapCell *cell, double dt) {
-    size_t used = (size_t)snprintf(note, CELL_NOTE_SIZE, "%s", verdict_words[cell->verdict]);
+    snprintf(note, CELL_NOTE_SIZE, "%s", verdict_words[cell->verdict]);
     if (verdict_holds((Verdict)cell->verdict) || isnan(cell->frame)) return;
-    used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, " at %.2f s", cell->frame * dt);
+    text_add(note, CELL_NOTE_SIZE, " at %.2f s", cell->frame * dt);
     if (isnan(cell->value)) return;
-    used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, " (%.3g %s", cell->value, cell->unit);
-    if (!isnan(cell->body) && cell->body >= 0)
-        used += (size_t)snprintf(note + used, CELL_NOTE_SIZE - used, ", body %.0f", cell->body);
-    snprintf(note + used, CELL_NOTE_SIZE - used, ")");
+    text_add(note, CELL_NOTE_SIZE, " (%.3g %s", cell->value, cell->unit);
+    if (!isnan(cell->body) && cell->body >= 0) text_add(note, CELL_NOTE_SIZE, ", body %.0f", cell->body);
+    text_add(note, CELL_NOTE_SIZE, ")");
 }
 
 static bool add_run(const Making *making, const Scene *scene, const MapCell *row, Error *error) {
@@ -157,10 +155,8 @@ static bool run_row(const Making *making, Scene *scene, const MapCell *row, int 
     int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;
     scene->frames = row->verdict >= VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
     if (add_run(making, scene, row, &failure)) return true;
-    if (row->verdict != VERDICT_EXPLODES || failure.kind != ERROR_INPUT || decided >= shown) {
-        *error = failure;
-        return false;
-    }
+    if (row->verdict != VERDICT_EXPLODES || failure.kind != ERROR_INPUT || decided >= shown)
+        return *error = failure, false;
     scene->frames = decided;
     return add_run(making, scene, row, error);
 }
@@ -211,11 +207,10 @@ static const MapCell *find_cell(const ClipOptions *options, const CsvTable *tabl
     return NULL;
 }
 
-static const ClipMap *find_map(const ClipOptions *options, const MapCell *row, Error *error) {
-    for (int i = 0; i < options->map_count; i++)
-        if (strcmp(options->maps[i].name, row->map) == 0) return &options->maps[i];
-    error_input(error, "--clip", "map %s has no scene", row->map);
-    return NULL;
+const ClipMap *clip_map_find(const ClipMap *maps, int count, const char *name, const char *option, Error *error) {
+    for (int i = 0; i < count; i++)
+        if (strcmp(maps[i].name, name) == 0) return &maps[i];
+    return error_input(error, option, "map %s has no scene", name), NULL;
 }
 
 static bool stability_clip_draw(const ClipOptions *options, CellRuns *runs, Error *error) {
@@ -251,7 +246,8 @@ bool stability_clip(const ClipOptions *options, Error *error) {
     if (!csv_table_read_from(&table, options->folder, &map_layout, error)) return false;
     CellRuns runs = {.count = 0};
     const MapCell *row = find_cell(options, &table, error);
-    const ClipMap *map = row != NULL ? find_map(options, row, error) : NULL;
+    const ClipMap *map =
+        row != NULL ? clip_map_find(options->maps, options->map_count, row->map, "--clip", error) : NULL;
     bool ok = map != NULL && video_check_programs(error) &&
               cell_runs_make(&runs, map, &table, row, options->cell, NULL, error) &&
               stability_clip_draw(options, &runs, error);

@@ -15,7 +15,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -208,12 +207,6 @@ typedef struct Pages {
     int first, row; /* the map's first part; the row of the table behind it */
 } Pages;
 
-static const ClipMap *find_map(const Pages *pages, const char *name) {
-    for (int i = 0; i < pages->options->map_count; i++)
-        if (strcmp(pages->options->maps[i].name, name) == 0) return &pages->options->maps[i];
-    return NULL;
-}
-
 /* Its name is that of the cell's clip. */
 static bool write_page(Pages *pages, const CellRuns *runs, const MapCell *cell, PageFile *file, Error *error) {
     const Trajectory *const *shown = (const Trajectory *const *)runs->panels.runs;
@@ -234,10 +227,11 @@ static bool write_page(Pages *pages, const CellRuns *runs, const MapCell *cell, 
 }
 
 static bool write_cell(Pages *pages, const MapCell *cell, FILE *rows, const Progress *progress, Error *error) {
-    const ClipMap *map = find_map(pages, cell->map);
+    const StabilityPages *options = pages->options;
+    const ClipMap *map = clip_map_find(options->maps, options->map_count, cell->map, "--pages", error);
     CellRuns runs;
     PageFile file;
-    if (map == NULL) return error_input(error, "--pages", "map %s has no scene", cell->map);
+    if (map == NULL) return false;
     bool ok = cell_runs_make(&runs, map, &pages->table, cell, cell->map, progress, error) &&
               write_page(pages, &runs, cell, &file, error);
     cell_runs_free(&runs);

@@ -12,7 +12,6 @@
 #include "scenes/scenes.h"
 
 #include <assert.h>
-#include <stdio.h>
 #include <string.h>
 
 /* The kind's option of that name ("--seed"), or -1. */
@@ -148,14 +147,10 @@ static bool read_layers(const Option *option, const char *text, void *value, Err
     TrainingOptions *training = value;
     int count = 0;
     for (const char *rest = text; count <= NETWORK_MAX_LAYERS; rest++) {
-        size_t length = strcspn(rest, "-");
-        char width[16] = "";
-        int64_t parsed;
-        if (length < sizeof width) memcpy(width, rest, length);
-        if (!parse_int(width, 1, NETWORK_MAX_WIDTH, &parsed)) break;
-        training->widths[count++] = (int)parsed;
-        rest += length;
-        if (*rest != '\0') continue;
+        int64_t width;
+        if (!parse_leading_int(rest, 1, NETWORK_MAX_WIDTH, &width, &rest) || (*rest != '-' && *rest != '\0')) break;
+        training->widths[count++] = (int)width;
+        if (*rest == '-') continue;
         training->layers = count - 1;
         if (count >= 2) return true;
         break;

@@ -19,7 +19,6 @@
 #include "runs/pieces.h"
 #include "scenes/scenes.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum { SAIN_LIST_SIZE = 2048, STEPS_SAVED = 100 };

@@ -306,10 +306,7 @@ static bool fill(Dataset *dataset, const DatasetOptions *options, Scene *const *
 
 Dataset *dataset_of_launches(const DatasetOptions *options, Scene *const *scenes, Error *error) {
     Dataset *dataset = calloc(1, sizeof *dataset);
-    if (dataset == NULL) {
-        error_memory(error, "dataset");
-        return NULL;
-    }
+    if (dataset == NULL) return error_memory(error, "dataset"), NULL;
     dataset->view = options->view;
     dataset->target = options->target;
     dataset->labels = options->labels;

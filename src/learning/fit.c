@@ -6,7 +6,6 @@
 #include "learning/learning.h"
 #include "nets/nets.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

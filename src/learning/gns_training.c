@@ -11,7 +11,6 @@
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
 
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>

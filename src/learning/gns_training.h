@@ -10,8 +10,6 @@
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
 
-#include <stdint.h>
-
 /* Single steps of recorded launches, with noise on the inputs, for the network of gns. Source: section 4.3 and appendix of
    nets/kinds.h's.
 

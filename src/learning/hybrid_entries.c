@@ -13,7 +13,6 @@
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -317,10 +316,7 @@ static bool run_prefix(LaunchSteps *runs, Error *error) {
 
 LaunchSteps *launch_steps_create(const Scene *scene, Error *error) {
     LaunchSteps *runs = calloc(1, sizeof *runs);
-    if (runs == NULL) {
-        error_memory(error, "hybrid");
-        return NULL;
-    }
+    if (runs == NULL) return error_memory(error, "hybrid"), NULL;
     runs->scene = scene;
     runs->world = scene_world(scene, error);
     if (runs->world != NULL && run_prefix(runs, error)) return runs;

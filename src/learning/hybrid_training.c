@@ -16,8 +16,6 @@
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -189,10 +187,7 @@ static bool train(Trainer *trainer, const Progress *progress, Error *error) {
 
 Tabulation *tabulation_training_run(const Scene *scene, const TabulationTraining *training, const Progress *progress,
                                     Error *error) {
-    if (!scene->bomb.present) {
-        error_input(error, scene->name, "has no bomb to launch");
-        return NULL;
-    }
+    if (!scene->bomb.present) return error_input(error, scene->name, "has no bomb to launch"), NULL;
     Trainer trainer = {.scene = scene,
                        .training = training,
                        .launches = malloc((size_t)training->launches * sizeof *trainer.launches)};
@@ -232,10 +227,7 @@ struct OnlineNet {
 
 OnlineNet *online_net_create(uint64_t seed, Error *error) {
     OnlineNet *net = calloc(1, sizeof *net);
-    if (net == NULL) {
-        error_memory(error, "scene-net");
-        return NULL;
-    }
+    if (net == NULL) return error_memory(error, "scene-net"), NULL;
     net->seed = seed;
     for (int s = 0; s < SWEEPS; s++) net->factors[s] = (double)momentum_factor_tuned(s, SWEEPS);
     return net;

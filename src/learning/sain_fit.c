@@ -7,7 +7,6 @@
 #include "methods/solvers.h"
 #include "nets/nets.h"
 
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>

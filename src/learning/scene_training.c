@@ -13,7 +13,6 @@
 #include "scenes/scenes.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* Sweeps of the timed rivals, between which time is linear; most sweeps; turns of all rivals. */

@@ -8,9 +8,6 @@
 #include "nets/kinds.h"
 #include "scenes/scenes.h"
 
-#include <stddef.h>
-#include <stdint.h>
-
 /* Products C Q of directions Q with the covariance C of the columns of n sparse rows A:
 
        C Q = A^T (A Q - 1 mean^T Q) / n - mean (sum of the rows of (A Q - 1 mean^T Q))^T / n

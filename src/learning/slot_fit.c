@@ -12,8 +12,6 @@
 #include "nets/kinds.h"
 
 #include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
-#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>

@@ -9,7 +9,6 @@
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,10 +30,7 @@ static Slot *find_slots(const SlotSamples *samples, int *count, Error *error) {
     size_t contacts = 0;
     for (int i = 0; i < samples->count; i++) contacts += (size_t)samples->items[i].problem.contact_count;
     Slot *slots = malloc((contacts + 1) * sizeof *slots);
-    if (slots == NULL) {
-        error_memory(error, "slots");
-        return NULL;
-    }
+    if (slots == NULL) return error_memory(error, "slots"), NULL;
     size_t filled = 0, kept = 0;
     for (int i = 0; i < samples->count; i++) {
         const ContactProblem *problem = &samples->items[i].problem;
@@ -230,10 +226,8 @@ static void recentre(SlotNetwork *network, const SlotSamples *samples) {
 }
 
 SlotNetwork *slot_network_from_samples(SlotSamples *samples, const SlotWidths *widths, uint64_t seed, Error *error) {
-    if (samples->count == 0) {
-        error_input(error, "scene-net", "no launch has an impact whose residual reaches the gate");
-        return NULL;
-    }
+    if (samples->count == 0)
+        return error_input(error, "scene-net", "no launch has an impact whose residual reaches the gate"), NULL;
     const ContactProblem *problem = &samples->items[0].problem;
     SlotShape shape = {problem->body_count, problem->marked, 0, widths->state, widths->present,
                        widths->warm,        widths->hidden};

@@ -145,10 +145,7 @@ static bool make_part(WindowFit *fit, Part *part, Error *error) {
 WindowFit *window_fit_create(const WindowData *data, int hidden, Error *error) {
     const int widths[4] = {2 * data->count + SUBSPACE_LAUNCH, hidden, hidden, data->count};
     WindowFit *fit = calloc(1, sizeof *fit);
-    if (fit == NULL) {
-        error_memory(error, "subspace");
-        return NULL;
-    }
+    if (fit == NULL) return error_memory(error, "subspace"), NULL;
     fit->data = data;
     fit->shape = network_create(3, widths, error);
     bool ok = fit->shape != NULL;

@@ -13,7 +13,6 @@
 #include "nets/nets.h"
 #include "scenes/scenes.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -319,10 +318,7 @@ static void trainer_free(Trainer *trainer) {
 SubspaceNet *subspace_train(const Scene *scene, const SubspaceTraining *training, const Progress *progress,
                             Error *error) {
     Trainer *trainer = calloc(1, sizeof *trainer);
-    if (trainer == NULL) {
-        error_memory(error, "subspace");
-        return NULL;
-    }
+    if (trainer == NULL) return error_memory(error, "subspace"), NULL;
     trainer->scene = scene;
     trainer->training = training;
     fit_init(&trainer->fit, training->command, training->state_path, progress);

@@ -3,9 +3,6 @@
    sums in registers. Every sum runs over its items in rising order. */
 #include "nets/kernels.h"
 
-#include <math.h>
-#include <stddef.h>
-
 enum { LANES = 8, COLUMNS = 2 * LANES };
 
 /* One register with AVX2, two without. */

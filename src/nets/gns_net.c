@@ -6,7 +6,6 @@
 #include "nets/nets.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static int take(int *next, int count) {
     const int at = *next;

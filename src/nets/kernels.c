@@ -2,9 +2,6 @@
 /* The loops that this CPU can run, and rows rounded to bytes. */
 #include "nets/kernels.h"
 
-#include <math.h>
-#include <stddef.h>
-
 void row_kernels_list(const RowKernels *list[ROW_KERNELS_MAX + 1]) {
     int count = 0;
 #ifdef TWINBOX_AVX
@@ -15,11 +12,16 @@ void row_kernels_list(const RowKernels *list[ROW_KERNELS_MAX + 1]) {
     list[count] = NULL;
 }
 
-const RowKernels *row_kernels_best(void) {
-    const RowKernels *list[ROW_KERNELS_MAX + 1];
-    row_kernels_list(list);
-    return list[0];
-}
+/* The first of a list is the fastest. */
+#define BEST(Loops, best, list, most)   \
+    const Loops *best(void) {           \
+        const Loops *loops[(most) + 1]; \
+        list(loops);                    \
+        return loops[0];                \
+    }
+BEST(RowKernels, row_kernels_best, row_kernels_list, ROW_KERNELS_MAX)
+BEST(GnsKernels, gns_kernels_best, gns_kernels_list, GNS_KERNELS_MAX)
+BEST(Kernels, kernels_best, kernels_list, KERNELS_MAX)
 
 enum { STEPS = INT8_MAX };
 
@@ -59,12 +61,6 @@ void gns_kernels_list(const GnsKernels *list[GNS_KERNELS_MAX + 1]) {
     list[count] = NULL;
 }
 
-const GnsKernels *gns_kernels_best(void) {
-    const GnsKernels *list[GNS_KERNELS_MAX + 1];
-    gns_kernels_list(list);
-    return list[0];
-}
-
 void kernels_list(const Kernels *list[KERNELS_MAX + 1]) {
     int count = 0;
 #ifdef TWINBOX_AVX
@@ -73,10 +69,4 @@ void kernels_list(const Kernels *list[KERNELS_MAX + 1]) {
 #endif
     list[count++] = &kernels_scalar;
     list[count] = NULL;
-}
-
-const Kernels *kernels_best(void) {
-    const Kernels *list[KERNELS_MAX + 1];
-    kernels_list(list);
-    return list[0];
 }

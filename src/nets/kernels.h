@@ -4,7 +4,6 @@
 #include "nets/nets.h"
 
 #include <stdbool.h>
-#include <stdint.h>
 
 /* The loops over particles and edges, compiled once for each instruction set (CMakeLists.txt) from gns_kernels_code.h. All
    perform the same operations in the same order, so they have the same bits. Rows are items, features are innermost. */

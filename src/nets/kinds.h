@@ -4,11 +4,6 @@
 #include "base/base.h"
 #include "nets/kernels.h"
 
-#include <math.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 /* The network of gns (methods/gns.c): a graph network over particles. Source: Sanchez-Gonzalez, Godwin, Pfaff, Ying,
    Leskovec, Battaglia, "Learning to Simulate Complex Physics with Graph Networks" (2020), section 3 and appendix.
 

@@ -5,9 +5,7 @@
 #include "nets/nets.h"
 
 #include <float.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 const FloatBounds float_any = {-FLT_MAX, FLT_MAX, "it must be finite"};
 const FloatBounds float_positive = {FLT_TRUE_MIN, FLT_MAX, "it must be finite and greater than 0"};

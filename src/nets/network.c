@@ -7,7 +7,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 NetworkBlock *network_block_create(const Network *shape, Error *error) {
     size_t widths = (size_t)shape->widths[0];

@@ -7,7 +7,6 @@
 #include "nets/nets.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 static bool widths_are_whole(int width) { return width > 0 && width <= SLOT_WIDTH_MAX && width % ROW_LANES == 0; }
 

@@ -6,10 +6,8 @@
 #include "nets/kinds.h"
 #include "nets/nets.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { POSE = 3 }; /* x, y, angle */
 

@@ -139,20 +139,6 @@ static double error_of(const CsvTable *table, int variant, const char *scene) {
     return find(table, GNS_ROLLOUT, gns_variants[variant].name, scene, compared_at)->error;
 }
 
-static void append(char text[CLAIM_TEXT_SIZE], const char *format, ...) PRINTF_LIKE(2, 3);
-static void append(char text[CLAIM_TEXT_SIZE], const char *format, ...) {
-    const size_t used = strlen(text);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text + used, CLAIM_TEXT_SIZE - used, format, arguments);
-    va_end(arguments);
-}
-
-/* Begins the part of a scene: "stack", or "; stack" behind others. */
-static void append_scene(char text[CLAIM_TEXT_SIZE], const char *scene) {
-    append(text, "%s%s", text[0] != '\0' ? "; " : "", scene);
-}
-
 static bool state_text(const Claims *claims, const Claim *claim, const char *text, Error *error) {
     return claim_state(claims, claim, error, "%s", text[0] != '\0' ? text : "not measured");
 }
@@ -164,10 +150,10 @@ static ClaimHolds compare_variants(const CsvTable *table, const int *variants, i
     for (int s = 0; s < TAUGHT_SCENES; s++) {
         double before = error_of(table, variants[0], taught_scenes[s]);
         if (isnan(before)) continue;
-        append_scene(text, taught_scenes[s]);
+        text_join(text, CLAIM_TEXT_SIZE, "; ", "%s", taught_scenes[s]);
         for (int v = 0; v < count; v++) {
             const double error = error_of(table, variants[v], taught_scenes[s]);
-            append(text, "%s %.2f m (%s)", v > 0 ? "," : ":", error, gns_variants[variants[v]].name);
+            text_add(text, CLAIM_TEXT_SIZE, "%s %.2f m (%s)", v > 0 ? "," : ":", error, gns_variants[variants[v]].name);
             cases += v > 0;
             holding += v > 0 && before < error;
             before = error;
@@ -210,8 +196,9 @@ static bool claim_shapes(const Claims *claims, const CsvTable *table, Error *err
             last = row;
         }
         if (soon == NULL) continue;
-        append_scene(text, taught_scenes[s]);
-        append(text, ": %.3f m after %g s, %.3f m after %g s", soon->shape, soon->seconds, last->shape, last->seconds);
+        text_join(text, CLAIM_TEXT_SIZE, "; ", "%s", taught_scenes[s]);
+        text_add(text, CLAIM_TEXT_SIZE, ": %.3f m after %g s, %.3f m after %g s", soon->shape, soon->seconds,
+                 last->shape, last->seconds);
         most = fmax(most, last->shape);
     }
     const Claim claim = {
@@ -230,9 +217,9 @@ static bool claim_large(const Claims *claims, const CsvTable *table, Error *erro
     for (int s = 0; s < 2; s++) {
         const GnsRow *row = find(table, GNS_LARGE, gns_variants[GNS_SHIPPED].name, piles[s], NAN);
         if (row == &unmeasured) continue;
-        append_scene(text, piles[s]);
-        append(text, ", %.0f boxes: %.0f moved (taught run: %.0f), %.2g m off, %.3g ms a step", row->boxes, row->moved,
-               row->moved_engine, row->error, row->ms_step);
+        text_join(text, CLAIM_TEXT_SIZE, "; ", "%s", piles[s]);
+        text_add(text, CLAIM_TEXT_SIZE, ", %.0f boxes: %.0f moved (taught run: %.0f), %.2g m off, %.3g ms a step",
+                 row->boxes, row->moved, row->moved_engine, row->error, row->ms_step);
         right += fabs(row->moved - row->moved_engine) <= moved_right * fmax(row->moved_engine, 1);
         cases++;
     }

@@ -17,7 +17,6 @@
 #include "studies/chart.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* s after the bomb's launch */

@@ -16,7 +16,6 @@
 #include "studies/chart.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* The launches have numbers from UNLEARNED on, which no learning reaches. */

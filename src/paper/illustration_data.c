@@ -14,7 +14,6 @@
 #include "scenes/scenes.h"
 
 #include <math.h>
-#include <stdio.h>
 
 /* Every 10th launch of the paper's sweep (3.3) is shown. The row is from the launch where the bomb hits the edge of the
    highest box, pushes it down and turns it. */

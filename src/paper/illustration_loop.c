@@ -14,7 +14,6 @@
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,10 +35,9 @@ static Image *cut_window(const Image *frame, const Picture *picture, Error *erro
     int x0 = panel->left + (int)lrint(camera->left + camera->scale * view_left);
     int y0 = panel->top + (int)lrint(camera->top - camera->scale * (view_bottom + view_height));
     int columns = (int)lrint(camera->scale * view_width), rows = (int)lrint(camera->scale * view_height);
-    if (x0 < panel->left || y0 < panel->top || x0 + columns > panel->right || y0 + rows > panel->bottom) {
-        error_input(error, picture->runs[0]->scene, "the picture does not show all of the figure's window");
-        return NULL;
-    }
+    if (x0 < panel->left || y0 < panel->top || x0 + columns > panel->right || y0 + rows > panel->bottom)
+        return error_input(error, picture->runs[0]->scene, "the picture does not show all of the figure's window"),
+               NULL;
     Image *window = image_create(columns, rows, error);
     for (int y = 0; window != NULL && y < rows; y++)
         memcpy(window->pixels + (size_t)y * (size_t)columns * 4,

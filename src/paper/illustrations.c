@@ -16,7 +16,6 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdio.h>
 
 bool engine_run_begin(EngineRun *run, const Scene *launched, Error *error) {
     *run = (EngineRun){.scene = launched, .tracker = {.impact_frames = launched->bomb.impact_frames}};

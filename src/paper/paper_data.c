@@ -13,7 +13,6 @@
 #include "studies/chart.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* A value beyond these limits is an error in the file. */
@@ -182,10 +181,8 @@ const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *networ
             stored->target == network->target)
             return stored->dataset;
     }
-    if (datasets->count == PAPER_DATASETS_MAX) {
-        error_input(error, "study", "more than %d datasets", PAPER_DATASETS_MAX);
-        return NULL;
-    }
+    if (datasets->count == PAPER_DATASETS_MAX)
+        return error_input(error, "study", "more than %d datasets", PAPER_DATASETS_MAX), NULL;
     Dataset *dataset = record_for(datasets, network, error);
     if (dataset == NULL) return NULL;
     datasets->items[datasets->count++] =

@@ -14,8 +14,6 @@
 #include "scenes/scenes.h"
 #include "studies/chart.h"
 
-#include <stdio.h>
-
 /* gns: how far its runs are from those that it was trained on, by rounds of messages and with noise or without;
    how the shapes of boxes last; large piles; what the paper's own size costs. */
 

@@ -19,10 +19,8 @@ enum { LAW_SETS = sizeof law_names / sizeof law_names[0] };
 static PaperPart *add_part(PaperPlan *plan, double weight,
                            bool (*write)(void *context, FILE *lines, const Progress *progress, Error *error),
                            Error *error) {
-    if (!array_reserve((void **)&plan->parts, &plan->capacity, plan->count + 1, sizeof *plan->parts)) {
-        error_memory(error, "paper");
-        return NULL;
-    }
+    if (!array_reserve((void **)&plan->parts, &plan->capacity, plan->count + 1, sizeof *plan->parts))
+        return error_memory(error, "paper"), NULL;
     PaperPart *part = &plan->parts[plan->count++];
     *part = (PaperPart){.weight = weight, .write = write};
     return part;

@@ -12,8 +12,6 @@
 #include <cmark-gfm.h>
 #include <limits.h>
 #include <setjmp.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -12,7 +12,6 @@
 #include "scenes/scenes.h"
 
 #include <stddef.h>
-#include <stdio.h>
 
 /* A text of the report is complete in memory before it becomes a file. */
 

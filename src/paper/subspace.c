@@ -14,7 +14,6 @@
 #include "studies/chart.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum {

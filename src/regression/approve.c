@@ -11,7 +11,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <fnmatch.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -23,6 +22,11 @@ enum { OPEN_FOLDER = O_RDONLY | O_DIRECTORY | O_CLOEXEC };
 /* Whether the path is to blame, not the system. */
 static bool is_input(int cause) {
     return cause == ELOOP || cause == ENOTDIR || cause == EACCES || cause == ENOENT || cause == ENAMETOOLONG;
+}
+
+static bool refuse(int cause, const char *path, const char *what, Error *error) {
+    return is_input(cause) ? error_input(error, path, "%s: %s", what, strerror(cause))
+                           : error_system(error, path, "%s: %s", what, strerror(cause));
 }
 
 /* Steps from an open folder into one in it. Closes the first. */
@@ -58,9 +62,7 @@ static int walk(int folder, const char **path, bool create) {
 static bool root_open(Root *root, const char *path, Error *error) {
     *root = (Root){open(path, OPEN_FOLDER), path};
     if (root->folder >= 0) return true;
-    const int cause = errno;
-    return is_input(cause) ? error_input(error, path, "the folder cannot be opened: %s", strerror(cause))
-                           : error_system(error, path, "the folder cannot be opened: %s", strerror(cause));
+    return refuse(errno, path, "the folder cannot be opened", error);
 }
 
 const char *path_below_current(const char *path) {
@@ -107,10 +109,8 @@ static bool place_open(ApprovePlace *place, const Root *root, const char *name, 
     place->name = name;
     place->folder = walk(fcntl(root->folder, F_DUPFD_CLOEXEC, 0), &place->name, create);
     if (place->folder >= 0 || errno == ENOENT) return true;
-    const int cause = errno;
-    return is_input(cause)
-               ? error_input(error, place->path, "its folder cannot be opened, or is a link: %s", strerror(cause))
-               : error_system(error, place->path, "its folder cannot be opened: %s", strerror(cause));
+    return refuse(errno, place->path,
+                  is_input(errno) ? "its folder cannot be opened, or is a link" : "its folder cannot be opened", error);
 }
 
 static void place_close(const ApprovePlace *place) {
@@ -320,7 +320,7 @@ void approval_free(ApprovalList *list) {
 /* The limit of a trajectory file. */
 static const size_t MAX_FILE_SIZE = (size_t)2 << 30;
 
-typedef enum Action { ACTION_NONE, ACTION_REPLACE, ACTION_ADD, ACTION_REMOVE } Action;
+typedef enum Action { ACTION_NONE, ACTION_REPLACE, ACTION_ADD, ACTION_REMOVE, ACTION_NOT_SELECTED } Action;
 
 typedef struct Found {
     bool there, link, other; /* other: neither a regular file nor a link */
@@ -435,32 +435,27 @@ static bool approve_list(const ApprovalList *list, const Folders *folders, const
                          void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
     Action *actions = calloc(list->count + 1, sizeof *actions);
     if (actions == NULL) return error_memory(error, "approve");
-    bool ok = true, *selected = calloc(list->count + 1, sizeof *selected);
-    if (selected == NULL) ok = error_memory(error, "approve");
+    bool ok = true;
     for (size_t i = 0; ok && i < list->count; i++) {
-        selected[i] = is_selected(&list->items[i], only, approval);
-        ok = !selected[i] || decide(folders, &list->items[i], &actions[i], error);
+        actions[i] = ACTION_NOT_SELECTED;
+        if (is_selected(&list->items[i], only, approval)) ok = decide(folders, &list->items[i], &actions[i], error);
     }
     if (ok && only != NULL && list->count > 0 && approval->not_selected == (int)list->count)
         ok = error_input(error, "--only", "'%s' matches none of the %zu files that failed", only, list->count);
     for (size_t i = 0; ok && i < list->count; i++)
-        if (selected[i]) ok = apply(folders, &list->items[i], actions[i], on_change, approval, error);
-    free(selected);
+        if (actions[i] != ACTION_NOT_SELECTED)
+            ok = apply(folders, &list->items[i], actions[i], on_change, approval, error);
     free(actions);
     return ok;
-}
-
-static bool open_expected(const ApprovalRequest *request, const ApprovalList *list, const char *report, Root *root,
-                          Error *error) {
-    return request->expected != NULL ? root_open(root, request->expected, error)
-                                     : root_open_below(root, list->expected, report, error);
 }
 
 /* A foreign report chooses the folders: it may have any read, but only one below the current directory changed. */
 static bool approve_in_folders(const ApprovalRequest *request, const ApprovalList *list, const char *report,
                                Approval *approval, Error *error) {
     Folders folders;
-    if (!open_expected(request, list, report, &folders.expected, error)) return false;
+    if (!(request->expected != NULL ? root_open(&folders.expected, request->expected, error)
+                                    : root_open_below(&folders.expected, list->expected, report, error)))
+        return false;
     bool ok = root_open(&folders.actual, list->actual, error);
     if (ok) {
         ok = approve_list(list, &folders, request->only, request->on_change, approval, error);

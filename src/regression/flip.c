@@ -223,10 +223,7 @@ static FlipTile *tile_create(const FlipModel *model, Error *error) {
     size_t large = stride * tall, small = stride * FLIP_TILE_HEIGHT;
     enum { LARGE = FLIP_CHANNELS + 1, SMALL = 1 + 2 * PLANES };
     FlipTile *tile = malloc(sizeof *tile + (LARGE * large + SMALL * small) * sizeof *tile->memory + 4 * stride);
-    if (tile == NULL) {
-        error_memory(error, "FLIP");
-        return NULL;
-    }
+    if (tile == NULL) return error_memory(error, "FLIP"), NULL;
     float *next = tile->memory;
     tile->model = model, tile->stride = stride, tile->clear = 0;
     for (int i = 0; i < CONVERTED; i++) tile->converted[i].from.x = NAN; /* equals no colour */

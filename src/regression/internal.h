@@ -12,9 +12,6 @@
 #include "runs/trajectory.h"
 
 #include <limits.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 
 /* The steps of regression_run(). */

@@ -7,10 +7,7 @@
 #include "regression/internal.h"
 #include "regression/regression.h"
 
-#include <limits.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,28 +36,18 @@ bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *differen
            (!given(tolerance, LIMIT_FLIP_P99) || flip->p99 <= tolerance->flip_p99);
 }
 
-static void add(ToleranceText *words, const char *format, ...) PRINTF_LIKE(2, 3);
-static void add(ToleranceText *words, const char *format, ...) {
-    size_t used = strlen(words->text);
-    if (used > 0) used += (size_t)snprintf(words->text + used, sizeof words->text - used, ", ");
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(words->text + used, sizeof words->text - used, format, arguments);
-    va_end(arguments);
-}
+#define ADD(...) text_join(words.text, sizeof words.text, ", ", __VA_ARGS__)
 
 ToleranceText tolerance_words(const Tolerance *tolerance) {
     ToleranceText words = {""};
     if (given(tolerance, LIMIT_FUZZY))
-        add(&words, "differences of at most %d in at most %g%% of the pixels", tolerance->fuzzy,
-            100 * tolerance->share);
+        ADD("differences of at most %d in at most %g%% of the pixels", tolerance->fuzzy, 100 * tolerance->share);
     if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND))
-        add(&words, "differences above %d in at most %g%% of the pixels", tolerance->tolerance,
-            100 * tolerance->beyond);
-    if (given(tolerance, LIMIT_FLIP_MEAN)) add(&words, "mean FLIP of at most %g", tolerance->flip_mean);
-    if (given(tolerance, LIMIT_FLIP_P99)) add(&words, "99th percentile of FLIP of at most %g", tolerance->flip_p99);
-    if (tolerance->antialias) add(&words, "edges may move within a pixel");
-    if (words.text[0] == '\0') add(&words, "none");
+        ADD("differences above %d in at most %g%% of the pixels", tolerance->tolerance, 100 * tolerance->beyond);
+    if (given(tolerance, LIMIT_FLIP_MEAN)) ADD("mean FLIP of at most %g", tolerance->flip_mean);
+    if (given(tolerance, LIMIT_FLIP_P99)) ADD("99th percentile of FLIP of at most %g", tolerance->flip_p99);
+    if (tolerance->antialias) ADD("edges may move within a pixel");
+    if (words.text[0] == '\0') ADD("none");
     return words;
 }
 

@@ -93,10 +93,7 @@ static bool draw_picture(MaskPicture *picture, const Image *expected, const char
                            picture->height, path, expected->width, expected->height);
 #pragma omp critical(mask_picture)
     if (picture->bits == NULL && picture->fault.kind == ERROR_NONE) decode(picture);
-    if (picture->bits == NULL) {
-        *error = picture->fault;
-        return false;
-    }
+    if (picture->bits == NULL) return *error = picture->fault, false;
     for (size_t i = 0; i < bits_of(picture); i++)
         if (picture->bits[i / 8] >> i % 8 & 1) masked[i] = IGNORED_MASK;
     return true;

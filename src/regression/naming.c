@@ -51,7 +51,6 @@ static int64_t take(Naming *naming, ViewRect rect, const BoxModel *box, double m
 
 /* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change.
    Returns their number. */
-static int64_t take_rectangle(Naming *naming, ViewRect rect, int change) { return take(naming, rect, NULL, 0, change); }
 
 static int nearest(double value, int low, int high) { return value <= low ? low : value >= high ? high : (int)value; }
 
@@ -68,7 +67,7 @@ static int64_t take_box(Naming *naming, ViewRect rect, const BoxModel *box, doub
 static void name_rectangle(Naming *naming, ViewRect rect, ChangeSubject subject, int panel) {
     const Change change = {.subject = subject, .panel = panel};
     int at = add_change(naming, &change);
-    if (at >= 0 && take_rectangle(naming, rect, at) == 0) naming->changes->count--;
+    if (at >= 0 && take(naming, rect, NULL, 0, at) == 0) naming->changes->count--;
 }
 
 static void name_parts(Naming *naming) {

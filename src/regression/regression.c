@@ -206,10 +206,6 @@ static void count_frame(Regression *regression, int i) {
     regression->other_accepted += !frame_failed(frame) && frame->at[EXPECTED] != frame->base;
 }
 
-static bool same_sequence(const RegressionFrame *a, const RegressionFrame *b) {
-    return sequence_compare_stems(a->base, b->base) == 0;
-}
-
 /* Sets STATES_DIFFER_ELSEWHERE (see StateVerdict) in the frames of one sequence. */
 static void judge_sequence(RegressionFrame *const *frames, int count) {
     bool physics = false, same_framing = false;
@@ -230,7 +226,7 @@ static bool judge_sequences(Regression *regression, Error *error) {
     for (int i = 0; i < regression->count; i++)
         if (regression->frames[i].pixels < PIXELS_MISSING) paired[count++] = &regression->frames[i];
     for (int first = 0, end = 0; first < count; first = end) {
-        while (end < count && same_sequence(paired[first], paired[end])) end++;
+        while (end < count && sequence_compare_stems(paired[first]->base, paired[end]->base) == 0) end++;
         judge_sequence(paired + first, end - first);
     }
     free(paired);

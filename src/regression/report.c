@@ -15,7 +15,6 @@
 #include "runs/trajectory.h"
 
 #include <assert.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -6,7 +6,6 @@
 #include "base/machine.h"
 #include "regression/regression.h"
 
-#include <stddef.h>
 #include <stdio.h>
 
 /* Accepts the changes that a comparison's report shows. Nothing else changes expected files. */
@@ -67,7 +66,7 @@ enum { GITHUB_SUMMARY_MAX = 1 << 20 };
 void github_annotate(FILE *out, const Regression *regression);
 
 /* One error that is about no file. */
-void github_annotate_message(FILE *out, const char *title, const char *message);
+void github_annotate_message(FILE *out, const char *message);
 
 /* Appends the summary to a file, which stays below GITHUB_SUMMARY_MAX bytes: rows that do not fit are counted. Writes
    nothing if not even the head fits. */

@@ -10,9 +10,7 @@
 #include "regression/regression.h"
 #include "regression/report.h"
 
-#include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -73,10 +71,8 @@ static void put_escaped(FILE *out, const char *text, const char *special) {
 static void put_property(FILE *out, const char *text) { put_escaped(out, text, ":,"); }
 static void put_message(FILE *out, const char *text) { put_escaped(out, text, ""); }
 
-void github_annotate_message(FILE *out, const char *title, const char *message) {
-    fputs("::error title=", out);
-    put_property(out, title);
-    fputs("::", out);
+void github_annotate_message(FILE *out, const char *message) {
+    fputs("::error title=twinbox compare::", out);
     put_message(out, message);
     fputc('\n', out);
 }
@@ -135,7 +131,7 @@ void github_annotate(FILE *out, const Regression *regression) {
     if (left_out == 0) return;
     char message[128];
     snprintf(message, sizeof message, "%d more failures; the step summary and the report list them", left_out);
-    github_annotate_message(out, "twinbox compare", message);
+    github_annotate_message(out, message);
 }
 
 /* The step summary of GitHub Actions, in Markdown. */
@@ -397,10 +393,7 @@ void report_write_tap(FILE *file, const void *context) {
 /* results.json; also embedded in report.html for its script. */
 
 static void write_file(JsonWriter *json, const char *key, const char *name, const RegressionFile *data) {
-    if (name == NULL) {
-        json_put_text(json, key, NULL);
-        return;
-    }
+    if (json_put_absent(json, key, name == NULL)) return;
     json_begin_object(json, key, JSON_ONE_LINE);
     json_put_text(json, "name", name);
     json_put_int(json, "size", (int64_t)data->size);
@@ -413,14 +406,6 @@ static void write_sides(JsonWriter *json, int left, int top, int right, int bott
     json_begin_array(json, "box", JSON_ONE_LINE);
     for (int i = 0; i < 4; i++) json_put_int(json, NULL, sides[i]);
     json_end(json);
-}
-
-static void write_box(JsonWriter *json, const ImageDifference *difference) {
-    if (difference->pixels == 0) {
-        json_put_text(json, "box", NULL);
-        return;
-    }
-    write_sides(json, difference->left, difference->top, difference->right, difference->bottom);
 }
 
 /* Four digits: the last bits of pow() depend on the machine. */
@@ -449,6 +434,7 @@ static void write_regions(JsonWriter *json, const RegressionFrame *frame) {
 
 static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
     const char *names[SIDES];
+    const ImageDifference *difference = &frame->difference;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         names[side] = frame->at[side] != NULL ? frame->at[side]->name : NULL;
     json_begin_object(json, NULL, JSON_ONE_LINE);
@@ -457,12 +443,13 @@ static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
     json_put_bool(json, "failed", frame_failed(frame));
     json_put_bool(json, "shown", frame->shown);
     json_put_text(json, "words", frame_words(frame).text);
-    json_put_int(json, "differing", frame->difference.pixels);
-    json_put_int(json, "beyond", frame->difference.beyond);
-    json_put_int(json, "edges", frame->difference.moved);
-    json_put_int(json, "counted", frame->difference.counted);
-    json_put_int(json, "largest", frame->difference.largest);
-    write_box(json, &frame->difference);
+    json_put_int(json, "differing", difference->pixels);
+    json_put_int(json, "beyond", difference->beyond);
+    json_put_int(json, "edges", difference->moved);
+    json_put_int(json, "counted", difference->counted);
+    json_put_int(json, "largest", difference->largest);
+    if (!json_put_absent(json, "box", difference->pixels == 0))
+        write_sides(json, difference->left, difference->top, difference->right, difference->bottom);
     write_regions(json, frame);
     json_put_number(json, "flip", rounded(frame->flip));
     json_put_number(json, "flip_p99", rounded(frame->flip_p99));

@@ -9,7 +9,6 @@
 #include "regression/regression.h"
 
 #include <fnmatch.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -188,10 +187,7 @@ static bool read_picture(const YamlTree *tree, int node, const Field *field, voi
     int folder = name[0] == '/' ? 0 : (int)file_folder_length(rules);
     if (!file_path(path, sizeof path, error, "%.*s%s", folder, rules, name)) return false;
     if (mask_add_picture(member, path, &reason)) return true;
-    if (reason.kind == ERROR_SYSTEM) {
-        *error = reason;
-        return false;
-    }
+    if (reason.kind == ERROR_SYSTEM) return *error = reason, false;
     return yaml_error(tree, node, error, "%s", reason.message);
 }
 

@@ -118,15 +118,9 @@ static char *folder_of(const char *path, bool single) {
 
 ImageSequence *image_sequence_open(const char *path, bool recursive, Error *error) {
     struct stat status;
-    if (stat(path, &status) != 0) {
-        folder_error(path, error);
-        return NULL;
-    }
+    if (stat(path, &status) != 0) return folder_error(path, error), NULL;
     ImageSequence *sequence = calloc(1, sizeof *sequence);
-    if (sequence == NULL) {
-        error_memory(error, path);
-        return NULL;
-    }
+    if (sequence == NULL) return error_memory(error, path), NULL;
     sequence->device = status.st_dev;
     sequence->inode = status.st_ino;
     sequence->single = !S_ISDIR(status.st_mode);
@@ -287,11 +281,10 @@ static bool pair_sequences(Pairing *pairing, const ImageSequence *a, const Image
 
 SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b, int *count, Error *error) {
     *count = 0;
-    if (a->single != b->single) {
-        error_input(error, (a->single ? b : a)->folder, "is a folder, but %s is a file",
-                    (a->single ? a : b)->frames[0].path);
-        return NULL;
-    }
+    if (a->single != b->single)
+        return error_input(error, (a->single ? b : a)->folder, "is a folder, but %s is a file",
+                           (a->single ? a : b)->frames[0].path),
+               NULL;
     size_t most = (size_t)a->count + (size_t)b->count + 1;
     Pairing pairing = {.pairs = malloc(most * sizeof *pairing.pairs)};
     const SequenceFrame **frames = calloc(most, sizeof *frames);

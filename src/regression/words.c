@@ -11,7 +11,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 static const double SMALL = 0.005;     /* pixels; smaller movements round to 0.00 */
@@ -143,17 +142,8 @@ const char *frame_verdict(const RegressionFrame *frame) {
     return frame->pixels == PIXELS_EQUAL ? "equal" : "within tolerance";
 }
 
-PRINTF_LIKE(3, 4) static void add(RegressionText *text, const char *between, const char *format, ...) {
-    size_t used = strlen(text->text);
-    va_list arguments;
-    va_start(arguments, format);
-    if (used > 0) {
-        snprintf(text->text + used, sizeof text->text - used, "%s", between);
-        used = strlen(text->text);
-    }
-    vsnprintf(text->text + used, sizeof text->text - used, format, arguments);
-    va_end(arguments);
-}
+/* ADD(text, between, format, ...) */
+#define ADD(words, ...) text_join((words)->text, sizeof(words)->text, __VA_ARGS__)
 
 /* The name of the largest region that has one. */
 static void add_changes(RegressionText *words, const RegressionFrame *frame) {
@@ -161,22 +151,22 @@ static void add_changes(RegressionText *words, const RegressionFrame *frame) {
     for (int i = 0; changes != NULL && i < changes->regions.kept; i++) {
         if (changes->region_change[i] < 0) continue;
         int others = changes->count - 1;
-        add(words, ": ", "%s", change_words(&changes->list[changes->region_change[i]]).text);
-        if (others > 0) add(words, ", ", "and %d more %s", others, others == 1 ? "change" : "changes");
+        ADD(words, ": ", "%s", change_words(&changes->list[changes->region_change[i]]).text);
+        if (others > 0) ADD(words, ", ", "and %d more %s", others, others == 1 ? "change" : "changes");
         return;
     }
 }
 
 static void add_difference(RegressionText *words, const ImageDifference *difference) {
     if (difference->pixels == 0)
-        add(words, "", "equal pixels");
+        ADD(words, "", "equal pixels");
     else
-        add(words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
+        ADD(words, "", "%" PRId64 " %s (%.3g%%) by at most %d, first at (%d, %d)", difference->pixels,
             difference->pixels == 1 ? "pixel differs" : "pixels differ",
             100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
             difference->first_y);
     if (difference->moved > 0)
-        add(words, "; ", "%" PRId64 " %s of edges ignored", difference->moved,
+        ADD(words, "; ", "%" PRId64 " %s of edges ignored", difference->moved,
             difference->moved == 1 ? "pixel" : "pixels");
 }
 
@@ -185,36 +175,36 @@ RegressionText frame_words(const RegressionFrame *frame) {
     const ImageDifference *difference = &frame->difference;
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
     switch (frame->pixels) {
-    case PIXELS_MISSING: add(&words, "", "no actual picture"); break;
-    case PIXELS_EXTRA: add(&words, "", "no expected picture"); break;
+    case PIXELS_MISSING: ADD(&words, "", "no actual picture"); break;
+    case PIXELS_EXTRA: ADD(&words, "", "no expected picture"); break;
     case PIXELS_RESIZED:
-        add(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
+        ADD(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
         if (frame->sizes_alone) break;
-        add(&words, "; ", "overlap: ");
+        ADD(&words, "; ", "overlap: ");
         add_difference(&words, difference);
         break;
-    case PIXELS_EQUAL: add(&words, "", "equal pixels"); break;
+    case PIXELS_EQUAL: ADD(&words, "", "equal pixels"); break;
     case PIXELS_WITHIN:
     case PIXELS_DIFFER: add_difference(&words, difference);
     }
-    if (frame->panel > 0) add(&words, ", ", "states differ in panel %d", frame->panel);
+    if (frame->panel > 0) ADD(&words, ", ", "states differ in panel %d", frame->panel);
     if (frame->other_view && frame->states != STATES_DIFFER)
-        add(&words, ", ", "the camera differs");
+        ADD(&words, ", ", "the camera differs");
     else if (frame->states == STATES_DIFFER_ELSEWHERE && frame_failed(frame))
-        add(&words, ", ", "states equal in this frame but not in the whole run, which sets camera and scales");
+        ADD(&words, ", ", "states equal in this frame but not in the whole run, which sets camera and scales");
     add_changes(&words, frame);
-    if (frame->metadata.text[0] != '\0') add(&words, ", ", "metadata differs: %s", frame->metadata.text);
+    if (frame->metadata.text[0] != '\0') ADD(&words, ", ", "metadata differs: %s", frame->metadata.text);
     if (frame->at[EXPECTED] != NULL && frame->at[EXPECTED] != frame->base)
-        add(&words, "; ", frame_failed(frame) ? "closest accepted picture: %s" : "accepted picture: %s",
+        ADD(&words, "; ", frame_failed(frame) ? "closest accepted picture: %s" : "accepted picture: %s",
             frame->at[EXPECTED]->name + frame->at[EXPECTED]->folder);
     return words;
 }
 
 RegressionText cause_words(const RegressionCause *cause) {
     RegressionText words = {""};
-    add(&words, "", "%s: %s", cause->frames, cause->what);
+    ADD(&words, "", "%s: %s", cause->frames, cause->what);
     if (cause->most > 0)
-        add(&words, " ", "at most %.*f px", cause->most < 0.1 ? 2 : cause->most < 9.95 ? 1 : 0, cause->most);
+        ADD(&words, " ", "at most %.*f px", cause->most < 0.1 ? 2 : cause->most < 9.95 ? 1 : 0, cause->most);
     return words;
 }
 
@@ -222,20 +212,20 @@ RegressionText run_words(const RegressionRun *run) {
     RegressionText words = {""};
     const TrajectoryDifference *d = &run->difference;
     if (d->equal) {
-        add(&words, "", "equal states");
+        ADD(&words, "", "equal states");
         return words;
     }
-    if (d->what[0] != '\0') add(&words, "", "%s", d->what);
+    if (d->what[0] != '\0') ADD(&words, "", "%s", d->what);
     if (d->frame >= 0)
-        add(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance,
+        ADD(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance,
             d->angle, d->speed);
     if (d->max_frame >= 0)
-        add(&words, "; ", "farthest in frame %d, body %d: %g m", d->max_frame, d->max_body, d->max_distance);
+        ADD(&words, "; ", "farthest in frame %d, body %d: %g m", d->max_frame, d->max_body, d->max_distance);
     return words;
 }
 
 static void add_count(RegressionText *text, int count, const char *what) {
-    if (count > 0) add(text, ", ", "%d %s %s", count, count == 1 ? "frame" : "frames", what);
+    if (count > 0) ADD(text, ", ", "%d %s %s", count, count == 1 ? "frame" : "frames", what);
 }
 
 RegressionText regression_verdict(const Regression *regression) {
@@ -243,16 +233,16 @@ RegressionText regression_verdict(const Regression *regression) {
     bool physics = regression->physics > 0 || regression->elsewhere > 0 || regression->run_failed > 0;
     bool renderer = regression->renderer > 0;
     if (physics || renderer)
-        add(&verdict, ", ", "%s",
+        ADD(&verdict, ", ", "%s",
             physics && renderer ? "physics and renderer changed"
             : physics           ? "physics changed"
                                 : "renderer changed");
-    if (regression->view > 0 && !physics) add(&verdict, ", ", "view changed");
-    if (regression->unknown > 0) add(&verdict, ", ", "pictures differ (cause unknown: no states)");
-    if (regression->metadata_failed > 0) add(&verdict, ", ", "metadata changed");
+    if (regression->view > 0 && !physics) ADD(&verdict, ", ", "view changed");
+    if (regression->unknown > 0) ADD(&verdict, ", ", "pictures differ (cause unknown: no states)");
+    if (regression->metadata_failed > 0) ADD(&verdict, ", ", "metadata changed");
     add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");
     add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "extra");
-    if (verdict.text[0] == '\0') add(&verdict, "", "equal");
+    if (verdict.text[0] == '\0') ADD(&verdict, "", "equal");
     return verdict;
 }
 
@@ -260,25 +250,14 @@ RegressionText regression_begin(const Regression *regression) {
     RegressionText begin = {""};
     if (regression->first_run >= 0) {
         const RegressionRun *run = &regression->runs[regression->first_run];
-        add(&begin, "\n", "physics changed first in %s: %s", run->name, run_words(run).text);
+        ADD(&begin, "\n", "physics changed first in %s: %s", run->name, run_words(run).text);
     } else if (regression->first_physics >= 0) {
         const RegressionFrame *frame = &regression->frames[regression->first_physics];
-        add(&begin, "\n", "physics changed first in %s, panel %d", frame_name(frame), frame->panel);
+        ADD(&begin, "\n", "physics changed first in %s, panel %d", frame_name(frame), frame->panel);
     }
     if (regression->first_renderer >= 0)
-        add(&begin, "\n", "renderer changed first in %s", frame_name(&regression->frames[regression->first_renderer]));
+        ADD(&begin, "\n", "renderer changed first in %s", frame_name(&regression->frames[regression->first_renderer]));
     return begin;
-}
-
-/* Adds a line if there is anything to count. */
-PRINTF_LIKE(3, 4) static void note(RegressionText *notes, int count, const char *format, ...) {
-    size_t used = strlen(notes->text), room = sizeof notes->text - used;
-    va_list arguments;
-    if (count == 0) return;
-    va_start(arguments, format);
-    if (used > 0 && room > 1) notes->text[used++] = '\n', room--;
-    vsnprintf(notes->text + used, room, format, arguments);
-    va_end(arguments);
 }
 
 RegressionText regression_notes(const Regression *regression) {
@@ -286,24 +265,26 @@ RegressionText regression_notes(const Regression *regression) {
     enum { NAME = 100 }; /* of each name, so that all notes fit */
     const ImageSequence *const *sides = (const ImageSequence *const *)regression->sequences;
     bool same = sides[EXPECTED]->device == sides[ACTUAL]->device && sides[EXPECTED]->inode == sides[ACTUAL]->inode;
-    note(&notes, same, "expected and actual are the same %s", sides[EXPECTED]->single ? "file" : "folder");
+    if (same) ADD(&notes, "\n", "expected and actual are the same %s", sides[EXPECTED]->single ? "file" : "folder");
     int accepted = regression->other_accepted, metadata = regression->metadata;
-    note(&notes, accepted, "%d frame%s passed by another accepted picture", accepted, plural(accepted));
+    if (accepted > 0) ADD(&notes, "\n", "%d frame%s passed by another accepted picture", accepted, plural(accepted));
     if (metadata > 0) {
         const RegressionFrame *first = &regression->frames[regression->first_metadata];
-        note(&notes, metadata, "metadata differs in %d frame%s, first in %.*s: %s%s", metadata, plural(metadata),
-             (int)utf8_cut(frame_name(first), NAME), frame_name(first), first->metadata.text,
-             regression->options.strict_metadata ? "" : " (--metadata strict fails)");
+        ADD(&notes, "\n", "metadata differs in %d frame%s, first in %.*s: %s%s", metadata, plural(metadata),
+            (int)utf8_cut(frame_name(first), NAME), frame_name(first), first->metadata.text,
+            regression->options.strict_metadata ? "" : " (--metadata strict fails)");
     }
     int left_out = regression->runs_left_out, foreign = regression->runs_foreign;
     const char *expected = regression->sequences[EXPECTED]->folder;
-    note(&notes, left_out, "not compared: %d .npz file%s only in %.*s", left_out, plural(left_out),
-         (int)utf8_cut(expected, NAME), expected);
-    note(&notes, foreign, "not compared: %d .npz file%s without a trajectory", foreign, plural(foreign));
+    if (left_out > 0)
+        ADD(&notes, "\n", "not compared: %d .npz file%s only in %.*s", left_out, plural(left_out),
+            (int)utf8_cut(expected, NAME), expected);
+    if (foreign > 0) ADD(&notes, "\n", "not compared: %d .npz file%s without a trajectory", foreign, plural(foreign));
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         const ImageSequence *sequence = regression->sequences[side];
-        note(&notes, sequence->skipped, "not compared: %d picture%s in subfolders of %.*s (--no-recursive)",
-             sequence->skipped, plural(sequence->skipped), (int)utf8_cut(sequence->folder, NAME), sequence->folder);
+        if (sequence->skipped > 0)
+            ADD(&notes, "\n", "not compared: %d picture%s in subfolders of %.*s (--no-recursive)", sequence->skipped,
+                plural(sequence->skipped), (int)utf8_cut(sequence->folder, NAME), sequence->folder);
     }
     return notes;
 }

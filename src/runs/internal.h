@@ -10,8 +10,6 @@
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 /* The pieces that a merge does not find, and the shards that are to do them. */
 

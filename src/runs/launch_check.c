@@ -6,7 +6,6 @@
 #include "scenes/scenes.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,15 +42,13 @@ static int by_start(const void *a, const void *b) {
 
 /* The spans of x that no launch of the check covers, as text: "-7 to -5.1, 5.1 to 7". */
 static void describe_free(const OverlapSpan *blocked, int count, double low, double high, char *text, size_t size) {
-    size_t used = 0;
     double free_from = low;
     text[0] = '\0';
     for (int i = 0; i <= count; i++) {
         const double until = i < count ? fmin(blocked[i].from, high) : high;
         /* Rounded inwards, to a hundredth of a metre. */
         const double from = ceil(100 * free_from - 1e-6) / 100, to = floor(100 * until + 1e-6) / 100;
-        if (to > from && used < size)
-            used += (size_t)snprintf(text + used, size - used, "%s%g to %g", used > 0 ? ", " : "", from, to);
+        if (to > from) text_join(text, size, ", ", "%g to %g", from, to);
         if (i < count) free_from = fmax(free_from, blocked[i].to);
     }
 }

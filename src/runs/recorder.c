@@ -9,7 +9,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 /* Of a part, poses and contacts each. Smaller parts make the two threads wait for each other more often: with a quarter
@@ -36,10 +35,7 @@ static bool check_length(const Scene *scene, Error *error) {
 Recorder *recorder_create(const Scene *scene, const Method *method, Error *error) {
     if (!check_length(scene, error)) return NULL;
     Recorder *recorder = calloc(1, sizeof *recorder);
-    if (recorder == NULL) {
-        error_memory(error, scene->name);
-        return NULL;
-    }
+    if (recorder == NULL) return error_memory(error, scene->name), NULL;
     recorder->capacity = scene->frames + 1;
     recorder->parts[0] = trajectory_of_scene(scene, method, recorder->capacity, error);
     if (recorder->parts[0] != NULL) return recorder;

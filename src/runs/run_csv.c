@@ -49,18 +49,21 @@ static bool check_body(CsvImport *import, int body, Error *error) {
     return true;
 }
 
-static void add_note(CsvRunNotes *notes, const char *format, ...);
+PRINTF_LIKE(2, 3) static void add_note(CsvRunNotes *notes, const char *format, ...) {
+    va_list arguments;
+    if (notes->count == CSV_RUN_NOTES_MAX) return;
+    va_start(arguments, format);
+    vsnprintf(notes->lines[notes->count++], CSV_RUN_NOTE_SIZE, format, arguments);
+    va_end(arguments);
+}
 
 static void note_static(const CsvImport *import) {
     const Trajectory *run = import->run;
     char list[96] = "";
     int count = 0;
     for (int body = 0; body < run->bodies; body++) {
-        size_t used = strlen(list);
         if (!run->fixed[body]) continue;
-        if (count++ < 8)
-            snprintf(list + used, sizeof list - used, "%s%" PRId64, used > 0 ? ", " : "",
-                     import->head.bodies[body].number);
+        if (count++ < 8) text_join(list, sizeof list, ", ", "%" PRId64, import->head.bodies[body].number);
     }
     if (import->head.states_static) return;
     if (count == 0)
@@ -92,14 +95,6 @@ static bool finish_bodies(CsvImport *import, Error *error) {
 static const size_t MAX_SIZE = (size_t)1 << 30;
 static const double TIME_TOLERANCE = 0.01;  /* of a step */
 static const double WHOLE_TOLERANCE = 1e-4; /* relative: 1/dt this near a whole number is that number */
-
-static void add_note(CsvRunNotes *notes, const char *format, ...) {
-    va_list arguments;
-    if (notes->count == CSV_RUN_NOTES_MAX) return;
-    va_start(arguments, format);
-    vsnprintf(notes->lines[notes->count++], CSV_RUN_NOTE_SIZE, format, arguments);
-    va_end(arguments);
-}
 
 /* The first pass. */
 static bool survey(CsvImport *import, Error *error) {

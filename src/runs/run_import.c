@@ -7,7 +7,6 @@
 
 #include <inttypes.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -145,14 +144,23 @@ static bool take_value(CsvHead *head, const char *path, int key, char *text, Err
     return true;
 }
 
-static bool fail(const char *path, int line, Error *error, const char *format, const char *first, const char *second)
-    __attribute__((format(printf, 4, 0)));
-
-static bool fail(const char *path, int line, Error *error, const char *format, const char *first, const char *second) {
-    char where[1280], what[256];
-    snprintf(where, sizeof where, "%.1200s:%d", path, line);
-    snprintf(what, sizeof what, format, first, second);
+/* In a line, and in a column if that is above 0. */
+PRINTF_LIKE(5, 0)
+static bool set(const char *path, int line, int column, Error *error, const char *format, va_list arguments) {
+    char where[1280], what[512];
+    int used = snprintf(where, sizeof where, "%.1200s:%d", path, line);
+    if (column > 0) snprintf(where + used, sizeof where - (size_t)used, ":%d", column);
+    vsnprintf(what, sizeof what, format, arguments);
     return error_input(error, where, "%s", what);
+}
+
+PRINTF_LIKE(5, 6)
+static bool fail(const char *path, int line, int column, Error *error, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    set(path, line, column, error, format, arguments);
+    va_end(arguments);
+    return false;
 }
 
 /* "key: value"; comments of another form mean nothing. */
@@ -167,10 +175,10 @@ static bool take_comment(CsvHead *head, const char *path, int line, char *text, 
         known[key] = keys[key].name;
         if (strcmp(text, keys[key].name) != 0) continue;
         if (!take_value(head, path, key, value, error, &right)) return false;
-        return right || fail(path, line, error, "%s: expected %s", keys[key].name, keys[key].form);
+        return right || fail(path, line, 0, error, "%s: expected %s", keys[key].name, keys[key].form);
     }
     const char *near = nearest_word(text, known, KEYS);
-    return near == NULL || fail(path, line, error, "'# %s:': did you mean '# %s:'?", csv_show(text).text, near);
+    return near == NULL || fail(path, line, 0, error, "'# %s:': did you mean '# %s:'?", csv_show(text).text, near);
 }
 
 static int compare_bodies(const void *left, const void *right) {
@@ -202,7 +210,7 @@ bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line
         size_t length = strcspn(begin, "\n"), used = length;
         *text = begin + length + (begin[length] == '\n');
         while (used > 0 && strchr(" \t\r", begin[used - 1]) != NULL) used--;
-        if (used >= CSV_HEAD_LINE_SIZE) return fail(path, *line, error, "a comment longer than 255 bytes%s%s", "", "");
+        if (used >= CSV_HEAD_LINE_SIZE) return fail(path, *line, 0, error, "a comment longer than 255 bytes");
         memcpy(comment, begin, used);
         comment[used] = '\0';
         if (!take_comment(head, path, *line, comment, error)) return false;
@@ -230,20 +238,12 @@ typedef struct Fields {
     char line[CSV_ROWS_LINE_SIZE];
 } Fields;
 
-static bool fail_at(const CsvRows *rows, int line, int column, Error *error, const char *what) {
-    char where[1280];
-    int used = snprintf(where, sizeof where, "%.1200s:%d", rows->path, line);
-    if (column > 0) snprintf(where + used, sizeof where - (size_t)used, ":%d", column);
-    return error_input(error, where, "%s", what);
-}
-
 bool csv_rows_error(const CsvRows *rows, int line, Error *error, const char *format, ...) {
-    char what[512];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
+    set(rows->path, line, 0, error, format, arguments);
     va_end(arguments);
-    return fail_at(rows, line, 0, error, what);
+    return false;
 }
 
 static char *trim(char *text) {
@@ -298,14 +298,12 @@ static const char *meant(const CsvRows *rows, const char *name) {
 static bool place(CsvRows *rows, const Fields *fields, Error *error) {
     for (int i = 0; i < COL_COUNT; i++) rows->field[i] = -1;
     for (int i = 0; i < fields->count; i++) {
-        char what[128];
         int column = 0;
         while (column < COL_COUNT && strcmp(names[column], fields->text[i]) != 0) column++;
         if (column == COL_COUNT) continue;
-        if (!is_absent(rows, column)) {
-            snprintf(what, sizeof what, "the column '%s' appears twice", names[column]);
-            return fail_at(rows, rows->line, fields->column[i], error, what);
-        }
+        if (!is_absent(rows, column))
+            return fail(rows->path, rows->line, fields->column[i], error, "the column '%s' appears twice",
+                        names[column]);
         rows->field[column] = i;
     }
     return true;
@@ -319,14 +317,10 @@ static bool check_others(CsvRows *rows, const Fields *fields, Error *error) {
         if (known) continue;
         const char *right = meant(rows, fields->text[i]);
         const CsvShown shown = csv_show(fields->text[i]);
-        char what[160];
-        if (right != NULL) {
-            snprintf(what, sizeof what, "unknown column '%s': did you mean '%s'? Rename or remove it", shown.text,
-                     right);
-            return fail_at(rows, rows->line, fields->column[i], error, what);
-        }
-        size_t used = strlen(rows->ignored);
-        snprintf(rows->ignored + used, sizeof rows->ignored - used, "%s%s", used > 0 ? ", " : "", shown.text);
+        if (right != NULL)
+            return fail(rows->path, rows->line, fields->column[i], error,
+                        "unknown column '%s': did you mean '%s'? Rename or remove it", shown.text, right);
+        text_join(rows->ignored, sizeof rows->ignored, ", ", "%s", shown.text);
     }
     return true;
 }
@@ -357,9 +351,8 @@ void csv_rows_rewind(CsvRows *rows) {
 
 static bool fail_field(const CsvRows *rows, const Fields *fields, int column, Error *error, const char *what) {
     const int field = rows->field[column];
-    char text[200];
-    snprintf(text, sizeof text, "%s: '%s' %s", names[column], csv_show(fields->text[field]).text, what);
-    return fail_at(rows, rows->line, fields->column[field], error, text);
+    return fail(rows->path, rows->line, fields->column[field], error, "%s: '%s' %s", names[column],
+                csv_show(fields->text[field]).text, what);
 }
 
 static bool take_index(const CsvRows *rows, const Fields *fields, int column, int64_t *index, Error *error) {

@@ -9,8 +9,6 @@
 #include "scenes/scenes.h"
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdio.h>
 
 /* A run in progress, step by step. */
 

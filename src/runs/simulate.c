@@ -7,7 +7,6 @@
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
-#include <stdio.h>
 #include <string.h>
 
 static bool observe(const Simulation *run, int frame, const RunWatch *watch, Error *error) {

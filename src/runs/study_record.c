@@ -9,7 +9,6 @@
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -156,13 +155,10 @@ void study_record_free(StudyRecord *record) {
 }
 
 bool shard_parse(Shard *shard, const char *text, Error *error) {
-    char number[16];
     int64_t values[2];
-    const size_t length = strcspn(text, "/");
-    if (length >= sizeof number || text[length] != '/')
-        return error_input(error, "--shard", "'%s' is not I/N, such as 3/16", text);
-    snprintf(number, sizeof number, "%.*s", (int)length, text);
-    if (!parse_int(number, 0, INT32_MAX, &values[0]) || !parse_int(text + length + 1, 0, INT32_MAX, &values[1]))
+    const char *rest;
+    if (!parse_leading_int(text, 0, INT32_MAX, &values[0], &rest) || *rest != '/' ||
+        !parse_int(rest + 1, 0, INT32_MAX, &values[1]))
         return error_input(error, "--shard", "'%s' is not I/N, such as 3/16", text);
     if (values[1] < 1 || values[1] > SHARDS_MAX)
         return error_input(error, "--shard", "'%s': N must be from 1 to %d", text, SHARDS_MAX);

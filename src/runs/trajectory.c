@@ -35,10 +35,8 @@ static bool allocate(Trajectory *t) {
 
 Trajectory *trajectory_create(int frames, int bodies, Error *error) {
     assert(frames >= 1 && bodies >= 0);
-    if (measure(frames, bodies, 0) > TRAJECTORY_MAX_BYTES) {
-        error_input(error, "trajectory", "%d frames of %d bodies take more than 2 GiB", frames, bodies);
-        return NULL;
-    }
+    if (measure(frames, bodies, 0) > TRAJECTORY_MAX_BYTES)
+        return error_input(error, "trajectory", "%d frames of %d bodies take more than 2 GiB", frames, bodies), NULL;
     Trajectory *t = calloc(1, sizeof *t);
     if (t != NULL)
         *t = (Trajectory){.frames = frames, .bodies = bodies, .bomb = -1, .verdict_frame = -1, .verdict_body = -1};
@@ -91,16 +89,12 @@ double trajectory_bytes(const Trajectory *t) {
 TrajectoryContact *trajectory_add_contacts(Trajectory *t, int frame, int added, Error *error) {
     assert(frame >= t->last_step && frame < t->frames && added >= 0);
     int64_t count = t->contact_start[t->last_step + 1];
-    if (measure(t->frames, t->bodies, (double)count + added) > TRAJECTORY_MAX_BYTES) {
-        error_input(error, "trajectory", "its contacts take more than 2 GiB");
-        return NULL;
-    }
+    if (measure(t->frames, t->bodies, (double)count + added) > TRAJECTORY_MAX_BYTES)
+        return error_input(error, "trajectory", "its contacts take more than 2 GiB"), NULL;
     void *contacts = t->contacts;
     /* At least one, so that NULL is a failure. */
-    if (!array_reserve(&contacts, &t->contact_capacity, (size_t)(count + added) + 1, sizeof *t->contacts)) {
-        error_memory(error, "trajectory");
-        return NULL;
-    }
+    if (!array_reserve(&contacts, &t->contact_capacity, (size_t)(count + added) + 1, sizeof *t->contacts))
+        return error_memory(error, "trajectory"), NULL;
     t->contacts = contacts;
     end_steps(t, frame, count);
     t->contact_start[frame + 1] = count + added;

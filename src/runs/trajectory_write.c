@@ -11,7 +11,6 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <locale.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -206,10 +205,6 @@ static bool add_last(TrajectoryNpz *npz, Error *error) {
     return true;
 }
 
-static bool trajectory_npz_finish(TrajectoryNpz *npz, Error *error) {
-    return add_last(npz, error) && npz_stream_finish(npz->stream, error);
-}
-
 struct TrajectoryStream {
     TrajectoryFormat format;
     char *path;
@@ -310,7 +305,7 @@ void trajectory_stream_program(TrajectoryStream *stream, const char *program) {
 
 bool trajectory_stream_finish(TrajectoryStream *stream, Error *error) {
     assert(stream->added == stream->frames);
-    if (stream->npz != NULL) return trajectory_npz_finish(stream->npz, error);
+    if (stream->npz != NULL) return add_last(stream->npz, error) && npz_stream_finish(stream->npz->stream, error);
     FILE *out = stream->out;
     stream->out = NULL;
     if (fclose(out) != 0) return text_failed(stream, error);

@@ -6,8 +6,6 @@
 #include "engine/engine.h"
 #include "scenes/scenes.h"
 
-#include <stdint.h>
-
 /* The types of values in scene files; base/yaml.h reads the mappings. */
 
 /* The ranges keep a scene within what float32 can compute: no product of them is infinite, and no inverse. */

@@ -10,7 +10,6 @@
 #include "scenes/scenes.h"
 #include "studies/chart_internal.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -12,8 +12,6 @@
 #include "studies/stability.h"
 
 #include <math.h>
-#include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -9,7 +9,6 @@
 #include "scenes/scenes.h"
 #include "studies/chart.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 
 /* The scores of the methods on the launches of a scene. Those of one launch are stored as bytes of this machine: the number of

@@ -11,8 +11,6 @@
 
 #include <limits.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -484,10 +484,7 @@ MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const c
     double stored[6];
     const size_t count = (size_t)study->contender_count;
     MethodTimes *times = calloc(count + 1, sizeof *times);
-    if (times == NULL) {
-        error_memory(error, path);
-        return NULL;
-    }
+    if (times == NULL) return error_memory(error, path), NULL;
     bool whole = size == count * PROTOCOLS * PHASES * sizeof stored;
     for (size_t i = 0; whole && i < count * PROTOCOLS * PHASES; i++) {
         memcpy(stored, bytes + i * sizeof stored, sizeof stored);

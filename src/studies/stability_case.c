@@ -12,7 +12,6 @@
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -107,10 +106,7 @@ const EnergyLog *converged_runs_get(ConvergedRuns *runs, const Scene *scene, dou
     const EnergyLog *known = find(runs, value);
     if (known != NULL) return known;
     ConvergedRun *run = calloc(1, sizeof *run);
-    if (run == NULL) {
-        error_memory(error, "converged run");
-        return NULL;
-    }
+    if (run == NULL) return error_memory(error, "converged run"), NULL;
     run->value = value;
     if (converged_run_once(&run->log, scene, error) && store(runs, run, error)) return &run->log;
     energy_log_free(&run->log);

@@ -10,7 +10,6 @@
 #include "studies/stability_internal.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

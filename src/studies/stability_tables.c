@@ -13,7 +13,6 @@
 #include <ctype.h>
 #include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {

@@ -6,7 +6,6 @@
 #include "pixels/type.h"
 #include "studies/chart_internal.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Of the meaning, without what is for those who run the method: choices before it, "on|off: ", and what follows " (". */
