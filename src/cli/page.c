@@ -3,16 +3,23 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "live/live.h"
+#include "methods/methods.h"
 #include "pictures/picture.h"
 #include "pictures/player.h"
 #include "runs/trajectory.h"
+#include "scenes/scenes.h"
 
 #include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 typedef struct Options {
-    const char *inputs[RENDER_PANELS_MAX], *output;
-    int input_count, every;
+    const char *inputs[RENDER_PANELS_MAX], *methods[RENDER_PANELS_MAX], *output;
+    int input_count, method_count, every;
+    bool live;
     FrameRange frames;
+    SceneSettings set;
 } Options;
 
 static const Option option_table[] = {
@@ -21,6 +28,16 @@ static const Option option_table[] = {
     {"--every", 0, "N", "Keep every N-th frame only", OPTION_INT(Options, every, 1, INT_MAX)},
     {"--frames", 0, "A:B", "Keep only these frames of the runs (default: all)",
      OPTION_READ(frames_option_read, Options, frames)},
+    {.help = "Live pages:"},
+    {"--live", 0, NULL,
+     "The page steps the scene itself: its readers drag the bomb and change settings and methods, and get the bits of "
+     "twinbox simulate",
+     OPTION_FLAG(Options, live)},
+    {"--method", 'm', "NAME",
+     "With --live: a panel by this method (may be repeated; default: engine and interior). One that a page cannot run is "
+     "recorded",
+     OPTION_TEXTS(Options, methods, method_count)},
+    {OPTION_SET(Options, set)},
     {0}};
 
 static const CommandSpec spec = {
@@ -32,18 +49,20 @@ static const CommandSpec spec = {
         "can stop, zoom, measure bodies, and link to a moment. A run is a stored trajectory (.npz). A scene (.yaml) is "
         "simulated with the engine and with the pair-net that it names. A page takes at most 64 MB: contacts are left "
         "out if it would take more.\v"
-        "Example: twinbox page engine.npz net.npz -o stack.html"};
+        "Example: twinbox page engine.npz net.npz -o stack.html\n"
+        "         twinbox page --live scenes/stack.yaml --method engine --method interior -o live.html"};
 
 /* The file's name without its folder, which differs between machines; NULL for a run that is simulated here. */
 static const char *file_of(const char *input) {
     return file_name_ends_with(input, ".npz") ? input + file_folder_length(input) : NULL;
 }
 
-static bool write_page(const Options *options, const Panels *panels, Error *error) {
+static bool write_page(const Options *options, const Panels *panels, const PlayerLive *live, Error *error) {
     const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
     PlayerOptions page = {.first = options->frames.first,
                           .last = options->frames.last,
                           .every = options->every,
+                          .live = live,
                           .describe = draw_panels_defaults(NULL).describe};
     PlayerResult result;
     for (int i = 0; i < panels->count; i++) page.files[i] = file_of(panels->inputs[i]);
@@ -55,14 +74,110 @@ static bool write_page(const Options *options, const Panels *panels, Error *erro
     return true;
 }
 
+/* The scene among the inputs, of which all others are stored runs. */
+static const char *find_scene(const Options *options, Error *error) {
+    const char *scene = NULL;
+    for (int i = 0; i < options->input_count; i++) {
+        if (file_of(options->inputs[i]) != NULL) continue;
+        if (scene != NULL) {
+            error_input(error, "--live", "needs one scene (got %s and %s)", scene, options->inputs[i]);
+            return NULL;
+        }
+        scene = options->inputs[i];
+    }
+    if (scene == NULL) error_input(error, "--live", "needs a scene (.yaml)");
+    return scene;
+}
+
+static bool can_be_live(const char *text) {
+    const MethodDescription *description = method_describe(text);
+    return description != NULL && live_has_method(description);
+}
+
+/* Simulates the scene by each method here, too: the page compares its own hashes with these. */
+static bool add_methods(const Options *options, const char *path, PlayerLive *live, Panels *panels, Error *error) {
+    static const char *const usual[] = {"engine", "interior"};
+    const int count = options->method_count > 0 ? options->method_count : 2;
+    const char *const *methods = options->method_count > 0 ? options->methods : usual;
+    Scene *scene = scene_read_with(path, options->set.items, options->set.count, error);
+    bool ok = scene != NULL;
+    for (int i = 0; ok && i < count; i++) {
+        ok = panels_add_run(panels, scene, methods[i], path, error);
+        if (!ok) break;
+        if (can_be_live(methods[i]))
+            live->methods[panels->count - 1] = panels->runs[panels->count - 1]->method;
+        else
+            note_print("%s is recorded: a page cannot run it", methods[i]);
+    }
+    scene_destroy(scene);
+    return ok;
+}
+
+/* "bomb_x=2.5,height=12" */
+static void join_settings(const SceneSettings *set, char *text, size_t size) {
+    text[0] = '\0';
+    for (int i = 0; i < set->count; i++)
+        text_add(text, size, "%s%s=%.17g", i > 0 ? "," : "", set->items[i].name, set->items[i].value);
+}
+
+/* All networks that its readers may choose come along: those that the scene names. */
+static bool pack(const char *scene, PlayerLive *live, Error *error) {
+    enum { NAMED = 4 };
+    static const char *const named[NAMED] = {"pair-net", "contact-net", "scene-net", "relu-net"};
+    const char *methods[RENDER_PANELS_MAX + NAMED];
+    int count = 0;
+    for (int i = 0; i < RENDER_PANELS_MAX; i++)
+        if (live->methods[i] != NULL) methods[count++] = live->methods[i];
+    bool networks = false;
+    for (int i = 0; i < count; i++) networks |= method_describe(methods[i])->needs_network;
+    Scene *read = scene_read(scene, error);
+    for (int i = 0; read != NULL && networks && i < NAMED; i++)
+        if (scene_network(read, named[i]) != NULL) methods[count++] = named[i];
+    const bool ok = read != NULL;
+    scene_destroy(read);
+    live->module = live_module(networks);
+    void *bundle = NULL;
+    if (!ok || !live_pack(scene, methods, count, &bundle, &live->bundle_size, error)) return false;
+    live->bundle = bundle;
+    return true;
+}
+
+static bool write_live(const Options *options, Panels *panels, Error *error) {
+    char set[SCENE_SETTINGS_MAX * (SCENE_PARAMETER_SIZE + 32)];
+    const char *scene = find_scene(options, error);
+    PlayerLive live = {.scene = scene, .set = set};
+    if (scene == NULL) return false;
+    if (live_module(false).size == 0)
+        return error_input(error, "--live",
+                           "this build has no module for live pages; install clang, lld, wasi-libc and "
+                           "libclang-rt-dev-wasm32 (tests/setup --tests does), then configure and build afresh");
+    join_settings(&options->set, set, sizeof set);
+    const char *runs[RENDER_PANELS_MAX];
+    int count = 0;
+    const SceneSettings none = {0};
+    for (int i = 0; i < options->input_count; i++)
+        if (options->inputs[i] != scene) runs[count++] = options->inputs[i];
+    const bool ok = add_methods(options, scene, &live, panels, error) &&
+                    panels_load(panels, runs, count, &none, error) && pack(scene, &live, error) &&
+                    write_page(options, panels, &live, error);
+    free((void *)live.bundle);
+    return ok;
+}
+
+static bool write_recorded(const Options *options, Panels *panels, Error *error) {
+    if (options->method_count > 0) return error_input(error, "--method", "needs --live; or simulate the runs first");
+    return panels_load(panels, options->inputs, options->input_count, &options->set, error) &&
+           write_page(options, panels, NULL, error);
+}
+
 bool command_page(int argc, char **argv, Error *error) {
     Options options = {.every = 1, .frames = {0, -1}};
-    const SceneSettings none = {0};
     Panels panels = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (!output_check_file(options.output, ".html", error)) return false;
-    const bool ok =
-        panels_load(&panels, options.inputs, options.input_count, &none, error) && write_page(&options, &panels, error);
+    if (options.live && (options.every > 1 || options.frames.first != 0 || options.frames.last != -1))
+        return error_input(error, "--live", "shows whole runs; leave out --every and --frames");
+    const bool ok = options.live ? write_live(&options, &panels, error) : write_recorded(&options, &panels, error);
     panels_free(&panels);
     return ok;
 }

@@ -45,7 +45,7 @@ static void find_marks(Player *player, int index) {
     const Trajectory *first = player->picture.runs[0], *trajectory = player->picture.runs[index];
     PlayerRun *run = &player->runs[index];
     run->frames = player_frame_count(&player->frames, trajectory->frames);
-    run->chunks = (run->frames + PLAYER_CHUNK - 1) / PLAYER_CHUNK;
+    run->chunks = player_run_is_live(player, index) ? 0 : (run->frames + PLAYER_CHUNK - 1) / PLAYER_CHUNK;
     run->differs_frame = run->apart_frame = -1;
     run->compared = index == 0 || !trajectory_different_worlds(first, trajectory, run->why, sizeof run->why);
     if (index == 0 || !run->compared) return;
@@ -135,8 +135,7 @@ static void put_mark(JsonWriter *json, const char *key, int frame, int body) {
     json_end(json);
 }
 
-/* Width of text in ems of the built-in font. Grids of panels depend on it: not on the reader's fonts. */
-static double ems(FontFace face, const char *text) {
+double player_ems(FontFace face, const char *text) {
     const Font font = font_pick(face, EM);
     return (double)font_width(&font, text) / font.pixels;
 }
@@ -150,10 +149,11 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     json_put_text(json, "method", run->method);
     json_put_text(json, "name", name);
     json_put_text(json, "note", note);
-    json_put_number(json, "ems", ems(FONT_SEMIBOLD, name));
-    json_put_number(json, "note_ems", ems(FONT_REGULAR, note));
+    json_put_number(json, "ems", player_ems(FONT_SEMIBOLD, name));
+    json_put_number(json, "note_ems", player_ems(FONT_REGULAR, note));
     json_put_text(json, "file", player->options->files[index]);
-    json_put_hash(json, "hash", trajectory_hash(run));
+    json_put_hash(json, "hash",
+                  player_run_is_live(player, index) ? trajectory_frame_hash(run, run->frames - 1) : trajectory_hash(run));
     if (run->scene_hash != 0)
         json_put_hash(json, "scene_hash", run->scene_hash);
     else
@@ -175,6 +175,13 @@ static void put_verdict(JsonWriter *json, const Player *player, const Trajectory
     json_end(json);
 }
 
+void player_put_colours(JsonWriter *json, MethodColour colour) {
+    json_begin_object(json, "colours", JSON_ONE_LINE);
+    put_body_colors(json, "light", &theme_get(LOOK_LIGHT)->bodies[colour]);
+    put_body_colors(json, "dark", &theme_get(LOOK_DARK)->bodies[colour]);
+    json_end(json);
+}
+
 static void put_run_data(JsonWriter *json, const Player *player, int index) {
     const Trajectory *trajectory = player->picture.runs[index];
     const PlayerRun *run = &player->runs[index];
@@ -185,11 +192,9 @@ static void put_run_data(JsonWriter *json, const Player *player, int index) {
     json_put_int(json, "frames", run->frames);
     json_put_int(json, "chunks", run->chunks);
     json_put_bool(json, "velocities", !trajectory->no_velocities);
-    json_put_bool(json, "contacts", run->contacts != NULL);
-    json_begin_object(json, "colours", JSON_ONE_LINE);
-    put_body_colors(json, "light", &theme_get(LOOK_LIGHT)->bodies[player->picture.colours[index]]);
-    put_body_colors(json, "dark", &theme_get(LOOK_DARK)->bodies[player->picture.colours[index]]);
-    json_end(json);
+    json_put_bool(json, "contacts", run->contacts != NULL || player_run_is_live(player, index));
+    json_put_text(json, "live", player->options->live != NULL ? player->options->live->methods[index] : NULL);
+    player_put_colours(json, player->picture.colours[index]);
     put_verdict(json, player, trajectory);
     json_put_bool(json, "compared", run->compared);
     json_put_text(json, "why", run->why);
@@ -265,8 +270,8 @@ static void put_data(FILE *file, const Player *player) {
     json_put_int(&json, "total", player->picture.frames);
     json_put_int(&json, "chunk", PLAYER_CHUNK);
     json_put_int(&json, "impact", player_stored(&player->frames, first_impact(&player->picture)));
-    json_put_number(&json, "distance_ems", ems(FONT_REGULAR, "0.00 m"));
-    json_put_number(&json, "out_ems", ems(FONT_REGULAR, "00 out"));
+    json_put_number(&json, "distance_ems", player_ems(FONT_REGULAR, "0.00 m"));
+    json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out"));
     put_left_out(&json, player);
     put_framing(&json, &player->picture);
     put_measures(&json, player);
@@ -277,6 +282,7 @@ static void put_data(FILE *file, const Player *player) {
     json_begin_array(&json, "runs", JSON_LINES);
     for (int i = 0; i < player->picture.count; i++) put_run_data(&json, player, i);
     json_end(&json);
+    if (player->options->live != NULL) player_live_put(&json, player);
     json_end(&json);
 }
 
@@ -291,6 +297,8 @@ static void put_head(FILE *file, const Player *player) {
           file);
     html_put_script_hash(file, player_begin_sha256);
     html_put_script_hash(file, player_viewer_sha256);
+    /* A module of WebAssembly, in workers whose script is the page's own. */
+    if (player->options->live != NULL) fputs(" 'wasm-unsafe-eval'; worker-src blob:", file);
     fputs("\">\n<link rel=\"icon\" href=\"data:,\">\n<title>", file);
     html_put(file, title);
     for (int i = 0; i < player->picture.count; i++) {
@@ -324,6 +332,7 @@ static void put_run(FILE *file, const Player *player, int index) {
     put_packed(file, id, trajectory->size, bodies * sizeof *trajectory->size);
     snprintf(id, sizeof id, "fixed%d", index);
     put_packed(file, id, trajectory->fixed, bodies * sizeof *trajectory->fixed);
+    if (player_run_is_live(player, index)) return;
     snprintf(id, sizeof id, "hashes%d", index);
     put_packed(file, id, run->hashes, frames * sizeof *run->hashes);
     snprintf(id, sizeof id, "distances%d", index);
@@ -342,6 +351,10 @@ static void put_page(FILE *file, const void *context) {
     fputs("<script type=\"application/json\" id=\"data\">", file);
     put_data(file, player);
     fputs("</script>\n", file);
+    if (player->options->live != NULL) {
+        put_packed(file, "module", player->module.data, player->module.size);
+        put_packed(file, "bundle", player->bundle.data, player->bundle.size);
+    }
     put_packed(file, "viewer", player->viewer.data, player->viewer.size);
     fprintf(file, "<script>%s</script>\n</body>\n</html>\n", player_begin);
 }
@@ -389,7 +402,7 @@ bool player_write(const Trajectory *const *runs, int count, const PlayerOptions 
     Player player = {.options = options,
                      .most_bytes = options->most_bytes > 0 ? (double)options->most_bytes : PLAYER_MAX_BYTES};
     const bool ok = plan(&player, runs, count, error) && find_all_marks(&player, error) &&
-                    player_pack(&player, error) &&
+                    player_pack(&player, error) && (options->live == NULL || player_live_pack(&player, error)) &&
                     bytes_deflate(&player.viewer, player_viewer, strlen(player_viewer), error) &&
                     write_page(&player, path, result, error);
     player_free(&player);

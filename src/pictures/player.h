@@ -3,6 +3,7 @@
    frames bit by bit, and contacts rounded (pictures/player_internal.h). The script that draws it is in pictures/player. */
 #pragma once
 #include "base/base.h"
+#include "live/live.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"
 #include "runs/trajectory.h"
@@ -12,6 +13,16 @@
 /* Browsers take long to open larger pages. */
 #define PLAYER_MAX_BYTES 64000000
 
+/* What makes runs of a page live: it steps them itself, and its readers can launch them anew (live/live.h). */
+typedef struct PlayerLive {
+    const char *scene;                      /* as on the command line, for the commands that the page copies */
+    const char *set;                        /* settings of the scene: "name=value,name=value"; "": none */
+    const char *methods[RENDER_PANELS_MAX]; /* of the runs; NULL: this run is recorded */
+    const void *bundle;                     /* live_pack() */
+    size_t bundle_size;
+    LiveModule module;
+} PlayerLive;
+
 typedef struct PlayerOptions {
     int first, last;                      /* frames of the runs, inclusive; last -1: to the end */
     int every;                            /* shows every n-th of these frames; 0, 1: all */
@@ -19,6 +30,7 @@ typedef struct PlayerOptions {
     const char *title;                    /* NULL: the scene of the first run */
     const char *files[RENDER_PANELS_MAX]; /* where the runs are, for the command that the page copies; NULL: unknown */
     const char *names[RENDER_PANELS_MAX]; /* of runs; NULL: the method */
+    const PlayerLive *live;               /* NULL: all runs are recorded */
     /* The description of a run's method ("engine:k=20"). NULL, or returns NULL: the method has no description. */
     const MethodDescription *(*describe)(const char *method);
 } PlayerOptions;

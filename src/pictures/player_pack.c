@@ -256,6 +256,7 @@ static bool pack_states(Player *player, double *size, Error *error) {
     for (int i = 0; i < player->picture.count; i++) chunks += player->runs[i].chunks;
     for (int i = 0; i < player->picture.count; i++) {
         PlayerRun *run = &player->runs[i];
+        if (run->chunks == 0) continue;
         run->states = calloc((size_t)run->chunks, sizeof *run->states);
         if (run->states == NULL) return error_memory(error, "page");
         for (int k = 0; k < run->chunks; k++) {
@@ -294,7 +295,9 @@ bool player_pack(Player *player, Error *error) {
     if (size > player->most_bytes) return refuse(player, size, 1, 1, error);
     if (!pack_states(player, &size, error)) return false;
     for (int i = 0; i < player->picture.count; i++)
-        if (!player->picture.runs[i]->no_contacts && !pack_contacts_of(player, i, &size, error)) return false;
+        if (!player_run_is_live(player, i) && !player->picture.runs[i]->no_contacts &&
+            !pack_contacts_of(player, i, &size, error))
+            return false;
     player->left_contacts = size > player->most_bytes;
     for (int i = 0; player->left_contacts && i < player->picture.count; i++)
         free_chunks(&player->runs[i].contacts, player->runs[i].chunks);
@@ -309,5 +312,7 @@ void player_free(Player *player) {
         free(player->runs[i].distances);
     }
     free(player->viewer.data);
+    free(player->module.data);
+    free(player->bundle.data);
     picture_free(&player->picture);
 }

@@ -26,12 +26,20 @@ function file_of({file, method}) {
   return /^[\w./:=,+@%-]+$/.test(name) ? name : `'${name.replace(/'/g, "'\\''")}'`;
 }
 
+/* The commands that make the live runs. */
+function simulations() {
+  const quote = text => /^[\w./:=,+@%-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`;
+  const set = [...chosen].map(([name, value]) => ` --set ${name}=${value}`).join("");
+  return live_runs().map(run =>
+    `twinbox simulate ${quote(data.live.scene)}${set} --method ${quote(run.live)} -o ${file_of(run)} &&`);
+}
+
 ui["copy-link"].onclick = () => copy(location.href.split("#")[0] + link_text(), "Link");
 /* Options that compare leave out the runs that cannot be compared. */
 ui["copy-command"].onclick = () => {
   const {compare, show} = view, compares = compare !== "split" || show.has("ghosts") || show.has("distance");
   const options = [["frames", number_of(view.frame)], ...shown("camera"), ["theme", theme_name(), "light"]];
-  copy(["twinbox render", ...runs.filter(run => run.compared || !compares).map(file_of), "-o frame",
+  copy([...simulations(), "twinbox render", ...runs.filter(run => run.compared || !compares).map(file_of), "-o frame",
     ...words("--", " ", options)].join(" "), "Command");
 };
 ui.copied.onblur = () => { ui.refused.hidden = true; };

@@ -5,20 +5,26 @@ const COMPONENTS = ["vx", "vy", "omega", "x", "y", "angle"], POSES = 3;
 const CONTACT_KEYS = 3, CONTACT_VALUES = 6, SEARCH = 16, SHARE = 64;
 const HASH_START = [0x14650FB0, 0x739D0383]; /* FNV-1a 64: high and low half; the prime is 2^40 + 0x1B3 */
 
-const runs = data.runs.map((run, index) => {
-  const sizes = new Float32Array(packed("size" + index).buffer), bits = {};
+/* The arrays of a run: components by name and their bits. */
+function make_states(run, frames, bodies) {
+  const bits = {};
   for (const name of COMPONENTS) {
-    run[name] = new Float32Array(run.frames * run.bodies);
+    run[name] = new Float32Array(frames * bodies);
     bits[name] = new Uint32Array(run[name].buffer); /* a float that is copied as a number may lose the bits of a NaN */
   }
   run.x.fill(NaN); /* a body that is not decoded yet is not there */
-  return Object.assign(run, {
-    bits, index, size: Array.from({length: run.bodies}, (_, i) => [sizes[2 * i], sizes[2 * i + 1]]),
-    fixed: Array.from(packed("fixed" + index), Boolean), lists: [], loads: [], list_loads: [], done: [],
-    distances: new Float32Array(packed("distances" + index).buffer),
-    hashes: new DataView(packed("hashes" + index).buffer),
-  });
-});
+  return Object.assign(run, {bits, frames, bodies, lists: [], loads: [], list_loads: [], done: []});
+}
+
+const pairs = numbers => Array.from({length: numbers.length / 2}, (_, i) => [numbers[2 * i], numbers[2 * i + 1]]);
+
+/* A live run (live.js) has a method and no states yet. */
+const runs = data.runs.map((run, index) => Object.assign(make_states(run, run.frames, run.bodies), {
+  index, size: pairs(new Float32Array(packed("size" + index).buffer)),
+  fixed: Array.from(packed("fixed" + index), Boolean), reached: -1,
+  distances: run.live ? new Float32Array(run.frames) : new Float32Array(packed("distances" + index).buffer),
+  hashes: run.live ? null : new DataView(packed("hashes" + index).buffer),
+}));
 
 /* Number i of a column of `count` numbers in four planes of bytes; the same as a difference. */
 const number_at = (bytes, begin, count, i) => {
@@ -105,15 +111,17 @@ function chunks_of(run, frame) {
 }
 
 /* Contacts are several times as large as states: those of all runs are decoded where they are drawn or measured only. */
-const lists_wanted = run => run.contacts && (view.body >= 0 || shows("contacts") || shows("impulses"));
+const lists_wanted = run => run.contacts && !run.live && (view.body >= 0 || shows("contacts") || shows("impulses"));
 const list_place = (run, frame) => Math.min(Math.floor(frame), run.frames - 1);
 
 /* Whether all runs have what is shown of a frame. */
-const ready = frame => runs.every(run => chunks_of(run, frame).every(chunk => run.done[chunk]) &&
-  (!lists_wanted(run) || list_place(run, frame) in run.lists));
+const ready = frame => runs.every(run => run.live ? run.reached >= min(ceil(frame), run.frames - 1)
+  : chunks_of(run, frame).every(chunk => run.done[chunk]) &&
+    (!lists_wanted(run) || list_place(run, frame) in run.lists));
 
 /* Contacts lie relative to bodies: after the states. */
 const load = frame => Promise.all(runs.map(async run => {
+  if (run.live) return arrival();
   const chunks = chunks_of(run, frame);
   await Promise.all(chunks.map(chunk => load_states(run, chunk)));
   if (lists_wanted(run)) await load_lists(run, chunks[0]);
@@ -141,12 +149,12 @@ const stored_hash = (index, frame) => runs[index].hashes.getBigUint64(8 * frame,
 
 /* The check of all states against the hashes of the runs' files, a slice of time after the other. */
 const SLICE = 8; /* ms of script at once */
-const check = {frames: 0, of: runs.reduce((sum, run) => sum + run.frames, 0), wrong: 0};
+const check = {frames: 0, of: runs.reduce((sum, run) => sum + (run.live ? 0 : run.frames), 0), wrong: 0};
 const on_checked = [];
 const checked = () => ({...check});
 
 async function check_all() {
-  for (const run of runs)
+  for (const run of runs.filter(each => !each.live))
     for (let chunk = 0, frame = 0; chunk < run.chunks; chunk++) {
       await load_states(run, chunk);
       for (let since = performance.now(); frame < Math.min((chunk + 1) * data.chunk, run.frames); frame++) {
@@ -161,4 +169,5 @@ async function check_all() {
 }
 
 /* Of the step that follows from the poses of a frame; of the last frame, of its own step. */
-const contacts_at = (index, frame) => runs[index].lists[list_place(runs[index], frame)] ?? [];
+const contacts_at = (index, frame) => runs[index].live ? live_contacts(runs[index], list_place(runs[index], frame))
+  : runs[index].lists[list_place(runs[index], frame)] ?? [];

@@ -8,7 +8,8 @@ const ACTIONS = [
   ["ArrowLeft ArrowRight", "one frame; with Shift, ten",
     (key, event) => step(sign(key, "ArrowRight", "ArrowLeft") * (event.shiftKey ? 10 : 1))],
   ["Home End", "first, last frame", key => seek(key === "Home" ? 0 : last)],
-  ["1 2 3 4 5 6 7 8 9", "moment of this number", key => moments[key - 1] && seek(moments[key - 1].frame)],
+  ["1 2 3 4 5 6 7 8 9", "moment of this number",
+    key => asked ? answer(key - 1) : moments[key - 1] && seek(moments[key - 1].frame)],
   ["[ ]", "slower, faster",
     key => change({speed: SPEEDS[SPEEDS.indexOf(view.speed) + sign(key, "]", "[")] ?? view.speed})],
   ["m", "slow motion at impact", () => change({slow: !view.slow}), "slow"],
@@ -24,6 +25,13 @@ const ACTIONS = [
   ["t", "colours: auto, light, dark", () => change({theme: next_of(THEMES, view.theme)}), "theme"],
   ["?", "this list", () => ui.help.showModal(), "keys"],
 ];
+if (data.live)
+  ACTIONS.splice(-1, 0,
+    ["j l", "launch the bomb from 0.1 m further left, right; with Shift, 1 m",
+      (key, event) => nudge_bomb("bomb_x", sign(key, "l", "j") * (event.shiftKey ? 1 : 0.1))],
+    ["i k", "from 0.1 m higher, lower", (key, event) => nudge_bomb("bomb_y", sign(key, "i", "k") * (event.shiftKey ? 1 : 0.1))],
+    ["o u", "faster, slower by 0.5 m/s", key => nudge_bomb("bomb_speed", sign(key, "o", "u") * 0.5)]);
+ui["live-help"].hidden = !data.live;
 const LABELS = {ArrowLeft: "\u2190", ArrowRight: "\u2192", Escape: "Esc"};
 
 /* In the scrubber, whose own steps would be a hundredth of the run. */
@@ -36,11 +44,12 @@ for (const [keys, words, act, id] of ACTIONS) {
 
 onkeydown = event => {
   const {target} = event, own = selector => target.closest(selector);
-  const locked = /^[A-Z]$/.test(event.key) && !event.shiftKey; /* CapsLock */
+  const locked = /^[A-Z]$/.test(event.key) && (!event.shiftKey || /[JLIK]/.test(event.key)); /* CapsLock; 1 m */
   const key = event.key === " " ? "Space" : locked ? event.key.toLowerCase() : event.key;
   const typed = event.getModifierState("AltGraph"); /* brackets, on some keyboards, with Ctrl and Alt */
   if ((!typed && (event.ctrlKey || event.altKey)) || event.metaKey || ui.help.open) return;
-  if (key !== "Escape" && own("select, #copied")) return;
+  if (key !== "Escape" && own("select, #copied, [type=number]")) return;
+  if (/^(Arrow|Home|End|Page)/.test(key) && own("[type=range]:not(#scrubber)")) return;
   if (key === "Space" && own("button, [type=checkbox], [type=radio]")) return;
   if (/^(Arrow|Home|End)/.test(key) && own("[type=radio], #provenance")) return;
   const found = ACTIONS.find(([keys]) => keys.split(" ").includes(key)), by = target === ui.scrubber && SCRUBBER[key];

@@ -29,11 +29,17 @@ function link_text() {
   const {camera, body, run, speed, slow, theme} = view;
   return "#" + words("", "=", [["t", link_time()], ["body", body, -1], ["run", run, 0], ...shown("view"),
     ["follow", camera.kind === "body" ? "body" : "", ""], ["speed", speed, 1], ["slow", slow ? 1 : 0, 0],
-    ["theme", theme, "auto"]]).join("&");
+    ["theme", theme, "auto"], ...live_words()]).join("&");
 }
+
+/* The launch of a live page, where it is not the first one. */
+const live_words = () => !data.live ? [] : [["set", encodeURIComponent(set_text()), encodeURIComponent(first_set)],
+  ["methods", live_runs().map(run => encodeURIComponent(run.live)).join(";"),
+    first_runs.filter(each => each.live).map(each => encodeURIComponent(each.live)).join(";")]];
 
 /* What is absent or malformed has its default. */
 onhashchange = () => {
+  if (data.live) follow_link(location.hash);
   const link = new URLSearchParams(location.hash.slice(1)), text = key => link.get(key) ?? "";
   const one_of = (key, list, usual) => list.find(each => String(each) === text(key)) ?? usual;
   const [x, y, w, h] = text("view").split(",").map(Number), body = one_of("body", [...Array(most_bodies).keys()], -1);
@@ -45,6 +51,20 @@ onhashchange = () => {
     camera: is_view({x, y, w, h}) ? {kind, x, y, w, h} : FIT,
   });
 };
+
+/* The launch that a fragment names. Panels are added when the page knows its methods. */
+function follow_link(fragment) {
+  const link = new URLSearchParams(fragment.slice(1)), set = link.get("set") ?? first_set;
+  const methods = (link.get("methods") ?? first_runs.filter(each => each.live).map(each => each.live).join(";")).split(";");
+  if (set !== set_text()) read_set(set);
+  methods.filter(Boolean).slice(0, METHODS_MAX).forEach((text, i) => {
+    const run = live_runs()[i];
+    if (!run && setup.module) add_panel(text);
+    else if (run && run.live !== text) Object.assign(run, {live: text}), describe_run(run);
+  });
+  show_settings();
+  launch();
+}
 
 /* Where time stands still: browsers allow few changes of the address per second. The label is for those who do not see
    the picture. */

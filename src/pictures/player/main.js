@@ -55,11 +55,21 @@ for (const look of [...COMPARES, ...SHOWS]) {
   ui[kind].append(make("label", input, look));
 }
 on_checked.push(show_check, again);
+
+/* After a change of the runs: all that depends on them. */
+function runs_changed() {
+  on_runs.forEach(call => call());
+  themed = planned_for = "";
+  again();
+}
 dark_wanted.onchange = onresize = again;
 new ResizeObserver(again).observe(ui.frame);
+runs_changed();
 apply_theme();
+begin_live();
 onhashchange();
 load(view.frame).then(check_all).catch(undecoded);
 window.player = {
-  view, change, plan, camera, corners, body_at, to_pixel, state_hash, load, ready, checked, runs, data, draw,
+  view, change, plan, camera, corners, body_at, to_pixel, state_hash, load, ready, checked, runs, data, draw, choose, set_text,
+  setup, add_panel, set_method, launched: () => launched,
 };

@@ -94,14 +94,16 @@ function draw_vector(what, at, x, y) {
 /* At the edge of the panel, an arrow to a bomb that is outside. */
 function draw_pointer(run) {
   const {bomb, size} = runs[run];
+  runs[run].arrow = null;
   if (bomb < 0 || !exists(run, now, bomb)) return;
   const at = place(pose(run, now, bomb)), {left, top, width, height} = here;
   const line = max(0.0075 * lay.side, 2), inset = 3 * line, inside = (at, low, side) =>
     min(max(at, low + inset), low + side - inset);
   const edge = {x: inside(at.x, left, width), y: inside(at.y, top, height)};
   const x = at.x - edge.x, y = at.y - edge.y, away = hypot(x, y), tail = max(0.055 * lay.side, 14) / away;
-  if (away > eye.scale * min(...size[bomb]) / 2 + inset)
-    draw_arrow({x: edge.x - tail * x, y: edge.y - tail * y}, edge, false, line, look.bomb.fill, look.panel);
+  if (!(away > eye.scale * min(...size[bomb]) / 2 + inset)) return;
+  draw_arrow({x: edge.x - tail * x, y: edge.y - tail * y}, edge, false, line, look.bomb.fill, look.panel);
+  runs[run].arrow = edge;
 }
 
 /* An impulse is that on body b; body a receives the opposite. */

@@ -18,7 +18,7 @@ const table = (heads, rows) =>
 /* For each body that it touches the sum over their contact points, which the page has rounded to 2%. */
 function contact_rows(run, body) {
   const sums = {}, {contacts, lists} = runs[run];
-  if (contacts && !(list_place(runs[run], view.frame) in lists))
+  if (contacts && !runs[run].live && !(list_place(runs[run], view.frame) in lists))
     load_lists(runs[run], chunks_of(runs[run], view.frame)[0]).then(measure);
   for (const {a, b, normal, tangent} of contacts_at(run, view.frame)) {
     if (a !== body && b !== body) continue;

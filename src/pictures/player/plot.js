@@ -1,14 +1,14 @@
 /* The plot of the distances from the first run over time, logarithmic as in videos (src/pictures/timeline.c). */
 const LOWEST = -6, GUTTER = 44, BOTTOM = 88; /* decade; pixels */
 const DASHES = ["", "", "5 3", "1 2", "7 2 1 2", "3 2 3 5"], UNITS = ["1 \u00b5m", "1 mm", "1 m", "1 km"];
-const HIGHEST = min(3, max(-3, ceil(log10(data.scales.largest || 1) - 1e-9)));
+let highest = 0;
 const dots = [], values = []; /* of each run at this time */
 let plotted = "", cursor = null;
 
 const plot_width = () => ui.marks.clientWidth;
 const plot_x = frame => GUTTER + plot_width() * frame / (last || 1);
 const plot_y = metres =>
-  BOTTOM - (BOTTOM - 6) * (min(HIGHEST, max(LOWEST, log10(metres))) - LOWEST) / (HIGHEST - LOWEST);
+  BOTTOM - (BOTTOM - 6) * (min(highest, max(LOWEST, log10(metres))) - LOWEST) / (highest - LOWEST);
 const dashed = run => `stroke:var(--fill${run});stroke-dasharray:${DASHES[run]};`;
 
 /* The largest value of each column of pixels. What is not known leaves a gap. */
@@ -31,7 +31,7 @@ function axes() {
   const step = power * [1, 2, 5, 10].find(factor => factor * power >= least);
   const text = (x, y, words) => make("text", {x, y}, words);
   const parts = [path(`M${GUTTER} 0h${width}V${BOTTOM}H${GUTTER}`, "fill:var(--panel)")];
-  for (let decade = LOWEST; decade <= HIGHEST; decade++) {
+  for (let decade = LOWEST; decade <= highest; decade++) {
     const y = plot_y(10 ** decade), unit = UNITS[decade / 3 + 2] ?? "", colour = unit ? "grid_strong" : "grid";
     parts.push(path(`M${GUTTER} ${y}h${width}`, `stroke:var(--${colour})`), text(20, y + 4, unit));
   }
@@ -63,12 +63,19 @@ function draw_plot() {
   tell(ui.curve, (body < 0 ? "Largest distance" : `Distance of body ${body}`) + " from " + names[0]);
 }
 
-ui.curves.hidden = last === 0 || others.length === 0;
-for (const run of others) {
-  dots[run] = make("circle", {r: 3.5, style: `fill:var(--fill${run})`});
-  values[run] = make("data");
-  ui.key.append(make("span", drawing(path("M0 6h30", dashed(run))), names[run] + " ", values[run]));
+function list_curves() {
+  highest = min(3, max(-3, ceil(log10(data.scales.largest || 1) - 1e-9)));
+  plotted = "";
+  ui.curves.hidden = last === 0 || others.length === 0;
+  ui.key.replaceChildren(ui.curve);
+  for (const run of others) {
+    dots[run] = make("circle", {r: 3.5, style: `fill:var(--fill${run})`});
+    values[run] = make("data");
+    ui.key.append(make("span", drawing(path("M0 6h30", dashed(run))), names[run] + " ", values[run]));
+  }
 }
+
+on_runs.push(list_curves);
 ui.plot.onpointerdown = ui.plot.onpointermove = event => {
   if (event.buttons !== 1) return;
   ui.plot.setPointerCapture(event.pointerId);

@@ -55,6 +55,7 @@ function gather() {
 
 stage.onpointermove = event => {
   hover = {x: event.offsetX, y: event.offsetY};
+  if (drag_bomb(event)) return;
   if (!pressed.has(event.pointerId)) return measure();
   pressed.set(event.pointerId, hover);
   const {x, y, spread} = grip;
@@ -63,7 +64,7 @@ stage.onpointermove = event => {
   if (travelled > CLICK) move_view(x, y, grip.spread / spread, grip.x - x, grip.y - y);
 };
 stage.onpointerdown = event => {
-  if (event.button !== 0) return;
+  if (event.button !== 0 || (pressed.size === 0 && grab_bomb(event))) return;
   stage.setPointerCapture(event.pointerId);
   if (pressed.size === 0) travelled = 0;
   hover = {x: event.offsetX, y: event.offsetY};
@@ -71,6 +72,9 @@ stage.onpointerdown = event => {
   grip = gather();
 };
 stage.onpointerup = stage.onpointercancel = event => {
+  if (drop_bomb()) return;
+  const world = asked && travelled <= CLICK && to_world(planned, eye_now(), event.offsetX, event.offsetY);
+  if (world) answer(world.panel);
   const hit = event.type === "pointerup" && pressed.size === 1 && travelled <= CLICK && under();
   pressed.delete(event.pointerId);
   if (pressed.size > 0) grip = gather();

@@ -6,8 +6,9 @@ const view = {
   frame: 0, playing: false, speed: 1, slow: false, compare: "split", show: new Set(), body: -1, run: 0, camera: FIT,
   theme: "auto",
 };
-const last = data.frames - 1, most_bodies = max(...runs.map(run => run.bodies));
-const others = [...runs.keys()].filter(run => run > 0 && runs[run].compared);
+/* Of the runs; live ones come, go and change. on_runs: what depends on them. */
+let last = 0, most_bodies = 0, others = [], names = [];
+const on_runs = [];
 const dark_wanted = matchMedia("(prefers-color-scheme: dark)"), {style} = document.documentElement;
 const ui = {}; /* the elements that have names */
 for (const named of document.querySelectorAll("body :not(script)[id]")) ui[named.id] = named;
@@ -35,11 +36,17 @@ function cut(text, most = 40) {
   return all.length > most ? [...all.slice(0, half), "\u2026", ...all.slice(-half)].join("") : text;
 }
 
-/* Runs of the same name are numbered. */
-const names = runs.map(({name}, i) => {
-  const before = runs.slice(0, i).filter(run => run.name === name).length;
-  return cut(name) + (before > 0 ? ` (${before + 1})` : "");
-});
+function count_runs() {
+  last = max(...runs.map(run => run.frames)) - 1;
+  most_bodies = max(...runs.map(run => run.bodies));
+  others = [...runs.keys()].filter(run => run > 0 && runs[run].compared);
+  names = runs.map(({name}, i) => { /* of the same name they are numbered */
+    const before = runs.slice(0, i).filter(run => run.name === name).length;
+    return cut(name) + (before > 0 ? ` (${before + 1})` : "");
+  });
+}
+
+on_runs.push(count_runs);
 
 const theme_name = () => view.theme !== "auto" ? view.theme : dark_wanted.matches ? "dark" : "light";
 const theme = () => data.themes[theme_name()];

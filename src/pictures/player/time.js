@@ -63,29 +63,36 @@ function show_time() {
   if (!playing) ui.scrubber.ariaValueText = ui.time.textContent;
 }
 
-add_event(CIRCLE, runs.length, {frame: data.impact}, "impact");
-runs.forEach((each, run) => {
-  const {differs, apart, verdict} = each;
-  each.ended = verdict?.text ?? "";
-  add_event(DIAMOND, run, differs, names[run] + " differs from here on");
-  add_event(TRIANGLE, run, apart, names[run] + " is 1 mm away");
-  add_event(SQUARE, run, verdict, names[run] + " " + short_verdict(run));
-});
-moments.splice(0, Infinity, ...moments.filter(moment => moment));
-ui.moments.parentNode.hidden = moments.length === 0;
-moments.forEach(({frame, events}, i) => {
-  const onclick = () => seek(frame), shapes = () => events.map(([form, run]) => shape(form, run));
-  const label = [`${i + 1}: ${time_text(frame)}`, ...events.map(event => event[2])].join(", ");
-  const lines = shapes().map((mark, k) => make("div", mark, " " + events[k][2]));
-  ui.marks.append(make("button", {onclick, "aria-label": label}, i + 1, shapes()));
-  ui.moments.append(make("tr", {onclick}, make("td", i + 1), make("td", time_text(frame)), make("td", lines)));
-});
+function list_moments() {
+  moments.length = 0;
+  add_event(CIRCLE, runs.length, {frame: data.impact}, "impact");
+  runs.forEach((each, run) => {
+    const {differs, apart, verdict} = each;
+    each.ended = verdict?.text ?? "";
+    add_event(DIAMOND, run, differs, names[run] + " differs from here on");
+    add_event(TRIANGLE, run, apart, names[run] + " is 1 mm away");
+    add_event(SQUARE, run, verdict, names[run] + " " + short_verdict(run));
+  });
+  moments.splice(0, Infinity, ...moments.filter(moment => moment));
+  ui.moments.parentNode.hidden = moments.length === 0;
+  ui.marks.replaceChildren();
+  ui.moments.replaceChildren();
+  moments.forEach(({frame, events}, i) => {
+    const onclick = () => seek(frame), shapes = () => events.map(([form, run]) => shape(form, run));
+    const label = [`${i + 1}: ${time_text(frame)}`, ...events.map(event => event[2])].join(", ");
+    const lines = shapes().map((mark, k) => make("div", mark, " " + events[k][2]));
+    ui.marks.append(make("button", {onclick, "aria-label": label}, i + 1, shapes()));
+    ui.moments.append(make("tr", {onclick}, make("td", i + 1), make("td", time_text(frame)), make("td", lines)));
+  });
+  ui.scrubber.max = last;
+  ui.slow.disabled = data.impact < 0;
+  ui.slow.parentNode.title = ui.slow.disabled ? "no bomb touches a body" : "";
+  ui.play.disabled = ui.scrubber.disabled = ui.speed.disabled = last === 0;
+}
+
+on_runs.push(list_moments);
 for (const speed of SPEEDS) ui.speed.append(new Option(speed < 1 ? "1/" + 1 / speed : speed, speed));
 ui.speed.onchange = () => change({speed: Number(ui.speed.value)});
 ui.back.onclick = () => step(-1);
 ui.forth.onclick = () => step(1);
-ui.scrubber.max = last;
 ui.scrubber.oninput = () => seek(ui.scrubber.value);
-ui.slow.disabled = data.impact < 0;
-if (ui.slow.disabled) ui.slow.parentNode.title = "no bomb touches a body";
-ui.play.disabled = ui.scrubber.disabled = ui.speed.disabled = last === 0;

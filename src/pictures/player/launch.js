@@ -1,0 +1,172 @@
+/* The controls of a live page: launch, settings, methods, predictions; and the bomb under the pointer. */
+const NEAR_BOMB = 22; /* pixels from its middle, for fingers */
+const METHODS_MAX = 6;
+const inputs = new Map(); /* of the scene's settings, by name */
+let held = null, asked = false;
+
+const parameter = name => setup.scene?.parameters.find(each => each.name === name);
+const value_of = name => chosen.get(name) ?? parameter(name)?.value;
+const rounded = ({whole}, value) => whole ? round(value) : six_digits(value);
+
+/* Out of its range, a setting of the scene takes the end. */
+function choose(name, value) {
+  const each = parameter(name);
+  if (!each || !Number.isFinite(value)) return;
+  const bounded = rounded(each, min(max(value, each.from), each.to));
+  if (bounded === rounded(each, each.value) && !first_set.includes(name + "=")) chosen.delete(name); else chosen.set(name, bounded);
+  link_problem = "";
+  show_settings();
+  launch();
+}
+
+function show_settings() {
+  for (const [name, both] of inputs) for (const input of both) input.value = six_digits(value_of(name));
+}
+
+function setting_row(each) {
+  const {name, unit, from, to, whole} = each, label = name.replace("_", " "), step = whole ? 1 : "any";
+  const range = make("input", {type: "range", min: from, max: to, step, "aria-label": label,
+    oninput: () => choose(name, Number(range.value))});
+  const number = make("input", {type: "number", min: from, max: to, step, "aria-label": `${label}${unit ? ", " + unit : ""}`,
+    onchange: () => choose(name, Number(number.value))});
+  inputs.set(name, [range, number]);
+  return make("tr", make("th", label), make("td", range), make("td", number, " " + (unit ?? "")));
+}
+
+/* The text of a method, "interior:near=0.02", of its controls. */
+function method_text(name, settings) {
+  const given = settings.filter(([, value]) => value !== "").map(([key, value]) => `${key}=${value}`);
+  return name + (given.length > 0 ? ":" + given.join() : "");
+}
+
+function set_method(run, text) {
+  run.live = text;
+  describe_run(run);
+  const name = text.split(":")[0], method = data.live.methods.find(each => each.name === name);
+  if (method) run.colours = runs.find(each => each !== run && each.live?.split(":")[0] === name)?.colours ?? method.colours;
+  list_methods();
+  launch();
+}
+
+function method_row(run) {
+  const [name, rest = ""] = run.live.split(":"), given = new Map(rest.split(",").filter(Boolean).map(part => part.split("=")));
+  const method = setup.methods.find(each => each.name === name);
+  const usable = setup.methods.filter(each => !each.needs_network || first_runs.some(({live}) => live?.startsWith(each.name)));
+  const select = make("select", {"aria-label": "Method", onchange: () => set_method(run, select.value)},
+    usable.map(each => new Option(each.name, each.name, false, each.name === name)));
+  const controls = (method?.settings ?? []).filter(({type}) => type !== "text").map(({key, summary, type, from, to}) => {
+    const change_it = () => {
+      given.set(key, input.value);
+      set_method(run, method_text(name, [...given]));
+    };
+    const input = type === "bool" ? make("select", {onchange: change_it},
+      ["", "on", "off"].map(value => new Option(value || "usual", value, false, given.get(key) === value)))
+      : make("input", {type: "number", min: from, max: to, step: type === "int" ? 1 : "any", placeholder: "usual",
+        value: given.get(key) ?? "", onchange: change_it});
+    return make("label", {title: summary}, key, input);
+  });
+  const remove = make("button", {"aria-label": `Remove ${run.live}`, onclick: () => remove_panel(run)}, "Remove");
+  remove.disabled = live_runs().length < 2;
+  return make("div", {class: "bar"}, swatch(run.index), select, controls, remove);
+}
+
+function list_methods() {
+  ui.methods.replaceChildren(...live_runs().map(method_row));
+  ui.add.disabled = runs.length >= METHODS_MAX;
+}
+
+function remove_panel(run) {
+  run.worker.terminate();
+  runs.splice(runs.indexOf(run), 1);
+  Object.assign(view, {body: -1, run: 0});
+  take_stock();
+  list_methods();
+}
+
+function add_panel(text = "engine") {
+  const run = Object.assign(make_states({}, 1, 0), {index: runs.length, live: text, size: [], fixed: [], bomb: -1, reached: -1,
+    distances: new Float32Array(1), velocities: true, contacts: true, compared: false, why: "", scene: runs[0].scene,
+    iterations: runs[0].iterations, dt: runs[0].dt, steps: runs[0].steps, scene_hash: "", verdict: null,
+    colours: data.live.methods.find(({name}) => name === text.split(":")[0])?.colours ?? runs[0].colours});
+  describe_run(run);
+  runs.push(run);
+  open_worker(run);
+  take_stock();
+  list_methods();
+}
+
+/* When scene and methods are known. */
+function list_controls() {
+  const rank = ({name, common}) => !common ? 0 : name.startsWith("bomb") ? 1 : 2;
+  ui.settings.replaceChildren(...[...setup.scene.parameters].sort((a, b) => rank(a) - rank(b)).map(setting_row));
+  ui.launch.hidden = ui.panels.hidden = false;
+  show_settings();
+  list_methods();
+}
+
+/* The bomb of a panel, or the arrow to it, at a place; null: there is none. */
+function bomb_at({x, y}) {
+  const world = to_world(planned, eye_now(), x, y), run = world && planned.panels[world.panel].run;
+  if (!world || !runs[run].live || asked || !setup.scene?.bomb) return null;
+  const {bomb, size, arrow} = runs[run], near = (at, reach) => at && hypot(at.x - x, at.y - y) <= reach;
+  const seen = exists(run, view.frame, bomb) && to_pixel(planned, eye_now(), world.panel, ...(({x, y}) => [x, y])(pose(run, view.frame, bomb)));
+  const reach = seen && max(NEAR_BOMB, eye_now().scale * max(...size[bomb]) * 0.6);
+  return near(seen, reach) || near(arrow, NEAR_BOMB) ? world : null;
+}
+
+/* Dragging moves its launch by as much as the pointer: x; with Shift also its height; with Alt its speed. */
+function grab_bomb(event) {
+  if (!data.live || !bomb_at({x: event.offsetX, y: event.offsetY})) return false;
+  held = {x: event.offsetX, y: event.offsetY, bomb_x: value_of("bomb_x"), bomb_y: value_of("bomb_y"), bomb_speed: value_of("bomb_speed")};
+  stage.setPointerCapture(event.pointerId);
+  change({playing: false});
+  return true;
+}
+
+function drag_bomb(event) {
+  if (!held) {
+    stage.style.cursor = data.live && bomb_at({x: event.offsetX, y: event.offsetY}) ? "grab" : "";
+    return false;
+  }
+  const {scale} = eye_now(), right = (event.offsetX - held.x) / scale, up = (held.y - event.offsetY) / scale;
+  if (event.altKey) choose("bomb_speed", held.bomb_speed * 2 ** (right / 4));
+  else {
+    if (event.shiftKey) choose("bomb_y", held.bomb_y + up);
+    choose("bomb_x", held.bomb_x + right);
+  }
+  return true;
+}
+
+function drop_bomb() {
+  const was = held !== null;
+  held = null;
+  return was;
+}
+
+const nudge_bomb = (name, by) => data.live && choose(name, value_of(name) + by);
+
+/* Which panel will stand? Until it is answered only the first frame is shown. */
+function ask(on) {
+  asked = on;
+  document.body.classList.toggle("asked", on);
+  tell(ui.question, on ? "Which of these stands at the end? Click its panel, or press its number." : "");
+  if (on) change({frame: 0, playing: false});
+}
+
+function answer(panel) {
+  const run = planned.panels[panel]?.run;
+  if (run === undefined) return;
+  ask(false);
+  ui.predict.checked = false;
+  const words = runs.map((each, i) => `${names[i]} ${short_verdict(i)}`).join("; ");
+  tell(ui.question, `You said ${names[run]}: ${runs[run].holds ? "it stands." : "it does not."} ${words}.`);
+  toggle_play();
+}
+
+ui.reset.onclick = () => {
+  read_set(first_set);
+  show_settings();
+  launch();
+};
+ui.predict.onchange = () => ask(ui.predict.checked);
+ui.add.onclick = () => add_panel();

@@ -1,0 +1,225 @@
+/* Live runs: a worker for each steps it (worker.js), with the bits of the C program. A change of the launch, of a setting or of a
+   method starts all anew. */
+const LARGE = 4e5, PATIENCE = 150, WORDS = 9; /* states of a run without contacts; ms; 32-bit words of a contact */
+const first_set = data.live?.set ?? "", chosen = new Map(); /* settings of the scene, by name */
+const first_fragment = location.hash;
+const first_runs = data.runs.map(({live, hash}) => ({live, hash}));
+const setup = {scene: null, methods: [], url: "", module: null, bundle: null};
+let launched = 0, swapped = 0, arrivals = null, announce = null;
+
+const arrival = () => arrivals ??= new Promise(done => { announce = done; });
+const live_runs = () => runs.filter(run => run.live);
+const set_text = () => [...chosen].map(([name, value]) => `${name}=${value}`).join();
+const is_first = run => set_text() === first_set && first_runs.some(each => each.live === run.live);
+
+/* What is wrong with a link stays until a setting is chosen; what is wrong with a run, until it can be launched. */
+let link_problem = "", page_problem = "";
+function show_problems() {
+  const found = [page_problem, link_problem, ...live_runs().map(run => run.problem ?? "")].filter(text => text);
+  tell(ui.problem, [...new Set(found)].join(" "));
+  ui.problem.hidden = found.length === 0;
+}
+
+function complain(run, text) {
+  run.problem = text && `${run.live}: ${text}`;
+  show_problems();
+}
+
+function read_set(text) {
+  chosen.clear();
+  for (const part of text.split(",").filter(Boolean)) {
+    const [name, value] = part.split("=");
+    if (value === undefined || value.trim() === "" || !Number.isFinite(Number(value)))
+      link_problem = `"${cut(part)}" is no setting: NAME=NUMBER is needed.`;
+    else chosen.set(name, Number(value));
+  }
+  show_problems();
+}
+
+/* Steps all live runs from the start. */
+function launch() {
+  if (!setup.module) return;
+  launched++;
+  for (const run of live_runs())
+    run.worker.postMessage({id: launched, set: set_text(), method: run.live, until: min(ceil(view.frame), last),
+      contacts: run.frames * run.bodies < LARGE ? 1 : 0});
+}
+
+/* Floats of the columns of a part go to their places in the arrays of a run. */
+function copy_part(run, {first, bodies, positions, velocities, angles, spins, starts, contacts, last: end}) {
+  const at = first * bodies;
+  for (let i = 0; i < angles.length; i++) {
+    run.x[at + i] = positions[2 * i];
+    run.y[at + i] = positions[2 * i + 1];
+    run.vx[at + i] = velocities[2 * i];
+    run.vy[at + i] = velocities[2 * i + 1];
+  }
+  run.angle.set(angles, at);
+  run.omega.set(spins, at);
+  for (let frame = first; frame <= end; frame++) {
+    const from = starts[frame - first] - starts[0], to = starts[frame - first + 1] - starts[0];
+    run.lists[frame] = contacts.subarray(WORDS * from, WORDS * to);
+  }
+  run.reached = end;
+}
+
+/* The contacts of the step that follows from a frame; of the last one, of its own step. */
+function live_contacts(run, frame) {
+  const words = run.lists[min(frame + 1, run.frames - 1)] ?? [], all = [];
+  const number = words.length > 0 && new Float32Array(words.buffer, words.byteOffset, words.length);
+  for (let i = 0; i < words.length; i += WORDS) {
+    const [x, y, nx, ny, normal, tangent] = number.subarray(i + 3, i + WORDS);
+    all.push({a: words[i], b: words[i + 1], x, y, nx, ny, normal, tangent});
+  }
+  return all;
+}
+
+/* The first frame in which the bomb touches a box; -1: none. */
+function impact_of({bomb, fixed, lists, reached}) {
+  for (let frame = 1; bomb >= 0 && frame <= reached; frame++)
+    for (let i = 0; i < lists[frame].length; i += WORDS) {
+      const a = lists[frame][i], b = lists[frame][i + 1];
+      if ((a === bomb || b === bomb) && !fixed[a + b - bomb]) return frame;
+    }
+  return -1;
+}
+
+/* Where a run parts from the first one, as far as both are known. */
+function compare_run(run) {
+  const end = min(run.reached, runs[0].live ? runs[0].reached : runs[0].frames - 1);
+  run.differs = run.apart = null;
+  for (let frame = 0; frame <= end; frame++) {
+    let most = NaN;
+    for (let body = 0, at = frame * run.bodies; body < run.bodies; body++, at++) {
+      const metres = distance(run.index, frame, body);
+      if (!(metres <= most) && !Number.isNaN(metres)) most = metres;
+      if (metres > 1e-3) run.apart ??= {frame, body};
+      if (!run.differs && COMPONENTS.some(name => run.bits[name][at] !== runs[0].bits[name][at])) run.differs = {frame, body};
+    }
+    run.distances[frame] = most;
+    if (most > data.scales.largest) data.scales.largest = most;
+  }
+}
+
+/* The view for another scene than the first: what stands, and a margin. */
+function frame_scene(run) {
+  const framing = data.framing, box = {left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity};
+  run.fixed.forEach((still, body) => {
+    if (still || body === run.bomb || !exists(run.index, 0, body)) return;
+    const {x, y, angle} = pose(run.index, 0, body), [w, h] = run.size[body], c = abs(cos(angle)), s = abs(sin(angle));
+    box.left = min(box.left, x - (c * w + s * h) / 2);
+    box.right = max(box.right, x + (c * w + s * h) / 2);
+    box.bottom = min(box.bottom, y - (s * w + c * h) / 2);
+    box.top = max(box.top, y + (s * w + c * h) / 2);
+  });
+  const seen = [box.left, box.right, box.bottom, box.top, run.bodies].map(six_digits).join();
+  if (framing.set || !(box.right > box.left) || seen === framing.seen) return;
+  if (framing.seen) {
+    const wide = 0.11 * (box.right - box.left), high = box.top - box.bottom, below = 0.06 * high;
+    Object.assign(framing, {left: box.left - wide, right: box.right + wide, bottom: box.bottom - below,
+      top: box.top + 0.22 * high - below, middle: (box.left + box.right) / 2,
+      room_left: box.left - wide - high / 2, room_right: box.right + wide + high / 2});
+  }
+  framing.seen = seen;
+}
+
+function describe_run(run) {
+  const method = data.live.methods.find(({name}) => name === run.live.split(":")[0]);
+  const weigh = text => text_width({css: "600 100px Inter, system-ui, sans-serif"}, text) / 100;
+  Object.assign(run, {method: run.live, name: run.live, ems: run.live === method?.name ? method.ems : weigh(run.live),
+    note: method?.note ?? "", note_ems: method?.note_ems ?? 0, file: null});
+}
+
+/* All runs that have arrived are shown, together if they can. */
+function show_arrived(whole) {
+  const arrived = live_runs().filter(run => run.next);
+  if (!whole && arrived.length < live_runs().length && performance.now() - swapped < PATIENCE) return;
+  for (const run of arrived) {
+    Object.assign(run, run.next, {next: null});
+    describe_run(run);
+  }
+  swapped = performance.now();
+  take_stock();
+}
+
+/* What the page says of the runs that it has now. */
+function take_stock() {
+  runs.forEach((run, index) => Object.assign(run, {index}));
+  for (const run of runs)
+    run.compared = run.live && runs[0].live ? run.bodies === runs[0].bodies : run === runs[0] || (run.first && set_text() === first_set);
+  data.frames = data.total = max(...runs.map(run => run.frames));
+  if (runs[0].live) frame_scene(runs[0]);
+  data.scales.largest = 0;
+  for (const run of runs) if (run !== runs[0] && run.live && run.compared) compare_run(run);
+  data.impact = live_runs().map(impact_of).find(frame => frame >= 0) ?? -1;
+  if (view.frame > data.frames - 1) view.frame = data.frames - 1;
+  runs_changed();
+  show_proof();
+  announce?.();
+  arrivals = null;
+}
+
+function take_part(run, part) {
+  if (part.methods) return begin_launches(part);
+  if (part.error) return complain(run, part.error);
+  let into = run.shown === part.id ? run : run.next;
+  if (into?.shown !== part.id) {
+    if (part.first !== 0) return; /* the rest of a launch that is not shown any more */
+    into = run.next = make_states({shown: part.id, reached: -1}, part.frames, part.bodies);
+    Object.assign(into, {size: pairs(part.sizes), fixed: Array.from(part.fixed, Boolean), bomb: part.bomb,
+      distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: "", holds: null});
+  }
+  copy_part(into, part);
+  if (part.ended) {
+    into.hash = part.hash;
+    into.holds = part.verdict?.holds ?? false;
+    into.verdict = part.verdict && {text: part.verdict.words, frame: part.verdict.frame, body: part.verdict.body};
+    if (part.failure || part.id === launched) complain(run, part.failure);
+  }
+  if (into === run) take_stock(); else show_arrived(part.ended && part.id === launched && live_runs().every(each => each.next || each.shown === launched));
+}
+
+function open_worker(run) {
+  run.worker = new Worker(setup.url);
+  run.worker.onmessage = ({data: part}) => take_part(run, part);
+  run.worker.onerror = event => complain(run, event.message || "the worker has ended");
+  run.worker.postMessage({module: setup.module, bundle: setup.bundle});
+}
+
+/* Every worker says that it is open; the first also what there is to choose. */
+function begin_launches({methods, scene}) {
+  if (setup.methods.length === 0) {
+    Object.assign(setup, {methods, scene});
+    list_controls();
+    follow_link(first_fragment);
+  }
+  launch();
+}
+
+async function begin_live() {
+  if (!data.live) return;
+  runs.forEach(run => { run.first = !run.live && run.compared; });
+  read_set(first_set);
+  try {
+    [setup.module, setup.bundle] = await Promise.all(["module", "bundle"].map(inflated));
+    setup.url = URL.createObjectURL(new Blob([`(${panel_worker})()`], {type: "text/javascript"}));
+    live_runs().forEach(open_worker);
+  } catch (error) {
+    page_problem = `The runs cannot be stepped in this browser: ${error.message}`;
+    show_problems();
+  }
+}
+
+/* The hash of each run beside that of the C program, where it made the same run. */
+function show_proof() {
+  if (!data.live) return;
+  const marks = live_runs().map(run => {
+    const wanted = set_text() === first_set && first_runs.find(each => each.live === run.live)?.hash;
+    const known = run.reached === run.frames - 1 || run.hash;
+    if (!known) return make("p", `${names[run.index]}: ${run.reached} of ${run.frames - 1} steps`);
+    const mark = wanted ? wanted === run.hash ? " = that of the C program" : " is NOT that of the C program, " + wanted : "";
+    return make("p", {class: wanted && wanted !== run.hash ? "wrong" : ""}, `${names[run.index]}: hash `,
+      make("code", run.hash), mark);
+  });
+  ui.check.replaceChildren(...marks);
+}

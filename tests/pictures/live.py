@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A live page steps runs with the bits of the program: launches, drags of the bomb, settings, methods, links, commands."""
+import json
+import random
+import subprocess
+
+from checks import Checks
+from chromium import Chromium
+
+METHODS = "engine", "interior"
+SCENES = "single", "stack", "pyramid", "families/gate", "families/wall"
+LAUNCHES, POSITIONS = 10, 50
+ENDED = "player.runs.every(run => run.hash && run.reached === run.frames - 1 && run.shown === player.launched())"
+HASHES = "player.runs.map(run => run.hash)"
+PROBLEM = "document.getElementById('problem').textContent"
+BOMB = """(() => {
+  const stage = document.getElementById("stage"), box = stage.getBoundingClientRect();
+  const plan = player.plan(stage.clientWidth, stage.clientHeight), camera = player.camera(plan, player.view.frame);
+  const {bomb, x, y, bodies} = player.runs[0], at = player.view.frame * bodies + bomb;
+  const found = player.to_pixel(plan, camera, 0, x[at], y[at]);
+  return [box.x + found.x, box.y + found.y];
+})()"""
+
+
+def state(checks, scene, method, setting):
+    """What the program prints as the state of this run."""
+    given = [word for each in setting.split(",") if each for word in ("--set", each)]
+    done = checks.twinbox("simulate", f"{checks.scenes}/{scene}.yaml", "--method", method, *given, "--json")
+    return json.loads(done.stdout)["state"]
+
+
+def check_hashes(checks, page, scene, methods, what):
+    page.wait(ENDED)
+    setting = page.run("player.set_text()")
+    checks.equal(f"{scene} {setting} {what}", page.run(HASHES), [state(checks, scene, each, setting) for each in methods])
+
+
+def open_scene(checks, browser, scene, *methods, fragment="", **looks):
+    name = scene.replace("/", "-") + ".html"
+    options = [word for each in methods for word in ("--method", each)]
+    checks.twinbox("page", "--live", f"{checks.scenes}/{scene}.yaml", *options, "-o", name)
+    return browser.open(name, fragment, **looks)
+
+
+def check_launches(checks, browser):
+    launches = random.Random(1)
+    for scene in SCENES:
+        page = open_scene(checks, browser, scene, *METHODS)
+        page.wait(ENDED)
+        proof = page.run("document.getElementById('check').textContent")
+        checks.equal(f"{scene}: proofs", proof.count("= that of the C program"), len(METHODS))
+        x = page.run("player.setup.scene.parameters.find(each => each.name === 'bomb_x')")
+        for _ in range(LAUNCHES):
+            page.run("player.choose('bomb_x', $0)", launches.uniform(x["from"], x["to"]))
+            check_hashes(checks, page, scene, METHODS, "launched")
+            checks.equal(f"{scene}: problem", page.run(PROBLEM), "")
+        checks.quiet(scene, page)
+        page.close()
+
+
+def check_drag(checks, page):
+    page.run("player.change({frame: 8})")
+    page.settle()
+    x, y = page.run(BOMB)
+    page.mouse("mouseMoved", x, y)
+    page.mouse("mousePressed", x, y, button="left", clickCount=1)
+    seen = set()
+    for i in range(POSITIONS):
+        page.mouse("mouseMoved", x - 4 * i, y - i % 7, button="left", buttons=1)
+        check_hashes(checks, page, "stack", METHODS, "dragged")
+        seen.add(page.run("player.set_text()"))
+    page.mouse("mouseReleased", x, y, button="left", clickCount=1)
+    checks.true("a drag goes on to new places", len(seen) > POSITIONS - 5, len(seen))
+    checks.equal("a drag moves the launch, not the view", page.run("player.view.camera.kind"), "fit")
+
+
+def check_controls(checks, browser):
+    page = open_scene(checks, browser, "stack", *METHODS)
+    page.wait(ENDED)
+    check_drag(checks, page)
+    page.press("j", "Shift+L", "i", "o")
+    check_hashes(checks, page, "stack", METHODS, "by keys")
+    page.run("player.choose('iterations', 4)")
+    page.run("player.add_panel('momentum:k=20')")
+    page.wait("player.runs.length === 3")
+    check_hashes(checks, page, "stack", [*METHODS, "momentum:k=20"], "with another panel")
+    page.run("player.set_method(player.runs[2], 'soft-step:substeps=8')")
+    check_hashes(checks, page, "stack", [*METHODS, "soft-step:substeps=8"], "with another method")
+    page.run("document.getElementById('copy-command').click()")
+    command = page.wait("navigator.clipboard.readText()")
+    page.run("player.change({frame: 20})")
+    link = page.wait("location.hash.includes('methods=') && location.hash.includes('set=') && location.hash")
+    wanted = page.run(HASHES)
+    page.close()
+    for each in command.split(" && ")[:3]:
+        words = each.replace("twinbox", checks.program, 1).split()
+        done = subprocess.run([*words, "--json"], capture_output=True, text=True, check=True)
+        checks.true("a copied command", json.loads(done.stdout)["state"] in wanted, each)
+    page = browser.open("stack.html", link[1:])
+    page.wait("player.runs.length === 3")
+    page.wait(ENDED)
+    checks.equal("a link leads to the same runs", page.run(HASHES), wanted)
+    checks.equal("and to the moment", page.run("player.view.frame"), 20)
+    page.run("document.querySelector('#methods button').click()")
+    page.wait("player.runs.length === 2")
+    page.wait(ENDED)
+    checks.equal("a panel less", page.run(HASHES), wanted[1:])
+    checks.quiet("controls", page)
+    page.close()
+
+
+def check_prediction(checks, browser):
+    page = open_scene(checks, browser, "stack", "engine", "pair-net")
+    page.wait(ENDED)
+    page.run("document.getElementById('predict').click()")
+    page.settle()
+    checks.equal("nothing is told", page.run("getComputedStyle(document.getElementById('summary')).visibility"), "hidden")
+    page.press("2")
+    said = page.run("document.getElementById('question').textContent")
+    checks.true("the answer", said.startswith("You said pair-net: it does not."), said)
+    page.close()
+
+
+def check_rubbish(checks, browser):
+    for fragment, words in (("set=x=1e999", "x=1e999"), ("set=bomb_x=NaN", "bomb_x=NaN"), ("set=<b>=1", "is not a parameter"),
+                            ("methods=egnine", "did you mean 'engine'"), ("methods=engine:k=0", "k: error"),
+                            ("set=bomb_speed=-1", "bomb_speed must be")):
+        page = browser.open("stack.html", fragment)
+        found = page.wait(PROBLEM)
+        checks.true(f"#{fragment}", words in found, found)
+        page.close()
+
+
+def main():
+    with Checks() as checks:
+        with Chromium("!!window.player?.data") as browser:
+            browser.allow("clipboardReadWrite", "clipboardSanitizedWrite")
+            check_launches(checks, browser)
+            check_controls(checks, browser)
+            check_prediction(checks, browser)
+            check_rubbish(checks, browser)
+
+
+main()
