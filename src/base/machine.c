@@ -51,21 +51,20 @@ void cpu_name(char name[CPU_NAME_SIZE]) {
     if (name[0] == '\0') strcpy(name, "unknown");
 }
 
+/* letter: of the shell's ulimit. */
+static void lower(MemoryLimit *limit, rlim_t *least, rlim_t found, char letter) {
+    if (found == RLIM_INFINITY || found >= *least) return;
+    *least = found;
+    snprintf(limit->text, sizeof limit->text, "; the memory of a process is limited to %llu MiB (ulimit -%c)",
+             (unsigned long long)found >> 20, letter);
+}
+
 MemoryLimit memory_limit(void) {
-    static const struct {
-        int resource;
-        char letter; /* of the shell's ulimit */
-    } kinds[] = {{RLIMIT_AS, 'v'}, {RLIMIT_DATA, 'd'}};
     rlim_t least = RLIM_INFINITY;
     MemoryLimit limit = {""};
-    for (int i = 0; i < 2; i++) {
-        struct rlimit found;
-        if (getrlimit(kinds[i].resource, &found) != 0 || found.rlim_cur == RLIM_INFINITY || found.rlim_cur >= least)
-            continue;
-        least = found.rlim_cur;
-        snprintf(limit.text, sizeof limit.text, "; the memory of a process is limited to %llu MiB (ulimit -%c)",
-                 (unsigned long long)least >> 20, kinds[i].letter);
-    }
+    struct rlimit found;
+    if (getrlimit(RLIMIT_AS, &found) == 0) lower(&limit, &least, found.rlim_cur, 'v');
+    if (getrlimit(RLIMIT_DATA, &found) == 0) lower(&limit, &least, found.rlim_cur, 'd');
     return limit;
 }
 
