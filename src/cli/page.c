@@ -34,7 +34,8 @@ static const Option option_table[] = {
      "twinbox simulate",
      OPTION_FLAG(Options, live)},
     {"--method", 'm', "NAME",
-     "With --live: a panel by this method (may be repeated; default: engine and interior). One that a page cannot run is "
+     "With --live: a panel by this method (may be repeated; default: engine and interior). One that a page cannot run "
+     "is "
      "recorded",
      OPTION_TEXTS(Options, methods, method_count)},
     {OPTION_SET(Options, set)},

@@ -153,7 +153,8 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     json_put_number(json, "note_ems", player_ems(FONT_REGULAR, note));
     json_put_text(json, "file", player->options->files[index]);
     json_put_hash(json, "hash",
-                  player_run_is_live(player, index) ? trajectory_frame_hash(run, run->frames - 1) : trajectory_hash(run));
+                  player_run_is_live(player, index) ? trajectory_frame_hash(run, run->frames - 1)
+                                                    : trajectory_hash(run));
     if (run->scene_hash != 0)
         json_put_hash(json, "scene_hash", run->scene_hash);
     else
