@@ -214,7 +214,7 @@ static Extent standing_extent(const Trajectory *run, int frame, const Extent *re
     for (int body = 0; body < run->bodies; body++) {
         if (stands(run, frame, body, region)) extent_include_ground(&all, run, frame, body);
         if (run->fixed[body] && extent_holds(&near, run, frame, body) &&
-            fmax(run->size[body].x, run->size[body].y) <= largest)
+            (double)fmaxf(run->size[body].x, run->size[body].y) <= largest)
             extent_include(&all, run, frame, body);
     }
     return all;
