@@ -170,7 +170,7 @@ film="render long.npz --size 320x180 --jobs 2 --slow 2 -o"
 run 0 $film whole
 for signal in INT KILL; do
     rm -rf broken
-    strike $signal $([ $signal = INT ] && echo 130 || echo 137) "ls broken/*.png | grep -q 5" $film broken
+    strike $signal $([ $signal = INT ] && echo 130 || echo 137) "ls broken/*.png | grep -c . | grep -q [2-9]." $film broken
     [ -e broken/manifest.json ] && fail "$signal came too late"
     run 0 $film broken --resume
     sed -n 's/.*, \([0-9]*\) of them kept/\1/p' out >kept
