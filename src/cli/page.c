@@ -121,24 +121,18 @@ static void join_settings(const SceneSettings *set, char *text, size_t size) {
         text_add(text, size, "%s%s=%.17g", i > 0 ? "," : "", set->items[i].name, set->items[i].value);
 }
 
-/* All networks that its readers may choose come along: those that the scene names. */
 static bool pack(const char *scene, PlayerLive *live, Error *error) {
-    enum { NAMED = 4 };
-    static const char *const named[NAMED] = {"pair-net", "contact-net", "scene-net", "relu-net"};
-    const char *methods[RENDER_PANELS_MAX + NAMED];
-    int count = 0;
-    for (int i = 0; i < RENDER_PANELS_MAX; i++)
-        if (live->methods[i] != NULL) methods[count++] = live->methods[i];
-    bool networks = false;
-    for (int i = 0; i < count; i++) networks |= method_describe(methods[i])->needs_network;
-    Scene *read = scene_read(scene, error);
-    for (int i = 0; read != NULL && networks && i < NAMED; i++)
-        if (scene_network(read, named[i]) != NULL) methods[count++] = named[i];
-    const bool ok = read != NULL;
-    scene_destroy(read);
-    live->module = live_module(networks);
+    const char *methods[RENDER_PANELS_MAX];
     void *bundle = NULL;
-    if (!ok || !live_pack(scene, methods, count, &bundle, &live->bundle_size, error)) return false;
+    bool networks = false;
+    int count = 0;
+    for (int i = 0; i < RENDER_PANELS_MAX; i++) {
+        if (live->methods[i] == NULL) continue;
+        networks |= method_describe(live->methods[i])->needs_network;
+        methods[count++] = live->methods[i];
+    }
+    live->module = live_module(networks);
+    if (!live_pack(scene, methods, count, &bundle, &live->bundle_size, error)) return false;
     live->bundle = bundle;
     return true;
 }

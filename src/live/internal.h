@@ -20,5 +20,5 @@ Error *live_new_error(void);
 /* The scene with these settings; NULL with error set. */
 Scene *live_scene(LiveScene *scene, const char *settings, Error *error);
 
-/* The verdict on the run so far, which shares the run's memory: not to be freed. False: there is none. */
+/* The verdict on the run so far, which shares the run's memory: not to be freed. False where live_verdict() is NULL. */
 bool live_verdict_of(const LiveRun *run, SimulateVerdict *verdict);

@@ -17,7 +17,7 @@
        const hash = BigInt.asUintN(64, live.live_hash(run, frame)).toString(16).padStart(16, "0");
 
    All texts are UTF-8 with a NUL. A text that a function returns is valid until the next call that returns one. Any call may
-   move or grow the memory: views of it must be made anew after each call. Pointers are numbers; 0 is NULL. tests/live/live.mjs
+   move or grow the memory: make views of it again after each call. Pointers are numbers; 0 is NULL. tests/live/live.mjs
    is a small client. */
 #pragma once
 #include "base/base.h"
@@ -115,7 +115,7 @@ LIVE_EXPORT(live_contacts) const void *live_contacts(const LiveRun *run);
 LIVE_EXPORT(live_hash) uint64_t live_hash(const LiveRun *run, int frame);
 
 /* The verdict on the run so far as JSON: verdict, holds, frame, body (or -1), words: "falls at 4.22 s (body 7, 0.53 m lower)".
-   NULL: there is none, because a step failed for another reason than a NaN or infinite state. */
+   NULL if a step failed for another reason than a NaN or infinite state. */
 LIVE_EXPORT(live_verdict) const char *live_verdict(const LiveRun *run);
 
 /* The functions of the program. */

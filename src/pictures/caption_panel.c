@@ -263,7 +263,7 @@ static int name_width(const Picture *picture, int run, const Name *name) {
     return swatch_width(picture, run) + font_width(name->font, name->text.lines[0]) + picture->layout.title.pixels / 2;
 }
 
-/* Where the notes of all panels are: beside the names or on a line below, in this font; NULL: there are none. */
+/* Where the notes of all panels are: beside the names or on a line below, in this font; NULL: no panel has notes. */
 typedef struct Notes {
     const Font *font;
     bool beside;

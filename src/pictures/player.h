@@ -13,7 +13,7 @@
 /* Browsers take long to open larger pages. */
 #define PLAYER_MAX_BYTES 64000000
 
-/* What makes runs of a page live: it steps them itself, and its readers can launch them anew (live/live.h). */
+/* What makes runs of a page live: it steps them itself, and its readers can launch them again (live/live.h). */
 typedef struct PlayerLive {
     const char *scene;                      /* as on the command line, for the commands that the page copies */
     const char *set;                        /* settings of the scene: "name=value,name=value"; "": none */

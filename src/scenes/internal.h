@@ -45,7 +45,7 @@ BodyDef pattern_body(const Pattern *pattern, int64_t i);
 
 /* Expressions: numbers of a scene file made of decimals and $names of the scene's parameters by + - * / and parentheses, such
    as $height + 0.25, with blanks where one likes. Products go before sums, else from left to right. The tree's context is
-   the scene's Parameters, or NULL where there are none. */
+   the scene's Parameters, or NULL for a scene without. */
 
 /* A file of 1.5 MB has room for 750,000 parentheses. */
 enum { EXPRESSION_MAX_PARTS = 32, EXPRESSION_SHOWN_SIZE = 320 };

@@ -80,6 +80,10 @@ def check_controls(checks, browser):
     check_drag(checks, page)
     page.press("j", "Shift+L", "i", "o")
     check_hashes(checks, page, "stack", METHODS, "by keys")
+    page.run("player.choose('dt', 0.01)")
+    check_hashes(checks, page, "stack", METHODS, "with other steps")
+    checks.equal("the time of other steps", page.run("document.getElementById('time').textContent.split(',')[0]"),
+                 f"t = {page.run('player.view.frame') / 100:.3f} s")
     page.run("player.choose('iterations', 4)")
     page.run("player.add_panel('momentum:k=20')")
     page.wait("player.runs.length === 3")

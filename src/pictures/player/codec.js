@@ -3,6 +3,7 @@
 const data = JSON.parse(document.getElementById("data").textContent);
 const COMPONENTS = ["vx", "vy", "omega", "x", "y", "angle"], POSES = 3;
 const CONTACT_KEYS = 3, CONTACT_VALUES = 6, SEARCH = 16, SHARE = 64;
+const stored_dt = data.dt; /* that of live runs may change */
 const HASH_START = [0x14650FB0, 0x739D0383]; /* FNV-1a 64: high and low half; the prime is 2^40 + 0x1B3 */
 
 /* The arrays of a run: components by name and their bits. */
@@ -46,7 +47,7 @@ function decode_component(run, bytes, which, begin, length) {
     for (let k = 0, at = begin * bodies + body; k < length; k++, at += bodies) {
       let predicted = k > 0 ? bits[at - bodies] : 0;
       if (k > 0 && speeds) {
-        as_float[0] = values[at - bodies] + Math.fround(data.dt * speeds[at]);
+        as_float[0] = values[at - bodies] + Math.fround(stored_dt * speeds[at]);
         if (!Number.isNaN(as_float[0])) predicted = as_bits[0];
       }
       bits[at] = predicted + difference_at(bytes, 4 * which * count, count, body * length + k);

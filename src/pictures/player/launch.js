@@ -13,7 +13,7 @@ function choose(name, value) {
   const each = parameter(name);
   if (!each || !Number.isFinite(value)) return;
   const bounded = rounded(each, min(max(value, each.from), each.to));
-  if (bounded === rounded(each, each.value) && !first_set.includes(name + "=")) chosen.delete(name); else chosen.set(name, bounded);
+  if (bounded === rounded(each, each.value)) chosen.delete(name); else chosen.set(name, bounded);
   link_problem = "";
   show_settings();
   launch();
@@ -51,7 +51,7 @@ function set_method(run, text) {
 function method_row(run) {
   const [name, rest = ""] = run.live.split(":"), given = new Map(rest.split(",").filter(Boolean).map(part => part.split("=")));
   const method = setup.methods.find(each => each.name === name);
-  const usable = setup.methods.filter(each => !each.needs_network || first_runs.some(({live}) => live?.startsWith(each.name)));
+  const usable = setup.methods.filter(each => !each.needs_network || first_runs.some(({live}) => live?.split(":")[0] === each.name));
   const select = make("select", {"aria-label": "Method", onchange: () => set_method(run, select.value)},
     usable.map(each => new Option(each.name, each.name, false, each.name === name)));
   const controls = (method?.settings ?? []).filter(({type}) => type !== "text").map(({key, summary, type, from, to}) => {
@@ -104,19 +104,20 @@ function list_controls() {
   list_methods();
 }
 
-/* The bomb of a panel, or the arrow to it, at a place; null: there is none. */
-function bomb_at({x, y}) {
-  const world = to_world(planned, eye_now(), x, y), run = world && planned.panels[world.panel].run;
-  if (!world || !runs[run].live || asked || !setup.scene?.bomb) return null;
-  const {bomb, size, arrow} = runs[run], near = (at, reach) => at && hypot(at.x - x, at.y - y) <= reach;
-  const seen = exists(run, view.frame, bomb) && to_pixel(planned, eye_now(), world.panel, ...(({x, y}) => [x, y])(pose(run, view.frame, bomb)));
-  const reach = seen && max(NEAR_BOMB, eye_now().scale * max(...size[bomb]) * 0.6);
-  return near(seen, reach) || near(arrow, NEAR_BOMB) ? world : null;
+/* Whether a bomb, or the arrow to it, is at a place. */
+function is_bomb_at(x, y) {
+  const eye = eye_now(), panel = to_world(planned, eye, x, y)?.panel, run = planned.panels[panel]?.run;
+  if (run === undefined || !runs[run].live || asked || !setup.scene?.bomb) return false;
+  const {bomb, size, arrow} = runs[run], near = (at, reach) => hypot(at.x - x, at.y - y) <= reach;
+  if (arrow && near(arrow, NEAR_BOMB)) return true;
+  if (!exists(run, view.frame, bomb)) return false;
+  const at = pose(run, view.frame, bomb);
+  return near(to_pixel(planned, eye, panel, at.x, at.y), max(NEAR_BOMB, eye.scale * max(...size[bomb]) * 0.6));
 }
 
 /* Dragging moves its launch by as much as the pointer: x; with Shift also its height; with Alt its speed. */
 function grab_bomb(event) {
-  if (!data.live || !bomb_at({x: event.offsetX, y: event.offsetY})) return false;
+  if (!data.live || !is_bomb_at(event.offsetX, event.offsetY)) return false;
   held = {x: event.offsetX, y: event.offsetY, bomb_x: value_of("bomb_x"), bomb_y: value_of("bomb_y"), bomb_speed: value_of("bomb_speed")};
   stage.setPointerCapture(event.pointerId);
   change({playing: false});
@@ -125,7 +126,7 @@ function grab_bomb(event) {
 
 function drag_bomb(event) {
   if (!held) {
-    stage.style.cursor = data.live && bomb_at({x: event.offsetX, y: event.offsetY}) ? "grab" : "";
+    stage.style.cursor = data.live && is_bomb_at(event.offsetX, event.offsetY) ? "grab" : "";
     return false;
   }
   const {scale} = eye_now(), right = (event.offsetX - held.x) / scale, up = (held.y - event.offsetY) / scale;

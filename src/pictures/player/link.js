@@ -39,7 +39,10 @@ const live_words = () => !data.live ? [] : [["set", encodeURIComponent(set_text(
 
 /* What is absent or malformed has its default. */
 onhashchange = () => {
-  if (data.live) follow_link(location.hash);
+  if (data.live) {
+    follow_link(location.hash);
+    launch();
+  }
   const link = new URLSearchParams(location.hash.slice(1)), text = key => link.get(key) ?? "";
   const one_of = (key, list, usual) => list.find(each => String(each) === text(key)) ?? usual;
   const [x, y, w, h] = text("view").split(",").map(Number), body = one_of("body", [...Array(most_bodies).keys()], -1);
@@ -63,7 +66,6 @@ function follow_link(fragment) {
     else if (run && run.live !== text) Object.assign(run, {live: text}), describe_run(run);
   });
   show_settings();
-  launch();
 }
 
 /* Where time stands still: browsers allow few changes of the address per second. The label is for those who do not see

@@ -1,7 +1,8 @@
-/* Live runs: a worker for each steps it (worker.js), with the bits of the C program. A change of the launch, of a setting or of a
-   method starts all anew. */
+/* Live runs: a worker for each steps it (worker.js), with the bits of the C program. After a change of the launch, of a setting
+   or of a method, all start again. */
 const LARGE = 4e5, PATIENCE = 150, WORDS = 9; /* states of a run without contacts; ms; 32-bit words of a contact */
-const first_set = data.live?.set ?? "", chosen = new Map(); /* settings of the scene, by name */
+const chosen = new Map(); /* settings of the scene, by name */
+let first_set = ""; /* those that the page begins with, as set_text() */
 const first_fragment = location.hash;
 const first_runs = data.runs.map(({live, hash}) => ({live, hash}));
 const setup = {scene: null, methods: [], url: "", module: null, bundle: null};
@@ -10,7 +11,8 @@ let launched = 0, swapped = 0, arrivals = null, announce = null;
 const arrival = () => arrivals ??= new Promise(done => { announce = done; });
 const live_runs = () => runs.filter(run => run.live);
 const set_text = () => [...chosen].map(([name, value]) => `${name}=${value}`).join();
-const is_first = run => set_text() === first_set && first_runs.some(each => each.live === run.live);
+/* Whether a run has what it has of the latest launch: states, or an error. */
+const is_settled = run => [run.next?.shown, run.shown, run.failed].includes(launched);
 
 /* What is wrong with a link stays until a setting is chosen; what is wrong with a run, until it can be launched. */
 let link_problem = "", page_problem = "";
@@ -27,6 +29,7 @@ function complain(run, text) {
 
 function read_set(text) {
   chosen.clear();
+  link_problem = "";
   for (const part of text.split(",").filter(Boolean)) {
     const [name, value] = part.split("=");
     if (value === undefined || value.trim() === "" || !Number.isFinite(Number(value)))
@@ -38,11 +41,11 @@ function read_set(text) {
 
 /* Steps all live runs from the start. */
 function launch() {
-  if (!setup.module) return;
+  if (!live_runs().every(run => run.open)) return;
   launched++;
   for (const run of live_runs())
     run.worker.postMessage({id: launched, set: set_text(), method: run.live, until: min(ceil(view.frame), last),
-      contacts: run.frames * run.bodies < LARGE ? 1 : 0});
+      contacts: (last + 1) * most_bodies < LARGE ? 1 : 0});
 }
 
 /* Floats of the columns of a part go to their places in the arrays of a run. */
@@ -97,7 +100,6 @@ function compare_run(run) {
       if (!run.differs && COMPONENTS.some(name => run.bits[name][at] !== runs[0].bits[name][at])) run.differs = {frame, body};
     }
     run.distances[frame] = most;
-    if (most > data.scales.largest) data.scales.largest = most;
   }
 }
 
@@ -131,9 +133,9 @@ function describe_run(run) {
 }
 
 /* All runs that have arrived are shown, together if they can. */
-function show_arrived(whole) {
+function show_arrived() {
   const arrived = live_runs().filter(run => run.next);
-  if (!whole && arrived.length < live_runs().length && performance.now() - swapped < PATIENCE) return;
+  if (!live_runs().every(is_settled) && performance.now() - swapped < PATIENCE) return;
   for (const run of arrived) {
     Object.assign(run, run.next, {next: null});
     describe_run(run);
@@ -147,10 +149,17 @@ function take_stock() {
   runs.forEach((run, index) => Object.assign(run, {index}));
   for (const run of runs)
     run.compared = run.live && runs[0].live ? run.bodies === runs[0].bodies : run === runs[0] || (run.first && set_text() === first_set);
+  if (runs[0].live && runs[0].dt !== data.dt) { /* the moment stays */
+    view.frame = round(view.frame * data.dt / runs[0].dt);
+    data.dt = runs[0].dt;
+  }
   data.frames = data.total = max(...runs.map(run => run.frames));
   if (runs[0].live) frame_scene(runs[0]);
   data.scales.largest = 0;
-  for (const run of runs) if (run !== runs[0] && run.live && run.compared) compare_run(run);
+  for (const run of runs.filter(each => each.compared && each !== runs[0])) {
+    if (run.live) compare_run(run);
+    data.scales.largest = run.distances.reduce((most, metres) => metres > most ? metres : most, data.scales.largest);
+  }
   data.impact = live_runs().map(impact_of).find(frame => frame >= 0) ?? -1;
   if (view.frame > data.frames - 1) view.frame = data.frames - 1;
   runs_changed();
@@ -160,14 +169,19 @@ function take_stock() {
 }
 
 function take_part(run, part) {
-  if (part.methods) return begin_launches(part);
-  if (part.error) return complain(run, part.error);
+  if (part.methods) return begin_launches(run, part);
+  if (part.error) {
+    run.open = true;
+    run.failed = part.id;
+    complain(run, part.error);
+    return part.id ? show_arrived() : launch();
+  }
   let into = run.shown === part.id ? run : run.next;
   if (into?.shown !== part.id) {
     if (part.first !== 0) return; /* the rest of a launch that is not shown any more */
     into = run.next = make_states({shown: part.id, reached: -1}, part.frames, part.bodies);
     Object.assign(into, {size: pairs(part.sizes), fixed: Array.from(part.fixed, Boolean), bomb: part.bomb,
-      distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: "", holds: null});
+      ...part.scene, contacts: part.recorded, distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: "", holds: null});
   }
   copy_part(into, part);
   if (part.ended) {
@@ -176,7 +190,7 @@ function take_part(run, part) {
     into.verdict = part.verdict && {text: part.verdict.words, frame: part.verdict.frame, body: part.verdict.body};
     if (part.failure || part.id === launched) complain(run, part.failure);
   }
-  if (into === run) take_stock(); else show_arrived(part.ended && part.id === launched && live_runs().every(each => each.next || each.shown === launched));
+  if (into === run) take_stock(); else show_arrived();
 }
 
 function open_worker(run) {
@@ -186,8 +200,9 @@ function open_worker(run) {
   run.worker.postMessage({module: setup.module, bundle: setup.bundle});
 }
 
-/* Every worker says that it is open; the first also what there is to choose. */
-function begin_launches({methods, scene}) {
+/* A worker is open, and tells methods and settings to choose from. */
+function begin_launches(run, {methods, scene}) {
+  run.open = true;
   if (setup.methods.length === 0) {
     Object.assign(setup, {methods, scene});
     list_controls();
@@ -199,7 +214,8 @@ function begin_launches({methods, scene}) {
 async function begin_live() {
   if (!data.live) return;
   runs.forEach(run => { run.first = !run.live && run.compared; });
-  read_set(first_set);
+  read_set(data.live.set);
+  first_set = set_text();
   try {
     [setup.module, setup.bundle] = await Promise.all(["module", "bundle"].map(inflated));
     setup.url = URL.createObjectURL(new Blob([`(${panel_worker})()`], {type: "text/javascript"}));
@@ -215,8 +231,7 @@ function show_proof() {
   if (!data.live) return;
   const marks = live_runs().map(run => {
     const wanted = set_text() === first_set && first_runs.find(each => each.live === run.live)?.hash;
-    const known = run.reached === run.frames - 1 || run.hash;
-    if (!known) return make("p", `${names[run.index]}: ${run.reached} of ${run.frames - 1} steps`);
+    if (!run.hash) return make("p", `${names[run.index]}: ${run.reached} of ${run.frames - 1} steps`);
     const mark = wanted ? wanted === run.hash ? " = that of the C program" : " is NOT that of the C program, " + wanted : "";
     return make("p", {class: wanted && wanted !== run.hash ? "wrong" : ""}, `${names[run.index]}: hash `,
       make("code", run.hash), mark);

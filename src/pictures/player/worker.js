@@ -35,10 +35,10 @@ function panel_worker() {
   }
 
   /* Frames first ... last of a run, and what is known of the whole when it has ended. */
-  function send(run, id, first, last, ended) {
+  function send(run, {id, contacts}, about, first, last, ended) {
     const bodies = live.live_bodies(run), at = first * bodies, count = (last - first + 1) * bodies;
     const part = {
-      id, first, last, bodies, frames: live.live_frames(run), bomb: live.live_bomb(run), ended,
+      id, first, last, bodies, scene: about, recorded: contacts === 1, frames: live.live_frames(run), bomb: live.live_bomb(run), ended,
       sizes: copy(Float32Array, live.live_sizes(run), 0, 2 * bodies), fixed: copy(Uint8Array, live.live_fixed(run), 0, bodies),
       positions: copy(Float32Array, live.live_positions(run), 2 * at, 2 * count),
       angles: copy(Float32Array, live.live_angles(run), at, count),
@@ -64,10 +64,10 @@ function panel_worker() {
   });
 
   /* A newer launch has to wait until this one has been shown at the page's time, or a drag would never show anything. */
-  async function simulate({id, set, method, until, contacts}) {
-    const run = must("live_begin", scene, set, method, contacts);
+  async function simulate(launch) {
+    const {set, method, until, contacts} = launch, run = must("live_begin", scene, set, method, contacts);
     try {
-      const end = live.live_frames(run) - 1;
+      const end = live.live_frames(run) - 1, {dt, steps, iterations} = json("live_describe", scene, set);
       for (let next = 0, frame = 0, sent = performance.now();;) {
         for (const since = performance.now(); frame < end && performance.now() - since < SLICE;) {
           const before = frame;
@@ -76,7 +76,7 @@ function panel_worker() {
         }
         const ended = frame === end || text(live.live_failure(run)) !== "";
         if (ended || (frame >= until && performance.now() - sent > SHARE)) {
-          send(run, id, next, frame, ended);
+          send(run, launch, {dt, steps, iterations}, next, frame, ended);
           [next, sent] = [frame + 1, performance.now()];
         }
         if (ended || (wanted && next > until)) return;
