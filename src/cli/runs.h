@@ -76,7 +76,7 @@ void stability_plan_print(const PiecesEstimate *estimate);
 typedef struct ClipMap {
     const char *name;                      /* as in maps.csv */
     const char *scene;                     /* path of the scene file */
-    const char *x_parameter, *y_parameter; /* of the scene */
+    const char *x_parameter, *y_parameter; /* of the scene; y "": only one is set */
 } ClipMap;
 
 /* First the method that holds, if there is one, which is not the cell's own. */
@@ -89,10 +89,10 @@ typedef struct CellRuns {
 
 enum { CELL_NOTE_SIZE = 160 };
 
-/* Runs the cell's method and the first one that holds there, until three seconds after the frame that decided the verdict, at
-   most 60 frames per second. The runs have the verdicts of the table. `progress` NULL: each run has a bar. Errors name
-   `input`. cell_runs_free() also after a failure. */
-bool cell_runs_make(CellRuns *runs, const ClipMap *map, const CsvTable *table, const MapCell *cell, const char *input,
+/* Runs the cell's method and, unless it holds, that of `holder`, if not NULL, until three seconds after the frame that
+   decided the cell's verdict, at most 60 frames per second. The runs have the verdicts of the cells. `progress` NULL: each run
+   has a bar. Errors name `input`. cell_runs_free() also after a failure. */
+bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapCell *holder, const MapCell *cell, const char *input,
                     const Progress *progress, Error *error);
 void cell_runs_free(CellRuns *runs);
 
@@ -133,11 +133,12 @@ typedef struct ClipOptions {
    its scene; ERROR_SYSTEM: ffmpeg is missing. */
 bool stability_clip(const ClipOptions *options, Error *error);
 
-/* The pages of stability maps: each plays what happened in a cell beside the first method that holds there. */
+/* The pages of stability: each plays what happened in a cell of a map, or where a border fails, beside the first method that
+   holds there. */
 
 typedef struct StabilityPages {
-    const char *folder;  /* of maps.csv */
-    const ClipMap *maps; /* [map_count] */
+    const StabilityOptions *study; /* whose folder has the tables */
+    const ClipMap *maps;           /* [map_count] */
     int map_count;
 } StabilityPages;
 

@@ -113,17 +113,11 @@ typedef struct Making {
     const Progress *progress;
 } Making;
 
-static void choose_rows(CellRuns *runs, const CsvTable *table, const MapCell *cell) {
-    const MapCell *holder = verdict_holds((Verdict)cell->verdict) ? NULL : stability_cell_holder(table, cell);
-    if (holder != NULL) runs->rows[runs->count++] = holder;
-    runs->rows[runs->count++] = cell;
-}
-
 static Scene *read_scene(const Making *making, Error *error) {
     SceneSetting settings[2] = {{.value = making->runs->rows[0]->x}, {.value = making->runs->rows[0]->y}};
     snprintf(settings[0].name, sizeof settings[0].name, "%s", making->map->x_parameter);
     snprintf(settings[1].name, sizeof settings[1].name, "%s", making->map->y_parameter);
-    return scene_read_with(making->map->scene, settings, 2, error);
+    return scene_read_with(making->map->scene, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
 }
 
 /* "falls at 4.22 s (0.53 m, body 7)" */
@@ -186,11 +180,12 @@ static bool thin_out(CellRuns *runs, Error *error) {
     return true;
 }
 
-bool cell_runs_make(CellRuns *runs, const ClipMap *map, const CsvTable *table, const MapCell *cell, const char *input,
+bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapCell *holder, const MapCell *cell, const char *input,
                     const Progress *progress, Error *error) {
     const Making making = {runs, map, input, progress};
     *runs = (CellRuns){.count = 0};
-    choose_rows(runs, table, cell);
+    if (holder != NULL && !verdict_holds((Verdict)cell->verdict)) runs->rows[runs->count++] = holder;
+    runs->rows[runs->count++] = cell;
     return run_all(&making, error) && thin_out(runs, error);
 }
 
@@ -249,7 +244,7 @@ bool stability_clip(const ClipOptions *options, Error *error) {
     const ClipMap *map =
         row != NULL ? clip_map_find(options->maps, options->map_count, row->map, "--clip", error) : NULL;
     bool ok = map != NULL && video_check_programs(error) &&
-              cell_runs_make(&runs, map, &table, row, options->cell, NULL, error) &&
+              cell_runs_make(&runs, map, stability_cell_holder(&table, row), row, options->cell, NULL, error) &&
               stability_clip_draw(options, &runs, error);
     cell_runs_free(&runs);
     csv_table_free(&table);
@@ -300,7 +295,7 @@ static const Option option_table[] = {
     {"--quick", 0, NULL, "Few studies, small maps: under two minutes; of SCENE: few values",
      OPTION_FLAG(Options, study.quick)},
     {"--pages", 0, NULL,
-     "Also write stability.html: maps whose cells at a border link to pages that play what happened there",
+     "Also write stability.html: borders and maps whose failing cells link to pages that play what happened there",
      OPTION_FLAG(Options, pages)},
     {"--clip", 0, "CELL",
      "Only make a video of a map's cell, MAP:METHOD:X,Y, beside a method that holds there; DIR must have the map",
@@ -322,8 +317,9 @@ static const CommandSpec spec = {
         "With SCENE: the same along one or two parameters, of that scene or of every scene. A parameter takes 13 runs "
         "of every "
         "method and about ten more for each border, a map 100, each as long as the scene's frames.\n"
-        "With --pages, up to 8 failing cells of each method in each map get a page, which shows at most nine seconds "
-        "of the run beside the first method that holds there; all pages together take at most 256 MB.\v"
+        "With --pages, the first failing value of each border and up to 8 failing cells of each method in each map get "
+        "a page, which shows at most nine seconds of the run beside the first method that holds there; all pages "
+        "together take at most 256 MB.\v"
         "Example: twinbox stability -o out/stability\n"
         "         twinbox stability wall.yaml --vary rows --vary mass=1:100 -o out/wall\n"
         "         twinbox stability scenes/stack.yaml --vary iterations --quick -o out/stack-borders\n"
@@ -370,7 +366,7 @@ static bool make_clip(const Options *options, Error *error) {
 static bool write_pages(const Options *options, uint64_t key, Error *error) {
     ClipMaps maps = {0};
     bool ok = list_maps(&maps, options, error);
-    const StabilityPages pages = {options->study.folder, maps.items, maps.count};
+    const StabilityPages pages = {&options->study, maps.items, maps.count};
     ok = ok && stability_pages_write(&pages, key, error);
     free_maps(&maps);
     return ok;

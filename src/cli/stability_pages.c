@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What stability prints, and the pages of its maps. */
+/* What stability prints, and the pages of its borders and maps. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/machine.h"
@@ -201,6 +201,7 @@ static const double shown_before = 6;
 typedef struct Pages {
     const StabilityPages *options;
     PageSet set;
+    CsvTable borders; /* a part each, before those of maps */
     CsvTable table;
     MapPanels *map; /* the current one, */
     int panel;      /* and method */
@@ -212,9 +213,11 @@ static bool write_page(Pages *pages, const CellRuns *runs, const MapCell *cell, 
     const Trajectory *const *shown = (const Trajectory *const *)runs->panels.runs;
     char clip[MAP_CLIP_SIZE], title[TITLE_SIZE];
     map_cell_clip(clip, cell);
-    snprintf(title, sizeof title, "%s %.4g%s%s, %s %.4g%s%s", cell->x_parameter, cell->x,
-             cell->x_unit[0] != '\0' ? " " : "", cell->x_unit, cell->y_parameter, cell->y,
-             cell->y_unit[0] != '\0' ? " " : "", cell->y_unit);
+    snprintf(title, sizeof title, "%s %.4g%s%s", cell->x_parameter, cell->x, cell->x_unit[0] != '\0' ? " " : "",
+             cell->x_unit);
+    if (!isnan(cell->y))
+        text_add(title, sizeof title, ", %s %.4g%s%s", cell->y_parameter, cell->y, cell->y_unit[0] != '\0' ? " " : "",
+                 cell->y_unit);
     const double first = floor((cell->frame * runs->dt - shown_before) / (double)shown[0]->dt);
     const int last = shown[0]->frames - 1;
     const PlayerOptions options = {.first = first > last ? last
@@ -226,13 +229,12 @@ static bool write_page(Pages *pages, const CellRuns *runs, const MapCell *cell, 
     return page_set_write(&pages->set, strrchr(clip, '/') + 1, shown, runs->panels.count, &options, file, error);
 }
 
-static bool write_cell(Pages *pages, const MapCell *cell, FILE *rows, const Progress *progress, Error *error) {
-    const StabilityPages *options = pages->options;
-    const ClipMap *map = clip_map_find(options->maps, options->map_count, cell->map, "--pages", error);
+/* holder: what holds there, or NULL. */
+static bool write_cell(Pages *pages, const ClipMap *map, const MapCell *holder, const MapCell *cell, FILE *rows,
+                       const Progress *progress, Error *error) {
     CellRuns runs;
     PageFile file;
-    if (map == NULL) return false;
-    bool ok = cell_runs_make(&runs, map, &pages->table, cell, cell->map, progress, error) &&
+    bool ok = cell_runs_make(&runs, map, holder, cell, cell->map, progress, error) &&
               write_page(pages, &runs, cell, &file, error);
     cell_runs_free(&runs);
     if (!ok) return false;
@@ -252,7 +254,42 @@ static bool write_cell(Pages *pages, const MapCell *cell, FILE *rows, const Prog
     return piece_tables_print(rows, &map_page_layout, -1, &row, error);
 }
 
-/* Parts are the methods of map after map, and come in this order. */
+/* The first method of the row's study with one border, and which holds where the row fails; NULL: none. */
+static const BorderRow *find_holder(const CsvTable *borders, const BorderRow *row) {
+    for (int i = 0; i < borders->count; i++) {
+        const BorderRow *other = border_row(borders, i);
+        const bool again =
+            (i > 0 && border_same_study(other, other - 1) && border_same_method(other, other - 1)) ||
+            (i + 1 < borders->count && border_same_study(other, other + 1) && border_same_method(other, other + 1));
+        if (border_same_study(other, row) && !again && border_holds(other, row->fails_at)) return other;
+    }
+    return NULL;
+}
+
+static const StabilityStudy *find_study(const StabilityOptions *options, const BorderRow *row) {
+    for (int i = 0; options->own != NULL && i < options->own->study_count; i++)
+        if (strcmp(options->own->studies[i].name, row->study) == 0) return &options->own->studies[i];
+    return options->own == NULL ? stability_study_find(row->study) : NULL;
+}
+
+/* The page of a border's failing side, if it has one. */
+static bool write_border(Pages *pages, const BorderRow *row, FILE *rows, const Progress *progress, Error *error) {
+    const StabilityOptions *options = pages->options->study;
+    const StabilityStudy *study = find_study(options, row);
+    const BorderRow *held = find_holder(&pages->borders, row);
+    char path[STABILITY_PATH_SIZE];
+    MapCell cell, holder;
+    if (isnan(row->fails_at) || row->verdict >= VERDICT_ADAPTER_FAILED) return true;
+    if (study == NULL) return error_input(error, "--pages", "study %s has no scene", row->study);
+    const StabilityPlace place = {options->scenes, study->scene, study->file};
+    const ClipMap map = {row->study, path, row->parameter, study->fixed.name};
+    return stability_path(path, &place, error) &&
+           stability_run_cell(study, options->scenes, row, row->fails_at, &cell, error) &&
+           (held == NULL || stability_run_cell(study, options->scenes, held, row->fails_at, &holder, error)) &&
+           write_cell(pages, &map, held != NULL ? &holder : NULL, &cell, rows, progress, error);
+}
+
+/* Behind the borders, parts are the methods of map after map, and come in this order. */
 static bool enter(Pages *pages, int part, Error *error) {
     while (part >= pages->first + pages->map->panel_count) {
         pages->first += pages->map->panel_count;
@@ -262,16 +299,22 @@ static bool enter(Pages *pages, int part, Error *error) {
     return true;
 }
 
-/* The pages of a method in a map. */
-static bool write_method(void *context, int part, FILE *rows, const Progress *progress, Error *error) {
+/* The page of a border, or those of a method in a map. */
+static bool write_part(void *context, int part, FILE *rows, const Progress *progress, Error *error) {
     Pages *pages = context;
+    const StabilityPages *options = pages->options;
     MapPlace places[MAP_PAGES_EACH];
-    if (!enter(pages, part, error)) return false;
+    if (part < pages->borders.count)
+        return write_border(pages, border_row(&pages->borders, part), rows, progress, error);
+    if (!enter(pages, part - pages->borders.count, error)) return false;
     const int count = map_pages_choose(pages->map, pages->panel, places);
     for (int i = 0; i < count; i++) {
         const MapCell *cell = map_panels_cell(pages->map, &pages->table, pages->panel, places[i]);
+        const ClipMap *map = clip_map_find(options->maps, options->map_count, cell->map, "--pages", error);
         ProgressStage stage = {progress, (double)i / count, 1.0 / count, false};
-        if (!write_cell(pages, cell, rows, &(Progress){progress_stage, &stage}, error)) return false;
+        if (map == NULL || !write_cell(pages, map, stability_cell_holder(&pages->table, cell), cell, rows,
+                                       &(Progress){progress_stage, &stage}, error))
+            return false;
     }
     return true;
 }
@@ -288,13 +331,15 @@ bool stability_pages_write(const StabilityPages *options, uint64_t key, Error *e
     Pages pages = {
         .options = options,
         .map = calloc(1, sizeof *pages.map),
-        .set = {.folder = options->folder, .layout = &map_page_layout, .write = write_method, .context = &pages}};
+        .set = {.folder = options->study->folder, .layout = &map_page_layout, .write = write_part, .context = &pages}};
     if (pages.map == NULL) return error_memory(error, "pages");
-    bool ok = csv_table_read_from(&pages.table, options->folder, &map_layout, error);
-    if (ok) pages.set.parts = count_methods(&pages.table);
+    bool ok = csv_table_read_from(&pages.table, pages.set.folder, &map_layout, error) &&
+              csv_table_read_from(&pages.borders, pages.set.folder, &border_layout, error);
+    if (ok) pages.set.parts = pages.borders.count + count_methods(&pages.table);
     ok = ok && page_set_make(&pages.set, key, progress_bar_begin("pages"), error) &&
-         stability_html_write(options->folder, error) && page_set_end(&pages.set, error);
+         stability_html_write(pages.set.folder, error) && page_set_end(&pages.set, error);
     progress_bar_end();
+    csv_table_free(&pages.borders);
     csv_table_free(&pages.table);
     free(pages.map);
     if (ok) page_set_print(&pages.set, "stability.html");

@@ -14,9 +14,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* stability.html: the maps of a study as tables, whose cells link to pages of runs. */
+/* stability.html: borders and maps as tables, whose letters link to pages of runs. */
 
-/* Writes folder/stability.html from maps.csv and map_pages.csv (studies/stability.h) there. */
+/* Writes folder/stability.html from the tables there: stability.csv, maps.csv, map_pages.csv, and engines.csv if it is there
+   (studies/stability.h). */
 bool stability_html_write(const char *folder, Error *error);
 
 /* The converged solution that a step is scored against. For most methods it is that of the step's contact problem. A

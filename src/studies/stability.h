@@ -247,7 +247,8 @@ enum {
     STABILITY_SETTING_SIZE = 128
 };
 
-/* maps.csv: a cell of a map. */
+/* maps.csv: a cell of a map. A run of a study along one parameter is a cell, too, which is in no table: `map` is the study,
+   y its fixed parameter or, without one, NAN and "". */
 typedef struct MapCell {
     const char *map, *method, *setting, *x_parameter, *x_unit, *y_parameter, *y_unit;
     double x, y;
@@ -298,21 +299,26 @@ static inline const MapCell *map_cell(const CsvTable *table, int i) { return (co
 static inline const BorderRow *border_row(const CsvTable *table, int i) { return (const BorderRow *)table->rows + i; }
 
 bool border_same_method(const BorderRow *a, const BorderRow *b);
+
+/* The method of the row holds at the value. Only for methods with one row in the study. */
+bool border_holds(const BorderRow *row, double value);
 bool border_same_study(const BorderRow *a, const BorderRow *b);
 
 /* A cell's method as for method_parse(): "engine:k=10". */
 enum { MAP_METHOD_SIZE = CSV_NAME_SIZE + STABILITY_SETTING_SIZE };
 void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell);
 
-/* The path of a cell's clip, relative to the tables' folder and without extension: "clips/MAP-METHOD-X_Y". */
+/* The path of a cell's clip, relative to the tables' folder and without extension: "clips/MAP-METHOD-X_Y", or without y
+   "clips/MAP-METHOD-X". */
 enum { MAP_CLIP_SIZE = CSV_NAME_SIZE + MAP_METHOD_SIZE + 40 };
 void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
 
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
-/* For figures: "engine:k=10,warm=off" (methods/methods.h), plain and shortened to `most` mm; and
-   "Height (boxes)" for an axis. */
+/* "engine:k=10,warm=off", of a program its `name` (methods/methods.h); for figures the same, plain and shortened to `most`
+   mm; and "Height (boxes)" for an axis. */
 enum { STABILITY_TEXT_SIZE = CSV_NAME_SIZE + 2 * STABILITY_SETTING_SIZE + 8 };
+void stability_method_name(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting);
 void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
                            const char *setting);
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);
@@ -341,6 +347,11 @@ typedef struct StabilityOptions {
    the unfinished pieces. The tables do not depend on the number of threads. ERROR_INPUT also for an unknown name,
    ERROR_INTERRUPTED if progress stops the run. *pieces tells what was done; it has no plan any more. */
 bool stability_run(const StabilityOptions *options, Pieces *pieces, const Progress *progress, Error *error);
+
+/* Runs the row's method once more, unshifted, at a value of its study's parameter; `scenes` as above. The cell points into
+   the study and the row. */
+bool stability_run_cell(const StabilityStudy *study, const char *scenes, const BorderRow *row, double value,
+                        MapCell *cell, Error *error);
 
 /* What the run takes, from some of its pieces; nothing is written. */
 bool stability_estimate(const StabilityOptions *options, PiecesEstimate *estimate, const Progress *progress,
@@ -378,17 +389,17 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
    figures already drawn stay. */
 bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error);
 
-/* map_pages.csv: which cells of the maps have a page that plays what happened there. */
+/* map_pages.csv: which cells of the maps, and which failing sides of borders, have a page that plays what happened there. */
 
 /* Of a method in a map. */
 enum { MAP_PAGES_EACH = 8 };
 
 typedef struct MapPage {
-    const char *map, *method, *setting; /* of the cell, as in maps.csv */
-    double x, y;
-    double time;      /* s: when the verdict was decided */
-    int frame, body;  /* in the run; body -1: none */
-    const char *page; /* "pages/NAME.html#t=0.55&body=7&run=1"; empty: left out */
+    const char *map, *method, *setting; /* of the cell, as in maps.csv; of a border `map` is the study, */
+    double x, y;                        /* x is fails_at, and y the fixed parameter or NAN */
+    double time;                        /* s: when the verdict was decided */
+    int frame, body;                    /* in the run; body -1: none */
+    const char *page;                   /* "pages/NAME.html#t=0.55&body=7&run=1"; empty: left out */
     int bytes;
 } MapPage;
 

@@ -23,7 +23,8 @@ void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell) {
     static const char folder[] = "clips/";
     char method[MAP_METHOD_SIZE];
     map_cell_method(method, cell);
-    snprintf(name, MAP_CLIP_SIZE, "%s%s-%s-%.4g_%.4g", folder, cell->map, method, cell->x, cell->y);
+    snprintf(name, MAP_CLIP_SIZE, "%s%s-%s-%.4g", folder, cell->map, method, cell->x);
+    if (!isnan(cell->y)) text_add(name, MAP_CLIP_SIZE, "_%.4g", cell->y);
     file_name_clean(name + strlen(folder));
 }
 
@@ -35,13 +36,23 @@ bool border_same_method(const BorderRow *a, const BorderRow *b) {
     return strcmp(a->method, b->method) == 0 && strcmp(a->setting, b->setting) == 0;
 }
 
+bool border_holds(const BorderRow *row, double value) {
+    if (isnan(row->holds_at)) return false;
+    if (isnan(row->fails_at)) return row->verdict < VERDICTS && verdict_holds((Verdict)row->verdict);
+    return row->fails_at > row->holds_at ? value <= row->holds_at : value >= row->holds_at;
+}
+
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
-void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
-                           const char *setting) {
+void stability_method_name(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting) {
     char whole[CSV_NAME_SIZE + STABILITY_SETTING_SIZE];
     snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);
     method_name(text, STABILITY_TEXT_SIZE, whole);
+}
+
+void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
+                           const char *setting) {
+    stability_method_name(text, method, setting);
     chart_make_plain(text);
     text_fit(text, STABILITY_TEXT_SIZE, points, most);
 }
@@ -187,7 +198,7 @@ static const CsvColumn page_columns[] = {
     NAME(MapPage, method),
     TEXT(MapPage, setting, STABILITY_SETTING_SIZE),
     NUMBER(MapPage, x, CSV_NUMBER, -INFINITY, INFINITY, VALUE_DIGITS),
-    NUMBER(MapPage, y, CSV_NUMBER, -INFINITY, INFINITY, VALUE_DIGITS),
+    NUMBER(MapPage, y, CSV_OPTIONAL, -INFINITY, INFINITY, VALUE_DIGITS),
     NUMBER(MapPage, time, CSV_NUMBER, -INFINITY, INFINITY, VALUE_DIGITS),
     COUNT(MapPage, frame, 0),
     COUNT(MapPage, body, -1),

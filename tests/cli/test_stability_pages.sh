@@ -5,7 +5,7 @@
 export PYTHONPATH=$sources/tests/cli PYTHONDONTWRITEBYTECODE=1
 
 methods=engine,momentum,pair-net
-maps="--study speed_thickness --study slope_friction"
+maps="--study speed_thickness --study slope_friction --study friction_ramp --study bomb_speed_thick"
 run 0 stability --scenes "$scenes" -o maps --pages $maps --methods $methods
 says " MB together -> maps/pages; links to them -> maps/stability.html"
 /usr/bin/python3 - <<'PYTHON' || fail "stability.html"
@@ -21,6 +21,8 @@ assert {pages.moment(row["page"])[0] for row in listed} == {f"pages/{name}" for 
 chosen = collections.Counter()
 for row in listed:
     name = row["map"], row["method"], row["setting"]
+    if name[0] in ("friction_ramp", "bomb_speed_thick"):
+        continue
     grid, at = cells[name], (float(row["x"]), float(row["y"]))
     cell = grid[at]
     chosen[name] += 1
@@ -48,6 +50,23 @@ for name, grid in cells.items():
     failing = sum(cell["verdict"] not in HOLDS | {"not applicable"} for cell in grid.values())
     assert (chosen[name] > 0) == (failing > 0) and chosen[name] <= 8, (name, chosen[name], failing)
 assert max(chosen.values()) == 8, chosen
+# Borders: where each fails, beside the first method that holds there.
+borders = list(csv.DictReader(open("maps/stability.csv")))
+for row in borders:
+    page = [p for p in listed if (p["map"], p["method"], p["setting"]) == (row["study"], row["method"], row["setting"])
+            and p["x"] == row["fails_at"]]
+    assert len(page) == (row["fails_at"] != ""), (row, page)
+    if not page:
+        continue
+    assert page[0]["y"] == ("1" if row["study"] == "bomb_speed_thick" else ""), page
+    shown = pages.check_shown("maps", page[0]["page"])
+    own = shown["runs"][-1]
+    assert own["method"] == row["method"] and own["verdict"]["text"].startswith(row["verdict"] + " at "), (row, own)
+    holder = next((b["method"] for b in borders if b["study"] == row["study"] and b["holds_at"]
+                   and float(b["holds_at"]) >= float(row["fails_at"])), None)
+    assert [run["method"] for run in shown["runs"]] == ([holder] if holder else []) + [row["method"]], (row, holder)
+html = open("maps/stability.html").read()
+assert "Box on a slope" in html and html.count('class="border"') == len(borders), html.count('class="border"')
 PYTHON
 checks=$((checks + 1))
 
@@ -78,7 +97,7 @@ assert listed
 for row in listed:
     page = pages.check_shown("own", row["page"])
     assert 29 < 1 / page["dt"] < 120, page["dt"]
-assert any(float(row["y"]) > 100 or float(row["x"]) > 100 for row in listed), listed
+assert any(float(row["y"] or 0) > 100 or float(row["x"]) > 100 for row in listed), listed
 PYTHON
 checks=$((checks + 1))
 

@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* stability.html: borders and maps whose letters link to pages of runs. */
+#include "base/base.h"
+#include "base/csv.h"
+#include "base/file.h"
+#include "figures/sketch.h"
+#include "pictures/page.h"
+#include "runs/verdict.h"
+#include "studies/chart.h"
+#include "studies/chart_internal.h"
+#include "studies/stability.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+extern const char stability_css[]; /* page/, embedded */
+
+/* A letter for each verdict: colours alone would not do. */
+static const char letters[VERDICT_LOOKS] = {
+    [VERDICT_SETTLES] = 's',        [VERDICT_SWAYS] = 'w',       [VERDICT_CREEPS] = 'c',   [VERDICT_FALLS] = 'F',
+    [VERDICT_SINKS] = 'S',          [VERDICT_TUNNELS] = 'T',     [VERDICT_EXPLODES] = 'E', [VERDICT_NON_FINITE] = 'N',
+    [VERDICT_ADAPTER_FAILED] = 'A', [LOOK_NOT_APPLICABLE] = '-', [LOOK_MISSING] = ' ',
+};
+
+typedef struct StabilityHtml {
+    CsvTable maps, borders;
+    CsvTable engines; /* of EngineRow; empty without such a table */
+    CsvTable table;   /* of MapPage */
+    const MapPage *pages;
+    MapPanels *map; /* the current one */
+    Error *error;
+    bool failed;
+} StabilityHtml;
+
+static const MapPage *find_stability_page(const StabilityHtml *html, const MapCell *cell) {
+    for (int i = 0; i < html->table.count; i++) {
+        const MapPage *page = &html->pages[i];
+        if (page->x == cell->x && page->y == cell->y && strcmp(page->map, cell->map) == 0 &&
+            strcmp(page->method, cell->method) == 0 && strcmp(page->setting, cell->setting) == 0)
+            return page;
+    }
+    return NULL;
+}
+
+/* The colour of a cell, and the class of those with light letters or without a colour. */
+static void put_look(FILE *out, int look) {
+    if (verdict_looks[look].fill == NO_COLOUR) {
+        fputs(" class=\"empty\"", out);
+        return;
+    }
+    if (look >= VERDICT_TUNNELS) fputs(" class=\"light\"", out);
+    fprintf(out, " style=\"background:#%06X\"", verdict_looks[look].fill);
+}
+
+static void put_link(FILE *out, const MapPage *page, int verdict) {
+    fputs("<a href=\"", out);
+    html_put(out, page->page);
+    fprintf(out, "\" aria-label=\"%s at %.3g s\">", verdict_words[verdict], page->time);
+}
+
+static void put_cell(FILE *out, const StabilityHtml *html, int panel, MapPlace place) {
+    const int look = html->map->looks[panel][place.x][place.y];
+    const MapCell *cell = map_panels_cell(html->map, &html->maps, panel, place);
+    const MapPage *page = cell != NULL ? find_stability_page(html, cell) : NULL;
+    const bool linked = page != NULL && page->page[0] != '\0';
+    fputs("<td", out);
+    put_look(out, look);
+    fprintf(out, " title=\"%s\">", verdict_looks[look].name);
+    if (linked) put_link(out, page, cell->verdict);
+    fputc(letters[look], out);
+    fputs(linked ? "</a></td>" : "</td>", out);
+}
+
+/* Rows from the highest value down, as in the figure. */
+static void put_panel(FILE *out, const StabilityHtml *html, int panel) {
+    const MapPanels *map = html->map;
+    char method[MAP_METHOD_SIZE];
+    map_cell_method(method, map->methods[panel]);
+    fputs("<table>\n<caption>", out);
+    html_put(out, method);
+    fputs("</caption>\n<thead><tr><td></td>", out);
+    for (int x = 0; x < map->x_count; x++) fprintf(out, "<th scope=\"col\">%.3g</th>", map->x[x]);
+    fputs("</tr></thead>\n<tbody>\n", out);
+    for (int y = map->y_count - 1; y >= 0; y--) {
+        fprintf(out, "<tr><th scope=\"row\">%.3g</th>", map->y[y]);
+        for (int x = 0; x < map->x_count; x++) put_cell(out, html, panel, (MapPlace){x, y});
+        fputs("</tr>\n", out);
+    }
+    fputs("</tbody>\n</table>\n", out);
+}
+
+static void put_map(FILE *out, const StabilityHtml *html) {
+    const MapPanels *map = html->map;
+    char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
+    stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
+    stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
+    study_page_section(out, map->first->map);
+    fputs("</h2>\n<p>Across: ", out);
+    html_put(out, x);
+    fputs("; up: ", out);
+    html_put(out, y);
+    fputs(".</p>\n", out);
+    study_page_region(out, "maps scroll", "Maps of each method", "");
+    for (int panel = 0; panel < map->panel_count; panel++) put_panel(out, html, panel);
+    fputs("</div>\n</section>\n", out);
+}
+
+/* Borders: a row for each study, a column for each method. */
+
+static const MapPage *find_border_page(const StabilityHtml *html, const BorderRow *row) {
+    for (int i = 0; i < html->table.count; i++) {
+        const MapPage *page = &html->pages[i];
+        if (page->x == row->fails_at && strcmp(page->map, row->study) == 0 && strcmp(page->method, row->method) == 0 &&
+            strcmp(page->setting, row->setting) == 0)
+            return page;
+    }
+    return NULL;
+}
+
+static void put_side(FILE *out, double value) { fprintf(out, isnan(value) ? " –" : " %.4g", value); }
+
+static void put_border(FILE *out, const StabilityHtml *html, const BorderRow *row) {
+    const MapPage *page = find_border_page(html, row);
+    const bool linked = page != NULL && page->page[0] != '\0';
+    fputs("<span class=\"border\"><b", out);
+    put_look(out, row->verdict);
+    fprintf(out, " title=\"%s\">", verdict_looks[row->verdict].name);
+    if (linked) put_link(out, page, row->verdict);
+    fprintf(out, "%c%s</b>", letters[row->verdict], linked ? "</a>" : "");
+    if (!isnan(row->holds_at) || !isnan(row->fails_at)) {
+        put_side(out, row->holds_at);
+        fputs(" |", out);
+        put_side(out, row->fails_at);
+    }
+    fputs("</span>", out);
+}
+
+/* The row of the table at which method number m begins, by where methods appear first; -1: there are no more. */
+static int find_border_method(const CsvTable *borders, int m) {
+    for (int i = 0; i < borders->count; i++) {
+        bool seen = false;
+        for (int k = 0; k < i && !seen; k++) seen = border_same_method(border_row(borders, k), border_row(borders, i));
+        if (!seen && m-- == 0) return i;
+    }
+    return -1;
+}
+
+/* The study whose first row is `first`. */
+static void put_study(FILE *out, const StabilityHtml *html, int first) {
+    const CsvTable *borders = &html->borders;
+    const BorderRow *study = border_row(borders, first);
+    const StabilityStudy *known = stability_study_find(study->study);
+    char axis[STABILITY_TEXT_SIZE];
+    stability_axis_text(axis, study->parameter, study->unit);
+    fputs("<tr><th scope=\"row\">", out);
+    html_put(out, known != NULL ? known->title : study->study);
+    fputs("<br><span class=\"soft\">", out);
+    html_put(out, axis);
+    fputs("</span></th>", out);
+    for (int m = 0, at; (at = find_border_method(borders, m)) >= 0; m++) {
+        fputs("<td>", out);
+        for (int i = first; i < borders->count && border_same_study(border_row(borders, i), study); i++)
+            if (border_same_method(border_row(borders, i), border_row(borders, at)))
+                put_border(out, html, border_row(borders, i));
+        fputs("</td>", out);
+    }
+    fputs("</tr>\n", out);
+}
+
+/* What other programs say that they are. */
+static void put_engines(FILE *out, const StabilityHtml *html) {
+    const EngineRow *rows = html->engines.rows;
+    for (int i = 0; i < html->engines.count; i++) {
+        char method[STABILITY_TEXT_SIZE];
+        bool seen = false;
+        for (int k = 0; k < i && !seen; k++)
+            seen = strcmp(rows[k].method, rows[i].method) == 0 && strcmp(rows[k].setting, rows[i].setting) == 0;
+        if (seen || rows[i].engine[0] == '\0') continue;
+        stability_method_name(method, rows[i].method, rows[i].setting);
+        fputs("<p class=\"soft\">", out);
+        html_put(out, method);
+        fputs(" is ", out);
+        html_put(out, rows[i].engine);
+        fputs(" ", out);
+        html_put(out, rows[i].version);
+        fputs(".</p>\n", out);
+    }
+}
+
+static void put_borders(FILE *out, const StabilityHtml *html) {
+    const CsvTable *borders = &html->borders;
+    if (borders->count == 0) return;
+    study_page_section(out, "Borders");
+    fputs(
+        "</h2>\n<p>The last value that holds | the first that fails, and how it fails there, or how it holds over the "
+        "whole range. Between them, a start shifted by a micrometre decides.</p>\n",
+        out);
+    study_page_region(out, "borders scroll", "Borders", "");
+    fputs("<table>\n<thead><tr><th scope=\"col\">Study</th>", out);
+    for (int m = 0, at; (at = find_border_method(borders, m)) >= 0; m++) {
+        char method[STABILITY_TEXT_SIZE];
+        stability_method_name(method, border_row(borders, at)->method, border_row(borders, at)->setting);
+        fputs("<th scope=\"col\">", out);
+        html_put(out, method);
+        fputs("</th>", out);
+    }
+    fputs("</tr></thead>\n<tbody>\n", out);
+    for (int i = 0; i < borders->count; i++)
+        if (i == 0 || !border_same_study(border_row(borders, i), border_row(borders, i - 1))) put_study(out, html, i);
+    fputs("</tbody>\n</table>\n</div>\n", out);
+    put_engines(out, html);
+    fputs("</section>\n", out);
+}
+
+static void put_key(FILE *out) {
+    fputs("<ul class=\"key\" aria-label=\"Verdicts\">\n", out);
+    for (int look = 0; look < LOOK_MISSING; look++) {
+        fputs("<li><b", out);
+        put_look(out, look);
+        fprintf(out, ">%c</b> %s</li>\n", letters[look], verdict_looks[look].name);
+    }
+    fputs("<li><b class=\"page\">F</b> with a frame: opens a page</li>\n</ul>\n", out);
+}
+
+static void put_stability(FILE *out, const void *context) {
+    StabilityHtml *html = (StabilityHtml *)context; /* where it fails is noted */
+    study_page_begin(out, "Stability", stability_css);
+    fprintf(
+        out,
+        "Each letter is the verdict on a run. Where a border fails, and in up to %d failing cells of a method's map "
+        "beside cells that hold, it opens a page. The page plays the run beside that of the first method that holds "
+        "there, at the moment and at the body that decided the verdict.</p>\n",
+        MAP_PAGES_EACH);
+    study_page_left_out(out, &html->table, offsetof(MapPage, page), sizeof(MapPage), "cells");
+    put_key(out);
+    put_borders(out, html);
+    for (int row = 0; row < html->maps.count && !html->failed;) {
+        html->failed = !map_panels_gather(html->map, &html->maps, &row, html->error);
+        if (!html->failed) put_map(out, html);
+    }
+    house_page_end(out);
+}
+
+static bool read_engines(StabilityHtml *html, const char *folder, Error *error) {
+    char path[CSV_PATH_SIZE];
+    if (!csv_table_path(path, folder, &engine_layout, error)) return false;
+    return access(path, F_OK) != 0 || csv_table_read(&html->engines, path, &engine_layout, error);
+}
+
+bool stability_html_write(const char *folder, Error *error) {
+    char path[CSV_PATH_SIZE];
+    StabilityHtml html = {.error = error};
+    if (!file_path(path, sizeof path, error, "%s/stability.html", folder) ||
+        !csv_table_read_from(&html.maps, folder, &map_layout, error))
+        return false;
+    bool done = csv_table_read_from(&html.borders, folder, &border_layout, error) &&
+                csv_table_read_from(&html.table, folder, &map_page_layout, error) && read_engines(&html, folder, error);
+    html.pages = html.table.rows;
+    html.map = malloc(sizeof *html.map);
+    if (done && html.map == NULL) done = error_memory(error, path);
+    done = done && study_page_write(path, put_stability, &html, &html.failed, error);
+    free(html.map);
+    csv_table_free(&html.engines);
+    csv_table_free(&html.borders);
+    csv_table_free(&html.table);
+    csv_table_free(&html.maps);
+    return done;
+}
