@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* twinbox solve: takes a contact problem from a file, or from a step of a scene; writes it, and scores methods on it. */
 #include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "cli/cli.h"
@@ -8,9 +9,11 @@
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
+#include "methods/sweeps.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -22,12 +25,18 @@ typedef struct Options {
     int method_count, frame; /* frame 0: not given */
     float bomb_x;            /* m; NaN: not given */
     const char *run_by, *output;
+    const char *impulses; /* path of a table of impulses to score, or NULL */
     bool json;
 } Options;
 
 static const Option option_table[] = {
     {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method to score (may be repeated)",
      OPTION_TEXTS(Options, methods, method_count)},
+    {"--impulses", 0, "FILE.csv",
+     "Score these impulses, too, N s over the step: a table with the columns contact (its index in P.npz, from 0), "
+     "normal, "
+     "tangent; contacts that it leaves out have none",
+     OPTION_TEXT(Options, impulses)},
     {OPTION_JSON(Options, json)},
     {.help = "Of a scene:"},
     {"--frame", 0, "N", "Number of the step, from 1: the step that leads to frame N of a run",
@@ -47,7 +56,8 @@ static const CommandSpec spec = {
               OPTION_PATH(Options, input)},
     .inputs = {1, 1, "input"},
     .help =
-        "Solve the contact problem of one step with each method: the bodies with their velocities before any impulse, "
+        "Solve the contact problem of one step with each method, or score impulses from elsewhere: the bodies with "
+        "their velocities before any impulse, "
         "and the contacts. The step is one of a scene (--frame), or was written by -o before. Methods are scored "
         "against the converged solution: RMS error of the "
         "bodies' velocities (m/s, spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of "
@@ -55,7 +65,7 @@ static const CommandSpec spec = {
         "contact's velocity by one more sweep (m/s; a method without impulses counts as impulses of 0).\v"
         "Example: twinbox solve scenes/stack.yaml --frame 41 --method engine:k=10 --method engine:k=100\n"
         "         twinbox solve scenes/stack.yaml --frame 41 -o impact.npz\n"
-        "         twinbox solve impact.npz --method momentum:k=20\n"
+        "         twinbox solve impact.npz --method momentum:k=20 --impulses mine.csv\n"
         "In Python: problem = numpy.load('impact.npz'); problem['velocity'] has shape (bodies, 2)."};
 
 typedef struct Score {
@@ -68,7 +78,8 @@ typedef struct Result {
     const Method *methods;
     int method_count;
     Reference truth;
-    Score scores[MAX_METHODS];
+    const char *impulses;          /* path, or NULL */
+    Score scores[MAX_METHODS + 1]; /* of the impulses behind the methods */
 } Result;
 
 static bool score(const Result *result, const Method *method, ContactSolution *solution, Score *score, Error *error) {
@@ -85,6 +96,48 @@ static bool score(const Result *result, const Method *method, ContactSolution *s
     return ok;
 }
 
+typedef struct ImpulseRow {
+    int contact;
+    double normal, tangent; /* N s */
+} ImpulseRow;
+
+#define IMPULSE_LARGEST 1e30
+
+static const CsvColumn impulse_columns[] = {
+    CSV_MEMBER(ImpulseRow, contact, CSV_INTEGER, .maximum = INT_MAX, .key = true),
+    CSV_MEMBER(ImpulseRow, normal, CSV_NUMBER, .minimum = -IMPULSE_LARGEST, .maximum = IMPULSE_LARGEST),
+    CSV_MEMBER(ImpulseRow, tangent, CSV_NUMBER, .minimum = -IMPULSE_LARGEST, .maximum = IMPULSE_LARGEST),
+};
+static const CsvLayout impulse_layout = CSV_LAYOUT("impulses", impulse_columns, ImpulseRow, .max_rows = 1 << 20);
+
+/* The impulses of the table, and the velocities that they make. */
+static bool apply_table(const CsvTable *table, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    contact_solution_begin(problem, solution);
+    for (int i = 0; i < table->count; i++) {
+        const ImpulseRow *row = (const ImpulseRow *)table->rows + i;
+        if (row->contact >= problem->contact_count)
+            return csv_table_error(table, i, 0, error, "contact: there is no contact %d; the problem has %d",
+                                   row->contact, problem->contact_count);
+        const ContactImpulse impulse = {(float)row->normal, (float)row->tangent};
+        solution->impulses[row->contact] = impulse;
+        contact_push(solution->velocities, &problem->contacts[row->contact], problem->bodies, impulse);
+    }
+    return true;
+}
+
+static bool score_impulses(const Result *result, ContactSolution *solution, Score *score, Error *error) {
+    const ContactProblem *problem = &result->stored->problem;
+    CsvTable table;
+    Reference work = {0};
+    if (!csv_table_read(&table, result->impulses, &impulse_layout, error)) return false;
+    const bool ok = apply_table(&table, problem, solution, error) &&
+                    reference_residual(&work, problem, solution->impulses, &score->residual, error);
+    if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
+    reference_free(&work);
+    csv_table_free(&table);
+    return ok;
+}
+
 static bool score_all(Result *result, Error *error) {
     const ContactProblem *problem = &result->stored->problem;
     ContactSolution solution = {calloc((size_t)problem->body_count, sizeof *solution.velocities),
@@ -96,9 +149,17 @@ static bool score_all(Result *result, Error *error) {
     ok = ok && reference_solve(&result->truth, problem, NULL, error);
     for (int i = 0; ok && i < result->method_count; i++)
         ok = score(result, &result->methods[i], &solution, &result->scores[i], error);
+    if (ok && result->impulses != NULL)
+        ok = score_impulses(result, &solution, &result->scores[result->method_count], error);
     free(solution.velocities);
     free(solution.impulses);
     return ok;
+}
+
+static int row_count(const Result *result) { return result->method_count + (result->impulses != NULL); }
+
+static const char *row_name(const Result *result, int i) {
+    return i < result->method_count ? result->methods[i].text : result->impulses;
 }
 
 static void print(const Result *result) {
@@ -107,9 +168,9 @@ static void print(const Result *result) {
            stored->frame, stored->problem.body_count, stored->problem.contact_count, result->truth.residual,
            result->truth.factorizations);
     printf("%-40s %12s %12s %12s\n", "method", "error m/s", "right  ", "residual m/s");
-    for (int i = 0; i < result->method_count; i++) {
+    for (int i = 0; i < row_count(result); i++) {
         const Score *row = &result->scores[i];
-        printf("%-40s %12.4g %7d/%-4d %12.4g\n", result->methods[i].text, row->error.rms, row->error.right,
+        printf("%-40s %12.4g %7d/%-4d %12.4g\n", row_name(result, i), row->error.rms, row->error.right,
                row->error.counted, row->residual);
     }
 }
@@ -125,10 +186,10 @@ static void write_result(JsonWriter *json, const void *context) {
     json_put_int(json, "factorizations", result->truth.factorizations);
     json_end(json);
     json_begin_array(json, "methods", JSON_LINES);
-    for (int i = 0; i < result->method_count; i++) {
+    for (int i = 0; i < row_count(result); i++) {
         const Score *row = &result->scores[i];
         json_begin_object(json, NULL, JSON_ONE_LINE);
-        json_put_text(json, "method", result->methods[i].text);
+        json_put_text(json, i < result->method_count ? "method" : "impulses", row_name(result, i));
         json_put_number(json, "error", row->error.rms);
         json_put_int(json, "right", row->error.right);
         json_put_int(json, "counted", row->error.counted);
@@ -140,7 +201,8 @@ static void write_result(JsonWriter *json, const void *context) {
 
 static bool solve(const StoredProblem *stored, const Options *options, Error *error) {
     static Method methods[MAX_METHODS];
-    Result result = {.stored = stored, .methods = methods, .method_count = options->method_count};
+    Result result = {
+        .stored = stored, .methods = methods, .method_count = options->method_count, .impulses = options->impulses};
     bool ok = true;
     for (int i = 0; ok && i < options->method_count; i++) ok = method_parse(&methods[i], options->methods[i], error);
     ok = ok && score_all(&result, error);
@@ -151,6 +213,8 @@ static bool solve(const StoredProblem *stored, const Options *options, Error *er
     reference_free(&result.truth);
     return ok;
 }
+
+static bool is_scored(const Options *options) { return options->method_count > 0 || options->impulses != NULL; }
 
 typedef struct Recording {
     const Scene *scene;
@@ -174,7 +238,7 @@ static bool use_last(void *context, int frame, const World *world, Error *error)
     StoredProblem stored = {.frame = frame, .problem = *world_problem(world)};
     snprintf(stored.scene, sizeof stored.scene, "%s", recording->scene->name);
     return (options->output == NULL || write(&stored, options, error)) &&
-           (options->method_count == 0 || solve(&stored, options, error));
+           (!is_scored(options) || solve(&stored, options, error));
 }
 
 static bool run_scene(Scene *scene, const Options *options, Error *error) {
@@ -209,8 +273,9 @@ static bool check_options(const Options *options, Error *error) {
         return error_input(error, options->input, "-o, --run-by and --bomb-x are for a scene, with --frame N");
     if (step && file_name_ends_with(options->input, ".npz"))
         return error_input(error, options->input, "--frame is for a scene; a contact problem is of one step");
-    if (options->method_count == 0 && (options->output == NULL || options->json))
-        return error_input(error, options->input, "--method NAME is needed%s", step ? ", or -o P.npz to write" : "");
+    if (!is_scored(options) && (options->output == NULL || options->json))
+        return error_input(error, options->input, "--method NAME or --impulses FILE.csv is needed%s",
+                           step ? ", or -o P.npz to write" : "");
     return json_output_check(options->json, error) &&
            (options->output == NULL || output_check_npz(options->output, "contact problem", error));
 }

@@ -46,6 +46,33 @@ done
 equal "bodies right by the reference" "$(value reference 3)" 11/11
 run 0 solve impact.npz -m "pair-net:network=$scenes/networks/pair-net.npz"
 
+# Impulses from elsewhere: those of a run's step are the solution of its method; none leave the bodies falling.
+run 0 simulate "$scenes/stack.yaml" --frames 41 -o run.npz
+/usr/bin/python3 - <<'PYTHON'
+import numpy
+run = numpy.load("run.npz")
+impulses = run["contact_impulse"][run["contact_start"][41]:run["contact_start"][42] if len(run["contact_start"]) > 42 else None]
+with open("mine.csv", "w") as file:
+    file.write("tangent,contact,normal\n")
+    file.writelines(f"{float(t)!r},{i},{float(n)!r}\n" for i, (n, t) in reversed(list(enumerate(impulses))))
+open("none.csv", "w").write("contact,normal,tangent\n")
+PYTHON
+run 0 solve impact.npz -m engine --impulses mine.csv
+less "impulses of the engine" "$(value mine.csv 2)" "$(awk -v e="$(value engine 2)" 'BEGIN { print 1.0001 * e }')"
+less "impulses of the engine" "$(awk -v e="$(value engine 2)" 'BEGIN { print 0.9999 * e }')" "$(value mine.csv 2)"
+equal "residual" "$(value mine.csv 4 | cut -c1-4)" "$(value engine 4 | cut -c1-4)"
+run 0 solve impact.npz --impulses none.csv
+less "the engine" "$(value engine 2)" "$(value none.csv 2)"
+printf 'contact,normal,tangent\n19,1,0\n' >far.csv
+run 2 solve impact.npz --impulses far.csv
+complains "far.csv:2:1: error: contact: there is no contact 19; the problem has 19"
+printf 'contact,normal,tangent\n3,1,0\n3,1,0\n' >twice.csv
+run 2 solve impact.npz --impulses twice.csv
+complains "twice.csv:3"
+printf 'contact,normal,tangent\n3,nan,0\n' >nan.csv
+run 2 solve impact.npz --impulses nan.csv
+complains "nan.csv:2:3"
+
 run 2 solve "$scenes/stack.yaml" -o none.npz
 complains "--frame N is needed"
 run 2 solve "$scenes/stack.yaml" --frame 0 -o none.npz
@@ -89,11 +116,11 @@ run 0 help problem
 says "Usage: twinbox solve"
 
 run 2 solve impact.npz
-complains "--method NAME is needed"
+complains "--method NAME or --impulses FILE.csv is needed"
 run 2 solve "$scenes/stack.yaml" --frame 41
-complains "--method NAME is needed, or -o P.npz"
+complains "--method NAME or --impulses FILE.csv is needed, or -o P.npz"
 run 2 solve "$scenes/stack.yaml" --frame 41 -o none.npz --json
-complains "--method NAME is needed"
+complains "--method NAME or --impulses FILE.csv is needed"
 run 2 solve "$scenes/stack.yaml" -m engine
 complains "stack.yaml: error: --frame N is needed"
 run 2 solve impact.npz -m engine --frame 41
