@@ -65,7 +65,7 @@ static const CommandSpec spec = {
         "contact's velocity by one more sweep (m/s; a method without impulses counts as impulses of 0).\v"
         "Example: twinbox solve scenes/stack.yaml --frame 41 --method engine:k=10 --method engine:k=100\n"
         "         twinbox solve scenes/stack.yaml --frame 41 -o impact.npz\n"
-        "         twinbox solve impact.npz --method momentum:k=20 --impulses mine.csv\n"
+        "         twinbox solve impact.npz --method momentum:k=20\n"
         "In Python: problem = numpy.load('impact.npz'); problem['velocity'] has shape (bodies, 2)."};
 
 typedef struct Score {
