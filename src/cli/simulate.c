@@ -43,7 +43,7 @@ Trajectory *simulate_judged(const Scene *scene, const Method *method, const Prog
     const StepObserver observer = simulate_verdict_observer(&verdict);
     const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1, .progress = progress};
     Trajectory *run = NULL;
-    if (simulate_verdict_begin(&verdict, scene, method->text, error) &&
+    if (simulate_verdict_begin(&verdict, scene, method, error) &&
         simulate_watched(scene, method, &watch, error) && simulate_verdict_end(&verdict, error)) {
         run = recorder_take(recorder);
         simulate_verdict_words(&verdict, words);
@@ -289,7 +289,7 @@ static bool judge(SimulateResult *result, const Options *options, Error *error) 
 
 static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
     SimulateResult result = {.scene = scene, .method = method->text, .output = options->output};
-    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&result.verdict, scene, method->text, error))
+    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&result.verdict, scene, method, error))
         return false;
     bool ok = record(scene, method, options, &result, error);
     if (ok && !options->json) simulate_result_print(&result);

@@ -89,7 +89,7 @@ static bool begin(LiveRun *run, LiveScene *live, const char *settings, const cha
     run->scene = live_scene(live, settings, error);
     if (run->scene == NULL || !method_parse(&run->method, method, error)) return false;
     run->trajectory = trajectory_of_scene(run->scene, &run->method, run->scene->frames + 1, error);
-    if (run->trajectory == NULL || !simulate_verdict_begin(&run->verdict, run->scene, run->method.text, error) ||
+    if (run->trajectory == NULL || !simulate_verdict_begin(&run->verdict, run->scene, &run->method, error) ||
         !simulation_begin(&run->simulation, run->scene, &run->method, error))
         return false;
     run->trajectory->no_contacts = !contacts;

@@ -137,5 +137,11 @@ void check_falls(VerdictWatch *watch, const VerdictStep *step);
 void check_creep(VerdictWatch *watch, const VerdictStep *step);
 void check_calm(VerdictWatch *watch, const VerdictStep *step);
 
+/* Sets the step's contacts: those between its bodies. */
+bool verdict_find_contacts(VerdictWatch *watch, VerdictStep *step, Error *error);
+
+/* m */
+double smaller_side(const Body *body);
+
 /* Seconds rounded to whole steps; at least one. */
 int verdict_steps(double seconds, float dt);

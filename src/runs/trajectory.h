@@ -43,6 +43,7 @@ typedef struct Trajectory {
     float *angular_velocity;            /* [T, N] rad/s */
     bool no_velocities;                 /* both are unknown: all NaN; files do not have them */
     bool no_contacts;                   /* contacts were not recorded: none are here, nor in files */
+    bool no_impulses;                   /* contacts were found later (trajectory_find_contacts): impulses are unknown, 0 */
     int64_t *contact_start;      /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
     TrajectoryContact *contacts; /* [contact_start[T]] */
     char verdict

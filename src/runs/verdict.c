@@ -24,6 +24,7 @@ bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_CREEPS; }
 void verdict_watch_free(VerdictWatch *watch) {
     free(watch->bodies);
     free(watch->statics);
+    contact_finder_free(&watch->finder);
     *watch = (VerdictWatch){0};
 }
 
@@ -50,6 +51,7 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, Error
     for (int i = watch->body_count; i < count; i++) {
         watch->bodies[i] =
             (WatchedBody){.outside = bodies[i].position, .last = bodies[i].position, .last_angle = bodies[i].angle};
+        if (bodies[i].inv_mass != 0) watch->smallest = fmin(watch->smallest, smaller_side(&bodies[i]));
         if (bodies[i].inv_mass == 0 && !add_static(watch, &bodies[i], i, error)) return false;
     }
     watch->body_count = count;
@@ -62,6 +64,12 @@ static bool starts_at_rest(const Scene *scene) {
         if (body->velocity.x != 0 || body->velocity.y != 0 || body->angular_velocity != 0) return false;
     }
     return true;
+}
+
+float verdict_skin(const Method *method) {
+    float skin = 0;
+    const char *text = method->kind->description->external ? settings_get(&method->settings, "skin") : NULL;
+    return text != NULL && parse_float(text, &skin) ? skin : 0;
 }
 
 VerdictRun verdict_run_of(const Scene *scene) {
@@ -78,9 +86,11 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
         return error_input(error, "verdict", "the converged run has only %d of %d frames", run->converged->frames,
                            run->frames);
     *watch = (VerdictWatch){.run = *run,
+                            .smallest = INFINITY,
                             .bodies = watch->bodies,
                             .capacity = watch->capacity,
                             .statics = watch->statics,
+                            .finder = watch->finder,
                             .static_capacity = watch->static_capacity};
     energy_balance_begin(&watch->own, run->gravity, bodies, count);
     watch->kept = watch->brought = watch->own.energy;
@@ -109,15 +119,25 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *err
     return true;
 }
 
-bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error) {
+/* Those after the step. */
+bool verdict_find_contacts(VerdictWatch *watch, VerdictStep *step, Error *error) {
+    if (!contact_finder_find(&watch->finder, step->bodies, step->body_count, watch->run.skin, error)) return false;
+    step->contacts = watch->finder.set.contacts;
+    step->contact_count = watch->finder.set.contact_count;
+    return true;
+}
+
+bool verdict_watch_observe(void *context, int frame, const World *world, Error *error) {
     const ContactProblem *problem = world_problem(world);
-    const VerdictStep step = {.frame = frame,
-                              .body_count = world_body_count(world),
-                              .contact_count = problem->contact_count,
-                              .bomb = problem->marked,
-                              .bodies = world_bodies(world),
-                              .contacts = problem->contacts};
-    return verdict_watch_step(watch, &step, error);
+    VerdictWatch *watch = context;
+    VerdictStep step = {.frame = frame,
+                        .body_count = world_body_count(world),
+                        .contact_count = problem->contact_count,
+                        .bomb = problem->marked,
+                        .bodies = world_bodies(world),
+                        .contacts = problem->contacts};
+    return (watch->run.skin == 0 || verdict_find_contacts(watch, &step, error)) &&
+           verdict_watch_step(watch, &step, error);
 }
 
 /* The words of exec.c. */
@@ -190,9 +210,11 @@ static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const 
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
                  Error *error) {
     VerdictWatch watch = {0};
+    VerdictRun judged = *run;
+    judged.skin = verdict_skin(method);
     World *world = scene_world(scene, error);
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
-    bool ok = stepper != NULL && verdict_watch_begin(&watch, run, world_bodies(world), world_body_count(world), error);
+    bool ok = stepper != NULL && verdict_watch_begin(&watch, &judged, world_bodies(world), world_body_count(world), error);
     NetworkFallbacks fallbacks = {0};
     for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++) {
         ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);

@@ -87,7 +87,8 @@ enum { VERDICT_CALM_FRAMES = 60 };
 enum { VERDICT_CREEP_SECONDS = 10, VERDICT_CREEP_FROM = 10 };
 
 /* Falls: a body is lower than where it stood by more than VERDICT_FALL_SHARE of its smaller side, or has rotated by
-   more than VERDICT_FALL_ANGLE (degrees), even if it comes to rest there. */
+   more than VERDICT_FALL_ANGLE (degrees), even if it comes to rest there. The sag of what carries it does not count: a
+   tall pile whose contacts give way by some millimetres each is lower at its top, and stands. */
 #define VERDICT_FALL_SHARE 0.5
 #define VERDICT_FALL_ANGLE 30.0
 
@@ -150,10 +151,16 @@ typedef struct VerdictRun {
        and not for the bomb, which may roll. */
     bool stands;
     bool until_bomb; /* falling is judged until the bomb first touches something */
+    /* m: what the run's engine adds to each side of a box, so that boxes rest apart by twice that (Box2D before version 3:
+       0.0075). Boxes touch within it, and may rise by it. 0: none. */
+    float skin;
     /* The same scene run by "reference", with at least as many frames; outlives the watch. NULL: the run is judged by
        its own energy alone. */
     const EnergyLog *converged;
 } VerdictRun;
+
+/* m: the setting `skin` of the method exec; else 0. */
+float verdict_skin(const Method *method);
 
 /* The run of a scene without a converged run. It is meant to stand if all bodies start at rest: to the end without a
    bomb, or else until the bomb touches something. */
@@ -173,6 +180,7 @@ typedef struct WatchedBody {
     Vec2 last, stood; /* m: in the last frame; before the step of its first contact */
     float last_angle, stood_angle;
     bool touched; /* has had a contact */
+    double lower, carried; /* m: than where it stood; the same of what carries it, 0 if that is static or has fallen */
     bool fallen;  /* as by VERDICT_FALL_SHARE and VERDICT_FALL_ANGLE, in the last frame; static bodies never */
     Vec2 rested;  /* m: after VERDICT_CREEP_FROM seconds */
     int samples;
@@ -202,6 +210,7 @@ typedef struct VerdictWatch {
     double peak;             /* J: highest energy in the current second */
     EnergyBalance own;       /* without a converged run */
     double energy;           /* J: in the last frame */
+    double smallest;         /* m: side of a dynamic body */
     double rested;           /* J: energy after VERDICT_CREEP_FROM seconds */
     double kinetic;          /* J: mean of the dynamic bodies */
     double kinetic_not_calm; /* J: the same in the last frame that was not calm */
@@ -209,6 +218,7 @@ typedef struct VerdictWatch {
     int calm, deep;          /* consecutive calm frames; consecutive frames with a deep contact */
     int peak_steps;          /* of the current second */
     int rested_count;        /* bodies after VERDICT_CREEP_FROM seconds; 0 before */
+    ContactFinder finder;    /* of a run with a skin */
 } VerdictWatch;
 
 void verdict_watch_free(VerdictWatch *watch);
@@ -235,14 +245,20 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs: `verdict_alone`
    in tests/stability.
 
+   With a skin, boxes that a scene places side by side are pushed apart: each bound is higher by what lifts every body by
+   two skins for each body that may be below it, its height over the smallest side.
+
    Tunnels: the centre of a dynamic body passed through a static box: the straight line from its last position outside
    all static boxes intersects one. Not if the centre is inside a box for a step and is pushed out again; if it stays
    inside, it sinks. Also finds bodies that leave the world through the ground, but not past its edge.
 
-   Falls: a body stood where it was at its first contact, so that gaps that a scene starts with may close. */
+   Falls: a body stood where it was at its first contact, so that gaps that a scene starts with may close. Subtracted is
+   how much lower the lowest of the bodies is that carry it: that touch it from below, by a contact whose normal is nearer to gravity than
+   to the horizontal, in the last step that had one. A body that has fallen carries nothing: what comes down with it falls,
+   too. A pile that gives way without end sinks. */
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error);
 
-/* The same for a world; a StepObserver callback. */
+/* The same for a world; a StepObserver callback. With a skin, contacts are found again. */
 bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error);
 
 /* True if a run failed because a body's state became NaN or infinite, or because the program of the method `exec` failed: that
@@ -258,7 +274,7 @@ bool verdict_watch_is_final(const VerdictWatch *watch);
 /* The verdict on the run up to the last step. A run shorter than VERDICT_CALM_FRAMES cannot settle. */
 VerdictReading verdict_watch_end(const VerdictWatch *watch);
 
-/* Runs the scene with the method until the verdict is final. A NaN or infinite state is a verdict, not an error. False
+/* Runs the scene with the method, whose skin counts, until the verdict is final. A NaN or infinite state is a verdict, not an error. False
    with error set if the method cannot be created or memory is short. */
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
                  Error *error);
@@ -273,8 +289,8 @@ typedef struct SimulateVerdict {
     VerdictReading reading; /* after simulate_verdict_end() */
 } SimulateVerdict;
 
-/* The scene and the method's text outlive the verdict. */
-bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error);
+/* The scene and the method outlive the verdict. */
+bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const Method *method, Error *error);
 
 /* To be called after every step; outlived by the verdict. */
 StepObserver simulate_verdict_observer(SimulateVerdict *verdict);

@@ -106,7 +106,7 @@ int verdict_steps(double seconds, float dt) {
     return steps > 1 ? (int)steps : 1;
 }
 
-static double smaller_side(const Body *body) { return body->size.x < body->size.y ? body->size.x : body->size.y; }
+double smaller_side(const Body *body) { return body->size.x < body->size.y ? body->size.x : body->size.y; }
 
 bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
     double most = 0; /* m^2/s^2 */
@@ -162,11 +162,19 @@ static bool overlaps_at_start(const VerdictStep *step) {
     return false;
 }
 
+/* J: what the skins of the engine may lift. */
+static double skin_energy(const VerdictWatch *watch) {
+    const EnergyBalance *own = &watch->own;
+    return isfinite(watch->smallest) ? 2 * (double)watch->run.skin * (own->weight + own->potential / watch->smallest)
+                                     : 0;
+}
+
 /* J: what exceeds the bounds of verdict_watch_step(); 0 if nothing does. Bound (b) searches two seconds of the
    converged run; evaluated only if (a) is exceeded, which is rare. */
 static double excess_beside(const VerdictWatch *watch, int frame) {
     const EnergyLog *converged = watch->run.converged;
-    const double allowed = VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_AVAILABLE);
+    const double allowed =
+        VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_AVAILABLE) + skin_energy(watch);
     if (watch->energy <= watch->kept + allowed) return 0;
     const double bound = fmax(watch->kept, converged_energy(&watch->run, frame));
     return watch->energy > bound + allowed ? watch->energy - bound : 0;
@@ -174,11 +182,12 @@ static double excess_beside(const VerdictWatch *watch, int frame) {
 
 /* The same without a converged run. */
 static double excess_alone(const VerdictWatch *watch) {
+    const double skin = skin_energy(watch);
     const EnergyBalance *own = &watch->own;
     const double least = fmax(VERDICT_LEAST_LIFT * own->weight, VERDICT_LEAST_AVAILABLE);
     const double available = fmax(fmax(own->available, own->potential + own->kinetic), least);
-    if (watch->energy > watch->brought + VERDICT_ENERGY_SHARE * available) return watch->energy - watch->brought;
-    return watch->energy > watch->kept + VERDICT_REGAIN_SHARE * available ? watch->energy - watch->kept : 0;
+    if (watch->energy > watch->brought + VERDICT_ENERGY_SHARE * available + skin) return watch->energy - watch->brought;
+    return watch->energy > watch->kept + VERDICT_REGAIN_SHARE * available + skin ? watch->energy - watch->kept : 0;
 }
 
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {
@@ -292,6 +301,32 @@ static bool judges_falls(const VerdictWatch *watch, int bomb) {
     return watch->run.stands || (watch->run.until_bomb && (bomb < 0 || !watch->bodies[bomb].touched));
 }
 
+/* The bodies that a contact joins: `a` from below carries b. False for one at the side. */
+static bool carries(const ContactPoint *contact, Vec2 gravity, BodyPair *pair) {
+    const float along = vec2_dot(contact->normal, gravity), across = vec2_cross(contact->normal, gravity);
+    *pair = along < 0 ? (BodyPair){contact->a, contact->b} : (BodyPair){contact->b, contact->a};
+    return fabsf(along) > fabsf(across);
+}
+
+/* How much lower each body is, and what carries it. A body in the air keeps what carried it last. */
+static void find_sag(const VerdictWatch *watch, const VerdictStep *step, double pull) {
+    BodyPair pair;
+    for (int i = 0; i < step->body_count; i++) {
+        WatchedBody *body = &watch->bodies[i];
+        const bool judged = step->bodies[i].inv_mass != 0 && body->touched && pull > 0;
+        body->lower = judged ? descent(body->stood, step->bodies[i].position, watch->run.gravity) / pull : 0;
+    }
+    for (int i = 0; i < step->contact_count; i++)
+        if (exists(step, &step->contacts[i]) && carries(&step->contacts[i], watch->run.gravity, &pair))
+            watch->bodies[pair.b].carried = 0;
+    for (int i = 0; i < step->contact_count; i++) {
+        if (!exists(step, &step->contacts[i]) || !carries(&step->contacts[i], watch->run.gravity, &pair)) continue;
+        const WatchedBody *below = &watch->bodies[pair.a];
+        WatchedBody *above = &watch->bodies[pair.b];
+        if (!below->fallen) above->carried = fmax(above->carried, below->lower);
+    }
+}
+
 void check_falls(VerdictWatch *watch, const VerdictStep *step) {
     for (int i = 0; i < step->contact_count && watch->touched_count < step->body_count; i++) {
         if (!exists(step, &step->contacts[i])) continue;
@@ -299,17 +334,16 @@ void check_falls(VerdictWatch *watch, const VerdictStep *step) {
         note_contact(watch, step->contacts[i].b);
     }
     const bool judged = judges_falls(watch, step->bomb);
-    const double pull = vec2_distance(watch->run.gravity, vec2(0, 0));
+    find_sag(watch, step, vec2_distance(watch->run.gravity, vec2(0, 0)));
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
         WatchedBody *watched = &watch->bodies[i];
         if (body->inv_mass == 0 || !watched->touched) continue;
-        const double down = descent(watched->stood, body->position, watch->run.gravity);
         const double turned = fabs((double)body->angle - watched->stood_angle) * degrees;
-        const bool is_lower = down > VERDICT_FALL_SHARE * smaller_side(body) * pull;
+        const bool is_lower = watched->lower - watched->carried > VERDICT_FALL_SHARE * smaller_side(body);
         const bool is_turned = turned > VERDICT_FALL_ANGLE;
         watched->fallen = is_lower || is_turned;
-        if (judged && is_lower) verdict_note(watch, VERDICT_FALLS, i, down / pull, "m");
+        if (judged && is_lower) verdict_note(watch, VERDICT_FALLS, i, watched->lower, "m");
         if (judged && is_turned) verdict_note(watch, VERDICT_FALLS, i, turned, "deg");
     }
 }
