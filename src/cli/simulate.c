@@ -92,8 +92,7 @@ static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     if (reading->reason[0] != '\0') json_put_text(json, "reason", reading->reason);
 }
 
-/* Puts it with all figures as an object into JSON (src/studies/README.md, The verdict on one run). */
-static void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key) {
+void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key) {
     const VerdictWatch *watch = &verdict->watch;
     json_begin_object(json, key, JSON_LINES);
     json_put_text(json, "format", "twinbox simulate verdict 1");
@@ -112,6 +111,8 @@ static void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *jso
     json_put_number(json, "available", watch->own.available);
     json_put_number(json, "drift", verdict->reading.drift);
     json_put_number(json, "gained", verdict->reading.gained);
+    json_put_number(json, "deepest", verdict->reading.deepest);
+    json_put_number(json, "excess", verdict->reading.excess);
     json_end(json);
 }
 

@@ -137,9 +137,6 @@ void check_falls(VerdictWatch *watch, const VerdictStep *step);
 void check_creep(VerdictWatch *watch, const VerdictStep *step);
 void check_calm(VerdictWatch *watch, const VerdictStep *step);
 
-/* Sets the step's contacts: those between its bodies. */
-bool verdict_find_contacts(VerdictWatch *watch, VerdictStep *step, Error *error);
-
 /* m */
 double smaller_side(const Body *body);
 

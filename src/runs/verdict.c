@@ -66,10 +66,9 @@ static bool starts_at_rest(const Scene *scene) {
     return true;
 }
 
-float verdict_skin(const Method *method) {
-    float skin = 0;
+void verdict_run_set_skin(VerdictRun *run, const Method *method) {
     const char *text = method->kind->description->external ? settings_get(&method->settings, "skin") : NULL;
-    return text != NULL && parse_float(text, &skin) ? skin : 0;
+    if (text != NULL) run->finds_contacts = parse_float(text, &run->skin);
 }
 
 VerdictRun verdict_run_of(const Scene *scene) {
@@ -79,6 +78,11 @@ VerdictRun verdict_run_of(const Scene *scene) {
                         .frames = scene->frames,
                         .stands = rests && !bomb,
                         .until_bomb = rests && bomb};
+}
+
+/* The contacts of the next step. */
+static bool find_contacts(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
+    return !watch->run.finds_contacts || contact_finder_find(&watch->finder, bodies, count, watch->run.skin, error);
 }
 
 bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body *bodies, int count, Error *error) {
@@ -94,7 +98,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
                             .static_capacity = watch->static_capacity};
     energy_balance_begin(&watch->own, run->gravity, bodies, count);
     watch->kept = watch->brought = watch->own.energy;
-    return add_bodies(watch, bodies, count, error);
+    return add_bodies(watch, bodies, count, error) && find_contacts(watch, bodies, count, error);
 }
 
 static void store_rested(VerdictWatch *watch) {
@@ -103,7 +107,15 @@ static void store_rested(VerdictWatch *watch) {
     watch->rested = watch->energy;
 }
 
-bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error) {
+bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *error) {
+    const ContactSet *found = &watch->finder.set;
+    const VerdictStep judged = {.frame = given->frame,
+                                .body_count = given->body_count,
+                                .contact_count = found->contact_count,
+                                .bomb = given->bomb,
+                                .bodies = given->bodies,
+                                .contacts = found->contacts},
+                      *step = watch->run.finds_contacts ? &judged : given;
     if (watch->worst.verdict >= VERDICT_NON_FINITE) return true;
     watch->frame = step->frame;
     if (!check_finite(watch, step)) return true;
@@ -116,28 +128,18 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *err
     check_calm(watch, step);
     store_last(watch, step->bodies);
     if (step->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) store_rested(watch);
-    return true;
+    return find_contacts(watch, step->bodies, step->body_count, error);
 }
 
-/* Those after the step. */
-bool verdict_find_contacts(VerdictWatch *watch, VerdictStep *step, Error *error) {
-    if (!contact_finder_find(&watch->finder, step->bodies, step->body_count, watch->run.skin, error)) return false;
-    step->contacts = watch->finder.set.contacts;
-    step->contact_count = watch->finder.set.contact_count;
-    return true;
-}
-
-bool verdict_watch_observe(void *context, int frame, const World *world, Error *error) {
+bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error) {
     const ContactProblem *problem = world_problem(world);
-    VerdictWatch *watch = context;
-    VerdictStep step = {.frame = frame,
-                        .body_count = world_body_count(world),
-                        .contact_count = problem->contact_count,
-                        .bomb = problem->marked,
-                        .bodies = world_bodies(world),
-                        .contacts = problem->contacts};
-    return (watch->run.skin == 0 || verdict_find_contacts(watch, &step, error)) &&
-           verdict_watch_step(watch, &step, error);
+    const VerdictStep step = {.frame = frame,
+                              .body_count = world_body_count(world),
+                              .contact_count = problem->contact_count,
+                              .bomb = problem->marked,
+                              .bodies = world_bodies(world),
+                              .contacts = problem->contacts};
+    return verdict_watch_step(watch, &step, error);
 }
 
 /* The words of exec.c. */
@@ -182,6 +184,8 @@ static VerdictReading read_verdict(const VerdictWatch *watch) {
 VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     VerdictReading reading = read_verdict(watch);
     reading.drift = reading.gained = NAN;
+    reading.deepest = watch->deepest;
+    reading.excess = watch->run.no_energy ? NAN : watch->excess;
     if (watch->rested_count == 0 || watch->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) return reading;
     reading.drift = 0;
     reading.gained = watch->energy - watch->rested;
@@ -211,7 +215,7 @@ bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *meth
                  Error *error) {
     VerdictWatch watch = {0};
     VerdictRun judged = *run;
-    judged.skin = verdict_skin(method);
+    verdict_run_set_skin(&judged, method);
     World *world = scene_world(scene, error);
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
     bool ok = stepper != NULL && verdict_watch_begin(&watch, &judged, world_bodies(world), world_body_count(world), error);

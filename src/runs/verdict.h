@@ -138,6 +138,9 @@ typedef struct VerdictReading {
     /* Since VERDICT_CREEP_FROM seconds; NaN if the run is not longer. m: largest distance moved by a body that existed
        then. J: energy gained. */
     double drift, gained;
+    double deepest; /* m: penetration of the deepest contact of all steps */
+    /* J: the most by which the energy exceeded what the start and added bodies brought; at least 0; NaN if not judged */
+    double excess;
     int steps; /* set by verdict_run() only, as are fallbacks */
     NetworkFallbacks fallbacks;
 } VerdictReading;
@@ -154,13 +157,15 @@ typedef struct VerdictRun {
     /* m: what the run's engine adds to each side of a box, so that boxes rest apart by twice that (Box2D before version 3:
        0.0075). Boxes touch within it, and may rise by it. 0: none. */
     float skin;
+    bool no_energy;      /* is not judged: masses are not known */
+    bool finds_contacts; /* between the bodies before a step: those that steps state do not count */
     /* The same scene run by "reference", with at least as many frames; outlives the watch. NULL: the run is judged by
        its own energy alone. */
     const EnergyLog *converged;
 } VerdictRun;
 
-/* m: the setting `skin` of the method exec; else 0. */
-float verdict_skin(const Method *method);
+/* Sets the skin that the method exec states. */
+void verdict_run_set_skin(VerdictRun *run, const Method *method);
 
 /* The run of a scene without a converged run. It is meant to stand if all bodies start at rest: to the end without a
    bomb, or else until the bomb touches something. */
@@ -218,7 +223,8 @@ typedef struct VerdictWatch {
     int calm, deep;          /* consecutive calm frames; consecutive frames with a deep contact */
     int peak_steps;          /* of the current second */
     int rested_count;        /* bodies after VERDICT_CREEP_FROM seconds; 0 before */
-    ContactFinder finder;    /* of a run with a skin */
+    double deepest, excess;  /* as in VerdictReading */
+    ContactFinder finder;    /* of a run that finds its contacts */
 } VerdictWatch;
 
 void verdict_watch_free(VerdictWatch *watch);
@@ -258,7 +264,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    too. A pile that gives way without end sinks. */
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error);
 
-/* The same for a world; a StepObserver callback. With a skin, contacts are found again. */
+/* The same for a world; a StepObserver callback. */
 bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error);
 
 /* True if a run failed because a body's state became NaN or infinite, or because the program of the method `exec` failed: that
@@ -305,3 +311,27 @@ void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTOR
 
 /* The number of dynamic bodies but the bomb, and how many of them have fallen. */
 int simulate_verdict_bodies(const SimulateVerdict *verdict, int *fallen);
+
+/* The verdict on a stored run. Contacts are found again, so that it is the one of simulate(); velocities, if the run does
+   not state them, are differences of poses. */
+
+/* Assumed of a run without its scene. */
+#define VERDICT_GRAVITY 10.0f /* m/s^2, down */
+#define VERDICT_DENSITY 1.0f  /* kg/m^2 */
+
+/* What a run says of its scene: bodies of VERDICT_DENSITY, which start with a speed if they do not rest, and a bomb. To be
+   destroyed with scene_destroy(). NULL with error set. */
+Scene *trajectory_scene(const Trajectory *run, Error *error);
+
+/* By what a stored run is judged. */
+typedef struct RunScene {
+    Scene *scene;      /* masses, gravity and bomb; gets the run's time step and frames */
+    bool assumed;      /* it is that of trajectory_scene() */
+    float skin;        /* m, as in VerdictRun */
+} RunScene;
+
+/* The scene and the run outlive the verdict. In an assumed scene that has a bomb, or bodies that start with a speed, energy
+   is not judged: light bodies get much of it from heavy ones. A run whose own verdict is non-finite has ended so, and that
+   is the verdict.
+   ERROR_INPUT: the scene has other bodies, or a body is missing before another one; free the verdict in any case. */
+bool simulate_verdict_of_run(SimulateVerdict *verdict, const RunScene *by, const Trajectory *run, Error *error);

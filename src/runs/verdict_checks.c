@@ -196,6 +196,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     energy_balance_step(&watch->own, step->bodies, step->body_count);
     const double energy = watch->energy = watch->own.energy, change = watch->own.brought - before;
     watch->brought += change;
+    watch->excess = fmax(watch->excess, energy - watch->own.brought);
     if (step->body_count > watch->body_count) {
         watch->kept += change;
         watch->peak += change;
@@ -203,7 +204,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     if (step->body_count < watch->body_count) end_second(watch, energy);
     if (step->frame == 1 && run->converged == NULL && overlaps_at_start(step)) watch->kept = watch->brought = INFINITY;
     const double gained = run->converged != NULL ? excess_beside(watch, step->frame) : excess_alone(watch);
-    if (gained > 0) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), gained, "J");
+    if (gained > 0 && !run->no_energy) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), gained, "J");
     watch->peak = watch->peak_steps++ > 0 ? fmax(watch->peak, energy) : energy;
     if (watch->peak_steps < verdict_steps(VERDICT_ENERGY_TIME, run->dt)) return;
     end_second(watch, fmin(watch->kept, watch->peak));
@@ -269,6 +270,7 @@ void check_depth(VerdictWatch *watch, const VerdictStep *step) {
     double share = 1;
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
+        if (exists(step, contact)) watch->deepest = fmax(watch->deepest, -(double)contact->separation);
         if (!exists(step, contact) || -(double)contact->separation <= VERDICT_SINK_LEAST) continue;
         double side = fmin(smaller_side(&step->bodies[contact->a]), smaller_side(&step->bodies[contact->b]));
         double found = -(double)contact->separation / fmax(VERDICT_SINK_SHARE * side, VERDICT_SINK_LEAST);
