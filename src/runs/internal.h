@@ -87,6 +87,7 @@ typedef struct CsvRow {
     int64_t frame, body;
     float state[6]; /* x, y, angle, vx, vy, omega; the last three 0 if absent */
     double time;    /* s, 0 if absent */
+    bool not_finite; /* a number of the state is NaN or infinite */
 } CsvRow;
 
 /* Reads the header at `text`, which is line `line` of the file and stays the caller's. */
@@ -115,6 +116,8 @@ typedef struct CsvImport {
     int64_t first, last;          /* frames of the file */
     double first_time, last_time; /* of these frames, s */
     int *row_counts;              /* of each body */
+    int64_t end, *ends;           /* the first frame that is not finite, and of each body; INT64_MAX: none */
+    int ended;                    /* a body that is not finite in frame `end` */
     Trajectory *run;
 } CsvImport;
 
