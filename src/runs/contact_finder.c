@@ -74,11 +74,12 @@ static bool find_step(Trajectory *run, int step, ContactFinder *finder, Body *bo
 }
 
 bool trajectory_find_contacts(Trajectory *run, Error *error) {
-    if (!run->no_contacts) return true;
     ContactFinder finder = {0};
     Body *bodies = malloc(((size_t)run->bodies + 1) * sizeof *bodies);
     int *numbers = malloc(((size_t)run->bodies + 1) * sizeof *numbers);
     bool ok = (bodies != NULL && numbers != NULL) || error_memory(error, run->scene);
+    run->last_step = 0;
+    run->contact_start[1] = 0;
     for (int step = 1; ok && step < run->frames; step++) ok = find_step(run, step, &finder, bodies, numbers, error);
     trajectory_end_contacts(run);
     run->no_contacts = !ok;

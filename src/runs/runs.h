@@ -99,9 +99,6 @@ void contact_finder_free(ContactFinder *finder);
 /* Boxes that are apart by less than 2 `skin` (m) touch, too: their separation is positive. ERROR_INPUT: too many pairs. */
 bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error);
 
-/* Gives a run without contacts those between its poses, without impulses: no_impulses. Other runs stay. */
-bool trajectory_find_contacts(Trajectory *run, Error *error);
-
 /* Records a run: into a trajectory in memory, or into files while the run is made, in bounded memory. Files are written
    by a second thread. */
 

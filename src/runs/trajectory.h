@@ -79,6 +79,10 @@ void trajectory_restart_contacts(Trajectory *trajectory);
 /* Call after the last contact: fills the rest of contact_start. */
 void trajectory_end_contacts(Trajectory *trajectory);
 
+/* Replaces the contacts by those that collision detection finds between the poses, without impulses (no_impulses). False with
+   error set. */
+bool trajectory_find_contacts(Trajectory *trajectory, Error *error);
+
 /* The first step in which the bomb touches a dynamic body; -1: none. */
 int trajectory_impact(const Trajectory *trajectory);
 

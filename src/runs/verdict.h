@@ -87,8 +87,8 @@ enum { VERDICT_CALM_FRAMES = 60 };
 enum { VERDICT_CREEP_SECONDS = 10, VERDICT_CREEP_FROM = 10 };
 
 /* Falls: a body is lower than where it stood by more than VERDICT_FALL_SHARE of its smaller side, or has rotated by
-   more than VERDICT_FALL_ANGLE (degrees), even if it comes to rest there. The sag of what carries it does not count: a
-   tall pile whose contacts give way by some millimetres each is lower at its top, and stands. */
+   more than VERDICT_FALL_ANGLE (degrees), even if it comes to rest there. Sag does not count: a tall pile
+   whose contacts give way by some millimetres each is lower at its top, and stands. */
 #define VERDICT_FALL_SHARE 0.5
 #define VERDICT_FALL_ANGLE 30.0
 
@@ -185,7 +185,7 @@ typedef struct WatchedBody {
     Vec2 last, stood; /* m: in the last frame; before the step of its first contact */
     float last_angle, stood_angle;
     bool touched; /* has had a contact */
-    double lower, carried; /* m: than where it stood; the same of what carries it, 0 if that is static or has fallen */
+    double lower, sag; /* m: than where it stood; of that, what contacts below it account for */
     bool fallen;  /* as by VERDICT_FALL_SHARE and VERDICT_FALL_ANGLE, in the last frame; static bodies never */
     Vec2 rested;  /* m: after VERDICT_CREEP_FROM seconds */
     int samples;
@@ -258,10 +258,10 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    all static boxes intersects one. Not if the centre is inside a box for a step and is pushed out again; if it stays
    inside, it sinks. Also finds bodies that leave the world through the ground, but not past its edge.
 
-   Falls: a body stood where it was at its first contact, so that gaps that a scene starts with may close. Subtracted is
-   how much lower the lowest of the bodies is that carry it: that touch it from below, by a contact whose normal is nearer to gravity than
-   to the horizontal, in the last step that had one. A body that has fallen carries nothing: what comes down with it falls,
-   too. A pile that gives way without end sinks. */
+   Falls: a body stood where it was at its first contact, so that gaps that a scene starts with may close. Its sag is
+   subtracted: the depth of the contact from below, and the sag of the body there, the most if there are several. A contact is
+   from below if its normal is nearer to gravity than to the horizontal. So a column that leans has no sag, and falls.
+   A pile that gives way without end sinks. */
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error);
 
 /* The same for a world; a StepObserver callback. */

@@ -304,29 +304,46 @@ static bool judges_falls(const VerdictWatch *watch, int bomb) {
 }
 
 /* The bodies that a contact joins: `a` from below carries b. False for one at the side. */
-static bool carries(const ContactPoint *contact, Vec2 gravity, BodyPair *pair) {
+static bool carries(const VerdictStep *step, const ContactPoint *contact, Vec2 gravity, BodyPair *pair) {
     const float along = vec2_dot(contact->normal, gravity), across = vec2_cross(contact->normal, gravity);
     *pair = along < 0 ? (BodyPair){contact->a, contact->b} : (BodyPair){contact->b, contact->a};
-    return fabsf(along) > fabsf(across);
+    return exists(step, contact) && fabsf(along) > fabsf(across);
 }
 
-/* How much lower each body is, and what carries it. A body in the air keeps what carried it last. */
-static void find_sag(const VerdictWatch *watch, const VerdictStep *step, double pull) {
+/* One pass: the order of contacts is mostly that from below, so that one is enough. */
+static bool add_sag(const VerdictWatch *watch, const VerdictStep *step) {
+    bool more = false;
+    for (int i = 0; i < step->contact_count; i++) {
+        BodyPair pair;
+        if (!carries(step, &step->contacts[i], watch->run.gravity, &pair)) continue;
+        const double sag = watch->bodies[pair.a].sag + fmax(0, -(double)step->contacts[i].separation);
+        if (sag <= watch->bodies[pair.b].sag) continue;
+        watch->bodies[pair.b].sag = sag;
+        more = true;
+    }
+    return more;
+}
+
+/* How much lower contacts let bodies be. A body in the air keeps its sag. */
+static void find_sag(const VerdictWatch *watch, const VerdictStep *step) {
+    enum { PASSES = 100 };
     BodyPair pair;
+    for (int i = 0; i < step->contact_count; i++)
+        if (carries(step, &step->contacts[i], watch->run.gravity, &pair)) watch->bodies[pair.b].sag = 0;
+    for (int pass = 0; pass < PASSES && add_sag(watch, step); pass++) continue;
+}
+
+/* Finds how much lower each body is. Sag counts from half the limit on: most piles have none to look for. */
+static void find_lower(const VerdictWatch *watch, const VerdictStep *step) {
+    const double pull = vec2_distance(watch->run.gravity, vec2(0, 0));
+    bool any = false;
     for (int i = 0; i < step->body_count; i++) {
         WatchedBody *body = &watch->bodies[i];
-        const bool judged = step->bodies[i].inv_mass != 0 && body->touched && pull > 0;
-        body->lower = judged ? descent(body->stood, step->bodies[i].position, watch->run.gravity) / pull : 0;
+        const bool moves = step->bodies[i].inv_mass != 0 && body->touched && pull > 0;
+        body->lower = moves ? descent(body->stood, step->bodies[i].position, watch->run.gravity) / pull : 0;
+        any |= moves && body->lower > VERDICT_FALL_SHARE / 2 * smaller_side(&step->bodies[i]);
     }
-    for (int i = 0; i < step->contact_count; i++)
-        if (exists(step, &step->contacts[i]) && carries(&step->contacts[i], watch->run.gravity, &pair))
-            watch->bodies[pair.b].carried = 0;
-    for (int i = 0; i < step->contact_count; i++) {
-        if (!exists(step, &step->contacts[i]) || !carries(&step->contacts[i], watch->run.gravity, &pair)) continue;
-        const WatchedBody *below = &watch->bodies[pair.a];
-        WatchedBody *above = &watch->bodies[pair.b];
-        if (!below->fallen) above->carried = fmax(above->carried, below->lower);
-    }
+    if (any) find_sag(watch, step);
 }
 
 void check_falls(VerdictWatch *watch, const VerdictStep *step) {
@@ -336,13 +353,13 @@ void check_falls(VerdictWatch *watch, const VerdictStep *step) {
         note_contact(watch, step->contacts[i].b);
     }
     const bool judged = judges_falls(watch, step->bomb);
-    find_sag(watch, step, vec2_distance(watch->run.gravity, vec2(0, 0)));
+    find_lower(watch, step);
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
         WatchedBody *watched = &watch->bodies[i];
         if (body->inv_mass == 0 || !watched->touched) continue;
         const double turned = fabs((double)body->angle - watched->stood_angle) * degrees;
-        const bool is_lower = watched->lower - watched->carried > VERDICT_FALL_SHARE * smaller_side(body);
+        const bool is_lower = watched->lower - watched->sag > VERDICT_FALL_SHARE * smaller_side(body);
         const bool is_turned = turned > VERDICT_FALL_ANGLE;
         watched->fallen = is_lower || is_turned;
         if (judged && is_lower) verdict_note(watch, VERDICT_FALLS, i, watched->lower, "m");
