@@ -37,7 +37,9 @@ static const Option option_table[] = {
     {OPTION_JSON(Options, json)},
     {.help = "Runs (.npz):"},
     OPTIONS_JUDGE(Options, run.judge),
-    {"--verdict", 0, "WORD", "Fail with exit status 1 unless the verdict is this: holds (settles, sways or creeps), settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite (default: any)",
+    {"--verdict", 0, "WORD",
+     "Fail with exit status 1 unless the verdict is this: holds (settles, sways or creeps), settles, sways, creeps, "
+     "falls, sinks, tunnels, explodes, non-finite (default: any)",
      OPTION_ENUM(Options, verdict, verdicts)},
     {"--max-overlap", 0, "M", "Fail if two boxes overlap by more, m", OPTION_DOUBLE(Options, run.max_overlap, 0, 1e6)},
     {"--max-drift", 0, "M", "Fail if a body moves further after the first 10 s, m",
@@ -245,7 +247,8 @@ bool command_check(int argc, char **argv, Error *error) {
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (file_name_ends_with(options.scene, ".npz")) return check_stored(&options, error);
     if (gives_limits(&options))
-        return error_input(error, options.scene, "is a scene; --scene, --set, --skin, --verdict and limits apply to runs");
+        return error_input(error, options.scene,
+                           "is a scene; --scene, --set, --skin, --verdict and limits apply to runs");
     if (options.output != NULL && !names_picture(options.output))
         return error_input(error, options.output, "the name of the picture must end in .png");
     if (options.json && options.output != NULL && strcmp(options.output, "-") == 0)

@@ -23,9 +23,9 @@ typedef struct CheckedRun {
 } CheckedRun;
 
 bool judged_run_find(JudgedRun *judged, const Trajectory *run, const JudgeOptions *options, Error *error) {
-    *judged = (JudgedRun){.scene = options->scene != NULL ? scene_read_with(options->scene, options->set.items,
-                                                                            options->set.count, error)
-                                                          : trajectory_scene(run, error)};
+    *judged = (JudgedRun){.scene = options->scene != NULL
+                                       ? scene_read_with(options->scene, options->set.items, options->set.count, error)
+                                       : trajectory_scene(run, error)};
     const RunScene by = {judged->scene, options->scene == NULL, options->skin};
     if (by.scene == NULL || !simulate_verdict_of_run(&judged->verdict, &by, run, error)) return false;
     simulate_verdict_words(&judged->verdict, judged->words);
@@ -70,7 +70,8 @@ static bool check_limits(CheckedRun *checked, Error *error) {
         return error_input(error, options->path, "lasts %.3g s: --max-drift needs a run of more than %d s",
                            (checked->run->frames - 1) * (double)checked->run->dt, VERDICT_CREEP_FROM);
     if (!isnan(options->max_gain) && isnan(reading->excess))
-        return error_input(error, options->path, "has a bomb, or bodies that start with a speed: --max-gain needs --scene");
+        return error_input(error, options->path,
+                           "has a bomb, or bodies that start with a speed: --max-gain needs --scene");
     if (wanted != NULL && (strcmp(wanted, "holds") == 0 ? !verdict_holds(reading->verdict) : strcmp(wanted, word) != 0))
         fail(checked, "verdict %s, not %s", word, wanted);
     check_limit(checked, "overlap", reading->deepest, "m", options->max_overlap);

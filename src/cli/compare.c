@@ -12,6 +12,7 @@
 
 #include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -26,7 +27,9 @@ static const Option option_table[] = {
     {"--tolerance", 0, "MAX",
      "Pictures: ignore pixels in which no channel differs by more than MAX (0 to 255). Runs: pass them where the "
      "centres "
-     "of a body are at most MAX metres apart (default: 0, every bit of pose and velocity counts)",
+     "of a body are at most MAX metres apart; MAX,RAD limits its rotation, too (default: 0, every bit of pose and "
+     "velocity "
+     "counts)",
      OPTION_TEXT(CompareOptions, limit)},
     {"--watch", 0, NULL,
      "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
@@ -69,7 +72,9 @@ static const Option option_table[] = {
      "orientation) are reported, or fail (default: report)",
      OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
     {"--report", 0, "DIR",
-     "Folder for report.html, junit.xml, results.tap, results.json, and run-NAME.html for each run that differs",
+     "Folder for report.html, junit.xml, results.tap, results.json, and run-NAME.html for each run that differs; of "
+     "two "
+     "runs, run.html",
      OPTION_TEXT(CompareOptions, report)},
     {"--report-size", 0, "MB",
      "Most that the pictures in the report may take, and as much for its pages of runs (default: 64)",
@@ -161,9 +166,18 @@ static bool is_trajectory(const char *path) {
     return path_is_standard(path) || file_name_ends_with(path, ".npz"); /* pictures come in folders */
 }
 
+/* "M" or "M,RAD"; 0 alone is none. */
 static bool read_distance(CompareOptions *options, Error *error) {
-    return options->limit == NULL || (parse_double(options->limit, &options->distance) && options->distance >= 0) ||
-           error_input(error, "--tolerance", "'%.64s' is not a distance in metres", options->limit);
+    PoseTolerance *poses = &options->poses;
+    const char *rest;
+    *poses = (PoseTolerance){.angle = INFINITY};
+    if (options->limit == NULL) return true;
+    if (!parse_leading_double(options->limit, &poses->distance, &rest) || !(poses->distance >= 0) ||
+        (*rest != '\0' && (*rest != ',' || !parse_double(rest + 1, &poses->angle) || !(poses->angle >= 0))))
+        return error_input(error, "--tolerance", "'%.64s' is not a distance in metres, or METRES,RADIANS",
+                           options->limit);
+    poses->given = poses->distance > 0 || *rest == ',';
+    return true;
 }
 
 static bool read_tolerance(CompareOptions *options, Error *error) {
@@ -177,10 +191,9 @@ static bool read_tolerance(CompareOptions *options, Error *error) {
 }
 
 static bool check_runs(CompareOptions *options, Error *error) {
-    if (options->report != NULL || options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0 ||
-        options->annotations != 0)
+    if (options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0 || options->annotations != 0)
         return error_input(error, options->paths[0],
-                           "--report, --annotations, --rules, masks and limits of pixels apply to pictures only");
+                           "--annotations, --rules, masks and limits of pixels apply to pictures only");
     return json_output_check(options->json, error) && read_distance(options, error);
 }
 

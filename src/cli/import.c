@@ -66,8 +66,8 @@ static bool import_run(const Options *options, Error *error) {
     Trajectory *run = csv_run_read(options->input, &how, &notes, error);
     JudgedRun judged = {0};
     Error unjudged = {0};
-    bool ok = run != NULL && judge(&judged, run, options, &unjudged, error) &&
-              trajectory_write(run, options->output, error);
+    bool ok =
+        run != NULL && judge(&judged, run, options, &unjudged, error) && trajectory_write(run, options->output, error);
     if (ok) {
         printf("%s by %s: %d frames of %d bodies, dt %g s -> %s\n", run->scene, run->method, run->frames, run->bodies,
                (double)run->dt, options->output);

@@ -26,9 +26,9 @@ typedef struct CompareOptions {
     const char *paths[2], *report;
     int count, megabytes;
     int max_pixels;
-    const char *limit; /* --tolerance, as given: of pictures in `tolerance`, of runs in `distance` (m) */
+    const char *limit; /* --tolerance, as given: of pictures in `tolerance`, of runs in `poses` */
     Tolerance tolerance;
-    double distance;
+    PoseTolerance poses;
     const char *scene, *csv; /* of runs */
     const char *rules;       /* a file; NULL: not given */
     bool flat;
@@ -38,6 +38,35 @@ typedef struct CompareOptions {
     bool diverge; /* by the old name: runs of other worlds are refused, and what only one run has is not compared */
     Mask mask;
 } CompareOptions;
+
+/* Two runs and how they differ. */
+typedef struct RunComparison {
+    const CompareOptions *options;
+    Trajectory *runs[2];
+    TrajectoryDifference difference;
+    bool same_world; /* or what follows is not known: */
+    bool passed;
+    bool found_contacts; /* one of the runs had none: those of both are found again */
+    TrajectoryParting parting;
+    double *distance; /* [frames of both] */
+    Growth growth, shifted;
+    Chaos chaos;   /* distance NULL: no scene given */
+    char *text;    /* what is printed */
+    bool has_page; /* the report has a page that plays both */
+} RunComparison;
+
+/* What differs without being compared, as words. */
+enum { RUN_OTHERS_MAX = 3 };
+typedef struct RunOther {
+    const char *what; /* "bomb" */
+    char values[2][TRAJECTORY_VERDICT_SIZE];
+} RunOther;
+int compare_runs_others(const RunComparison *comparison, RunOther others[RUN_OTHERS_MAX]);
+
+JsonOutputWrite compare_runs_write_json; /* of a RunComparison */
+
+/* Writes report.html, junit.xml, results.tap, results.json and, if the runs differ, run.html, which plays both. */
+bool compare_runs_report(RunComparison *comparison, const char *folder, Error *error);
 
 /* Compares two runs and prints the result. False if they differ, or with error set. */
 bool compare_runs(const CompareOptions *options, Error *error);
@@ -73,14 +102,14 @@ typedef struct JudgeOptions {
 } JudgeOptions;
 
 /* Rows of an option table whose Options T have JudgeOptions as `member`. */
-#define OPTIONS_JUDGE(T, member)                                                                                      \
-    {"--scene", 0, "SCENE", "Scene of the run: its masses, gravity and bomb (default: 1 kg/m2 and 10 m/s2)",          \
-     OPTION_PATH(T, member.scene)},                                                                                   \
-    {OPTION_SET(T, member.set)}, {                                                                                    \
-        "--skin", 0, "M",                                                                                             \
-            "What the engine adds to each side of a box, m: boxes that rest apart by twice that touch, and being "    \
-            "pushed apart by it is no explosion (default: 0; Box2D before version 3, Planck: 0.0075)",                \
-            OPTION_FLOAT(T, member.skin, 0, 1)                                                                        \
+#define OPTIONS_JUDGE(T, member)                                                                                   \
+    {"--scene", 0, "SCENE", "Scene of the run: its masses, gravity and bomb (default: 1 kg/m2 and 10 m/s2)",       \
+     OPTION_PATH(T, member.scene)},                                                                                \
+        {OPTION_SET(T, member.set)}, {                                                                             \
+        "--skin", 0, "M",                                                                                          \
+            "What the engine adds to each side of a box, m: boxes that rest apart by twice that touch, and being " \
+            "pushed apart by it is no explosion (default: 0; Box2D before version 3, Planck: 0.0075)",             \
+            OPTION_FLOAT(T, member.skin, 0, 1)                                                                     \
     }
 
 typedef struct JudgedRun {
@@ -97,7 +126,7 @@ void judged_run_free(JudgedRun *judged);
 /* twinbox check RUN.npz */
 typedef struct CheckRunOptions {
     const char *path;
-    const char *verdict;                       /* "holds" or a word of verdict_words; NULL: any */
+    const char *verdict;                     /* "holds" or a word of verdict_words; NULL: any */
     double max_overlap, max_drift, max_gain; /* m, m, J; NaN: any */
     bool json;
     JudgeOptions judge;

@@ -43,8 +43,8 @@ Trajectory *simulate_judged(const Scene *scene, const Method *method, const Prog
     const StepObserver observer = simulate_verdict_observer(&verdict);
     const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1, .progress = progress};
     Trajectory *run = NULL;
-    if (simulate_verdict_begin(&verdict, scene, method, error) &&
-        simulate_watched(scene, method, &watch, error) && simulate_verdict_end(&verdict, error)) {
+    if (simulate_verdict_begin(&verdict, scene, method, error) && simulate_watched(scene, method, &watch, error) &&
+        simulate_verdict_end(&verdict, error)) {
         run = recorder_take(recorder);
         simulate_verdict_words(&verdict, words);
         trajectory_judge(run, words, verdict.reading.frame, verdict.reading.body);

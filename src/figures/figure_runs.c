@@ -515,7 +515,8 @@ static void draw_legend(const Annotated *figure, Sketch *sketch) {
         x += length + 1.2;
         sketch_text(sketch, (Point){x, y}, &words, "%g N s on the body with the higher number", shown);
     } else
-        sketch_text(sketch, (Point){x, y}, &words, spec->runs[0]->no_impulses ? "impulses are unknown" : "all impulses are 0");
+        sketch_text(sketch, (Point){x, y}, &words,
+                    spec->runs[0]->no_impulses ? "impulses are unknown" : "all impulses are 0");
 }
 
 static bool annotated_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
@@ -538,7 +539,8 @@ static void annotated_caption(FILE *out, const FigureSpec *spec) {
     caption_runs(out, spec, 0);
     fputs(".", out);
     for (int i = 0, said = 0; i < spec->run_count && !said; i++)
-        if (spec->runs[i]->no_impulses) said = fputs(" Found again: contacts between the poses, of unknown impulses.", out) >= 0;
+        if (spec->runs[i]->no_impulses)
+            said = fputs(" Found again: contacts between the poses, of unknown impulses.", out) >= 0;
 }
 
 const FigureKind figure_annotated = {

@@ -85,8 +85,8 @@ typedef struct CsvRows {
 typedef struct CsvRow {
     int line;
     int64_t frame, body;
-    float state[6]; /* x, y, angle, vx, vy, omega; the last three 0 if absent */
-    double time;    /* s, 0 if absent */
+    float state[6];  /* x, y, angle, vx, vy, omega; the last three 0 if absent */
+    double time;     /* s, 0 if absent */
     bool not_finite; /* a number of the state is NaN or infinite */
 } CsvRow;
 

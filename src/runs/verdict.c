@@ -218,7 +218,8 @@ bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *meth
     verdict_run_set_skin(&judged, method);
     World *world = scene_world(scene, error);
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
-    bool ok = stepper != NULL && verdict_watch_begin(&watch, &judged, world_bodies(world), world_body_count(world), error);
+    bool ok =
+        stepper != NULL && verdict_watch_begin(&watch, &judged, world_bodies(world), world_body_count(world), error);
     NetworkFallbacks fallbacks = {0};
     for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++) {
         ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);

@@ -184,10 +184,10 @@ typedef struct WatchedBody {
     Vec2 outside;     /* m: last position of the centre outside all static boxes; initially the start */
     Vec2 last, stood; /* m: in the last frame; before the step of its first contact */
     float last_angle, stood_angle;
-    bool touched; /* has had a contact */
+    bool touched;      /* has had a contact */
     double lower, sag; /* m: than where it stood; of that, what contacts below it account for */
-    bool fallen;  /* as by VERDICT_FALL_SHARE and VERDICT_FALL_ANGLE, in the last frame; static bodies never */
-    Vec2 rested;  /* m: after VERDICT_CREEP_FROM seconds */
+    bool fallen;       /* as by VERDICT_FALL_SHARE and VERDICT_FALL_ANGLE, in the last frame; static bodies never */
+    Vec2 rested;       /* m: after VERDICT_CREEP_FROM seconds */
     int samples;
     Vec2 sample[VERDICT_CREEP_SECONDS]; /* ring buffer, one position per second */
 } WatchedBody;
@@ -325,9 +325,9 @@ Scene *trajectory_scene(const Trajectory *run, Error *error);
 
 /* By what a stored run is judged. */
 typedef struct RunScene {
-    Scene *scene;      /* masses, gravity and bomb; gets the run's time step and frames */
-    bool assumed;      /* it is that of trajectory_scene() */
-    float skin;        /* m, as in VerdictRun */
+    Scene *scene; /* masses, gravity and bomb; gets the run's time step and frames */
+    bool assumed; /* it is that of trajectory_scene() */
+    float skin;   /* m, as in VerdictRun */
 } RunScene;
 
 /* The scene and the run outlive the verdict. In an assumed scene that has a bomb, or bodies that start with a speed, energy

@@ -51,8 +51,7 @@ static bool starts_at_rest(const Trajectory *run, int i, Vec2 gravity) {
     const double pull = vec2_distance(gravity, vec2(0, 0)), least = 1e-3 /* m/s: rounding of positions */;
     set_body(run, run->no_velocities && run->frames > 1 ? 1 : 0, i, &body);
     const double speed = vec2_distance(body.velocity, vec2(0, 0));
-    return run->no_velocities ? speed <= pull * (double)run->dt + least
-                              : speed == 0 && body.angular_velocity == 0;
+    return run->no_velocities ? speed <= pull * (double)run->dt + least : speed == 0 && body.angular_velocity == 0;
 }
 
 Scene *trajectory_scene(const Trajectory *run, Error *error) {
@@ -83,10 +82,10 @@ static bool fits(const Scene *scene, const Trajectory *run, const World *world, 
     for (int i = 0; i < run->bodies; i++)
         if (memcmp(&bodies[i].size, &run->size[i], sizeof *run->size) != 0 ||
             (bodies[i].inv_mass == 0) != (run->fixed[i] != 0))
-            return error_input(error, scene->name, "is not the scene of the run: body %d is %g x %g m%s, not %g x %g m%s", i,
-                               (double)run->size[i].x, (double)run->size[i].y, run->fixed[i] ? ", static" : "",
-                               (double)bodies[i].size.x, (double)bodies[i].size.y,
-                               bodies[i].inv_mass == 0 ? ", static" : "");
+            return error_input(
+                error, scene->name, "is not the scene of the run: body %d is %g x %g m%s, not %g x %g m%s", i,
+                (double)run->size[i].x, (double)run->size[i].y, run->fixed[i] ? ", static" : "",
+                (double)bodies[i].size.x, (double)bodies[i].size.y, bodies[i].inv_mass == 0 ? ", static" : "");
     return true;
 }
 
