@@ -123,16 +123,17 @@ static void write_largest(JsonWriter *json, const TrajectoryDifference *differen
     json_end(json);
 }
 
+static const char *const causes[] = {[PART_NONE] = "none",
+                                     [PART_START] = "initial state",
+                                     [PART_LAUNCH] = "launch",
+                                     [PART_HIDDEN] = "warm start",
+                                     [PART_CONTACTS] = "collision detection",
+                                     [PART_SOLVER] = "solver",
+                                     [PART_ELSEWHERE] = "not the contacts",
+                                     [PART_UNKNOWN] = "unknown"};
+
 void compare_runs_write_json(JsonWriter *json, const void *context) {
     static const char *const keys[] = {"expected", "actual"};
-    static const char *const causes[] = {[PART_NONE] = "none",
-                                         [PART_START] = "initial state",
-                                         [PART_LAUNCH] = "launch",
-                                         [PART_HIDDEN] = "warm start",
-                                         [PART_CONTACTS] = "collision detection",
-                                         [PART_SOLVER] = "solver",
-                                         [PART_ELSEWHERE] = "not the contacts",
-                                         [PART_UNKNOWN] = "unknown"};
     const RunComparison *c = context;
     const TrajectoryParting *parting = &c->parting;
     const Trajectory *a = c->runs[0];
@@ -174,21 +175,29 @@ static const char *cause_of(const RunComparison *c) {
     return c->passed ? (c->parting.first.frame < 0 ? "equal" : "within tolerance") : "physics changed";
 }
 
-/* The text that compare prints. */
-static void put_text(FILE *out, const RunComparison *c) { html_put(out, c->text); }
-
 static void write_page(FILE *out, const void *context) {
     const RunComparison *c = context;
     char moment[PLAYER_LINK_SIZE];
     const PartedBody *first = &c->parting.first;
-    house_page_begin(out, "Comparison of two runs", "");
+    house_page_begin(out, "Comparison of two runs", "pre{white-space:pre-wrap}");
     fprintf(out, "<main>\n<h1>Comparison of two runs: %s</h1>\n<pre>", cause_of(c));
-    put_text(out, c);
+    html_put(out, c->text);
     fputs("</pre>\n", out);
     player_link(moment, first->frame > 0 ? first->frame * (double)c->runs[0]->dt : 0, first->body);
     if (c->has_page) fprintf(out, "<p><a href=\"run.html%s\">Both runs, at the first difference</a></p>\n", moment);
     fputs("</main>\n", out);
     house_page_end(out);
+}
+
+static void write_failure(FILE *out, const RunComparison *c) {
+    const PartedBody *parted = &c->parting.beyond;
+    fputs("failure type=\"physics changed\" message=\"physics changed: ", out);
+    if (parted->frame >= 0)
+        fprintf(out, "frame %d, body %d; cause of the first difference: %s", parted->frame, parted->body,
+                causes[c->parting.cause]);
+    else
+        html_put(out, c->difference.what);
+    fputs("\">", out);
 }
 
 static void write_junit(FILE *out, const void *context) {
@@ -200,8 +209,11 @@ static void write_junit(FILE *out, const void *context) {
         !c->passed);
     html_put(out, c->options->paths[1]);
     fputs("\">\n    <", out);
-    fprintf(out, c->passed ? "system-out>" : "failure type=\"physics changed\" message=\"physics changed\">");
-    put_text(out, c);
+    if (c->passed)
+        fputs("system-out>", out);
+    else
+        write_failure(out, c);
+    html_put(out, c->text);
     fprintf(out, "</%s>\n  </testcase>\n</testsuite>\n", c->passed ? "system-out" : "failure");
 }
 
@@ -220,12 +232,24 @@ static void write_results(FILE *out, const void *context) {
     json_end(&json);
 }
 
-/* None of runs without a common moment, and of equal ones. */
+/* All frames of runs that are not long, else those around the first difference. */
+static void choose_frames(const RunComparison *c, PlayerOptions *options) {
+    enum { STATES_MAX = 200000, BEFORE = 60 };
+    const int first = c->parting.first.frame, frames = c->parting.frames;
+    const int room = STATES_MAX / (c->runs[0]->bodies + 1) + BEFORE + 1;
+    if (frames <= room) return;
+    options->first = first > BEFORE ? first - BEFORE : 0;
+    options->last = options->first + room < frames ? options->first + room - 1 : frames - 1;
+}
+
+/* None of equal runs, and of those without a common moment. Contacts that were found again have no impulses to show. */
 static bool write_run_page(RunComparison *c, const char *folder, Error *error) {
     char path[PATH_MAX];
     PlayerResult result;
-    const PlayerOptions options = {.last = -1, .names = {"expected", "actual"}};
+    PlayerOptions options = {.last = -1, .names = {"expected", "actual"}};
     c->has_page = c->parting.first.frame >= 0;
+    if (c->has_page) choose_frames(c, &options);
+    for (int i = 0; i < 2; i++) c->runs[i]->no_contacts |= c->found_contacts;
     return !c->has_page || (file_path(path, sizeof path, error, "%s/run.html", folder) &&
                             player_write((const Trajectory *const *)c->runs, 2, &options, path, &result, error));
 }

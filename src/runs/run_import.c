@@ -373,7 +373,7 @@ static bool take_state(const CsvRows *rows, const Fields *fields, CsvRow *row, E
     for (int column = COL_X; column <= COL_OMEGA; column++) {
         const char *text = is_absent(rows, column) ? "0" : fields->text[rows->field[column]];
         if (parse_float(text, &row->state[column - COL_X])) continue;
-        if (!is_beyond(text)) return fail_field(rows, fields, column, error, "is not a number");
+        if (!is_beyond(text)) return fail_field(rows, fields, column, error, "is not a finite number");
         row->not_finite = true;
     }
     return is_absent(rows, COL_TIME) || parse_double(fields->text[rows->field[COL_TIME]], &row->time) ||
