@@ -45,13 +45,13 @@ static void set_body(const Trajectory *run, int frame, int i, Body *body) {
     set_velocity(run, frame, i, body);
 }
 
-/* A body at rest gets no more from the first step than gravity's share. */
+/* Without velocities, those of the first step tell: gravity's share, and what pushes an overlap or a skin apart. */
 static bool starts_at_rest(const Trajectory *run, int i, Vec2 gravity) {
     Body body;
-    const double pull = vec2_distance(gravity, vec2(0, 0)), least = 1e-3 /* m/s: rounding of positions */;
+    const double pull = vec2_distance(gravity, vec2(0, 0)), push = 0.5 /* m/s */;
     set_body(run, run->no_velocities && run->frames > 1 ? 1 : 0, i, &body);
     const double speed = vec2_distance(body.velocity, vec2(0, 0));
-    return run->no_velocities ? speed <= pull * (double)run->dt + least : speed == 0 && body.angular_velocity == 0;
+    return run->no_velocities ? speed <= pull * (double)run->dt + push : speed == 0 && body.angular_velocity == 0;
 }
 
 Scene *trajectory_scene(const Trajectory *run, Error *error) {
