@@ -259,7 +259,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    inside, it sinks. Also finds bodies that leave the world through the ground, but not past its edge.
 
    Falls: a body stood where it was at its first contact, so that gaps that a scene starts with may close. Its sag is
-   subtracted: the depth of the contact from below, and the sag of the body there, the most if there are several. A contact is
+   subtracted: the mean depth of the contact from below, and the sag of the body there, the most if there are several. A contact is
    from below if its normal is nearer to gravity than to the horizontal. So a column that leans has no sag, and falls.
    A pile that gives way without end sinks. */
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error);

@@ -310,13 +310,20 @@ static bool carries(const VerdictStep *step, const ContactPoint *contact, Vec2 g
     return exists(step, contact) && fabsf(along) > fabsf(across);
 }
 
+/* m: mean depth at both ends of a face, whose points are adjacent. A box that tilts on an edge sags by half of the depth there. */
+static double mean_depth(const VerdictStep *step, int i) {
+    const ContactPoint *point = &step->contacts[i];
+    const bool two = i + 1 < step->contact_count && point[1].a == point->a && point[1].b == point->b;
+    return (fmax(0, -(double)point->separation) + (two ? fmax(0, -(double)point[1].separation) : 0)) / 2;
+}
+
 /* One pass: the order of contacts is mostly that from below, so that one is enough. */
 static bool add_sag(const VerdictWatch *watch, const VerdictStep *step) {
     bool more = false;
     for (int i = 0; i < step->contact_count; i++) {
         BodyPair pair;
         if (!carries(step, &step->contacts[i], watch->run.gravity, &pair)) continue;
-        const double sag = watch->bodies[pair.a].sag + fmax(0, -(double)step->contacts[i].separation);
+        const double sag = watch->bodies[pair.a].sag + mean_depth(step, i);
         if (sag <= watch->bodies[pair.b].sag) continue;
         watch->bodies[pair.b].sag = sag;
         more = true;

@@ -134,7 +134,7 @@ TEST(falling_is_half_a_side_or_thirty_degrees) {
 static VerdictReading run_with_sag(float depth, float lower, bool from_above) {
     enum { PILE = 60, FRAMES = 120 };
     Body bodies[PILE + 1] = {trial_ground};
-    ContactPoint contacts[PILE];
+    ContactPoint contacts[2 * PILE];
     const VerdictRun run = {.gravity = {0, -10}, .dt = 1.0f / 60, .frames = FRAMES, .stands = true};
     VerdictWatch watch = {0};
     Error error = {0};
@@ -144,12 +144,13 @@ static VerdictReading run_with_sag(float depth, float lower, bool from_above) {
             const int i = from_above ? PILE + 1 - row : row, below = row == 1 ? 0 : from_above ? i + 1 : i - 1;
             bodies[i] = trial_box;
             bodies[i].position.y = (float)row - 0.5f - part * (float)row * (depth + lower);
-            contacts[row - 1] = (ContactPoint){.a = i < below ? i : below,
-                                               .b = i < below ? below : i,
-                                               .normal = {0, i < below ? -1.0f : 1.0f},
-                                               .separation = -part * depth};
+            for (int end = 0; end < 2; end++) /* one is deeper: the mean counts */
+                contacts[2 * row - 2 + end] = (ContactPoint){.a = i < below ? i : below,
+                                                             .b = i < below ? below : i,
+                                                             .normal = {0, i < below ? -1.0f : 1.0f},
+                                                             .separation = -part * depth * (end == 0 ? 1.5f : 0.5f)};
         }
-        const VerdictStep step = {frame, PILE + 1, PILE, -1, bodies, contacts};
+        const VerdictStep step = {frame, PILE + 1, 2 * PILE, -1, bodies, contacts};
         assert_ok(frame == 0 ? verdict_watch_begin(&watch, &run, bodies, PILE + 1, &error)
                              : verdict_watch_step(&watch, &step, &error),
                   error);
@@ -176,7 +177,7 @@ TEST(a_contact_at_the_side_is_no_sag) {
         trial_begin(&trial);
         trial.contacts[0].normal = side == 0 ? vec2(0, 1) : vec2(1, 0);
         trial_go(&trial, 1);
-        trial.contacts[0].separation = -0.3f;
+        trial.contacts[0].separation = -0.6f; /* of one point: 0.3 m */
         trial.bodies[1].position.y -= 0.6f;
         trial_go(&trial, 50);
         assert_verdict(trial_end(&trial), side == 0 ? VERDICT_SWAYS : VERDICT_FALLS);
