@@ -22,7 +22,7 @@
 
 #define COMMANDS(COMMAND)                                                                    \
     COMMAND(new, "write a commented scene to start from", "Make")                            \
-    COMMAND(check, "validate a scene and draw its first frame, or judge a stored run", NULL)   \
+    COMMAND(check, "validate a scene and draw its first frame, or judge a stored run", NULL) \
     COMMAND(simulate, "run a scene with one method and store the run", NULL)                 \
     COMMAND(methods, "list the methods and their settings", NULL)                            \
     COMMAND(import, "store the run of another program, from CSV", NULL)                      \
