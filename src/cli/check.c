@@ -58,7 +58,7 @@ static const CommandSpec spec = {
         "Or judge a stored run of any engine: the verdict that simulate prints, the deepest overlap, drift and energy "
         "gained. Contacts are found again from the poses.\v"
         "Example: twinbox check scenes/stack.yaml -o first.png\n"
-        "         twinbox check rapier.npz --scene scenes/stack.yaml --verdict holds --max-overlap 0.02"};
+        "         twinbox check engine.npz --scene scenes/stack.yaml --verdict holds"};
 
 static void print_bodies(FILE *out, const Scene *scene) {
     double mass = 0;

@@ -247,10 +247,7 @@ static void print(FILE *out, const RunComparison *c) {
     if (c->parting.first.frame < 0) return;
     fprintf(out, "growth of the largest distance: ");
     print_rate(out, &c->growth, (double)a->dt);
-    if (c->chaos.distance != NULL)
-        print_chaos(out, &c->chaos, &c->growth, &c->shifted, (double)a->dt);
-    else if (a->scene_hash != 0)
-        note_print("with --scene SCENE, the growth is compared with that of a shift of 1e-6 m");
+    if (c->chaos.distance != NULL) print_chaos(out, &c->chaos, &c->growth, &c->shifted, (double)a->dt);
 }
 
 static bool measure(RunComparison *c, Error *error) {
@@ -317,6 +314,8 @@ static bool show(RunComparison *c, Error *error) {
         return false;
     if (options->json) return json_output("twinbox compare runs 1", compare_runs_write_json, c, error);
     fputs(c->text, stdout);
+    if (c->same_world && c->parting.first.frame >= 0 && c->chaos.distance == NULL && c->runs[0]->scene_hash != 0)
+        note_print("with --scene SCENE, the growth is compared with that of a shift of 1e-6 m");
     if (options->report != NULL) printf("report -> %s/report.html\n", options->report);
     return true;
 }

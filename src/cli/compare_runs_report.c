@@ -53,7 +53,7 @@ static void write_parted(JsonWriter *json, const char *key, const RunComparison 
     json_end(json);
 }
 
-static void write_contact(JsonWriter *json, const ContactDifference *contacts) {
+static void write_contact(JsonWriter *json, const ContactDifference *contacts, bool no_impulses) {
     const bool only = contacts->only_a + contacts->only_b > 0;
     if (json_put_absent(json, "contact", !only && contacts->changed == 0)) return;
     const TrajectoryContact *a = only ? &contacts->only : &contacts->largest_a;
@@ -65,14 +65,16 @@ static void write_contact(JsonWriter *json, const ContactDifference *contacts) {
     json_put_int(json, "feature", a->feature);
     json_output_pair(json, "point", (double)a->point.x, (double)a->point.y);
     write_only_in(json, in_first, in_second);
-    json_output_pair(json, "normal_impulse", in_first ? (double)a->normal_impulse : 0,
-                     in_second ? (double)b->normal_impulse : 0);
-    json_output_pair(json, "tangent_impulse", in_first ? (double)a->tangent_impulse : 0,
-                     in_second ? (double)b->tangent_impulse : 0);
+    const double none = no_impulses ? NAN : 0;
+    json_output_pair(json, "normal_impulse", in_first ? none + (double)a->normal_impulse : none,
+                     in_second ? none + (double)b->normal_impulse : none);
+    json_output_pair(json, "tangent_impulse", in_first ? none + (double)a->tangent_impulse : none,
+                     in_second ? none + (double)b->tangent_impulse : none);
     json_end(json);
 }
 
-static void write_contacts(JsonWriter *json, const char *key, int step, const ContactDifference *contacts) {
+static void write_contacts(JsonWriter *json, const char *key, int step, const ContactDifference *contacts,
+                           bool no_impulses) {
     if (json_put_absent(json, key, step < 0)) return;
     json_begin_object(json, key, JSON_ONE_LINE);
     json_put_int(json, "step", step);
@@ -80,7 +82,7 @@ static void write_contacts(JsonWriter *json, const char *key, int step, const Co
     json_put_int(json, "moved", contacts->moved);
     json_put_int(json, "only_in_run_1", contacts->only_a);
     json_put_int(json, "only_in_run_2", contacts->only_b);
-    write_contact(json, contacts);
+    write_contact(json, contacts, no_impulses);
     json_end(json);
 }
 
@@ -162,9 +164,10 @@ void compare_runs_write_json(JsonWriter *json, const void *context) {
         json_end(json);
     }
     json_end(json);
-    write_contacts(json, "contacts", parting->step, &parting->contacts);
+    write_contacts(json, "contacts", parting->step, &parting->contacts, parting->no_impulses);
     write_parted(json, "beyond", c, &parting->beyond);
-    write_contacts(json, "beyond_contacts", beyond ? parting->beyond.frame : -1, &parting->beyond_contacts);
+    write_contacts(json, "beyond_contacts", beyond ? parting->beyond.frame : -1, &parting->beyond_contacts,
+                   parting->no_impulses);
     if (!json_put_absent(json, "growth", !differ)) write_growth(json, "growth", &c->growth, (double)a->dt);
     if (!json_put_absent(json, "shifted", !differ || c->chaos.distance == NULL)) write_chaos(json, c, (double)a->dt);
 }

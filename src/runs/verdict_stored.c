@@ -27,16 +27,19 @@ static bool count_bodies(const Trajectory *run, int frame, int *count, Error *er
     return true;
 }
 
-/* If a run does not state velocities: those that lead to the frame. Semi-implicit Euler moves bodies by them. */
+/* If a run does not state velocities: those that lead to the frame, as semi-implicit Euler moves bodies by them; in the first
+   frame of a body, those that lead to the next. */
 static void set_velocity(const Trajectory *run, int frame, int i, Body *body) {
-    const size_t now = place(run, frame, i), before = frame > 0 ? place(run, frame - 1, i) : now;
-    const float rate = 1 / run->dt;
+    const float rate = 1 / run->dt, turn = 6.2831853f; /* some engines keep angles within one */
+    const bool known = frame > 0 && trajectory_has(run, frame - 1, i);
+    const int from = known ? frame - 1 : frame, to = from + 1;
+    const size_t now = place(run, frame, i), before = place(run, from, i), after = place(run, to, i);
     body->velocity = run->velocity[now];
     body->angular_velocity = run->angular_velocity[now];
     if (!run->no_velocities) return;
-    const bool known = frame > 0 && trajectory_has(run, frame - 1, i);
-    body->velocity = known ? vec2_scale(rate, vec2_sub(run->position[now], run->position[before])) : vec2(0, 0);
-    body->angular_velocity = known ? rate * (run->angle[now] - run->angle[before]) : 0;
+    const bool moves = to < run->frames && trajectory_has(run, to, i);
+    body->velocity = moves ? vec2_scale(rate, vec2_sub(run->position[after], run->position[before])) : vec2(0, 0);
+    body->angular_velocity = moves ? rate * remainderf(run->angle[after] - run->angle[before], turn) : 0;
 }
 
 static void set_body(const Trajectory *run, int frame, int i, Body *body) {
@@ -49,7 +52,7 @@ static void set_body(const Trajectory *run, int frame, int i, Body *body) {
 static bool starts_at_rest(const Trajectory *run, int i, Vec2 gravity) {
     Body body;
     const double pull = vec2_distance(gravity, vec2(0, 0)), push = 0.5 /* m/s */;
-    set_body(run, run->no_velocities && run->frames > 1 ? 1 : 0, i, &body);
+    set_body(run, 0, i, &body);
     const double speed = vec2_distance(body.velocity, vec2(0, 0));
     return run->no_velocities ? speed <= pull * (double)run->dt + push : speed == 0 && body.angular_velocity == 0;
 }
