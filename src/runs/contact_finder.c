@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Contacts between boxes in given poses, for runs that do not state theirs: the collision detection of the engine's step. */
+/* Contacts between boxes in given poses, for runs that do not state theirs: the collision detection of the engine's
+   step. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "runs/runs.h"

@@ -82,8 +82,8 @@ Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int fr
 void trajectory_set_bodies(Trajectory *trajectory, int frame, const World *world);
 bool trajectory_set_contacts(Trajectory *trajectory, int frame, const World *world, Error *error);
 
-/* Contacts between boxes in given poses, as the engine's collision detection finds them: for runs that do not state theirs.
-   Zero-initialise; free with contact_finder_free(). */
+/* Contacts between boxes in given poses, as the engine's collision detection finds them: for runs that do not state
+   theirs. Zero-initialise; free with contact_finder_free(). */
 typedef struct ContactFinder {
     SortAndSweep broad_phase;
     PairList pairs;
@@ -96,7 +96,7 @@ typedef struct ContactFinder {
 
 void contact_finder_free(ContactFinder *finder);
 
-/* Boxes that are apart by less than 2 `skin` (m) touch, too: their separation is positive. ERROR_INPUT: too many pairs. */
+/* Boxes that are apart by less than 2 `skin` (m) touch, too: separation > 0. ERROR_INPUT: too many pairs. */
 bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error);
 
 /* Records a run: into a trajectory in memory, or into files while the run is made, in bounded memory. Files are written

@@ -79,8 +79,8 @@ void trajectory_restart_contacts(Trajectory *trajectory);
 /* Call after the last contact: fills the rest of contact_start. */
 void trajectory_end_contacts(Trajectory *trajectory);
 
-/* Replaces the contacts by those that collision detection finds between the poses, without impulses (no_impulses). False with
-   error set. */
+/* Replaces the contacts by those that collision detection finds between the poses, without impulses (no_impulses).
+   False with error set. */
 bool trajectory_find_contacts(Trajectory *trajectory, Error *error);
 
 /* The first step in which the bomb touches a dynamic body; -1: none. */
@@ -251,8 +251,8 @@ typedef struct PoseTolerance {
     double angle;    /* rad; whole turns do not count; INFINITY: any */
 } PoseTolerance;
 
-/* Without a tolerance, beyond is first. The two must be of the same world (trajectory_different_worlds). False with error
-   set when memory is short. */
+/* Without a tolerance, beyond is first. The two must be of the same world (trajectory_different_worlds). False with
+   error set when memory is short. */
 bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
                      TrajectoryParting *parting, Error *error);
 

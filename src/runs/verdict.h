@@ -139,8 +139,7 @@ typedef struct VerdictReading {
        then. J: energy gained. */
     double drift, gained;
     double deepest; /* m: penetration of the deepest contact of all steps */
-    /* J: the most by which the energy exceeded what the start and added bodies brought; at least 0; NaN if not judged */
-    double excess;
+    double excess;  /* J: most energy above what the start and added bodies brought; >= 0; NaN if not judged */
     int steps; /* set by verdict_run() only, as are fallbacks */
     NetworkFallbacks fallbacks;
 } VerdictReading;
@@ -154,8 +153,8 @@ typedef struct VerdictRun {
        and not for the bomb, which may roll. */
     bool stands;
     bool until_bomb; /* falling is judged until the bomb first touches something */
-    /* m: what the run's engine adds to each side of a box, so that boxes rest apart by twice that (Box2D before version 3:
-       0.0075). Boxes touch within it, and may rise by it. 0: none. */
+    /* m: what the run's engine adds to each side of a box, so that boxes rest apart by twice that (Box2D before version
+       3: 0.0075). Boxes touch within it, and may rise by it. 0: none. */
     float skin;
     bool no_energy;      /* is not judged: masses are not known */
     bool finds_contacts; /* between the bodies before a step: those that steps state do not count */
@@ -251,17 +250,17 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs: `verdict_alone`
    in tests/stability.
 
-   With a skin, boxes that a scene places side by side are pushed apart: each bound is higher by what lifts every body by
-   two skins for each body that may be below it, its height over the smallest side.
+   With a skin, boxes that a scene places side by side are pushed apart: each bound is higher by what lifts every body
+   by two skins for each body that may be below it, its height over the smallest side.
 
    Tunnels: the centre of a dynamic body passed through a static box: the straight line from its last position outside
    all static boxes intersects one. Not if the centre is inside a box for a step and is pushed out again; if it stays
    inside, it sinks. Also finds bodies that leave the world through the ground, but not past its edge.
 
    Falls: a body stood where it was at its first contact, so that gaps that a scene starts with may close. Its sag is
-   subtracted: the mean depth of the contact from below, and the sag of the body there, the most if there are several. A contact is
-   from below if its normal is nearer to gravity than to the horizontal. So a column that leans has no sag, and falls.
-   A pile that gives way without end sinks. */
+   subtracted: the mean depth of the contact from below, and the sag of the body there, the most if there are several. A
+   contact is from below if its normal is nearer to gravity than to the horizontal. A column that leans gets no
+   sag, and falls. A pile that gives way without end sinks. */
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error);
 
 /* The same for a world; a StepObserver callback. */
@@ -280,8 +279,8 @@ bool verdict_watch_is_final(const VerdictWatch *watch);
 /* The verdict on the run up to the last step. A run shorter than VERDICT_CALM_FRAMES cannot settle. */
 VerdictReading verdict_watch_end(const VerdictWatch *watch);
 
-/* Runs the scene with the method, whose skin counts, until the verdict is final. A NaN or infinite state is a verdict, not an error. False
-   with error set if the method cannot be created or memory is short. */
+/* Runs the scene with the method, whose skin counts, until the verdict is final. A NaN or infinite state is a verdict,
+   not an error. False with error set if the method cannot be created or memory is short. */
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
                  Error *error);
 
@@ -312,15 +311,15 @@ void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTOR
 /* The number of dynamic bodies but the bomb, and how many of them have fallen. */
 int simulate_verdict_bodies(const SimulateVerdict *verdict, int *fallen);
 
-/* The verdict on a stored run. Contacts are found again, so that it is the one of simulate(); velocities, if the run does
-   not state them, are differences of poses. */
+/* The verdict on a stored run. Contacts are found again, so that it is the one of simulate(); velocities, if the run
+   does not state them, are differences of poses. */
 
 /* Assumed of a run without its scene. */
 #define VERDICT_GRAVITY 10.0f /* m/s^2, down */
 #define VERDICT_DENSITY 1.0f  /* kg/m^2 */
 
-/* What a run says of its scene: bodies of VERDICT_DENSITY, which start with a speed if they do not rest, and a bomb. To be
-   destroyed with scene_destroy(). NULL with error set. */
+/* What a run says of its scene: bodies of VERDICT_DENSITY, which start with a speed if they do not rest, and a bomb. To
+   be destroyed with scene_destroy(). NULL with error set. */
 Scene *trajectory_scene(const Trajectory *run, Error *error);
 
 /* By what a stored run is judged. */
@@ -330,8 +329,8 @@ typedef struct RunScene {
     float skin;   /* m, as in VerdictRun */
 } RunScene;
 
-/* The scene and the run outlive the verdict. In an assumed scene that has a bomb, or bodies that start with a speed, energy
-   is not judged: light bodies get much of it from heavy ones. A run whose own verdict is non-finite has ended so, and that
-   is the verdict.
-   ERROR_INPUT: the scene has other bodies, or a body is missing before another one; free the verdict in any case. */
+/* The scene and the run outlive the verdict. In an assumed scene that has a bomb, or bodies that start with a speed,
+   energy is not judged: light bodies get much of it from heavy ones. A run whose own verdict is non-finite has ended
+   so, and that is the verdict. ERROR_INPUT: the scene has other bodies, or a body is missing before another one; free
+   the verdict in any case. */
 bool simulate_verdict_of_run(SimulateVerdict *verdict, const RunScene *by, const Trajectory *run, Error *error);

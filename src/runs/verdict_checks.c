@@ -310,7 +310,8 @@ static bool carries(const VerdictStep *step, const ContactPoint *contact, Vec2 g
     return exists(step, contact) && fabsf(along) > fabsf(across);
 }
 
-/* m: mean depth at both ends of a face, whose points are adjacent. A box that tilts on an edge sags by half of the depth there. */
+/* m: mean depth at both ends of a face, whose points are adjacent. A box that tilts on an edge sags by half of the
+   depth there. */
 static double mean_depth(const VerdictStep *step, int i) {
     const ContactPoint *point = &step->contacts[i];
     const bool two = i + 1 < step->contact_count && point[1].a == point->a && point[1].b == point->b;

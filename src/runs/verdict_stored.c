@@ -27,8 +27,8 @@ static bool count_bodies(const Trajectory *run, int frame, int *count, Error *er
     return true;
 }
 
-/* If a run does not state velocities: those that lead to the frame, as semi-implicit Euler moves bodies by them; in the first
-   frame of a body, those that lead to the next. */
+/* If a run does not state velocities: those that lead to the frame, as semi-implicit Euler moves bodies by them; in the
+   first frame of a body, those that lead to the next. */
 static void set_velocity(const Trajectory *run, int frame, int i, Body *body) {
     const float rate = 1 / run->dt, turn = 6.2831853f; /* some engines keep angles within one */
     const bool known = frame > 0 && trajectory_has(run, frame - 1, i);

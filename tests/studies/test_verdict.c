@@ -129,8 +129,8 @@ TEST(falling_is_half_a_side_or_thirty_degrees) {
     assert_verdict(run_with_pose(-3, 0, true), VERDICT_SETTLES);     /* higher */
 }
 
-/* A pile of 60 boxes in which each contact gives way by this much within a second; another part of it is not from contacts.
-   Bodies are listed from above or from below. */
+/* A pile of 60 boxes in which each contact gives way by this much within a second; another part of it is not from
+   contacts. Bodies are listed from above or from below. */
 static VerdictReading run_with_sag(float depth, float lower, bool from_above) {
     enum { PILE = 60, FRAMES = 120 };
     Body bodies[PILE + 1] = {trial_ground};
