@@ -140,7 +140,7 @@ typedef struct VerdictReading {
     double drift, gained;
     double deepest; /* m: penetration of the deepest contact of all steps */
     double excess;  /* J: most energy above what the start and added bodies brought; >= 0; NaN if not judged */
-    int steps; /* set by verdict_run() only, as are fallbacks */
+    int steps;      /* set by verdict_run() only, as are fallbacks */
     NetworkFallbacks fallbacks;
 } VerdictReading;
 
