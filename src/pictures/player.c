@@ -342,6 +342,19 @@ static void put_run(FILE *file, const Player *player, int index) {
     for (int k = 0; k < run->chunks && run->contacts != NULL; k++) put_chunk(file, 'c', index, k, &run->contacts[k]);
 }
 
+/* The first frame is that of all live runs. */
+static void put_live(FILE *file, const Player *player) {
+    put_packed(file, "module", player->module.data, player->module.size);
+    put_packed(file, "bundle", player->bundle.data, player->bundle.size);
+    for (int i = 0; i < player->picture.count; i++) {
+        const Trajectory *run = player->picture.runs[i];
+        if (!player_run_is_live(player, i)) continue;
+        put_packed(file, "places", run->position, (size_t)run->bodies * sizeof *run->position);
+        put_packed(file, "angles", run->angle, (size_t)run->bodies * sizeof *run->angle);
+        break;
+    }
+}
+
 /* The whole page. The context is a Player. */
 static void put_page(FILE *file, const void *context) {
     const Player *player = context;
@@ -352,10 +365,7 @@ static void put_page(FILE *file, const void *context) {
     fputs("<script type=\"application/json\" id=\"data\">", file);
     put_data(file, player);
     fputs("</script>\n", file);
-    if (player->options->live != NULL) {
-        put_packed(file, "module", player->module.data, player->module.size);
-        put_packed(file, "bundle", player->bundle.data, player->bundle.size);
-    }
+    if (player->options->live != NULL) put_live(file, player);
     put_packed(file, "viewer", player->viewer.data, player->viewer.size);
     fprintf(file, "<script>%s</script>\n</body>\n</html>\n", player_begin);
 }

@@ -91,12 +91,15 @@ function add_panel(text = "engine") {
   describe_run(run);
   runs.push(run);
   open_worker(run);
+  start(run);
   take_stock();
   list_methods();
 }
 
-/* When scene and methods are known. */
-function list_controls() {
+/* What there is to choose from, as the first worker that is ready tells. */
+function list_controls({methods, scene}) {
+  if (setup.scene) return;
+  Object.assign(setup, {methods, scene});
   const rank = ({name, common}) => !common ? 0 : name.startsWith("bomb") ? 1 : 2;
   ui.settings.replaceChildren(...[...setup.scene.parameters].sort((a, b) => rank(a) - rank(b)).map(setting_row));
   ui.launch.hidden = ui.panels.hidden = false;

@@ -3,16 +3,15 @@
 const LARGE = 4e5, PATIENCE = 150, WORDS = 9; /* states of a run without contacts; ms; 32-bit words of a contact */
 const chosen = new Map(); /* settings of the scene, by name */
 let first_set = ""; /* those that the page begins with, as set_text() */
-const first_fragment = location.hash;
 const first_runs = data.runs.map(({live, hash}) => ({live, hash}));
-const setup = {scene: null, methods: [], url: "", module: null, bundle: null};
+const setup = {scene: null, methods: [], url: ""};
 let launched = 0, swapped = 0, arrivals = null, announce = null;
 
 const arrival = () => arrivals ??= new Promise(done => { announce = done; });
 const live_runs = () => runs.filter(run => run.live);
 const set_text = () => [...chosen].map(([name, value]) => `${name}=${value}`).join();
 /* Whether a run has what it has of the latest launch: states, or an error. */
-const is_settled = run => [run.next?.shown, run.shown, run.failed].includes(launched);
+const is_settled = run => run.broken || [run.next?.shown, run.shown, run.failed].includes(launched);
 
 /* What is wrong with a link stays until a setting is chosen; what is wrong with a run, until it can be launched. */
 let link_problem = "", page_problem = "";
@@ -39,13 +38,16 @@ function read_set(text) {
   show_problems();
 }
 
+/* Workers keep the latest launch until they are ready. */
+function start(run) {
+  run.worker.postMessage({id: launched, set: set_text(), method: run.live, until: min(ceil(view.frame), last),
+    contacts: (last + 1) * most_bodies < LARGE ? 1 : 0});
+}
+
 /* Steps all live runs from the start. */
 function launch() {
-  if (!live_runs().every(run => run.open)) return;
   launched++;
-  for (const run of live_runs())
-    run.worker.postMessage({id: launched, set: set_text(), method: run.live, until: min(ceil(view.frame), last),
-      contacts: (last + 1) * most_bodies < LARGE ? 1 : 0});
+  live_runs().forEach(start);
 }
 
 /* Floats of the columns of a part go to their places in the arrays of a run. */
@@ -169,12 +171,12 @@ function take_stock() {
 }
 
 function take_part(run, part) {
-  if (part.methods) return begin_launches(run, part);
+  if (part.methods) return list_controls(part);
   if (part.error) {
-    run.open = true;
     run.failed = part.id;
+    run.broken = !part.id;
     complain(run, part.error);
-    return part.id ? show_arrived() : launch();
+    return show_arrived();
   }
   let into = run.shown === part.id ? run : run.next;
   if (into?.shown !== part.id) {
@@ -193,37 +195,26 @@ function take_part(run, part) {
   if (into === run) take_stock(); else show_arrived();
 }
 
+/* A worker begins while the module is compiled. */
 function open_worker(run) {
   run.worker = new Worker(setup.url);
   run.worker.onmessage = ({data: part}) => take_part(run, part);
   run.worker.onerror = event => complain(run, event.message || "the worker has ended");
-  run.worker.postMessage({module: setup.module, bundle: setup.bundle});
+  live_parts.then(([module, bundle]) => run.worker.postMessage({module, bundle})).catch(cannot_step);
 }
 
-/* A worker is open, and tells methods and settings to choose from. */
-function begin_launches(run, {methods, scene}) {
-  run.open = true;
-  if (setup.methods.length === 0) {
-    Object.assign(setup, {methods, scene});
-    list_controls();
-    follow_link(first_fragment);
-  }
-  launch();
+function cannot_step(error) {
+  page_problem = `The runs cannot be stepped in this browser: ${error.message}`;
+  show_problems();
 }
 
-async function begin_live() {
+function begin_live() {
   if (!data.live) return;
   runs.forEach(run => { run.first = !run.live && run.compared; });
   read_set(data.live.set);
   first_set = set_text();
-  try {
-    [setup.module, setup.bundle] = await Promise.all(["module", "bundle"].map(inflated));
-    setup.url = URL.createObjectURL(new Blob([`(${panel_worker})()`], {type: "text/javascript"}));
-    live_runs().forEach(open_worker);
-  } catch (error) {
-    page_problem = `The runs cannot be stepped in this browser: ${error.message}`;
-    show_problems();
-  }
+  setup.url = URL.createObjectURL(new Blob([`(${panel_worker})()`], {type: "text/javascript"}));
+  try { live_runs().forEach(open_worker); } catch (error) { cannot_step(error); }
 }
 
 /* The hash of each run beside that of the C program, where it made the same run. */
