@@ -48,7 +48,7 @@ set(module_sources
     methods/reference_scalar methods/scene_net methods/soft_step methods/steppers methods/stopping methods/sweeps
     methods/sweeps_scalar methods/sweeps_simd128
     nets/kernels nets/kernels_scalar nets/net_file nets/network nets/row_kernels_scalar nets/slot_network
-    runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks runs/verdict_words
+    runs/framing runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks runs/verdict_words
     scenes/parameters scenes/scene scenes/scene_read scenes/scene_world scenes/shapes)
 # Where most of the time is spent; the rest is made small.
 set(module_fast

@@ -2,10 +2,12 @@
 """A live page steps runs with the bits of the program: launches, drags of the bomb, settings, methods, links, commands."""
 import json
 import random
+import re
 import subprocess
 
 from checks import Checks
 from chromium import Chromium
+from page import ScriptError
 
 METHODS = "engine", "interior"
 SCENES = "single", "stack", "pyramid", "families/gate", "families/wall"
@@ -113,6 +115,34 @@ def check_controls(checks, browser):
     page.close()
 
 
+def framing(path):
+    with open(path, encoding="utf-8") as file:
+        return json.loads(re.search(r'"framing": (\{.*?\})', file.read())[1])
+
+
+def check_framing(checks, browser):
+    """After a change of the scene, the view is that of the program."""
+    for scene, name, values in (("stability/stack_height", "height", (4, 25)), ("stack", "bomb_x", (1.5, -2.25)),
+                                ("families/gate", "bomb_y", (3, 9))):
+        page = open_scene(checks, browser, scene, "engine")
+        for value in values:
+            page.run("player.choose($0, $1)", name, value)
+            page.wait(ENDED)
+            given = page.run("player.set_text()")
+            checks.twinbox("simulate", f"{checks.scenes}/{scene}.yaml", *(["--set", given] if given else []), "-o", "run.npz")
+            checks.twinbox("page", "run.npz", "-o", "run.html")
+            wanted = framing("run.html")
+            near = (f"(found => Object.entries({json.dumps(wanted)}).every(([key, value]) =>"
+                    " value === found[key] || Math.abs(value - found[key]) < 1e-6))(player.data.framing)")
+            try:
+                page.wait(near, limit=20)
+                found = wanted
+            except ScriptError:
+                found = page.run("player.data.framing")
+            checks.equal(f"{scene}: the view with {given}", found, wanted)
+        page.close()
+
+
 def check_prediction(checks, browser):
     page = open_scene(checks, browser, "stack", "engine", "pair-net")
     page.wait(ENDED)
@@ -141,6 +171,7 @@ def main():
             browser.allow("clipboardReadWrite", "clipboardSanitizedWrite")
             check_launches(checks, browser)
             check_controls(checks, browser)
+            check_framing(checks, browser)
             check_prediction(checks, browser)
             check_rubbish(checks, browser)
 

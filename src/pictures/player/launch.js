@@ -144,6 +144,7 @@ function drag_bomb(event) {
 function drop_bomb() {
   const was = held !== null;
   held = null;
+  if (was) frame_launch();
   return was;
 }
 

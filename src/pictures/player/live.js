@@ -105,26 +105,18 @@ function compare_run(run) {
   }
 }
 
-/* The view for another scene than the first: what stands, and a margin. */
-function frame_scene(run) {
-  const framing = data.framing, box = {left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity};
-  run.fixed.forEach((still, body) => {
-    if (still || body === run.bomb || !exists(run.index, 0, body)) return;
-    const {x, y, angle} = pose(run.index, 0, body), [w, h] = run.size[body], c = abs(cos(angle)), s = abs(sin(angle));
-    box.left = min(box.left, x - (c * w + s * h) / 2);
-    box.right = max(box.right, x + (c * w + s * h) / 2);
-    box.bottom = min(box.bottom, y - (s * w + c * h) / 2);
-    box.top = max(box.top, y + (s * w + c * h) / 2);
-  });
-  const seen = [box.left, box.right, box.bottom, box.top, run.bodies].map(six_digits).join();
-  if (framing.set || !(box.right > box.left) || seen === framing.seen) return;
-  if (framing.seen) {
-    const wide = 0.11 * (box.right - box.left), high = box.top - box.bottom, below = 0.06 * high;
-    Object.assign(framing, {left: box.left - wide, right: box.right + wide, bottom: box.bottom - below,
-      top: box.top + 0.22 * high - below, middle: (box.left + box.right) / 2,
-      room_left: box.left - wide - high / 2, room_right: box.right + wide + high / 2});
-  }
-  framing.seen = seen;
+/* The view is what `render` shows of this launch, when the launch rests: a view that moves along would hide what a drag changes. A
+   recorded run of another scene keeps that of the beginning. */
+let framing_due = 0;
+function frame_launch() {
+  clearTimeout(framing_due);
+  framing_due = setTimeout(() => {
+    const {framing} = live_runs()[0] ?? {};
+    if (held || !framing || runs.some(run => !run.live && !run.first)) return;
+    Object.assign(data.framing, framing);
+    planned_for = "";
+    again();
+  }, PATIENCE);
 }
 
 function describe_run(run) {
@@ -156,7 +148,7 @@ function take_stock() {
     data.dt = runs[0].dt;
   }
   data.frames = data.total = max(...runs.map(run => run.frames));
-  if (runs[0].live) frame_scene(runs[0]);
+  frame_launch();
   data.scales.largest = 0;
   for (const run of runs.filter(each => each.compared && each !== runs[0])) {
     if (run.live) compare_run(run);
@@ -186,6 +178,7 @@ function take_part(run, part) {
       ...part.scene, contacts: part.recorded, distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: "", holds: null});
   }
   copy_part(into, part);
+  into.framing = part.framing ?? into.framing;
   if (part.ended) {
     into.hash = part.hash;
     into.holds = part.verdict?.holds ?? false;

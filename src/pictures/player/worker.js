@@ -50,6 +50,7 @@ function panel_worker() {
     };
     const words = 9, from = part.starts[0];
     part.contacts = copy(Int32Array, live.live_contacts(run), words * from, words * (part.starts.at(-1) - from));
+    if (ended || first === 0) part.framing = json("live_framing", run);
     if (ended) {
       const verdict = live.live_verdict(run);
       part.hash = BigInt.asUintN(64, live.live_hash(run, last)).toString(16).padStart(16, "0");
