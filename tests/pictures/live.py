@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A live page steps runs with the bits of the program: launches, drags of the bomb, settings, methods, links, commands."""
 import json
+import os
 import random
 import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
+from access import check_tab, check_text, check_tree
 from checks import Checks
 from chromium import Chromium
 from firefox import Firefox
@@ -162,6 +164,83 @@ def check_prediction(checks, browser):
     page.close()
 
 
+def tab_to(page, condition):
+    """Presses Tab until the focused element e is this one."""
+    for _ in range(200):
+        page.press("Tab")
+        if page.run(f"(e => e !== document.body && Boolean({condition}))(document.activeElement)"):
+            return
+    raise ScriptError(f"the Tab key does not reach {condition}")
+
+
+def check_access(checks, browser):
+    """Names, sizes and contrast of all that a live page adds; the Tab key reaches it in its order, and is seen."""
+    with open(os.path.join(checks.sources, "tests/pictures/audit.js")) as file:
+        page = open_scene(checks, browser, "stack", *METHODS, before=file.read())
+    page.wait(ENDED)
+    for width, height in (1440, 900), (390, 844):
+        for dark in False, True:
+            what = f"{width} {'dark' if dark else 'light'}"
+            page.resize(width, height)
+            page.prefer(dark, False)
+            page.settle()
+            check_tree(checks, page, what)
+            check_text(checks, page, what)
+            checks.empty(f"{what}: wider than the window", page.run("audit.wide()"))
+        check_tab(checks, page, str(width))
+    checks.empty("controls too small for a finger (24 px)", page.run("audit.small()"))
+    page.close()
+
+
+def check_keyboard(checks, browser):
+    """A reading with no other device: launches, settings, methods, panels, a prediction, time, a link."""
+    page = open_scene(checks, browser, "stack", *METHODS)
+    page.wait(ENDED)
+    first = page.run(HASHES)
+    tab_to(page, "e.id === 'stage'")
+    page.press("l", "Shift+J", "i", "u")
+    check_hashes(checks, page, "stack", METHODS, "by keys on the picture")
+    tab_to(page, "e.id === 'scrubber'")
+    page.press("ArrowRight", "ArrowRight", "PageUp")
+    checks.equal("the frame by keys", page.run("player.view.frame"), 12)
+    tab_to(page, "e.type === 'number' && e.ariaLabel === 'bomb mass, kg'")
+    page.press("Control+a", "9", "Enter")
+    checks.true("a setting that is typed", "bomb_mass=9" in page.run("player.set_text()"), page.run("player.set_text()"))
+    tab_to(page, "e.type === 'range' && e.ariaLabel === 'friction'")
+    before = page.run("player.set_text()")
+    page.press("ArrowRight")
+    checks.true("a slider", page.run("player.set_text()") != before, before)
+    check_hashes(checks, page, "stack", METHODS, "set by keys")
+    tab_to(page, "e.ariaLabel === 'Method' && e.value === 'interior'")
+    page.press("m")
+    page.wait("player.runs[1].live === 'momentum'")
+    checks.equal("the focus stays at the method", page.run("document.activeElement.value"), "momentum")
+    tab_to(page, "e.closest('label')?.textContent === 'k'")
+    page.press("7", "Tab")
+    check_hashes(checks, page, "stack", ["engine", "momentum:k=7"], "with a method by keys")
+    tab_to(page, "e.id === 'add'")
+    page.press("Enter")
+    page.wait("player.runs.length === 3")
+    tab_to(page, "e.ariaLabel === 'Remove momentum:k=7'")
+    page.press("Enter")
+    page.wait("player.runs.length === 2")
+    checks.equal("the focus stays near", page.run("document.activeElement.closest('#methods') !== null"), True)
+    check_hashes(checks, page, "stack", ["engine", "engine"], "a panel by keys, and one less")
+    tab_to(page, "e.id === 'predict'")
+    page.press("Space", "1")
+    said = page.run("document.getElementById('question').textContent")
+    checks.true("a prediction by keys", said.startswith("You said engine"), said)
+    tab_to(page, "e.id === 'copy-link'")
+    page.press("Enter")
+    checks.true("a link by keys", "bomb_mass%3D9" in page.wait("navigator.clipboard.readText()"))
+    tab_to(page, "e.id === 'reset'")
+    page.press("Enter")
+    page.wait(ENDED)
+    checks.equal("as at first", page.run(HASHES), [first[0], first[0]])
+    checks.quiet("keyboard", page)
+    page.close()
+
+
 def check_rubbish(checks, browser):
     for fragment, words in (("set=x=1e999", "x=1e999"), ("set=bomb_x=NaN", "bomb_x=NaN"), ("set=<b>=1", "is not a parameter"),
                             ("methods=egnine", "did you mean 'engine'"), ("methods=engine:k=0", "k: error"),
@@ -184,6 +263,8 @@ def main():
             check_launches(checks, browser)
             check_controls(checks, browser)
             check_framing(checks, browser)
+            check_access(checks, browser)
+            check_keyboard(checks, browser)
             check_prediction(checks, browser)
             check_rubbish(checks, browser)
 
