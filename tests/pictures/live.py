@@ -19,6 +19,7 @@ SCENES = "single", "stack", "pyramid", "families/gate", "families/wall"
 LAUNCHES, POSITIONS = 20, 50  # of each scene; of a drag
 ENDED = "player.runs.every(run => run.hash && run.reached === run.frames - 1 && run.shown === player.launched())"
 HASHES = "player.runs.map(run => run.hash)"
+PROOFS = "document.getElementById('check').textContent.split('= that of the C program').length - 1"
 PROBLEM = "document.getElementById('problem').textContent"
 BOMB = """(() => {
   const stage = document.getElementById("stage"), box = stage.getBoundingClientRect();
@@ -57,8 +58,7 @@ def check_launches(checks, browser):
     for scene in SCENES:
         page = open_scene(checks, browser, scene, *METHODS)
         page.wait(ENDED)
-        proof = page.run("document.getElementById('check').textContent")
-        checks.equal(f"{scene}: proofs", proof.count("= that of the C program"), len(METHODS))
+        checks.equal(f"{scene}: proofs", page.run(PROOFS), len(METHODS))
         x = page.run("player.setup.scene.parameters.find(each => each.name === 'bomb_x')")
         for _ in range(LAUNCHES):
             page.run("player.choose('bomb_x', $0)", launches.uniform(x["from"], x["to"]))
@@ -248,7 +248,78 @@ def check_rubbish(checks, browser):
         page = browser.open("stack.html", fragment)
         found = page.wait(PROBLEM)
         checks.true(f"#{fragment}", words in found, found)
+        page.wait("player.ready(player.view.frame)", limit=20)  # whatever there is to see is drawn
         page.close()
+    for fragment in "x=1e999", "t=-1e999&body=-1e9&view=,,&run=7", "t=NaN&show=<b>&speed=0", "%%%&&==&t=":
+        page = browser.open("stack.html", fragment)
+        page.wait(ENDED)
+        checks.equal(f"#{fragment}", [page.run(PROBLEM), page.run("player.view.frame"), page.run(PROOFS)], ["", 0, 2])
+        page.close()
+
+
+NUMBERLESS = """parameters: {height: {value: 3, from: 1, to: 9}}
+gravity: [0, -10]
+dt: 1/60
+iterations: 10
+warm_starting: on
+accumulate_impulses: on
+position_correction: on
+frames: 9
+bodies: [{size: [1, 1], position: [0, 5], mass: MASS, friction: 0.2}]
+"""
+
+
+def check_bad_scenes(checks, browser):
+    """Numbers that are none are refused with their place: by the program, or in the page where a reader chooses them."""
+    for mass, words in ((".nan", "numberless.yaml:9:"), ("1 / ($height - 3)", "numberless.yaml:9:")):
+        with open("numberless.yaml", "w", encoding="utf-8") as file:
+            file.write(NUMBERLESS.replace("MASS", mass))
+        failed = checks.twinbox("page", "--live", "numberless.yaml", "-o", "numberless.html", status=2)
+        checks.true(f"mass: {mass}", words in failed.stderr, failed.stderr)
+    with open("numberless.yaml", "w", encoding="utf-8") as file:
+        file.write(NUMBERLESS.replace("MASS", "1 / ($height - 4)*-1"))
+    checks.twinbox("page", "--live", "numberless.yaml", "-o", "numberless.html")
+    page = browser.open("numberless.html")
+    page.wait(ENDED)
+    page.run("player.choose('height', 4)")
+    found = page.wait(PROBLEM)
+    checks.true("an infinite mass", "numberless.yaml:9:" in found and "mass" in found, found)
+    page.run("player.choose('height', 2)")
+    page.wait(ENDED)
+    checks.equal("after it", page.run(PROBLEM), "")
+    page.close()
+
+
+SHORT = """{
+  const Whole = Float32Array;
+  window.Float32Array = class extends Whole {
+    constructor(...given) {
+      if (window.short && given[0] > 1000) throw new RangeError("Array buffer allocation failed");
+      super(...given);
+    }
+  };
+}"""
+
+
+def check_memory(checks, browser):
+    """Memory that is short in a worker, then in the page."""
+    page = open_scene(checks, browser, "pyramid_settled", "engine", fragment="set=dt=1e-5")
+    found = page.wait(PROBLEM)
+    checks.true("a worker without memory", "out of memory" in found, found)
+    page.run("player.choose('dt', 1 / 60)")
+    page.wait(ENDED)
+    checks.equal("after it", [page.run(PROBLEM), page.run(PROOFS)], ["", 1])
+    page.close()
+    page = open_scene(checks, browser, "stack", "engine", before=SHORT)
+    page.wait(ENDED)
+    page.run("(window.short = true, player.choose('bomb_x', 1))")
+    found = page.wait(PROBLEM)
+    checks.true("a page without memory", "allocation failed" in found, found)
+    page.run("(window.short = false, player.choose('bomb_x', 2))")
+    page.wait(ENDED)
+    checks.equal("after that", page.run(PROBLEM), "")
+    checks.quiet("memory", page)
+    page.close()
 
 
 def main():
@@ -267,6 +338,8 @@ def main():
             check_keyboard(checks, browser)
             check_prediction(checks, browser)
             check_rubbish(checks, browser)
+            check_bad_scenes(checks, browser)
+            check_memory(checks, browser)
 
 
 main()

@@ -122,8 +122,8 @@ function chunks_of(run, frame) {
 const lists_wanted = run => run.contacts && !run.live && (view.body >= 0 || shows("contacts") || shows("impulses"));
 const list_place = (run, frame) => Math.min(Math.floor(frame), run.frames - 1);
 
-/* Whether all runs have what is shown of a frame. */
-const ready = frame => runs.every(run => run.live ? run.reached >= min(ceil(frame), run.frames - 1)
+/* Whether all runs have what is shown of a frame; one that has failed shows what it has. */
+const ready = frame => runs.every(run => run.live ? has_failed(run) || run.reached >= min(ceil(frame), run.frames - 1)
   : chunks_of(run, frame).every(chunk => run.done[chunk]) &&
     (!lists_wanted(run) || list_place(run, frame) in run.lists));
 

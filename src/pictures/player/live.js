@@ -11,7 +11,8 @@ const arrival = () => arrivals ??= new Promise(done => { announce = done; });
 const live_runs = () => runs.filter(run => run.live);
 const set_text = () => [...chosen].map(([name, value]) => `${name}=${value}`).join();
 /* Whether a run has what it has of the latest launch: states, or an error. */
-const is_settled = run => run.broken || [run.next?.shown, run.shown, run.failed].includes(launched);
+const has_failed = run => run.broken || run.failed === launched;
+const is_settled = run => has_failed(run) || run.next?.shown === launched || run.shown === launched;
 
 /* What is wrong with a link stays until a setting is chosen; what is wrong with a run, until it can be launched. */
 let link_problem = "", page_problem = "";
@@ -191,7 +192,9 @@ function take_part(run, part) {
 /* A worker begins while the module is compiled. */
 function open_worker(run) {
   run.worker = new Worker(setup.url);
-  run.worker.onmessage = ({data: part}) => take_part(run, part);
+  run.worker.onmessage = ({data: part}) => {
+    try { take_part(run, part); } catch (error) { complain(run, error.message); } /* memory is short */
+  };
   run.worker.onerror = event => complain(run, event.message || "the worker has ended");
   live_parts.then(([module, bundle]) => run.worker.postMessage({module, bundle})).catch(cannot_step);
 }
