@@ -250,6 +250,14 @@ def check_rubbish(checks, browser):
         checks.true(f"#{fragment}", words in found, found)
         page.wait("player.ready(player.view.frame)", limit=20)  # whatever there is to see is drawn
         page.close()
+    with open("stack.html", encoding="utf-8") as file:
+        text = file.read()
+    with open("damaged.html", "w", encoding="utf-8") as file:
+        file.write(re.sub('(id="module">)[^<]*', r"\1AAAA", text))
+    page = browser.open("damaged.html", "t=1")
+    checks.true("a damaged module", "cannot be stepped" in page.wait(PROBLEM), page.run(PROBLEM))
+    page.wait("player.ready(player.view.frame)", limit=20)
+    page.close()
     for fragment in "x=1e999", "t=-1e999&body=-1e9&view=,,&run=7", "t=NaN&show=<b>&speed=0", "%%%&&==&t=":
         page = browser.open("stack.html", fragment)
         page.wait(ENDED)

@@ -200,8 +200,10 @@ function open_worker(run) {
 }
 
 function cannot_step(error) {
+  live_runs().forEach(run => { run.broken = true; });
   page_problem = `The runs cannot be stepped in this browser: ${error.message}`;
   show_problems();
+  again();
 }
 
 function begin_live() {
