@@ -136,6 +136,8 @@ int live_step(LiveRun *run, int count) {
     return run->frame;
 }
 
+const Trajectory *live_trajectory(const LiveRun *run) { return run->trajectory; }
+
 const char *live_failure(const LiveRun *run) { return run->failure.message; }
 int live_frames(const LiveRun *run) { return run->trajectory->frames; }
 int live_bodies(const LiveRun *run) { return run->trajectory->bodies; }
