@@ -32,5 +32,8 @@ void print_contexts(FILE *file) {
     }
 }
 
+const char program_summary[] = "Rigid-box physics and neural networks, side by side.";
+const char program_begin[] = "twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4";
+
 #define COMMAND_ENTRY(name, summary, heading) {#name, summary, heading, command_##name},
 const Command commands[] = {COMMANDS(COMMAND_ENTRY){0}};
