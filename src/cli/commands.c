@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "cli/cli.h"
 #include "pixels/gl.h"
+#include "pixels/gl_functions.h"
 
 /* False with error set, where there is no such context. */
 static bool print_used(FILE *file, ContextChoice choice, const char *mark, Error *error) {
