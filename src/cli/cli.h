@@ -51,8 +51,9 @@ typedef struct Command {
     bool (*run)(int argc, char **argv, Error *error);
 } Command;
 
-/* All commands, ended by a NULL name. */
+/* All commands, ended by a NULL name. For the help: what the program does, and a first command line. */
 extern const Command commands[];
+extern const char program_summary[], program_begin[];
 
 #define COMMAND_DECLARED(name, summary, heading) bool command_##name(int argc, char **argv, Error *error);
 COMMANDS(COMMAND_DECLARED)

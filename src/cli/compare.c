@@ -35,6 +35,9 @@ static const Option option_table[] = {
      "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
      OPTION_FLAG(CompareOptions, watch)},
     {OPTION_JSON(CompareOptions, json)},
+    {"--server", 0, NULL,
+     "Answer requests, lines of JSON on standard input as of odiff --server, until it ends; takes no inputs",
+     OPTION_FLAG(CompareOptions, server)},
     {.help = "Runs:"},
     {"--scene", 0, "SCENE",
      "Scene of the first run: run it again with the same method and one body shifted by 1e-6 m, and compare the "
@@ -87,10 +90,8 @@ static const Option option_table[] = {
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "EXPECTED ACTUAL",
-              .needed = "two inputs are needed",
-              OPTION_PATHS(CompareOptions, paths, count)},
-    .inputs = {2, 2, "input"},
+    .input = {.value = "EXPECTED ACTUAL", OPTION_PATHS(CompareOptions, paths, count)},
+    .inputs = {0, 2, "input"}, /* none with --server */
     .help =
         "Compare two runs (.npz) or two PNG sequences (folders with their subfolders, or single files). Exit status 0: "
         "equal, 1: different, 2: not comparable.\n"
@@ -214,6 +215,9 @@ static bool check_inputs(CompareOptions *options, Error *error) {
 /* Reads the command line. False with error set if it is wrong, or after --help. */
 static bool compare_options_parse(CompareOptions *options, int argc, char **argv, Error *error) {
     if (!options_parse(&spec, argc, argv, options, error)) return false;
+    if (options->server)
+        return argc == 2 || error_input(error, "--server", "stands alone; each request has options and files");
+    if (options->count != 2) return error_input(error, argv[0], "two inputs are needed; --help lists the options");
     if (options->json && (options->watch || options->annotations != ANNOTATE_NONE))
         return error_input(error, "--json", "cannot be combined with --%s", options->watch ? "watch" : "annotations");
     return check_inputs(options, error);
@@ -281,6 +285,7 @@ static bool compare(const CompareOptions *options, Error *error) {
 
 static bool run(CompareOptions *options, int argc, char **argv, Error *error) {
     bool same = compare_options_parse(options, argc, argv, error);
+    if (same && options->server) return compare_serve(error);
     if (same && options->diverge) note_print("'twinbox diverge' is now 'twinbox compare'; its options stay");
     same = same && (options->watch ? compare_watch(options, compare, error) : compare(options, error));
     mask_free(&options->mask);

@@ -34,7 +34,7 @@ typedef struct CompareOptions {
     bool flat;
     unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
-    bool watch, json;
+    bool watch, json, server;
     bool diverge; /* by the old name: runs of other worlds are refused, and what only one run has is not compared */
     Mask mask;
 } CompareOptions;
@@ -83,6 +83,9 @@ typedef bool CompareRun(const CompareOptions *options, Error *error);
    a second, until Ctrl-C or SIGTERM. An error, such as a folder that is gone, is printed and does not end it. Returns
    what the last comparison that ended returned, with its error. */
 bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error);
+
+/* Answers the requests of standard input until it ends. False with error set if standard output cannot be written. */
+bool compare_serve(Error *error);
 
 /* simulate() with the verdict in the run. */
 Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error);
