@@ -71,7 +71,8 @@ static float radius(const Box *box) { return sqrtf(vec2_dot(box->half, box->half
 /* Adds the arbiter of the last step with the points that it had; false if it must be found anew. A single point is: a
    corner that another may soon join. */
 static bool keep_arbiter(ContactSet *set, const ContactSet *last, const Arbiter *old, const Box *boxes, float keep) {
-    const float least_cosine = 0.98f, share = 0.05f; /* Box2D's angle; a thin box is not supported far beyond its edge */
+    const float least_cosine = 0.98f,
+                share = 0.05f; /* Box2D's angle; a thin box is not supported far beyond its edge */
     if (old->count < 2) return false;
     const Box *a = &boxes[old->a], *b = &boxes[old->b];
     const Vec2 shift = vec2_sub(vec2_sub(b->position, a->position), old->found.between);

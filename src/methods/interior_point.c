@@ -219,7 +219,7 @@ void interior_close(Interior *s, double speed, double dt) {
             const double depth = g->friction[k] < (double)INTERIOR_SLIPPERY ? closed_slippery : closed;
             const double missing = depth - g->depth[k];
             if (missing > fmin(fmax(lacking * depth, s->rounding), most_lacking * depth))
-                g->bias[k] = fmin(g->bias[k], -fmin(speed, missing / dt));
+                g->bias[k] -= fmin(speed, missing / dt);
         }
     }
 }

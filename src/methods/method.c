@@ -188,8 +188,7 @@ Stepper *stepper_create(const Method *method, const Scene *scene, Error *error) 
     }
     stepper->description = method->kind->description;
     stepper->stepping = method->kind->stepping;
-    const bool read =
-        stepper->description->external || settings_read(&method->settings, step_settings, stepper, error);
+    const bool read = stepper->description->external || settings_read(&method->settings, step_settings, stepper, error);
     if (read && stepper->stepping != NULL) {
         stepper->state = stepper->stepping->create(&method->settings, scene, error);
         if (stepper->state != NULL) return stepper;
