@@ -224,8 +224,8 @@ static void border_sample_draw(Sketch *sketch, int sign, Point left, double widt
 }
 
 /* mm */
-static const double left = 33, right = 2, gap = 3.5, title_room = 5.5, axis_room = 8.8, legend_left = 20,
-                    most_page = 235, most_row = 3.4, least_row = 2.5, sample = 5.5, name_gap = 1.3;
+static const double left = 33, left_of_one = 52, right = 2, gap = 3.5, title_room = 5.5, axis_room = 8.8,
+                    legend_left = 20, most_page = 235, most_row = 3.4, least_row = 2.5, sample = 5.5, name_gap = 1.3;
 
 enum { LEGEND_COLUMNS = 5 };
 
@@ -300,7 +300,7 @@ static void lay_out(Borders *borders) {
     borders->grid =
         (PlotGrid){.width = FIGURE_PAGE_WIDTH,
                    .height = legend + borders->rows * (around + borders->row_height * borders->method_count),
-                   .left = left,
+                   .left = borders->columns > 1 ? left : left_of_one,
                    .right = right,
                    .bottom = legend + axis_room,
                    .top = title_room,
@@ -320,8 +320,8 @@ static void draw_rows(const Borders *borders, const PlotPanel *panel, bool named
         char text[STABILITY_TEXT_SIZE];
         sketch_line(borders->sketch, (Point){panel->x.from, y}, (Point){panel->x.to, y}, &guide);
         if (!named) continue;
-        stability_method_text(text, points, left - 3, row->method, row->setting);
-        plot_text(borders->sketch, (Point){left - 1.5, y}, TEXT_RIGHT, points, text);
+        stability_method_text(text, points, borders->grid.left - 3, row->method, row->setting);
+        plot_text(borders->sketch, (Point){borders->grid.left - 1.5, y}, TEXT_RIGHT, points, text);
     }
 }
 
