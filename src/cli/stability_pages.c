@@ -78,7 +78,8 @@ static bool print_borders(const char *folder, Error *error) {
             const StabilityStudy *study = stability_study_find(row->study);
             printf("%s: %s%s%s, holds | fails", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "",
                    row->unit);
-            if (study != NULL && study->rigid != NULL) printf(" (rigid boxes: %.4g)", study->rigid());
+            if (study != NULL && study->rigid != NULL && strcmp(study->parameter, row->parameter) == 0)
+                printf(" (rigid boxes: %.4g)", study->rigid());
             printf("\n");
         }
         i = print_method(&table, i);
