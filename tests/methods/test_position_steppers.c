@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-static const char *const methods[] = {"soft-step", "avbd", "soft-step:substeps=8", "avbd:alpha=0.99"};
+static const char *const methods[] = {"soft-step", "avbd", "soft-step:substeps=8,keep=0.05", "avbd:alpha=0.99"};
 
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
