@@ -59,8 +59,7 @@ static void print_answer(FILE *out, const void *context) {
     const Answer *answer = context;
     JsonWriter json = {.out = out};
     json_begin_object(&json, NULL, JSON_ONE_LINE);
-    if (answer->request != NULL && answer->request->id != NULL)
-        json_put_int(&json, "requestId", json_integer_value(answer->request->id));
+    if (answer->request->id != NULL) json_put_int(&json, "requestId", json_integer_value(answer->request->id));
     if (answer->kind == ANSWER_READY) json_put_bool(&json, "ready", true);
     if (answer->kind == ANSWER_ERROR) json_put_text(&json, "error", answer->error->message);
     if (answer->kind >= ANSWER_MATCH) json_put_bool(&json, "match", answer->kind == ANSWER_MATCH);
@@ -281,7 +280,7 @@ bool compare_serve(Error *error) {
     static Request request;
     size_t length;
     bool whole;
-    bool ok = send(&(Answer){.kind = ANSWER_READY}, error);
+    bool ok = send(&(Answer){.kind = ANSWER_READY, .request = &request}, error);
     while (ok && read_line(line, sizeof line, &length, &whole))
         ok = length == 0 || serve(line, length, whole, &request, error);
     return ok;
