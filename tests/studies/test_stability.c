@@ -294,7 +294,8 @@ TEST(an_interrupted_study_is_resumed) {
 }
 
 TEST(unknown_names_and_methods_are_refused) {
-    StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"fortune"}};
+    StabilityOptions options = {
+        .folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"fortune"}};
     assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error),
                    "'fortune' is not a study or map; known: stack_height, ");
     options.names[0] = "bomb_speed";
