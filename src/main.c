@@ -12,17 +12,16 @@
 #include <unistd.h>
 
 static void print_help(FILE *file) {
-    fputs("Usage: twinbox COMMAND [OPTION...]\n"
-          "Rigid-box physics and neural networks, side by side. Help: twinbox help COMMAND\n",
-          file);
+    fprintf(file, "Usage: twinbox COMMAND [OPTION...]\n%s Help: twinbox help COMMAND\n", program_summary);
     for (const Command *command = commands; command->name != NULL; command++) {
         if (command->heading != NULL) fprintf(file, "%s:\n", command->heading);
         if (command->summary != NULL) fprintf(file, "  %-10s %s\n", command->name, command->summary);
     }
-    fputs("Exit status: 0 done and equal, 1 different or incomplete, 2 bad input,\n"
-          "  3 failure of the system, 130 interrupted.\n"
-          "Begin with: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n",
-          file);
+    fprintf(file,
+            "Exit status: 0 done and equal, 1 different or incomplete, 2 bad input,\n"
+            "  3 failure of the system, 130 interrupted.\n"
+            "Begin with: %s\n",
+            program_begin);
 }
 
 static const Command *find_command(const char *name) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Planck.js, a port of Box2D 2.3. Its polygons have a skin that keeps boxes 15 mm apart; skin=off makes them smaller by it.
+// Planck.js, a port of Box2D 2.3. Its polygons have a skin that keeps boxes 15 mm apart; shrink=on makes them smaller by it.
 import {Box, Vec2, World} from 'planck';
 import {serve, version} from './serve.mjs';
 
 serve({name: 'Planck', version: version('planck'), create(scene, settings) {
     const world = new World({gravity: Vec2(scene.gravity.x, scene.gravity.y), allowSleep: false}), bodies = [];
-    const skin = settings.skin === 'off' ? 0.0075 : 0;
+    const skin = settings.shrink === 'on' ? 0.0075 : 0;
     return {
         add(b) {
             const body = world.createBody({type: b.fixed ? 'static' : 'dynamic', position: Vec2(b.x, b.y), angle: b.angle,

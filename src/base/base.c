@@ -278,7 +278,7 @@ size_t utf8_cut(const char *text, size_t limit) {
     return (size_t)(end - text);
 }
 
-size_t utf8_encode(char *out, uint32_t character) {
+size_t utf8_put(char *out, uint32_t character) {
     static const uint32_t above[] = {0x80, 0x800, 0x10000};
     static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};
     size_t length = 1;

@@ -136,7 +136,7 @@ uint32_t utf8_next(const char **text);
 size_t utf8_cut(const char *text, size_t limit);
 
 /* Writes a character (not a surrogate, at most 0x10ffff) to `out`, which has room for 4 bytes; returns its length. */
-size_t utf8_encode(char *out, uint32_t character);
+size_t utf8_put(char *out, uint32_t character);
 
 /* Arrays that grow. */
 

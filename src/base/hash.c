@@ -2,12 +2,14 @@
 #include "base/hash.h"
 
 /* The same values with the widest vectors of the processor, in half the time. */
-#ifdef TWINBOX_AVX
-#include <xxh_x86dispatch.h>
-#elif defined(__wasm__) /* there is no library to link */
+#if defined(__wasm__) || defined(TWINBOX_COMPARE_ONLY) /* there is no library to link */
 #define XXH_INLINE_ALL
+#ifdef __wasm__
 #define XXH_VECTOR 0 /* XXH_SCALAR */
+#endif
 #include <xxhash.h>
+#elif defined(TWINBOX_AVX)
+#include <xxh_x86dispatch.h>
 #else
 #include <xxhash.h>
 #endif

@@ -125,17 +125,20 @@ bool json_read_end(JsonReader *reader, Error *error) {
     return reader->at == reader->end || json_read_error(reader, error, "end of file expected");
 }
 
+bool json_read_text(JsonReader *reader, const char *name, const char *text, size_t size, Error *error) {
+    *reader = (JsonReader){.path = name, .at = text, .end = text + size};
+    reader->line = reader->column = reader->value_line = reader->value_column = 1;
+    reader->memory = malloc(sizeof *reader->memory);
+    return reader->memory != NULL || error_memory(error, name);
+}
+
 bool json_read_open(JsonReader *reader, const char *path, size_t max_size, Error *error) {
     size_t size;
-    *reader = (JsonReader){.path = path, .line = 1, .column = 1, .value_line = 1, .value_column = 1};
-    reader->text = file_read(path, max_size, &size, error);
-    if (reader->text == NULL) return false;
-    reader->at = reader->text;
-    reader->end = reader->text + size;
-    reader->memory = malloc(sizeof *reader->memory);
-    if (reader->memory != NULL) return true;
-    json_read_close(reader);
-    return error_memory(error, path);
+    char *text = file_read(path, max_size, &size, error);
+    if (text == NULL) return false;
+    if (json_read_text(reader, path, text, size, error)) return reader->text = text, true;
+    free(text);
+    return false;
 }
 
 void json_read_close(JsonReader *reader) {

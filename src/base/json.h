@@ -32,6 +32,8 @@ typedef struct JsonReader {
 
 /* Opens a file of at most max_size bytes. On failure nothing needs to be freed. */
 bool json_read_open(JsonReader *reader, const char *path, size_t max_size, Error *error);
+/* The same for text in memory, which stays the caller's; messages have this name in the place of the path. */
+bool json_read_text(JsonReader *reader, const char *name, const char *text, size_t size, Error *error);
 void json_read_close(JsonReader *reader);
 
 /* The next value, of any kind; NULL with error set if there is no valid one. The reader owns it (no json_decref); it is

@@ -238,7 +238,7 @@ void *npz_read(NpzFile *file, const char *name, NpzType type, int rank, const in
 static bool append(uint32_t character, char *text, size_t *used, size_t size) {
     char bytes[4];
     if (character == 0 || character > 0x10ffff || (character >= 0xd800 && character < 0xe000)) return false;
-    size_t length = utf8_encode(bytes, character);
+    size_t length = utf8_put(bytes, character);
     if (*used + length >= size) return false;
     memcpy(text + *used, bytes, length);
     *used += length;

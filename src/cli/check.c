@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "cli/runs.h"
 #include "engine/engine.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
@@ -21,24 +22,43 @@ static const double way = 3;
 
 typedef struct Options {
     const char *scene, *output; /* output: NULL for NAME-first-frame.png */
+    unsigned verdict;           /* of `verdicts` */
+    CheckRunOptions run;
     bool json;
 } Options;
+
+static const char *const verdicts[] = {"any",   "holds",   "settles",  "sways",      "creeps", "falls",
+                                       "sinks", "tunnels", "explodes", "non-finite", NULL};
 
 static const Option option_table[] = {
     {"--output", 'o', "FILE.png",
      "Picture of the first frame (default: NAME-first-frame.png in the working folder); - writes it to standard output",
      OPTION_TEXT(Options, output)},
     {OPTION_JSON(Options, json)},
+    {.help = "Runs (.npz):"},
+    OPTIONS_JUDGE(Options, run.judge),
+    {"--verdict", 0, "WORD",
+     "Fail with exit status 1 unless the verdict is this: holds (settles, sways or creeps), settles, sways, creeps, "
+     "falls, sinks, tunnels, explodes, non-finite (default: any)",
+     OPTION_ENUM(Options, verdict, verdicts)},
+    {"--max-overlap", 0, "M", "Fail if two boxes overlap by more, m", OPTION_DOUBLE(Options, run.max_overlap, 0, 1e6)},
+    {"--max-drift", 0, "M", "Fail if a body moves further after the first 10 s, m",
+     OPTION_DOUBLE(Options, run.max_drift, 0, 1e6)},
+    {"--max-gain", 0, "J", "Fail if the energy exceeds that of the start and the bomb by more, J",
+     OPTION_DOUBLE(Options, run.max_gain, 0, 1e12)},
     {0}};
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
-    .inputs = {1, 1, "scene"},
+    .input = {.value = "SCENE|RUN.npz", .needed = "a scene or a run (.npz) is needed", OPTION_PATH(Options, scene)},
+    .inputs = {1, 1, "input"},
     .help =
         "Validate a scene: all keys, boxes that start inside others, the launches of the bomb, the networks that it "
-        "names, and each parameter at both ends. Prints a summary and draws the first frame with the way of the bomb.\v"
-        "Example: twinbox check scenes/stack.yaml -o first.png"};
+        "names, and each parameter at both ends. Prints a summary and draws the first frame with the way of the bomb.\n"
+        "Or judge a stored run of any engine: the verdict that simulate prints, the deepest overlap, drift and energy "
+        "gained. Contacts are found again from the poses.\v"
+        "Example: twinbox check scenes/stack.yaml -o first.png\n"
+        "         twinbox check engine.npz --scene scenes/stack.yaml --verdict holds"};
 
 static void print_bodies(FILE *out, const Scene *scene) {
     double mass = 0;
@@ -207,9 +227,28 @@ static bool names_picture(const char *path) {
     return strcmp(path, "-") == 0 || (ending != NULL && strcmp(ending, ".png") == 0);
 }
 
+static bool check_stored(Options *options, Error *error) {
+    if (options->output != NULL) return error_input(error, "--output", "applies to scenes only");
+    options->run.path = options->scene;
+    options->run.json = options->json;
+    options->run.verdict = options->verdict > 0 ? verdicts[options->verdict] : NULL;
+    return check_run(&options->run, error);
+}
+
+/* Without a run, nothing is judged. */
+static bool gives_limits(const Options *options) {
+    const CheckRunOptions *run = &options->run;
+    return options->verdict > 0 || !isnan(run->max_overlap) || !isnan(run->max_drift) || !isnan(run->max_gain) ||
+           run->judge.scene != NULL || run->judge.set.count > 0 || run->judge.skin > 0;
+}
+
 bool command_check(int argc, char **argv, Error *error) {
-    Options options = {0};
+    Options options = {.run = {.max_overlap = NAN, .max_drift = NAN, .max_gain = NAN}};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
+    if (file_name_ends_with(options.scene, ".npz")) return check_stored(&options, error);
+    if (gives_limits(&options))
+        return error_input(error, options.scene,
+                           "is a scene; --scene, --set, --skin, --verdict and limits apply to runs");
     if (options.output != NULL && !names_picture(options.output))
         return error_input(error, options.output, "the name of the picture must end in .png");
     if (options.json && options.output != NULL && strcmp(options.output, "-") == 0)

@@ -22,7 +22,7 @@
 
 #define COMMANDS(COMMAND)                                                                    \
     COMMAND(new, "write a commented scene to start from", "Make")                            \
-    COMMAND(check, "validate a scene and draw its first frame", NULL)                        \
+    COMMAND(check, "validate a scene and draw its first frame, or judge a stored run", NULL) \
     COMMAND(simulate, "run a scene with one method and store the run", NULL)                 \
     COMMAND(methods, "list the methods and their settings", NULL)                            \
     COMMAND(import, "store the run of another program, from CSV", NULL)                      \
@@ -51,8 +51,9 @@ typedef struct Command {
     bool (*run)(int argc, char **argv, Error *error);
 } Command;
 
-/* All commands, ended by a NULL name. */
+/* All commands, ended by a NULL name. For the help: what the program does, and a first command line. */
 extern const Command commands[];
+extern const char program_summary[], program_begin[];
 
 #define COMMAND_DECLARED(name, summary, heading) bool command_##name(int argc, char **argv, Error *error);
 COMMANDS(COMMAND_DECLARED)

@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "cli/cli.h"
 #include "pixels/gl.h"
+#include "pixels/gl_functions.h"
 
 /* False with error set, where there is no such context. */
 static bool print_used(FILE *file, ContextChoice choice, const char *mark, Error *error) {
@@ -31,6 +32,9 @@ void print_contexts(FILE *file) {
             fprintf(file, "%s: %s\n", names[i], error.message);
     }
 }
+
+const char program_summary[] = "Rigid-box physics and neural networks, side by side.";
+const char program_begin[] = "twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4";
 
 #define COMMAND_ENTRY(name, summary, heading) {#name, summary, heading, command_##name},
 const Command commands[] = {COMMANDS(COMMAND_ENTRY){0}};

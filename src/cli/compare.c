@@ -12,6 +12,7 @@
 
 #include <inttypes.h>
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -26,12 +27,17 @@ static const Option option_table[] = {
     {"--tolerance", 0, "MAX",
      "Pictures: ignore pixels in which no channel differs by more than MAX (0 to 255). Runs: pass them where the "
      "centres "
-     "of a body are at most MAX metres apart (default: 0, every bit of pose and velocity counts)",
+     "of a body are at most MAX metres apart; MAX,RAD limits its rotation, too (default: 0, every bit of pose and "
+     "velocity "
+     "counts)",
      OPTION_TEXT(CompareOptions, limit)},
     {"--watch", 0, NULL,
      "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
      OPTION_FLAG(CompareOptions, watch)},
     {OPTION_JSON(CompareOptions, json)},
+    {"--server", 0, NULL,
+     "Answer requests, lines of JSON on standard input as of odiff --server, until it ends; takes no inputs",
+     OPTION_FLAG(CompareOptions, server)},
     {.help = "Runs:"},
     {"--scene", 0, "SCENE",
      "Scene of the first run: run it again with the same method and one body shifted by 1e-6 m, and compare the "
@@ -69,7 +75,9 @@ static const Option option_table[] = {
      "orientation) are reported, or fail (default: report)",
      OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
     {"--report", 0, "DIR",
-     "Folder for report.html, junit.xml, results.tap, results.json, and run-NAME.html for each run that differs",
+     "Folder for report.html, junit.xml, results.tap, results.json, and run-NAME.html for each run that differs; of "
+     "two "
+     "runs, run.html",
      OPTION_TEXT(CompareOptions, report)},
     {"--report-size", 0, "MB",
      "Most that the pictures in the report may take, and as much for its pages of runs (default: 64)",
@@ -82,10 +90,8 @@ static const Option option_table[] = {
 
 static const CommandSpec spec = {
     .options = option_table,
-    .input = {.value = "EXPECTED ACTUAL",
-              .needed = "two inputs are needed",
-              OPTION_PATHS(CompareOptions, paths, count)},
-    .inputs = {2, 2, "input"},
+    .input = {.value = "EXPECTED ACTUAL", OPTION_PATHS(CompareOptions, paths, count)},
+    .inputs = {0, 2, "input"}, /* none with --server */
     .help =
         "Compare two runs (.npz) or two PNG sequences (folders with their subfolders, or single files). Exit status 0: "
         "equal, 1: different, 2: not comparable.\n"
@@ -161,9 +167,18 @@ static bool is_trajectory(const char *path) {
     return path_is_standard(path) || file_name_ends_with(path, ".npz"); /* pictures come in folders */
 }
 
+/* "M" or "M,RAD"; 0 alone is none. */
 static bool read_distance(CompareOptions *options, Error *error) {
-    return options->limit == NULL || (parse_double(options->limit, &options->distance) && options->distance >= 0) ||
-           error_input(error, "--tolerance", "'%.64s' is not a distance in metres", options->limit);
+    PoseTolerance *poses = &options->poses;
+    const char *rest;
+    *poses = (PoseTolerance){.angle = INFINITY};
+    if (options->limit == NULL) return true;
+    if (!parse_leading_double(options->limit, &poses->distance, &rest) || !(poses->distance >= 0) ||
+        (*rest != '\0' && (*rest != ',' || !parse_double(rest + 1, &poses->angle) || !(poses->angle >= 0))))
+        return error_input(error, "--tolerance", "'%.64s' is not a distance in metres, or METRES,RADIANS",
+                           options->limit);
+    poses->given = poses->distance > 0 || *rest == ',';
+    return true;
 }
 
 static bool read_tolerance(CompareOptions *options, Error *error) {
@@ -177,10 +192,9 @@ static bool read_tolerance(CompareOptions *options, Error *error) {
 }
 
 static bool check_runs(CompareOptions *options, Error *error) {
-    if (options->report != NULL || options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0 ||
-        options->annotations != 0)
+    if (options->tolerance.given != 0 || options->rules != NULL || options->mask.count > 0 || options->annotations != 0)
         return error_input(error, options->paths[0],
-                           "--report, --annotations, --rules, masks and limits of pixels apply to pictures only");
+                           "--annotations, --rules, masks and limits of pixels apply to pictures only");
     return json_output_check(options->json, error) && read_distance(options, error);
 }
 
@@ -201,6 +215,9 @@ static bool check_inputs(CompareOptions *options, Error *error) {
 /* Reads the command line. False with error set if it is wrong, or after --help. */
 static bool compare_options_parse(CompareOptions *options, int argc, char **argv, Error *error) {
     if (!options_parse(&spec, argc, argv, options, error)) return false;
+    if (options->server)
+        return argc == 2 || error_input(error, "--server", "stands alone; each request has options and files");
+    if (options->count != 2) return error_input(error, argv[0], "two inputs are needed; --help lists the options");
     if (options->json && (options->watch || options->annotations != ANNOTATE_NONE))
         return error_input(error, "--json", "cannot be combined with --%s", options->watch ? "watch" : "annotations");
     return check_inputs(options, error);
@@ -268,6 +285,7 @@ static bool compare(const CompareOptions *options, Error *error) {
 
 static bool run(CompareOptions *options, int argc, char **argv, Error *error) {
     bool same = compare_options_parse(options, argc, argv, error);
+    if (same && options->server) return compare_serve(error);
     if (same && options->diverge) note_print("'twinbox diverge' is now 'twinbox compare'; its options stay");
     same = same && (options->watch ? compare_watch(options, compare, error) : compare(options, error));
     mask_free(&options->mask);

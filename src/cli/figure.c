@@ -211,7 +211,9 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
         runs[i] = trajectory_read(options->inputs[i], error);
         figure->runs[i] = runs[i], figure->paths[i] = options->inputs[i];
         figure->run_count++;
-        ok = runs[i] != NULL && type_check(runs[i]->scene, options->inputs[i], error) &&
+        ok = runs[i] != NULL &&
+             (!kind->needs_contacts || !runs[i]->no_contacts || trajectory_find_contacts(runs[i], error)) &&
+             type_check(runs[i]->scene, options->inputs[i], error) &&
              type_check(runs[i]->method, options->inputs[i], error);
     }
     if (ok) note_different_scenes(figure->runs, figure->run_count);

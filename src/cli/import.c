@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "cli/runs.h"
 #include "runs/trajectory.h"
 #include "scenes/scenes.h"
 
@@ -12,6 +13,7 @@ typedef struct Options {
     const char *input, *output, *sizes;
     float dt; /* s; 0: the file's */
     bool degrees;
+    JudgeOptions judge;
 } Options;
 
 static const Option option_table[] = {
@@ -20,6 +22,7 @@ static const Option option_table[] = {
      OPTION_PATH(Options, sizes)},
     {"--dt", 0, "S", "Time step, s: a number or a fraction such as 1/60 (default: the file's)",
      OPTION_FLOAT(Options, dt, SCENE_MIN_DT, SCENE_MAX_DT)},
+    OPTIONS_JUDGE(Options, judge),
     {"--degrees", 0, NULL, "Angles and angular velocities of the file are in degrees", OPTION_FLAG(Options, degrees)},
     {0}};
 
@@ -42,19 +45,40 @@ static const CommandSpec spec = {
         "Example: twinbox import box2d.csv --sizes sizes.csv --dt 1/60 -o box2d.npz\n"
         "         ./box2d scenes/stack.yaml | twinbox import - -o box2d.npz"};
 
+/* A run of bodies that come and go as twinbox's do not is imported without a verdict. */
+static bool judge(JudgedRun *judged, Trajectory *run, const Options *options, Error *unjudged, Error *error) {
+    if (judged_run_find(judged, run, &options->judge, unjudged)) {
+        const VerdictReading *reading = &judged->verdict.reading;
+        const int last = run->frames - 1;
+        trajectory_judge(run, judged->words, reading->frame < last ? reading->frame : last, reading->body);
+        return true;
+    }
+    if (options->judge.scene == NULL && unjudged->kind == ERROR_INPUT) return true;
+    *error = *unjudged;
+    return false;
+}
+
 static bool import_run(const Options *options, Error *error) {
     char name[TRAJECTORY_NAME_SIZE];
     CsvRunNotes notes;
     trajectory_name_from_path(strcmp(options->input, "-") == 0 ? options->output : options->input, name);
     const CsvRunOptions how = {.name = name, .sizes = options->sizes, .dt = options->dt, .degrees = options->degrees};
     Trajectory *run = csv_run_read(options->input, &how, &notes, error);
-    bool ok = run != NULL && trajectory_write(run, options->output, error);
+    JudgedRun judged = {0};
+    Error unjudged = {0};
+    bool ok =
+        run != NULL && judge(&judged, run, options, &unjudged, error) && trajectory_write(run, options->output, error);
     if (ok) {
         printf("%s by %s: %d frames of %d bodies, dt %g s -> %s\n", run->scene, run->method, run->frames, run->bodies,
                (double)run->dt, options->output);
+        if (unjudged.kind == ERROR_NONE)
+            judged_run_print(&judged, &options->judge);
+        else
+            printf("    no verdict: %s\n", unjudged.message);
         for (int i = 0; i < notes.count; i++) note_print("assumed: %s", notes.lines[i]);
         if (!path_is_standard(options->output)) next_film(options->output);
     }
+    judged_run_free(&judged);
     trajectory_destroy(run);
     return ok;
 }

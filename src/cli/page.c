@@ -145,7 +145,7 @@ static bool write_live(const Options *options, Panels *panels, Error *error) {
     if (live_module(false).size == 0)
         return error_input(error, "--live",
                            "this build has no module for live pages; install clang, lld, wasi-libc and "
-                           "libclang-rt-dev-wasm32 (tests/setup --tests does), then configure and build afresh");
+                           "libclang-rt-dev-wasm32 (tests/setup does), then configure and build afresh");
     join_settings(&options->set, set, sizeof set);
     const char *runs[RENDER_PANELS_MAX];
     int count = 0;

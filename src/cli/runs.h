@@ -26,18 +26,47 @@ typedef struct CompareOptions {
     const char *paths[2], *report;
     int count, megabytes;
     int max_pixels;
-    const char *limit; /* --tolerance, as given: of pictures in `tolerance`, of runs in `distance` (m) */
+    const char *limit; /* --tolerance, as given: of pictures in `tolerance`, of runs in `poses` */
     Tolerance tolerance;
-    double distance;
+    PoseTolerance poses;
     const char *scene, *csv; /* of runs */
     const char *rules;       /* a file; NULL: not given */
     bool flat;
     unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
-    bool watch, json;
+    bool watch, json, server;
     bool diverge; /* by the old name: runs of other worlds are refused, and what only one run has is not compared */
     Mask mask;
 } CompareOptions;
+
+/* Two runs and how they differ. */
+typedef struct RunComparison {
+    const CompareOptions *options;
+    Trajectory *runs[2];
+    TrajectoryDifference difference;
+    bool same_world; /* or what follows is not known: */
+    bool passed;
+    bool found_contacts; /* one of the runs had none: those of both are found again */
+    TrajectoryParting parting;
+    double *distance; /* [frames of both] */
+    Growth growth, shifted;
+    Chaos chaos;   /* distance NULL: no scene given */
+    char *text;    /* what is printed */
+    bool has_page; /* the report has a page that plays both */
+} RunComparison;
+
+/* What differs without being compared, as words. */
+enum { RUN_OTHERS_MAX = 3 };
+typedef struct RunOther {
+    const char *what; /* "bomb" */
+    char values[2][TRAJECTORY_VERDICT_SIZE];
+} RunOther;
+int compare_runs_others(const RunComparison *comparison, RunOther others[RUN_OTHERS_MAX]);
+
+JsonOutputWrite compare_runs_write_json; /* of a RunComparison */
+
+/* Writes report.html, junit.xml, results.tap, results.json and, if the runs differ, run.html, which plays both. */
+bool compare_runs_report(RunComparison *comparison, const char *folder, Error *error);
 
 /* Compares two runs and prints the result. False if they differ, or with error set. */
 bool compare_runs(const CompareOptions *options, Error *error);
@@ -55,11 +84,59 @@ typedef bool CompareRun(const CompareOptions *options, Error *error);
    what the last comparison that ended returned, with its error. */
 bool compare_watch(const CompareOptions *options, CompareRun *compare, Error *error);
 
+/* Answers the requests of standard input until it ends. False with error set if standard output cannot be written. */
+bool compare_serve(Error *error);
+
 /* simulate() with the verdict in the run. */
 Trajectory *simulate_judged(const Scene *scene, const Method *method, const Progress *progress, Error *error);
 
 /* Writes the verdict with all its figures as a file. */
 bool simulate_verdict_write(const SimulateVerdict *verdict, const char *path, Error *error);
+
+/* Puts it with all figures as an object into JSON (src/studies/README.md, The verdict on one run). */
+void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key);
+
+/* The verdict on a stored run. */
+
+typedef struct JudgeOptions {
+    const char *scene; /* file; NULL: masses and gravity are assumed */
+    SceneSettings set; /* of its parameters */
+    float skin;        /* m */
+} JudgeOptions;
+
+/* Rows of an option table whose Options T have JudgeOptions as `member`. */
+#define OPTIONS_JUDGE(T, member)                                                                                   \
+    {"--scene", 0, "SCENE", "Scene of the run: its masses, gravity and bomb (default: 1 kg/m2 and 10 m/s2)",       \
+     OPTION_PATH(T, member.scene)},                                                                                \
+        {OPTION_SET(T, member.set)}, {                                                                             \
+        "--skin", 0, "M",                                                                                          \
+            "What the engine adds to each side of a box, m: boxes that rest apart by twice that touch, and being " \
+            "pushed apart by it is no explosion (default: 0; Box2D before version 3, Planck: 0.0075)",             \
+            OPTION_FLOAT(T, member.skin, 0, 1)                                                                     \
+    }
+
+typedef struct JudgedRun {
+    Scene *scene;
+    SimulateVerdict verdict;
+    char words[TRAJECTORY_VERDICT_SIZE];
+} JudgedRun;
+
+/* Free with judged_run_free(), also after a failure. */
+bool judged_run_find(JudgedRun *judged, const Trajectory *run, const JudgeOptions *options, Error *error);
+void judged_run_print(const JudgedRun *judged, const JudgeOptions *options);
+void judged_run_free(JudgedRun *judged);
+
+/* twinbox check RUN.npz */
+typedef struct CheckRunOptions {
+    const char *path;
+    const char *verdict;                     /* "holds" or a word of verdict_words; NULL: any */
+    double max_overlap, max_drift, max_gain; /* m, m, J; NaN: any */
+    bool json;
+    JudgeOptions judge;
+} CheckRunOptions;
+
+/* Prints the verdict and figures. False also, without an error, if the run is beyond a limit. */
+bool check_run(const CheckRunOptions *options, Error *error);
 
 /* The tables of a study of stability, for the terminal. */
 

@@ -43,8 +43,8 @@ Trajectory *simulate_judged(const Scene *scene, const Method *method, const Prog
     const StepObserver observer = simulate_verdict_observer(&verdict);
     const RunWatch watch = {.recorder = recorder, .observers = &observer, .observer_count = 1, .progress = progress};
     Trajectory *run = NULL;
-    if (simulate_verdict_begin(&verdict, scene, method->text, error) &&
-        simulate_watched(scene, method, &watch, error) && simulate_verdict_end(&verdict, error)) {
+    if (simulate_verdict_begin(&verdict, scene, method, error) && simulate_watched(scene, method, &watch, error) &&
+        simulate_verdict_end(&verdict, error)) {
         run = recorder_take(recorder);
         simulate_verdict_words(&verdict, words);
         trajectory_judge(run, words, verdict.reading.frame, verdict.reading.body);
@@ -92,8 +92,7 @@ static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     if (reading->reason[0] != '\0') json_put_text(json, "reason", reading->reason);
 }
 
-/* Puts it with all figures as an object into JSON (src/studies/README.md, The verdict on one run). */
-static void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key) {
+void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *json, const char *key) {
     const VerdictWatch *watch = &verdict->watch;
     json_begin_object(json, key, JSON_LINES);
     json_put_text(json, "format", "twinbox simulate verdict 1");
@@ -112,6 +111,8 @@ static void simulate_verdict_put(const SimulateVerdict *verdict, JsonWriter *jso
     json_put_number(json, "available", watch->own.available);
     json_put_number(json, "drift", verdict->reading.drift);
     json_put_number(json, "gained", verdict->reading.gained);
+    json_put_number(json, "deepest", verdict->reading.deepest);
+    json_put_number(json, "excess", verdict->reading.excess);
     json_end(json);
 }
 
@@ -289,7 +290,7 @@ static bool judge(SimulateResult *result, const Options *options, Error *error) 
 
 static bool run_scene(Scene *scene, const Method *method, const Options *options, Error *error) {
     SimulateResult result = {.scene = scene, .method = method->text, .output = options->output};
-    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&result.verdict, scene, method->text, error))
+    if (!override_scene(scene, options, error) || !simulate_verdict_begin(&result.verdict, scene, method, error))
         return false;
     bool ok = record(scene, method, options, &result, error);
     if (ok && !options->json) simulate_result_print(&result);

@@ -74,9 +74,14 @@ static bool print_borders(const char *folder, Error *error) {
     if (!csv_table_read_from(&table, folder, &border_layout, error)) return false;
     for (int i = 0; i < table.count;) {
         const BorderRow *row = border_row(&table, i);
-        if (i == 0 || !border_same_study(row, row - 1))
-            printf("%s: %s%s%s, holds | fails\n", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "",
+        if (i == 0 || !border_same_study(row, row - 1)) {
+            const StabilityStudy *study = stability_study_find(row->study);
+            printf("%s: %s%s%s, holds | fails", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "",
                    row->unit);
+            if (study != NULL && study->rigid != NULL && strcmp(study->parameter, row->parameter) == 0)
+                printf(" (rigid boxes: %.4g)", study->rigid());
+            printf("\n");
+        }
         i = print_method(&table, i);
     }
     csv_table_free(&table);

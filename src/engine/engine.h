@@ -197,7 +197,7 @@ typedef struct ContactPoint {
     Vec2 position;                   /* m, world */
     Vec2 normal;                     /* unit, from a to b; the tangent is normal turned a quarter clockwise */
     Vec2 arm_a, arm_b;               /* m, from the centre of each body to the point */
-    float separation;                /* m, negative for penetration */
+    float separation;                /* m, negative for penetration, positive only for kept contacts */
     float mass_normal, mass_tangent; /* kg, effective masses along normal and tangent */
     float friction;                  /* coefficient of the pair */
     float bias;                      /* m/s, target normal velocity of position correction; 0 without it */
@@ -261,9 +261,17 @@ typedef bool ContactSolve(void *state, const ContactProblem *problem, ContactSol
 /* The contacts of one step, grouped by arbiter. An arbiter is a touching pair; it persists with its impulses as long as
    the pair touches. */
 
+/* How a pair was when its points were found. */
+typedef struct FoundPair {
+    Vec2 between;        /* m, from the centre of a to that of b */
+    Vec2 axis_a, axis_b; /* x axes of the boxes */
+    float separation[2]; /* m, of its points */
+} FoundPair;
+
 typedef struct Arbiter {
     int a, b;         /* bodies, a < b */
     int first, count; /* its points in the contact set; count is 0 once forgotten */
+    FoundPair found;
 } Arbiter;
 
 /* Zero-initialise; arrays grow and are reused. Arbiters are sorted by (a, b). */
@@ -280,9 +288,15 @@ void contact_set_free(ContactSet *set);
 /* Makes `to` equal to `from`. False when memory is short. */
 bool contact_set_copy(ContactSet *to, const ContactSet *from);
 
-/* Narrow phase over the candidate pairs; fills positions, normals, separations and feature ids, not masses or impulses.
-   False when memory is short. */
-bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes);
+/* Narrow phase over the candidate pairs; fills positions, normals, lever arms, separations and feature ids, not masses or
+   impulses. False when memory is short.
+
+   keep > 0: a pair of two points in `last` is kept, instead, while its boxes have shifted by less than `keep` m (and 5% of
+   the smaller side) against each other since its points were found, and neither has turned by more than 0.2 rad. Its
+   separations follow the boxes and may be positive; lever arms and normal stay as they were in world coordinates. So a
+   column that leans a little has no tipping moment from contacts that give way under its own weight, which it would
+   otherwise buckle by. The price: support up to `keep` beyond an edge. Source: Catto, Box2D's contact recycling (2026). */
+bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last, float keep);
 
 /* Sets warm-start impulses: those of the last step at the point with the same pair and feature id. */
 void contact_set_match(ContactSet *set, const ContactSet *last);
@@ -294,8 +308,8 @@ void contact_set_forget(ContactSet *set, int body);
    1/s. */
 float contact_bias(float separation, float inverse_dt);
 
-/* Lever arms, effective masses, friction and bias (the pre-step of Box2D-Lite). friction: coefficient of each body.
-   Without position correction the bias is 0. */
+/* Effective masses, friction and bias (the pre-step of Box2D-Lite). friction: coefficient of each body. Without position
+   correction the bias of contacts that overlap is 0; where a gap is, it lets the gap close in this step, and no more. */
 void contact_set_prepare(ContactSet *set, const ProblemBody *bodies, const float *friction, float dt,
                          bool position_correction);
 
@@ -345,6 +359,9 @@ bool world_add_body(World *world, const BodyDef *def, Error *error);
 
 /* Removes the body added last, and its contacts; the other contacts keep their impulses. The world must have a body. */
 void world_remove_last_body(World *world);
+
+/* From the next step on contacts are kept (contact_set_collide) by this many m; 0, at first: never. */
+void world_keep_contacts(World *world, float keep);
 
 /* Marks a body (-1: none) for those who read the contact problem: a scene marks its bomb. The step makes no difference. */
 void world_mark(World *world, int body);

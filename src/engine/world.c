@@ -10,6 +10,7 @@
    unchanged. */
 struct World {
     WorldDef def;
+    float keep; /* m */
     int body_count, marked;
     int posed; /* bodies whose boxes and bounds are valid: for the pose in `moved`, after a failed step in `bodies` */
     size_t body_capacity;
@@ -104,6 +105,7 @@ void world_remove_last_body(World *world) {
 
 bool world_copy(World *to, const World *from, Error *error) {
     to->def = from->def;
+    to->keep = from->keep;
     to->marked = from->marked;
     to->problem = (ContactProblem){.marked = -1};
     to->posed = 0;
@@ -120,6 +122,7 @@ bool world_copy(World *to, const World *from, Error *error) {
     return true;
 }
 
+void world_keep_contacts(World *world, float keep) { world->keep = keep; }
 void world_mark(World *world, int body) { world->marked = body; }
 int world_body_count(const World *world) { return world->body_count; }
 const Body *world_bodies(const World *world) { return world->bodies; }
@@ -139,7 +142,7 @@ static bool collide(World *world) {
         world->bounds[i] = bounds_of_box(&world->boxes[i]);
     }
     return sort_and_sweep_find(&world->broad_phase, &world->pairs, world->bounds, world->fixed, world->body_count) &&
-           contact_set_collide(&world->next, &world->pairs, world->boxes);
+           contact_set_collide(&world->next, &world->pairs, world->boxes, &world->last, world->keep);
 }
 
 /* The bodies of the contact problem, with gravity in their velocities. */

@@ -53,7 +53,7 @@ typedef struct FigureKind {
     const char *example;    /* arguments after `twinbox figure` */
     int min_runs, max_runs; /* 0, 0: takes a network's file instead */
     bool takes_times, takes_moments, takes_scene, takes_height, takes_view;
-    bool needs_contacts;        /* runs without are refused */
+    bool needs_contacts;        /* runs without are refused; trajectory_find_contacts() finds them again */
     int min_bodies, max_bodies; /* 0, 0: takes none */
     /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
        failure. */

@@ -470,9 +470,10 @@ static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point
     char part[48] = "";
     draw_fitted(sketch, (Point){low.x, top + 1.6 * line}, spec->points, INK, figure->cells.width, "%s, %.3f s",
                 run_name(spec, run).text, figure->frame * (double)run->dt);
-    if (numbered < count) snprintf(part, sizeof part, ", %d labelled", numbered);
+    snprintf(part, sizeof part, run->no_impulses ? " found again" : ", impulses in N s");
+    if (numbered < count && !run->no_impulses) text_add(part, sizeof part, ", %d labelled", numbered);
     draw_fitted(sketch, (Point){low.x, top + 0.6 * line}, SMALL_TYPE * spec->points, INK_SOFT, figure->cells.width,
-                "%d %s, impulses in N s%s", count, count == 1 ? "contact" : "contacts", part);
+                "%d %s%s", count, count == 1 ? "contact" : "contacts", part);
 }
 
 static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
@@ -514,7 +515,8 @@ static void draw_legend(const Annotated *figure, Sketch *sketch) {
         x += length + 1.2;
         sketch_text(sketch, (Point){x, y}, &words, "%g N s on the body with the higher number", shown);
     } else
-        sketch_text(sketch, (Point){x, y}, &words, "all impulses are 0");
+        sketch_text(sketch, (Point){x, y}, &words,
+                    spec->runs[0]->no_impulses ? "impulses are unknown" : "all impulses are 0");
 }
 
 static bool annotated_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
@@ -536,6 +538,9 @@ static void annotated_caption(FILE *out, const FigureSpec *spec) {
     fputs(spec->run_count > 1 ? "From left to right: " : "Method: ", out);
     caption_runs(out, spec, 0);
     fputs(".", out);
+    for (int i = 0, said = 0; i < spec->run_count && !said; i++)
+        if (spec->runs[i]->no_impulses)
+            said = fputs(" Found again: contacts between the poses, of unknown impulses.", out) >= 0;
 }
 
 const FigureKind figure_annotated = {

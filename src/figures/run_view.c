@@ -177,7 +177,7 @@ bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, co
         field->frame = (PageBox){view->low.x + 0.3, view->low.y + 0.3, view->high.x - 0.3, view->high.y - 0.3};
         for (int i = *count - 1; i >= 0; i--) draw_contact(look, sketch, &contacts[i], field);
         const double middle = middle_of(contacts, *count);
-        for (int i = 0; i < *count && i < MAX_NUMBERS; i++)
+        for (int i = 0; i < *count && i < MAX_NUMBERS && !run->no_impulses; i++)
             *numbered += draw_number(look, sketch, &contacts[i], field, middle, is_crowded(contacts, *count, i));
     }
     free(contacts);

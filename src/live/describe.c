@@ -7,6 +7,7 @@
 #include "live/internal.h"
 #include "live/live.h"
 #include "methods/methods.h"
+#include "runs/framing.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"
@@ -153,3 +154,11 @@ const char *live_verdict(const LiveRun *run) {
     SimulateVerdict verdict;
     return live_verdict_of(run, &verdict) ? print(write_verdict, &verdict) : NULL;
 }
+
+static void write_framing(JsonWriter *json, const void *context) {
+    const Trajectory *run = context;
+    const CameraFrame frame = camera_frame(&run, 1);
+    camera_frame_put(json, NULL, &frame);
+}
+
+const char *live_framing(const LiveRun *run) { return print(write_framing, live_trajectory(run)); }

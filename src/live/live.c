@@ -89,7 +89,7 @@ static bool begin(LiveRun *run, LiveScene *live, const char *settings, const cha
     run->scene = live_scene(live, settings, error);
     if (run->scene == NULL || !method_parse(&run->method, method, error)) return false;
     run->trajectory = trajectory_of_scene(run->scene, &run->method, run->scene->frames + 1, error);
-    if (run->trajectory == NULL || !simulate_verdict_begin(&run->verdict, run->scene, run->method.text, error) ||
+    if (run->trajectory == NULL || !simulate_verdict_begin(&run->verdict, run->scene, &run->method, error) ||
         !simulation_begin(&run->simulation, run->scene, &run->method, error))
         return false;
     run->trajectory->no_contacts = !contacts;
@@ -135,6 +135,8 @@ int live_step(LiveRun *run, int count) {
         if (!step(run, &run->failure)) break;
     return run->frame;
 }
+
+const Trajectory *live_trajectory(const LiveRun *run) { return run->trajectory; }
 
 const char *live_failure(const LiveRun *run) { return run->failure.message; }
 int live_frames(const LiveRun *run) { return run->trajectory->frames; }

@@ -21,6 +21,7 @@ static const SettingSpec settings[] = {
      SETTING_BOOL(State, options.accumulate)},
     {"warm", "on|off: warm start from the previous step's impulses (default: on)", SETTING_BOOL(State, options.warm)},
     STOPPING_SETTINGS,
+    KEEP_SETTING(SETTING_OWN),
     {0}};
 
 static void destroy(void *state) {

@@ -21,6 +21,7 @@ enum { AHEAD_BYTES = 1 << 16 };
 
 typedef struct Exec {
     float step_limit, run_limit; /* s */
+    float skin;                  /* m; for the verdict */
     Settings settings;
     char where[METHOD_TEXT_SIZE]; /* of errors */
     Adapter *adapter;             /* NULL: none yet, or it has failed */
@@ -37,11 +38,12 @@ static const SettingSpec settings[] = {
     {"step_limit", "seconds that its start or a step may take (default: 10)",
      SETTING_FLOAT(Exec, step_limit, 0.01f, 86400)},
     {"run_limit", "seconds that a run may take (default: 600)", SETTING_FLOAT(Exec, run_limit, 0.01f, 864000)},
+    {"skin", "m that it adds to each side of a box, for the verdict (default: 0)", SETTING_FLOAT(Exec, skin, 0, 1)},
     {"*", "all other settings are passed to the program", SETTING_OWN},
     {0}};
 
 bool exec_reads_setting(const char *key) {
-    static const char *const own[] = {"program", "name", "step_limit", "run_limit"};
+    static const char *const own[] = {"program", "name", "step_limit", "run_limit", "skin"};
     for (size_t i = 0; i < sizeof own / sizeof *own; i++)
         if (strcmp(key, own[i]) == 0) return true;
     return false;

@@ -127,7 +127,9 @@ typedef struct State {
 } State;
 
 static const SettingSpec settings[] = {
-    {"near", "residual at which iterations stop, m/s (default: 0.002)", SETTING_FLOAT(State, near, 1e-9f, 1e6f)}, {0}};
+    {"near", "residual at which iterations stop, m/s (default: 0.002)", SETTING_FLOAT(State, near, 1e-9f, 1e6f)},
+    KEEP_SETTING(SETTING_OWN),
+    {0}};
 
 static void destroy(void *state) {
     State *solver = state;

@@ -174,7 +174,11 @@ struct Stepper {
     ContactSolver solver;         /* in the standard step */
     const SteppingKind *stepping; /* or NULL */
     void *state;
+    float keep; /* m */
 };
+
+/* Of the step of any method that has KEEP_SETTING in its table. */
+static const SettingSpec step_settings[] = {{"keep", NULL, SETTING_FLOAT(Stepper, keep, 0, 1)}, {0}};
 
 Stepper *stepper_create(const Method *method, const Scene *scene, Error *error) {
     Stepper *stepper = calloc(1, sizeof *stepper);
@@ -184,10 +188,11 @@ Stepper *stepper_create(const Method *method, const Scene *scene, Error *error) 
     }
     stepper->description = method->kind->description;
     stepper->stepping = method->kind->stepping;
-    if (stepper->stepping != NULL) {
+    const bool read = stepper->description->external || settings_read(&method->settings, step_settings, stepper, error);
+    if (read && stepper->stepping != NULL) {
         stepper->state = stepper->stepping->create(&method->settings, scene, error);
         if (stepper->state != NULL) return stepper;
-    } else if (method_create_solver(method, scene, &stepper->solver, error)) {
+    } else if (read && method_create_solver(method, scene, &stepper->solver, error)) {
         return stepper;
     }
     free(stepper);
@@ -220,6 +225,7 @@ static bool solve_metered(void *state, const ContactProblem *problem, ContactSol
 }
 
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
+    world_keep_contacts(world, stepper->keep);
     if (stepper->stepping != NULL) return stepping_step(stepper->stepping, stepper->state, world, step, error);
     MeteredSolver metered = {&stepper->solver, step};
     return world_step(world, solve_metered, &metered, step->scene->dt, error);

@@ -249,6 +249,11 @@ const char *programs_failure(void);
 /* False for methods that are no program, or one that has not run yet. */
 bool method_program(const Method *method, ProgramName *name);
 
+/* For the table of a method in whose step contacts may be kept (contact_set_collide); stepper_create() reads it. `...`:
+   SETTING_OWN, or a member of the method's own. */
+#define KEEP_SETTING(...) \
+    { "keep", "shift up to which a contact keeps its lever arms, m (default: 0)", __VA_ARGS__ }
+
 /* A method in use. It steps worlds of one scene, with any launch, one world after the other. */
 typedef struct Stepper Stepper;
 

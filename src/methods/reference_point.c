@@ -246,12 +246,15 @@ static void destroy(void *state) {
     free(reference);
 }
 
+static const SettingSpec settings[] = {KEEP_SETTING(SETTING_OWN), {0}};
+
 const ContactSolverKind solver_reference = {
     .description = {.name = "reference",
                     .summary = "the converged solution, by interior points in double; errors are measured against it",
                     .caption = "converged solution",
                     .look = {METHOD_BLACK, METHOD_CIRCLE},
                     .role = METHOD_REFERENCE,
+                    .settings = settings,
                     .stability_place = 6},
     .create = create,
     .solve = solve,

@@ -128,9 +128,6 @@ int parts_find(const Picture *picture, Part parts[PARTS_MAX]);
 void marks_draw_below(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 void marks_draw_above(const Picture *picture, int panel, Moment moment, Drawing *drawing);
 
-/* The frame in which the bomb appears; the last one if it does not. */
-int bomb_first_frame(const Trajectory *run);
-
 /* The bomb's way until it strikes. */
 DashedLine approach_line(const Picture *picture);
 

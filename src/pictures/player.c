@@ -220,20 +220,6 @@ static void put_left_out(JsonWriter *json, const Player *player) {
     json_end(json);
 }
 
-static void put_framing(JsonWriter *json, const Picture *picture) {
-    const CameraFrame frame = camera_frame(picture->runs, picture->count);
-    json_begin_object(json, "framing", JSON_ONE_LINE);
-    json_put_bool(json, "set", frame.set);
-    json_put_number(json, "left", frame.held.left);
-    json_put_number(json, "right", frame.held.right);
-    json_put_number(json, "bottom", frame.held.bottom);
-    json_put_number(json, "top", frame.held.top);
-    json_put_number(json, "room_left", frame.room.left);
-    json_put_number(json, "room_right", frame.room.right);
-    json_put_number(json, "middle", frame.middle);
-    json_end(json);
-}
-
 static void put_measures(JsonWriter *json, const Player *player) {
     json_begin_object(json, "scales", JSON_ONE_LINE);
     json_put_number(json, "impulse", player->measures.impulse);
@@ -274,7 +260,8 @@ static void put_data(FILE *file, const Player *player) {
     json_put_number(&json, "distance_ems", player_ems(FONT_REGULAR, "0.00 m"));
     json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out"));
     put_left_out(&json, player);
-    put_framing(&json, &player->picture);
+    const CameraFrame framing = camera_frame(player->picture.runs, player->picture.count);
+    camera_frame_put(&json, "framing", &framing);
     put_measures(&json, player);
     json_begin_object(&json, "themes", JSON_LINES);
     put_theme(&json, "light", theme_get(LOOK_LIGHT));
@@ -342,6 +329,19 @@ static void put_run(FILE *file, const Player *player, int index) {
     for (int k = 0; k < run->chunks && run->contacts != NULL; k++) put_chunk(file, 'c', index, k, &run->contacts[k]);
 }
 
+/* The first frame is that of all live runs. */
+static void put_live(FILE *file, const Player *player) {
+    put_packed(file, "module", player->module.data, player->module.size);
+    put_packed(file, "bundle", player->bundle.data, player->bundle.size);
+    for (int i = 0; i < player->picture.count; i++) {
+        const Trajectory *run = player->picture.runs[i];
+        if (!player_run_is_live(player, i)) continue;
+        put_packed(file, "places", run->position, (size_t)run->bodies * sizeof *run->position);
+        put_packed(file, "angles", run->angle, (size_t)run->bodies * sizeof *run->angle);
+        break;
+    }
+}
+
 /* The whole page. The context is a Player. */
 static void put_page(FILE *file, const void *context) {
     const Player *player = context;
@@ -352,10 +352,7 @@ static void put_page(FILE *file, const void *context) {
     fputs("<script type=\"application/json\" id=\"data\">", file);
     put_data(file, player);
     fputs("</script>\n", file);
-    if (player->options->live != NULL) {
-        put_packed(file, "module", player->module.data, player->module.size);
-        put_packed(file, "bundle", player->bundle.data, player->bundle.size);
-    }
+    if (player->options->live != NULL) put_live(file, player);
     put_packed(file, "viewer", player->viewer.data, player->viewer.size);
     fprintf(file, "<script>%s</script>\n</body>\n</html>\n", player_begin);
 }

@@ -6,6 +6,7 @@
 #include "pictures/render.h"
 #include "pictures/render_internal.h"
 #include "pixels/gl.h"
+#include "pixels/gl_functions.h"
 #include "pixels/png.h"
 #include "runs/trajectory.h"
 

@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "base/machine.h"
 #include "pixels/gl.h"
+#include "pixels/gl_functions.h"
 
 #include <dlfcn.h>
 #include <errno.h>

@@ -137,6 +137,7 @@ static inline bool png_chunk_is(const PngChunk *chunk, const char *type) { retur
 
 typedef struct Palette {
     int count;
+    bool clear; /* colour 0 is transparent */
     uint8_t rgb[256][3];
 } Palette;
 

@@ -172,7 +172,8 @@ static bool put_start(IndexedPng *png, int height, const Palette *palette, Error
     memcpy(png->file, png_signature, PNG_SIGNATURE);
     png->size = PNG_SIGNATURE;
     return put_chunk(png, "IHDR", header, sizeof header, error) &&
-           put_chunk(png, "PLTE", palette->rgb[0], 3 * (size_t)palette->count, error);
+           put_chunk(png, "PLTE", palette->rgb[0], 3 * (size_t)palette->count, error) &&
+           (!palette->clear || put_chunk(png, "tRNS", &(uint8_t){0}, 1, error));
 }
 
 IndexedPng *indexed_png_create(int width, int height, const Palette *palette, Error *error) {

@@ -229,7 +229,7 @@ static void draw_beyond(int first, int width, int y, uint8_t *row) {
 
 uint8_t *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, int width, int height,
                             size_t *size, Error *error) {
-    Palette palette;
+    Palette palette = {.count = 0};
     make_difference_palette(&palette);
     IndexedPng *png = indexed_png_create(width, height, &palette, error);
     uint8_t *file = NULL;

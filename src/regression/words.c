@@ -260,6 +260,13 @@ RegressionText regression_begin(const Regression *regression) {
     return begin;
 }
 
+/* Why .npz files count as no runs. */
+#ifdef TWINBOX_COMPARE_ONLY
+#define UNREAD "(this build compares pictures only)"
+#else
+#define UNREAD "without a trajectory"
+#endif
+
 RegressionText regression_notes(const Regression *regression) {
     RegressionText notes = {""};
     enum { NAME = 100 }; /* of each name, so that all notes fit */
@@ -279,7 +286,7 @@ RegressionText regression_notes(const Regression *regression) {
     if (left_out > 0)
         ADD(&notes, "\n", "not compared: %d .npz file%s only in %.*s", left_out, plural(left_out),
             (int)utf8_cut(expected, NAME), expected);
-    if (foreign > 0) ADD(&notes, "\n", "not compared: %d .npz file%s without a trajectory", foreign, plural(foreign));
+    if (foreign > 0) ADD(&notes, "\n", "not compared: %d .npz file%s " UNREAD, foreign, plural(foreign));
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         const ImageSequence *sequence = regression->sequences[side];
         if (sequence->skipped > 0)

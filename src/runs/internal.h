@@ -85,8 +85,9 @@ typedef struct CsvRows {
 typedef struct CsvRow {
     int line;
     int64_t frame, body;
-    float state[6]; /* x, y, angle, vx, vy, omega; the last three 0 if absent */
-    double time;    /* s, 0 if absent */
+    float state[6];  /* x, y, angle, vx, vy, omega; the last three 0 if absent */
+    double time;     /* s, 0 if absent */
+    bool not_finite; /* a number of the state is NaN or infinite */
 } CsvRow;
 
 /* Reads the header at `text`, which is line `line` of the file and stays the caller's. */
@@ -115,6 +116,8 @@ typedef struct CsvImport {
     int64_t first, last;          /* frames of the file */
     double first_time, last_time; /* of these frames, s */
     int *row_counts;              /* of each body */
+    int64_t end, *ends;           /* the first frame that is not finite, and of each body; INT64_MAX: none */
+    int ended;                    /* a body that is not finite in frame `end` */
     Trajectory *run;
 } CsvImport;
 
@@ -136,6 +139,9 @@ void check_depth(VerdictWatch *watch, const VerdictStep *step);
 void check_falls(VerdictWatch *watch, const VerdictStep *step);
 void check_creep(VerdictWatch *watch, const VerdictStep *step);
 void check_calm(VerdictWatch *watch, const VerdictStep *step);
+
+/* m */
+double smaller_side(const Body *body);
 
 /* Seconds rounded to whole steps; at least one. */
 int verdict_steps(double seconds, float dt);

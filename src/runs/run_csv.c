@@ -5,6 +5,7 @@
 #include "engine/engine.h"
 #include "runs/internal.h"
 #include "runs/trajectory.h"
+#include "runs/verdict.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -96,24 +97,48 @@ static const size_t MAX_SIZE = (size_t)1 << 30;
 static const double TIME_TOLERANCE = 0.01;  /* of a step */
 static const double WHOLE_TOLERANCE = 1e-4; /* relative: 1/dt this near a whole number is that number */
 
-/* The first pass. */
-static bool survey(CsvImport *import, Error *error) {
+/* A run may end in NaN, from which no body comes back: it is read up to there. */
+static bool find_end(CsvImport *import, const CsvRow *row, int body, Error *error) {
+    int64_t *end = &import->ends[body];
+    if (row->not_finite && row->frame < *end) *end = row->frame;
+    if (*end < import->end) import->end = *end, import->ended = body;
+    return row->not_finite || row->frame <= *end ||
+           csv_rows_error(&import->rows, row->line, error,
+                          "body %" PRId64 " is finite in frame %" PRId64 ", but not in frame %" PRId64, row->body,
+                          row->frame, *end);
+}
+
+static bool count_rows(CsvImport *import, Error *error) {
     const CsvHead *head = &import->head;
     CsvRow row;
     import->first = INT64_MAX;
     import->last = -1;
+    import->count = 0;
+    memset(import->row_counts, 0, head->count * sizeof *import->row_counts);
+    csv_rows_rewind(&import->rows);
     while (csv_rows_next(&import->rows, &row, error)) {
         const int body = csv_head_body(head, row.body);
         if (body < 0) return csv_rows_error(&import->rows, row.line, error, "body %" PRId64 " has no size", row.body);
+        if (!find_end(import, &row, body, error)) return false;
+        if (row.frame >= import->end) continue;
         import->row_counts[body]++;
         import->count++;
         if (row.frame < import->first) import->first = row.frame, import->first_time = row.time;
         if (row.frame > import->last) import->last = row.frame, import->last_time = row.time;
     }
-    if (error->kind != ERROR_NONE) return false;
+    return error->kind == ERROR_NONE;
+}
+
+/* The first pass; if the run ends in NaN once more, as rows of its last frame were counted before that was known. */
+static bool survey(CsvImport *import, Error *error) {
+    const CsvHead *head = &import->head;
+    if (!count_rows(import, error) || (import->end < INT64_MAX && !count_rows(import, error))) return false;
+    if (import->count == 0 && import->end < INT64_MAX)
+        return error_input(error, import->path, "body %" PRId64 ": a number of its first frame is NaN or infinite",
+                           head->bodies[import->ended].number);
     if (import->count == 0) return error_input(error, import->path, "has no rows");
     for (size_t i = 0; i < head->count; i++)
-        if (import->row_counts[i] == 0)
+        if (import->row_counts[i] == 0 && import->end == INT64_MAX)
             return error_input(error, import->path, "body %" PRId64 " has a size but no row", head->bodies[i].number);
     return true;
 }
@@ -199,6 +224,7 @@ static bool fill(CsvImport *import, Error *error) {
     csv_rows_rewind(&import->rows);
     while (csv_rows_next(&import->rows, &row, error)) {
         const int body = csv_head_body(&import->head, row.body);
+        if (row.frame >= import->end) continue;
         if (trajectory_has(run, (int)(row.frame - import->first), body)) {
             const int line = row.line, before = csv_rows_find(&import->rows, row.frame, row.body);
             return csv_rows_error(&import->rows, line, error,
@@ -263,6 +289,14 @@ static void note_numbers(const CsvImport *import) {
     add_note(notes, "units are m, s and %s; y points up", import->options->degrees ? "degrees" : "rad");
 }
 
+static void note_end(const CsvImport *import) {
+    const int64_t number = import->head.bodies[import->ended].number;
+    if (import->end == INT64_MAX) return;
+    add_note(import->notes, "the run ends before frame %" PRId64 ", in which body %" PRId64 " is NaN or infinite",
+             import->end, number);
+    trajectory_judge(import->run, verdict_name(VERDICT_NON_FINITE), import->run->frames - 1, import->ended);
+}
+
 static bool make_run(CsvImport *import, Error *error) {
     float dt = 0;
     if (!survey(import, error) || !check_last(import, error) || !check_size(import, error) ||
@@ -277,6 +311,7 @@ static bool make_run(CsvImport *import, Error *error) {
         !finish_head(import, error))
         return false;
     note_numbers(import);
+    note_end(import);
     return trajectory_check(import->run, import->path, error);
 }
 
@@ -286,11 +321,14 @@ static bool read_text(CsvImport *import, const char *text, Error *error) {
         !csv_rows_begin(&import->rows, import->path, text, line, error))
         return false;
     import->row_counts = calloc(import->head.count, sizeof *import->row_counts);
-    return import->row_counts != NULL ? make_run(import, error) : error_memory(error, import->path);
+    import->ends = malloc(import->head.count * sizeof *import->ends);
+    if (import->row_counts == NULL || import->ends == NULL) return error_memory(error, import->path);
+    for (size_t i = 0; i < import->head.count; i++) import->ends[i] = INT64_MAX;
+    return make_run(import, error);
 }
 
 Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunNotes *notes, Error *error) {
-    CsvImport import = {.path = path, .options = options, .notes = notes};
+    CsvImport import = {.path = path, .options = options, .notes = notes, .end = INT64_MAX};
     notes->count = 0;
     const bool input = strcmp(path, "-") == 0;
     if (input) import.path = path = "standard input";
@@ -301,6 +339,7 @@ Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunN
                 read_text(&import, text, error);
     free(text);
     free(import.row_counts);
+    free(import.ends);
     free(import.head.bodies);
     if (done) return import.run;
     trajectory_destroy(import.run);

@@ -6,6 +6,8 @@
 #include "runs/trajectory.h"
 
 #include <inttypes.h>
+#include <float.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -360,10 +362,20 @@ static bool take_index(const CsvRows *rows, const Fields *fields, int column, in
            fail_field(rows, fields, column, error, "is not a whole number from 0 to 2147483646");
 }
 
+/* "nan", "-inf", or more than a float32 holds. */
+static bool is_beyond(const char *text) {
+    char *end;
+    const double value = strtod(text, &end);
+    return end != text && *end == '\0' && (isnan(value) || fabs(value) > (double)FLT_MAX);
+}
+
 static bool take_state(const CsvRows *rows, const Fields *fields, CsvRow *row, Error *error) {
-    for (int column = COL_X; column <= COL_OMEGA; column++)
-        if (!is_absent(rows, column) && !parse_float(fields->text[rows->field[column]], &row->state[column - COL_X]))
-            return fail_field(rows, fields, column, error, "is not a finite number");
+    for (int column = COL_X; column <= COL_OMEGA; column++) {
+        const char *text = is_absent(rows, column) ? "0" : fields->text[rows->field[column]];
+        if (parse_float(text, &row->state[column - COL_X])) continue;
+        if (!is_beyond(text)) return fail_field(rows, fields, column, error, "is not a finite number");
+        row->not_finite = true;
+    }
     return is_absent(rows, COL_TIME) || parse_double(fields->text[rows->field[COL_TIME]], &row->time) ||
            fail_field(rows, fields, COL_TIME, error, "is not a finite number");
 }

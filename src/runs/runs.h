@@ -82,6 +82,23 @@ Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int fr
 void trajectory_set_bodies(Trajectory *trajectory, int frame, const World *world);
 bool trajectory_set_contacts(Trajectory *trajectory, int frame, const World *world, Error *error);
 
+/* Contacts between boxes in given poses, as the engine's collision detection finds them: for runs that do not state
+   theirs. Zero-initialise; free with contact_finder_free(). */
+typedef struct ContactFinder {
+    SortAndSweep broad_phase;
+    PairList pairs;
+    Box *boxes;
+    Bounds *bounds;
+    bool *fixed;
+    size_t box_capacity, bound_capacity, fixed_capacity;
+    ContactSet set; /* positions, normals, separations and feature ids of the last search */
+} ContactFinder;
+
+void contact_finder_free(ContactFinder *finder);
+
+/* Boxes that are apart by less than 2 `skin` (m) touch, too: separation > 0. ERROR_INPUT: too many pairs. */
+bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error);
+
 /* Records a run: into a trajectory in memory, or into files while the run is made, in bounded memory. Files are written
    by a second thread. */
 

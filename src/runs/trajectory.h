@@ -43,6 +43,7 @@ typedef struct Trajectory {
     float *angular_velocity;            /* [T, N] rad/s */
     bool no_velocities;                 /* both are unknown: all NaN; files do not have them */
     bool no_contacts;                   /* contacts were not recorded: none are here, nor in files */
+    bool no_impulses;            /* contacts were found later (trajectory_find_contacts): impulses are unknown, 0 */
     int64_t *contact_start;      /* [T + 1]: contacts of step k are contact_start[k] .. [k+1]-1; step 0 has none */
     TrajectoryContact *contacts; /* [contact_start[T]] */
     char verdict
@@ -77,6 +78,10 @@ void trajectory_restart_contacts(Trajectory *trajectory);
 
 /* Call after the last contact: fills the rest of contact_start. */
 void trajectory_end_contacts(Trajectory *trajectory);
+
+/* Replaces the contacts by those that collision detection finds between the poses, without impulses (no_impulses).
+   False with error set. */
+bool trajectory_find_contacts(Trajectory *trajectory, Error *error);
 
 /* The first step in which the bomb touches a dynamic body; -1: none. */
 int trajectory_impact(const Trajectory *trajectory);
@@ -217,7 +222,7 @@ typedef enum PartCause {
     PART_CONTACTS,  /* equal states, different contacts: collision detection */
     PART_SOLVER,    /* equal states and contacts, different impulses */
     PART_ELSEWHERE, /* equal states, contacts and impulses */
-    PART_UNKNOWN    /* equal states; one of the runs does not have its contacts */
+    PART_UNKNOWN    /* equal states and contacts; impulses are unknown, or one of the runs does not have its contacts */
 } PartCause;
 
 typedef struct PartedBody {
@@ -230,17 +235,26 @@ typedef struct TrajectoryParting {
     int frames;                        /* that both have */
     bool poses_only;                   /* the velocities of one or both are unknown */
     PartedBody first;                  /* any bit of pose or velocity */
-    PartedBody beyond;                 /* distance above the tolerance, or in one run only */
+    PartedBody beyond;                 /* above the tolerance, or in one run only */
+    int equal, within;                 /* frames: equal in every bit; else within the tolerance */
+    bool no_impulses;                  /* those of one or both are unknown, and not compared */
     PartCause cause;                   /* of the first */
     int step;                          /* the first whose contacts differ; -1: none up to the first frame */
     ContactDifference contacts;        /* of that step */
     ContactDifference beyond_contacts; /* of the step that exceeds the tolerance, with that body */
 } TrajectoryParting;
 
-/* tolerance in m; with 0 any bit counts, and beyond is first. The two must be of the same world
-   (trajectory_different_worlds). False with error set when memory is short. */
-bool trajectory_part(const Trajectory *a, const Trajectory *b, double tolerance, TrajectoryParting *parting,
-                     Error *error);
+/* How far apart a body may be in two runs. */
+typedef struct PoseTolerance {
+    bool given;      /* or any bit counts */
+    double distance; /* m, of its centre */
+    double angle;    /* rad; whole turns do not count; INFINITY: any */
+} PoseTolerance;
+
+/* Without a tolerance, beyond is first. The two must be of the same world (trajectory_different_worlds). False with
+   error set when memory is short. */
+bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
+                     TrajectoryParting *parting, Error *error);
 
 /* Runs as CSV: comments with what does not change, then a row for each body in each frame. README.md has the format. */
 

@@ -100,15 +100,32 @@ bool trajectory_check(const Trajectory *t, const char *path, Error *error) {
     return true;
 }
 
-static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body, double tolerance) {
+static bool apart(const Trajectory *a, const Trajectory *b, int frame, int body, const PoseTolerance *tolerance) {
+    const double turn = 2 * acos(-1);
     if (trajectory_same_state(a, b, frame, body)) return false;
-    if (tolerance == 0) return true;
+    if (!tolerance->given) return true;
     StateDifference by = trajectory_state_difference(a, b, frame, body);
-    return !by.in_a || !by.in_b || by.distance > tolerance;
+    return !by.in_a || !by.in_b || by.distance > tolerance->distance ||
+           fabs(remainder(by.angle, turn)) > tolerance->angle;
+}
+
+static void count_frames(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
+                         TrajectoryParting *parting) {
+    static const PoseTolerance exact = {0};
+    for (int frame = 0; frame < parting->frames; frame++) {
+        bool equal = true, within = true;
+        for (int body = 0; body < a->bodies && within; body++) {
+            equal = equal && !apart(a, b, frame, body, &exact);
+            within = equal || !apart(a, b, frame, body, tolerance);
+        }
+        parting->equal += equal;
+        parting->within += within && !equal;
+    }
 }
 
 /* The first frame from `frame` on in which a body differs. */
-static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int frame, int frames, double tolerance) {
+static PartedBody find_parted(const Trajectory *a, const Trajectory *b, int frame, int frames,
+                              const PoseTolerance *tolerance) {
     PartedBody parted = {.frame = -1, .body = -1};
     for (; parted.frame < 0 && frame < frames; frame++)
         for (int body = 0; body < a->bodies; body++) {
@@ -145,22 +162,28 @@ static PartCause find_cause(const Trajectory *a, const Trajectory *b, const Traj
     if (only_launched(a, b, frame)) return PART_LAUNCH;
     if (a->no_contacts || b->no_contacts) return PART_UNKNOWN;
     if (parting->step >= 0 && parting->step < frame) return PART_HIDDEN;
-    if (parting->step < 0) return PART_ELSEWHERE;
+    if (parting->step < 0) return parting->no_impulses && parting->contacts.count_a > 0 ? PART_UNKNOWN : PART_ELSEWHERE;
     return contacts->only_a + contacts->only_b + contacts->moved > 0 ? PART_CONTACTS : PART_SOLVER;
 }
 
-bool trajectory_part(const Trajectory *a, const Trajectory *b, double tolerance, TrajectoryParting *parting,
-                     Error *error) {
+bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
+                     TrajectoryParting *parting, Error *error) {
     int frames = a->frames < b->frames ? a->frames : b->frames;
-    *parting = (TrajectoryParting){.frames = frames, .poses_only = !trajectory_both_move(a, b)};
-    parting->first = find_parted(a, b, 0, frames, 0);
+    *parting = (TrajectoryParting){
+        .frames = frames, .poses_only = !trajectory_both_move(a, b), .no_impulses = a->no_impulses || b->no_impulses};
+    parting->first = find_parted(a, b, 0, frames, &(PoseTolerance){0});
     parting->beyond = parting->first;
-    if (tolerance > 0 && parting->first.frame >= 0)
+    count_frames(a, b, tolerance, parting);
+    if (tolerance->given && parting->first.frame >= 0)
         parting->beyond = find_parted(a, b, parting->first.frame, frames, tolerance);
     int last = parting->first.frame >= 0 ? parting->first.frame : frames - 1;
     bool contacts = !a->no_contacts && !b->no_contacts;
     parting->step = -1;
     if (contacts && !find_step(a, b, last, parting, error)) return false;
+    /* Contacts of the body, which the cause depends on. */
+    if (contacts && parting->no_impulses && parting->step < 0 && parting->first.frame > 0 &&
+        !contact_difference(a, b, parting->first.frame, parting->first.body, &parting->contacts, error))
+        return false;
     parting->cause = find_cause(a, b, parting);
     const PartedBody *beyond = &parting->beyond;
     return beyond->frame < 1 || !contacts ||

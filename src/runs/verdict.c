@@ -24,6 +24,7 @@ bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_CREEPS; }
 void verdict_watch_free(VerdictWatch *watch) {
     free(watch->bodies);
     free(watch->statics);
+    contact_finder_free(&watch->finder);
     *watch = (VerdictWatch){0};
 }
 
@@ -50,6 +51,7 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, Error
     for (int i = watch->body_count; i < count; i++) {
         watch->bodies[i] =
             (WatchedBody){.outside = bodies[i].position, .last = bodies[i].position, .last_angle = bodies[i].angle};
+        if (bodies[i].inv_mass != 0) watch->smallest = fmin(watch->smallest, smaller_side(&bodies[i]));
         if (bodies[i].inv_mass == 0 && !add_static(watch, &bodies[i], i, error)) return false;
     }
     watch->body_count = count;
@@ -64,6 +66,11 @@ static bool starts_at_rest(const Scene *scene) {
     return true;
 }
 
+void verdict_run_set_skin(VerdictRun *run, const Method *method) {
+    const char *text = method->kind->description->external ? settings_get(&method->settings, "skin") : NULL;
+    if (text != NULL) run->finds_contacts = parse_float(text, &run->skin);
+}
+
 VerdictRun verdict_run_of(const Scene *scene) {
     const bool rests = starts_at_rest(scene), bomb = scene_has_launch(scene);
     return (VerdictRun){.gravity = scene->gravity,
@@ -73,18 +80,25 @@ VerdictRun verdict_run_of(const Scene *scene) {
                         .until_bomb = rests && bomb};
 }
 
+/* The contacts of the next step. */
+static bool find_contacts(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
+    return !watch->run.finds_contacts || contact_finder_find(&watch->finder, bodies, count, watch->run.skin, error);
+}
+
 bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body *bodies, int count, Error *error) {
     if (run->converged != NULL && run->converged->frames < run->frames)
         return error_input(error, "verdict", "the converged run has only %d of %d frames", run->converged->frames,
                            run->frames);
     *watch = (VerdictWatch){.run = *run,
+                            .smallest = INFINITY,
                             .bodies = watch->bodies,
                             .capacity = watch->capacity,
                             .statics = watch->statics,
+                            .finder = watch->finder,
                             .static_capacity = watch->static_capacity};
     energy_balance_begin(&watch->own, run->gravity, bodies, count);
     watch->kept = watch->brought = watch->own.energy;
-    return add_bodies(watch, bodies, count, error);
+    return add_bodies(watch, bodies, count, error) && find_contacts(watch, bodies, count, error);
 }
 
 static void store_rested(VerdictWatch *watch) {
@@ -93,7 +107,15 @@ static void store_rested(VerdictWatch *watch) {
     watch->rested = watch->energy;
 }
 
-bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error) {
+bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *error) {
+    const ContactSet *found = &watch->finder.set;
+    const VerdictStep judged = {.frame = given->frame,
+                                .body_count = given->body_count,
+                                .contact_count = found->contact_count,
+                                .bomb = given->bomb,
+                                .bodies = given->bodies,
+                                .contacts = found->contacts},
+                      *step = watch->run.finds_contacts ? &judged : given;
     if (watch->worst.verdict >= VERDICT_NON_FINITE) return true;
     watch->frame = step->frame;
     if (!check_finite(watch, step)) return true;
@@ -106,7 +128,7 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *err
     check_calm(watch, step);
     store_last(watch, step->bodies);
     if (step->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) store_rested(watch);
-    return true;
+    return find_contacts(watch, step->bodies, step->body_count, error);
 }
 
 bool verdict_watch_observe(void *watch, int frame, const World *world, Error *error) {
@@ -162,6 +184,8 @@ static VerdictReading read_verdict(const VerdictWatch *watch) {
 VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     VerdictReading reading = read_verdict(watch);
     reading.drift = reading.gained = NAN;
+    reading.deepest = watch->deepest;
+    reading.excess = watch->run.no_energy ? NAN : watch->excess;
     if (watch->rested_count == 0 || watch->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) return reading;
     reading.drift = 0;
     reading.gained = watch->energy - watch->rested;
@@ -190,9 +214,12 @@ static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const 
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
                  Error *error) {
     VerdictWatch watch = {0};
+    VerdictRun judged = *run;
+    verdict_run_set_skin(&judged, method);
     World *world = scene_world(scene, error);
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
-    bool ok = stepper != NULL && verdict_watch_begin(&watch, run, world_bodies(world), world_body_count(world), error);
+    bool ok =
+        stepper != NULL && verdict_watch_begin(&watch, &judged, world_bodies(world), world_body_count(world), error);
     NetworkFallbacks fallbacks = {0};
     for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++) {
         ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);

@@ -87,7 +87,8 @@ enum { VERDICT_CALM_FRAMES = 60 };
 enum { VERDICT_CREEP_SECONDS = 10, VERDICT_CREEP_FROM = 10 };
 
 /* Falls: a body is lower than where it stood by more than VERDICT_FALL_SHARE of its smaller side, or has rotated by
-   more than VERDICT_FALL_ANGLE (degrees), even if it comes to rest there. */
+   more than VERDICT_FALL_ANGLE (degrees), even if it comes to rest there. Sag does not count: a tall pile
+   whose contacts give way by some millimetres each is lower at its top, and stands. */
 #define VERDICT_FALL_SHARE 0.5
 #define VERDICT_FALL_ANGLE 30.0
 
@@ -137,7 +138,9 @@ typedef struct VerdictReading {
     /* Since VERDICT_CREEP_FROM seconds; NaN if the run is not longer. m: largest distance moved by a body that existed
        then. J: energy gained. */
     double drift, gained;
-    int steps; /* set by verdict_run() only, as are fallbacks */
+    double deepest; /* m: penetration of the deepest contact of all steps */
+    double excess;  /* J: most energy above what the start and added bodies brought; >= 0; NaN if not judged */
+    int steps;      /* set by verdict_run() only, as are fallbacks */
     NetworkFallbacks fallbacks;
 } VerdictReading;
 
@@ -150,10 +153,18 @@ typedef struct VerdictRun {
        and not for the bomb, which may roll. */
     bool stands;
     bool until_bomb; /* falling is judged until the bomb first touches something */
+    /* m: what the run's engine adds to each side of a box, so that boxes rest apart by twice that (Box2D before version
+       3: 0.0075). Boxes touch within it, and may rise by it. 0: none. */
+    float skin;
+    bool no_energy;      /* is not judged: masses are not known */
+    bool finds_contacts; /* between the bodies before a step: those that steps state do not count */
     /* The same scene run by "reference", with at least as many frames; outlives the watch. NULL: the run is judged by
        its own energy alone. */
     const EnergyLog *converged;
 } VerdictRun;
+
+/* Sets the skin that the method exec states. */
+void verdict_run_set_skin(VerdictRun *run, const Method *method);
 
 /* The run of a scene without a converged run. It is meant to stand if all bodies start at rest: to the end without a
    bomb, or else until the bomb touches something. */
@@ -172,9 +183,10 @@ typedef struct WatchedBody {
     Vec2 outside;     /* m: last position of the centre outside all static boxes; initially the start */
     Vec2 last, stood; /* m: in the last frame; before the step of its first contact */
     float last_angle, stood_angle;
-    bool touched; /* has had a contact */
-    bool fallen;  /* as by VERDICT_FALL_SHARE and VERDICT_FALL_ANGLE, in the last frame; static bodies never */
-    Vec2 rested;  /* m: after VERDICT_CREEP_FROM seconds */
+    bool touched;      /* has had a contact */
+    double lower, sag; /* m: than where it stood; of that, what contacts below it account for */
+    bool fallen;       /* as by VERDICT_FALL_SHARE and VERDICT_FALL_ANGLE, in the last frame; static bodies never */
+    Vec2 rested;       /* m: after VERDICT_CREEP_FROM seconds */
     int samples;
     Vec2 sample[VERDICT_CREEP_SECONDS]; /* ring buffer, one position per second */
 } WatchedBody;
@@ -202,6 +214,7 @@ typedef struct VerdictWatch {
     double peak;             /* J: highest energy in the current second */
     EnergyBalance own;       /* without a converged run */
     double energy;           /* J: in the last frame */
+    double smallest;         /* m: side of a dynamic body */
     double rested;           /* J: energy after VERDICT_CREEP_FROM seconds */
     double kinetic;          /* J: mean of the dynamic bodies */
     double kinetic_not_calm; /* J: the same in the last frame that was not calm */
@@ -209,6 +222,8 @@ typedef struct VerdictWatch {
     int calm, deep;          /* consecutive calm frames; consecutive frames with a deep contact */
     int peak_steps;          /* of the current second */
     int rested_count;        /* bodies after VERDICT_CREEP_FROM seconds; 0 before */
+    double deepest, excess;  /* as in VerdictReading */
+    ContactFinder finder;    /* of a run that finds its contacts */
 } VerdictWatch;
 
 void verdict_watch_free(VerdictWatch *watch);
@@ -235,11 +250,17 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs: `verdict_alone`
    in tests/stability.
 
+   With a skin, boxes that a scene places side by side are pushed apart: each bound is higher by what lifts every body
+   by two skins for each body that may be below it, its height over the smallest side.
+
    Tunnels: the centre of a dynamic body passed through a static box: the straight line from its last position outside
    all static boxes intersects one. Not if the centre is inside a box for a step and is pushed out again; if it stays
    inside, it sinks. Also finds bodies that leave the world through the ground, but not past its edge.
 
-   Falls: a body stood where it was at its first contact, so that gaps that a scene starts with may close. */
+   Falls: a body stood where it was at its first contact, so that gaps that a scene starts with may close. Its sag is
+   subtracted: the mean depth of the contact from below, and the sag of the body there, the most if there are several. A
+   contact is from below if its normal is nearer to gravity than to the horizontal. A column that leans gets no
+   sag, and falls. A pile that gives way without end sinks. */
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error);
 
 /* The same for a world; a StepObserver callback. */
@@ -258,8 +279,8 @@ bool verdict_watch_is_final(const VerdictWatch *watch);
 /* The verdict on the run up to the last step. A run shorter than VERDICT_CALM_FRAMES cannot settle. */
 VerdictReading verdict_watch_end(const VerdictWatch *watch);
 
-/* Runs the scene with the method until the verdict is final. A NaN or infinite state is a verdict, not an error. False
-   with error set if the method cannot be created or memory is short. */
+/* Runs the scene with the method, whose skin counts, until the verdict is final. A NaN or infinite state is a verdict,
+   not an error. False with error set if the method cannot be created or memory is short. */
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
                  Error *error);
 
@@ -273,8 +294,8 @@ typedef struct SimulateVerdict {
     VerdictReading reading; /* after simulate_verdict_end() */
 } SimulateVerdict;
 
-/* The scene and the method's text outlive the verdict. */
-bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const char *method, Error *error);
+/* The scene and the method outlive the verdict. */
+bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const Method *method, Error *error);
 
 /* To be called after every step; outlived by the verdict. */
 StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
@@ -289,3 +310,27 @@ void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTOR
 
 /* The number of dynamic bodies but the bomb, and how many of them have fallen. */
 int simulate_verdict_bodies(const SimulateVerdict *verdict, int *fallen);
+
+/* The verdict on a stored run. Contacts are found again, so that it is the one of simulate(); velocities, if the run
+   does not state them, are differences of poses. */
+
+/* Assumed of a run without its scene. */
+#define VERDICT_GRAVITY 10.0f /* m/s^2, down */
+#define VERDICT_DENSITY 1.0f  /* kg/m^2 */
+
+/* What a run says of its scene: bodies of VERDICT_DENSITY, which start with a speed if they do not rest, and a bomb. To
+   be destroyed with scene_destroy(). NULL with error set. */
+Scene *trajectory_scene(const Trajectory *run, Error *error);
+
+/* By what a stored run is judged. */
+typedef struct RunScene {
+    Scene *scene; /* masses, gravity and bomb; gets the run's time step and frames */
+    bool assumed; /* it is that of trajectory_scene() */
+    float skin;   /* m, as in VerdictRun */
+} RunScene;
+
+/* The scene and the run outlive the verdict. In an assumed scene that has a bomb, or bodies that start with a speed,
+   energy is not judged: light bodies get much of it from heavy ones. A run whose own verdict is non-finite has ended
+   so, and that is the verdict. ERROR_INPUT: the scene has other bodies, or a body is missing before another one; free
+   the verdict in any case. */
+bool simulate_verdict_of_run(SimulateVerdict *verdict, const RunScene *by, const Trajectory *run, Error *error);

@@ -106,7 +106,7 @@ int verdict_steps(double seconds, float dt) {
     return steps > 1 ? (int)steps : 1;
 }
 
-static double smaller_side(const Body *body) { return body->size.x < body->size.y ? body->size.x : body->size.y; }
+double smaller_side(const Body *body) { return body->size.x < body->size.y ? body->size.x : body->size.y; }
 
 bool check_finite(VerdictWatch *watch, const VerdictStep *step) {
     double most = 0; /* m^2/s^2 */
@@ -162,11 +162,19 @@ static bool overlaps_at_start(const VerdictStep *step) {
     return false;
 }
 
+/* J: what the skins of the engine may lift. */
+static double skin_energy(const VerdictWatch *watch) {
+    const EnergyBalance *own = &watch->own;
+    return isfinite(watch->smallest) ? 2 * (double)watch->run.skin * (own->weight + own->potential / watch->smallest)
+                                     : 0;
+}
+
 /* J: what exceeds the bounds of verdict_watch_step(); 0 if nothing does. Bound (b) searches two seconds of the
    converged run; evaluated only if (a) is exceeded, which is rare. */
 static double excess_beside(const VerdictWatch *watch, int frame) {
     const EnergyLog *converged = watch->run.converged;
-    const double allowed = VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_AVAILABLE);
+    const double allowed =
+        VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_AVAILABLE) + skin_energy(watch);
     if (watch->energy <= watch->kept + allowed) return 0;
     const double bound = fmax(watch->kept, converged_energy(&watch->run, frame));
     return watch->energy > bound + allowed ? watch->energy - bound : 0;
@@ -174,11 +182,12 @@ static double excess_beside(const VerdictWatch *watch, int frame) {
 
 /* The same without a converged run. */
 static double excess_alone(const VerdictWatch *watch) {
+    const double skin = skin_energy(watch);
     const EnergyBalance *own = &watch->own;
     const double least = fmax(VERDICT_LEAST_LIFT * own->weight, VERDICT_LEAST_AVAILABLE);
     const double available = fmax(fmax(own->available, own->potential + own->kinetic), least);
-    if (watch->energy > watch->brought + VERDICT_ENERGY_SHARE * available) return watch->energy - watch->brought;
-    return watch->energy > watch->kept + VERDICT_REGAIN_SHARE * available ? watch->energy - watch->kept : 0;
+    if (watch->energy > watch->brought + VERDICT_ENERGY_SHARE * available + skin) return watch->energy - watch->brought;
+    return watch->energy > watch->kept + VERDICT_REGAIN_SHARE * available + skin ? watch->energy - watch->kept : 0;
 }
 
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {
@@ -187,6 +196,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     energy_balance_step(&watch->own, step->bodies, step->body_count);
     const double energy = watch->energy = watch->own.energy, change = watch->own.brought - before;
     watch->brought += change;
+    watch->excess = fmax(watch->excess, energy - watch->own.brought);
     if (step->body_count > watch->body_count) {
         watch->kept += change;
         watch->peak += change;
@@ -194,7 +204,7 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     if (step->body_count < watch->body_count) end_second(watch, energy);
     if (step->frame == 1 && run->converged == NULL && overlaps_at_start(step)) watch->kept = watch->brought = INFINITY;
     const double gained = run->converged != NULL ? excess_beside(watch, step->frame) : excess_alone(watch);
-    if (gained > 0) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), gained, "J");
+    if (gained > 0 && !run->no_energy) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), gained, "J");
     watch->peak = watch->peak_steps++ > 0 ? fmax(watch->peak, energy) : energy;
     if (watch->peak_steps < verdict_steps(VERDICT_ENERGY_TIME, run->dt)) return;
     end_second(watch, fmin(watch->kept, watch->peak));
@@ -260,6 +270,7 @@ void check_depth(VerdictWatch *watch, const VerdictStep *step) {
     double share = 1;
     for (int i = 0; i < step->contact_count; i++) {
         const ContactPoint *contact = &step->contacts[i];
+        if (exists(step, contact)) watch->deepest = fmax(watch->deepest, -(double)contact->separation);
         if (!exists(step, contact) || -(double)contact->separation <= VERDICT_SINK_LEAST) continue;
         double side = fmin(smaller_side(&step->bodies[contact->a]), smaller_side(&step->bodies[contact->b]));
         double found = -(double)contact->separation / fmax(VERDICT_SINK_SHARE * side, VERDICT_SINK_LEAST);
@@ -292,6 +303,57 @@ static bool judges_falls(const VerdictWatch *watch, int bomb) {
     return watch->run.stands || (watch->run.until_bomb && (bomb < 0 || !watch->bodies[bomb].touched));
 }
 
+/* The bodies that a contact joins: `a` from below carries b. False for one at the side. */
+static bool carries(const VerdictStep *step, const ContactPoint *contact, Vec2 gravity, BodyPair *pair) {
+    const float along = vec2_dot(contact->normal, gravity), across = vec2_cross(contact->normal, gravity);
+    *pair = along < 0 ? (BodyPair){contact->a, contact->b} : (BodyPair){contact->b, contact->a};
+    return exists(step, contact) && fabsf(along) > fabsf(across);
+}
+
+/* m: mean depth at both ends of a face, whose points are adjacent. A box that tilts on an edge sags by half of the
+   depth there. */
+static double mean_depth(const VerdictStep *step, int i) {
+    const ContactPoint *point = &step->contacts[i];
+    const bool two = i + 1 < step->contact_count && point[1].a == point->a && point[1].b == point->b;
+    return (fmax(0, -(double)point->separation) + (two ? fmax(0, -(double)point[1].separation) : 0)) / 2;
+}
+
+/* One pass: the order of contacts is mostly that from below, so that one is enough. */
+static bool add_sag(const VerdictWatch *watch, const VerdictStep *step) {
+    bool more = false;
+    for (int i = 0; i < step->contact_count; i++) {
+        BodyPair pair;
+        if (!carries(step, &step->contacts[i], watch->run.gravity, &pair)) continue;
+        const double sag = watch->bodies[pair.a].sag + mean_depth(step, i);
+        if (sag <= watch->bodies[pair.b].sag) continue;
+        watch->bodies[pair.b].sag = sag;
+        more = true;
+    }
+    return more;
+}
+
+/* How much lower contacts let bodies be. A body in the air keeps its sag. */
+static void find_sag(const VerdictWatch *watch, const VerdictStep *step) {
+    enum { PASSES = 100 };
+    BodyPair pair;
+    for (int i = 0; i < step->contact_count; i++)
+        if (carries(step, &step->contacts[i], watch->run.gravity, &pair)) watch->bodies[pair.b].sag = 0;
+    for (int pass = 0; pass < PASSES && add_sag(watch, step); pass++) continue;
+}
+
+/* Finds how much lower each body is. Sag counts from half the limit on: most piles have none to look for. */
+static void find_lower(const VerdictWatch *watch, const VerdictStep *step) {
+    const double pull = vec2_distance(watch->run.gravity, vec2(0, 0));
+    bool any = false;
+    for (int i = 0; i < step->body_count; i++) {
+        WatchedBody *body = &watch->bodies[i];
+        const bool moves = step->bodies[i].inv_mass != 0 && body->touched && pull > 0;
+        body->lower = moves ? descent(body->stood, step->bodies[i].position, watch->run.gravity) / pull : 0;
+        any |= moves && body->lower > VERDICT_FALL_SHARE / 2 * smaller_side(&step->bodies[i]);
+    }
+    if (any) find_sag(watch, step);
+}
+
 void check_falls(VerdictWatch *watch, const VerdictStep *step) {
     for (int i = 0; i < step->contact_count && watch->touched_count < step->body_count; i++) {
         if (!exists(step, &step->contacts[i])) continue;
@@ -299,17 +361,16 @@ void check_falls(VerdictWatch *watch, const VerdictStep *step) {
         note_contact(watch, step->contacts[i].b);
     }
     const bool judged = judges_falls(watch, step->bomb);
-    const double pull = vec2_distance(watch->run.gravity, vec2(0, 0));
+    find_lower(watch, step);
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
         WatchedBody *watched = &watch->bodies[i];
         if (body->inv_mass == 0 || !watched->touched) continue;
-        const double down = descent(watched->stood, body->position, watch->run.gravity);
         const double turned = fabs((double)body->angle - watched->stood_angle) * degrees;
-        const bool is_lower = down > VERDICT_FALL_SHARE * smaller_side(body) * pull;
+        const bool is_lower = watched->lower - watched->sag > VERDICT_FALL_SHARE * smaller_side(body);
         const bool is_turned = turned > VERDICT_FALL_ANGLE;
         watched->fallen = is_lower || is_turned;
-        if (judged && is_lower) verdict_note(watch, VERDICT_FALLS, i, down / pull, "m");
+        if (judged && is_lower) verdict_note(watch, VERDICT_FALLS, i, watched->lower, "m");
         if (judged && is_turned) verdict_note(watch, VERDICT_FALLS, i, turned, "deg");
     }
 }

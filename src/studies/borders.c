@@ -35,8 +35,8 @@ typedef struct BorderRows {
     int method_count;
 } BorderRows;
 
-/* Draws the legend's sample of a sign (0: holds, 1: holds throughout, 2: never holds), `width` mm wide from `left`. */
-enum { BORDER_SIGNS = 3 };
+/* Signs in the legend: holds, holds throughout, never holds, and the line up to which rigid boxes hold where a study has it. */
+enum { BORDER_SIGNS = 4 };
 
 /* Axes with a larger ratio of their ends are logarithmic. */
 static const double long_axis = 8;
@@ -125,7 +125,8 @@ static BorderAxis border_axis(const CsvTable *table, int first, const StabilityS
 /* mm; half_tile, half_sign: from the centre of a tile, arrow head or cross to its edge */
 static const double bar_height = 1.2, half_tile = 1.15, half_sign = 0.75;
 
-static const Pen bar_pen = {0xA3CBE5, 1, NO_COLOUR, 0, NULL}, sign_pen = {NO_COLOUR, 1, 0x000000, 1.6, NULL};
+static const Pen bar_pen = {0xA3CBE5, 1, NO_COLOUR, 0, NULL}, sign_pen = {NO_COLOUR, 1, 0x000000, 1.6, NULL},
+                 rigid_pen = {NO_COLOUR, 1, 0x000000, 0.8, "(3,3)"};
 
 static bool holds_throughout(const BorderRow *row) {
     return isnan(row->fails_at) && !isnan(row->holds_at) && verdict_holds((Verdict)row->verdict);
@@ -217,11 +218,14 @@ static void border_sample_draw(Sketch *sketch, int sign, Point left, double widt
     if (sign < 2) put_bar(sketch, left.x, left.x + width, left.y);
     if (sign == 1) put_head(sketch, (Point){left.x + width, left.y}, false);
     if (sign == 2) put_cross(sketch, (Point){left.x + width / 2, left.y});
+    if (sign == 3)
+        sketch_line(sketch, (Point){left.x + width / 2, left.y - 1.5}, (Point){left.x + width / 2, left.y + 1.5},
+                    &rigid_pen);
 }
 
 /* mm */
-static const double left = 33, right = 2, gap = 3.5, title_room = 5.5, axis_room = 8.8, legend_left = 20,
-                    most_page = 235, most_row = 3.4, least_row = 2.5, sample = 5.5, name_gap = 1.3;
+static const double left = 33, left_of_one = 52, right = 2, gap = 3.5, title_room = 5.5, axis_room = 8.8,
+                    legend_left = 20, most_page = 235, most_row = 3.4, least_row = 2.5, sample = 5.5, name_gap = 1.3;
 
 enum { LEGEND_COLUMNS = 5 };
 
@@ -232,7 +236,7 @@ typedef struct Borders {
     int study_count, method_count;
     int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* first row of each */
     int left_out[BORDERS_MAX_METHODS], left_out_count;              /* the same of methods that no study applies to */
-    int columns, rows, legend_rows;
+    int columns, rows, signs, legend_rows;
     double row_height; /* mm */
     PlotGrid grid;
     bool used[VERDICT_LOOKS];
@@ -272,6 +276,11 @@ static bool gather(Borders *borders, Error *error) {
                                    BORDERS_MAX_METHODS);
         if (!left_out && !verdict_holds((Verdict)row->verdict)) borders->used[row->verdict] = true;
     }
+    borders->signs = BORDER_SIGNS - 1;
+    for (int i = 0; i < borders->study_count; i++) {
+        const StabilityStudy *study = study_of(borders->own, border_row(table, borders->studies[i]));
+        if (study != NULL && study->rigid != NULL) borders->signs = BORDER_SIGNS;
+    }
     return true;
 }
 
@@ -280,7 +289,7 @@ static double foot_of(const Borders *borders) { return borders->left_out_count >
 
 /* Uses the height of a printed page if that gives rows of a readable height. */
 static void lay_out(Borders *borders) {
-    int items = BORDER_SIGNS;
+    int items = borders->signs;
     for (int look = 0; look < VERDICT_LOOKS; look++) items += borders->used[look];
     borders->legend_rows = (items + LEGEND_COLUMNS - 1) / LEGEND_COLUMNS;
     borders->columns = borders->study_count <= 2 ? borders->study_count : borders->study_count <= 6 ? 3 : 4;
@@ -291,7 +300,7 @@ static void lay_out(Borders *borders) {
     borders->grid =
         (PlotGrid){.width = FIGURE_PAGE_WIDTH,
                    .height = legend + borders->rows * (around + borders->row_height * borders->method_count),
-                   .left = left,
+                   .left = borders->columns > 1 ? left : left_of_one,
                    .right = right,
                    .bottom = legend + axis_room,
                    .top = title_room,
@@ -311,8 +320,8 @@ static void draw_rows(const Borders *borders, const PlotPanel *panel, bool named
         char text[STABILITY_TEXT_SIZE];
         sketch_line(borders->sketch, (Point){panel->x.from, y}, (Point){panel->x.to, y}, &guide);
         if (!named) continue;
-        stability_method_text(text, points, left - 3, row->method, row->setting);
-        plot_text(borders->sketch, (Point){left - 1.5, y}, TEXT_RIGHT, points, text);
+        stability_method_text(text, points, borders->grid.left - 3, row->method, row->setting);
+        plot_text(borders->sketch, (Point){borders->grid.left - 1.5, y}, TEXT_RIGHT, points, text);
     }
 }
 
@@ -334,14 +343,18 @@ static void draw_panel(const Borders *borders, int place) {
     panel.y.ticks = &none;
     plot_panel_place(&panel);
     draw_rows(borders, &panel, place % borders->columns == 0);
+    if (study != NULL && study->rigid != NULL) {
+        const double x = plot_axis_place(&panel.x, study->rigid());
+        sketch_line(borders->sketch, (Point){x, panel.y.from}, (Point){x, panel.y.to}, &rigid_pen);
+    }
     border_marks_draw(&(BorderRows){borders->table, borders->sketch, first, &panel, axis.falling, borders->methods,
                                     borders->method_count});
     plot_panel_draw(borders->sketch, &panel);
 }
 
 static void draw_samples(const Borders *borders, const LegendPlace *place, int first) {
-    static const char *const names[BORDER_SIGNS] = {"holds", "holds throughout", "never holds"};
-    for (int i = 0; i < BORDER_SIGNS; i++) {
+    static const char *const names[BORDER_SIGNS] = {"holds", "holds throughout", "never holds", "rigid boxes"};
+    for (int i = 0; i < borders->signs; i++) {
         const Point at = {place->left + place->width * ((first + i) % place->columns),
                           place->top - LEGEND_ROW * ((first + i) / place->columns)};
         border_sample_draw(borders->sketch, i, at, sample);
@@ -361,7 +374,8 @@ static void write_caption(const Borders *borders, PlotPage *page) {
     text_add(page->caption, sizeof page->caption,
              "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a "
              "method fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at "
-             "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.");
+             "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.%s",
+             borders->signs == BORDER_SIGNS ? " Dashed line: rigid boxes hold up to here, in closed form." : "");
     for (int i = 0; i < borders->left_out_count; i++) {
         const BorderRow *row = border_row(borders->table, borders->left_out[i]);
         left_out_add(&left_out, "Left out, as not applicable: ", row->method, row->setting);

@@ -135,6 +135,13 @@ static void stability_plan_free(StabilityPlan *plan) {
     *plan = (StabilityPlan){0};
 }
 
+/* What rigid boxes do; the scenes state the laws. */
+static double rigid_staircase(void) { return 1.0 / 10; }                          /* 1 / boxes */
+static double rigid_tip(void) { return 1.0 / 5; }                                 /* width / height */
+static double rigid_kick(void) { return 5 * sqrt(3 * 10 * (sqrt(26) - 5) / 26); } /* 1 m x 5 m, g = 10 m/s^2 */
+static double rigid_ledge(void) { return 0; }
+static double rigid_slope(void) { return 0.2; } /* friction */
+
 /* clang-format off */
 /* from, to, points */
 #define LINEAR(...) \
@@ -167,7 +174,11 @@ const StabilityStudy stability_studies[] = {
     {"plate", "Plate on two boxes", "plate", "ratio", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 3},
     {"gate", "Beam on two stacks", "gate", "mass", LOGARITHMIC(1, 1000, 13), .stands = true, .weight = 12},
     {"top_removed", "Load taken away", "top_removed", "ratio", LOGARITHMIC(1, 200, 12), .stands = true, .weight = 5},
-    {"tilted_stack", "Tilted stack", "tilted_stack", "shift", LINEAR(0, 0.1, 11), .stands = true, .weight = 7},
+    {"tilted_stack", "Tilted stack", "tilted_stack", "shift", LINEAR(0, 0.2, 11), .stands = true, .weight = 7,
+     .rigid = rigid_staircase},
+    {"tip", "Tall box on a slope", "tip", "slope", LINEAR(0, 0.4, 9), .stands = true, .weight = 1, .rigid = rigid_tip},
+    {"kick", "Kicked tall box", "kick", "kick", LINEAR(0, 4, 9), .stands = true, .weight = 1, .rigid = rigid_kick},
+    {"ledge", "Box past an edge", "ledge", "past", LINEAR(-0.1, 0.1, 9), .stands = true, .weight = 1, .rigid = rigid_ledge},
     {"overlap", "Overlap at the start", "overlap", "spacing", LINEAR(0.4, 1, 13, .fails_low = true), .stands = true,
      .weight = 8},
     {"card_house", "Card house", "card_house", "friction", LINEAR(0.1, 1, 10, .fails_low = true), .stands = true,
@@ -175,7 +186,7 @@ const StabilityStudy stability_studies[] = {
     {"arch", "Flat arch", "arch", "friction", LINEAR(0.2, 1, 9, .fails_low = true), .stands = true, .weight = 3},
     {"double_domino", "Two rows of dominoes", "double_domino", "push", LINEAR(0, 3, 7), .weight = 5},
     {"friction_ramp", "Box on a slope", "friction_ramp", "slope", LINEAR(0, 0.6, 13), .stands = true, .quick = true,
-     .weight = 1},
+     .weight = 1, .rigid = rigid_slope},
     {"far_from_origin", "Far from the origin", "far_from_origin", "distance", LOGARITHMIC(1, 1e6, 13), .stands = true,
      .unshifted = true, .quick = true, .weight = 2},
     {"at_rest", "Stack at rest", "at_rest", "height", WHOLE(1, 20, 10), .stands = true, .rests = true, .weight = 13},

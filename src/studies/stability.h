@@ -113,14 +113,15 @@ typedef struct StabilityStudy {
     const char *scene; /* file name without folder and extension */
     const char *parameter;
     BorderScan scan;
-    SceneSetting fixed; /* another parameter that is set; name "": none */
-    bool stands;        /* as in VerdictRun */
-    bool iterations;    /* scans the scene's iterations: only for methods that use them */
-    bool unshifted;     /* without seeds: a tiny shift has no effect, as it is rounded away or nothing comes near */
-    bool rests;         /* also records drift and energy of every run */
-    bool quick;         /* part of a quick run */
-    double weight;      /* s for all methods on two cores, approximately */
-    const char *file;   /* path of another scene instead; `stands` then follows from each scene (verdict_run_of) */
+    SceneSetting fixed;    /* another parameter that is set; name "": none */
+    bool stands;           /* as in VerdictRun */
+    bool iterations;       /* scans the scene's iterations: only for methods that use them */
+    bool unshifted;        /* without seeds: a tiny shift has no effect, as it is rounded away or nothing comes near */
+    bool rests;            /* also records drift and energy of every run */
+    bool quick;            /* part of a quick run */
+    double weight;         /* s for all methods on two cores, approximately */
+    const char *file;      /* path of another scene instead; `stands` then follows from each scene (verdict_run_of) */
+    double (*rigid)(void); /* the value up to which rigid boxes hold, in closed form; NULL: unknown */
 } StabilityStudy;
 
 typedef struct StabilityAxis {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A headless Firefox for a smoke test, driven by Marionette: "LENGTH:[0, number, command, parameters]" over a local
+"""A headless Firefox with one tab, driven by Marionette: "LENGTH:[0, number, command, parameters]" over a local
 connection. Every address but local files leads to a proxy that does not exist."""
 import base64
 import json
@@ -102,12 +102,19 @@ class Firefox:
                     raise FirefoxError(f"{command}: {error['message']}")
                 return result
 
-    def load(self, path, fragment=""):
-        self.call("WebDriver:Navigate", url="file://" + os.path.abspath(path) + fragment)
+    def open(self, path, fragment=""):
+        """The page, in the only tab: it has what scripts need of a Page of Chromium."""
+        self.call("WebDriver:Navigate", url="file://" + os.path.abspath(path) + (fragment and "#" + fragment))
         self.wait("window.player?.data !== undefined")  # the page unpacks its script
+        return self
 
-    def run(self, script):
-        """What the expression is, or will be if it is a promise."""
+    def close(self):
+        """The next page takes its place."""
+
+    def run(self, script, *values):
+        """What the expression is, or will be if it is a promise. $0, $1, ... stand for values."""
+        for i, value in reversed(list(enumerate(values))):
+            script = script.replace(f"${i}", json.dumps(value))
         script = ("const done = arguments[arguments.length - 1];"
                   f"(async () => ({script}))().then(value => done({{value}}), error => done({{error: String(error)}}))")
         answer = self.call("WebDriver:ExecuteAsyncScript", args=[], scriptTimeout=LIMIT * 1000, script=script)["value"]
@@ -122,6 +129,16 @@ class Firefox:
                 raise FirefoxError(f"in {LIMIT} s it did not become true: {script[:200]}")
             time.sleep(0.02)
         return found
+
+    def settle(self):
+        self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def mouse(self, kind, x, y, **_):
+        """As in Chromium: mouseMoved, mousePressed, mouseReleased; the left button, which stays as it is between calls."""
+        button = {"mousePressed": "pointerDown", "mouseReleased": "pointerUp"}.get(kind)
+        actions = [{"type": "pointerMove", "x": round(x), "y": round(y), "duration": 0}]
+        actions += [{"type": button, "button": 0}] if button else []
+        self.call("WebDriver:PerformActions", actions=[{"type": "pointer", "id": "mouse", "actions": actions}])
 
     def press(self, key):
         actions = [{"type": kind, "value": key} for kind in ("keyDown", "keyUp")]

@@ -105,7 +105,7 @@ scene "networks: {pear-net: $scenes/networks/pair-net.npz}" "$height"
 wrong "did you mean 'pair-net'?"
 
 run 2 check
-complains "a scene file is needed"
+complains "a scene or a run (.npz) is needed"
 run 2 check missing.yaml
 complains "missing.yaml: error: cannot open"
 

@@ -117,7 +117,7 @@ run 1 compare theirs ours --max-pixels 200
 
 run 2 compare a.npz one
 complains "is not a trajectory"
-run 2 compare a.npz b.npz --report r
+run 2 compare a.npz b.npz --annotations github
 complains "apply to pictures only"
 run 2 compare one nowhere
 complains "nowhere"

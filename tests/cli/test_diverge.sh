@@ -30,6 +30,7 @@ complains "note: with --scene SCENE, the growth is compared"
 grep -q "centres" out && fail "a distance is compared without --tolerance"
 
 run 1 compare engine.npz more.npz --tolerance 0.01 --scene "$stack" --csv distance.csv
+says "within the tolerance: 18 frames, 5 of them equal in every bit"
 says "centres more than 0.01 m apart: frame 18, body 4:"
 says "the states before that step differ since frame 5: an earlier step is the cause"
 says "shifted run (body 1 shifted by 1e-06 m, the same frames): from"
@@ -38,7 +39,7 @@ equal "header" "$(head -1 distance.csv)" "frame,time,distance,shifted_distance"
 equal "lines" "$(wc -l <distance.csv)" 122
 equal "first frame" "$(sed -n 2p distance.csv)" "0,0,0,9.99999997e-07"
 run 0 compare engine.npz more.npz --tolerance 1e6 --csv alone.csv
-says "centres at most 1e+06 m apart: 121 frames of 12 bodies"
+says "equal within the tolerance of 1e+06 m: 121 frames of 12 bodies; 5 of them in every bit of their states"
 equal "first frame" "$(sed -n 2p alone.csv)" "0,0,0,"
 
 # Run 2 has a shifted bomb, as the shifted run has: both grow alike.

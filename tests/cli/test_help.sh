@@ -31,7 +31,7 @@ done
 
 # Examples work in this order in a folder with the scenes. (Those of other commands take longer.)
 ln -s "$scenes" scenes
-for name in new check simulate methods solve compare figure; do
+for name in new simulate check methods solve compare figure; do
     ARGP_HELP_FMT=rmargin=400 "$twinbox" "$name" --help | sed -n 's/^\(Example:\|        \) twinbox //p' >examples
     [ -s examples ] || fail "the help of $name has no example"
     while read -r arguments; do

@@ -17,7 +17,7 @@ TEST(a_run_that_overflows_has_a_verdict) {
                          .bodies = &body};
     SimulateVerdict verdict;
     const Method method = method_named("engine");
-    assert_ok(simulate_verdict_begin(&verdict, &scene, "engine", &error), error);
+    assert_ok(simulate_verdict_begin(&verdict, &scene, &method, &error), error);
     const StepObserver observer = simulate_verdict_observer(&verdict);
     assert_refused(simulate_observed(&scene, &method, &observer, &error), "is NaN or infinite");
     assert_true(simulate_verdict_end(&verdict, &error));
@@ -37,8 +37,9 @@ TEST(a_run_that_overflows_has_a_verdict) {
 
 TEST(other_failures_have_none) {
     const Scene scene = {.name = "empty", .dt = 1.0f / 60.0f, .frames = 1};
+    const Method method = method_named("engine");
     SimulateVerdict verdict;
-    assert_ok(simulate_verdict_begin(&verdict, &scene, "engine", &error), error);
+    assert_ok(simulate_verdict_begin(&verdict, &scene, &method, &error), error);
     error_input(&error, "empty", "stopped after step 1 of 10");
     assert_false(simulate_verdict_end(&verdict, &error));
     simulate_verdict_free(&verdict);

@@ -46,7 +46,7 @@ equal "runs that stay in place" \
 # An interrupted study continues with the pieces that are not there; one that is there is read.
 strike INT 130 "ls part/parts-*/0000/0000000" stability $few -o part
 complains "stopped; finished pieces are kept"
-equal "what was done is kept" "$(grep -h ^name part/parts-*/0000/*)" "name heavy_on_one 1-3"
+equal "what was done is kept" "$(grep -h ^name part/parts-*/0000/0000000)" "name heavy_on_one 1-3"
 cp part/parts-*/0000/0000000 piece
 sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/0000/0000000
 run 2 stability $few -o part

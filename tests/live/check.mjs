@@ -8,7 +8,7 @@ import {join} from 'node:path';
 import {load} from './live.mjs';
 
 const [path, twinbox, pack, launches] = process.argv.slice(2);
-const solvers = ['engine', 'engine:k=4,warm=off', 'momentum', 'interior', 'interior:near=0.02', 'soft-step'];
+const solvers = ['engine', 'engine:k=4,warm=off', 'momentum', 'interior', 'interior:near=0.02', 'soft-step', 'soft-step:keep=0.05', 'engine:keep=0.02'];
 const pairs = ['pair-net', 'contact-net'];
 const scenes = [
   {file: 'scenes/single.yaml', methods: [...solvers, ...pairs]},

@@ -77,8 +77,9 @@ static void check_run(const char *name, const char *settings, const char *method
 }
 
 TEST(runs_are_those_of_simulate) {
-    static const char *const methods[] = {"engine", "momentum:k=5", "soft-step", "interior",
-                                          "pair-net:network=" SOURCE_DIR "/scenes/networks/pair-net.npz"};
+    static const char *const methods[] = {"engine",    "momentum:k=5",
+                                          "soft-step", "soft-step:keep=0.05",
+                                          "interior",  "pair-net:network=" SOURCE_DIR "/scenes/networks/pair-net.npz"};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         check_run("stack", "bomb_x=-1.25", methods[i]);
         check_run("families/gate", "", methods[i]);

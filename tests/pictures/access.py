@@ -116,4 +116,5 @@ def main():
         check_motion(checks, browser)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -26,7 +26,8 @@ window.audit = (() => {
     return colour.length === 3 ? colour : over(colour, ground(e.parentElement));
   };
   const least = (size, bold) => size >= 24 || (size >= 18.66 && bold) ? 3 : 4.5;
-  const name = e => e.tagName.toLowerCase() + (e.id && "#" + e.id) + " '" + e.textContent.trim().slice(0, 30) + "'";
+  const words = e => (e.id ? e.textContent : e.ariaLabel ?? e.labels?.[0]?.textContent ?? e.textContent).trim().slice(0, 30);
+  const name = e => e.tagName.toLowerCase() + (e.id && "#" + e.id) + " '" + words(e) + "'";
   const visible = e => e.getClientRects().length > 0 && getComputedStyle(e).visibility === "visible";
 
   const fault_of = (what, size, colour, behind, limit) => {

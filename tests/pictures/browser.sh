@@ -1,9 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Sourced with the binary and the sources as $1 and $2: tests of the page in Chromium.
+# Sourced with the binary and the sources as $1 and $2: tests of the page in browsers.
 twinbox=$1 sources=$2
 
-# browse SCRIPT: by Debian's Python, for NumPy.
+skip() { echo "skipped: $1"; exit 77; }
+
+# By Debian's Python, for NumPy.
+run() {
+    local script=$sources/tests/pictures/$1
+    shift
+    PYTHONPATH=$sources/tests/browser exec /usr/bin/python3 -B "$script" "$twinbox" "$sources" "$@"
+}
+
+# browse SCRIPT ...: in Chromium.
 browse() {
     command -v chromium >/dev/null || { echo "FAILED: chromium is not installed; tests/setup --all does that"; exit 1; }
-    PYTHONPATH=$sources/tests/browser exec /usr/bin/python3 -B "$sources/tests/pictures/$1" "$twinbox" "$sources"
+    run "$@"
+}
+
+# browse_firefox SCRIPT ...: the same in Firefox.
+browse_firefox() {
+    command -v firefox-esr firefox >/dev/null || skip "firefox-esr is not installed; tests/setup --all does that"
+    run "$@"
+}
+
+need_live() {
+    "$twinbox" page --live "$sources/scenes/single.yaml" -o /dev/null 2>&1 | grep -q "no module" &&
+        skip "the build has no module for live pages"
+    return 0
 }

@@ -1,17 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A live page steps runs with the bits of the program: launches, drags of the bomb, settings, methods, links, commands."""
 import json
+import os
 import random
+import re
 import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
+from access import check_tab, check_text, check_tree
 from checks import Checks
 from chromium import Chromium
+from firefox import Firefox
+from page import ScriptError
 
 METHODS = "engine", "interior"
 SCENES = "single", "stack", "pyramid", "families/gate", "families/wall"
-LAUNCHES, POSITIONS = 10, 50
+LAUNCHES, POSITIONS = 20, 50  # of each scene; of a drag
 ENDED = "player.runs.every(run => run.hash && run.reached === run.frames - 1 && run.shown === player.launched())"
 HASHES = "player.runs.map(run => run.hash)"
+PROOFS = "document.getElementById('check').textContent.split('= that of the C program').length - 1"
 PROBLEM = "document.getElementById('problem').textContent"
 BOMB = """(() => {
   const stage = document.getElementById("stage"), box = stage.getBoundingClientRect();
@@ -30,9 +38,12 @@ def state(checks, scene, method, setting):
 
 
 def check_hashes(checks, page, scene, methods, what):
-    page.wait(ENDED)
+    """The program runs beside the page."""
     setting = page.run("player.set_text()")
-    checks.equal(f"{scene} {setting} {what}", page.run(HASHES), [state(checks, scene, each, setting) for each in methods])
+    with ThreadPoolExecutor() as pool:
+        states = pool.map(lambda method: state(checks, scene, method, setting), methods)
+        page.wait(ENDED)
+        checks.equal(f"{scene} {setting} {what}", page.run(HASHES), list(states))
 
 
 def open_scene(checks, browser, scene, *methods, fragment="", **looks):
@@ -47,18 +58,19 @@ def check_launches(checks, browser):
     for scene in SCENES:
         page = open_scene(checks, browser, scene, *METHODS)
         page.wait(ENDED)
-        proof = page.run("document.getElementById('check').textContent")
-        checks.equal(f"{scene}: proofs", proof.count("= that of the C program"), len(METHODS))
+        checks.equal(f"{scene}: proofs", page.run(PROOFS), len(METHODS))
         x = page.run("player.setup.scene.parameters.find(each => each.name === 'bomb_x')")
         for _ in range(LAUNCHES):
             page.run("player.choose('bomb_x', $0)", launches.uniform(x["from"], x["to"]))
             check_hashes(checks, page, scene, METHODS, "launched")
             checks.equal(f"{scene}: problem", page.run(PROBLEM), "")
-        checks.quiet(scene, page)
+        if isinstance(browser, Chromium):
+            checks.quiet(scene, page)
         page.close()
 
 
 def check_drag(checks, page):
+    page.wait(ENDED)
     page.run("player.change({frame: 8})")
     page.settle()
     x, y = page.run(BOMB)
@@ -76,7 +88,6 @@ def check_drag(checks, page):
 
 def check_controls(checks, browser):
     page = open_scene(checks, browser, "stack", *METHODS)
-    page.wait(ENDED)
     check_drag(checks, page)
     page.press("j", "Shift+L", "i", "o")
     check_hashes(checks, page, "stack", METHODS, "by keys")
@@ -113,6 +124,34 @@ def check_controls(checks, browser):
     page.close()
 
 
+def framing(path):
+    with open(path, encoding="utf-8") as file:
+        return json.loads(re.search(r'"framing": (\{.*?\})', file.read())[1])
+
+
+def check_framing(checks, browser):
+    """After a change of the scene, the view is that of the program."""
+    for scene, name, values in (("stability/stack_height", "height", (4, 25)), ("stack", "bomb_x", (1.5, -2.25)),
+                                ("families/gate", "bomb_y", (12, 14))):
+        page = open_scene(checks, browser, scene, "engine")
+        for value in values:
+            page.run("player.choose($0, $1)", name, value)
+            page.wait(ENDED)
+            given = page.run("player.set_text()")
+            checks.twinbox("simulate", f"{checks.scenes}/{scene}.yaml", *(["--set", given] if given else []), "-o", "run.npz")
+            checks.twinbox("page", "run.npz", "-o", "run.html")
+            wanted = framing("run.html")
+            near = (f"(found => Object.entries({json.dumps(wanted)}).every(([key, value]) =>"
+                    " value === found[key] || Math.abs(value - found[key]) < 1e-6))(player.data.framing)")
+            try:
+                page.wait(near, limit=20)
+                found = wanted
+            except ScriptError:
+                found = page.run("player.data.framing")
+            checks.equal(f"{scene}: the view with {given}", found, wanted)
+        page.close()
+
+
 def check_prediction(checks, browser):
     page = open_scene(checks, browser, "stack", "engine", "pair-net")
     page.wait(ENDED)
@@ -125,6 +164,83 @@ def check_prediction(checks, browser):
     page.close()
 
 
+def tab_to(page, condition):
+    """Presses Tab until the focused element e is this one."""
+    for _ in range(200):
+        page.press("Tab")
+        if page.run(f"(e => e !== document.body && Boolean({condition}))(document.activeElement)"):
+            return
+    raise ScriptError(f"the Tab key does not reach {condition}")
+
+
+def check_access(checks, browser):
+    """Names, sizes and contrast of all that a live page adds; the Tab key reaches it in its order, and is seen."""
+    with open(os.path.join(checks.sources, "tests/pictures/audit.js")) as file:
+        page = open_scene(checks, browser, "stack", *METHODS, before=file.read())
+    page.wait(ENDED)
+    for width, height in (1440, 900), (390, 844):
+        for dark in False, True:
+            what = f"{width} {'dark' if dark else 'light'}"
+            page.resize(width, height)
+            page.prefer(dark, False)
+            page.settle()
+            check_tree(checks, page, what)
+            check_text(checks, page, what)
+            checks.empty(f"{what}: wider than the window", page.run("audit.wide()"))
+        check_tab(checks, page, str(width))
+    checks.empty("controls too small for a finger (24 px)", page.run("audit.small()"))
+    page.close()
+
+
+def check_keyboard(checks, browser):
+    """A reading with no other device: launches, settings, methods, panels, a prediction, time, a link."""
+    page = open_scene(checks, browser, "stack", *METHODS)
+    page.wait(ENDED)
+    first = page.run(HASHES)
+    tab_to(page, "e.id === 'stage'")
+    page.press("l", "Shift+J", "i", "u")
+    check_hashes(checks, page, "stack", METHODS, "by keys on the picture")
+    tab_to(page, "e.id === 'scrubber'")
+    page.press("ArrowRight", "ArrowRight", "PageUp")
+    checks.equal("the frame by keys", page.run("player.view.frame"), 12)
+    tab_to(page, "e.type === 'number' && e.ariaLabel === 'bomb mass, kg'")
+    page.press("Control+a", "9", "Enter")
+    checks.true("a setting that is typed", "bomb_mass=9" in page.run("player.set_text()"), page.run("player.set_text()"))
+    tab_to(page, "e.type === 'range' && e.ariaLabel === 'friction'")
+    before = page.run("player.set_text()")
+    page.press("ArrowRight")
+    checks.true("a slider", page.run("player.set_text()") != before, before)
+    check_hashes(checks, page, "stack", METHODS, "set by keys")
+    tab_to(page, "e.ariaLabel === 'Method' && e.value === 'interior'")
+    page.press("m")
+    page.wait("player.runs[1].live === 'momentum'")
+    checks.equal("the focus stays at the method", page.run("document.activeElement.value"), "momentum")
+    tab_to(page, "e.closest('label')?.textContent === 'k'")
+    page.press("7", "Tab")
+    check_hashes(checks, page, "stack", ["engine", "momentum:k=7"], "with a method by keys")
+    tab_to(page, "e.id === 'add'")
+    page.press("Enter")
+    page.wait("player.runs.length === 3")
+    tab_to(page, "e.ariaLabel === 'Remove momentum:k=7'")
+    page.press("Enter")
+    page.wait("player.runs.length === 2")
+    checks.equal("the focus stays near", page.run("document.activeElement.closest('#methods') !== null"), True)
+    check_hashes(checks, page, "stack", ["engine", "engine"], "a panel by keys, and one less")
+    tab_to(page, "e.id === 'predict'")
+    page.press("Space", "1")
+    said = page.run("document.getElementById('question').textContent")
+    checks.true("a prediction by keys", said.startswith("You said engine"), said)
+    tab_to(page, "e.id === 'copy-link'")
+    page.press("Enter")
+    checks.true("a link by keys", "bomb_mass%3D9" in page.wait("navigator.clipboard.readText()"))
+    tab_to(page, "e.id === 'reset'")
+    page.press("Enter")
+    page.wait(ENDED)
+    checks.equal("as at first", page.run(HASHES), [first[0], first[0]])
+    checks.quiet("keyboard", page)
+    page.close()
+
+
 def check_rubbish(checks, browser):
     for fragment, words in (("set=x=1e999", "x=1e999"), ("set=bomb_x=NaN", "bomb_x=NaN"), ("set=<b>=1", "is not a parameter"),
                             ("methods=egnine", "did you mean 'engine'"), ("methods=engine:k=0", "k: error"),
@@ -132,17 +248,106 @@ def check_rubbish(checks, browser):
         page = browser.open("stack.html", fragment)
         found = page.wait(PROBLEM)
         checks.true(f"#{fragment}", words in found, found)
+        page.wait("player.ready(player.view.frame)", limit=20)  # whatever there is to see is drawn
         page.close()
+    with open("stack.html", encoding="utf-8") as file:
+        text = file.read()
+    with open("damaged.html", "w", encoding="utf-8") as file:
+        file.write(re.sub('(id="module">)[^<]*', r"\1AAAA", text))
+    page = browser.open("damaged.html", "t=1")
+    checks.true("a damaged module", "cannot be stepped" in page.wait(PROBLEM), page.run(PROBLEM))
+    page.wait("player.ready(player.view.frame)", limit=20)
+    page.close()
+    for fragment in "x=1e999", "t=-1e999&body=-1e9&view=,,&run=7", "t=NaN&show=<b>&speed=0", "%%%&&==&t=":
+        page = browser.open("stack.html", fragment)
+        page.wait(ENDED)
+        checks.equal(f"#{fragment}", [page.run(PROBLEM), page.run("player.view.frame"), page.run(PROOFS)], ["", 0, 2])
+        page.close()
+
+
+NUMBERLESS = """parameters: {height: {value: 3, from: 1, to: 9}}
+gravity: [0, -10]
+dt: 1/60
+iterations: 10
+warm_starting: on
+accumulate_impulses: on
+position_correction: on
+frames: 9
+bodies: [{size: [1, 1], position: [0, 5], mass: MASS, friction: 0.2}]
+"""
+
+
+def check_bad_scenes(checks, browser):
+    """Numbers that are none are refused with their place: by the program, or in the page where a reader chooses them."""
+    for mass, words in ((".nan", "numberless.yaml:9:"), ("1 / ($height - 3)", "numberless.yaml:9:")):
+        with open("numberless.yaml", "w", encoding="utf-8") as file:
+            file.write(NUMBERLESS.replace("MASS", mass))
+        failed = checks.twinbox("page", "--live", "numberless.yaml", "-o", "numberless.html", status=2)
+        checks.true(f"mass: {mass}", words in failed.stderr, failed.stderr)
+    with open("numberless.yaml", "w", encoding="utf-8") as file:
+        file.write(NUMBERLESS.replace("MASS", "1 / ($height - 4)*-1"))
+    checks.twinbox("page", "--live", "numberless.yaml", "-o", "numberless.html")
+    page = browser.open("numberless.html")
+    page.wait(ENDED)
+    page.run("player.choose('height', 4)")
+    found = page.wait(PROBLEM)
+    checks.true("an infinite mass", "numberless.yaml:9:" in found and "mass" in found, found)
+    page.run("player.choose('height', 2)")
+    page.wait(ENDED)
+    checks.equal("after it", page.run(PROBLEM), "")
+    page.close()
+
+
+SHORT = """{
+  const Whole = Float32Array;
+  window.Float32Array = class extends Whole {
+    constructor(...given) {
+      if (window.short && given[0] > 1000) throw new RangeError("Array buffer allocation failed");
+      super(...given);
+    }
+  };
+}"""
+
+
+def check_memory(checks, browser):
+    """Memory that is short in a worker, then in the page."""
+    page = open_scene(checks, browser, "pyramid_settled", "engine", fragment="set=dt=1e-5")
+    found = page.wait(PROBLEM)
+    checks.true("a worker without memory", "out of memory" in found, found)
+    page.run("player.choose('dt', 1 / 60)")
+    page.wait(ENDED)
+    checks.equal("after it", [page.run(PROBLEM), page.run(PROOFS)], ["", 1])
+    page.close()
+    page = open_scene(checks, browser, "stack", "engine", before=SHORT)
+    page.wait(ENDED)
+    page.run("(window.short = true, player.choose('bomb_x', 1))")
+    found = page.wait(PROBLEM)
+    checks.true("a page without memory", "allocation failed" in found, found)
+    page.run("(window.short = false, player.choose('bomb_x', 2))")
+    page.wait(ENDED)
+    checks.equal("after that", page.run(PROBLEM), "")
+    checks.quiet("memory", page)
+    page.close()
 
 
 def main():
     with Checks() as checks:
+        if sys.argv[3:] == ["--browser", "firefox"]:
+            with Firefox() as browser:
+                check_launches(checks, browser)
+                check_drag(checks, open_scene(checks, browser, "stack", *METHODS))
+            return
         with Chromium("!!window.player?.data") as browser:
             browser.allow("clipboardReadWrite", "clipboardSanitizedWrite")
             check_launches(checks, browser)
             check_controls(checks, browser)
+            check_framing(checks, browser)
+            check_access(checks, browser)
+            check_keyboard(checks, browser)
             check_prediction(checks, browser)
             check_rubbish(checks, browser)
+            check_bad_scenes(checks, browser)
+            check_memory(checks, browser)
 
 
 main()

@@ -41,7 +41,7 @@ def main():
             file.write(watched(text))
         with Firefox() as browser:
             print(f"Firefox {browser.version}")
-            browser.load("watched.html", "#t=0.25&theme=light")
+            browser.open("watched.html", "t=0.25&theme=light")
             browser.wait("window.player && player.checked().frames === player.checked().of")
             checks.equal("hashes", browser.run("player.checked()"), {"frames": 82, "of": 82, "wrong": 0})
             checks.equal("the frame of the link", browser.run("player.view.frame"), 15)

@@ -4,6 +4,7 @@
 #include "made.h"
 #include "built_contexts.h"
 #include "pixels/gl.h"
+#include "pixels/gl_functions.h"
 #include "regression/compare.h"
 
 enum { SCREEN_SIDE = 96, SCREENS = 2 };

@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "pixels/gl.h"
+#include "pixels/gl_functions.h"
 #include "pictures/mesa.h"
 
 TEST(the_first_kind_is_the_default) {

@@ -5,6 +5,7 @@
 #include "made.h"
 
 #include "pixels/gl.h"
+#include "pixels/gl_functions.h"
 #include "pictures/internal.h"
 #include "pictures/mesa.h"
 #include "pictures/render.h"

@@ -61,9 +61,10 @@ FIXTURE(destroy) {
 /* The other way round the cause, the frames and the bodies are the same. */
 static TrajectoryParting parted(double tolerance) {
     TrajectoryParting parting, mirrored;
+    const PoseTolerance poses = {tolerance > 0, tolerance, INFINITY};
     Error error = {0};
-    assert_ok(trajectory_part(a, b, tolerance, &parting, &error), error);
-    assert_ok(trajectory_part(b, a, tolerance, &mirrored, &error), error);
+    assert_ok(trajectory_part(a, b, &poses, &parting, &error), error);
+    assert_ok(trajectory_part(b, a, &poses, &mirrored, &error), error);
     assert_int_equal(parting.cause, mirrored.cause);
     assert_int_equal(parting.step, mirrored.step);
     assert_int_equal(parting.first.frame, mirrored.first.frame);
@@ -217,6 +218,40 @@ TEST_WITH(the_tolerance_is_of_positions, make, destroy) {
     assert_int_equal(parting.beyond.frame, -1);
     parting = parted(0);
     assert_true(parting.beyond.frame == 2 && parting.beyond.body == 1);
+}
+
+TEST_WITH(the_tolerance_is_of_rotations_too, make, destroy) {
+    const PoseTolerance exact = {true, 0, 0.01}, any = {true, 0, INFINITY};
+    TrajectoryParting parting;
+    b->angle[at(2, 1)] += 0.009F;
+    b->angle[at(4, 1)] += 6.2831853F; /* a whole turn is none */
+    b->angle[at(5, 2)] -= 0.011F;
+    assert_ok(trajectory_part(a, b, &exact, &parting, &error), error);
+    assert_true(parting.beyond.frame == 5 && parting.beyond.body == 2 && parting.first.frame == 2);
+    assert_true(parting.equal == FRAMES - 3 && parting.within == 2);
+    assert_ok(trajectory_part(a, b, &any, &parting, &error), error);
+    assert_true(parting.beyond.frame == -1 && parting.equal == FRAMES - 3 && parting.within == 3);
+}
+
+/* Boxes at (body, frame) of a run that has no contacts: none touches the floor, box 2 touches box 1. */
+TEST_WITH(contacts_that_are_found_have_no_impulses, make, destroy) {
+    const PoseTolerance exact = {0};
+    TrajectoryParting parting;
+    b->position[at(4, 2)].x += 1;
+    for (Trajectory **run = (Trajectory *[]){a, b, NULL}; *run != NULL; run++)
+        assert_ok(trajectory_find_contacts(*run, &error), error);
+    assert_ok(trajectory_part(a, b, &exact, &parting, &error), error);
+    expect_first(&parting, 4, 2, PART_UNKNOWN);
+    assert_true(parting.no_impulses && parting.contacts.count_a > 0 && parting.contacts.changed == 0);
+    b->position[at(1, 2)].x += 100;
+    b->position[at(1, 1)].x -= 100;
+    a->position[at(1, 2)].x += 100;
+    a->position[at(1, 1)].x -= 100;
+    b->angle[at(2, 2)] += 1;
+    for (Trajectory **run = (Trajectory *[]){a, b, NULL}; *run != NULL; run++)
+        assert_ok(trajectory_find_contacts(*run, &error), error);
+    assert_ok(trajectory_part(a, b, &exact, &parting, &error), error);
+    expect_first(&parting, 2, 2, PART_ELSEWHERE);
 }
 
 TEST_WITH(a_shorter_run_is_compared_as_far_as_it_goes, make, destroy) {

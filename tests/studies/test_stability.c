@@ -6,6 +6,8 @@
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 
+#include <math.h>
+
 static const char scenes[] = SOURCE_DIR "/scenes";
 
 /* The scan is of a parameter of the scene, within its bounds, and whole if the parameter is. */
@@ -48,6 +50,51 @@ TEST(studies_scan_parameters_of_their_scenes) {
         assert_in_range(map->y.quick_points, 2, map->y.scan.points);
         assert_null(stability_study_find(map->name));
         scene_destroy(scene);
+    }
+}
+
+/* A stack of n leans by at most width / n a box; a box tips where its centre passes its corner, or where a turn about the corner
+   (inertia m (w^2 + h^2) / 3, speed of the top h w) lifts it that far; it slides where the slope exceeds the friction. */
+TEST(rigid_answers_follow_from_the_scenes) {
+    Scene *stairs = read_scene("tilted_stack"), *tip = read_scene("tip"), *kick = read_scene("kick");
+    Scene *ramp = read_scene("friction_ramp");
+    const double w = (double)kick->bodies[1].size.x, h = (double)kick->bodies[1].size.y;
+    const double lift = (sqrt(w * w + h * h) - h) / 2, inertia = (w * w + h * h) / 3;
+    const struct {
+        const char *study;
+        double expected;
+    } laws[] = {{"tilted_stack", (double)stairs->bodies[1].size.x / (stairs->body_count - 1)},
+                {"tip", (double)(tip->bodies[1].size.x / tip->bodies[1].size.y)},
+                {"kick", h * sqrt(-2 * (double)kick->gravity.y * lift / inertia)},
+                {"ledge", 0},
+                {"friction_ramp", (double)ramp->bodies[1].friction}};
+    int found = 0;
+    for (int i = 0; i < stability_study_count; i++) found += stability_studies[i].rigid != NULL;
+    assert_int_equal(found, sizeof laws / sizeof laws[0]);
+    for (int i = 0; i < found; i++) assert_near(stability_study_find(laws[i].study)->rigid(), laws[i].expected, 1e-6);
+    scene_destroy(stairs);
+    scene_destroy(tip);
+    scene_destroy(kick);
+    scene_destroy(ramp);
+}
+
+/* Two steps of the search beside the rigid answer. */
+TEST(accurate_methods_find_the_rigid_answers) {
+    for (int i = 0; i < stability_study_count; i++) {
+        const StabilityStudy *study = &stability_studies[i];
+        const StabilityScan scan = {study, scenes, NULL};
+        const double apart = 0.02 * (study->scan.to - study->scan.from);
+        for (int m = 0; study->rigid != NULL && m < 2; m++) {
+            ConvergedRuns converged = {0};
+            VerdictReading below, above;
+            const Method method = method_named(m > 0 ? "reference" : "interior");
+            assert_ok(stability_scan_run(&scan, &method, study->rigid() - apart, 0, &converged, &below, &error), error);
+            assert_ok(stability_scan_run(&scan, &method, study->rigid() + apart, 0, &converged, &above, &error), error);
+            if (!verdict_holds(below.verdict) || above.verdict != VERDICT_FALLS)
+                fail_msg("%s by %s: %s, then %s", study->name, method.text, verdict_words[below.verdict],
+                         verdict_words[above.verdict]);
+            converged_runs_free(&converged);
+        }
     }
 }
 
@@ -247,9 +294,10 @@ TEST(an_interrupted_study_is_resumed) {
 }
 
 TEST(unknown_names_and_methods_are_refused) {
-    StabilityOptions options = {.folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"luck"}};
+    StabilityOptions options = {
+        .folder = temporary_path("none"), .scenes = scenes, .name_count = 1, .names = {"fortune"}};
     assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error),
-                   "'luck' is not a study or map; known: stack_height, ");
+                   "'fortune' is not a study or map; known: stack_height, ");
     options.names[0] = "bomb_speed";
     options.methods = "sorcery";
     assert_refused(stability_run(&options, &(Pieces){0}, NULL, &error), "'sorcery' is not a method");

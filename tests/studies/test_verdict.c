@@ -129,6 +129,61 @@ TEST(falling_is_half_a_side_or_thirty_degrees) {
     assert_verdict(run_with_pose(-3, 0, true), VERDICT_SETTLES);     /* higher */
 }
 
+/* A pile of 60 boxes in which each contact gives way by this much within a second; another part of it is not from
+   contacts. Bodies are listed from above or from below. */
+static VerdictReading run_with_sag(float depth, float lower, bool from_above) {
+    enum { PILE = 60, FRAMES = 120 };
+    Body bodies[PILE + 1] = {trial_ground};
+    ContactPoint contacts[2 * PILE];
+    const VerdictRun run = {.gravity = {0, -10}, .dt = 1.0f / 60, .frames = FRAMES, .stands = true};
+    VerdictWatch watch = {0};
+    Error error = {0};
+    for (int frame = 0; frame <= FRAMES; frame++) {
+        const float part = frame < 60 ? (float)frame / 60 : 1;
+        for (int row = 1; row <= PILE; row++) {
+            const int i = from_above ? PILE + 1 - row : row, below = row == 1 ? 0 : from_above ? i + 1 : i - 1;
+            bodies[i] = trial_box;
+            bodies[i].position.y = (float)row - 0.5f - part * (float)row * (depth + lower);
+            for (int end = 0; end < 2; end++) /* one is deeper: the mean counts */
+                contacts[2 * row - 2 + end] = (ContactPoint){.a = i < below ? i : below,
+                                                             .b = i < below ? below : i,
+                                                             .normal = {0, i < below ? -1.0f : 1.0f},
+                                                             .separation = -part * depth * (end == 0 ? 1.5f : 0.5f)};
+        }
+        const VerdictStep step = {frame, PILE + 1, 2 * PILE, -1, bodies, contacts};
+        assert_ok(frame == 0 ? verdict_watch_begin(&watch, &run, bodies, PILE + 1, &error)
+                             : verdict_watch_step(&watch, &step, &error),
+                  error);
+    }
+    const VerdictReading reading = verdict_watch_end(&watch);
+    verdict_watch_free(&watch);
+    return reading;
+}
+
+/* 60 contacts of 9 mm: the uppermost box is 0.54 m lower. The rest that sag leaves is what falls. */
+TEST(a_pile_that_sags_stands) {
+    for (int from_above = 0; from_above < 2; from_above++) {
+        assert_verdict(run_with_sag(0.009f, 0, from_above), VERDICT_SETTLES);
+        assert_verdict(run_with_sag(0, 0.009f, from_above), VERDICT_FALLS);
+        assert_verdict(run_with_sag(0.009f, 0.008f, from_above), VERDICT_SETTLES); /* 0.48 m */
+        assert_verdict(run_with_sag(0.009f, 0.0085f, from_above), VERDICT_FALLS);  /* 0.51 m */
+    }
+}
+
+/* A box beside the pile, deep in it, carries nothing. */
+TEST(a_contact_at_the_side_is_no_sag) {
+    for (int side = 0; side < 2; side++) {
+        Trial trial;
+        trial_begin(&trial);
+        trial.contacts[0].normal = side == 0 ? vec2(0, 1) : vec2(1, 0);
+        trial_go(&trial, 1);
+        trial.contacts[0].separation = -0.6f; /* of one point: 0.3 m */
+        trial.bodies[1].position.y -= 0.6f;
+        trial_go(&trial, 50);
+        assert_verdict(trial_end(&trial), side == 0 ? VERDICT_SWAYS : VERDICT_FALLS);
+    }
+}
+
 /* Down is the direction of gravity. */
 TEST(falling_goes_along_gravity) {
     for (int side = 0; side < 2; side++) {

@@ -26,6 +26,52 @@ TEST(energy_may_not_exceed_what_was_brought) {
     assert_reading(lifted_by(0.0011f), VERDICT_EXPLODES, -1, 101, 0.011, 1e-5, "J");
 }
 
+/* A skin of 7.5 mm lifts the box by 15 mm; what exceeds that by more than 1 mm (alone) or 0.1 m (beside) explodes. */
+static VerdictReading lifted_with_skin(float rise, float skin, bool alone) {
+    Trial trial;
+    trial_begin(&trial);
+    if (alone) trial.run.converged = NULL;
+    for (int i = 0; i <= TRIAL_FRAMES; i++) trial.energy[i] = 5;
+    trial.run.skin = skin;
+    trial_go(&trial, 30);
+    trial.bodies[1].position.y += rise;
+    trial_go(&trial, 200);
+    return trial_end(&trial);
+}
+
+TEST(a_skin_is_no_explosion) {
+    assert_verdict(lifted_with_skin(0.0159f, 0.0075f, true), VERDICT_SETTLES);
+    assert_verdict(lifted_with_skin(0.0161f, 0.0075f, true), VERDICT_EXPLODES);
+    assert_verdict(lifted_with_skin(0.0159f, 0, true), VERDICT_EXPLODES);
+    assert_verdict(lifted_with_skin(0.114f, 0.0075f, false), VERDICT_SETTLES);
+    assert_verdict(lifted_with_skin(0.116f, 0.0075f, false), VERDICT_EXPLODES);
+    assert_verdict(lifted_with_skin(0.114f, 0, false), VERDICT_EXPLODES);
+}
+
+/* Ten boxes that rest 15 mm apart, as Planck leaves them: box n is 15 n mm higher. */
+TEST(a_skin_lifts_each_box_of_a_pile) {
+    enum { PILE = 10 };
+    for (int side = 0; side < 2; side++) {
+        Body bodies[PILE + 1] = {trial_ground};
+        VerdictRun run = {.gravity = {0, -10}, .dt = 1.0f / 60, .frames = 100, .stands = true, .finds_contacts = true};
+        run.skin = side == 0 ? 0.0075f : 0;
+        VerdictWatch watch = {0};
+        for (int frame = 0; frame <= 100; frame++) {
+            for (int i = 1; i <= PILE; i++) {
+                bodies[i] = trial_box;
+                bodies[i].position.y = (float)i - 0.5f + (frame > 0 ? 0.0149f * (float)i : 0);
+            }
+            const VerdictStep step = {.frame = frame, .body_count = PILE + 1, .bomb = -1, .bodies = bodies};
+            assert_ok(frame == 0 ? verdict_watch_begin(&watch, &run, bodies, PILE + 1, &error)
+                                 : verdict_watch_step(&watch, &step, &error),
+                      error);
+        }
+        assert_int_equal(watch.finder.set.contact_count, side == 0 ? 2 * PILE : 0);
+        assert_verdict(verdict_watch_end(&watch), side == 0 ? VERDICT_SETTLES : VERDICT_EXPLODES);
+        verdict_watch_free(&watch);
+    }
+}
+
 /* From 3 m to 0.5 m, 25 J are lost: 5% of them, 0.125 m, may come back. The box has lost its 25 J for a whole second. */
 static VerdictReading regains(float rise) {
     Trial trial;
@@ -117,11 +163,12 @@ static Scene *scene_at(const StabilityStudy *study, double value) {
     return scene;
 }
 
-/* The rule and the table of studies agree on which scenes are meant to stand. */
+/* The rule and the table of studies agree on which scenes are meant to stand. Of those with a rigid answer, two come to
+   stand after a start with a speed. */
 TEST(scenes_without_bomb_and_speed_stand) {
     for (int i = 0; i < stability_study_count; i++) {
         Scene *scene = scene_at(&stability_studies[i], stability_studies[i].scan.to);
-        if (verdict_run_of(scene).stands != stability_studies[i].stands)
+        if (verdict_run_of(scene).stands != stability_studies[i].stands && stability_studies[i].rigid == NULL)
             fail_msg("%s is %smeant to stand", stability_studies[i].name, stability_studies[i].stands ? "" : "not ");
         scene_destroy(scene);
     }

@@ -21,10 +21,21 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# Loaded or started at run time.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ffmpeg")
-if(TWINBOX_OSMESA)
-    set(CPACK_DEBIAN_PACKAGE_SUGGESTS libosmesa6)
+if(TWINBOX_PARTS STREQUAL "all")
+    # Loaded or started at run time.
+    set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
+    set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ffmpeg")
+    if(TWINBOX_OSMESA)
+        set(CPACK_DEBIAN_PACKAGE_SUGGESTS libosmesa6)
+    endif()
+    set(CPACK_DEBIAN_PACKAGE_CONFLICTS twinbox-compare)
+else()
+    set(CPACK_PACKAGE_NAME twinbox-compare)
+    set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "visual regression: compares folders of PNG files")
+    set(CPACK_PACKAGE_DESCRIPTION
+        "The commands compare and approve of twinbox, for pictures: which pixels of
+two folders of PNG files differ, with limits, masks, reports for people and
+CI systems, and a server with the protocol of odiff.")
+    set(CPACK_DEBIAN_PACKAGE_CONFLICTS twinbox)
 endif()
 include(CPack)

@@ -7,9 +7,17 @@ function packed(id) {
 }
 
 async function inflated(id) {
-  const stream = new Blob([packed(id)]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  const {readable, writable} = new DecompressionStream("deflate-raw"), writer = writable.getWriter();
+  const written = Promise.all([writer.write(packed(id)), writer.close()]); /* a Blob would go through another process */
+  const [bytes] = await Promise.all([new Response(readable).arrayBuffer(), written]);
+  return new Uint8Array(bytes);
 }
+
+/* What takes longest begins first: the module of live runs (src/live/live.h) is compiled while the viewer begins, once for all
+   workers. A failure is told where the parts are used. */
+const live_parts = document.getElementById("module") && Promise.all([inflated("module").then(bytes => WebAssembly.compile(bytes)),
+  inflated("bundle")]);
+live_parts?.catch(() => {});
 
 inflated("viewer").then(bytes => {
   const script = document.createElement("script");

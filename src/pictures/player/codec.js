@@ -19,13 +19,20 @@ function make_states(run, frames, bodies) {
 
 const pairs = numbers => Array.from({length: numbers.length / 2}, (_, i) => [numbers[2 * i], numbers[2 * i + 1]]);
 
-/* A live run (live.js) has a method and no states yet. */
+/* A live run (live.js) has a method, and its states are computed. */
 const runs = data.runs.map((run, index) => Object.assign(make_states(run, run.frames, run.bodies), {
   index, size: pairs(new Float32Array(packed("size" + index).buffer)),
   fixed: Array.from(packed("fixed" + index), Boolean), reached: -1,
   distances: run.live ? new Float32Array(run.frames) : new Float32Array(packed("distances" + index).buffer),
   hashes: run.live ? null : new DataView(packed("hashes" + index).buffer),
 }));
+
+/* The first frame of live runs, so that the first picture waits for no worker. */
+for (const run of runs.filter(each => each.live)) {
+  pairs(new Float32Array(packed("places").buffer)).forEach(([x, y], body) => { [run.x[body], run.y[body]] = [x, y]; });
+  run.angle.set(new Float32Array(packed("angles").buffer));
+  run.reached = 0;
+}
 
 /* Number i of a column of `count` numbers in four planes of bytes; the same as a difference. */
 const number_at = (bytes, begin, count, i) => {
@@ -115,8 +122,8 @@ function chunks_of(run, frame) {
 const lists_wanted = run => run.contacts && !run.live && (view.body >= 0 || shows("contacts") || shows("impulses"));
 const list_place = (run, frame) => Math.min(Math.floor(frame), run.frames - 1);
 
-/* Whether all runs have what is shown of a frame. */
-const ready = frame => runs.every(run => run.live ? run.reached >= min(ceil(frame), run.frames - 1)
+/* Whether all runs have what is shown of a frame; one that has failed shows what it has. */
+const ready = frame => runs.every(run => run.live ? has_failed(run) || run.reached >= min(ceil(frame), run.frames - 1)
   : chunks_of(run, frame).every(chunk => run.done[chunk]) &&
     (!lists_wanted(run) || list_place(run, frame) in run.lists));
 

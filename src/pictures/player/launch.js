@@ -30,7 +30,7 @@ function setting_row(each) {
   const number = make("input", {type: "number", min: from, max: to, step, "aria-label": `${label}${unit ? ", " + unit : ""}`,
     onchange: () => choose(name, Number(number.value))});
   inputs.set(name, [range, number]);
-  return make("tr", make("th", label), make("td", range), make("td", number, " " + (unit ?? "")));
+  return make("tr", make("th", label), make("td", range), make("td", number), make("td", unit ?? ""));
 }
 
 /* The text of a method, "interior:near=0.02", of its controls. */
@@ -67,12 +67,17 @@ function method_row(run) {
   });
   const remove = make("button", {"aria-label": `Remove ${run.live}`, onclick: () => remove_panel(run)}, "Remove");
   remove.disabled = live_runs().length < 2;
-  return make("div", {class: "bar"}, swatch(run.index), select, controls, remove);
+  const group = {class: "bar", role: "group", "aria-label": `Panel ${run.index + 1}`};
+  return make("div", group, swatch(run.index), select, controls, remove);
 }
 
+/* The focus stays where it was, or at what has taken its place. */
 function list_methods() {
+  const controls = () => [...ui.methods.querySelectorAll("select, input, button")];
+  const at = controls().indexOf(document.activeElement);
   ui.methods.replaceChildren(...live_runs().map(method_row));
   ui.add.disabled = runs.length >= METHODS_MAX;
+  if (at >= 0) (controls()[at]?.disabled === false ? controls()[at] : ui.add).focus();
 }
 
 function remove_panel(run) {
@@ -91,12 +96,15 @@ function add_panel(text = "engine") {
   describe_run(run);
   runs.push(run);
   open_worker(run);
+  start(run);
   take_stock();
   list_methods();
 }
 
-/* When scene and methods are known. */
-function list_controls() {
+/* What there is to choose from, as the first worker that is ready tells. */
+function list_controls({methods, scene}) {
+  if (setup.scene) return;
+  Object.assign(setup, {methods, scene});
   const rank = ({name, common}) => !common ? 0 : name.startsWith("bomb") ? 1 : 2;
   ui.settings.replaceChildren(...[...setup.scene.parameters].sort((a, b) => rank(a) - rank(b)).map(setting_row));
   ui.launch.hidden = ui.panels.hidden = false;
@@ -141,6 +149,7 @@ function drag_bomb(event) {
 function drop_bomb() {
   const was = held !== null;
   held = null;
+  if (was) frame_launch();
   return was;
 }
 

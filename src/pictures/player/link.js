@@ -39,10 +39,7 @@ const live_words = () => !data.live ? [] : [["set", encodeURIComponent(set_text(
 
 /* What is absent or malformed has its default. */
 onhashchange = () => {
-  if (data.live) {
-    follow_link(location.hash);
-    launch();
-  }
+  if (data.live) follow_link(location.hash);
   const link = new URLSearchParams(location.hash.slice(1)), text = key => link.get(key) ?? "";
   const one_of = (key, list, usual) => list.find(each => String(each) === text(key)) ?? usual;
   const [x, y, w, h] = text("view").split(",").map(Number), body = one_of("body", [...Array(most_bodies).keys()], -1);
@@ -53,17 +50,21 @@ onhashchange = () => {
     show: new Set(text("show").split(",")), theme: one_of("theme", THEMES, "auto"),
     camera: is_view({x, y, w, h}) ? {kind, x, y, w, h} : FIT,
   });
+  if (data.live) launch();
 };
 
-/* The launch that a fragment names. Panels are added when the page knows its methods. */
+/* The launch that a fragment names. */
 function follow_link(fragment) {
   const link = new URLSearchParams(fragment.slice(1)), set = link.get("set") ?? first_set;
   const methods = (link.get("methods") ?? first_runs.filter(each => each.live).map(each => each.live).join(";")).split(";");
-  if (set !== set_text()) read_set(set);
+  if (set !== set_text()) {
+    read_set(set);
+    if (launched === 0) live_runs().forEach(run => { run.reached = -1; }); /* the page has another first frame */
+  }
   methods.filter(Boolean).slice(0, METHODS_MAX).forEach((text, i) => {
     const run = live_runs()[i];
-    if (!run && setup.module) add_panel(text);
-    else if (run && run.live !== text) Object.assign(run, {live: text}), describe_run(run);
+    if (!run) add_panel(text);
+    else if (run.live !== text) Object.assign(run, {live: text}), describe_run(run);
   });
   show_settings();
 }

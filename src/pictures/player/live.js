@@ -3,16 +3,16 @@
 const LARGE = 4e5, PATIENCE = 150, WORDS = 9; /* states of a run without contacts; ms; 32-bit words of a contact */
 const chosen = new Map(); /* settings of the scene, by name */
 let first_set = ""; /* those that the page begins with, as set_text() */
-const first_fragment = location.hash;
 const first_runs = data.runs.map(({live, hash}) => ({live, hash}));
-const setup = {scene: null, methods: [], url: "", module: null, bundle: null};
+const setup = {scene: null, methods: [], url: ""};
 let launched = 0, swapped = 0, arrivals = null, announce = null;
 
 const arrival = () => arrivals ??= new Promise(done => { announce = done; });
 const live_runs = () => runs.filter(run => run.live);
 const set_text = () => [...chosen].map(([name, value]) => `${name}=${value}`).join();
 /* Whether a run has what it has of the latest launch: states, or an error. */
-const is_settled = run => [run.next?.shown, run.shown, run.failed].includes(launched);
+const has_failed = run => run.broken || run.failed === launched;
+const is_settled = run => has_failed(run) || run.next?.shown === launched || run.shown === launched;
 
 /* What is wrong with a link stays until a setting is chosen; what is wrong with a run, until it can be launched. */
 let link_problem = "", page_problem = "";
@@ -39,13 +39,16 @@ function read_set(text) {
   show_problems();
 }
 
+/* Workers keep the latest launch until they are ready. */
+function start(run) {
+  run.worker.postMessage({id: launched, set: set_text(), method: run.live, until: min(ceil(view.frame), last),
+    contacts: (last + 1) * most_bodies < LARGE ? 1 : 0});
+}
+
 /* Steps all live runs from the start. */
 function launch() {
-  if (!live_runs().every(run => run.open)) return;
   launched++;
-  for (const run of live_runs())
-    run.worker.postMessage({id: launched, set: set_text(), method: run.live, until: min(ceil(view.frame), last),
-      contacts: (last + 1) * most_bodies < LARGE ? 1 : 0});
+  live_runs().forEach(start);
 }
 
 /* Floats of the columns of a part go to their places in the arrays of a run. */
@@ -103,26 +106,18 @@ function compare_run(run) {
   }
 }
 
-/* The view for another scene than the first: what stands, and a margin. */
-function frame_scene(run) {
-  const framing = data.framing, box = {left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity};
-  run.fixed.forEach((still, body) => {
-    if (still || body === run.bomb || !exists(run.index, 0, body)) return;
-    const {x, y, angle} = pose(run.index, 0, body), [w, h] = run.size[body], c = abs(cos(angle)), s = abs(sin(angle));
-    box.left = min(box.left, x - (c * w + s * h) / 2);
-    box.right = max(box.right, x + (c * w + s * h) / 2);
-    box.bottom = min(box.bottom, y - (s * w + c * h) / 2);
-    box.top = max(box.top, y + (s * w + c * h) / 2);
-  });
-  const seen = [box.left, box.right, box.bottom, box.top, run.bodies].map(six_digits).join();
-  if (framing.set || !(box.right > box.left) || seen === framing.seen) return;
-  if (framing.seen) {
-    const wide = 0.11 * (box.right - box.left), high = box.top - box.bottom, below = 0.06 * high;
-    Object.assign(framing, {left: box.left - wide, right: box.right + wide, bottom: box.bottom - below,
-      top: box.top + 0.22 * high - below, middle: (box.left + box.right) / 2,
-      room_left: box.left - wide - high / 2, room_right: box.right + wide + high / 2});
-  }
-  framing.seen = seen;
+/* The view is what `render` shows of this launch, when the launch rests: a view that moves along would hide what a drag changes. A
+   recorded run of another scene keeps that of the beginning. */
+let framing_due = 0;
+function frame_launch() {
+  clearTimeout(framing_due);
+  framing_due = setTimeout(() => {
+    const {framing} = live_runs()[0] ?? {};
+    if (held || !framing || runs.some(run => !run.live && !run.first)) return;
+    Object.assign(data.framing, framing);
+    planned_for = "";
+    again();
+  }, PATIENCE);
 }
 
 function describe_run(run) {
@@ -154,7 +149,7 @@ function take_stock() {
     data.dt = runs[0].dt;
   }
   data.frames = data.total = max(...runs.map(run => run.frames));
-  if (runs[0].live) frame_scene(runs[0]);
+  frame_launch();
   data.scales.largest = 0;
   for (const run of runs.filter(each => each.compared && each !== runs[0])) {
     if (run.live) compare_run(run);
@@ -169,12 +164,12 @@ function take_stock() {
 }
 
 function take_part(run, part) {
-  if (part.methods) return begin_launches(run, part);
+  if (part.methods) return list_controls(part);
   if (part.error) {
-    run.open = true;
     run.failed = part.id;
+    run.broken = !part.id;
     complain(run, part.error);
-    return part.id ? show_arrived() : launch();
+    return show_arrived();
   }
   let into = run.shown === part.id ? run : run.next;
   if (into?.shown !== part.id) {
@@ -184,6 +179,7 @@ function take_part(run, part) {
       ...part.scene, contacts: part.recorded, distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: "", holds: null});
   }
   copy_part(into, part);
+  into.framing = part.framing ?? into.framing;
   if (part.ended) {
     into.hash = part.hash;
     into.holds = part.verdict?.holds ?? false;
@@ -193,37 +189,30 @@ function take_part(run, part) {
   if (into === run) take_stock(); else show_arrived();
 }
 
+/* A worker begins while the module is compiled. */
 function open_worker(run) {
   run.worker = new Worker(setup.url);
-  run.worker.onmessage = ({data: part}) => take_part(run, part);
+  run.worker.onmessage = ({data: part}) => {
+    try { take_part(run, part); } catch (error) { complain(run, error.message); } /* memory is short */
+  };
   run.worker.onerror = event => complain(run, event.message || "the worker has ended");
-  run.worker.postMessage({module: setup.module, bundle: setup.bundle});
+  live_parts.then(([module, bundle]) => run.worker.postMessage({module, bundle})).catch(cannot_step);
 }
 
-/* A worker is open, and tells methods and settings to choose from. */
-function begin_launches(run, {methods, scene}) {
-  run.open = true;
-  if (setup.methods.length === 0) {
-    Object.assign(setup, {methods, scene});
-    list_controls();
-    follow_link(first_fragment);
-  }
-  launch();
+function cannot_step(error) {
+  live_runs().forEach(run => { run.broken = true; });
+  page_problem = `The runs cannot be stepped in this browser: ${error.message}`;
+  show_problems();
+  again();
 }
 
-async function begin_live() {
+function begin_live() {
   if (!data.live) return;
   runs.forEach(run => { run.first = !run.live && run.compared; });
   read_set(data.live.set);
   first_set = set_text();
-  try {
-    [setup.module, setup.bundle] = await Promise.all(["module", "bundle"].map(inflated));
-    setup.url = URL.createObjectURL(new Blob([`(${panel_worker})()`], {type: "text/javascript"}));
-    live_runs().forEach(open_worker);
-  } catch (error) {
-    page_problem = `The runs cannot be stepped in this browser: ${error.message}`;
-    show_problems();
-  }
+  setup.url = URL.createObjectURL(new Blob([`(${panel_worker})()`], {type: "text/javascript"}));
+  try { live_runs().forEach(open_worker); } catch (error) { cannot_step(error); }
 }
 
 /* The hash of each run beside that of the C program, where it made the same run. */

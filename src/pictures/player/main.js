@@ -64,9 +64,9 @@ function runs_changed() {
 }
 dark_wanted.onchange = onresize = again;
 new ResizeObserver(again).observe(ui.frame);
+begin_live();
 runs_changed();
 apply_theme();
-begin_live();
 onhashchange();
 load(view.frame).then(check_all).catch(undecoded);
 window.player = {

@@ -1,8 +1,9 @@
 /* What runs in the worker of a live panel: the page sends the source of this function, so nothing else of the page is there.
    It has its own instance of the module (src/live/live.h) and steps one launch after the other. */
 function panel_worker() {
-  const SLICE = 10, SHARE = 60; /* ms: between looks for a newer launch; between parts of a run that are sent */
-  let live = null, scene = 0, wanted = null, busy = false;
+  const SLICE = 10, FIRST = 16, SHARE = 60; /* ms: between looks for a newer launch; to the first part of a run that is sent, and
+    between the others */
+  let live = null, scene = 0, wanted = null, busy = true; /* until it is open */
   const memory = () => live.memory.buffer;
   const copy = (type, at, from, count) => new type(memory(), at, from + count).slice(from);
   const text = at => {
@@ -28,7 +29,7 @@ function panel_worker() {
   const json = (...call) => JSON.parse(text(must(...call)));
 
   async function open({module, bundle}) {
-    live = (await WebAssembly.instantiate(module)).instance.exports;
+    live = (await WebAssembly.instantiate(module)).exports;
     live._initialize();
     scene = must("live_open", put(bundle), bundle.length);
     postMessage({methods: json("live_methods"), scene: json("live_describe", scene, "")});
@@ -49,6 +50,7 @@ function panel_worker() {
     };
     const words = 9, from = part.starts[0];
     part.contacts = copy(Int32Array, live.live_contacts(run), words * from, words * (part.starts.at(-1) - from));
+    if (ended || first === 0) part.framing = json("live_framing", run);
     if (ended) {
       const verdict = live.live_verdict(run);
       part.hash = BigInt.asUintN(64, live.live_hash(run, last)).toString(16).padStart(16, "0");
@@ -75,7 +77,7 @@ function panel_worker() {
           if (frame === before) break;
         }
         const ended = frame === end || text(live.live_failure(run)) !== "";
-        if (ended || (frame >= until && performance.now() - sent > SHARE)) {
+        if (ended || (frame >= until && performance.now() - sent > (next === 0 ? FIRST : SHARE))) {
           send(run, launch, {dt, steps, iterations}, next, frame, ended);
           [next, sent] = [frame + 1, performance.now()];
         }
@@ -95,9 +97,9 @@ function panel_worker() {
     busy = false;
   }
 
-  onmessage = async ({data}) => {
-    if (data.module) return open(data).catch(error => postMessage({error: error.message}));
+  onmessage = ({data}) => {
+    if (data.module) return open(data).then(work, error => postMessage({error: error.message}));
     wanted = data;
-    if (!busy && live) work();
+    if (!busy) work();
   };
 }

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "pixels/png.h"
 #include "pixels/gl.h"
+#include "pixels/gl_functions.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A comparison of two runs for other programs: as JSON, and as the files of a report. */
+#include "base/base.h"
+#include "base/file.h"
+#include "base/json.h"
+#include "cli/cli.h"
+#include "cli/runs.h"
+#include "pictures/page.h"
+#include "pictures/player.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void write_run(JsonWriter *json, const char *key, const char *path, const Trajectory *run) {
+    json_begin_object(json, key, JSON_ONE_LINE);
+    json_put_text(json, "path", path);
+    json_put_text(json, "scene", run->scene);
+    json_put_hash(json, "scene_hash", run->scene_hash);
+    json_put_text(json, "method", run->method);
+    json_put_int(json, "frames", run->frames);
+    json_put_int(json, "bodies", run->bodies);
+    json_end(json);
+}
+
+/* The number of a frame; negative: no frame. */
+static void put_frame(JsonWriter *json, const char *key, int frame) {
+    if (!json_put_absent(json, key, frame < 0)) json_put_int(json, key, frame);
+}
+
+/* The only run that has it. */
+static void write_only_in(JsonWriter *json, bool in_first, bool in_second) {
+    put_frame(json, "only_in_run", in_first && in_second ? -1 : in_first ? 1 : 2);
+}
+
+static void write_parted(JsonWriter *json, const char *key, const RunComparison *c, const PartedBody *parted) {
+    const Trajectory *a = c->runs[0];
+    if (json_put_absent(json, key, parted->frame < 0)) return;
+    const bool both = parted->by.in_a && parted->by.in_b, moves = both && !c->parting.poses_only;
+    json_begin_object(json, key, JSON_ONE_LINE);
+    json_put_int(json, "frame", parted->frame);
+    json_put_int(json, "body", parted->body);
+    json_put_bool(json, "bomb", parted->body == a->bomb);
+    json_put_int(json, "bodies", parted->bodies);
+    write_only_in(json, parted->by.in_a, parted->by.in_b);
+    json_put_number(json, "distance", both ? parted->by.distance : NAN);
+    json_put_number(json, "angle", both ? parted->by.angle : NAN);
+    json_put_number(json, "speed", moves ? parted->by.speed : NAN);
+    json_put_number(json, "spin", moves ? parted->by.spin : NAN);
+    json_end(json);
+}
+
+static void write_contact(JsonWriter *json, const ContactDifference *contacts, bool no_impulses) {
+    const bool only = contacts->only_a + contacts->only_b > 0;
+    if (json_put_absent(json, "contact", !only && contacts->changed == 0)) return;
+    const TrajectoryContact *a = only ? &contacts->only : &contacts->largest_a;
+    const TrajectoryContact *b = only ? &contacts->only : &contacts->largest_b;
+    const bool in_first = !only || contacts->only_first_a, in_second = !only || !contacts->only_first_a;
+    json_begin_object(json, "contact", JSON_ONE_LINE);
+    json_put_int(json, "a", a->a);
+    json_put_int(json, "b", a->b);
+    json_put_int(json, "feature", a->feature);
+    json_output_pair(json, "point", (double)a->point.x, (double)a->point.y);
+    write_only_in(json, in_first, in_second);
+    const double none = no_impulses ? NAN : 0;
+    json_output_pair(json, "normal_impulse", in_first ? none + (double)a->normal_impulse : none,
+                     in_second ? none + (double)b->normal_impulse : none);
+    json_output_pair(json, "tangent_impulse", in_first ? none + (double)a->tangent_impulse : none,
+                     in_second ? none + (double)b->tangent_impulse : none);
+    json_end(json);
+}
+
+static void write_contacts(JsonWriter *json, const char *key, int step, const ContactDifference *contacts,
+                           bool no_impulses) {
+    if (json_put_absent(json, key, step < 0)) return;
+    json_begin_object(json, key, JSON_ONE_LINE);
+    json_put_int(json, "step", step);
+    json_put_int(json, "changed", contacts->changed);
+    json_put_int(json, "moved", contacts->moved);
+    json_put_int(json, "only_in_run_1", contacts->only_a);
+    json_put_int(json, "only_in_run_2", contacts->only_b);
+    write_contact(json, contacts, no_impulses);
+    json_end(json);
+}
+
+static void write_growth(JsonWriter *json, const char *key, const Growth *growth, double dt) {
+    const bool rate = growth->count >= GROWTH_MIN_FRAMES;
+    json_begin_object(json, key, JSON_ONE_LINE);
+    put_frame(json, "first", growth->first);
+    put_frame(json, "last", growth->last);
+    json_put_int(json, "count", growth->count);
+    json_put_bool(json, "saturated", growth->saturated);
+    json_put_number(json, "from", growth->count > 0 ? growth->from : NAN);
+    json_put_number(json, "to", growth->count > 0 ? growth->to : NAN);
+    json_put_number(json, "rate", rate ? growth->rate : NAN);
+    json_put_number(json, "doubling_frames", rate ? growth_doubling(growth, dt) : NAN);
+    json_put_number(json, "scatter_factor", rate ? exp(growth->scatter) : NAN);
+    json_end(json);
+}
+
+static void write_chaos(JsonWriter *json, const RunComparison *c, double dt) {
+    static const char *const verdicts[] = {[GROWTH_UNKNOWN] = "unknown",
+                                           [GROWTH_NEITHER] = "neither doubles",
+                                           [GROWTH_SAME] = "chaos",
+                                           [GROWTH_FASTER] = "faster",
+                                           [GROWTH_SLOWER] = "slower"};
+    json_begin_object(json, "shifted", JSON_LINES);
+    json_put_int(json, "body", c->chaos.body);
+    json_put_number(json, "shift", c->chaos.shift);
+    put_frame(json, "rerun_differs", c->chaos.rerun_differs);
+    write_growth(json, "growth", &c->shifted, dt);
+    json_put_text(json, "verdict", verdicts[growth_compare(&c->growth, &c->shifted, dt)]);
+    json_end(json);
+}
+
+static void write_largest(JsonWriter *json, const TrajectoryDifference *difference) {
+    if (json_put_absent(json, "largest", difference->max_frame < 0)) return;
+    json_begin_object(json, "largest", JSON_ONE_LINE);
+    json_put_int(json, "frame", difference->max_frame);
+    json_put_int(json, "body", difference->max_body);
+    json_put_number(json, "distance", difference->max_distance);
+    json_end(json);
+}
+
+static const char *const causes[] = {[PART_NONE] = "none",
+                                     [PART_START] = "initial state",
+                                     [PART_LAUNCH] = "launch",
+                                     [PART_HIDDEN] = "warm start",
+                                     [PART_CONTACTS] = "collision detection",
+                                     [PART_SOLVER] = "solver",
+                                     [PART_ELSEWHERE] = "not the contacts",
+                                     [PART_UNKNOWN] = "unknown"};
+
+void compare_runs_write_json(JsonWriter *json, const void *context) {
+    static const char *const keys[] = {"expected", "actual"};
+    const RunComparison *c = context;
+    const TrajectoryParting *parting = &c->parting;
+    const Trajectory *a = c->runs[0];
+    const bool differ = parting->first.frame >= 0, contacts = !a->no_contacts && !c->runs[1]->no_contacts,
+               beyond = contacts && c->options->poses.given && parting->beyond.frame > 0;
+    for (int i = 0; i < 2; i++) write_run(json, keys[i], c->options->paths[i], c->runs[i]);
+    json_put_bool(json, "passed", c->passed);
+    json_put_text(json, "words", c->difference.what[0] != '\0' ? c->difference.what : NULL);
+    json_put_int(json, "frames", parting->frames);
+    json_put_number(json, "tolerance", c->options->poses.distance);
+    json_put_number(json, "tolerance_angle", c->options->poses.angle);
+    json_put_int(json, "frames_equal", parting->equal);
+    json_put_int(json, "frames_within", parting->within);
+    json_put_bool(json, "poses_only", c->difference.poses_only);
+    write_parted(json, "first", c, &parting->first);
+    write_largest(json, &c->difference);
+    json_put_text(json, "cause", c->same_world ? causes[parting->cause] : NULL);
+    json_put_bool(json, "contacts_found_again", c->found_contacts);
+    json_begin_array(json, "not_compared", JSON_LINES);
+    RunOther others[RUN_OTHERS_MAX];
+    const int other_count = compare_runs_others(c, others);
+    for (int i = 0; i < other_count; i++) {
+        json_begin_object(json, NULL, JSON_ONE_LINE);
+        json_put_text(json, "what", others[i].what);
+        for (int k = 0; k < 2; k++) json_put_text(json, keys[k], others[i].values[k]);
+        json_end(json);
+    }
+    json_end(json);
+    write_contacts(json, "contacts", parting->step, &parting->contacts, parting->no_impulses);
+    write_parted(json, "beyond", c, &parting->beyond);
+    write_contacts(json, "beyond_contacts", beyond ? parting->beyond.frame : -1, &parting->beyond_contacts,
+                   parting->no_impulses);
+    if (!json_put_absent(json, "growth", !differ)) write_growth(json, "growth", &c->growth, (double)a->dt);
+    if (!json_put_absent(json, "shifted", !differ || c->chaos.distance == NULL)) write_chaos(json, c, (double)a->dt);
+}
+
+/* The files of a report: those that pictures have, and a page that plays both runs. */
+
+static const char *cause_of(const RunComparison *c) {
+    return c->passed ? (c->parting.first.frame < 0 ? "equal" : "within tolerance") : "physics changed";
+}
+
+static void write_page(FILE *out, const void *context) {
+    const RunComparison *c = context;
+    char moment[PLAYER_LINK_SIZE];
+    const PartedBody *first = &c->parting.first;
+    house_page_begin(out, "Comparison of two runs", "pre{white-space:pre-wrap}");
+    fprintf(out, "<main>\n<h1>Comparison of two runs: %s</h1>\n<pre>", cause_of(c));
+    html_put(out, c->text);
+    fputs("</pre>\n", out);
+    player_link(moment, first->frame > 0 ? first->frame * (double)c->runs[0]->dt : 0, first->body);
+    if (c->has_page) fprintf(out, "<p><a href=\"run.html%s\">Both runs, at the first difference</a></p>\n", moment);
+    fputs("</main>\n", out);
+    house_page_end(out);
+}
+
+static void write_failure(FILE *out, const RunComparison *c) {
+    const PartedBody *parted = &c->parting.beyond;
+    fputs("failure type=\"physics changed\" message=\"physics changed: ", out);
+    if (parted->frame >= 0)
+        fprintf(out, "frame %d, body %d; cause of the first difference: %s", parted->frame, parted->body,
+                causes[c->parting.cause]);
+    else
+        html_put(out, c->difference.what);
+    fputs("\">", out);
+}
+
+static void write_junit(FILE *out, const void *context) {
+    const RunComparison *c = context;
+    fprintf(
+        out,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"twinbox compare\" tests=\"1\" failures=\"%d\" "
+        "errors=\"0\" skipped=\"0\">\n  <testcase classname=\"trajectories\" name=\"",
+        !c->passed);
+    html_put(out, c->options->paths[1]);
+    fputs("\">\n    <", out);
+    if (c->passed)
+        fputs("system-out>", out);
+    else
+        write_failure(out, c);
+    html_put(out, c->text);
+    fprintf(out, "</%s>\n  </testcase>\n</testsuite>\n", c->passed ? "system-out" : "failure");
+}
+
+static void write_tap(FILE *out, const void *context) {
+    const RunComparison *c = context;
+    fprintf(out, "TAP version 14\n1..1\n%s 1 - runs: %s\n", c->passed ? "ok" : "not ok", cause_of(c));
+    for (const char *line = c->text; *line != '\0'; line += strcspn(line, "\n") + 1)
+        fprintf(out, "# %.*s\n", (int)strcspn(line, "\n"), line);
+}
+
+static void write_results(FILE *out, const void *context) {
+    JsonWriter json = {.out = out};
+    json_begin_object(&json, NULL, JSON_LINES);
+    json_put_text(&json, "format", "twinbox compare runs 1");
+    compare_runs_write_json(&json, context);
+    json_end(&json);
+}
+
+/* All frames of runs that are not long, else those around the first difference. */
+static void choose_frames(const RunComparison *c, PlayerOptions *options) {
+    enum { STATES_MAX = 200000, BEFORE = 60 };
+    const int first = c->parting.first.frame, frames = c->parting.frames;
+    const int room = STATES_MAX / (c->runs[0]->bodies + 1) + BEFORE + 1;
+    if (frames <= room) return;
+    options->first = first > BEFORE ? first - BEFORE : 0;
+    options->last = options->first + room < frames ? options->first + room - 1 : frames - 1;
+}
+
+/* None of equal runs, and of those without a common moment. Contacts that were found again have no impulses to show. */
+static bool write_run_page(RunComparison *c, const char *folder, Error *error) {
+    char path[PATH_MAX];
+    PlayerResult result;
+    PlayerOptions options = {.last = -1, .names = {"expected", "actual"}};
+    c->has_page = c->parting.first.frame >= 0;
+    if (c->has_page) choose_frames(c, &options);
+    for (int i = 0; i < 2; i++) c->runs[i]->no_contacts |= c->found_contacts;
+    return !c->has_page || (file_path(path, sizeof path, error, "%s/run.html", folder) &&
+                            player_write((const Trajectory *const *)c->runs, 2, &options, path, &result, error));
+}
+
+bool compare_runs_report(RunComparison *c, const char *folder, Error *error) {
+    static const struct {
+        const char *name;
+        void (*write)(FILE *out, const void *comparison);
+    } parts[] = {{"report.html", write_page},
+                 {"junit.xml", write_junit},
+                 {"results.tap", write_tap},
+                 {"results.json", write_results}};
+    char path[PATH_MAX];
+    bool ok = file_make_directory(folder, error) && write_run_page(c, folder, error);
+    for (size_t i = 0; ok && i < sizeof parts / sizeof *parts; i++)
+        ok = file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) &&
+             file_write_text(path, parts[i].write, c, error);
+    return ok;
+}

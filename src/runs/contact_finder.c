@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Contacts between boxes in given poses, for runs that do not state theirs: the collision detection of the engine's
+   step. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "runs/runs.h"
+#include "runs/trajectory.h"
+
+#include <stdlib.h>
+
+void contact_finder_free(ContactFinder *finder) {
+    sort_and_sweep_free(&finder->broad_phase);
+    free(finder->pairs.pairs);
+    contact_set_free(&finder->set);
+    free(finder->boxes);
+    free(finder->bounds);
+    free(finder->fixed);
+    *finder = (ContactFinder){0};
+}
+
+static bool reserve(ContactFinder *finder, size_t count) {
+    return array_reserve((void **)&finder->boxes, &finder->box_capacity, count, sizeof *finder->boxes) &&
+           array_reserve((void **)&finder->bounds, &finder->bound_capacity, count, sizeof *finder->bounds) &&
+           array_reserve((void **)&finder->fixed, &finder->fixed_capacity, count, sizeof *finder->fixed);
+}
+
+bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, float skin, Error *error) {
+    if (!reserve(finder, (size_t)count + 1)) return error_memory(error, "contacts");
+    for (int i = 0; i < count; i++) {
+        const Vec2 size = vec2_add(bodies[i].size, vec2(2 * skin, 2 * skin));
+        finder->boxes[i] = box_make(bodies[i].position, size, bodies[i].angle);
+        finder->bounds[i] = bounds_of_box(&finder->boxes[i]);
+        finder->fixed[i] = bodies[i].inv_mass == 0;
+    }
+    if (!sort_and_sweep_find(&finder->broad_phase, &finder->pairs, finder->bounds, finder->fixed, count) ||
+        !contact_set_collide(&finder->set, &finder->pairs, finder->boxes, &(ContactSet){0}, 0))
+        return finder->broad_phase.too_many
+                   ? error_input(error, "contacts", "more than %d pairs of bodies may touch", BROAD_PHASE_MAX_PAIRS)
+                   : error_memory(error, "contacts");
+    for (int i = 0; i < finder->set.contact_count; i++) finder->set.contacts[i].separation += 2 * skin;
+    return true;
+}
+
+int trajectory_bodies(const Trajectory *run, int frame, Body *bodies, int *numbers) {
+    int count = 0;
+    for (int i = 0; i < run->bodies; i++) {
+        const size_t at = (size_t)frame * (size_t)run->bodies + (size_t)i;
+        if (!trajectory_has(run, frame, i)) continue;
+        const float mass = run->fixed[i] ? 0 : 1;
+        bodies[count] = (Body){.position = run->position[at],
+                               .angle = run->angle[at],
+                               .size = run->size[i],
+                               .inv_mass = mass,
+                               .inv_inertia = mass};
+        numbers[count++] = i;
+    }
+    return count;
+}
+
+/* The contacts of a step follow from the poses before it. */
+static bool find_step(Trajectory *run, int step, ContactFinder *finder, Body *bodies, int *numbers, Error *error) {
+    const int count = trajectory_bodies(run, step - 1, bodies, numbers);
+    if (!contact_finder_find(finder, bodies, count, 0, error)) return false;
+    const ContactSet *set = &finder->set;
+    TrajectoryContact *found = trajectory_add_contacts(run, step, set->contact_count, error);
+    for (int i = 0; found != NULL && i < set->contact_count; i++) {
+        const ContactPoint *point = &set->contacts[i];
+        found[i] = (TrajectoryContact){.a = numbers[point->a],
+                                       .b = numbers[point->b],
+                                       .feature = point->feature,
+                                       .point = point->position,
+                                       .normal = point->normal};
+    }
+    return found != NULL;
+}
+
+bool trajectory_find_contacts(Trajectory *run, Error *error) {
+    ContactFinder finder = {0};
+    Body *bodies = malloc(((size_t)run->bodies + 1) * sizeof *bodies);
+    int *numbers = malloc(((size_t)run->bodies + 1) * sizeof *numbers);
+    bool ok = (bodies != NULL && numbers != NULL) || error_memory(error, run->scene);
+    run->last_step = 0;
+    run->contact_start[1] = 0;
+    for (int step = 1; ok && step < run->frames; step++) ok = find_step(run, step, &finder, bodies, numbers, error);
+    trajectory_end_contacts(run);
+    run->no_contacts = !ok;
+    run->no_impulses = ok;
+    contact_finder_free(&finder);
+    free(bodies);
+    free(numbers);
+    return ok;
+}

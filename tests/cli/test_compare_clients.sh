@@ -1,0 +1,224 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The pytest plugin, the npm wrapper and the GitHub Action of golden/: each by the example of its page, and what else it does.
+. "$(dirname "$0")/checks.sh"
+
+mkdir -p bin twinbox
+ln -s "$twinbox" bin/twinbox
+ln -s "$sources/golden" twinbox/golden
+path=$folder/bin:$PATH
+# picture FILE GREY: 20 x 20 pixels.
+picture() {
+    mkdir -p "$(dirname "$1")"
+    /usr/bin/python3 "$sources/tests/cli/png.py" "$1" 20 20 "$2 $2 $2 255"
+}
+
+# Writes the marked files of the page, and its shell blocks to sh.1, sh.2, ...
+blocks() {
+    rm -f sh.*
+    /usr/bin/python3 - "$sources/golden/$1/README.md" <<'PYTHON' || fail "golden/$1/README.md has no such example"
+import re, sys
+count = 0
+for mark, text in re.findall(r"^```(\S+(?: file=\S+)?)\n(.*?)^```$", open(sys.argv[1]).read(), re.MULTILINE | re.DOTALL):
+    if " file=" in mark:
+        open(mark.partition("=")[2], "w").write(text)
+    elif mark == "sh":
+        count += 1
+        open(f"sh.{count}", "w").write("set -e\n" + text)
+assert count > 0
+PYTHON
+}
+# example STATUS COMMAND...
+example() {
+    local wanted=$1
+    shift
+    PATH=$path "$@" >out 2>err </dev/null
+    equal "exit status of $*" $? "$wanted"
+}
+
+# The plugin is loaded as if it were installed; a figure of one grey stands in for Matplotlib.
+test_pytest() {
+    mkdir -p plots/matplotlib
+    : >plots/matplotlib/__init__.py
+    cat >plots/matplotlib/pyplot.py <<PYTHON
+import os, subprocess
+
+class Figure:
+    def savefig(self, path):
+        grey = f"{os.environ['GREY']} " * 3 + "255"
+        subprocess.run(["/usr/bin/python3", "$sources/tests/cli/png.py", path, "20", "20", grey], check=True)
+
+class Axes:
+    def plot(self, values):
+        assert values == [1, 3, 2]
+
+def subplots():
+    return Figure(), Axes()
+
+def close(figure):
+    assert isinstance(figure, Figure)
+    print("a figure is closed")
+PYTHON
+    printf '#!/bin/sh\nexec /usr/bin/python3 -B -m pytest -p no:cacheprovider "$@"\n' >bin/pytest
+    printf '#!/bin/sh\n[ "$1" = install ] && [ -e "$2/pyproject.toml" ]\n' >bin/pip
+    chmod +x bin/pytest bin/pip
+    export PYTEST_PLUGINS=pytest_twinbox PYTHONPATH=$PWD/twinbox/golden/pytest:$PWD/plots PYTHONDONTWRITEBYTECODE=1
+    blocks pytest
+    example 0 bash sh.1
+    GREY=50 example 1 pytest
+    says "there is no expected/test_chart/test_line.png; look at actual/test_chart/test_line.png"
+    GREY=50 example 0 bash sh.2
+    [ -s expected/test_chart/test_line.png ] || fail "no accepted picture"
+    GREY=50 example 0 pytest -s --strict-markers
+    says "a figure is closed"
+    GREY=51 example 1 pytest
+    says "400 pixels differ"
+    says "accept the change by: twinbox approve actual/test_chart/test_line.report"
+    [ -s actual/test_chart/test_line.report/report.html ] || fail "no report"
+    GREY=50 example 0 pytest
+    [ ! -e actual/test_chart/test_line.report ] || fail "an old report stays"
+    GREY=51 example 1 pytest
+    example 0 twinbox approve actual/test_chart/test_line.report
+    GREY=51 example 0 pytest
+    PATH=/usr/bin:/bin TWINBOX="" GREY=51 /usr/bin/python3 -B -m pytest -p no:cacheprovider >out 2>err
+    equal "exit status without twinbox" $? 1
+    says "twinbox is not installed"
+    mkdir nested
+    cat >nested/test_more.py <<'PYTHON'
+import pathlib, pytest
+
+class Image:
+    def save(self, path):
+        pathlib.Path(path).write_bytes(pathlib.Path("actual/test_chart/test_line.png").read_bytes())
+
+class TestPictures:
+    @pytest.mark.twinbox_compare("--tolerance", "1")
+    @pytest.mark.parametrize("size", ["2 px", "1/3"])
+    def test_path(self, size, tmp_path):
+        Image().save(tmp_path / "a.png")
+        return tmp_path / "a.png"
+
+@pytest.mark.twinbox_compare
+def test_image():
+    return Image()
+
+@pytest.mark.twinbox_compare
+def test_nothing():
+    pass
+
+def test_other():
+    pass
+PYTHON
+    GREY=51 example 1 pytest --twinbox-accept
+    says "the test must return a figure, an image or the path of a PNG file, not None"
+    says "1 failed, 5 passed"
+    equal "names" "$(cd expected/nested && find . -name '*.png' | LC_ALL=C sort | paste -sd' ')" \
+        "./test_more/TestPictures.test_path_1_3_.png ./test_more/TestPictures.test_path_2_px_.png ./test_more/test_image.png"
+    picture expected/nested/test_more/TestPictures.test_path_1_3_.png 52
+    picture expected/nested/test_more/test_image.png 52
+    GREY=51 example 1 pytest
+    says "2 failed, 4 passed"
+    says "test_image.png: 400 pixels differ"
+}
+
+test_npm() {
+    picture expected/home.png 50
+    picture actual/home.png 50
+    mkdir node_modules
+    ln -s ../twinbox/golden/npm node_modules/twinbox-compare
+    ln -s ../node_modules/twinbox-compare/twinbox-compare.js bin/twinbox-compare
+    printf '#!/bin/sh\n[ "$1" = install ] && [ -e "$3/package.json" ]\n' >bin/npm
+    printf '#!/bin/sh\nexec "$@"\n' >bin/npx
+    chmod +x bin/npm bin/npx
+    blocks npm
+    example 0 bash sh.1
+    says "equal: 1 frame"
+    [ -s report/report.html ] || fail "no report"
+    example 0 bash sh.2
+    picture actual/home.png 160
+    example 1 bash sh.1
+    example 1 bash sh.2
+    says "see report/report.html"
+    TWINBOX=$folder/none example 3 node node_modules/twinbox-compare/twinbox-compare.js expected actual
+    complains "$folder/none is no program"
+    TWINBOX=$folder/bin/twinbox PATH=$(dirname "$(command -v node)") node twinbox/golden/npm/twinbox-compare.js --version >out 2>err
+    equal "exit status of --version" $? 0
+    says "twinbox "
+    example 2 twinbox-compare expected none
+    complains "none"
+    rm bin/npm bin/npx
+    export NODE_PATH=${NODE_PATH:-$(dirname "$twinbox")/npm/node_modules} # where tests/bench/compare installs it
+    if node -e 'require("odiff-bin")' 2>/dev/null; then
+        example 0 node server.js
+        says "false pixel-diff 400"
+    fi
+}
+
+# Each step is a shell of its own, in the repository; lines of GITHUB_PATH come to the front of the path.
+test_action() {
+    /usr/bin/python3 - "$sources/golden/action/action.yml" <<'PYTHON' || fail "action.yml has no such steps"
+import re, sys
+lines, count = open(sys.argv[1]).read().split("\n"), 0
+for number, line in enumerate(lines):
+    run = re.match(r"( *)run: (.*)", line)
+    if run:
+        count += 1
+        below = [text[len(run[1]) + 2:] for text in lines[number + 1:]]
+        end = next(i for i, text in enumerate(lines[number + 1:]) if not text.startswith(run[1] + "  "))
+        open(f"step.{count}", "w").write("\n".join(below[:end]) if run[2] == "|" else run[2])
+assert count == 2
+PYTHON
+    grep -q 'uses: ./twinbox/golden/action$' "$sources/golden/action/README.md" || fail "the page uses another folder"
+    picture expected/home.png 50
+    picture actual/home.png 50
+    action 0 ""
+    picture actual/home.png 51
+    action 1 ""
+    says "::error file=expected/home.png,title="
+    grep -q 'home.png' summary || fail "no row in the summary: $(cat summary)"
+    [ -s twinbox-report/report.html ] || fail "no report"
+    action 0 "--tolerance 1"
+    # Without twinbox, what is built is on the path of the next step.
+    for stub in apt-get sudo cmake; do
+        printf '#!/bin/sh\necho %s "$@" >>"%s/calls"\n[ %s != sudo ] || "$@"\n' $stub "$folder" $stub >bin/$stub
+    done
+    chmod +x bin/apt-get bin/sudo bin/cmake
+    mkdir -p temporary/twinbox
+    mv bin/twinbox temporary/twinbox
+    action 0 "--tolerance 1"
+    mv temporary/twinbox/twinbox bin
+    grep -q "^cmake -S $sources/golden/action/../.. .*-DTWINBOX_PARTS=compare$" calls || fail "the build: $(cat calls)"
+    for package in $(grep -o 'lib[a-z]*-dev' "$sources/golden/action/action.yml"); do
+        "$sources/tests/setup" --list | grep -qw -- "$package" || fail "$package is not one of tests/setup"
+    done
+}
+# action STATUS OPTIONS
+action() {
+    local status=0
+    rm -rf twinbox-report
+    : >github.path
+    : >summary
+    : >out
+    for step in 1 2; do
+        [ $status -ne 0 ] || EXPECTED=expected ACTUAL=actual OPTIONS=$2 GITHUB_STEP_SUMMARY=$folder/summary \
+            GITHUB_ACTION_PATH=$sources/golden/action RUNNER_TEMP=$folder/temporary GITHUB_PATH=$folder/github.path \
+            PATH="$(tac github.path | tr '\n' ':')$folder/bin:/usr/bin:/bin" bash -e -o pipefail "$folder/step.$step" >>out 2>err
+        status=$?
+    done
+    equal "exit status of the action" $status "$1"
+}
+
+for client in action pytest npm; do
+    case $client in
+        pytest) needed="/usr/bin/python3 -m pytest --version" ;;
+        npm) needed="node --version" ;;
+        *) needed=true ;;
+    esac
+    if $needed >/dev/null 2>&1; then
+        test_$client
+    else
+        echo "skipped: $client needs $needed"
+    fi
+    rm -rf expected actual report
+done
+finish
