@@ -14,5 +14,5 @@ for (const figure of document.querySelectorAll(".live")) {
     button.remove();
     frame.focus();
   };
-  figure.append(button);
+  still.after(button);
 }

@@ -161,6 +161,9 @@ def check_prediction(checks, browser):
     page.press("2")
     said = page.run("document.getElementById('question').textContent")
     checks.true("the answer", said.startswith("You said pair-net: it does not."), said)
+    page.run("location.hash = '#predict=1'")
+    page.settle()
+    checks.true("a link asks", page.run("document.body.classList.contains('asked') && document.getElementById('predict').checked"))
     page.close()
 
 

@@ -50,7 +50,9 @@ onhashchange = () => {
     show: new Set(text("show").split(",")), theme: one_of("theme", THEMES, "auto"),
     camera: is_view({x, y, w, h}) ? {kind, x, y, w, h} : FIT,
   });
-  if (data.live) launch();
+  if (!data.live) return;
+  launch();
+  if (text("predict") === "1" && !asked) ui.predict.click();
 };
 
 /* The launch that a fragment names. */

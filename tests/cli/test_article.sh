@@ -1,0 +1,133 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The article: its numbers are those of tables that this test plants; what is missing ends its making; links lead somewhere.
+. "$(dirname "$0")/checks.sh"
+export PYTHONDONTWRITEBYTECODE=1
+make=$sources/scenes/article/make
+if ! "$twinbox" page --live "$scenes/single.yaml" -o live.html 2>err; then
+    echo "skipped: $(cat err)"
+    exit 77
+fi
+
+# Tables with a value of its own for each number of numbers.txt, and pictures.
+/usr/bin/python3 - "$sources/scenes/article" <<'PYTHON' || fail "planting"
+import csv
+import json
+import os
+import re
+import shlex
+import sys
+
+tables, wanted, value = {}, {}, 1.25
+for line in open(f"{sys.argv[1]}/numbers.txt"):
+    if not line.strip() or line[0] == "#":
+        continue
+    name, rest = (part.strip() for part in line.split("=", 1))
+    for part in rest.partition(" as ")[0].split(" / "):
+        table, column, *conditions = shlex.split(part)
+        row = dict(condition.split("=", 1) for condition in conditions)
+        known = next((other for other in tables.setdefault(table, []) if row.items() <= other.items()), None)
+        if known is None:
+            tables[table].append(known := row)
+        if column != "rows" and column not in known:
+            value += 1.37
+            known[column] = f"{value:.6g}"
+        wanted.setdefault(name, []).append(known.get(column, "rows"))
+league = {"study": "stack_height", "method": "exec", "setting": "toy,name=Toy", "holds_at": "3", "fails_at": "4", "verdict": "falls"}
+tables["league/stability.csv"] = [{"verdict": "falls", "fails_at": "", "holds_at": ""} | row
+                                  for row in tables["league/stability.csv"] + [league]]
+tables["league/engines.csv"] = [{"method": "exec", "setting": "toy,name=Toy", "engine": "Toy", "version": "1.0"}]
+page = {"map": "stack_height", "method": "exec", "setting": "toy,name=Toy", "x": "4", "page": "pages/toy.html#t=1"}
+tables["league/map_pages.csv"] = [page]
+for table, rows in tables.items():
+    path = f"site.studies/{table}"
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)), restval="")
+        writer.writeheader()
+        writer.writerows(rows)
+os.makedirs("site.studies/league/pages")
+open("site.studies/league/pages/toy.html", "w").write("<!DOCTYPE html>")
+article = open(f"{sys.argv[1]}/article.md").read()
+for file in re.findall(r"\[\[figure (\S+) \|", article):
+    os.makedirs(os.path.dirname(f"site.studies/{file}"), exist_ok=True)
+    open(f"site.studies/{file}", "w").write('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 174.000 90.5"></svg>')
+for study, file in ("league", "stability.html"), ("paper", "study.csv"):
+    open(f"site.studies/{study}/{file}", "w").close()
+json.dump(wanted, open("wanted.json", "w"))
+PYTHON
+sed 's/stack_height:[A-Z][A-Za-z0-9 .]*/stack_height:Toy/' "$sources/scenes/article/article.md" >article.md
+
+"$make" site "$twinbox" --text article.md >made 2>err || fail "make: $(cat err)"
+says_made() { grep -qF -- "$1" made || fail "no '$1' in: $(cat made)"; }
+says_made "site/index.html: "
+/usr/bin/python3 - "$sources/scenes/article" <<'PYTHON' || fail "the site"
+import html.parser
+import json
+import os
+import re
+import urllib.parse
+
+page = open("site/index.html", encoding="utf-8").read()
+shown = re.findall(r'<a class="number" href="#\w+" title="[^"]+">([^<]+)</a>', page)
+for name, values in json.load(open("wanted.json")).items():
+    if values == ["rows"]:
+        continue
+    number = float(values[0]) / (float(values[1]) if len(values) == 2 else 1)
+    close = [text for text in shown if re.fullmatch(r"[\d.,]+", text) and abs(float(text.replace(",", "")) / number - 1) < 0.06]
+    assert close, (name, values, shown)
+assert "Toy 1.0" in page and ">3 | 4</a>" in page
+assert not re.search(r"\{\w+\}|\[\[|<!--", page), "something is not filled in"
+
+
+class Links(html.parser.HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.ids, self.targets, self.alts, self.heads, self.words = set(), [], 0, [], 0
+
+    def handle_starttag(self, tag, attributes):
+        got = dict(attributes)
+        self.ids.add(got.get("id"))
+        self.targets += [got[key] for key in ("href", "src", "data-page") if key in got]
+        if tag == "img":
+            assert len(got["alt"]) > 20 and int(got["width"]) > 100 and int(got["height"]) > 50, got
+        if tag in ("h1", "h2"):
+            self.heads.append(tag)
+
+    def handle_data(self, data):
+        self.words += len(data.split())
+
+
+links = Links()
+links.feed(page)
+assert links.heads[0] == "h1" and links.heads.count("h1") == 1 and links.heads.count("h2") == 10, links.heads
+for target in links.targets:
+    path, _, fragment = target.partition("#")
+    if path.startswith("https://doi.org/"):
+        continue
+    assert "://" not in path, target
+    assert os.path.exists(f"site/{urllib.parse.unquote(path)}") if path else fragment in links.ids, target
+text = open("article.md").read()
+words = len(re.sub(r"\[\[.*?\]\]", "", text, flags=re.S).split())
+assert 1100 <= words <= 2500, words
+assert not re.search(r"(src|href)=.?https?:(?!//doi)", page) and "@import" not in page
+size = sum(os.path.getsize(f"site/{name}") for name in os.listdir("site"))
+assert size < 3e6, size
+PYTHON
+
+# What is missing or left over ends it, with its place.
+mv site.studies/chart/chart.csv kept.csv
+touch site.studies/chart/chart.csv
+"$make" other "$twinbox" --text article.md --studies site.studies >made 2>err && fail "an empty table is accepted"
+complains "numbers.txt: sweeps_10: 0 rows of chart/chart.csv match"
+mv kept.csv site.studies/chart/chart.csv
+sed 's/{sweeps_10}/{sweeps_11}/' article.md >unknown.md
+"$make" other "$twinbox" --text unknown.md --studies site.studies >made 2>err && fail "an unknown number is accepted"
+complains "article.md: no number sweeps_11 in numbers.txt"
+sed 's/{sweeps_10}/3/' article.md >typed.md
+"$make" other "$twinbox" --text typed.md --studies site.studies >made 2>err && fail "a typed number is accepted"
+complains "numbers.txt: sweeps_10: not used in article.md"
+rm site.studies/paper/figures/factors.svg
+"$make" other "$twinbox" --text article.md --studies site.studies >made 2>err && fail "a missing picture is accepted"
+complains "paper/figures/factors.svg is missing"
+finish
