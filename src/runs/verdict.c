@@ -66,8 +66,9 @@ static bool starts_at_rest(const Scene *scene) {
     return true;
 }
 
-void verdict_run_set_skin(VerdictRun *run, const Method *method) {
-    const char *text = method->kind->description->external ? settings_get(&method->settings, "skin") : NULL;
+void verdict_run_set_engine(VerdictRun *run, const Method *method) {
+    run->other_engine = method->kind->description->external;
+    const char *text = run->other_engine ? settings_get(&method->settings, "skin") : NULL;
     if (text != NULL) run->finds_contacts = parse_float(text, &run->skin);
 }
 
@@ -215,7 +216,7 @@ bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *meth
                  Error *error) {
     VerdictWatch watch = {0};
     VerdictRun judged = *run;
-    verdict_run_set_skin(&judged, method);
+    verdict_run_set_engine(&judged, method);
     World *world = scene_world(scene, error);
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
     bool ok =

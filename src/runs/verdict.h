@@ -156,6 +156,7 @@ typedef struct VerdictRun {
     /* m: what the run's engine adds to each side of a box, so that boxes rest apart by twice that (Box2D before version
        3: 0.0075). Boxes touch within it, and may rise by it. 0: none. */
     float skin;
+    bool other_engine;   /* another program makes the run */
     bool no_energy;      /* is not judged: masses are not known */
     bool finds_contacts; /* between the bodies before a step: those that steps state do not count */
     /* The same scene run by "reference", with at least as many frames; outlives the watch. NULL: the run is judged by
@@ -163,8 +164,8 @@ typedef struct VerdictRun {
     const EnergyLog *converged;
 } VerdictRun;
 
-/* Sets the skin that the method exec states. */
-void verdict_run_set_skin(VerdictRun *run, const Method *method);
+/* Sets skin and other_engine, for the method exec. */
+void verdict_run_set_engine(VerdictRun *run, const Method *method);
 
 /* The run of a scene without a converged run. It is meant to stand if all bodies start at rest: to the end without a
    bomb, or else until the bomb touches something. */
@@ -249,6 +250,9 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    available energy, which includes the kinetic energy of the start and of added bodies. If bodies overlap at the start,
    (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs: `verdict_alone`
    in tests/stability.
+
+   Of another engine every bound is higher by what gravity does in a step, m (g dt)^2 / 2: Chipmunk moves bodies before it
+   changes velocities, and so states both half a step apart.
 
    With a skin, boxes that a scene places side by side are pushed apart: each bound is higher by what lifts every body
    by two skins for each body that may be below it, its height over the smallest side.

@@ -162,11 +162,13 @@ static bool overlaps_at_start(const VerdictStep *step) {
     return false;
 }
 
-/* J: what the skins of the engine may lift. */
-static double skin_energy(const VerdictWatch *watch) {
+/* J: what is no gain of another engine: what its skins may lift, and what gravity does in a step. */
+static double tolerated_energy(const VerdictWatch *watch) {
     const EnergyBalance *own = &watch->own;
-    return isfinite(watch->smallest) ? 2 * (double)watch->run.skin * (own->weight + own->potential / watch->smallest)
-                                     : 0;
+    const double dt = (double)watch->run.dt, gravity = sqrt((double)vec2_dot(watch->run.gravity, watch->run.gravity));
+    const double step = watch->run.other_engine ? own->weight * gravity * dt * dt / 2 : 0;
+    if (!isfinite(watch->smallest)) return step;
+    return step + 2 * (double)watch->run.skin * (own->weight + own->potential / watch->smallest);
 }
 
 /* J: what exceeds the bounds of verdict_watch_step(); 0 if nothing does. Bound (b) searches two seconds of the
@@ -174,7 +176,7 @@ static double skin_energy(const VerdictWatch *watch) {
 static double excess_beside(const VerdictWatch *watch, int frame) {
     const EnergyLog *converged = watch->run.converged;
     const double allowed =
-        VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_AVAILABLE) + skin_energy(watch);
+        VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_AVAILABLE) + tolerated_energy(watch);
     if (watch->energy <= watch->kept + allowed) return 0;
     const double bound = fmax(watch->kept, converged_energy(&watch->run, frame));
     return watch->energy > bound + allowed ? watch->energy - bound : 0;
@@ -182,12 +184,13 @@ static double excess_beside(const VerdictWatch *watch, int frame) {
 
 /* The same without a converged run. */
 static double excess_alone(const VerdictWatch *watch) {
-    const double skin = skin_energy(watch);
+    const double tolerated = tolerated_energy(watch);
     const EnergyBalance *own = &watch->own;
     const double least = fmax(VERDICT_LEAST_LIFT * own->weight, VERDICT_LEAST_AVAILABLE);
     const double available = fmax(fmax(own->available, own->potential + own->kinetic), least);
-    if (watch->energy > watch->brought + VERDICT_ENERGY_SHARE * available + skin) return watch->energy - watch->brought;
-    return watch->energy > watch->kept + VERDICT_REGAIN_SHARE * available + skin ? watch->energy - watch->kept : 0;
+    if (watch->energy > watch->brought + VERDICT_ENERGY_SHARE * available + tolerated)
+        return watch->energy - watch->brought;
+    return watch->energy > watch->kept + VERDICT_REGAIN_SHARE * available + tolerated ? watch->energy - watch->kept : 0;
 }
 
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {

@@ -103,11 +103,17 @@ static bool watch_frame(VerdictWatch *watch, const VerdictRun *judged, const Tra
                      : verdict_watch_begin(watch, judged, bodies, step.body_count, error);
 }
 
+static bool is_of_other_engine(const Trajectory *run) {
+    const MethodDescription *method = method_describe(run->method);
+    return method == NULL || method->external;
+}
+
 static bool judge(SimulateVerdict *verdict, const Trajectory *run, const RunScene *by, const World *world,
                   Error *error) {
     const Scene *scene = by->scene;
     VerdictRun judged = verdict_run_of(scene);
     judged.skin = by->skin;
+    judged.other_engine = is_of_other_engine(run);
     judged.no_energy = by->assumed && !judged.stands;
     judged.finds_contacts = true;
     const int bomb = !scene->bomb.present ? -1 : run->bomb >= 0 ? run->bomb : scene->body_count;

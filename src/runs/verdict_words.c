@@ -14,7 +14,7 @@ enum { FIGURE_SIZE = VERDICT_REASON_SIZE };
 bool simulate_verdict_begin(SimulateVerdict *verdict, const Scene *scene, const Method *method, Error *error) {
     *verdict = (SimulateVerdict){.scene = scene, .method = method->text};
     VerdictRun run = verdict_run_of(scene);
-    verdict_run_set_skin(&run, method);
+    verdict_run_set_engine(&run, method);
     World *start = scene_world(scene, error);
     bool ok = start != NULL &&
               verdict_watch_begin(&verdict->watch, &run, world_bodies(start), world_body_count(start), error);

@@ -78,9 +78,10 @@ TEST(tunnelling_reports_the_speed) {
 
 /* For one frame after the first second, the runs' energies are so many J above 5 (the box at rest: 1 kg, 10 m/s^2,
    0.5 m). */
-static VerdictReading run_with_energy(double own, double converged, double available) {
+static VerdictReading run_of_engine(bool other, double own, double converged, double available) {
     Trial trial;
     trial_begin(&trial);
+    trial.run.other_engine = other;
     trial.converged.balance.available = available;
     for (int i = 0; i <= TRIAL_FRAMES; i++) trial.energy[i] = 5;
     trial.energy[101] += converged;
@@ -90,6 +91,16 @@ static VerdictReading run_with_energy(double own, double converged, double avail
     trial.bodies[1].velocity.x = 0;
     trial_go(&trial, TRIAL_FRAMES);
     return trial_end(&trial);
+}
+
+static VerdictReading run_with_energy(double own, double converged, double available) {
+    return run_of_engine(false, own, converged, available);
+}
+
+/* 1 kg that falls for a step has 1/2 (10 / 60)^2 = 0.0139 J more. */
+TEST(another_engine_may_state_velocities_half_a_step_away) {
+    assert_verdict(run_of_engine(true, 0.0236, 0, 1e-6), VERDICT_SETTLES);
+    assert_verdict(run_of_engine(true, 0.0241, 0, 1e-6), VERDICT_EXPLODES);
 }
 
 TEST(exploding_exceeds_the_runs_own_bound_and_the_converged_run) {
