@@ -56,7 +56,7 @@ for study, file in ("league", "stability.html"), ("paper", "study.csv"):
     open(f"site.studies/{study}/{file}", "w").close()
 json.dump(wanted, open("wanted.json", "w"))
 PYTHON
-sed 's/stack_height:[A-Z][A-Za-z0-9 .]*/stack_height:Toy/' "$sources/scenes/article/article.md" >article.md
+sed 's/stack_height:[^]]*/stack_height:Toy/' "$sources/scenes/article/article.md" >article.md
 
 "$make" site "$twinbox" --text article.md >made 2>err || fail "make: $(cat err)"
 says_made() { grep -qF -- "$1" made || fail "no '$1' in: $(cat made)"; }

@@ -167,6 +167,17 @@ def check_prediction(checks, browser):
     page.close()
 
 
+def check_colours(checks, browser):
+    """Panels of one method, by a link or by hand, have colours of their own."""
+    page = open_scene(checks, browser, "stack", "engine", "interior", fragment="methods=engine:k=1;engine:k=2;engine:k=3")
+    page.wait(ENDED)
+    page.run("player.add_panel()")
+    page.settle()
+    fills = page.run("player.runs.map(run => run.colours.light.fill)")
+    checks.true("colours of four panels of one method", len(fills) == len(set(fills)) == 4, fills)
+    page.close()
+
+
 def tab_to(page, condition):
     """Presses Tab until the focused element e is this one."""
     for _ in range(200):
@@ -348,6 +359,7 @@ def main():
             check_access(checks, browser)
             check_keyboard(checks, browser)
             check_prediction(checks, browser)
+            check_colours(checks, browser)
             check_rubbish(checks, browser)
             check_bad_scenes(checks, browser)
             check_memory(checks, browser)

@@ -39,11 +39,22 @@ function method_text(name, settings) {
   return name + (given.length > 0 ? ":" + given.join() : "");
 }
 
-function set_method(run, text) {
+/* Those of its method, or of another if a panel has them: two panels of one method are told apart. */
+function colours_for(run, text) {
+  const own = data.live.methods.find(({name}) => name === text.split(":")[0])?.colours ?? runs[0].colours;
+  const taken = new Set(runs.filter(each => each !== run).map(({colours}) => colours.light.fill));
+  return [own, ...data.live.methods.map(({colours}) => colours)].find(each => !taken.has(each.light.fill)) ?? own;
+}
+
+/* Another method has other colours. */
+function change_method(run, text) {
+  if (text.split(":")[0] !== run.live.split(":")[0]) run.colours = colours_for(run, text);
   run.live = text;
   describe_run(run);
-  const name = text.split(":")[0], method = data.live.methods.find(each => each.name === name);
-  if (method) run.colours = runs.find(each => each !== run && each.live?.split(":")[0] === name)?.colours ?? method.colours;
+}
+
+function set_method(run, text) {
+  change_method(run, text);
   list_methods();
   launch();
 }
@@ -92,7 +103,7 @@ function add_panel(text = "engine") {
   const run = Object.assign(make_states({}, 1, 0), {index: runs.length, live: text, size: [], fixed: [], bomb: -1, reached: -1,
     distances: new Float32Array(1), velocities: true, contacts: true, compared: false, why: "", scene: runs[0].scene,
     iterations: runs[0].iterations, dt: runs[0].dt, steps: runs[0].steps, scene_hash: "", verdict: null,
-    colours: data.live.methods.find(({name}) => name === text.split(":")[0])?.colours ?? runs[0].colours});
+    colours: colours_for(null, text)});
   describe_run(run);
   runs.push(run);
   open_worker(run);

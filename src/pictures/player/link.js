@@ -66,7 +66,7 @@ function follow_link(fragment) {
   methods.filter(Boolean).slice(0, METHODS_MAX).forEach((text, i) => {
     const run = live_runs()[i];
     if (!run) add_panel(text);
-    else if (run.live !== text) Object.assign(run, {live: text}), describe_run(run);
+    else if (run.live !== text) change_method(run, text);
   });
   show_settings();
 }
