@@ -261,7 +261,16 @@ static void refuse_animation(Decoder *decoder) {
     }
 }
 
+static bool is_palette(const Decoder *decoder) {
+    return png_get_color_type(decoder->png, decoder->info) == PNG_COLOR_TYPE_PALETTE;
+}
+
+/* Of a palette, libpng gives indices, as it would take one beyond the palette for black. */
 static void request_rgba(Decoder *decoder) {
+    if (is_palette(decoder)) {
+        png_set_packing(decoder->png);
+        return;
+    }
     png_set_expand(decoder->png);
     png_set_gray_to_rgb(decoder->png);
     png_set_add_alpha(decoder->png, 0xffff, PNG_FILLER_AFTER);
@@ -300,6 +309,25 @@ static void read_rows(Decoder *decoder) {
     }
 }
 
+/* In place, from the last pixel of a row: indices are where its first pixels will be. */
+static void expand_palette(Decoder *decoder) {
+    const Image *image = decoder->image;
+    png_colorp palette = NULL;
+    png_bytep alpha = NULL;
+    int colors = 0, alphas = 0;
+    png_get_PLTE(decoder->png, decoder->info, &palette, &colors);
+    png_get_tRNS(decoder->png, decoder->info, &alpha, &alphas, NULL);
+    for (int y = 0; y < image->height; y++) {
+        uint8_t *row = image->pixels + (size_t)y * (size_t)image->width * 4;
+        for (int x = image->width - 1; x >= 0; x--) {
+            const int index = row[x];
+            if (index >= colors) png_error(decoder->png, "a colour that is not in the palette");
+            row[4 * x] = palette[index].red, row[4 * x + 1] = palette[index].green;
+            row[4 * x + 2] = palette[index].blue, row[4 * x + 3] = index < alphas ? alpha[index] : 255;
+        }
+    }
+}
+
 static bool decode(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     png_structp png = decoder->png;
@@ -319,6 +347,7 @@ static bool decode(Decoder *decoder) {
     if (png_get_bit_depth(png, decoder->info) == 16 && !allocate_pixels16(decoder)) return false;
     for (int pass = 0; pass < passes; pass++) read_rows(decoder);
     png_read_end(png, NULL);
+    if (is_palette(decoder)) expand_palette(decoder);
     return true;
 }
 

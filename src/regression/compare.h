@@ -116,12 +116,13 @@ bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_
 /* Copies the ignored pixels of `expected` to `actual`; masked NULL: none. Both pictures must have the same size. */
 void image_copy_masked(const Image *expected, Image *actual, const uint8_t *masked);
 
-/* Chunks of PNG files that change how equal pixels are displayed: the colour space (cICP, iCCP, sRGB, gAMA, cHRM) and the
-   orientation in eXIf (PNG specification, third edition, sections 11.3.2 and 11.3.4). */
+/* Chunks of PNG files that change how equal pixels are displayed: the colour space (cICP, iCCP, sRGB, gAMA, cHRM), its range
+   (mDCV, cLLI, sBIT), the background (bKGD), the shape and size of a pixel (pHYs) and the orientation in eXIf (PNG
+   specification, third edition, sections 11.3.2 to 11.3.4). */
 
 /* "gAMA 0.45455 and none, orientation 1 and 6" */
 typedef struct PngDisplay {
-    char text[160];
+    char text[256];
 } PngDisplay;
 
 /* Finds what differs between two files; an empty text if nothing does. Each chunk is compared by itself, although some

@@ -32,8 +32,11 @@ bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *differen
         return false;
     if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND) && (double)difference->beyond > tolerance->beyond * counted)
         return false;
-    return (!given(tolerance, LIMIT_FLIP_MEAN) || flip->mean <= tolerance->flip_mean) &&
-           (!given(tolerance, LIMIT_FLIP_P99) || flip->p99 <= tolerance->flip_p99);
+    /* FLIP sees 8 bits: a limit of 0 also means what lies below them. */
+    const bool none = tolerance->flip_mean <= 0,
+               few = tolerance->flip_p99 > 0 || 100 * (double)difference->pixels <= counted;
+    return (!given(tolerance, LIMIT_FLIP_MEAN) || (!none && flip->mean <= tolerance->flip_mean)) &&
+           (!given(tolerance, LIMIT_FLIP_P99) || (few && flip->p99 <= tolerance->flip_p99));
 }
 
 #define ADD(...) text_join(words.text, sizeof words.text, ", ", __VA_ARGS__)

@@ -133,6 +133,15 @@ static bool compare_files(Regression *regression, RegressionFrame *frame, Error 
     return ok;
 }
 
+static bool check_file(const char *path, Error *error) {
+    size_t size;
+    int width, height;
+    uint8_t *data = image_load_png(path, &size, error);
+    bool ok = data != NULL && png_check(data, size, path, &width, &height, error);
+    free(data);
+    return ok;
+}
+
 static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
     const ImageDifference *x = &a->difference, *y = &b->difference;
     if (frame_failed(a) != frame_failed(b)) return frame_failed(b);
@@ -145,7 +154,11 @@ static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
 static bool compare_accepted(Regression *regression, RegressionFrame *frame, Error *error) {
     const RegressionFrame fresh = *frame;
     if (!compare_files(regression, frame, error)) return false;
-    for (const SequenceFrame *other = frame->base->next; other != NULL && frame_failed(frame); other = other->next) {
+    for (const SequenceFrame *other = frame->base->next; other != NULL; other = other->next) {
+        if (!frame_failed(frame)) { /* it is not needed, but damage is told */
+            if (!check_file(other->path, error)) return false;
+            continue;
+        }
         RegressionFrame attempt = fresh;
         attempt.at[EXPECTED] = other;
         bool ok = compare_files(regression, &attempt, error), closer = ok && is_closer(&attempt, frame);
@@ -182,6 +195,26 @@ static bool report_read_errors(const Regression *regression, Error *error) {
 
 bool frame_failed(const RegressionFrame *frame) {
     return frame->pixels >= PIXELS_DIFFER || frame->states == STATES_DIFFER || frame->metadata_failed;
+}
+
+double frame_severity(const RegressionFrame *frame) {
+    return frame->pixels >= PIXELS_RESIZED ? INFINITY : (double)frame->difference.pixels;
+}
+
+static int by_severity(const void *a, const void *b) {
+    const RegressionFrame *x = *(const RegressionFrame *const *)a, *y = *(const RegressionFrame *const *)b;
+    const double first = frame_severity(x), second = frame_severity(y);
+    return first != second ? (first < second) - (first > second) : (x > y) - (x < y);
+}
+
+const RegressionFrame **regression_failures(const Regression *regression, Error *error) {
+    const RegressionFrame **failures = malloc(((size_t)regression->failed + 1) * sizeof *failures);
+    if (failures == NULL) return error_memory(error, "frames"), NULL;
+    int count = 0;
+    for (int i = 0; i < regression->count; i++)
+        if (frame_failed(&regression->frames[i])) failures[count++] = &regression->frames[i];
+    qsort(failures, (size_t)count, sizeof *failures, by_severity);
+    return failures;
 }
 
 static void count_first(int *count, int *first, int i) {
@@ -247,6 +280,19 @@ static void count(Regression *regression) {
     }
 }
 
+static bool share_stem(const RegressionFrame *a, const RegressionFrame *b) {
+    return a->base->number >= 0 && b->base->number >= 0 && sequence_compare_stems(a->base, b->base) == 0;
+}
+
+static void find_films(Regression *regression) {
+    RegressionFrame *frames = regression->frames;
+    for (int i = 0; i < regression->count; i++) {
+        frames[i].alone = !(i > 0 && share_stem(&frames[i - 1], &frames[i])) &&
+                          !(i + 1 < regression->count && share_stem(&frames[i], &frames[i + 1]));
+        regression->film = regression->film || !frames[i].alone;
+    }
+}
+
 static bool pair_frames(Regression *regression, Error *error) {
     SequencePair *pairs =
         image_sequence_pair(regression->sequences[EXPECTED], regression->sequences[ACTUAL], &regression->count, error);
@@ -258,7 +304,9 @@ static bool pair_frames(Regression *regression, Error *error) {
                                                   .flip = NAN,
                                                   .flip_p99 = NAN};
     free(pairs);
-    return regression->frames != NULL || error_memory(error, "frames");
+    if (regression->frames == NULL) return error_memory(error, "frames");
+    find_films(regression);
+    return true;
 }
 
 /* A folder without pictures is an error, not a difference, unless neither has any and trajectories are compared. */
@@ -273,6 +321,16 @@ static bool refuse_empty(const Regression *regression, Error *error) {
     return true;
 }
 
+/* Through a link or another spelling of the path, that is a mistake; the same path twice is meant. */
+static bool refuse_same(const Regression *regression, const char *expected, const char *actual, Error *error) {
+    const ImageSequence *a = regression->sequences[EXPECTED], *b = regression->sequences[ACTUAL];
+    if (a->device != b->device || a->inode != b->inode || strcmp(expected, actual) == 0) return true;
+    return error_input(
+        error, actual,
+        "is the same %s as %s: nothing would be compared; to compare it with itself, write one path twice",
+        a->single ? "file" : "folder", expected);
+}
+
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error) {
     *regression = (Regression){.options = *options};
@@ -280,8 +338,9 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     const ParallelWork work = {compare_frame, regression};
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, error)) != NULL &&
-              pair_frames(regression, error) && regression_find_runs(regression, error) &&
-              refuse_empty(regression, error) && regression_read_rules(regression, error) &&
+              refuse_same(regression, expected, actual, error) && pair_frames(regression, error) &&
+              regression_find_runs(regression, error) && refuse_empty(regression, error) &&
+              regression_read_rules(regression, error) &&
               parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);
     if (ok) count(regression);

@@ -292,7 +292,9 @@ static void put_name(const Causes *causes, RegressionCause *cause, int frame) {
 
 /* Adds a frame; frames are added in order. Neighbours form a range. */
 static void add_frame(const Causes *causes, RegressionCause *cause, int frame) {
-    bool next = cause->count > 0 && frame == cause->last + 1;
+    const RegressionFrame *at = &causes->regression->frames[frame];
+    bool next = cause->count > 0 && frame == cause->last + 1 && !at->alone &&
+                sequence_compare_stems(at[-1].base, at->base) == 0;
     cause->last = frame;
     if (cause->count++ == 0 && causes->numbered) text_add(cause->frames, sizeof cause->frames, "frame ");
     if (next && cause->ranges <= RANGES) {
@@ -370,14 +372,14 @@ static void add_changes(const Causes *causes, int frame) {
         double most = change->kind == CHANGE_MOVED ? fmax(fabs(change->right), fabs(change->up)) : 0;
         add_cause(causes, frame, change_cause(change).text, most, false);
     }
-    if (!named) add_cause(causes, frame, "pixels differ", 0, false);
+    if (!named && !causes->regression->frames[frame].alone) add_cause(causes, frame, "pixels differ", 0, false);
 }
 
 static void add_causes(const Causes *causes, int frame) {
     const RegressionFrame *at = &causes->regression->frames[frame];
     bool pictures = at->pixels == PIXELS_DIFFER || at->pixels == PIXELS_RESIZED;
     if (at->pixels >= PIXELS_MISSING) return;
-    if (at->pixels == PIXELS_RESIZED) add_cause(causes, frame, "sizes differ", 0, false);
+    if (at->pixels == PIXELS_RESIZED && !at->alone) add_cause(causes, frame, "sizes differ", 0, false);
     if (pictures && at->other_view) add_view(causes, frame);
     if (at->states == STATES_DIFFER)
         add_physics(causes, frame);
