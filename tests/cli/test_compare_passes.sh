@@ -272,6 +272,7 @@ cmp -s a/home.png first.png && cmp -s a/home.1.png second.png || fail "approve r
 run 0 compare a b
 # A damaged one is not passed over, also where another passes.
 head -c 50 second.png >a/home.1.png
+cp a/home.png b/home.png
 run 2 compare a b
 complains "a/home.1.png: error: not a PNG file, or damaged: unexpected end of file"
 png b/home.png 8 8 "7 7 7 255"
