@@ -240,17 +240,37 @@ static bool name_changes(const ShownFolder *const folders[SIDES], const Texts te
     return naming_find(&scene, images[EXPECTED], images[ACTUAL], masked, changes, error);
 }
 
-bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             const Image *const images[SIDES], const uint8_t *masked, Error *error) {
-    const ShownFolder *folders[SIDES];
-    FrameChanges *changes = frame->changes = calloc(1, sizeof *frame->changes);
-    if (changes == NULL) return error_memory(error, frame_name(frame));
-    memset(changes->region_change, -1, sizeof changes->region_change);
-    if (!image_regions_find(images[EXPECTED], images[ACTUAL], masked, &frame->difference, &changes->regions, error))
-        return false;
+/* The folders of the frame. */
+static bool find_folders(Regression *regression, const RegressionFrame *frame, const ShownFolder *folders[SIDES],
+                         Error *error) {
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if ((folders[side] = shown_find(&regression->shown, frame->at[side]->path)) == NULL)
             return error_memory(error, frame_name(frame));
+    return true;
+}
+
+bool regression_may_name(Regression *regression, const RegressionFrame *frame, bool *named, Error *error) {
+    const ShownFolder *folders[SIDES];
+    if (!find_folders(regression, frame, folders, error)) return false;
+    *named = folders[EXPECTED]->view.width > 0 && folders[ACTUAL]->view.width > 0;
+    return true;
+}
+
+bool regression_keep_regions(RegressionFrame *frame, const ImageRegions *regions, Error *error) {
+    if ((frame->changes = calloc(1, sizeof *frame->changes)) == NULL) return error_memory(error, frame_name(frame));
+    memset(frame->changes->region_change, -1, sizeof frame->changes->region_change);
+    frame->changes->regions = *regions;
+    return true;
+}
+
+bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             const Image *const images[SIDES], const uint8_t *masked, Error *error) {
+    const ShownFolder *folders[SIDES];
+    ImageRegions regions;
+    if (!image_regions_find(images[EXPECTED], images[ACTUAL], masked, &frame->difference, &regions, error) ||
+        !regression_keep_regions(frame, &regions, error) || !find_folders(regression, frame, folders, error))
+        return false;
+    FrameChanges *changes = frame->changes;
     const FrameView *a = &folders[EXPECTED]->view, *b = &folders[ACTUAL]->view;
     if (a->width != images[EXPECTED]->width || a->height != images[EXPECTED]->height) return true;
     if (b->width != a->width || b->height != a->height) return true;

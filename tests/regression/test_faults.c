@@ -55,7 +55,7 @@ static bool passes(const Image *a, const Image *b, const Tolerance *tolerance) {
     FlipSummary flip;
     Error error = {0};
     assert_non_null(masked);
-    if (tolerance->antialias) antialias_mark(a, b, masked);
+    if (tolerance->antialias) assert_ok(antialias_mark(a, b, masked, &error), error);
     image_compare_masked(a, b, masked, tolerance->tolerance, &difference);
     assert_ok(flip_compare(a, b, FLIP_PIXELS_PER_DEGREE, NULL, &flip, &error), error);
     free(masked);
