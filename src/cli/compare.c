@@ -72,7 +72,7 @@ static const Option option_table[] = {
      OPTION_FLAG(CompareOptions, flat)},
     {"--metadata", 0, "KIND",
      "report or strict: pictures with equal pixels that display differently (gAMA, iCCP, sRGB, cHRM, cICP, "
-     "orientation) are reported, or fail (default: report)",
+     "orientation, resolution, ...) are reported, or fail (default: report)",
      OPTION_ENUM(CompareOptions, metadata, metadata_kinds)},
     {"--report", 0, "DIR",
      "Folder for report.html, junit.xml, results.tap, results.json, and run-NAME.html for each run that differs; of "
@@ -232,16 +232,17 @@ static bool report(Regression *regression, const CompareOptions *options, Error 
 }
 
 /* A name may look like a command of GitHub's runner. Nobody can name a file by a token that has the time in it. */
-static void print(const CompareOptions *options, const Regression *regression) {
+static bool print(const CompareOptions *options, const Regression *regression, Error *error) {
     struct timespec now;
     clock_gettime(CLOCK_REALTIME, &now);
     uint64_t token = hash_xxh3(&now, sizeof now);
     bool github = options->annotations == ANNOTATE_GITHUB;
     if (github) printf("::stop-commands::%016" PRIx64 "\n", token);
-    compare_print(regression);
+    bool ok = compare_print(regression, error);
     RegressionText notes = regression_notes(regression);
     if (notes.text[0] != '\0') printf("%s\n", notes.text);
     if (github) printf("::%016" PRIx64 "::\n", token);
+    return ok;
 }
 
 static bool annotate(const CompareOptions *options, const Regression *regression, Error *error) {
@@ -267,9 +268,8 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
                  plural(regression.count), regression.run_count,
                  regression.run_count == 1 ? "trajectory" : "trajectories", tolerance_words(&options->tolerance).text,
                  regression.seconds);
-    if (!options->json) print(options, &regression);
-    ok = regression_passed(&regression);
-    if (options->report != NULL && !report(&regression, options, error)) ok = false;
+    ok = (options->json || print(options, &regression, error)) && regression_passed(&regression);
+    if (error->kind == ERROR_NONE && options->report != NULL && !report(&regression, options, error)) ok = false;
     if (error->kind == ERROR_NONE && options->json && !compare_json_pictures(&regression, error)) ok = false;
     if (error->kind == ERROR_NONE && !annotate(options, &regression, error)) ok = false;
     regression_free(&regression);

@@ -13,6 +13,7 @@
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -44,12 +45,16 @@ static void print_regions(const FrameChanges *changes) {
     if (more > 0) printf("  and %" PRId64 " more %s\n", more, more == 1 ? "region" : "regions");
 }
 
+static void print_flip(const RegressionFrame *frame) {
+    if (!isnan(frame->flip)) printf("  FLIP: mean %.3g, 99th percentile %.3g\n", frame->flip, frame->flip_p99);
+}
+
 static void print_first(const Regression *regression) {
     for (int i = 0; i < regression->count; i++) {
         const RegressionFrame *frame = &regression->frames[i];
-        if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
+        if (frame->alone || (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED)) continue;
         printf("first difference: %s: %s\n", frame_name(frame), frame_words(frame).text);
-        if (!isnan(frame->flip)) printf("  FLIP: mean %.3g, 99th percentile %.3g\n", frame->flip, frame->flip_p99);
+        print_flip(frame);
         print_regions(frame->changes);
         return;
     }
@@ -85,28 +90,46 @@ static void print_counts(const Regression *regression) {
     if (different > 0 || run_failed > 0) printf("\n");
 }
 
-static void print_difference(const Regression *regression) {
+/* Pictures that belong to no sequence: a line each, the worst first. No line begins with a name, which a CI system could
+   take for a command. */
+static bool print_cases(const Regression *regression, Error *error) {
+    enum { SHOWN = 50 };
+    const RegressionFrame **failures = regression_failures(regression, error);
+    int shown = 0;
+    for (int i = 0; failures != NULL && i < regression->failed; i++) {
+        if (!failures[i]->alone || failures[i]->pixels >= PIXELS_MISSING) continue;
+        if (shown++ == SHOWN) printf("and more; results.json of --report has all\n");
+        if (shown > SHOWN) break;
+        printf("differs: %s: %s\n", frame_name(failures[i]), case_words(failures[i]).text);
+        print_flip(failures[i]);
+        if (regression->count == 1) print_regions(failures[i]->changes);
+    }
+    free(failures);
+    return failures != NULL;
+}
+
+static bool print_difference(const Regression *regression, Error *error) {
     print_views(regression);
     print_names(regression, PIXELS_MISSING, regression->sequences[EXPECTED]->folder);
     print_names(regression, PIXELS_EXTRA, regression->sequences[ACTUAL]->folder);
     print_first(regression);
+    if (!print_cases(regression, error)) return false;
     print_causes(regression);
     print_counts(regression);
     RegressionText begin = regression_begin(regression);
     if (begin.text[0] != '\0') printf("%s\n", begin.text);
     printf("verdict: %s\n", regression_verdict(regression).text);
+    return true;
 }
 
-void compare_print(const Regression *regression) {
+bool compare_print(const Regression *regression, Error *error) {
     int within = regression->by_verdict[PIXELS_WITHIN], runs = regression->run_count;
-    if (!regression_passed(regression)) {
-        print_difference(regression);
-        return;
-    }
+    if (!regression_passed(regression)) return print_difference(regression, error);
     printf("%s: %d frame%s", within > 0 ? "passed" : "equal", regression->count, plural(regression->count));
     if (within > 0) printf(", %d of them not equal, but within tolerance", within);
     if (runs > 0) printf(", %d %s", runs, runs == 1 ? "trajectory" : "trajectories");
     printf("\n");
+    return true;
 }
 
 static void write_pictures(JsonWriter *json, const void *context) { regression_write_json(json, context); }

@@ -72,7 +72,7 @@ bool compare_runs_report(RunComparison *comparison, const char *folder, Error *e
 bool compare_runs(const CompareOptions *options, Error *error);
 
 /* Prints the result of a comparison of pictures. */
-void compare_print(const Regression *regression);
+bool compare_print(const Regression *regression, Error *error); /* false with error set if out of memory */
 
 /* The same as JSON: what results.json of a report has. */
 bool compare_json_pictures(const Regression *regression, Error *error);

@@ -24,8 +24,8 @@ Image *image_create(int width, int height, Error *error) {
     return wrap(width, height, calloc((size_t)width * (size_t)height, 4), error);
 }
 
-Image *image_create_unset(int width, int height, size_t further, Error *error) {
-    return wrap(width, height, malloc((size_t)width * (size_t)height * 4 + further), error);
+Image *image_create_unset(int width, int height, Error *error) {
+    return wrap(width, height, malloc((size_t)width * (size_t)height * 4), error);
 }
 
 /* The system provides all pages at once in half the time that it needs for one after another. */

@@ -61,11 +61,8 @@ typedef struct PngRows {
     const uint8_t *file;
     size_t size, first, next; /* positions of the first IDAT chunk and of the one to read */
     size_t compressed;        /* bytes of all IDAT chunks */
-    const uint8_t *whole;     /* the next row of a picture that is decompressed at once; NULL: by zlib, row by row: */
-    z_stream stream;
+    struct PngStream *stream; /* ISA-L's or zlib's */
     bool started, ended;
-    uint32_t sum; /* Adler-32 of all rows so far */
-    uint8_t *row; /* [1 + bytes] */
 } PngRows;
 
 /* Checks all chunks and their checksums, and refuses animations. png_rows_close() must follow. */
@@ -75,12 +72,11 @@ void png_rows_close(PngRows *rows);
 /* Bytes of all filtered rows. */
 size_t png_rows_size(const PngRows *rows);
 
-/* Begins to decompress: at once by libdeflate, into all[png_rows_size()]; or row by row by zlib, where the picture is large
-   or shrinks to so little that memory is slower than zlib. */
-bool png_rows_start(PngRows *rows, uint8_t *all);
+/* Begins to decompress. */
+bool png_rows_start(PngRows *rows);
 
-/* The next row as it is stored, [1 + bytes], a filter and its bytes; NULL: as false. */
-const uint8_t *png_rows_next(PngRows *rows);
+/* The next `size` bytes of the rows as they are stored: of each a filter and its bytes. */
+bool png_rows_read(PngRows *rows, uint8_t *to, size_t size);
 
 /* Whether the file ends with its last row, and the checksum of its rows is right. */
 bool png_rows_end(PngRows *rows);
@@ -89,10 +85,20 @@ bool png_rows_end(PngRows *rows);
 
 bool png_fast_decode(const uint8_t *data, size_t size, int64_t max_pixels, Image **image);
 
-/* Two files with the same layout, row by row: images[1] is images[0] if all pixels are equal. */
+/* Two files with the same size in pixels: images[1] is images[0] if all pixels are equal, and the layouts. */
 bool png_fast_decode_pair(const uint8_t *const data[2], const size_t sizes[2], int64_t max_pixels, Image *images[2]);
 
-/* Any file, by libpng; NULL with error set. What png_fast_decode() accepts, this accepts, with the same pixels. */
+/* One file, or two with the same size in pixels, in memory for some rows. band: bytes of rows that are decompressed at
+   once, at least one row. threads: with a second thread. */
+enum { PNG_BAND = 1 << 18 };
+bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels, size_t band,
+                   bool threads, const RowSink *sink);
+
+/* Whether a file can be decoded. */
+bool png_fast_check(const uint8_t *data, size_t size, int64_t max_pixels);
+
+/* Any file, by libpng; NULL with error set. What png_fast_decode() accepts, this accepts, with the same pixels;
+   but for codes of deflate that are incomplete, which ISA-L reads and zlib refuses: the pixels have the right checksum. */
 Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error);
 
 /* Compressed pixels of PNG files (IDAT), optimised for frames of a sequence: flat colours, most rows equal to the

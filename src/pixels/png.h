@@ -18,8 +18,8 @@ typedef struct Image {
 
 /* All pixels are zero. NULL with error set if out of memory. */
 Image *image_create(int width, int height, Error *error);
-/* The same with pixels of any value, and room for further bytes behind them. */
-Image *image_create_unset(int width, int height, size_t further, Error *error);
+/* The same with pixels of any value. */
+Image *image_create_unset(int width, int height, Error *error);
 void image_destroy(Image *image);
 
 /* Prepares memory of image_create_unset() of which all will be used; without this, it is only slower. */
@@ -45,11 +45,30 @@ uint8_t *image_load_png(const char *path, size_t *size, Error *error);
 /* Like image_read_png(), for a file in memory and with another limit; `path` is used in messages. */
 Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error);
 
+/* Whether image_decode_png() would read the file, in memory for some rows. */
+bool image_check_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error);
+
 /* Two files. If all their pixels are equal, images[1] may be images[0]. image_destroy_pair() frees them, also after a
    failure. */
 bool image_decode_png_pair(const uint8_t *const data[2], const size_t sizes[2], const char *const paths[2],
                            int64_t max_pixels, Image *images[2], Error *error);
 void image_destroy_pair(Image *images[2]);
+
+/* Takes the rows of one file or two, from the top. */
+typedef struct RowSink {
+    bool (*begin)(void *context, int width, int height);
+    /* Room for row y of a side as RGBA, [4 * width]; NULL: out of memory. */
+    uint8_t *(*place)(void *context, int side, int y);
+    /* The rows in their places; a == b: they are equal, or there is one file. */
+    void (*row)(void *context, int y, const uint8_t *a, const uint8_t *b);
+    void *context;
+    bool all; /* also rows that are equal */
+} RowSink;
+
+/* Reads two files row by row, in little memory. False: a file is damaged or of an unusual kind, they have different sizes, or
+   memory is short; image_decode_png_pair() tells. Then some rows may have been given. threads: with a second thread. */
+bool png_scan_rows(const uint8_t *const data[2], const size_t sizes[2], int64_t max_pixels, bool threads,
+                   const RowSink *sink);
 
 /* Copies the value of the first text with this key before the pixels. ERROR_INPUT if there is none, or if it needs
    more than `size` bytes. */

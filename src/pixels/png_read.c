@@ -179,7 +179,8 @@ typedef struct Decoder {
     size_t size, position;
     int64_t max_pixels;
     Image *image;
-    uint8_t *row;      /* 16-bit samples */
+    uint8_t *row;      /* 16-bit samples; any row of pixels that are not kept */
+    bool checked;      /* the pixels are not kept */
     bool memory_short; /* png_memory_take() */
     Error *error;
 } Decoder;
@@ -261,7 +262,16 @@ static void refuse_animation(Decoder *decoder) {
     }
 }
 
+static bool is_palette(const Decoder *decoder) {
+    return png_get_color_type(decoder->png, decoder->info) == PNG_COLOR_TYPE_PALETTE;
+}
+
+/* Of a palette, libpng gives indices, as it would take one beyond the palette for black. */
 static void request_rgba(Decoder *decoder) {
+    if (is_palette(decoder)) {
+        png_set_packing(decoder->png);
+        return;
+    }
     png_set_expand(decoder->png);
     png_set_gray_to_rgb(decoder->png);
     png_set_add_alpha(decoder->png, 0xffff, PNG_FILLER_AFTER);
@@ -300,6 +310,40 @@ static void read_rows(Decoder *decoder) {
     }
 }
 
+static void check_palette(const Decoder *decoder, const uint8_t *row) {
+    png_colorp palette = NULL;
+    int colors = 0;
+    png_get_PLTE(decoder->png, decoder->info, &palette, &colors);
+    for (png_uint_32 x = 0; x < png_get_image_width(decoder->png, decoder->info); x++)
+        if (row[x] >= colors) png_error(decoder->png, "a colour that is not in the palette");
+}
+
+static void check_rows(Decoder *decoder) {
+    for (png_uint_32 y = 0; y < png_get_image_height(decoder->png, decoder->info); y++) {
+        png_read_row(decoder->png, decoder->row, NULL);
+        if (is_palette(decoder)) check_palette(decoder, decoder->row);
+    }
+}
+
+/* In place, from the last pixel of a row: indices are where its first pixels will be. */
+static void expand_palette(Decoder *decoder) {
+    const Image *image = decoder->image;
+    png_colorp palette = NULL;
+    png_bytep alpha = NULL;
+    int colors = 0, alphas = 0;
+    png_get_PLTE(decoder->png, decoder->info, &palette, &colors);
+    png_get_tRNS(decoder->png, decoder->info, &alpha, &alphas, NULL);
+    for (int y = 0; y < image->height; y++) {
+        uint8_t *row = image->pixels + (size_t)y * (size_t)image->width * 4;
+        check_palette(decoder, row);
+        for (int x = image->width - 1; x >= 0; x--) {
+            const int index = row[x];
+            row[4 * x] = palette[index].red, row[4 * x + 1] = palette[index].green;
+            row[4 * x + 2] = palette[index].blue, row[4 * x + 3] = index < alphas ? alpha[index] : 255;
+        }
+    }
+}
+
 static bool decode(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     png_structp png = decoder->png;
@@ -313,12 +357,20 @@ static bool decode(Decoder *decoder) {
     request_rgba(decoder);
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, decoder->info);
+    if (decoder->checked) {
+        decoder->row = calloc(png_get_image_width(png, decoder->info), 8);
+        if (decoder->row == NULL) return error_memory(decoder->error, decoder->path);
+        for (int pass = 0; pass < passes; pass++) check_rows(decoder);
+        png_read_end(png, NULL);
+        return true;
+    }
     decoder->image = image_create((int)png_get_image_width(png, decoder->info),
                                   (int)png_get_image_height(png, decoder->info), decoder->error);
     if (decoder->image == NULL) return false;
     if (png_get_bit_depth(png, decoder->info) == 16 && !allocate_pixels16(decoder)) return false;
     for (int pass = 0; pass < passes; pass++) read_rows(decoder);
     png_read_end(png, NULL);
+    if (is_palette(decoder)) expand_palette(decoder);
     return true;
 }
 
@@ -333,10 +385,26 @@ Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int
     return NULL;
 }
 
+bool image_check_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+    Decoder decoder;
+    if (png_fast_check(data, size, max_pixels)) return true;
+    bool ok = open_decoder(&decoder, data, size, path, error);
+    decoder.max_pixels = max_pixels;
+    decoder.checked = true;
+    ok = ok && decode(&decoder);
+    close_decoder(&decoder);
+    return ok;
+}
+
 Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
     Image *image;
     if (png_fast_decode(data, size, max_pixels, &image)) return image;
     return png_libpng_decode(data, size, path, max_pixels, error);
+}
+
+bool png_scan_rows(const uint8_t *const data[2], const size_t sizes[2], int64_t max_pixels, bool threads,
+                   const RowSink *sink) {
+    return png_fast_scan(data, sizes, 2, max_pixels, PNG_BAND, threads, sink);
 }
 
 bool image_decode_png_pair(const uint8_t *const data[2], const size_t sizes[2], const char *const paths[2],

@@ -4,12 +4,14 @@
 #include "pixels/internal.h"
 #include "pixels/png.h"
 
-#include <libdeflate.h>
+#ifdef TWINBOX_ISAL
+#include <isa-l/igzip_lib.h>
+#endif
 #include <stdlib.h>
 #include <string.h>
 
 /* libpng refuses longer chunks where they are not pixels: MAX_TEXT_SIZE in png_read.c. */
-enum { MAX_CHUNK = 1 << 16, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2, ADLER_SIZE = 4 };
+enum { MAX_CHUNK = 1 << 16, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2 };
 
 static bool read_header(const PngChunk *chunk, PngLayout *layout, int64_t max_pixels) {
     const uint8_t *data = chunk->data;
@@ -103,121 +105,113 @@ static bool scan_file(PngRows *rows, int64_t max_pixels) {
 }
 
 bool png_rows_open(PngRows *rows, const uint8_t *file, size_t size, int64_t max_pixels) {
-    *rows = (PngRows){.file = file, .size = size, .sum = 1};
+    *rows = (PngRows){.file = file, .size = size};
     return scan_file(rows, max_pixels);
-}
-
-void png_rows_close(PngRows *rows) {
-    if (rows->started) inflateEnd(&rows->stream);
-    rows->started = false;
-    free(rows->row);
 }
 
 size_t png_rows_size(const PngRows *rows) { return (rows->bytes + 1) * rows->layout.height; }
 
-/* The bytes of all IDAT chunks; malloc'ed. */
-static uint8_t *join_chunks(const PngRows *rows) {
-    uint8_t *joined = malloc(rows->compressed + 1), *to = joined;
-    PngChunk chunk;
-    for (size_t at = rows->first; joined != NULL && png_chunk_next(rows->file, rows->size, &at, &chunk);) {
-        if (!png_chunk_is(&chunk, "IDAT")) break;
-        memcpy(to, chunk.data, chunk.length);
-        to += chunk.length;
-    }
-    return joined;
-}
-
-/* A stream that goes on behind its end, or is shorter or longer than the rows, is left to libpng. */
-static bool inflate_whole(PngRows *rows, uint8_t *all) {
-    size_t used = 0;
-    uint8_t *joined = join_chunks(rows);
-    struct libdeflate_decompressor *decompressor = libdeflate_alloc_decompressor();
-    bool ok = joined != NULL && decompressor != NULL &&
-              libdeflate_zlib_decompress_ex(decompressor, joined, rows->compressed, all, png_rows_size(rows), &used,
-                                            NULL) == LIBDEFLATE_SUCCESS &&
-              used == rows->compressed;
-    if (decompressor != NULL) libdeflate_free_decompressor(decompressor);
-    free(joined);
-    rows->whole = all;
-    return ok;
-}
+typedef struct PngStream {
+#ifdef TWINBOX_ISAL
+    struct inflate_state z; /* its first members are named as zlib's */
+#else
+    z_stream z;
+#endif
+} PngStream;
 
 /* Gives the stream the next IDAT chunk. */
 static bool feed(PngRows *rows) {
     PngChunk chunk;
-    while (rows->stream.avail_in == 0) {
+    while (rows->stream->z.avail_in == 0) {
         if (!png_chunk_next(rows->file, rows->size, &rows->next, &chunk) || !png_chunk_is(&chunk, "IDAT")) return false;
-        rows->stream.next_in = (z_const Bytef *)chunk.data;
-        rows->stream.avail_in = (uInt)chunk.length;
-    }
-    return true;
-}
-
-static bool take_number(PngRows *rows, int bytes, uint32_t *value) {
-    *value = 0;
-    for (int i = 0; i < bytes; i++) {
-        if (!feed(rows)) return false;
-        *value = *value << 8 | *rows->stream.next_in++;
-        rows->stream.avail_in--;
+        rows->stream->z.next_in = (uint8_t *)chunk.data; /* not changed */
+        rows->stream->z.avail_in = (uint32_t)chunk.length;
     }
     return true;
 }
 
 /* The header of RFC 1950. A window that is smaller than the picture is left to libpng, as it would matter how the stream
    is cut into calls. */
-static bool check_header(const PngRows *rows, uint32_t header) {
-    int window_bits = (int)(header >> 12) + 8;
-    return (header >> 8 & 0x0F) == Z_DEFLATED && header % 31 == 0 && (header & 0x20) == 0 &&
+static bool check_header(const PngRows *rows, const uint8_t header[HEADER_SIZE]) {
+    int window_bits = (header[0] >> 4) + 8;
+    return (header[0] & 0x0F) == Z_DEFLATED && (header[0] << 8 | header[1]) % 31 == 0 && (header[1] & 0x20) == 0 &&
            window_bits <= MAX_WINDOW_BITS &&
            (window_bits == MAX_WINDOW_BITS || png_rows_size(rows) >> window_bits == 0);
 }
 
-/* Decompressed at once, a picture goes through memory, which only pays where decompression takes longer. */
-static bool fits_at_once(const PngRows *rows) {
-    enum { CACHED = 16 << 20, DENSE = 25 };
-    return png_rows_size(rows) <= CACHED && png_rows_size(rows) / DENSE <= rows->compressed;
+#ifdef TWINBOX_ISAL
+static bool stream_open(PngStream *stream, uint8_t header[HEADER_SIZE]) {
+    (void)header;
+    isal_inflate_init(&stream->z);
+    stream->z.crc_flag = ISAL_ZLIB_NO_HDR_VER;
+    return true;
 }
 
-bool png_rows_start(PngRows *rows, uint8_t *all) {
-    uint32_t header;
-    if (!take_number(rows, HEADER_SIZE, &header) || !check_header(rows, header)) return false;
-    if (fits_at_once(rows)) return inflate_whole(rows, all);
-    /* Without zlib's checksum, which takes as long as its decompression. */
-    rows->started = inflateInit2(&rows->stream, -MAX_WINDOW_BITS) == Z_OK;
-    rows->row = malloc(rows->bytes + 1);
-    return rows->started && rows->row != NULL;
+static void stream_close(PngStream *stream) { (void)stream; }
+
+static bool stream_run(PngStream *stream, bool *ended) {
+    const int status = isal_inflate(&stream->z);
+    *ended = status == ISAL_DECOMP_OK && stream->z.block_state == ISAL_BLOCK_FINISH;
+    return status == ISAL_DECOMP_OK;
 }
 
-/* Fills next_out; false if the stream ends before, or is damaged. */
-static bool inflate_all(PngRows *rows) {
-    while (rows->stream.avail_out > 0) {
-        if (rows->ended || !feed(rows)) return false;
-        int status = inflate(&rows->stream, Z_NO_FLUSH);
-        if (status != Z_OK && status != Z_STREAM_END) return false;
-        rows->ended = status == Z_STREAM_END;
+static bool has_left(const PngStream *stream) { return stream->z.avail_in > 0 || stream->z.read_in_length >= 8; }
+#else
+static bool stream_open(PngStream *stream, uint8_t header[HEADER_SIZE]) {
+    if (inflateInit2(&stream->z, MAX_WINDOW_BITS) != Z_OK) return false;
+    stream->z.next_in = header, stream->z.avail_in = HEADER_SIZE;
+    stream->z.next_out = header; /* nothing is written */
+    (void)inflate(&stream->z, Z_NO_FLUSH);
+    return stream->z.avail_in == 0;
+}
+
+static void stream_close(PngStream *stream) { (void)inflateEnd(&stream->z); }
+
+static bool stream_run(PngStream *stream, bool *ended) {
+    const int status = inflate(&stream->z, Z_NO_FLUSH);
+    *ended = status == Z_STREAM_END;
+    return status == Z_OK || status == Z_STREAM_END || status == Z_BUF_ERROR;
+}
+
+static bool has_left(const PngStream *stream) { return stream->z.avail_in > 0; }
+#endif
+
+void png_rows_close(PngRows *rows) {
+    if (rows->started) stream_close(rows->stream);
+    free(rows->stream);
+}
+
+bool png_rows_start(PngRows *rows) {
+    uint8_t header[HEADER_SIZE];
+    PngStream *stream = rows->stream = calloc(1, sizeof *rows->stream);
+    for (int i = 0; i < HEADER_SIZE; i++) {
+        if (stream == NULL || !feed(rows)) return false;
+        header[i] = *stream->z.next_in++;
+        stream->z.avail_in--;
+    }
+    if (!check_header(rows, header)) return false;
+    uint8_t *const next = stream->z.next_in;
+    const uint32_t left = stream->z.avail_in;
+    rows->started = stream_open(stream, header);
+    stream->z.next_in = next, stream->z.avail_in = left;
+    return rows->started;
+}
+
+bool png_rows_read(PngRows *rows, uint8_t *to, size_t size) {
+    rows->stream->z.next_out = to;
+    rows->stream->z.avail_out = (uint32_t)size;
+    while (rows->stream->z.avail_out > 0) {
+        const uint32_t room = rows->stream->z.avail_out;
+        if (rows->ended) return false;
+        const bool more = feed(rows);
+        if ((!more && !has_left(rows->stream)) || !stream_run(rows->stream, &rows->ended)) return false;
+        if (!more && rows->stream->z.avail_out == room) return false; /* it waits for bytes that are missing */
     }
     return true;
 }
 
-const uint8_t *png_rows_next(PngRows *rows) {
-    if (rows->whole != NULL) {
-        const uint8_t *row = rows->whole;
-        rows->whole += rows->bytes + 1;
-        return row;
-    }
-    rows->stream.next_out = rows->row;
-    rows->stream.avail_out = (uInt)rows->bytes + 1;
-    if (!inflate_all(rows)) return NULL;
-    rows->sum = libdeflate_adler32(rows->sum, rows->row, rows->bytes + 1);
-    return rows->row;
-}
-
 bool png_rows_end(PngRows *rows) {
     uint8_t extra;
-    uint32_t sum;
-    if (rows->whole != NULL) return true;
-    rows->stream.next_out = &extra;
-    rows->stream.avail_out = 1;
-    if (inflate_all(rows) || !rows->ended) return false; /* more than the rows, or no end */
-    return take_number(rows, ADLER_SIZE, &sum) && sum == rows->sum && rows->stream.avail_in == 0 && !feed(rows);
+    if (png_rows_read(rows, &extra, 1) || !rows->ended) return false; /* more than the rows, or no end */
+    return !has_left(rows->stream) && !feed(rows);
 }

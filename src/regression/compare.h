@@ -79,6 +79,21 @@ size_t image_next_difference(const Image *a, const Image *b, size_t first, size_
 void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked, int tolerance,
                           ImageDifference *difference);
 
+/* The parts of it: levels, the largest difference of a channel of each pixel as above, and their counts. */
+
+/* levels[count] of RGBA pixels. */
+void image_levels(const uint8_t *a, const uint8_t *b, size_t count, uint8_t *levels);
+
+/* levels[count] from pixel `first` on, 0 where masked. Returns how many differ, but are ignored as parts of an edge. */
+int64_t image_find_levels(const Image *a, const Image *b, const uint8_t *masked, size_t first, size_t count,
+                          uint8_t *levels);
+
+/* Whether rows of pictures of equal size may differ; certain where both have 8 bits. */
+bool image_row_differs(const Image *a, const Image *b, int y);
+
+/* Adds a row to the difference of pictures of equal size; rows are added from the top. */
+void image_count_levels(ImageDifference *difference, int y, const uint8_t *levels, int count, int tolerance);
+
 /* Cuts both pictures to their overlap: what both have when their top left corners meet. */
 void image_cut_to_overlap(Image *a, Image *b);
 
@@ -116,12 +131,13 @@ bool mask_draw(const Mask *mask, const Image *expected, const char *path, uint8_
 /* Copies the ignored pixels of `expected` to `actual`; masked NULL: none. Both pictures must have the same size. */
 void image_copy_masked(const Image *expected, Image *actual, const uint8_t *masked);
 
-/* Chunks of PNG files that change how equal pixels are displayed: the colour space (cICP, iCCP, sRGB, gAMA, cHRM) and the
-   orientation in eXIf (PNG specification, third edition, sections 11.3.2 and 11.3.4). */
+/* Chunks of PNG files that change how equal pixels are displayed: the colour space (cICP, iCCP, sRGB, gAMA, cHRM), its range
+   (mDCV, cLLI, sBIT), the background (bKGD), the shape and size of a pixel (pHYs) and the orientation in eXIf (PNG
+   specification, third edition, sections 11.3.2 to 11.3.4). */
 
 /* "gAMA 0.45455 and none, orientation 1 and 6" */
 typedef struct PngDisplay {
-    char text[160];
+    char text[256];
 } PngDisplay;
 
 /* Finds what differs between two files; an empty text if nothing does. Each chunk is compared by itself, although some
@@ -149,6 +165,14 @@ typedef struct ImageRegions {
 
 /* The gap in pixels for pictures of this size: the space between two words of a caption, or more. */
 int image_regions_gap(int width, int height);
+
+/* Row by row, from the top; rows without a difference may be left out. levels[width] as above. NULL with error set if out of
+   memory. The regions are complete, and must last, until the end. */
+typedef struct RegionScan RegionScan;
+RegionScan *region_scan_create(int width, int height, ImageRegions *regions, Error *error);
+void region_scan_row(RegionScan *scan, int y, const uint8_t *levels);
+void region_scan_end(RegionScan *scan, int height);
+void region_scan_destroy(RegionScan *scan); /* NULL: does nothing */
 
 /* `difference` is what image_compare_masked() found in the same pictures and mask. False with error set if out of memory. */
 bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, const ImageDifference *difference,

@@ -16,7 +16,7 @@ typedef struct Node {
     ImageRegion region;
 } Node;
 
-typedef struct Scan {
+struct RegionScan {
     int width, gap;
     int node_count, capacity;
     Node *nodes;      /* [capacity] */
@@ -24,9 +24,9 @@ typedef struct Scan {
     int *moved;       /* [capacity], scratch of compact() */
     int *column_node; /* [width] of the last differing pixel of a column */
     int *column_row;  /* [width] its row; far above the picture: none */
-    bool *differs;    /* [width] of the current row */
     ImageRegions *regions;
-} Scan;
+};
+typedef struct RegionScan Scan;
 
 int image_regions_gap(int width, int height) {
     int gap = (width < height ? width : height) / 120;
@@ -90,71 +90,98 @@ static void compact(Scan *scan, int row) {
 }
 
 /* The run of differing pixels from `left` to `right`, whose gaps are no larger than the gap. */
-static void add_run(Scan *scan, int left, int right, int64_t pixels, int row) {
-    int node = scan->node_count++;
+static void add_run(Scan *scan, const uint8_t *levels, int left, int right, int64_t pixels, int row) {
+    int node = scan->node_count++, known = -1;
     scan->nodes[node] = (Node){node, {pixels, left, row, right + 1, row + 1}};
-    int first = max(left - scan->gap, 0), last = min(right + scan->gap, scan->width - 1);
-    for (int x = first; x <= last; x++)
-        if (scan->column_row[x] >= row - scan->gap) node = join(scan, node, scan->column_node[x]);
-    for (int x = left; x <= right; x++)
-        if (scan->differs[x]) scan->column_node[x] = node, scan->column_row[x] = row;
+    const int first = max(left - scan->gap, 0), last = min(right + scan->gap, scan->width - 1), reach = row - scan->gap;
+    int *nodes = scan->column_node, *rows = scan->column_row;
+    for (int x = first; x <= last; x++) {
+        if (rows[x] < reach || nodes[x] == known) continue;
+        known = nodes[x];
+        node = join(scan, node, known);
+    }
+    for (int x = left; x <= right; x++) {
+        nodes[x] = levels[x] > 0 ? node : nodes[x];
+        rows[x] = levels[x] > 0 ? row : rows[x];
+    }
 }
 
-static void add_row(Scan *scan, int left, int right, int row) {
-    int start = -1, last = 0;
-    int64_t pixels = 0;
-    if (scan->node_count + scan->width > scan->capacity) compact(scan, row);
-    for (int x = left; x < right; x++) {
-        if (!scan->differs[x]) continue;
-        if (start >= 0 && x - last > scan->gap) add_run(scan, start, last, pixels, row), start = -1;
-        if (start < 0) start = x, pixels = 0;
-        last = x;
-        pixels++;
+/* The next pixel from x on that differs; `width` if there is none. */
+static int next_pixel(const uint8_t *levels, int x, int width) {
+    uint64_t word;
+    while (x + (int)sizeof word <= width) {
+        memcpy(&word, levels + x, sizeof word);
+        if (word != 0) break;
+        x += (int)sizeof word;
     }
-    if (start >= 0) add_run(scan, start, last, pixels, row);
+    while (x < width && levels[x] == 0) x++;
+    return x;
 }
 
-static void scan_rows(Scan *scan, const Image *a, const Image *b, const uint8_t *masked, const ImageDifference *box) {
-    for (int y = box->top; y < box->bottom; y++) {
-        size_t first = (size_t)y * (size_t)scan->width;
-        size_t right = (size_t)box->right, x = image_next_difference(a, b, first, (size_t)box->left);
-        bool any = false;
-        if (x < right) memset(scan->differs, 0, (size_t)scan->width * sizeof *scan->differs);
-        for (; x < right; x = image_next_difference(a, b, first, x + 1)) {
-            size_t pixel = first + x;
-            scan->differs[x] = (masked == NULL || masked[pixel] == 0) && image_pixel_difference(a, b, pixel) > 0;
-            any = any || scan->differs[x];
-        }
-        if (any) add_row(scan, box->left, box->right, y);
+void region_scan_row(RegionScan *scan, int y, const uint8_t *levels) {
+    if (scan->node_count + scan->width > scan->capacity) compact(scan, y);
+    for (int left = next_pixel(levels, 0, scan->width); left < scan->width;) {
+        int right = left, x = left + 1;
+        int64_t pixels = 1;
+        for (; x < scan->width && x - right <= scan->gap; x++)
+            if (levels[x] > 0) right = x, pixels++;
+        add_run(scan, levels, left, right, pixels, y);
+        left = next_pixel(levels, x, scan->width);
     }
-    /* Beyond the reach of every row: all regions are complete. */
-    compact(scan, box->bottom + scan->gap);
+}
+
+RegionScan *region_scan_create(int width, int height, ImageRegions *regions, Error *error) {
+    const size_t columns = (size_t)width, capacity = 3 * columns;
+    Scan *scan = calloc(1, sizeof *scan);
+    if (scan == NULL) return error_memory(error, "regions"), NULL;
+    *scan =
+        (Scan){.width = width, .gap = image_regions_gap(width, height), .capacity = (int)capacity, .regions = regions};
+    *regions = (ImageRegions){.count = 0};
+    scan->nodes = calloc(capacity, sizeof *scan->nodes);
+    scan->kept = malloc(capacity * sizeof *scan->kept);
+    scan->moved = calloc(capacity, sizeof *scan->moved);
+    scan->column_node = calloc(columns, sizeof *scan->column_node);
+    scan->column_row = calloc(columns, sizeof *scan->column_row);
+    if (scan->nodes == NULL || scan->kept == NULL || scan->moved == NULL || scan->column_node == NULL ||
+        scan->column_row == NULL) {
+        error_memory(error, "regions");
+        region_scan_destroy(scan);
+        return NULL;
+    }
+    for (size_t x = 0; x < columns; x++) scan->column_row[x] = INT32_MIN / 2;
+    return scan;
+}
+
+/* Beyond the reach of every row, all regions are complete. */
+void region_scan_end(RegionScan *scan, int height) { compact(scan, height + scan->gap); }
+
+void region_scan_destroy(RegionScan *scan) {
+    if (scan == NULL) return;
+    free(scan->nodes);
+    free(scan->kept);
+    free(scan->moved);
+    free(scan->column_node);
+    free(scan->column_row);
+    free(scan);
 }
 
 bool image_regions_find(const Image *a, const Image *b, const uint8_t *masked, const ImageDifference *difference,
                         ImageRegions *regions, Error *error) {
-    Scan scan = {.width = a->width, .gap = image_regions_gap(a->width, a->height), .regions = regions};
-    size_t width = (size_t)a->width;
+    const size_t width = (size_t)a->width;
     *regions = (ImageRegions){.count = 0};
     if (difference->pixels == 0) return true;
-    scan.capacity = 3 * a->width;
-    scan.nodes = calloc((size_t)scan.capacity, sizeof *scan.nodes);
-    scan.kept = malloc((size_t)scan.capacity * sizeof *scan.kept);
-    scan.moved = calloc((size_t)scan.capacity, sizeof *scan.moved);
-    scan.column_node = calloc(width, sizeof *scan.column_node);
-    scan.column_row = calloc(width, sizeof *scan.column_row);
-    scan.differs = malloc(width * sizeof *scan.differs);
-    bool ok = (scan.nodes != NULL && scan.kept != NULL && scan.moved != NULL && scan.column_node != NULL &&
-               scan.column_row != NULL && scan.differs != NULL) ||
-              error_memory(error, "regions");
-    for (size_t x = 0; ok && x < width; x++) scan.column_row[x] = INT32_MIN / 2, scan.column_node[x] = 0;
-    if (ok) scan_rows(&scan, a, b, masked, difference);
-    free(scan.nodes);
-    free(scan.kept);
-    free(scan.moved);
-    free(scan.column_node);
-    free(scan.column_row);
-    free(scan.differs);
+    uint8_t *levels = malloc(width);
+    Scan *scan = levels != NULL ? region_scan_create(a->width, a->height, regions, error) : NULL;
+    if (levels == NULL) error_memory(error, "regions");
+    for (int y = difference->top; scan != NULL && y < difference->bottom; y++) {
+        if (!image_row_differs(a, b, y)) continue;
+        (void)image_find_levels(a, b, masked, (size_t)y * width, width, levels);
+        region_scan_row(scan, y, levels);
+    }
+    if (scan != NULL) region_scan_end(scan, a->height);
+    const bool ok = scan != NULL;
+    region_scan_destroy(scan);
+    free(levels);
     return ok;
 }
 

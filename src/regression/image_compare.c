@@ -7,41 +7,90 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHANNELS = 4, REACH = 3, SIDE = 2 * REACH + 1, CENTER = REACH };
+enum { CHANNELS = 4, REACH = 3, SIDE = 2 * REACH + 1 };
 
-/* A pixel's neighbourhood, premultiplied by alpha; beyond the edges of the picture, the pixels at its edges. */
-typedef struct Block {
-    int at[SIDE][SIDE][CHANNELS];
-} Block;
+/* Four pixels. */
+typedef uint8_t Bytes __attribute__((vector_size(16)));
+typedef uint32_t Pixels __attribute__((vector_size(16)));
+typedef uint16_t Sums __attribute__((vector_size(32)));
+
+static inline Bytes larger_of(Bytes a, Bytes b) {
+    Bytes more = (Bytes)(a > b);
+    return (a & more) | (b & ~more);
+}
+
+static inline Bytes smaller_of(Bytes a, Bytes b) { return a ^ b ^ larger_of(a, b); }
+
+static inline Bytes difference_of(Bytes a, Bytes b) {
+    const Bytes most = larger_of(a, b);
+    return most - (a ^ b ^ most);
+}
+
+static inline Bytes load(const uint8_t *p) {
+    Bytes bytes;
+    memcpy(&bytes, p, sizeof bytes);
+    return bytes;
+}
+
+/* The rows of a picture around one, premultiplied by alpha; beyond its edges, the pixels at its edges. */
+typedef struct Around {
+    const Image *image;
+    uint8_t *memory;           /* SIDE rows, by number modulo SIDE */
+    size_t stride;             /* bytes: REACH pixels, a row, REACH pixels and room for a vector */
+    int numbers[SIDE];         /* of the rows in memory */
+    const uint8_t *rows[SIDE]; /* from y - REACH on; [4 * x] is REACH pixels left of pixel x */
+} Around;
 
 static int inside(int i, int count) { return i < 0 ? 0 : i >= count ? count - 1 : i; }
 
-static void load(const Image *image, int x, int y, int reach, Block *block) {
-    for (int dy = -reach; dy <= reach; dy++)
-        for (int dx = -reach; dx <= reach; dx++) {
-            size_t row = (size_t)inside(y + dy, image->height) * (size_t)image->width;
-            const uint8_t *p = image->pixels + 4 * (row + (size_t)inside(x + dx, image->width));
-            int *to = block->at[CENTER + dy][CENTER + dx];
-            for (int c = 0; c < 3; c++) to[c] = p[3] == 255 ? p[c] : (p[c] * p[3] + 127) / 255;
-            to[3] = p[3];
-        }
+static void premultiply(const uint8_t *p, uint8_t *to) {
+    for (int c = 0; c < 3; c++) to[c] = p[3] == 255 ? p[c] : (uint8_t)((p[c] * p[3] + 127) / 255);
+    to[3] = p[3];
 }
 
-/* One channel of a window of 3 x 3 pixels. */
+static bool around_create(Around *around, const Image *image) {
+    *around = (Around){.image = image, .stride = 4 * ((size_t)image->width + 2 * REACH) + sizeof(Bytes)};
+    for (int i = 0; i < SIDE; i++) around->numbers[i] = -1;
+    return (around->memory = calloc(SIDE, around->stride)) != NULL;
+}
+
+static void around_move(Around *around, int y) {
+    const Image *image = around->image;
+    for (int i = 0; i < SIDE; i++) {
+        const int number = inside(y - REACH + i, image->height), slot = number % SIDE;
+        uint8_t *row = around->memory + (size_t)slot * around->stride;
+        around->rows[i] = row;
+        if (around->numbers[slot] == number) continue;
+        around->numbers[slot] = number;
+        const uint8_t *from = image->pixels + 4 * (size_t)number * (size_t)image->width;
+        for (int x = -REACH; x < image->width + REACH; x++, row += 4)
+            premultiply(from + 4 * inside(x, image->width), row);
+    }
+}
+
+/* A window of 3 x 3 pixels, by channel. */
 typedef struct Window {
-    int middle, least, most, sum;
+    uint8_t middle[16], least[16], most[16];
+    uint16_t sum[16];
 } Window;
 
-static Window window_of(const Block *block, int channel) {
-    Window window = {block->at[CENTER][CENTER][channel], 255, 0, 0};
-    for (int y = CENTER - 1; y <= CENTER + 1; y++)
-        for (int x = CENTER - 1; x <= CENTER + 1; x++) {
-            int value = block->at[y][x][channel];
-            if (value < window.least) window.least = value;
-            if (value > window.most) window.most = value;
-            window.sum += value;
-        }
-    return window;
+static inline void window_of(const Around *around, int x, Window *window) {
+    const uint8_t *const *rows = around->rows + REACH - 1;
+    const size_t at = 4 * ((size_t)x + REACH - 1);
+    const Bytes a = load(rows[0] + at), b = load(rows[1] + at), c = load(rows[2] + at);
+    Bytes least = smaller_of(smaller_of(a, b), c), most = larger_of(larger_of(a, b), c);
+    Sums sum = __builtin_convertvector(a, Sums) + __builtin_convertvector(b, Sums) + __builtin_convertvector(c, Sums);
+    const Pixels low = (Pixels)least, high = (Pixels)most;
+    least = smaller_of(smaller_of(least, (Bytes)__builtin_shufflevector(low, low, 1, 2, 3, 3)),
+                       (Bytes)__builtin_shufflevector(low, low, 2, 3, 3, 3));
+    most = larger_of(larger_of(most, (Bytes)__builtin_shufflevector(high, high, 1, 2, 3, 3)),
+                     (Bytes)__builtin_shufflevector(high, high, 2, 3, 3, 3));
+    memcpy(window->middle, rows[1] + at + 4, 4);
+    memcpy(window->least, &least, sizeof least);
+    memcpy(window->most, &most, sizeof most);
+    memcpy(window->sum, &sum, sizeof sum);
+    for (int i = 0; i < CHANNELS; i++)
+        window->sum[i] = (uint16_t)(window->sum[i] + window->sum[i + 4] + window->sum[i + 8]);
 }
 
 /* Levels, of 255. Less is the gradient of an area: there, a change by one or two levels looks like a movement. */
@@ -50,77 +99,92 @@ enum { LEAST_CONTRAST = 16 };
 /* Differences up to this look equal beside a contrast: renderers round, and areas have gradients. */
 static int slack(int contrast) { return 2 + contrast / 16; }
 
-static bool is_within(int value, const Window *window, int more) {
-    return value >= window->least - more && value <= window->most + more;
+static bool is_within(int value, const Window *window, int channel, int more) {
+    return value >= window->least[channel] - more && value <= window->most[channel] + more;
 }
 
-/* What holds for all channels. */
-typedef struct AntialiasChange {
-    bool explained;       /* 1 and 2 */
-    int slacks[CHANNELS]; /* by channel */
-} AntialiasChange;
-
-static AntialiasChange examine(const Block *a, const Block *b) {
-    AntialiasChange change = {true, {0}};
+/* 1 and 2, for all channels. slacks: by channel. */
+static bool is_explained(const Window *p, const Window *q, uint8_t slacks[CHANNELS]) {
     int largest = 0;
     for (int c = 0; c < CHANNELS; c++) {
-        Window p = window_of(a, c), q = window_of(b, c);
-        int most = p.most > q.most ? p.most : q.most, least = p.least < q.least ? p.least : q.least;
-        int contrast = most - least, more = change.slacks[c] = slack(contrast);
+        const int most = p->most[c] > q->most[c] ? p->most[c] : q->most[c],
+                  least = p->least[c] < q->least[c] ? p->least[c] : q->least[c];
+        const int contrast = most - least, more = slack(contrast);
+        const int difference = abs(p->middle[c] - q->middle[c]), sums = abs(p->sum[c] - q->sum[c]);
+        const bool edge = is_within(p->middle[c], q, c, more) && is_within(q->middle[c], p, c, more);
+        const bool line = 20 * sums <= 9 * contrast + 60; /* sums / 3 <= 0.15 contrast + 1 */
+        if (10 * difference > 6 * contrast + 10 || (!edge && !line)) return false;
         if (contrast > largest) largest = contrast;
-        int difference = abs(p.middle - q.middle), sums = abs(p.sum - q.sum);
-        bool edge = is_within(p.middle, &q, more) && is_within(q.middle, &p, more);
-        bool line = 20 * sums <= 9 * contrast + 60; /* sums / 3 <= 0.15 contrast + 1 */
-        change.explained = change.explained && 10 * difference <= 6 * contrast + 10 && (edge || line);
+        slacks[c] = (uint8_t)more;
     }
-    change.explained = change.explained && largest >= LEAST_CONTRAST;
-    return change;
+    return largest >= LEAST_CONTRAST;
 }
 
-static bool look_equal(const int *a, const int *b, const int *more) {
-    for (int c = 0; c < CHANNELS; c++)
-        if (abs(a[c] - b[c]) > more[c]) return false;
-    return true;
+/* All bits of the pixels that look equal. */
+static inline Pixels look_equal(Bytes a, Bytes b, Bytes more) {
+    return (Pixels)((Pixels)(Bytes)(difference_of(a, b) > more) == 0);
 }
 
-/* Whether three of the eight neighbours of (x, y) look like it. */
-static bool is_flat(const Block *block, int x, int y, const int *more) {
-    int equal = -1; /* itself */
-    for (int i = y - 1; i <= y + 1; i++)
-        for (int j = x - 1; j <= x + 1; j++) equal += look_equal(block->at[i][j], block->at[y][x], more);
-    return equal >= 3;
+/* All bits of those of four pixels, from column x of row i, that three of their eight neighbours look like. */
+static inline Pixels are_flat(const Around *around, int i, size_t x, Bytes more) {
+    const Bytes middle = load(around->rows[i] + 4 * x);
+    Pixels count = {0};
+    for (int dy = -1; dy <= 1; dy++)
+        for (size_t dx = 0; dx < 3; dx++)
+            count -= look_equal(load(around->rows[i + dy] + 4 * (x + dx - 1)), middle, more);
+    return (Pixels)(count > 3); /* with itself */
+}
+
+static inline bool any(Pixels pixels) {
+    uint64_t halves[2];
+    memcpy(halves, &pixels, sizeof halves);
+    return (halves[0] | halves[1]) != 0;
 }
 
 /* 3. */
-static bool share_side(const Block *a, const Block *b, const int *more) {
-    for (int y = 1; y < SIDE - 1; y++)
-        for (int x = 1; x < SIDE - 1; x++)
-            if (look_equal(a->at[y][x], b->at[y][x], more) && is_flat(a, x, y, more) && is_flat(b, x, y, more))
+static inline bool share_side(const Around *a, const Around *b, int x, const uint8_t slacks[CHANNELS]) {
+    uint32_t of_pixel;
+    memcpy(&of_pixel, slacks, sizeof of_pixel);
+    const Bytes more = (Bytes)((Pixels){0} + of_pixel);
+    for (int i = 1; i < SIDE - 1; i++)
+        for (size_t dx = 1; dx <= 2; dx++) { /* five pixels: the first four, and the last four */
+            const size_t at = (size_t)x + dx;
+            Pixels found = look_equal(load(a->rows[i] + 4 * at), load(b->rows[i] + 4 * at), more);
+            if (any(found) && any(found &= are_flat(a, i, at, more)) && any(found & are_flat(b, i, at, more)))
                 return true;
+        }
     return false;
 }
 
-static bool moved(const Image *expected, const Image *actual, int x, int y) {
-    Block a, b;
-    load(expected, x, y, 1, &a);
-    load(actual, x, y, 1, &b);
-    AntialiasChange change = examine(&a, &b);
-    if (!change.explained) return false;
-    load(expected, x, y, REACH, &a);
-    load(actual, x, y, REACH, &b);
-    return share_side(&a, &b, change.slacks);
+static void mark_row(const Around *a, const Around *b, const uint8_t *levels, int width, uint8_t *masked) {
+    Window p, q;
+    uint8_t slacks[CHANNELS];
+    for (int x = 0; x < width; x++) {
+        if (levels[x] == 0 || masked[x] != IGNORED_NOT) continue;
+        window_of(a, x, &p);
+        window_of(b, x, &q);
+        if (is_explained(&p, &q, slacks) && share_side(a, b, x, slacks)) masked[x] = IGNORED_EDGE;
+    }
 }
 
-void antialias_mark(const Image *expected, const Image *actual, uint8_t *masked) {
-    size_t width = (size_t)expected->width;
-    for (int y = 0; y < expected->height; y++) {
-        const uint8_t *a = expected->pixels + 4 * width * (size_t)y, *b = actual->pixels + 4 * width * (size_t)y;
-        uint8_t *row = masked + width * (size_t)y;
-        if (memcmp(a, b, 4 * width) == 0) continue;
-        for (int x = 0; x < expected->width; x++)
-            if (row[x] == IGNORED_NOT && memcmp(a + 4 * x, b + 4 * x, 4) != 0 && moved(expected, actual, x, y))
-                row[x] = IGNORED_EDGE;
+bool antialias_mark(const Image *expected, const Image *actual, uint8_t *masked, Error *error) {
+    const size_t width = (size_t)expected->width;
+    Around a, b = {.memory = NULL};
+    uint8_t *levels = malloc(width);
+    const bool ok =
+        (around_create(&a, expected) && around_create(&b, actual) && levels != NULL) || error_memory(error, "image");
+    for (int y = 0; ok && y < expected->height; y++) {
+        const size_t first = 4 * width * (size_t)y;
+        if (memcmp(expected->pixels + first, actual->pixels + first, 4 * width) == 0) continue;
+        image_levels(expected->pixels + first, actual->pixels + first, width, levels);
+        around_move(&a, y);
+        around_move(&b, y);
+        mark_row(&a, &b, levels, expected->width, masked + width * (size_t)y);
     }
+    free(a.memory);
+    free(b.memory);
+    free(levels);
+    return ok;
 }
 
 static int deep_difference(const Image *a, const Image *b, size_t i) {
@@ -139,22 +203,76 @@ int image_pixel_difference(const Image *a, const Image *b, size_t pixel) {
     return largest;
 }
 
-static void count_pixel(ImageDifference *difference, int x, int y, int here, int tolerance) {
-    if (difference->pixels++ == 0) {
-        difference->first_x = difference->left = x, difference->right = x + 1;
+/* Four pixels at once. */
+void image_levels(const uint8_t *a, const uint8_t *b, size_t count, uint8_t *levels) {
+    size_t x = 0;
+    for (; x + 4 <= count; x += 4) {
+        const Bytes difference = difference_of(load(a + 4 * x), load(b + 4 * x));
+        const Bytes half = larger_of(difference, (Bytes)((Pixels)difference >> 16));
+        const Pixels whole = (Pixels)larger_of(half, (Bytes)((Pixels)half >> 8));
+        for (size_t i = 0; i < 4; i++) levels[x + i] = (uint8_t)whole[i];
+    }
+    for (; x < count; x++) {
+        int largest = 0;
+        for (size_t i = 4 * x; i < 4 * x + 4; i++) {
+            const int difference = abs(a[i] - b[i]);
+            if (difference > largest) largest = difference;
+        }
+        levels[x] = (uint8_t)largest;
+    }
+}
+
+enum { FEW = 240 }; /* pixels whose counts fit into a byte */
+
+/* Adds the levels of few pixels from x on. */
+static void count_few(ImageDifference *difference, int x, int y, const uint8_t *levels, int count, int tolerance) {
+    uint8_t differing = 0, beyond = 0, largest = 0;
+    for (int i = 0; i < count; i++) {
+        differing = (uint8_t)(differing + (levels[i] > 0));
+        beyond = (uint8_t)(beyond + (levels[i] > tolerance));
+        largest = levels[i] > largest ? levels[i] : largest;
+    }
+    if (differing == 0) return;
+    int first = 0, last = count - 1;
+    while (levels[first] == 0) first++;
+    while (levels[last] == 0) last--;
+    if (difference->pixels == 0) {
+        difference->first_x = difference->left = x + first;
         difference->first_y = difference->top = y;
     }
-    if (here > difference->largest) difference->largest = here;
-    difference->beyond += here > tolerance;
-    if (x < difference->left) difference->left = x;
-    if (x >= difference->right) difference->right = x + 1;
+    difference->pixels += differing;
+    difference->beyond += beyond;
+    if (largest > difference->largest) difference->largest = largest;
+    if (x + first < difference->left) difference->left = x + first;
+    if (x + last >= difference->right) difference->right = x + last + 1;
     difference->bottom = y + 1;
 }
 
-static bool equal_row(const Image *a, const Image *b, size_t first) {
-    if (a == b) return true;
-    return a->pixels16 == NULL && b->pixels16 == NULL &&
-           memcmp(a->pixels + 4 * first, b->pixels + 4 * first, 4 * (size_t)a->width) == 0;
+void image_count_levels(ImageDifference *difference, int y, const uint8_t *levels, int count, int tolerance) {
+    for (int x = 0; x < count; x += FEW)
+        count_few(difference, x, y, levels + x, count - x < FEW ? count - x : FEW, tolerance);
+}
+
+static bool is_deep(const Image *a, const Image *b) { return a->pixels16 != NULL || b->pixels16 != NULL; }
+
+bool image_row_differs(const Image *a, const Image *b, int y) {
+    const size_t bytes = 4 * (size_t)a->width, first = (size_t)y * bytes;
+    return a != b && (is_deep(a, b) || memcmp(a->pixels + first, b->pixels + first, bytes) != 0);
+}
+
+int64_t image_find_levels(const Image *a, const Image *b, const uint8_t *masked, size_t first, size_t count,
+                          uint8_t *levels) {
+    int64_t moved = 0;
+    if (is_deep(a, b))
+        for (size_t i = 0; i < count; i++) levels[i] = (uint8_t)image_pixel_difference(a, b, first + i);
+    else
+        image_levels(a->pixels + 4 * first, b->pixels + 4 * first, count, levels);
+    for (size_t i = 0; masked != NULL && i < count; i++) {
+        if (masked[first + i] == IGNORED_NOT) continue;
+        moved += levels[i] > 0 && masked[first + i] == IGNORED_EDGE;
+        levels[i] = 0;
+    }
+    return moved;
 }
 
 size_t image_next_difference(const Image *a, const Image *b, size_t first, size_t x) {
@@ -179,16 +297,14 @@ void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked,
     *difference = (ImageDifference){.same_size = same_size, .first_x = -1, .first_y = -1};
     if (!same_size) return;
     size_t width = (size_t)a->width, all = width * (size_t)a->height;
+    uint8_t levels[FEW];
     difference->counted = (int64_t)all - count_masked(masked, all);
     for (int y = 0; y < a->height; y++) {
-        size_t first = (size_t)y * width;
-        if (equal_row(a, b, first)) continue;
-        for (size_t x = image_next_difference(a, b, first, 0); x < width;
-             x = image_next_difference(a, b, first, x + 1)) {
-            int here = image_pixel_difference(a, b, first + x);
-            Ignored ignored = masked == NULL ? IGNORED_NOT : (Ignored)masked[first + x];
-            if (here > 0 && ignored == IGNORED_NOT) count_pixel(difference, (int)x, y, here, tolerance);
-            difference->moved += here > 0 && ignored == IGNORED_EDGE;
+        if (!image_row_differs(a, b, y)) continue;
+        for (int x = 0; x < a->width; x += FEW) {
+            const int count = a->width - x < FEW ? a->width - x : FEW;
+            difference->moved += image_find_levels(a, b, masked, (size_t)y * width + (size_t)x, (size_t)count, levels);
+            count_few(difference, x, y, levels, count, tolerance);
         }
     }
     difference->equal = difference->pixels == 0;

@@ -33,6 +33,19 @@ bool regression_judge_states(const Regression *regression, RegressionFrame *fram
    match a frame: ERROR_INPUT otherwise. */
 bool regression_read_rules(Regression *regression, Error *error);
 
+/* The difference of a channel that its limits ignore. */
+int regression_level(const Regression *regression, const RegressionFrame *frame);
+
+/* *alone: the pictures can be compared row by row: no pixel is ignored, no limit needs FLIP, no change has a name. False with
+   error set if out of memory. */
+bool regression_needs_rows_alone(Regression *regression, const RegressionFrame *frame, bool *alone, Error *error);
+
+/* *named: whether the changes of a frame can have names: both folders say what their pictures show. Thread-safe. */
+bool regression_may_name(Regression *regression, const RegressionFrame *frame, bool *named, Error *error);
+
+/* Sets `changes` to these regions, without names. */
+bool regression_keep_regions(RegressionFrame *frame, const ImageRegions *regions, Error *error);
+
 /* Whether the masks of a frame of this size could hide all its pixels, or not fit: false is certain, true is not. */
 bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height);
 
@@ -92,8 +105,8 @@ double mask_most_hidden(const Mask *mask, int width, int height);
    does a faint mark along an edge of higher contrast. Rings less than two pixels apart have no flat side and count. */
 
 /* Sets masked[height, width] (regression/compare.h) to IGNORED_EDGE where pixels differ in this way and are not ignored yet.
-   Both pictures must have the same size. Compares 8 bits per channel. */
-void antialias_mark(const Image *expected, const Image *actual, uint8_t *masked);
+   Both pictures must have the same size. Compares 8 bits per channel. False with error set if out of memory. */
+bool antialias_mark(const Image *expected, const Image *actual, uint8_t *masked, Error *error);
 
 /* The expected picture, pale and grey, with differing pixels coloured: yellow for 1, over red, to violet for 255. What
    `masked` ignores (regression/compare.h) is hatched if it is masked, and blue if it is a pixel of an edge that differs. Both

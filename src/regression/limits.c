@@ -32,8 +32,11 @@ bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *differen
         return false;
     if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND) && (double)difference->beyond > tolerance->beyond * counted)
         return false;
-    return (!given(tolerance, LIMIT_FLIP_MEAN) || flip->mean <= tolerance->flip_mean) &&
-           (!given(tolerance, LIMIT_FLIP_P99) || flip->p99 <= tolerance->flip_p99);
+    /* FLIP sees 8 bits: a limit of 0 also means what lies below them. */
+    const bool none = tolerance->flip_mean <= 0,
+               few = tolerance->flip_p99 > 0 || 100 * (double)difference->pixels <= counted;
+    return (!given(tolerance, LIMIT_FLIP_MEAN) || (!none && flip->mean <= tolerance->flip_mean)) &&
+           (!given(tolerance, LIMIT_FLIP_P99) || (few && flip->p99 <= tolerance->flip_p99));
 }
 
 #define ADD(...) text_join(words.text, sizeof words.text, ", ", __VA_ARGS__)
@@ -103,6 +106,19 @@ static bool has_masks(const Regression *regression, const RegressionFrame *frame
            (regression->rules != NULL && rules_have_masks(regression->rules, frame_name(frame)));
 }
 
+int regression_level(const Regression *regression, const RegressionFrame *frame) {
+    return regression_tolerance(regression, frame).tolerance;
+}
+
+bool regression_needs_rows_alone(Regression *regression, const RegressionFrame *frame, bool *alone, Error *error) {
+    const Tolerance tolerance = regression_tolerance(regression, frame);
+    bool named = false;
+    *alone = !has_masks(regression, frame) && !tolerance.antialias && (tolerance.given & LIMITS_FLIP) == 0;
+    if (*alone && !regression_may_name(regression, frame, &named, error)) return false;
+    *alone = *alone && !named;
+    return true;
+}
+
 bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height) {
     const Mask *mask = regression->options.mask;
     double hidden = mask == NULL ? 0 : mask_most_hidden(mask, width, height);
@@ -138,8 +154,10 @@ bool regression_ignore(const Regression *regression, const RegressionFrame *fram
     }
     image_cut_to_overlap(expected, actual);
     if (masks) cut_mask(*masked, width, expected);
-    if (edges) antialias_mark(expected, actual, *masked);
-    return true;
+    if (!edges || antialias_mark(expected, actual, *masked, error)) return true;
+    free(*masked);
+    *masked = NULL;
+    return false;
 }
 
 static bool same_size(const RegressionFrame *frame) {

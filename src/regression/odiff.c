@@ -96,8 +96,9 @@ bool odiff_compare(const Image *base, const Image *compared, const OdiffOptions 
     const int64_t limit = (int64_t)(largest_delta * (threshold * threshold) * ONE);
     if (!prepare(difference, base, compared, name, error)) return false;
     for (int i = 0; i < options->region_count; i++) ignore(difference, &options->regions[i]);
-    if (options->antialias && base->width == compared->width && base->height == compared->height)
-        antialias_mark(base, compared, difference->pixels);
+    if (options->antialias && base->width == compared->width && base->height == compared->height &&
+        !antialias_mark(base, compared, difference->pixels, error))
+        return false;
     for (int y = 0; y < base->height && y < compared->height; y++) compare_row(difference, base, compared, y, limit);
     mark_rest(difference, base, compared);
     mark_rest(difference, compared, base);

@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <zlib.h>
 
-enum { CICP, ICCP, SRGB, GAMA, CHRM, EXIF, KINDS };
-static const char *const types[KINDS] = {"cICP", "iCCP", "sRGB", "gAMA", "cHRM", "eXIf"};
+enum { CICP, ICCP, SRGB, GAMA, CHRM, EXIF, MDCV, CLLI, SBIT, BKGD, PHYS, KINDS };
+static const char *const types[KINDS] = {"cICP", "iCCP", "sRGB", "gAMA", "cHRM", "eXIf",
+                                         "mDCV", "cLLI", "sBIT", "bKGD", "pHYs"};
 
 /* The chunks of a file; length 0: none. */
 typedef struct Chunks {
@@ -105,26 +106,22 @@ static Value value_of(int kind, const PngChunk *chunk) {
 }
 
 /* Chunks without a short value: "cHRM differs". */
-static void describe(int kind, const PngChunk *a, const PngChunk *b, char *text, size_t size) {
+static void describe(int kind, const PngChunk *a, const PngChunk *b, PngDisplay *display) {
     const char *name = kind == EXIF ? "orientation" : types[kind];
     Value first = value_of(kind, a), second = value_of(kind, b);
     if (strcmp(first.text, second.text) == 0)
-        snprintf(text, size, "%s differs", name);
+        text_join(display->text, sizeof display->text, ", ", "%s differs", name);
     else
-        snprintf(text, size, "%s %s and %s", name, first.text, second.text);
+        text_join(display->text, sizeof display->text, ", ", "%s %s and %s", name, first.text, second.text);
 }
 
 bool png_display_compare(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size, PngDisplay *display,
                          Error *error) {
     Chunks first = find_chunks(a, a_size), second = find_chunks(b, b_size);
-    char *text = display->text;
-    text[0] = '\0';
+    display->text[0] = '\0';
     for (int i = 0; i < KINDS; i++) {
         const PngChunk *x = &first.kinds[i], *y = &second.kinds[i];
-        size_t used = strlen(text);
-        if (displays_alike(i, x, y, error)) continue;
-        if (used > 0) used += (size_t)snprintf(text + used, sizeof display->text - used, ", ");
-        describe(i, x, y, text + used, sizeof display->text - used);
+        if (!displays_alike(i, x, y, error)) describe(i, x, y, display);
     }
     return error->kind == ERROR_NONE;
 }

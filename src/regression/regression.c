@@ -32,9 +32,86 @@ static bool judge_pixels(Regression *regression, RegressionFrame *frame, uint8_t
     return ok;
 }
 
+/* Row by row, in little memory, where that is enough: nothing is ignored, FLIP is not measured, and nothing can be named. */
+typedef struct RowJudge {
+    int width, height, tolerance;
+    ImageDifference difference;
+    ImageRegions regions;
+    RegionScan *scan;     /* from the first row that differs */
+    uint8_t *rows[SIDES]; /* [4 * width]; behind them: */
+    uint8_t *levels;      /* [width] */
+    Error error;
+} RowJudge;
+
+static bool begin_rows(void *context, int width, int height) {
+    RowJudge *judge = context;
+    const size_t count = (size_t)width;
+    judge->width = width, judge->height = height;
+    judge->difference =
+        (ImageDifference){.same_size = true, .counted = (int64_t)width * height, .first_x = -1, .first_y = -1};
+    if ((judge->rows[EXPECTED] = malloc(9 * count)) == NULL) return error_memory(&judge->error, "image");
+    judge->rows[ACTUAL] = judge->rows[EXPECTED] + 4 * count;
+    judge->levels = judge->rows[ACTUAL] + 4 * count;
+    return true;
+}
+
+static uint8_t *place_row(void *context, int side, int y) {
+    RowJudge *judge = context;
+    (void)y;
+    return judge->rows[side];
+}
+
+static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
+    RowJudge *judge = context;
+    if (a == b || judge->error.kind != ERROR_NONE) return;
+    image_levels(a, b, (size_t)judge->width, judge->levels);
+    image_count_levels(&judge->difference, y, judge->levels, judge->width, judge->tolerance);
+    if (judge->scan == NULL)
+        judge->scan = region_scan_create(judge->width, judge->height, &judge->regions, &judge->error);
+    if (judge->scan != NULL) region_scan_row(judge->scan, y, judge->levels);
+}
+
+/* *done: the files are common ones of one size, and sound. */
+static bool judge_rows(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], bool *done,
+                       Error *error) {
+    RegressionFile *files = frame->files;
+    RowJudge judge = {.tolerance = regression_level(regression, frame)};
+    const RowSink sink = {begin_rows, place_row, judge_row, &judge, false};
+    *done = png_scan_rows((const uint8_t *const[]){data[EXPECTED], data[ACTUAL]},
+                          (const size_t[]){files[EXPECTED].size, files[ACTUAL].size}, regression->options.max_pixels,
+                          regression->count == 1, &sink);
+    bool ok = judge.error.kind == ERROR_NONE;
+    if (ok && *done) {
+        for (RegressionSide side = EXPECTED; side < SIDES; side++)
+            files[side].width = judge.width, files[side].height = judge.height;
+        if (judge.scan != NULL) region_scan_end(judge.scan, judge.height);
+        judge.difference.equal = judge.difference.pixels == 0;
+        frame->difference = judge.difference;
+        ok = regression_decide(regression, frame, NULL, NULL, NULL, error) &&
+             (judge.difference.equal || regression_keep_regions(frame, &judge.regions, error));
+    }
+    region_scan_destroy(judge.scan);
+    free(judge.rows[EXPECTED]);
+    if (judge.error.kind != ERROR_NONE) *error = judge.error;
+    /* Damage is found without memory for the pixels: where a common file has it, and where the pixels are many. */
+    enum { MANY = 1 << 24 };
+    for (RegressionSide side = EXPECTED; ok && !*done && side < SIDES; side++) {
+        const char *path = frame->at[side]->path;
+        int width, height;
+        ok = png_check(data[side], files[side].size, path, &width, &height, error) &&
+             ((judge.height == 0 && (int64_t)width * height < MANY) ||
+              image_check_png(data[side], files[side].size, path, regression->options.max_pixels, error));
+    }
+    return ok;
+}
+
 static bool decode_and_judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
     Image *images[SIDES];
     RegressionFile *files = frame->files;
+    bool rows, done = false;
+    if (!regression_needs_rows_alone(regression, frame, &rows, error)) return false;
+    if (rows && !judge_rows(regression, frame, data, &done, error)) return false;
+    if (done) return true;
     bool ok = image_decode_png_pair((const uint8_t *const[]){data[EXPECTED], data[ACTUAL]},
                                     (const size_t[]){files[EXPECTED].size, files[ACTUAL].size},
                                     (const char *const[]){frame->at[EXPECTED]->path, frame->at[ACTUAL]->path},
@@ -51,10 +128,8 @@ static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame
                         const uint8_t *data, Error *error) {
     assert(frame->at[side] != NULL);
     RegressionFile *file = &frame->files[side];
-    Image *image = image_decode_png(data, file->size, frame->at[side]->path, options->max_pixels, error);
-    if (image == NULL) return false;
-    file->width = image->width, file->height = image->height;
-    image_destroy(image);
+    if (!image_check_png(data, file->size, frame->at[side]->path, options->max_pixels, error)) return false;
+    (void)png_size(data, file->size, &file->width, &file->height);
     frame->pixels = side == EXPECTED ? PIXELS_MISSING : PIXELS_EXTRA;
     return true;
 }
@@ -133,6 +208,15 @@ static bool compare_files(Regression *regression, RegressionFrame *frame, Error 
     return ok;
 }
 
+static bool check_file(const char *path, Error *error) {
+    size_t size;
+    int width, height;
+    uint8_t *data = image_load_png(path, &size, error);
+    bool ok = data != NULL && png_check(data, size, path, &width, &height, error);
+    free(data);
+    return ok;
+}
+
 static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
     const ImageDifference *x = &a->difference, *y = &b->difference;
     if (frame_failed(a) != frame_failed(b)) return frame_failed(b);
@@ -145,7 +229,11 @@ static bool is_closer(const RegressionFrame *a, const RegressionFrame *b) {
 static bool compare_accepted(Regression *regression, RegressionFrame *frame, Error *error) {
     const RegressionFrame fresh = *frame;
     if (!compare_files(regression, frame, error)) return false;
-    for (const SequenceFrame *other = frame->base->next; other != NULL && frame_failed(frame); other = other->next) {
+    for (const SequenceFrame *other = frame->base->next; other != NULL; other = other->next) {
+        if (!frame_failed(frame)) { /* it is not needed, but damage is told */
+            if (!check_file(other->path, error)) return false;
+            continue;
+        }
         RegressionFrame attempt = fresh;
         attempt.at[EXPECTED] = other;
         bool ok = compare_files(regression, &attempt, error), closer = ok && is_closer(&attempt, frame);
@@ -182,6 +270,26 @@ static bool report_read_errors(const Regression *regression, Error *error) {
 
 bool frame_failed(const RegressionFrame *frame) {
     return frame->pixels >= PIXELS_DIFFER || frame->states == STATES_DIFFER || frame->metadata_failed;
+}
+
+double frame_severity(const RegressionFrame *frame) {
+    return frame->pixels >= PIXELS_RESIZED ? INFINITY : (double)frame->difference.pixels;
+}
+
+static int by_severity(const void *a, const void *b) {
+    const RegressionFrame *x = *(const RegressionFrame *const *)a, *y = *(const RegressionFrame *const *)b;
+    const double first = frame_severity(x), second = frame_severity(y);
+    return first != second ? (first < second) - (first > second) : (x > y) - (x < y);
+}
+
+const RegressionFrame **regression_failures(const Regression *regression, Error *error) {
+    const RegressionFrame **failures = malloc(((size_t)regression->failed + 1) * sizeof *failures);
+    if (failures == NULL) return error_memory(error, "frames"), NULL;
+    int count = 0;
+    for (int i = 0; i < regression->count; i++)
+        if (frame_failed(&regression->frames[i])) failures[count++] = &regression->frames[i];
+    qsort(failures, (size_t)count, sizeof *failures, by_severity);
+    return failures;
 }
 
 static void count_first(int *count, int *first, int i) {
@@ -247,6 +355,19 @@ static void count(Regression *regression) {
     }
 }
 
+static bool share_stem(const RegressionFrame *a, const RegressionFrame *b) {
+    return a->base->number >= 0 && b->base->number >= 0 && sequence_compare_stems(a->base, b->base) == 0;
+}
+
+static void find_films(Regression *regression) {
+    RegressionFrame *frames = regression->frames;
+    for (int i = 0; i < regression->count; i++) {
+        frames[i].alone = !(i > 0 && share_stem(&frames[i - 1], &frames[i])) &&
+                          !(i + 1 < regression->count && share_stem(&frames[i], &frames[i + 1]));
+        regression->film = regression->film || !frames[i].alone;
+    }
+}
+
 static bool pair_frames(Regression *regression, Error *error) {
     SequencePair *pairs =
         image_sequence_pair(regression->sequences[EXPECTED], regression->sequences[ACTUAL], &regression->count, error);
@@ -258,7 +379,9 @@ static bool pair_frames(Regression *regression, Error *error) {
                                                   .flip = NAN,
                                                   .flip_p99 = NAN};
     free(pairs);
-    return regression->frames != NULL || error_memory(error, "frames");
+    if (regression->frames == NULL) return error_memory(error, "frames");
+    find_films(regression);
+    return true;
 }
 
 /* A folder without pictures is an error, not a difference, unless neither has any and trajectories are compared. */
@@ -273,6 +396,16 @@ static bool refuse_empty(const Regression *regression, Error *error) {
     return true;
 }
 
+/* Through a link or another spelling of the path, that is a mistake; the same path twice is meant. */
+static bool refuse_same(const Regression *regression, const char *expected, const char *actual, Error *error) {
+    const ImageSequence *a = regression->sequences[EXPECTED], *b = regression->sequences[ACTUAL];
+    if (a->device != b->device || a->inode != b->inode || strcmp(expected, actual) == 0) return true;
+    return error_input(
+        error, actual,
+        "is the same %s as %s: nothing would be compared; to compare it with itself, write one path twice",
+        a->single ? "file" : "folder", expected);
+}
+
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error) {
     *regression = (Regression){.options = *options};
@@ -280,8 +413,9 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     const ParallelWork work = {compare_frame, regression};
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, error)) != NULL &&
-              pair_frames(regression, error) && regression_find_runs(regression, error) &&
-              refuse_empty(regression, error) && regression_read_rules(regression, error) &&
+              refuse_same(regression, expected, actual, error) && pair_frames(regression, error) &&
+              regression_find_runs(regression, error) && refuse_empty(regression, error) &&
+              regression_read_rules(regression, error) &&
               parallel_for(&work, regression->count, actual, progress, error) &&
               report_read_errors(regression, error) && judge_sequences(regression, error);
     if (ok) count(regression);

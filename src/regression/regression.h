@@ -143,6 +143,7 @@ typedef struct RegressionFrame {
     const SequenceFrame *at[SIDES]; /* NULL on one side for a missing or extra frame; where several pictures are
                                        accepted (base->next), the one that passes or is closest */
     RegressionFile files[SIDES];
+    bool alone; /* no numbered frame of a sequence, but a case of its own */
     PixelVerdict pixels;
     bool sizes_alone; /* PIXELS_RESIZED, and the overlap is less than 1/16 of the larger picture: it is not compared */
     StateVerdict states;
@@ -175,6 +176,7 @@ typedef struct Regression {
     ImageSequence *sequences[SIDES];
     Rules *rules; /* or NULL */
     int count, run_count;
+    bool film;                                /* there is a sequence of numbered frames */
     RegressionFrame *frames;                  /* by stem, then number */
     RegressionRun *runs;                      /* by name */
     int failed;                               /* frames */
@@ -204,6 +206,10 @@ void regression_free(Regression *regression);
 bool regression_passed(const Regression *regression);
 bool frame_failed(const RegressionFrame *frame);
 const char *frame_name(const RegressionFrame *frame); /* of `base` */
+double frame_severity(const RegressionFrame *frame); /* differing pixels; infinite where sizes differ or a file lacks */
+
+/* The [failed] frames, the worst first; malloc'ed. NULL with error set if out of memory. */
+const RegressionFrame **regression_failures(const Regression *regression, Error *error);
 
 /* "equal", "within tolerance", "renderer changed", "physics changed" (states of this frame differ), "view changed" (the
    camera does), "run changed" (states of other frames do), "pictures differ", "metadata changed", "missing", "extra" */
@@ -214,6 +220,7 @@ typedef struct RegressionText {
     char text[1024];
 } RegressionText;
 RegressionText frame_words(const RegressionFrame *frame);
+RegressionText case_words(const RegressionFrame *frame); /* the same, and where most of it is */
 RegressionText run_words(const RegressionRun *run);
 RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: body 7 moved at most 0.4 px" */
 

@@ -33,7 +33,7 @@ static RegressionCase frame_case(const RegressionFrame *frame) {
                            .name = frame_name(frame),
                            .verdict = frame_verdict(frame),
                            .failed = frame_failed(frame),
-                           .words = frame_words(frame),
+                           .words = frame->alone ? case_words(frame) : frame_words(frame),
                            .seconds = frame->seconds,
                            .frame = frame};
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
@@ -442,6 +442,7 @@ static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
     json_put_text(json, "verdict", frame_verdict(frame));
     json_put_bool(json, "failed", frame_failed(frame));
     json_put_bool(json, "shown", frame->shown);
+    json_put_number(json, "severity", frame_severity(frame));
     json_put_text(json, "words", frame_words(frame).text);
     json_put_int(json, "differing", difference->pixels);
     json_put_int(json, "beyond", difference->beyond);
@@ -497,6 +498,7 @@ void regression_write_json(JsonWriter *json, const Regression *regression) {
     write_counts(json, regression);
     write_limits(json, regression);
     json_put_int(json, "masks", regression->options.mask == NULL ? 0 : regression->options.mask->count);
+    json_put_bool(json, "film", regression->film);
     json_begin_array(json, "causes", JSON_LINES);
     for (int i = 0; i < regression->cause_count; i++)
         json_put_text(json, NULL, cause_words(&regression->causes[i]).text);

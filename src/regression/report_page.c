@@ -242,7 +242,7 @@ void report_write_page(FILE *file, const void *context) {
     const Regression *regression = report->regression;
     write_head(file, regression);
     write_summary(file, report);
-    if (regression->count > 0) {
+    if (regression->film) {
         fputs("<section class=\"panel\" id=\"plot\" aria-label=\"Differences of all frames\">\n", file);
         report_write_plot(file, regression);
         fputs("</section>\n", file);

@@ -240,17 +240,37 @@ static bool name_changes(const ShownFolder *const folders[SIDES], const Texts te
     return naming_find(&scene, images[EXPECTED], images[ACTUAL], masked, changes, error);
 }
 
-bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             const Image *const images[SIDES], const uint8_t *masked, Error *error) {
-    const ShownFolder *folders[SIDES];
-    FrameChanges *changes = frame->changes = calloc(1, sizeof *frame->changes);
-    if (changes == NULL) return error_memory(error, frame_name(frame));
-    memset(changes->region_change, -1, sizeof changes->region_change);
-    if (!image_regions_find(images[EXPECTED], images[ACTUAL], masked, &frame->difference, &changes->regions, error))
-        return false;
+/* The folders of the frame. */
+static bool find_folders(Regression *regression, const RegressionFrame *frame, const ShownFolder *folders[SIDES],
+                         Error *error) {
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if ((folders[side] = shown_find(&regression->shown, frame->at[side]->path)) == NULL)
             return error_memory(error, frame_name(frame));
+    return true;
+}
+
+bool regression_may_name(Regression *regression, const RegressionFrame *frame, bool *named, Error *error) {
+    const ShownFolder *folders[SIDES];
+    if (!find_folders(regression, frame, folders, error)) return false;
+    *named = folders[EXPECTED]->view.width > 0 && folders[ACTUAL]->view.width > 0;
+    return true;
+}
+
+bool regression_keep_regions(RegressionFrame *frame, const ImageRegions *regions, Error *error) {
+    if ((frame->changes = calloc(1, sizeof *frame->changes)) == NULL) return error_memory(error, frame_name(frame));
+    memset(frame->changes->region_change, -1, sizeof frame->changes->region_change);
+    frame->changes->regions = *regions;
+    return true;
+}
+
+bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             const Image *const images[SIDES], const uint8_t *masked, Error *error) {
+    const ShownFolder *folders[SIDES];
+    ImageRegions regions;
+    if (!image_regions_find(images[EXPECTED], images[ACTUAL], masked, &frame->difference, &regions, error) ||
+        !regression_keep_regions(frame, &regions, error) || !find_folders(regression, frame, folders, error))
+        return false;
+    FrameChanges *changes = frame->changes;
     const FrameView *a = &folders[EXPECTED]->view, *b = &folders[ACTUAL]->view;
     if (a->width != images[EXPECTED]->width || a->height != images[EXPECTED]->height) return true;
     if (b->width != a->width || b->height != a->height) return true;
@@ -292,7 +312,9 @@ static void put_name(const Causes *causes, RegressionCause *cause, int frame) {
 
 /* Adds a frame; frames are added in order. Neighbours form a range. */
 static void add_frame(const Causes *causes, RegressionCause *cause, int frame) {
-    bool next = cause->count > 0 && frame == cause->last + 1;
+    const RegressionFrame *at = &causes->regression->frames[frame];
+    bool next = cause->count > 0 && frame == cause->last + 1 && !at->alone &&
+                sequence_compare_stems(at[-1].base, at->base) == 0;
     cause->last = frame;
     if (cause->count++ == 0 && causes->numbered) text_add(cause->frames, sizeof cause->frames, "frame ");
     if (next && cause->ranges <= RANGES) {
@@ -370,14 +392,14 @@ static void add_changes(const Causes *causes, int frame) {
         double most = change->kind == CHANGE_MOVED ? fmax(fabs(change->right), fabs(change->up)) : 0;
         add_cause(causes, frame, change_cause(change).text, most, false);
     }
-    if (!named) add_cause(causes, frame, "pixels differ", 0, false);
+    if (!named && !causes->regression->frames[frame].alone) add_cause(causes, frame, "pixels differ", 0, false);
 }
 
 static void add_causes(const Causes *causes, int frame) {
     const RegressionFrame *at = &causes->regression->frames[frame];
     bool pictures = at->pixels == PIXELS_DIFFER || at->pixels == PIXELS_RESIZED;
     if (at->pixels >= PIXELS_MISSING) return;
-    if (at->pixels == PIXELS_RESIZED) add_cause(causes, frame, "sizes differ", 0, false);
+    if (at->pixels == PIXELS_RESIZED && !at->alone) add_cause(causes, frame, "sizes differ", 0, false);
     if (pictures && at->other_view) add_view(causes, frame);
     if (at->states == STATES_DIFFER)
         add_physics(causes, frame);

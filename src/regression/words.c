@@ -200,6 +200,16 @@ RegressionText frame_words(const RegressionFrame *frame) {
     return words;
 }
 
+RegressionText case_words(const RegressionFrame *frame) {
+    RegressionText words = frame_words(frame);
+    const ImageRegions *regions = frame->changes != NULL ? &frame->changes->regions : NULL;
+    if (regions == NULL || regions->kept == 0) return words;
+    const ImageRegion *r = &regions->list[0];
+    ADD(&words, "; ", regions->count > 1 ? "%" PRId64 " regions, the largest" : "one region", regions->count);
+    ADD(&words, " ", "of %d x %d pixels at (%d, %d)", r->right - r->left, r->bottom - r->top, r->left, r->top);
+    return words;
+}
+
 RegressionText cause_words(const RegressionCause *cause) {
     RegressionText words = {""};
     ADD(&words, "", "%s: %s", cause->frames, cause->what);
@@ -238,7 +248,8 @@ RegressionText regression_verdict(const Regression *regression) {
             : physics           ? "physics changed"
                                 : "renderer changed");
     if (regression->view > 0 && !physics) ADD(&verdict, ", ", "view changed");
-    if (regression->unknown > 0) ADD(&verdict, ", ", "pictures differ (cause unknown: no states)");
+    if (regression->unknown > 0)
+        ADD(&verdict, ", ", regression->film ? "pictures differ (cause unknown: no states)" : "pictures differ");
     if (regression->metadata_failed > 0) ADD(&verdict, ", ", "metadata changed");
     add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");
     add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "extra");

@@ -82,6 +82,7 @@ run 1 compare many/a many/b --annotations github
 /usr/bin/python3 - <<'PYTHON' || fail "hostile names: see above"
 import json, os, re, urllib.parse, xml.etree.ElementTree
 names = sorted(os.listdir("hostile/a"))
+assert 'of 1 x 1 pixels at (1, 0)' in open("report/junit.xml", encoding="utf-8").read()
 lines = open("annotations", encoding="utf-8").read().splitlines()
 assert len(lines) == 10, lines
 for line in lines[:9]:

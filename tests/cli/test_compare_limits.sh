@@ -38,6 +38,19 @@ complains "--beyond: error: '2' is not a share from 0 to 1"
 run 2 compare a b --flip p50=0.1
 complains "--flip: error: 'p50=0.1' is not MAX, mean=MAX or p99=MAX"
 
+# A FLIP of 0 is what 8 bits show; a limit of 0 lets nothing differ.
+/usr/bin/python3 - <<'PYTHON'
+import struct, zlib
+chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+for name, low in ("a", 0), ("b", 1):
+    rows = b"".join(b"\0" + struct.pack(">8H", *[25700 + low] * 8) for _ in range(8))
+    with open(f"deep.{name}.png", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 8, 8, 16, 0, 0, 0, 0)))
+        file.write(chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+PYTHON
+for limit in 0 mean=0 p99=0; do run 1 compare deep.a.png deep.b.png --flip $limit; done
+run 0 compare deep.a.png deep.b.png --flip 0.0001 --flip p99=0.0001
+
 # With a limit, FLIP is printed for the frame named, and its limits are those numbers.
 run 1 compare a b
 grep -q FLIP out && fail "FLIP without --flip"
@@ -143,12 +156,21 @@ run 1 compare a b --mask 12,3,38,1
 says "overlap: 9 pixels differ"
 run 1 compare a b --mask 0,0,50,4
 says "overlap: equal pixels"
+# A plot is drawn for frames of a sequence only.
+film() {
+    mkdir -p film.a film.b
+    cp a/x.png film.a/x1.png && cp b/x.png film.b/x1.png
+    cp a/x.png film.a/x2.png && cp a/x.png film.b/x2.png
+    run 1 compare film.a film.b --report film
+}
+film
 /usr/bin/python3 - <<'PYTHON' || fail "the report's pictures of different size"
 import base64, json, re, struct
 page = open("report/report.html").read()
 size = lambda kind: struct.unpack(">II", base64.b64decode(re.search('id="p0%s">([^<]*)<' % kind, page).group(1))[16:24])
 assert [size(kind) for kind in "eadf"] == [(50, 20), (40, 30), (50, 30), (40, 20)]
-assert re.search('<path class="largest" d="M', page), "the plot lacks the overlap"
+assert "<svg" not in page, "a plot of one picture"
+assert re.search('<path class="largest" d="M', open("film/report.html").read()), "the plot lacks the overlap"
 frame = json.load(open("report/results.json"))["frames"][0]
 assert (frame["differing"], frame["counted"], frame["box"]) == (10, 800, [3, 3, 13, 4]) and frame["flip"] > 0
 PYTHON
@@ -159,11 +181,12 @@ run 1 compare a b
 says "x.png: sizes differ: 50 x 20 and 8 x 7 pixels"
 ! grep -q overlap out || fail "an overlap of 8 x 7 pixels is compared"
 run 1 compare a b --report report --flip 1 --mask 0,0,50,20
+film
 /usr/bin/python3 - <<'PYTHON' || fail "the report of pictures without overlap"
 import json, re
 page = open("report/report.html").read()
 assert [kind for kind in "eadf" if 'id="p0%s">' % kind in page] == ["e", "a"]
-assert re.search('<path class="largest" d=""', page), "the plot has a difference"
+assert re.search('<path class="largest" d="M1 ', open("film/report.html").read()), "the plot has a difference"
 frame = json.load(open("report/results.json"))["frames"][0]
 assert (frame["differing"], frame["counted"], frame["box"], frame["flip"]) == (0, 0, None, None)
 PYTHON

@@ -62,18 +62,40 @@ says "not compared: 1 .npz file only in a"
 # A comparison with itself tells nothing.
 fresh
 ln -s a same
-run 0 compare a same
+run 2 compare a same
+complains "same: error: is the same folder as a: nothing would be compared"
+run 2 compare a/home.png a/../same/home.png
+complains "a/../same/home.png: error: is the same file as a/home.png: nothing would be compared"
+run 0 compare same same
 says "expected and actual are the same folder"
-run 0 compare a/home.png a/../same/home.png
+run 0 compare a/home.png a/home.png
 says "expected and actual are the same file"
 run 0 compare a b
 ! grep -q "the same" out || fail "two folders are taken for one"
+
+# Pictures that are no film: a line each, the worst first, with no line of a sequence.
+rm -rf case.a case.b
+mkdir case.a case.b
+for name in aa logo colour plot3 same; do png case.a/$name.png 40 8 "$white" && cp case.a/$name.png case.b; done
+png case.b/aa.png 40 8 "$white" 1 1 "0 0 0 255"
+png case.b/colour.png 40 8 "$white" 1 1 "0 0 0 255" 2 1 "0 0 0 255" 30 6 "9 9 9 255"
+png case.b/plot3.png 40 9 "$white"
+rm case.b/logo.png
+run 1 compare case.a case.b --report report
+equal "lines of cases" "$(cat out)" "only in case.a: 1 frame: logo.png
+differs: plot3.png: sizes differ: 40 x 8 and 40 x 9 pixels; overlap: equal pixels
+differs: colour.png: 3 pixels differ (0.938%) by at most 255, first at (1, 1); 2 regions, the largest of 2 x 1 pixels at (1, 1)
+differs: aa.png: 1 pixel differs (0.312%) by at most 255, first at (1, 1); one region of 1 x 1 pixels at (1, 1)
+3 of 4 frames differ
+verdict: pictures differ, 1 frame missing
+report -> report/report.html"
+grep -q '<svg' report/report.html && fail "a plot over pictures that are no film"
 
 # Subfolders.
 fresh
 png b/sub/x.png 8 8 "$white" 1 2 "0 0 0 255"
 run 1 compare a b
-says "first difference: sub/x.png: 1 pixel differs"
+says "sub/x.png: 1 pixel differs (1.56%) by at most 255, first at (1, 2); one region of 1 x 1 pixels at (1, 2)"
 run 0 compare a b --no-recursive
 says "equal: 1 frame"
 says "not compared: 1 picture in subfolders of a (--no-recursive)"
@@ -165,6 +187,16 @@ png b/home.png 8 8 "$white" eXIf=4d4d002a000000080001011200030000000100060000000
 png a/home.png 8 8 "$white"
 run 1 compare a b --metadata strict
 says "orientation 1 and 6"
+# Brightness of the screen that it was made on, the brightest pixel, the background, the depth, the shape of a pixel.
+for chunk in mDCV=$(printf '%048d' 1) cLLI=0000000100000001 bKGD=000000000000 sBIT=05050505 pHYs=000000010000000200; do
+    png b/home.png 8 8 "$white" "$chunk"
+    run 0 compare a b
+    says "metadata differs in 1 frame, first in home.png: ${chunk%=*} none and set"
+    run 1 compare a b --metadata strict
+done
+png b/home.png 8 8 "$white" mDCV=00 cLLI=00 bKGD=00 sBIT=00 pHYs=00 cHRM=00 gAMA=0001869f sRGB=00 cICP=00 iCCP=00
+run 1 compare a b --metadata strict
+says "bKGD none and set, pHYs none and set"
 png b/home.png 8 8 "$white" tEXt=4100
 run 0 compare a b --metadata strict
 run 2 compare a b --metadata loose
@@ -228,7 +260,7 @@ png b/home.png 8 8 "9 9 9 255" 0 0 "0 0 0 255" 1 0 "0 0 0 255" 2 0 "0 0 0 255"
 run 0 compare a b --fuzzy 9,0.05
 says "1 frame passed by another accepted picture"
 run 1 compare a b --report report
-says "first difference: home.png: 1 pixel differs"
+says "home.png: 1 pixel differs"
 says "closest accepted picture: home.2.png"
 # approve replaces the picture that the report shows.
 cp a/home.png first.png
@@ -238,8 +270,11 @@ says "replaced a/home.2.png"
 says "1 replaced, 0 added, 0 removed"
 cmp -s a/home.png first.png && cmp -s a/home.1.png second.png || fail "approve replaced another picture"
 run 0 compare a b
-# A damaged one is not passed over.
+# A damaged one is not passed over, also where another passes.
 head -c 50 second.png >a/home.1.png
+cp a/home.png b/home.png
+run 2 compare a b
+complains "a/home.1.png: error: not a PNG file, or damaged: unexpected end of file"
 png b/home.png 8 8 "7 7 7 255"
 run 2 compare a b
 complains "a/home.1.png"

@@ -4,6 +4,7 @@
 #include "files.h"
 
 #include "regression/compare.h"
+#include "png_parts.h"
 #include "pngs.h"
 
 static Image *patterned(int width, int height) {
@@ -111,6 +112,30 @@ TEST(every_kind_is_read) {
                     fail_msg("%s, interlace %d: pixel %d, %d", kind->name, i % 2, x, y);
             }
         image_destroy(image);
+    }
+}
+
+/* libpng takes a colour beyond the palette for black. */
+TEST(colours_beyond_the_palette_are_refused) {
+    static const uint8_t palette[3 * 3] = {1, 2, 3, 4, 5, 6, 7, 8, 9}, rows[2] = {0, 0xB0}; /* 2, 3, 0, 0 */
+    for (uint8_t interlace = 0; interlace < 2; interlace++) {
+        PngParts file;
+        uint8_t compressed[64];
+        uLongf size = sizeof compressed;
+        const uint8_t header[13] = {0, 0, 0, 2, 0, 0, 0, 1, 2, PNG_COLOR_TYPE_PALETTE, 0, 0, interlace};
+        /* The passes of two pixels in a row: one of each. */
+        static const uint8_t passes[4] = {0, 0x80, 0, 0xC0};
+        assert_int_equal(compress2(compressed, &size, interlace ? passes : rows, interlace ? 4 : 2, 9), Z_OK);
+        file.size = 0;
+        put_bytes(&file, "\x89PNG\r\n\x1a\n", 8);
+        put_chunk(&file, "IHDR", header, sizeof header);
+        put_chunk(&file, "PLTE", palette, sizeof palette);
+        put_chunk(&file, "IDAT", compressed, size);
+        put_chunk(&file, "IEND", NULL, 0);
+        error = (Error){0};
+        assert_null(image_decode_png(file.data, file.size, "beyond.png", IMAGE_MAX_PIXELS, &error));
+        assert_error(error, ERROR_INPUT,
+                     "beyond.png: error: not a PNG file, or damaged: a colour that is not in the palette");
     }
 }
 

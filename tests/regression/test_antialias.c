@@ -66,7 +66,7 @@ static Image *drawn(const TestShape *shape, const TestDrawing *drawing) {
 static ImageDifference difference_of(const Image *a, const Image *b) {
     uint8_t masked[SIDE * SIDE] = {0};
     ImageDifference difference;
-    antialias_mark(a, b, masked);
+    assert_true(antialias_mark(a, b, masked, &(Error){0}));
     image_compare_masked(a, b, masked, 0, &difference);
     return difference;
 }
@@ -266,7 +266,7 @@ TEST(small_pictures_are_compared) {
             Image *a = image_sized(width, height), *b = image_sized(width, height);
             uint8_t masked[16] = {0};
             memset(a->pixels, 255, 4 * (size_t)(width * height));
-            antialias_mark(a, b, masked);
+            assert_true(antialias_mark(a, b, masked, &(Error){0}));
             for (int i = 0; i < width * height; i++) assert_int_equal(masked[i], IGNORED_NOT);
             image_destroy(a);
             image_destroy(b);
@@ -279,7 +279,7 @@ TEST(masked_pixels_stay_masked) {
     Image *a = drawn(&shapes[2], &plain), *b = drawn(&shapes[2], &moved);
     uint8_t masked[SIDE * SIDE];
     memset(masked, IGNORED_MASK, sizeof masked);
-    antialias_mark(a, b, masked);
+    assert_true(antialias_mark(a, b, masked, &(Error){0}));
     for (int i = 0; i < SIDE * SIDE; i++) assert_int_equal(masked[i], IGNORED_MASK);
     image_destroy(a);
     image_destroy(b);

@@ -79,12 +79,13 @@ cat >probe.html <<'PROBE'
     await follow("#frame=1&mode=swipe");
     note("followed back", ...place(), pressed(), get("nothing").hidden);
     const sorted = {};
-    for (const key of ["flip", "largest"]) {
+    for (const key of ["flip", "largest", "severity"]) {
       get("sort").value = key;
       get("sort").dispatchEvent(new Event("change"));
       await wait();
-      const all = JSON.parse(get("data").textContent).frames, of = name => all.find(f => f.name === name);
-      sorted[key] = shown().every((name, i, names) => i === 0 || of(names[i - 1])[key] >= of(name)[key]);
+      const all = JSON.parse(get("data").textContent).frames, none = key === "severity" ? Infinity : -1;
+      const of = name => all.find(f => f.name === name)[key] ?? none;
+      sorted[key] = shown().every((name, i, names) => i === 0 || of(names[i - 1]) >= of(name));
       note("sorted by " + key, shown().length, sorted[key], get("name").textContent);
     }
     get("sort").value = "name";
@@ -181,6 +182,7 @@ if command -v chromium >/dev/null; then
     says "followed back: frame_000001.png | physics changed | 2 of 5 | mode-swipe | true"
     says "sorted by flip: 5 | true | frame_000001.png"
     says "sorted by largest: 5 | true | frame_000001.png"
+    says "sorted by severity: 5 | true | frame_000001.png"
     says "sorted by name: frame_000000.png,frame_000001.png,frame_000002.png,frame_000004.png,sub/frame_000004.png | frame_000001.png | physics changed | 2 of 5"
     says "figures: FLIP 0."
     says "marks: true | true"

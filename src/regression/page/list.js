@@ -90,13 +90,17 @@ function row_of(index, row) {
   return item;
 }
 
+/* As regression_severity(). */
+const severity = f => !f.failed ? -1 : f.severity === null ? Infinity : f.severity;
+
 /* By the order of the report, or the largest first. */
-const value_of = i => order === "name" ? 0 : data.frames[i][order] === null ? -1 : data.frames[i][order];
+const value_of = i => order === "name" ? 0 : order === "severity" ? severity(data.frames[i])
+  : data.frames[i][order] === null ? -1 : data.frames[i][order];
 
 function list() {
   const index = at >= 0 ? listed[at] : -1, rows = get("rows");
   listed = data.frames.map((_, i) => i).filter(i => all || data.frames[i].failed);
-  listed.sort((a, b) => value_of(b) - value_of(a) || a - b);
+  listed.sort((a, b) => (value_of(b) > value_of(a)) - (value_of(b) < value_of(a)) || a - b);
   rows.replaceChildren(...listed.slice(0, MOST_ROWS).map(row_of));
   get("more").hidden = listed.length <= MOST_ROWS;
   get("all").checked = all;

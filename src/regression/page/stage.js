@@ -7,7 +7,7 @@ const KINDS = {expected: "e", actual: "a", difference: "d", flip: "f"};
 const MOST_ROWS = 2000, BLINK = 600, GAP = 8, NUMBER = 24; /* pixels: between two pictures; for a number above a mark */
 const reduced = matchMedia("(prefers-reduced-motion: reduce)");
 
-let all = false, listed = [], at = -1, mode = "swipe", wanted = "swipe", zoom = "fit", blend = 50, order = "name";
+let all = false, listed = [], at = -1, mode = "swipe", wanted = "swipe", zoom = "fit", blend = 50, order = data.film ? "name" : "severity";
 let ring = true, running = !reduced.matches, second = false, timer = 0, turns = 0;
 
 const frame = () => data.frames[listed[at]];

@@ -5,7 +5,6 @@
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_multilarge_nlinear.h>
 #include <jansson.h>
-#include <libdeflate.h>
 #include <png.h>
 #include <sanitizer/msan_interface.h>
 #include <stdlib.h>
@@ -80,15 +79,6 @@ RESULT(int, uncompress, (Bytef * out, uLongf *size, const Bytef *in, uLong in_si
     __msan_unpoison(out, *size);
 })
 RESULT(int, deflateReset, (z_streamp stream), (stream), stored_stream(stream, NULL))
-
-RESULT(enum libdeflate_result, libdeflate_zlib_decompress_ex,
-       (struct libdeflate_decompressor * inflater, const void *in, size_t in_size, void *out, size_t room, size_t *used,
-        size_t *size),
-       (inflater, in, in_size, out, room, used, size), {
-           STORED(used);
-           STORED(size);
-           __msan_unpoison(out, room);
-       })
 
 RESULT(zip_int64_t, zip_fread, (zip_file_t * file, void *data, zip_uint64_t size), (file, data, size),
        if (result > 0) __msan_unpoison(data, (size_t)result))
