@@ -119,11 +119,13 @@ typedef struct PngStream {
 #endif
 } PngStream;
 
-/* Gives the stream the next IDAT chunk. */
+/* Gives the stream the next IDAT chunk; the chunk behind them is never passed. */
 static bool feed(PngRows *rows) {
     PngChunk chunk;
     while (rows->stream->z.avail_in == 0) {
-        if (!png_chunk_next(rows->file, rows->size, &rows->next, &chunk) || !png_chunk_is(&chunk, "IDAT")) return false;
+        size_t next = rows->next;
+        if (!png_chunk_next(rows->file, rows->size, &next, &chunk) || !png_chunk_is(&chunk, "IDAT")) return false;
+        rows->next = next;
         rows->stream->z.next_in = (uint8_t *)chunk.data; /* not changed */
         rows->stream->z.avail_in = (uint32_t)chunk.length;
     }

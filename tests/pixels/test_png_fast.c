@@ -378,6 +378,24 @@ TEST(bands_of_damaged_files_are_read_only_if_libpng_does) {
     assert_true(accepted > 500 && accepted < 10000);
 }
 
+/* Pixels that go on behind IEND are none. The last bits of a small stream may give many rows. */
+TEST(pixels_end_before_the_end) {
+    static uint8_t rows[32 * 129], packed[ROOM / 2];
+    for (int i = 0; i < 400; i++) {
+        const size_t size = compress_rows(rows, sizeof rows, 15, packed), part = 2 + draw((uint32_t)size - 2);
+        bad.size = 0;
+        put_header(&bad, 32, 32, 8, 6);
+        put_chunk(&bad, "IDAT", packed, part);
+        put_chunk(&bad, "IEND", NULL, 0);
+        put_chunk(&bad, "IDAT", packed + part, size - part);
+        put_chunk(&bad, "IEND", NULL, 0);
+        assert_false(check_file(&bad));
+        assert_false(check_bands(&bad, &bad, i % 2 == 0));
+        assert_false(png_fast_check(bad.data, bad.size, 1 << 20));
+        rows[129 * draw(32) + 1 + draw(128)] = (uint8_t)draw(256);
+    }
+}
+
 /* A file that ends anywhere, or whose byte is another, is refused by bands as by the check without pixels. */
 TEST(a_file_cut_or_changed_at_any_byte_is_refused) {
     for (int i = 0; i < SHALLOW; i++) {
