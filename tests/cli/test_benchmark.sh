@@ -39,6 +39,26 @@ with open("entry/stack-2.impulses.csv", "w") as file:
     file.write("contact,normal,tangent\n")
     file.writelines(f"{i},{n:.9g},{t:.9g}\n" for i, (n, t) in enumerate(run["contact_impulse"][first:end]))
 PYTHON
+# The HDF5 of the step, where h5py can write it: M v = f + H r gives the reference's velocities after the step.
+/usr/bin/python3 - <<'PYTHON' || fail "HDF5"
+import csv
+import numpy
+try:
+    import h5py
+except ImportError:
+    raise SystemExit
+touch = next(int(row["touch"]) for row in csv.DictReader(open("bench/cases.csv")) if row["case"] == "stack-2")
+run = numpy.load("bench/references/stack-2.npz")
+first, end = run["contact_start"][touch:touch + 2]
+with h5py.File("bench/problems/stack-2.hdf5") as file:
+    group = file["fclib_global"]
+    mass, force = group["M/x"][()], group["vectors/f"][()]
+    jacobian = numpy.zeros((group["H/m"][0], group["H/n"][0]))
+    jacobian[group["H/i"][()], group["H/p"][()]] += group["H/x"][()]
+velocity = ((force + jacobian @ run["contact_impulse"][first:end].ravel()) / mass).reshape(-1, 3)
+found = numpy.column_stack((run["velocity"][touch], run["angular_velocity"][touch]))[1:]
+assert numpy.abs(velocity - found).max() < 1e-3, numpy.abs(velocity - found).max()
+PYTHON
 "$score" bench entry --cases cases.csv >table 2>progress || fail "score: $(tail -1 progress)"
 /usr/bin/python3 - <<'PYTHON' || fail "scores of an entry: $(cat table cases.csv)"
 import csv
