@@ -60,13 +60,16 @@ typedef struct ImageDifference {
     bool equal, same_size;
     int64_t pixels;               /* differing and not ignored */
     int64_t beyond;               /* of these, those that differ by more than the tolerance */
-    int64_t moved;                /* differing, but ignored as parts of an edge that moved (IGNORED_EDGE) */
+    int64_t moved;                /* differing, but ignored: IGNORED_EDGE, IGNORED_RULE */
     int64_t counted;              /* not masked */
     int largest;                  /* largest difference of a channel, 0..255, rounded up */
     int first_x, first_y;         /* first differing pixel, row by row; -1, -1 if none */
     int left, top, right, bottom; /* bounds of the differences; right and bottom are exclusive */
 } ImageDifference;
 void image_compare(const Image *a, const Image *b, ImageDifference *difference);
+
+/* The difference of channel i of a from channel j of b, 0..255, rounded up. */
+int image_channel_difference(const Image *a, size_t i, const Image *b, size_t j);
 
 /* The largest difference of a channel of one pixel, as above. Both pictures must have the same size. */
 int image_pixel_difference(const Image *a, const Image *b, size_t pixel);
@@ -84,7 +87,7 @@ void image_compare_masked(const Image *a, const Image *b, const uint8_t *masked,
 /* levels[count] of RGBA pixels. */
 void image_levels(const uint8_t *a, const uint8_t *b, size_t count, uint8_t *levels);
 
-/* levels[count] from pixel `first` on, 0 where masked. Returns how many differ, but are ignored as parts of an edge. */
+/* levels[count] from pixel `first` on, 0 where masked. Returns how many differ, but are ignored and not masked. */
 int64_t image_find_levels(const Image *a, const Image *b, const uint8_t *masked, size_t first, size_t count,
                           uint8_t *levels);
 
@@ -122,7 +125,12 @@ bool mask_add_color(Mask *mask, const uint8_t color[3], Error *error);
 void mask_free(Mask *mask);
 
 /* What a byte of masked[height, width] tells of its pixel. Pixels that are not IGNORED_NOT are ignored. */
-typedef enum Ignored { IGNORED_NOT, IGNORED_MASK, IGNORED_EDGE /* regression/internal.h */ } Ignored;
+typedef enum Ignored {
+    IGNORED_NOT,
+    IGNORED_MASK,
+    IGNORED_EDGE, /* differs as parts of an edge may: antialias_mark() */
+    IGNORED_RULE  /* differs as a rule allows: shift_mark(), level_mark() */
+} Ignored;
 
 /* Sets the masked bytes to IGNORED_MASK. ERROR_INPUT if a picture has another size than the expected picture, or pixels
    that are damaged; `path` names the expected picture in the message. Threads may share a mask. */

@@ -239,7 +239,7 @@ static void draw_row(const Image *expected, const Image *actual, int y, const ui
         if (x == 0 || memcmp(p, p - 4, 4) != 0) grey = pale(p);
         row[x] = grey;
         Ignored ignored = masked != NULL ? (Ignored)masked[i] : IGNORED_NOT;
-        if (ignored == IGNORED_EDGE) {
+        if (ignored == IGNORED_EDGE || ignored == IGNORED_RULE) {
             row[x] = EDGE;
         } else if (ignored == IGNORED_MASK) {
             if ((x + y) % HATCH == 0) row[x] = HATCHED;

@@ -187,17 +187,17 @@ bool antialias_mark(const Image *expected, const Image *actual, uint8_t *masked,
     return ok;
 }
 
-static int deep_difference(const Image *a, const Image *b, size_t i) {
+int image_channel_difference(const Image *a, size_t i, const Image *b, size_t j) {
+    if (a->pixels16 == NULL && b->pixels16 == NULL) return abs(a->pixels[i] - b->pixels[j]);
     int deep_a = a->pixels16 != NULL ? a->pixels16[i] : a->pixels[i] * 257;
-    int deep_b = b->pixels16 != NULL ? b->pixels16[i] : b->pixels[i] * 257;
+    int deep_b = b->pixels16 != NULL ? b->pixels16[j] : b->pixels[j] * 257;
     return (abs(deep_a - deep_b) + 256) / 257;
 }
 
 int image_pixel_difference(const Image *a, const Image *b, size_t pixel) {
-    bool deep = a->pixels16 != NULL || b->pixels16 != NULL;
     int largest = 0;
     for (size_t i = 4 * pixel; i < 4 * pixel + 4; i++) {
-        int difference = deep ? deep_difference(a, b, i) : abs(a->pixels[i] - b->pixels[i]);
+        int difference = image_channel_difference(a, i, b, i);
         if (difference > largest) largest = difference;
     }
     return largest;
@@ -269,7 +269,7 @@ int64_t image_find_levels(const Image *a, const Image *b, const uint8_t *masked,
         image_levels(a->pixels + 4 * first, b->pixels + 4 * first, count, levels);
     for (size_t i = 0; masked != NULL && i < count; i++) {
         if (masked[first + i] == IGNORED_NOT) continue;
-        moved += levels[i] > 0 && masked[first + i] == IGNORED_EDGE;
+        moved += levels[i] > 0 && masked[first + i] != IGNORED_MASK;
         levels[i] = 0;
     }
     return moved;

@@ -108,8 +108,25 @@ double mask_most_hidden(const Mask *mask, int width, int height);
    Both pictures must have the same size. Compares 8 bits per channel. False with error set if out of memory. */
 bool antialias_mark(const Image *expected, const Image *actual, uint8_t *masked, Error *error);
 
+/* Finds content that moved by at most `reach` pixels, each way. The box around a differing pixel grows until it lies in a band,
+   `reach` pixels wide, that has one colour in both pictures: an island on plain ground. It has moved if one offset makes all
+   of the expected box the actual one, with the ground around both. So nothing of it may appear, vanish, change its colour
+   or cross the edge of the picture, and content that lies on other content, or touches what stayed, counts as different.
+   Pixels that differ by at most `tolerance` are equal; 16 bits count where pictures have them.
+
+   Sets masked[height, width] to IGNORED_RULE where pixels differ in this way and are not ignored yet. Both pictures must have
+   the same size. */
+void shift_mark(const Image *expected, const Image *actual, int reach, int tolerance, uint8_t *masked);
+
+/* The same where pixels differ by at most `tolerance`. */
+void level_mark(const Image *expected, const Image *actual, int tolerance, uint8_t *masked);
+
+/* Both kinds of marks, as far as the limits allow them: antialias_mark(), shift_mark(). */
+bool tolerance_mark(const Tolerance *tolerance, const Image *expected, const Image *actual, uint8_t *masked,
+                    Error *error);
+
 /* The expected picture, pale and grey, with differing pixels coloured: yellow for 1, over red, to violet for 255. What
-   `masked` ignores (regression/compare.h) is hatched if it is masked, and blue if it is a pixel of an edge that differs. Both
+   `masked` ignores (regression/compare.h) is hatched if it is masked, and blue if it differs as limits allow. Both
    pictures must have the same size. The difference picture has [height, width] and at least this size; what lies beyond
    both pictures is striped. A PNG file, malloc'ed; NULL with error set if out of memory. */
 uint8_t *difference_picture(const Image *expected, const Image *actual, const uint8_t *masked, int width, int height,

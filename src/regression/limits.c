@@ -21,6 +21,7 @@ void tolerance_override(Tolerance *tolerance, const Tolerance *over) {
     if (given(over, LIMIT_FLIP_MEAN)) tolerance->flip_mean = over->flip_mean;
     if (given(over, LIMIT_FLIP_P99)) tolerance->flip_p99 = over->flip_p99;
     if (given(over, LIMIT_ANTIALIAS)) tolerance->antialias = over->antialias;
+    if (given(over, LIMIT_SHIFT)) tolerance->shift = over->shift;
 }
 
 bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *difference, const FlipSummary *flip) {
@@ -50,6 +51,8 @@ ToleranceText tolerance_words(const Tolerance *tolerance) {
     if (given(tolerance, LIMIT_FLIP_MEAN)) ADD("mean FLIP of at most %g", tolerance->flip_mean);
     if (given(tolerance, LIMIT_FLIP_P99)) ADD("99th percentile of FLIP of at most %g", tolerance->flip_p99);
     if (tolerance->antialias) ADD("edges may move within a pixel");
+    if (tolerance->shift > 0)
+        ADD("content may move by %d %s", tolerance->shift, tolerance->shift == 1 ? "pixel" : "pixels");
     if (words.text[0] == '\0') ADD("none");
     return words;
 }
@@ -106,6 +109,10 @@ static bool has_masks(const Regression *regression, const RegressionFrame *frame
            (regression->rules != NULL && rules_have_masks(regression->rules, frame_name(frame)));
 }
 
+static bool has_regions(const Regression *regression, const RegressionFrame *frame) {
+    return regression->rules != NULL && rules_have_regions(regression->rules, frame_name(frame));
+}
+
 int regression_level(const Regression *regression, const RegressionFrame *frame) {
     return regression_tolerance(regression, frame).tolerance;
 }
@@ -113,7 +120,8 @@ int regression_level(const Regression *regression, const RegressionFrame *frame)
 bool regression_needs_rows_alone(Regression *regression, const RegressionFrame *frame, bool *alone, Error *error) {
     const Tolerance tolerance = regression_tolerance(regression, frame);
     bool named = false;
-    *alone = !has_masks(regression, frame) && !tolerance.antialias && (tolerance.given & LIMITS_FLIP) == 0;
+    *alone = !has_masks(regression, frame) && !has_regions(regression, frame) && !tolerance.antialias &&
+             tolerance.shift == 0 && (tolerance.given & LIMITS_FLIP) == 0;
     if (*alone && !regression_may_name(regression, frame, &named, error)) return false;
     *alone = *alone && !named;
     return true;
@@ -140,12 +148,29 @@ static void cut_mask(uint8_t *masked, int width, const Image *to) {
         memmove(masked + (size_t)y * (size_t)to->width, masked + (size_t)y * (size_t)width, (size_t)to->width);
 }
 
+bool tolerance_mark(const Tolerance *tolerance, const Image *expected, const Image *actual, uint8_t *masked,
+                    Error *error) {
+    if (tolerance->antialias && !antialias_mark(expected, actual, masked, error)) return false;
+    if (tolerance->shift > 0) shift_mark(expected, actual, tolerance->shift, tolerance->tolerance, masked);
+    return true;
+}
+
+static bool mark_allowed(const Regression *regression, const RegressionFrame *frame, const Image *expected,
+                         const Image *actual, uint8_t *masked, Error *error) {
+    const Tolerance tolerance = regression_tolerance(regression, frame);
+    return (!has_regions(regression, frame) ||
+            rules_mark_regions(regression->rules, frame_name(frame), expected, actual, masked, error)) &&
+           tolerance_mark(&tolerance, expected, actual, masked, error);
+}
+
 bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
                        uint8_t **masked, Error *error) {
-    bool masks = has_masks(regression, frame), edges = regression_tolerance(regression, frame).antialias;
+    const Tolerance tolerance = regression_tolerance(regression, frame);
+    bool masks = has_masks(regression, frame),
+         allowed = tolerance.antialias || tolerance.shift > 0 || has_regions(regression, frame);
     int width = expected->width;
     *masked = NULL;
-    if ((masks || edges) && (*masked = calloc((size_t)width * (size_t)expected->height, 1)) == NULL)
+    if ((masks || allowed) && (*masked = calloc((size_t)width * (size_t)expected->height, 1)) == NULL)
         return error_memory(error, frame_name(frame));
     if (masks && !draw_masks(regression, frame, expected, *masked, error)) {
         free(*masked);
@@ -154,7 +179,7 @@ bool regression_ignore(const Regression *regression, const RegressionFrame *fram
     }
     image_cut_to_overlap(expected, actual);
     if (masks) cut_mask(*masked, width, expected);
-    if (!edges || antialias_mark(expected, actual, *masked, error)) return true;
+    if (!allowed || mark_allowed(regression, frame, expected, actual, *masked, error)) return true;
     free(*masked);
     *masked = NULL;
     return false;

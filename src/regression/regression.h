@@ -11,6 +11,8 @@
 
 /* How far a picture may differ and still pass. Nothing given: every pixel must be equal. */
 
+enum { SHIFT_MAX = 8 };
+
 /* Bits of Tolerance.given. */
 typedef enum ToleranceLimit {
     LIMIT_FUZZY = 1 << 0,
@@ -19,6 +21,7 @@ typedef enum ToleranceLimit {
     LIMIT_FLIP_MEAN = 1 << 3,
     LIMIT_FLIP_P99 = 1 << 4,
     LIMIT_ANTIALIAS = 1 << 5,
+    LIMIT_SHIFT = 1 << 6,
     LIMITS_FLIP = LIMIT_FLIP_MEAN | LIMIT_FLIP_P99
 } ToleranceLimit;
 
@@ -31,6 +34,7 @@ typedef struct Tolerance {
     double beyond;              /* largest share of pixels that differ by more than `tolerance` */
     double flip_mean, flip_p99; /* largest FLIP: mean, 99th percentile (regression/flip.h) */
     bool antialias;             /* ignore pixels along edges (regression/internal.h) */
+    int shift;                  /* pixels that content may move by, 0..SHIFT_MAX (regression/internal.h) */
 } Tolerance;
 
 /* Replaces in *tolerance what `over` gives. */
@@ -57,12 +61,18 @@ bool tolerance_parse_flip(Tolerance *tolerance, const char *text);
          fuzzy: [2, 0.01]
          flip: 0.01              # or: flip: {mean: 0.01, p99: 0.1}
          antialias: on
+         shift: 1
          masks:
            - rectangle: [0, 0, 320, 20]
            - picture: clock.png  # beside this file
            - colour: "#ff00ff"   # opaque pixels that have this colour in the expected picture
 
-   Rules apply from top to bottom: a later one replaces the limits of an earlier one, and all masks count. */
+       - files: "stack_*"
+         region: [0, 0, 320, 20] # then: tolerance, antialias and shift, for these pixels alone
+         shift: 1
+
+   Rules apply from top to bottom: a later one replaces the limits of an earlier one, and all masks count. Those of a region only
+   add to what else may differ. */
 
 #define RULES_NAME "compare.yaml" /* in the expected folder */
 
@@ -88,6 +98,12 @@ bool rules_have_masks(const Rules *rules, const char *name);
 double rules_most_hidden(const Rules *rules, const char *name, int width, int height);
 bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,
                       Error *error);
+
+/* Whether rules for this name have a region; and sets masked[height, width] (regression/compare.h) to what those allow. Both
+   pictures must have the same size. False with error set if out of memory. */
+bool rules_have_regions(const Rules *rules, const char *name);
+bool rules_mark_regions(const Rules *rules, const char *name, const Image *expected, const Image *actual,
+                        uint8_t *masked, Error *error);
 
 /* Compares expected with actual pictures, frame by frame, and finds the cause of differences: the physics changed if
    the states of the bodies differ, the renderer if only pixels differ. States are compared by trajectories of the same

@@ -17,6 +17,7 @@ typedef struct Rule {
     int node;          /* of `files` */
     Tolerance tolerance;
     Mask mask;
+    Mask region; /* a rectangle; or none: the limits are those of the whole picture */
 } Rule;
 
 struct Rules {
@@ -56,7 +57,39 @@ bool rules_check_names(const Rules *rules, const char *const *names, int count, 
 
 void rules_override(const Rules *rules, const char *name, Tolerance *tolerance) {
     for (int i = 0; i < rules->count; i++)
-        if (matches(&rules->rules[i], name)) tolerance_override(tolerance, &rules->rules[i].tolerance);
+        if (matches(&rules->rules[i], name) && rules->rules[i].region.count == 0)
+            tolerance_override(tolerance, &rules->rules[i].tolerance);
+}
+
+bool rules_have_regions(const Rules *rules, const char *name) {
+    for (int i = 0; i < rules->count; i++)
+        if (rules->rules[i].region.count > 0 && matches(&rules->rules[i], name)) return true;
+    return false;
+}
+
+/* inside[height, width] is scratch. The region is judged alone: what is outside counts as masked. */
+static bool mark_region(const Rule *rule, const Image *expected, const Image *actual, uint8_t *inside, uint8_t *masked,
+                        Error *error) {
+    const size_t count = (size_t)expected->width * (size_t)expected->height;
+    memset(inside, IGNORED_NOT, count);
+    if (!mask_draw(&rule->region, expected, "", inside, error)) return false;
+    for (size_t i = 0; i < count; i++) inside[i] = inside[i] == IGNORED_MASK ? masked[i] : IGNORED_MASK;
+    if (!tolerance_mark(&rule->tolerance, expected, actual, inside, error)) return false;
+    level_mark(expected, actual, rule->tolerance.tolerance, inside);
+    for (size_t i = 0; i < count; i++)
+        if (inside[i] != IGNORED_MASK) masked[i] = inside[i];
+    return true;
+}
+
+bool rules_mark_regions(const Rules *rules, const char *name, const Image *expected, const Image *actual,
+                        uint8_t *masked, Error *error) {
+    uint8_t *inside = malloc((size_t)expected->width * (size_t)expected->height);
+    bool ok = inside != NULL || error_memory(error, name);
+    for (int i = 0; ok && i < rules->count; i++)
+        if (rules->rules[i].region.count > 0 && matches(&rules->rules[i], name))
+            ok = mark_region(&rules->rules[i], expected, actual, inside, masked, error);
+    free(inside);
+    return ok;
 }
 
 bool rules_have_masks(const Rules *rules, const char *name) {
@@ -156,6 +189,17 @@ static bool read_antialias(const YamlTree *tree, int node, const Field *field, v
     return field_switch(tree, node, field, &tolerance->antialias, error);
 }
 
+static bool read_shift(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    Tolerance *tolerance = member;
+    int64_t value;
+    if (!parse_int(text_of(tree, node), 0, SHIFT_MAX, &value))
+        return yaml_error(tree, node, error, "%s must be a whole number of pixels from 0 to %d (got %s)", field->key,
+                          SHIFT_MAX, yaml_show(tree, node).text);
+    tolerance->given |= LIMIT_SHIFT;
+    tolerance->shift = (int)value;
+    return true;
+}
+
 static bool read_rectangle(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     const YamlNode *list = &tree->nodes[node];
     int numbers[4], item = node + 1;
@@ -229,6 +273,21 @@ static bool read_masks(const YamlTree *tree, int node, const Field *field, void 
     return true;
 }
 
+/* What would pass any picture is a mistake. */
+static bool check_limits(const YamlTree *tree, int node, const Rule *rule, Error *error) {
+    const Tolerance *limits = &rule->tolerance;
+    const unsigned local = LIMIT_TOLERANCE | LIMIT_ANTIALIAS | LIMIT_SHIFT;
+    if (limits->tolerance == 255 || limits->beyond >= 1 || (limits->fuzzy == 255 && limits->share >= 1) ||
+        limits->flip_mean >= 1 || limits->flip_p99 >= 1)
+        return yaml_error(tree, node, error, "a limit of this rule ignores every difference");
+    if (rule->region.count > 0 && (limits->given & ~local) != 0)
+        return yaml_error(tree, node, error,
+                          "a rule with a region must have no limits but tolerance, antialias and shift");
+    if (rule->region.count > 0 && (limits->given == 0 || rule->mask.count > 0))
+        return yaml_error(tree, node, error, "a rule with a region needs tolerance, antialias or shift, and no masks");
+    return true;
+}
+
 static bool read_rule(const YamlTree *tree, int node, Rule *rule, Error *error) {
     enum { TOLERANCE = offsetof(Rule, tolerance) };
     static const Field fields[] = {{"files", read_files, 0, NULL, true},
@@ -237,10 +296,13 @@ static bool read_rule(const YamlTree *tree, int node, Rule *rule, Error *error) 
                                    {"fuzzy", read_fuzzy, TOLERANCE, NULL, false},
                                    {"flip", read_flip, TOLERANCE, NULL, false},
                                    {"antialias", read_antialias, TOLERANCE, NULL, false},
+                                   {"shift", read_shift, TOLERANCE, NULL, false},
+                                   {"region", read_rectangle, offsetof(Rule, region), NULL, false},
                                    {"masks", read_masks, offsetof(Rule, mask), NULL, false},
                                    {NULL, NULL, 0, NULL, false}};
     int nodes[FIELDS_MAX];
-    if (!fields_read(tree, node, "a rule", fields, rule, nodes, error)) return false;
+    if (!fields_read(tree, node, "a rule", fields, rule, nodes, error) || !check_limits(tree, node, rule, error))
+        return false;
     return rule->tolerance.given != 0 || rule->mask.count > 0 ||
            yaml_error(tree, node, error, "a rule needs a limit or a mask");
 }

@@ -166,8 +166,8 @@ static void add_difference(RegressionText *words, const ImageDifference *differe
             100 * (double)difference->pixels / (double)difference->counted, difference->largest, difference->first_x,
             difference->first_y);
     if (difference->moved > 0)
-        ADD(words, "; ", "%" PRId64 " %s of edges ignored", difference->moved,
-            difference->moved == 1 ? "pixel" : "pixels");
+        ADD(words, "; ", "%" PRId64 " %s as limits allow", difference->moved,
+            difference->moved == 1 ? "pixel differs" : "pixels differ");
 }
 
 RegressionText frame_words(const RegressionFrame *frame) {

@@ -75,11 +75,31 @@ run 0 compare a b --antialias
 says "not equal, but within tolerance"
 png b/x.png 50 20 250 5 9 40 130 5 10 40 130 25 3 1 200
 run 1 compare a b --antialias
-says "x.png: 1 pixel differs (0.1%) by at most 50, first at (25, 3); 80 pixels of edges ignored"
+says "x.png: 1 pixel differs (0.1%) by at most 50, first at (25, 3); 80 pixels differ as limits allow"
 png b/x.png 50 20 250
 run 1 compare a b --antialias
 png b/x.png 50 20 250 5 10 40 10
 run 1 compare a b --antialias
+
+# Content that moves by a pixel, in the whole picture or in a region; what vanishes; a rule that lets everything pass.
+png a/x.png 50 20 250 5 9 40 10 20 3 2 10
+png b/x.png 50 20 250 5 10 40 10 20 3 2 10
+run 1 compare a b --tolerance 9
+for rule in "shift: 1" "{shift: 2, region: [0, 8, 50, 4]}" "{tolerance: 240, region: [0, 8, 50, 4]}"; do
+    rule=${rule#\{} rule=${rule%\}}
+    echo "rules: [{files: x.png, $rule}]" >rules.yaml
+    run 0 compare a b --rules rules.yaml --report report
+    says "not equal, but within tolerance"
+done
+png b/x.png 50 20 250 5 10 40 10
+for rule in "shift: 1" "shift: 2, region: [0, 8, 50, 4]"; do
+    echo "rules: [{files: x.png, $rule}]" >rules.yaml
+    run 1 compare a b --rules rules.yaml
+    says "x.png: 2 pixels differ (0.2%) by at most 240, first at (20, 3); 80 pixels differ as limits allow"
+done
+echo "rules: [{files: x.png, tolerance: 255}]" >rules.yaml
+run 2 compare a b --rules rules.yaml
+complains "rules.yaml:1:9: error: a limit of this rule ignores every difference"
 
 # Rules: for some names, later ones first; the command line replaces them.
 png a/x.png 50 20 100

@@ -79,10 +79,12 @@ TEST(masked_pixels_are_hatched) {
     image_destroy(drawn);
 }
 
-TEST(ignored_edges_are_blue) {
-    Image *drawn = draw_ignored(IGNORED_EDGE);
-    for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 70, 150, 235);
-    image_destroy(drawn);
+TEST(what_limits_allow_is_blue) {
+    for (Ignored reason = IGNORED_EDGE; reason <= IGNORED_RULE; reason++) {
+        Image *drawn = draw_ignored((uint8_t)reason);
+        for (int x = 0; x < LEVELS; x++) assert_pixel(drawn, x, 70, 150, 235);
+        image_destroy(drawn);
+    }
 }
 
 /* Two 16-bit pictures that differ in the last bit count as different by 1. */

@@ -55,7 +55,7 @@ static bool passes(const Image *a, const Image *b, const Tolerance *tolerance) {
     FlipSummary flip;
     Error error = {0};
     assert_non_null(masked);
-    if (tolerance->antialias) assert_ok(antialias_mark(a, b, masked, &error), error);
+    assert_ok(tolerance_mark(tolerance, a, b, masked, &error), error);
     image_compare_masked(a, b, masked, tolerance->tolerance, &difference);
     assert_ok(flip_compare(a, b, FLIP_PIXELS_PER_DEGREE, NULL, &flip, &error), error);
     free(masked);
@@ -83,6 +83,22 @@ TEST(suggested_limits_catch_faults_and_pass_noise) {
             if (!passes(chart, other, &suggested[i])) fail_msg("limit %d, noise of %d", i, most);
             image_destroy(other);
         }
+    }
+    image_destroy(chart);
+}
+
+/* A text that moved by a pixel passes, alone of the faults, also beside noise. */
+TEST(shift_passes_moved_text_alone) {
+    static const Tolerance shift = {.given = LIMIT_SHIFT, .shift = 1},
+                           with_noise = {.given = LIMIT_SHIFT | LIMIT_TOLERANCE, .shift = 1, .tolerance = 6};
+    Image *chart = draw_chart(NO_FAULT);
+    for (Fault fault = NO_FAULT; fault < FAULTS; fault++) {
+        Image *other = draw_chart(fault);
+        const bool right = fault == NO_FAULT || fault == TEXT_SHIFTED;
+        if (passes(chart, other, &shift) != right) fail_msg("fault %d", fault);
+        add_noise(other, 3);
+        if (passes(chart, other, &with_noise) != right) fail_msg("fault %d with noise", fault);
+        image_destroy(other);
     }
     image_destroy(chart);
 }

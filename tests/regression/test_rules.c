@@ -39,6 +39,21 @@ TEST(mistakes_are_refused_with_their_place) {
         {"rules:\n  - {files: a, flip: {p98: 1}}\n",
          ":2:23: error: 'p98' is not a key of a limit of FLIP; did you mean 'p99'?"},
         {"rules:\n  - {files: a, antialias: 2}\n", ":2:27: error: antialias must be on or off (got 2)"},
+        {"rules:\n  - {files: a, shift: 9}\n",
+         ":2:23: error: shift must be a whole number of pixels from 0 to 8 (got 9)"},
+        {"rules:\n  - {files: a, shift: 0.5}\n", ":2:23: error: shift must be a whole number of pixels"},
+        {"rules:\n  - {files: a, shift: 1, region: [0, 0, 0, 1]}\n",
+         ":2:34: error: region must be a list [X, Y, W, H] of whole numbers"},
+        {"rules:\n  - {files: a, region: [0, 0, 1, 1]}\n",
+         ":2:5: error: a rule with a region needs tolerance, antialias or shift, and no masks"},
+        {"rules:\n  - {files: a, shift: 1, region: [0, 0, 1, 1], masks: [{colour: \"#000000\"}]}\n",
+         ":2:5: error: a rule with a region needs tolerance, antialias or shift, and no masks"},
+        {"rules:\n  - {files: a, region: [0, 0, 1, 1], beyond: 0.1}\n",
+         ":2:5: error: a rule with a region must have no limits but tolerance, antialias and shift"},
+        {"rules:\n  - {files: a, tolerance: 255}\n", ":2:5: error: a limit of this rule ignores every difference"},
+        {"rules:\n  - {files: a, beyond: 1}\n", ":2:5: error: a limit of this rule ignores every difference"},
+        {"rules:\n  - {files: a, fuzzy: [255, 1]}\n", ":2:5: error: a limit of this rule ignores every difference"},
+        {"rules:\n  - {files: a, flip: 1}\n", ":2:5: error: a limit of this rule ignores every difference"},
         {"rules:\n  - {files: a, masks: x}\n", ":2:23: error: masks must be a list (got x)"},
         {"rules:\n  - {files: a, masks: [x]}\n", ":2:24: error: a mask must be a mapping"},
         {"rules:\n  - {files: a, masks: [{}]}\n", ":2:24: error: a mask must have one key"},
@@ -65,7 +80,7 @@ TEST(numbers_of_rules_are_limited) {
     for (int over = 0; over <= 1; over++) {
         size_t used = (size_t)sprintf(many, "rules:\n");
         for (int i = 0; i < RULES_MAX + over; i++)
-            used += (size_t)sprintf(many + used, "- {files: a, tolerance: %d}\n", i % 256);
+            used += (size_t)sprintf(many + used, "- {files: a, tolerance: %d}\n", i % 255);
         Rules *rules = over == 0 ? read_text(many, &error) : NULL;
         if (over == 0) assert_ok(rules != NULL, error);
         if (over == 1) expect_refused(many, ":2:1: error: at most 256 rules (got 257)");
