@@ -103,21 +103,98 @@ static bool is_within(int value, const Window *window, int channel, int more) {
     return value >= window->least[channel] - more && value <= window->most[channel] + more;
 }
 
-/* 1 and 2, for all channels. slacks: by channel. */
-static bool is_explained(const Window *p, const Window *q, uint8_t slacks[CHANNELS]) {
+/* By channel, how much the sums of 5 x 5 pixels differ at least, in windows around the pixel and its eight neighbours; 0 where
+   one window has more and another less. */
+static void least_changes(const Around *a, const Around *b, int x, int least[CHANNELS]) {
+    int rows[SIDE][3][CHANNELS] = {0};
+    for (int i = 0; i < SIDE; i++) {
+        const uint8_t *p = a->rows[i] + 4 * (size_t)x, *q = b->rows[i] + 4 * (size_t)x;
+        for (int k = 0; k < SIDE * CHANNELS; k++)
+            for (int at = 0; at < 3; at++)
+                if (k / CHANNELS >= at && k / CHANNELS < at + SIDE - 2) rows[i][at][k % CHANNELS] += p[k] - q[k];
+    }
+    for (int c = 0; c < CHANNELS; c++) {
+        int low = INT32_MAX, high = INT32_MIN;
+        for (int window = 0; window < 9; window++) {
+            int sum = 0;
+            for (int i = 0; i < SIDE - 2; i++) sum += rows[window / 3 + i][window % 3][c];
+            if (sum < low) low = sum;
+            if (sum > high) high = sum;
+        }
+        least[c] = low > 0 ? low : high < 0 ? -high : 0;
+    }
+}
+
+/* The colours of windows of 3 x 3 pixels. */
+typedef struct Colours {
+    int count;
+    const uint8_t *list[18];
+} Colours;
+
+static void add_colours(const Around *around, int x, Colours *colours) {
+    for (int i = 0; i < 9; i++)
+        colours->list[colours->count++] = around->rows[REACH - 1 + i / 3] + 4 * (x + REACH - 1 + i % 3);
+}
+
+/* Whether all are mixtures of two, as far as rounding shows. */
+static bool are_mixtures(const Colours *colours) {
+    enum { ROUNDING = 2 };
+    const uint8_t *one = NULL, *other = NULL;
+    int most = 0, channel = 0;
+    for (int c = 0; c < CHANNELS; c++) {
+        const uint8_t *low = colours->list[0], *high = low;
+        for (int i = 1; i < colours->count; i++) {
+            if (colours->list[i][c] < low[c]) low = colours->list[i];
+            if (colours->list[i][c] > high[c]) high = colours->list[i];
+        }
+        if (high[c] - low[c] > most) most = high[c] - low[c], one = low, other = high, channel = c;
+    }
+    for (int i = 0; one != NULL && i < colours->count; i++) {
+        const int part = colours->list[i][channel] - one[channel];
+        for (int c = 0; c < CHANNELS; c++)
+            if (abs((colours->list[i][c] - one[c]) * most - part * (other[c] - one[c])) > ROUNDING * most) return false;
+    }
+    return true;
+}
+
+/* 4. */
+static bool keeps_colours(const Around *a, const Around *b, int x) {
+    Colours of_a = {0}, of_b = {0}, both = {0};
+    add_colours(a, x, &of_a);
+    add_colours(b, x, &of_b);
+    add_colours(a, x, &both);
+    add_colours(b, x, &both);
+    return are_mixtures(&both) || !are_mixtures(&of_a) || !are_mixtures(&of_b);
+}
+
+static int contrast_of(const Window *p, const Window *q, int c) {
+    const int most = p->most[c] > q->most[c] ? p->most[c] : q->most[c],
+              least = p->least[c] < q->least[c] ? p->least[c] : q->least[c];
+    return most - least;
+}
+
+/* 1, for all channels. slacks: by channel. */
+static bool is_bounded(const Window *p, const Window *q, uint8_t slacks[CHANNELS]) {
     int largest = 0;
     for (int c = 0; c < CHANNELS; c++) {
-        const int most = p->most[c] > q->most[c] ? p->most[c] : q->most[c],
-                  least = p->least[c] < q->least[c] ? p->least[c] : q->least[c];
-        const int contrast = most - least, more = slack(contrast);
-        const int difference = abs(p->middle[c] - q->middle[c]), sums = abs(p->sum[c] - q->sum[c]);
-        const bool edge = is_within(p->middle[c], q, c, more) && is_within(q->middle[c], p, c, more);
-        const bool line = 20 * sums <= 9 * contrast + 60; /* sums / 3 <= 0.15 contrast + 1 */
-        if (10 * difference > 6 * contrast + 10 || (!edge && !line)) return false;
+        const int contrast = contrast_of(p, q, c);
+        if (10 * abs(p->middle[c] - q->middle[c]) > 6 * contrast + 10) return false;
         if (contrast > largest) largest = contrast;
-        slacks[c] = (uint8_t)more;
+        slacks[c] = (uint8_t)slack(contrast);
     }
     return largest >= LEAST_CONTRAST;
+}
+
+/* 2, for all channels. changes: of larger windows, by channel; NULL: not known. */
+static bool is_explained(const Window *p, const Window *q, const uint8_t slacks[CHANNELS], const int *changes) {
+    for (int c = 0; c < CHANNELS; c++) {
+        const int more = slacks[c], sums = abs(p->sum[c] - q->sum[c]);
+        const int change = changes != NULL && changes[c] < sums ? changes[c] : sums;
+        const bool edge = is_within(p->middle[c], q, c, more) && is_within(q->middle[c], p, c, more);
+        const bool line = 20 * change <= 9 * contrast_of(p, q, c) + 60; /* change / 3 <= 0.15 contrast + 1 */
+        if (!edge && !line) return false;
+    }
+    return true;
 }
 
 /* All bits of the pixels that look equal. */
@@ -159,11 +236,18 @@ static inline bool share_side(const Around *a, const Around *b, int x, const uin
 static void mark_row(const Around *a, const Around *b, const uint8_t *levels, int width, uint8_t *masked) {
     Window p, q;
     uint8_t slacks[CHANNELS];
+    int changes[CHANNELS];
     for (int x = 0; x < width; x++) {
         if (levels[x] == 0 || masked[x] != IGNORED_NOT) continue;
         window_of(a, x, &p);
         window_of(b, x, &q);
-        if (is_explained(&p, &q, slacks) && share_side(a, b, x, slacks)) masked[x] = IGNORED_EDGE;
+        if (!is_bounded(&p, &q, slacks) || !share_side(a, b, x, slacks)) continue;
+        bool explained = is_explained(&p, &q, slacks, NULL);
+        if (!explained) {
+            least_changes(a, b, x, changes);
+            explained = is_explained(&p, &q, slacks, changes);
+        }
+        if (explained && keeps_colours(a, b, x)) masked[x] = IGNORED_EDGE;
     }
 }
 

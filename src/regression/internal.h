@@ -95,14 +95,18 @@ double mask_most_hidden(const Mask *mask, int width, int height);
       a sampled from an exact edge; an edge that moves by a whole pixel is a difference. In one channel c is at least 16
       of 255: gradients of areas are no edges.
    2. Either each value lies within the range of the other window: an edge between two colours that both pictures show.
-      Or the sums of both windows differ by at most 3 * 0.15 c: a thin line has moved, and has kept its strength.
+      Or the sums of both windows differ by at most 3 * 0.15 c: a thin line has moved, and has kept its strength. Where it
+      crosses another, the same holds of a window of 5 x 5 pixels around the pixel or one of its neighbours.
    3. Within two pixels there is a flat colour (three neighbours are equal to it) that both pictures share: one side of
       the edge. In textures, such as photos, nothing is an edge.
 
-   Values within 2 + c / 16 of each other count as equal.
+   4. If the colours of each window are mixtures of two, so are those of both together: a line of another colour has not moved.
 
-   Fails: a line of less than two pixels that fades by less than 15% looks like a line that became narrower, and passes; so
-   does a faint mark along an edge of higher contrast. Rings less than two pixels apart have no flat side and count. */
+   Values within 2 + c / 16 of each other count as equal, in 4 within 2.
+
+   Fails: a line of less than two pixels that fades by less than 15% towards the colour around it looks like a line that became
+   narrower, and passes; so does a faint mark along an edge of higher contrast. Where lines cross at less than 20 degrees, some
+   pixels may count. Rings less than two pixels apart have no flat side and count. */
 
 /* Sets masked[height, width] (regression/compare.h) to IGNORED_EDGE where pixels differ in this way and are not ignored yet.
    Both pictures must have the same size. Compares 8 bits per channel. False with error set if out of memory. */

@@ -183,6 +183,71 @@ TEST(real_changes_are_detected) {
         for (int k = 0; k < 6; k++) assert_difference(&shapes[i], &plain, &changes[k]);
 }
 
+/* The case of pixelmatch's issue 74: a ring or line of one pixel, with exact coverage and with 4 x 4 samples, is the same;
+   without it, or with a gap in it, the picture is another. */
+TEST(rings_and_lines_of_one_pixel_are_not_hidden) {
+    static const TestShape thin[] = {
+        {RING, 0, 1, 5}, {RING, 0, 1, 8}, {RING, 0, 1, 17}, {LINE, 0, 1, 18}, {LINE, 31, 1, 18}};
+    TestDrawing coarse = plain, none = plain;
+    coarse.samples = 4, none.strength = 0;
+    for (size_t i = 0; i < sizeof thin / sizeof *thin; i++) {
+        assert_no_difference(&thin[i], &plain, &coarse);
+        Image *a = drawn(&thin[i], &plain), *b = drawn(&thin[i], &none), *gap = drawn(&thin[i], &coarse);
+        const int64_t lost = compared(&thin[i], &plain, &none).pixels;
+        if (lost < 18) fail_msg("%s: only %d pixels count", name_of(&thin[i]), (int)lost);
+        for (int y = 0; y < SIDE; y++) /* the right part is lost */
+            memcpy(gap->pixels + 4 * (y * SIDE + 26), b->pixels + 4 * (y * SIDE + 26), (size_t)4 * (SIDE - 26));
+        if (difference_of(a, gap).pixels < 5) fail_msg("%s: the gap is hidden", name_of(&thin[i]));
+        image_destroy(a);
+        image_destroy(b);
+        image_destroy(gap);
+    }
+}
+
+/* By 8 of 255: in blue alone, and in all channels. */
+TEST(lines_of_another_colour_are_detected) {
+    static const uint8_t inks[][3] = {{31, 119, 180}, {214, 39, 40}, {44, 160, 44}};
+    for (int i = 0; i < SHAPES; i++)
+        for (int k = 0; k < 3; k++) {
+            TestDrawing ink = plain, blue = plain, lighter = plain;
+            memcpy(ink.ink, inks[k], 3);
+            memcpy(blue.ink, inks[k], 3);
+            blue.ink[2] = (uint8_t)(blue.ink[2] + 8);
+            for (int c = 0; c < 3; c++) lighter.ink[c] = (uint8_t)(inks[k][c] + 8);
+            assert_difference(&shapes[i], &ink, &blue);
+            assert_difference(&shapes[i], &ink, &lighter);
+        }
+}
+
+/* A line over another one, moved across by 0.3 pixels. */
+static Image *crossing(double below, double above, double move) {
+    const TestShape under = {LINE, below, 1, 18}, over = {LINE, above, 1, 18};
+    const double turn = above * acos(-1) / 180;
+    TestDrawing moved = plain;
+    moved.x = -move * sin(turn), moved.y = move * cos(turn);
+    Image *picture = drawn(&under, &plain), *line = drawn(&over, &moved);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 3; c++)
+            picture->pixels[4 * i + c] = (uint8_t)((picture->pixels[4 * i + c] * line->pixels[4 * i + c] + 127) / 255);
+    image_destroy(line);
+    return picture;
+}
+
+TEST(lines_that_cross_may_move) {
+    static const double angles[] = {0, 23, 45, 68, 90, 120};
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++)
+            for (int way = -1; way <= 1 && i != k; way += 2) {
+                Image *a = crossing(angles[i], angles[k], 0), *b = crossing(angles[i], angles[k], 0.3 * way);
+                const ImageDifference difference = difference_of(a, b);
+                if (difference.pixels > 0)
+                    fail_msg("%g over %g degrees, %d: %d pixels count, at %d, %d", angles[k], angles[i], way,
+                             (int)difference.pixels, difference.first_x, difference.first_y);
+                image_destroy(a);
+                image_destroy(b);
+            }
+}
+
 /* In the picture of a shape: a pixel of the edge, the inside or the paper gets the opposite colour, or red. */
 TEST(single_wrong_pixels_are_detected) {
     for (int i = 0; i < SHAPES; i++) {
