@@ -153,6 +153,33 @@ TEST(content_does_not_leave_a_region_unnoticed) {
     image_destroy(b);
 }
 
+/* A frame nearly as large as the picture: its island takes the most steps. */
+static Image *framed(int x, int y) {
+    enum { W = 480, H = 270, MARGIN = 20 };
+    Image *image = image_sized(W, H);
+    memset(image->pixels, 255, (size_t)4 * W * H);
+    for (int i = MARGIN; i < W - MARGIN; i++)
+        for (int k = MARGIN; k < H - MARGIN; k++)
+            if (i == MARGIN || k == MARGIN || i == W - MARGIN - 1 || k == H - MARGIN - 1)
+                memset(image->pixels + 4 * ((k + y) * W + i + x), 0, 3);
+    return image;
+}
+
+TEST(a_whole_chart_may_move) {
+    for (int reach = 1; reach <= SHIFT_MAX; reach++) {
+        Image *a = framed(0, 0), *b = framed(reach, -reach);
+        uint8_t *masked = calloc((size_t)a->width * (size_t)a->height, 1);
+        ImageDifference difference;
+        assert_non_null(masked);
+        shift_mark(a, b, reach, 0, masked);
+        image_compare_masked(a, b, masked, 0, &difference);
+        if (difference.pixels > 0) fail_msg("moved by %d: %d pixels count", reach, (int)difference.pixels);
+        free(masked);
+        image_destroy(a);
+        image_destroy(b);
+    }
+}
+
 /* Noise everywhere is no island, and ends. */
 TEST(noise_is_no_movement) {
     Image *a = image_sized(WIDTH, HEIGHT), *b = image_sized(WIDTH, HEIGHT);
