@@ -117,6 +117,7 @@ bool antialias_mark(const Image *expected, const Image *actual, uint8_t *masked,
    of the expected box the actual one, with the ground around both. So nothing of it may appear, vanish, change its colour
    or cross the edge of the picture, and content that lies on other content, or touches what stayed, counts as different.
    Pixels that differ by at most `tolerance` are equal; 16 bits count where pictures have them.
+   The work is bounded: in pictures made of very many large islands, the last ones count as different.
 
    Sets masked[height, width] to IGNORED_RULE where pixels differ in this way and are not ignored yet. Both pictures must have
    the same size. */
