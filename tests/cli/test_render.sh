@@ -166,7 +166,7 @@ complains "standard output: error: cannot write: No space left"
 
 # Interrupted, killed, damaged: --resume ends with the same bytes.
 run 0 simulate "$scenes/stack.yaml" --frames 120 -o long.npz
-film="render long.npz --size 320x180 --jobs 2 --slow 2 -o"
+film="render long.npz --size 640x360 --jobs 2 --slow 2 -o"
 run 0 $film whole
 for signal in INT KILL; do
     rm -rf broken
