@@ -112,13 +112,10 @@ static char *read_all(int file, const char *path, size_t limit, size_t expected,
 /* Without O_NONBLOCK, opening a FIFO waits for a writer. */
 enum { OPEN_TO_READ = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC };
 
-static char *read_and_close(int file, const char *path, size_t limit, size_t *size, Error *error) {
-    if (file < 0) {
-        file_open_error(path, error);
-        return NULL;
-    }
-    char *data = NULL;
+/* Closes what cannot be read. */
+static int check_open(int file, const char *path, size_t limit, size_t *size, Error *error) {
     struct stat status;
+    if (file < 0) return file_open_error(path, error), -1;
     if (fstat(file, &status) != 0)
         error_system(error, path, "cannot read: %s", strerror(errno));
     else if (!S_ISREG(status.st_mode))
@@ -126,22 +123,31 @@ static char *read_and_close(int file, const char *path, size_t limit, size_t *si
     else if ((uintmax_t)status.st_size > limit)
         error_input(error, path, "larger than %zu bytes", limit);
     else
-        data = read_all(file, path, limit, (size_t)status.st_size, size, error);
+        return *size = (size_t)status.st_size, file;
     close(file);
+    return -1;
+}
+
+int file_open(const char *path, size_t limit, size_t *size, Error *error) {
+    const bool standard = path_is_standard(path);
+    const int file = standard ? standard_input_open(error) : open(path, OPEN_TO_READ);
+    return standard && file < 0 ? -1 : check_open(file, path, limit, size, error);
+}
+
+static char *read_and_close(int file, const char *path, size_t limit, size_t *size, Error *error) {
+    char *data = file < 0 ? NULL : read_all(file, path, limit, *size, size, error);
+    if (file >= 0) close(file);
     if (data != NULL) trace_line("read %s, %zu bytes", path, *size);
     return data;
 }
 
 char *file_read(const char *path, size_t limit, size_t *size, Error *error) {
-    if (path_is_standard(path)) {
-        const int input = standard_input_open(error);
-        return input >= 0 ? read_and_close(input, path, limit, size, error) : NULL;
-    }
-    return read_and_close(open(path, OPEN_TO_READ), path, limit, size, error);
+    return read_and_close(file_open(path, limit, size, error), path, limit, size, error);
 }
 
 char *file_read_at(int folder, const char *name, const char *path, size_t limit, size_t *size, Error *error) {
-    return read_and_close(openat(folder, name, OPEN_TO_READ | O_NOFOLLOW), path, limit, size, error);
+    const int file = openat(folder, name, OPEN_TO_READ | O_NOFOLLOW);
+    return read_and_close(check_open(file, path, limit, size, error), path, limit, size, error);
 }
 
 char *file_read_input(size_t limit, size_t *size, Error *error) {

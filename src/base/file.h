@@ -13,6 +13,10 @@
    *size). NULL with error set if the file is missing, not regular, too large or unreadable. */
 char *file_read(const char *path, size_t limit, size_t *size, Error *error);
 
+/* Opens what file_read() would read, for a caller that reads it in pieces and closes it. *size: its bytes now. -1 with error
+   set. */
+int file_open(const char *path, size_t limit, size_t *size, Error *error);
+
 /* The same of standard input, up to its end; it may be a pipe. */
 char *file_read_input(size_t limit, size_t *size, Error *error);
 

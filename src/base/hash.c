@@ -21,3 +21,21 @@ uint64_t hash_fnv1a64(uint64_t hash, const void *data, size_t size) {
 }
 
 uint64_t hash_xxh3(const void *data, size_t size) { return XXH3_64bits(data, size); }
+
+HashParts *hash_parts_create(void) {
+    XXH3_state_t *state = XXH3_createState();
+    if (state != NULL) (void)XXH3_64bits_reset(state);
+    return (HashParts *)state;
+}
+
+void hash_parts_destroy(HashParts *parts) { (void)XXH3_freeState((XXH3_state_t *)parts); }
+
+void hash_parts_add(HashParts *parts, const void *data, size_t size) {
+    (void)XXH3_64bits_update((XXH3_state_t *)parts, data, size);
+}
+
+uint64_t hash_parts_end(HashParts *parts) {
+    const uint64_t hash = XXH3_64bits_digest((XXH3_state_t *)parts);
+    (void)XXH3_64bits_reset((XXH3_state_t *)parts);
+    return hash;
+}

@@ -11,3 +11,10 @@
 uint64_t hash_fnv1a64(uint64_t hash, const void *data, size_t size);
 
 uint64_t hash_xxh3(const void *data, size_t size);
+
+/* The same of bytes that come in parts. NULL if out of memory. */
+typedef struct HashParts HashParts;
+HashParts *hash_parts_create(void);
+void hash_parts_destroy(HashParts *parts);
+void hash_parts_add(HashParts *parts, const void *data, size_t size);
+uint64_t hash_parts_end(HashParts *parts); /* what follows is another hash */

@@ -34,11 +34,52 @@ static inline bool png_chunk_has_name(const PngChunk *chunk) {
     return true;
 }
 
+/* Whether so many compressed bytes can hold these filtered rows. */
+static inline bool png_can_hold(uint64_t compressed, double rows) {
+    const double frame = 6; /* the zlib header and the checksum */
+    return (double)compressed >= frame + rows / PNG_BEST_RATIO;
+}
+
 /* Whether it has a name and the right checksum. */
 static inline bool png_chunk_is_sound(const PngChunk *chunk) {
     return png_chunk_has_name(chunk) &&
            libdeflate_crc32(0, chunk->type, chunk->length + 4) == png_number(chunk->data + chunk->length);
 }
+
+/* The bytes of a file, from its start to its end, as often as they are needed: from memory, or in pieces. Of a file that is
+   read in pieces, each pass must have the same hash: then what was compared is what has this hash. */
+
+static const size_t PNG_MAX_FILE_SIZE = (size_t)1 << 30; /* IMAGE_MAX_PIXELS of 16 bits, uncompressed, need less */
+
+typedef struct PngSource {
+    int file;                /* -1: `data` is the whole file */
+    size_t size;             /* of the file */
+    const uint8_t *data;     /* the piece in work */
+    size_t held, at, left;   /* its bytes; the next one; bytes of the file behind the piece */
+    uint8_t *piece;          /* memory for it */
+    struct HashParts *parts; /* of this pass */
+    uint64_t hash;           /* XXH3 of the file, after a pass */
+    bool hashed;
+} PngSource;
+
+void png_source_of(PngSource *source, const uint8_t *data, size_t size);
+
+/* False if there is no such file, or memory is short. png_source_close() must follow. */
+bool png_source_open(PngSource *source, const char *path);
+void png_source_close(PngSource *source);
+
+/* Begins a pass. png_source_open() has begun the first. */
+bool png_source_rewind(PngSource *source);
+
+/* The next bytes, at least one and at most `most`, which last until the next call; 0: there are none, or reading failed. Those
+   that are used are added to source->at. */
+size_t png_source_peek(PngSource *source, size_t most, const uint8_t **bytes);
+
+/* Copies the next bytes; to NULL: passes over them. False if there are less. */
+bool png_source_take(PngSource *source, uint8_t *to, size_t size);
+
+/* Reads what is left of the pass. False if the file has changed. */
+bool png_source_end(PngSource *source);
 
 /* Reads common PNG files row by row, several times as fast as libpng: at most 8 bits per sample, not interlaced, nothing
    unusual. A function that returns false leaves the file to libpng, which decides whether it is damaged; so only what
@@ -55,18 +96,25 @@ typedef struct PngLayout {
 } PngLayout;
 
 typedef struct PngRows {
+    PngSource source;
     PngLayout layout;
-    size_t bytes; /* of an unfiltered row */
-    int step;     /* bytes per pixel, at least 1 */
-    const uint8_t *file;
-    size_t size, first, next; /* positions of the first IDAT chunk and of the one to read */
-    size_t compressed;        /* bytes of all IDAT chunks */
+    size_t bytes;      /* of an unfiltered row */
+    int step;          /* bytes per pixel, at least 1 */
+    size_t compressed; /* bytes of all IDAT chunks */
+    uint8_t zlib[2];   /* the first of these */
+    uint8_t *rest;     /* [rest_size] the file with one empty IDAT chunk in place of these */
+    size_t rest_size, rest_capacity;
+    size_t pixels, skipped;   /* while rows are read: bytes of the IDAT chunk, and then up to the next chunk */
+    bool inside, outside;     /* an IDAT chunk has begun; the last has ended */
     struct PngStream *stream; /* ISA-L's or zlib's */
+    struct PngRows *twin;     /* another file whose compressed bytes have been the same so far, or NULL */
     bool started, ended;
+    bool damaged; /* its rows cannot be read */
 } PngRows;
 
-/* Checks all chunks and their checksums, and refuses animations. png_rows_close() must follow. */
-bool png_rows_open(PngRows *rows, const uint8_t *file, size_t size, int64_t max_pixels);
+/* Of a file whose source is set: checks all chunks and their checksums, and refuses animations. png_rows_close(), which closes
+   the source, must follow. */
+bool png_rows_open(PngRows *rows, int64_t max_pixels);
 void png_rows_close(PngRows *rows);
 
 /* Bytes of all filtered rows. */
@@ -75,8 +123,12 @@ size_t png_rows_size(const PngRows *rows);
 /* Begins to decompress. */
 bool png_rows_start(PngRows *rows);
 
-/* The next `size` bytes of the rows as they are stored: of each a filter and its bytes. */
+/* The next `size` bytes of the rows as they are stored: of each a filter and its bytes. Those of a twin are the same, up to where
+   the compressed bytes of both files part: then rows->twin becomes NULL. */
 bool png_rows_read(PngRows *rows, uint8_t *to, size_t size);
+
+/* The same bytes for one that was the twin of what has read `from`. */
+bool png_rows_read_parted(PngRows *rows, const uint8_t *from, uint8_t *to, size_t size);
 
 /* Whether the file ends with its last row, and the checksum of its rows is right. */
 bool png_rows_end(PngRows *rows);
@@ -91,10 +143,12 @@ bool png_fast_decode_pair(const uint8_t *const data[2], const size_t sizes[2], i
 /* One file, or two with the same size in pixels, in memory for some rows. band: bytes of rows that are decompressed at
    once, at least one row. threads: with a second thread. */
 enum { PNG_BAND = 1 << 18 };
+bool png_fast_scan_rows(PngRows *const rows[], int files, size_t band, bool threads, const RowSink *sink);
 bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels, size_t band,
                    bool threads, const RowSink *sink);
 
 /* Whether a file can be decoded. */
+bool png_fast_check_rows(PngRows *rows);
 bool png_fast_check(const uint8_t *data, size_t size, int64_t max_pixels);
 
 /* Any file, by libpng; NULL with error set. What png_fast_decode() accepts, this accepts, with the same pixels;

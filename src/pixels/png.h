@@ -65,10 +65,34 @@ typedef struct RowSink {
     bool all; /* also rows that are equal */
 } RowSink;
 
-/* Reads two files row by row, in little memory. False: a file is damaged or of an unusual kind, they have different sizes, or
-   memory is short; image_decode_png_pair() tells. Then some rows may have been given. threads: with a second thread. */
-bool png_scan_rows(const uint8_t *const data[2], const size_t sizes[2], int64_t max_pixels, bool threads,
-                   const RowSink *sink);
+/* A file to compare. A common one, of at most 8 bits per sample and not interlaced, is read in pieces, in little memory. */
+typedef struct PngFile {
+    const char *path;
+    int64_t max_pixels;
+    uint64_t hash; /* XXH3 of its bytes */
+    uint8_t *data; /* [size] all of it; in pieces: with one empty chunk in place of its compressed pixels */
+    size_t size;
+    bool damaged;         /* as png_files_scan() has found */
+    struct PngRows *rows; /* NULL: not in pieces */
+} PngFile;
+
+/* NULL with error set as image_load_png(). What is read in pieces is sound but for its compressed pixels, and has at most
+   max_pixels. png_file_close() must follow. The path must last until then. */
+bool png_file_open(PngFile *file, const char *path, int64_t max_pixels, Error *error);
+void png_file_close(PngFile *file);
+
+/* Reads the whole file. ERROR_INPUT if it has changed. */
+bool png_file_load(PngFile *file, Error *error);
+
+/* As image_check_png(), at most once. Then the file may be loaded. */
+bool png_file_check(PngFile *file, Error *error);
+
+/* Whether all bytes are equal. */
+bool png_files_are_same(PngFile files[2]);
+
+/* Reads two files in pieces row by row, once. False: a file is damaged or has changed, they are not read in pieces, have different
+   sizes, or memory is short. Then some rows may have been given. threads: with a second thread. */
+bool png_files_scan(PngFile files[2], bool threads, const RowSink *sink);
 
 /* Copies the value of the first text with this key before the pixels. ERROR_INPUT if there is none, or if it needs
    more than `size` bytes. */

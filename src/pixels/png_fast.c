@@ -241,17 +241,18 @@ static bool expand_row(const PngLayout *layout, const uint8_t *row, uint8_t *rgb
 }
 
 /* Two files, or one, band by band. A second thread does what the second file needs: it decompresses the next band while
-   the first file's is unfiltered, and where bands differ, both are unfiltered at once. */
+   the first file's is unfiltered, and where bands differ, both are unfiltered at once. As long as the compressed bytes of both
+   files are the same, it decompresses for both. */
 
 enum { SLACK = 16 /* vectors read and write beyond a row */ };
 
 typedef struct Side {
-    PngRows rows;
+    PngRows *rows;
     uint8_t *filtered[2]; /* [band, 1 + bytes], in turns */
     uint8_t *above;       /* [bytes] the last row of the band before; behind it: */
     uint8_t *band;        /* [band, bytes] unfiltered */
     uint8_t *memory;
-    bool failed;
+    bool failed; /* a colour is not in the palette: while the second thread may set rows->damaged */
 } Side;
 
 /* Work on the second file. */
@@ -266,13 +267,14 @@ typedef struct Scan {
     int top, count;  /* of the band in work */
     bool alike;      /* the layouts are the same, so that equal bytes are equal pixels */
     bool equal;      /* the last row */
+    bool joined;     /* the compressed bytes are the same up to the band in work */
     const RowSink *sink;
     Background *background; /* or NULL */
     Task task;              /* the one that the second thread has, also where the scan fails */
 } Scan;
 
 static bool side_start(Side *side, int band, bool second) {
-    const size_t bytes = side->rows.bytes, stored = (size_t)band * (bytes + 1) + SLACK,
+    const size_t bytes = side->rows->bytes, stored = (size_t)band * (bytes + 1) + SLACK,
                  all = ((size_t)band + 1) * bytes;
     side->memory = calloc((second ? 2 : 1) * stored + all + SLACK, 1);
     if (side->memory == NULL) return false;
@@ -280,25 +282,21 @@ static bool side_start(Side *side, int band, bool second) {
     side->band = side->above + bytes;
     side->filtered[0] = side->memory + all + SLACK;
     side->filtered[1] = side->filtered[0] + (second ? stored : 0);
-    return png_rows_start(&side->rows);
-}
-
-static void side_close(Side *side) {
-    png_rows_close(&side->rows);
-    free(side->memory);
+    return png_rows_start(side->rows);
 }
 
 static void decompress(Side *side, int slot, int count) {
-    side->failed =
-        side->failed || !png_rows_read(&side->rows, side->filtered[slot], (size_t)count * (side->rows.bytes + 1));
+    PngRows *rows = side->rows;
+    rows->damaged = rows->damaged || !png_rows_read(rows, side->filtered[slot], (size_t)count * (rows->bytes + 1));
 }
 
-static void unfilter(Side *side, int slot, int count) {
-    const size_t bytes = side->rows.bytes;
+static void unfilter(Side *side, const uint8_t *filtered, int count) {
+    PngRows *rows = side->rows;
+    const size_t bytes = rows->bytes;
     for (int y = 0; y < count; y++) {
         uint8_t *row = side->band + (size_t)y * bytes;
-        side->failed = side->failed || !unfilter_row(side->filtered[slot] + (size_t)y * (bytes + 1), row - bytes, bytes,
-                                                     side->rows.step, row);
+        rows->damaged =
+            rows->damaged || !unfilter_row(filtered + (size_t)y * (bytes + 1), row - bytes, bytes, rows->step, row);
     }
 }
 
@@ -309,7 +307,7 @@ static bool do_task(void *context, void *item, Error *error) {
     if (task->count > 0)
         decompress(side, task->slot, task->count);
     else
-        unfilter(side, task->slot, ((Scan *)context)->count);
+        unfilter(side, side->filtered[task->slot], ((Scan *)context)->count);
     return true;
 }
 
@@ -329,7 +327,9 @@ static void finish(const Scan *scan) {
 
 static bool expand(Scan *scan, int side, int y, const uint8_t *row, uint8_t **rgba) {
     *rgba = scan->sink->place(scan->sink->context, side, scan->top + y);
-    return *rgba != NULL && expand_row(&scan->sides[side].rows.layout, row, *rgba);
+    Side *from = &scan->sides[side];
+    from->failed = *rgba != NULL && !expand_row(&from->rows->layout, row, *rgba);
+    return *rgba != NULL && !from->failed;
 }
 
 /* Hands the rows of the band to the sink. same: those of both files are equal. */
@@ -337,25 +337,25 @@ static bool deliver(Scan *scan, bool same) {
     const Side *first = &scan->sides[0], *second = &scan->sides[1];
     const RowSink *sink = scan->sink;
     for (int y = 0; y < scan->count; y++) {
-        const uint8_t *a = first->band + (size_t)y * first->rows.bytes,
-                      *b = second->band + (size_t)y * second->rows.bytes;
+        const uint8_t *a = first->band + (size_t)y * first->rows->bytes,
+                      *b = same ? a : second->band + (size_t)y * second->rows->bytes;
         uint8_t *rgba = NULL, *other = NULL;
-        scan->equal = same || (scan->alike && memcmp(a, b, first->rows.bytes) == 0);
-        bool wanted = !scan->equal || sink->all || first->rows.layout.color == PNG_PALETTE;
+        scan->equal = same || (scan->alike && memcmp(a, b, first->rows->bytes) == 0);
+        bool wanted = !scan->equal || sink->all || first->rows->layout.color == PNG_PALETTE;
         if (wanted && !expand(scan, 0, y, a, &rgba)) return false;
         if (!scan->equal && !expand(scan, 1, y, b, &other)) return false;
-        if (!scan->alike) scan->equal = memcmp(rgba, other, 4 * (size_t)first->rows.layout.width) == 0;
+        if (!scan->alike) scan->equal = memcmp(rgba, other, 4 * (size_t)first->rows->layout.width) == 0;
         if (wanted) sink->row(sink->context, scan->top + y, rgba, scan->equal ? rgba : other);
     }
     return true;
 }
 
 static void keep_last(Side *side, const Side *from, int count) {
-    memcpy(side->above, from->band + (size_t)(count - 1) * from->rows.bytes, from->rows.bytes);
+    memcpy(side->above, from->band + (size_t)(count - 1) * from->rows->bytes, from->rows->bytes);
 }
 
 static int rows_from(const Scan *scan, int top) {
-    const int left = (int)scan->sides[0].rows.layout.height - top;
+    const int left = (int)scan->sides[0].rows->layout.height - top;
     return left < scan->band ? left : scan->band;
 }
 
@@ -365,20 +365,34 @@ static void give_next(Scan *scan, int slot) {
     if (scan->files > 1 && count > 0) give(scan, slot, count);
 }
 
-/* The rows of the second file are in `slot`. Equal bytes below equal rows are equal rows. */
+/* Waits for the rows of the second file, in `slot`, and decompresses those of the first. *same: they are equal, and so are those
+   above: then the first file's are not stored if they have not been read apart. */
+static bool decompress_band(Scan *scan, int slot, bool *same) {
+    Side *first = &scan->sides[0], *second = &scan->sides[1];
+    const size_t size = (size_t)scan->count * (first->rows->bytes + 1);
+    if (!scan->joined) decompress(first, 0, scan->count);
+    finish(scan);
+    if (scan->joined && second->rows->twin == NULL) {
+        first->rows->damaged = !png_rows_read_parted(first->rows, second->filtered[slot], first->filtered[0], size);
+        scan->joined = false;
+    }
+    if (scan->joined) first->rows->damaged = second->rows->damaged;
+    if (first->rows->damaged || second->rows->damaged) return false;
+    *same = scan->files == 1 || scan->joined ||
+            (scan->alike && scan->equal && memcmp(first->filtered[0], second->filtered[slot], size) == 0);
+    return true;
+}
+
+/* Equal bytes below equal rows are equal rows. */
 static bool scan_band(Scan *scan, int slot) {
     Side *first = &scan->sides[0], *second = &scan->sides[1];
-    const size_t size = (size_t)scan->count * (first->rows.bytes + 1);
-    decompress(first, 0, scan->count);
-    finish(scan);
-    if (first->failed || second->failed) return false;
-    const bool same = scan->files == 1 ||
-                      (scan->alike && scan->equal && memcmp(first->filtered[0], second->filtered[slot], size) == 0);
+    bool same;
+    if (!decompress_band(scan, slot, &same)) return false;
     if (!same) give(scan, slot, 0);
     if (same) give_next(scan, 1 - slot);
-    unfilter(first, 0, scan->count);
+    unfilter(first, scan->joined ? second->filtered[slot] : first->filtered[0], scan->count);
     if (!same) finish(scan);
-    if (first->failed || (!same && second->failed)) return false;
+    if (first->rows->damaged || (!same && second->rows->damaged)) return false;
     if (!same) give_next(scan, 1 - slot);
     if (!deliver(scan, same)) return false;
     keep_last(first, first, scan->count);
@@ -391,7 +405,10 @@ static bool scan_bands(Scan *scan) {
     give_next(scan, slot);
     for (; (scan->count = rows_from(scan, scan->top)) > 0; scan->top += scan->count, slot = 1 - slot)
         if (!scan_band(scan, slot)) return false;
-    return png_rows_end(&scan->sides[0].rows) && (scan->files == 1 || png_rows_end(&scan->sides[1].rows));
+    PngRows *first = scan->sides[0].rows, *second = scan->sides[1].rows;
+    const bool ok = scan->files == 1 || png_rows_end(second);
+    first->damaged = second->twin != NULL; /* those that are the same up to a sound end have parted there */
+    return !first->damaged && png_rows_end(first) && ok;
 }
 
 static bool same_layout(const PngLayout *a, const PngLayout *b) {
@@ -403,26 +420,42 @@ static bool same_layout(const PngLayout *a, const PngLayout *b) {
 static bool start(Scan *scan, size_t band, bool threads) {
     Error ignored = {0};
     Side *sides = scan->sides;
-    const PngLayout *layout = &sides[0].rows.layout, *other = &sides[1].rows.layout;
-    const size_t fit = band / (sides[0].rows.bytes + 1);
+    const PngLayout *layout = &sides[0].rows->layout, *other = &sides[1].rows->layout; /* of one file: itself */
+    const size_t fit = band / (sides[0].rows->bytes + 1);
     if (scan->files > 1 && (layout->width != other->width || layout->height != other->height)) return false;
     scan->alike = scan->files == 1 || same_layout(layout, other);
     scan->band = fit < 1 ? 1 : fit < layout->height ? (int)fit : (int)layout->height;
     for (int i = 0; i < scan->files; i++)
         if (!side_start(&sides[i], scan->band, i > 0)) return false;
+    scan->joined = scan->files > 1 && scan->alike;
+    if (scan->joined) sides[1].rows->twin = sides[0].rows;
     if (threads && scan->files > 1 && scan->band < (int)layout->height)
         scan->background = background_start(do_task, scan, &ignored); /* without it, one thread does all */
     return scan->sink->begin(scan->sink->context, (int)layout->width, (int)layout->height);
 }
 
+bool png_fast_scan_rows(PngRows *const rows[], int files, size_t band, bool threads, const RowSink *sink) {
+    Scan scan = {.files = files, .equal = true, .sink = sink};
+    for (int i = 0; i < 2; i++) scan.sides[i].rows = rows[i < files ? i : 0];
+    const bool ok = start(&scan, band, threads) && scan_bands(&scan);
+    background_stop(scan.background);
+    for (int i = 0; i < files; i++) {
+        rows[i]->damaged = rows[i]->damaged || scan.sides[i].failed;
+        free(scan.sides[i].memory);
+    }
+    return ok;
+}
+
 bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels, size_t band,
                    bool threads, const RowSink *sink) {
-    Scan scan = {.files = files, .equal = true, .sink = sink};
+    PngRows rows[2] = {0};
     bool ok = true;
-    for (int i = 0; ok && i < files; i++) ok = png_rows_open(&scan.sides[i].rows, data[i], sizes[i], max_pixels);
-    ok = ok && start(&scan, band, threads) && scan_bands(&scan);
-    background_stop(scan.background);
-    for (int i = 0; i < files; i++) side_close(&scan.sides[i]);
+    for (int i = 0; i < files; i++) {
+        png_source_of(&rows[i].source, data[i], sizes[i]);
+        ok = ok && png_rows_open(&rows[i], max_pixels);
+    }
+    ok = ok && png_fast_scan_rows((PngRows *const[]){&rows[0], &rows[1]}, files, band, threads, sink);
+    for (int i = 0; i < files; i++) png_rows_close(&rows[i]);
     return ok;
 }
 
@@ -494,10 +527,18 @@ static void drop_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
     (void)context, (void)y, (void)a, (void)b;
 }
 
-bool png_fast_check(const uint8_t *data, size_t size, int64_t max_pixels) {
+bool png_fast_check_rows(PngRows *rows) {
     uint8_t *row = NULL;
     const RowSink sink = {begin_row, place_in_row, drop_row, &row, false};
-    bool ok = png_fast_scan(&data, &size, 1, max_pixels, PNG_BAND, false, &sink);
+    bool ok = png_fast_scan_rows(&rows, 1, PNG_BAND, false, &sink);
     free(row);
+    return ok;
+}
+
+bool png_fast_check(const uint8_t *data, size_t size, int64_t max_pixels) {
+    PngRows rows = {0};
+    png_source_of(&rows.source, data, size);
+    bool ok = png_rows_open(&rows, max_pixels) && png_fast_check_rows(&rows);
+    png_rows_close(&rows);
     return ok;
 }

@@ -127,12 +127,11 @@ static bool check_checksum(const State *state, const PngChunk *chunk, size_t at)
 /* RFC 1950. */
 static bool check_compressed(const State *state) {
     const uint8_t *zlib = state->zlib;
-    const double frame = 6; /* the zlib header and the checksum */
     if (!state->pixels) return refuse(state, "it has no pixels (chunk IDAT)");
     if (state->compressed < 2 || (zlib[0] & 0x0F) != 8 || zlib[0] >> 4 > 7 || (zlib[0] << 8 | zlib[1]) % 31 != 0 ||
         (zlib[1] & 0x20) != 0)
         return refuse(state, "the pixels are not a zlib stream");
-    return (double)state->compressed >= frame + filtered_size(&state->header) / PNG_BEST_RATIO ||
+    return png_can_hold(state->compressed, filtered_size(&state->header)) ||
            refuse(state, "too few bytes for its pixels");
 }
 
@@ -166,8 +165,6 @@ void png_memory_release(png_structp png, png_voidp block) {
     free(block);
 }
 
-/* More than IMAGE_MAX_PIXELS need with 16 bits per channel, uncompressed. */
-static const size_t MAX_FILE_SIZE = (size_t)1 << 30;
 enum { MAX_TEXT_SIZE = 1 << 16, MAX_TEXTS = 64 };
 
 /* Everything that decoding modifies is in this struct, as longjmp would clobber locals. */
@@ -217,7 +214,7 @@ static void close_decoder(Decoder *decoder) {
 }
 
 uint8_t *image_load_png(const char *path, size_t *size, Error *error) {
-    uint8_t *data = (uint8_t *)file_read(path, MAX_FILE_SIZE, size, error);
+    uint8_t *data = (uint8_t *)file_read(path, PNG_MAX_FILE_SIZE, size, error);
     if (data != NULL && png_check_start(data, *size, path, error)) return data;
     free(data);
     return NULL;
@@ -385,9 +382,8 @@ Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int
     return NULL;
 }
 
-bool image_check_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+static bool check_by_libpng(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
     Decoder decoder;
-    if (png_fast_check(data, size, max_pixels)) return true;
     bool ok = open_decoder(&decoder, data, size, path, error);
     decoder.max_pixels = max_pixels;
     decoder.checked = true;
@@ -396,15 +392,27 @@ bool image_check_png(const uint8_t *data, size_t size, const char *path, int64_t
     return ok;
 }
 
+bool image_check_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
+    return png_fast_check(data, size, max_pixels) || check_by_libpng(data, size, path, max_pixels, error);
+}
+
+bool png_file_check(PngFile *file, Error *error) {
+    if (file->rows != NULL && !file->damaged && png_fast_check_rows(file->rows)) return true;
+    return png_file_load(file, error) && check_by_libpng(file->data, file->size, file->path, file->max_pixels, error);
+}
+
 Image *image_decode_png(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
     Image *image;
     if (png_fast_decode(data, size, max_pixels, &image)) return image;
     return png_libpng_decode(data, size, path, max_pixels, error);
 }
 
-bool png_scan_rows(const uint8_t *const data[2], const size_t sizes[2], int64_t max_pixels, bool threads,
-                   const RowSink *sink) {
-    return png_fast_scan(data, sizes, 2, max_pixels, PNG_BAND, threads, sink);
+bool png_files_scan(PngFile files[2], bool threads, const RowSink *sink) {
+    PngRows *const rows[] = {files[0].rows, files[1].rows};
+    if (rows[0] == NULL || rows[1] == NULL) return false;
+    const bool ok = png_fast_scan_rows(rows, 2, PNG_BAND, threads, sink);
+    for (int i = 0; i < 2; i++) files[i].damaged = rows[i]->damaged;
+    return ok;
 }
 
 bool image_decode_png_pair(const uint8_t *const data[2], const size_t sizes[2], const char *const paths[2],

@@ -11,7 +11,9 @@
 #include <string.h>
 
 /* libpng refuses longer chunks where they are not pixels: MAX_TEXT_SIZE in png_read.c. */
-enum { MAX_CHUNK = 1 << 16, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2 };
+enum { MAX_CHUNK = 1 << 16, CHUNK_HEAD = 8, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2 };
+
+static bool is_pixels(const uint8_t head[CHUNK_HEAD]) { return memcmp(head + 4, "IDAT", 4) == 0; }
 
 static bool read_header(const PngChunk *chunk, PngLayout *layout, int64_t max_pixels) {
     const uint8_t *data = chunk->data;
@@ -64,17 +66,44 @@ typedef struct Scan {
     bool pixels, pixels_ended, ended;
 } Scan;
 
-static bool scan_pixels(PngRows *rows, Scan *scan, const PngChunk *chunk, size_t at) {
-    const PngLayout *layout = &rows->layout;
-    if (scan->pixels_ended || (layout->color == PNG_PALETTE && layout->colors == 0)) return false;
-    if (chunk->length > MAX_CHUNK && chunk->length > layout->height * (rows->bytes + 1)) return false;
-    if (!scan->pixels) rows->first = rows->next = at;
-    rows->compressed += chunk->length;
-    return scan->pixels = true;
+/* The checksum of an IDAT chunk that has the next `length` bytes. */
+static bool check_pixels(PngRows *rows, size_t length) {
+    const uint8_t *bytes;
+    uint8_t wanted[4];
+    uint32_t checksum = libdeflate_crc32(0, "IDAT", 4);
+    for (size_t count; length > 0; length -= count, rows->source.at += count) {
+        if ((count = png_source_peek(&rows->source, length, &bytes)) == 0) return false;
+        checksum = libdeflate_crc32(checksum, bytes, count);
+        for (size_t i = 0; i < count && rows->compressed + i < HEADER_SIZE; i++)
+            rows->zlib[rows->compressed + i] = bytes[i];
+        rows->compressed += count;
+    }
+    return png_source_take(&rows->source, wanted, sizeof wanted) && checksum == png_number(wanted);
 }
 
-static bool scan_chunk(PngRows *rows, Scan *scan, const PngChunk *chunk, size_t at) {
-    if (png_chunk_is(chunk, "IDAT")) return scan_pixels(rows, scan, chunk, at);
+/* Room at the end of the rest; NULL: out of memory. */
+static uint8_t *add_room(PngRows *rows, size_t size) {
+    const size_t at = rows->rest_size, all = at + size;
+    if (!array_reserve((void **)&rows->rest, &rows->rest_capacity, all, 1)) return NULL;
+    rows->rest_size = all;
+    return rows->rest + at;
+}
+
+static bool scan_pixels(PngRows *rows, Scan *scan, size_t length) {
+    static const uint8_t empty[PNG_CHUNK_FRAME] = {0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xAF, 0x06, 0x1E};
+    const PngLayout *layout = &rows->layout;
+    if (scan->pixels_ended || (layout->color == PNG_PALETTE && layout->colors == 0)) return false;
+    if (length > MAX_CHUNK && length > layout->height * (rows->bytes + 1)) return false;
+    if (!scan->pixels) {
+        uint8_t *room = add_room(rows, sizeof empty);
+        if (room == NULL) return false;
+        memcpy(room, empty, sizeof empty);
+    }
+    scan->pixels = true;
+    return check_pixels(rows, length);
+}
+
+static bool scan_chunk(PngRows *rows, Scan *scan, const PngChunk *chunk) {
     scan->pixels_ended = scan->pixels;
     scan->ended = png_chunk_is(chunk, "IEND");
     if (scan->ended) return scan->pixels && chunk->length == 0;
@@ -90,23 +119,54 @@ static void size_rows(PngRows *rows) {
     rows->step = (bits + 7) / 8;
 }
 
-static bool scan_file(PngRows *rows, int64_t max_pixels) {
-    PngChunk chunk;
-    Scan scan = {false, false, false};
-    size_t at = PNG_SIGNATURE, next = at;
-    if (!png_has_signature(rows->file, rows->size) || !png_chunk_next(rows->file, rows->size, &next, &chunk) ||
-        !png_chunk_is_sound(&chunk) || !read_header(&chunk, &rows->layout, max_pixels))
-        return false;
-    size_rows(rows);
-    for (at = next; !scan.ended && png_chunk_next(rows->file, rows->size, &next, &chunk); at = next)
-        if (!png_chunk_is_sound(&chunk) || !scan_chunk(rows, &scan, &chunk, at)) return false;
-    /* Before memory is allocated for pixels that the file cannot hold. */
-    return scan.ended && rows->bytes < UINT32_MAX / 2 && png_rows_size(rows) / PNG_BEST_RATIO <= rows->compressed;
+/* The next chunk, which is kept, with its checksum checked. */
+static bool keep_chunk(PngRows *rows, const uint8_t head[CHUNK_HEAD], PngChunk *chunk) {
+    size_t at = rows->rest_size;
+    const size_t length = png_number(head);
+    uint8_t *room = length <= MAX_CHUNK ? add_room(rows, length + PNG_CHUNK_FRAME) : NULL;
+    if (room == NULL) return false;
+    memcpy(room, head, CHUNK_HEAD);
+    return png_source_take(&rows->source, room + CHUNK_HEAD, length + PNG_CHUNK_FRAME - CHUNK_HEAD) &&
+           png_chunk_next(rows->rest, rows->rest_size, &at, chunk) && png_chunk_is_sound(chunk);
 }
 
-bool png_rows_open(PngRows *rows, const uint8_t *file, size_t size, int64_t max_pixels) {
-    *rows = (PngRows){.file = file, .size = size};
-    return scan_file(rows, max_pixels);
+static bool scan_next(PngRows *rows, Scan *scan) {
+    PngChunk chunk;
+    uint8_t head[CHUNK_HEAD];
+    if (!png_source_take(&rows->source, head, sizeof head)) return false;
+    if (is_pixels(head)) return scan_pixels(rows, scan, png_number(head));
+    return keep_chunk(rows, head, &chunk) && scan_chunk(rows, scan, &chunk);
+}
+
+static bool scan_start(PngRows *rows, int64_t max_pixels) {
+    PngChunk chunk;
+    uint8_t head[CHUNK_HEAD], *room = add_room(rows, PNG_SIGNATURE);
+    if (room == NULL || !png_source_take(&rows->source, room, PNG_SIGNATURE) ||
+        !png_has_signature(room, PNG_SIGNATURE) || !png_source_take(&rows->source, head, sizeof head) ||
+        !keep_chunk(rows, head, &chunk) || !read_header(&chunk, &rows->layout, max_pixels))
+        return false;
+    size_rows(rows);
+    return true;
+}
+
+/* The header of RFC 1950. A window that is smaller than the picture is left to libpng, as it would matter how the stream
+   is cut into calls. */
+static bool check_compression(const PngRows *rows) {
+    const uint8_t *header = rows->zlib;
+    int window_bits = (header[0] >> 4) + 8;
+    return (header[0] & 0x0F) == Z_DEFLATED && (header[0] << 8 | header[1]) % 31 == 0 && (header[1] & 0x20) == 0 &&
+           window_bits <= MAX_WINDOW_BITS &&
+           (window_bits == MAX_WINDOW_BITS || png_rows_size(rows) >> window_bits == 0);
+}
+
+bool png_rows_open(PngRows *rows, int64_t max_pixels) {
+    Scan scan = {false, false, false};
+    if (!scan_start(rows, max_pixels)) return false;
+    while (!scan.ended)
+        if (!scan_next(rows, &scan)) return false;
+    /* Before memory is allocated for pixels that the file cannot hold. */
+    return png_source_end(&rows->source) && rows->bytes < UINT32_MAX / 2 &&
+           png_can_hold(rows->compressed, (double)png_rows_size(rows)) && check_compression(rows);
 }
 
 size_t png_rows_size(const PngRows *rows) { return (rows->bytes + 1) * rows->layout.height; }
@@ -119,28 +179,6 @@ typedef struct PngStream {
 #endif
 } PngStream;
 
-/* Gives the stream the next IDAT chunk; the chunk behind them is never passed. */
-static bool feed(PngRows *rows) {
-    PngChunk chunk;
-    while (rows->stream->z.avail_in == 0) {
-        size_t next = rows->next;
-        if (!png_chunk_next(rows->file, rows->size, &next, &chunk) || !png_chunk_is(&chunk, "IDAT")) return false;
-        rows->next = next;
-        rows->stream->z.next_in = (uint8_t *)chunk.data; /* not changed */
-        rows->stream->z.avail_in = (uint32_t)chunk.length;
-    }
-    return true;
-}
-
-/* The header of RFC 1950. A window that is smaller than the picture is left to libpng, as it would matter how the stream
-   is cut into calls. */
-static bool check_header(const PngRows *rows, const uint8_t header[HEADER_SIZE]) {
-    int window_bits = (header[0] >> 4) + 8;
-    return (header[0] & 0x0F) == Z_DEFLATED && (header[0] << 8 | header[1]) % 31 == 0 && (header[1] & 0x20) == 0 &&
-           window_bits <= MAX_WINDOW_BITS &&
-           (window_bits == MAX_WINDOW_BITS || png_rows_size(rows) >> window_bits == 0);
-}
-
 #ifdef TWINBOX_ISAL
 static bool stream_open(PngStream *stream, uint8_t header[HEADER_SIZE]) {
     (void)header;
@@ -150,6 +188,11 @@ static bool stream_open(PngStream *stream, uint8_t header[HEADER_SIZE]) {
 }
 
 static void stream_close(PngStream *stream) { (void)stream; }
+
+static bool stream_copy(PngStream *to, PngStream *from) {
+    *to = *from;
+    return true;
+}
 
 static bool stream_run(PngStream *stream, bool *ended) {
     const int status = isal_inflate(&stream->z);
@@ -169,6 +212,11 @@ static bool stream_open(PngStream *stream, uint8_t header[HEADER_SIZE]) {
 
 static void stream_close(PngStream *stream) { (void)inflateEnd(&stream->z); }
 
+static bool stream_copy(PngStream *to, PngStream *from) {
+    (void)inflateEnd(&to->z);
+    return inflateCopy(&to->z, &from->z) == Z_OK;
+}
+
 static bool stream_run(PngStream *stream, bool *ended) {
     const int status = inflate(&stream->z, Z_NO_FLUSH);
     *ended = status == Z_STREAM_END;
@@ -181,22 +229,73 @@ static bool has_left(const PngStream *stream) { return stream->z.avail_in > 0; }
 void png_rows_close(PngRows *rows) {
     if (rows->started) stream_close(rows->stream);
     free(rows->stream);
+    free(rows->rest);
+    png_source_close(&rows->source);
+}
+
+/* The next compressed bytes; 0: there are no more. */
+static size_t peek_pixels(PngRows *rows, const uint8_t **bytes) {
+    uint8_t head[CHUNK_HEAD];
+    while (rows->pixels == 0 && !rows->outside) {
+        rows->outside = !png_source_take(&rows->source, NULL, rows->skipped) ||
+                        !png_source_take(&rows->source, head, sizeof head) || (rows->inside && !is_pixels(head));
+        if (rows->outside) break;
+        rows->inside = is_pixels(head);
+        rows->pixels = rows->inside ? png_number(head) : 0;
+        rows->skipped = PNG_CHUNK_FRAME - CHUNK_HEAD + (rows->inside ? 0 : (size_t)png_number(head));
+    }
+    return rows->pixels == 0 ? 0 : png_source_peek(&rows->source, rows->pixels, bytes);
+}
+
+static void pass_pixels(PngRows *rows, size_t count) {
+    rows->source.at += count;
+    rows->pixels -= count;
+}
+
+/* How many bytes are the same. */
+static size_t common(const uint8_t *a, size_t a_size, const uint8_t *b, size_t b_size) {
+    const size_t most = a_size < b_size ? a_size : b_size;
+    size_t count = 0;
+    if (most > 0 && memcmp(a, b, most) == 0) return most;
+    while (count < most && a[count] == b[count]) count++;
+    return count;
+}
+
+/* From here on the twin, whose next bytes are others, decompresses for itself. */
+static void part(PngRows *rows) {
+    PngRows *twin = rows->twin;
+    rows->twin = NULL;
+    twin->started = stream_copy(twin->stream, rows->stream);
+    twin->ended = rows->ended;
+}
+
+/* Gives the stream the next compressed bytes, with a twin those that both have. */
+static bool feed(PngRows *rows) {
+    const uint8_t *bytes = NULL, *other = NULL;
+    if (rows->stream->z.avail_in > 0) return true;
+    size_t count = peek_pixels(rows, &bytes);
+    if (rows->twin != NULL) {
+        const size_t others = peek_pixels(rows->twin, &other), same = common(bytes, count, other, others);
+        if (same > 0)
+            pass_pixels(rows->twin, count = same);
+        else
+            part(rows);
+    }
+    rows->stream->z.next_in = (uint8_t *)bytes; /* not changed */
+    rows->stream->z.avail_in = (uint32_t)count;
+    pass_pixels(rows, count);
+    return count > 0;
 }
 
 bool png_rows_start(PngRows *rows) {
-    uint8_t header[HEADER_SIZE];
-    PngStream *stream = rows->stream = calloc(1, sizeof *rows->stream);
+    const uint8_t *bytes;
+    if ((rows->stream = calloc(1, sizeof *rows->stream)) == NULL || !png_source_rewind(&rows->source)) return false;
+    rows->skipped = PNG_SIGNATURE;
     for (int i = 0; i < HEADER_SIZE; i++) {
-        if (stream == NULL || !feed(rows)) return false;
-        header[i] = *stream->z.next_in++;
-        stream->z.avail_in--;
+        if (peek_pixels(rows, &bytes) == 0) return false;
+        pass_pixels(rows, 1);
     }
-    if (!check_header(rows, header)) return false;
-    uint8_t *const next = stream->z.next_in;
-    const uint32_t left = stream->z.avail_in;
-    rows->started = stream_open(stream, header);
-    stream->z.next_in = next, stream->z.avail_in = left;
-    return rows->started;
+    return rows->started = stream_open(rows->stream, rows->zlib);
 }
 
 bool png_rows_read(PngRows *rows, uint8_t *to, size_t size) {
@@ -212,8 +311,15 @@ bool png_rows_read(PngRows *rows, uint8_t *to, size_t size) {
     return true;
 }
 
+bool png_rows_read_parted(PngRows *rows, const uint8_t *from, uint8_t *to, size_t size) {
+    const size_t left = rows->stream->z.avail_out;
+    memcpy(to, from, size - left);
+    return png_rows_read(rows, to + size - left, left);
+}
+
 bool png_rows_end(PngRows *rows) {
     uint8_t extra;
-    if (png_rows_read(rows, &extra, 1) || !rows->ended) return false; /* more than the rows, or no end */
-    return !has_left(rows->stream) && !feed(rows);
+    const bool more = png_rows_read(rows, &extra, 1);
+    rows->damaged = more || !rows->ended || has_left(rows->stream) || feed(rows) || !png_source_end(&rows->source);
+    return !rows->damaged;
 }

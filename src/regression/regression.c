@@ -3,7 +3,6 @@
 #include "regression/regression.h"
 
 #include "base/base.h"
-#include "base/hash.h"
 #include "base/machine.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
@@ -71,19 +70,14 @@ static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) 
     if (judge->scan != NULL) region_scan_row(judge->scan, y, judge->levels);
 }
 
-/* *done: the files are common ones of one size, and sound. */
-static bool judge_rows(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], bool *done,
+/* *done: the files are read in pieces, have one size, and are sound. */
+static bool judge_rows(const Regression *regression, RegressionFrame *frame, PngFile files[SIDES], bool *done,
                        Error *error) {
-    RegressionFile *files = frame->files;
     RowJudge judge = {.tolerance = regression_level(regression, frame)};
     const RowSink sink = {begin_rows, place_row, judge_row, &judge, false};
-    *done = png_scan_rows((const uint8_t *const[]){data[EXPECTED], data[ACTUAL]},
-                          (const size_t[]){files[EXPECTED].size, files[ACTUAL].size}, regression->options.max_pixels,
-                          regression->count == 1, &sink);
+    *done = png_files_scan(files, regression->count == 1, &sink);
     bool ok = judge.error.kind == ERROR_NONE;
     if (ok && *done) {
-        for (RegressionSide side = EXPECTED; side < SIDES; side++)
-            files[side].width = judge.width, files[side].height = judge.height;
         if (judge.scan != NULL) region_scan_end(judge.scan, judge.height);
         judge.difference.equal = judge.difference.pixels == 0;
         frame->difference = judge.difference;
@@ -93,54 +87,74 @@ static bool judge_rows(Regression *regression, RegressionFrame *frame, uint8_t *
     region_scan_destroy(judge.scan);
     free(judge.rows[EXPECTED]);
     if (judge.error.kind != ERROR_NONE) *error = judge.error;
-    /* Damage is found without memory for the pixels: where a common file has it, and where the pixels are many. */
+    return ok;
+}
+
+/* Sets the sizes in pixels. What is read in pieces has been checked. */
+static bool check_chunks(RegressionFrame *frame, const PngFile files[SIDES], Error *error) {
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        const PngFile *from = &files[side];
+        RegressionFile *file = &frame->files[side];
+        if (from->rows != NULL)
+            (void)png_size(from->data, from->size, &file->width, &file->height);
+        else if (!png_check(from->data, from->size, from->path, &file->width, &file->height, error))
+            return false;
+    }
+    return true;
+}
+
+/* Damage is found without memory for the pixels: where a common file has it, and where the pixels are many. */
+static bool check_damage(RegressionFrame *frame, PngFile files[SIDES], Error *error) {
     enum { MANY = 1 << 24 };
-    for (RegressionSide side = EXPECTED; ok && !*done && side < SIDES; side++) {
-        const char *path = frame->at[side]->path;
-        int width, height;
-        ok = png_check(data[side], files[side].size, path, &width, &height, error) &&
-             ((judge.height == 0 && (int64_t)width * height < MANY) ||
-              image_check_png(data[side], files[side].size, path, regression->options.max_pixels, error));
+    const bool found = files[EXPECTED].damaged || files[ACTUAL].damaged;
+    bool ok = check_chunks(frame, files, error);
+    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
+        const RegressionFile *file = &frame->files[side];
+        if (found ? files[side].damaged : (int64_t)file->width * file->height >= MANY)
+            ok = png_file_check(&files[side], error);
     }
     return ok;
 }
 
-static bool decode_and_judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
+static bool decode_and_judge(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
     Image *images[SIDES];
-    RegressionFile *files = frame->files;
     bool rows, done = false;
     if (!regression_needs_rows_alone(regression, frame, &rows, error)) return false;
-    if (rows && !judge_rows(regression, frame, data, &done, error)) return false;
+    if (rows && !judge_rows(regression, frame, files, &done, error)) return false;
     if (done) return true;
+    if (rows && !check_damage(frame, files, error)) return false;
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        if (!png_file_load(&files[side], error)) return false;
+        frame->files[side].size = files[side].size;
+    }
+    uint8_t *const data[SIDES] = {files[EXPECTED].data, files[ACTUAL].data};
     bool ok = image_decode_png_pair((const uint8_t *const[]){data[EXPECTED], data[ACTUAL]},
                                     (const size_t[]){files[EXPECTED].size, files[ACTUAL].size},
-                                    (const char *const[]){frame->at[EXPECTED]->path, frame->at[ACTUAL]->path},
+                                    (const char *const[]){files[EXPECTED].path, files[ACTUAL].path},
                                     regression->options.max_pixels, images, error);
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++)
-        files[side].width = images[side]->width, files[side].height = images[side]->height;
+        frame->files[side].width = images[side]->width, frame->files[side].height = images[side]->height;
     ok = ok && judge_pixels(regression, frame, data, images, error);
     image_destroy_pair(images);
     return ok;
 }
 
 /* A missing or extra frame is decoded too, to detect damaged files. */
-static bool judge_alone(const RegressionOptions *options, RegressionFrame *frame, RegressionSide side,
-                        const uint8_t *data, Error *error) {
+static bool judge_alone(RegressionFrame *frame, RegressionSide side, PngFile *from, Error *error) {
     assert(frame->at[side] != NULL);
     RegressionFile *file = &frame->files[side];
-    if (!image_check_png(data, file->size, frame->at[side]->path, options->max_pixels, error)) return false;
-    (void)png_size(data, file->size, &file->width, &file->height);
+    if (!png_file_check(from, error)) return false;
+    (void)png_size(from->data, from->size, &file->width, &file->height);
     frame->pixels = side == EXPECTED ? PIXELS_MISSING : PIXELS_EXTRA;
     return true;
 }
 
 /* Decoded only to find out whether the masks hide everything: that must not stay unknown until something changes. */
-static bool judge_same_bytes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
-    RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
-    if (!png_check(data[EXPECTED], a->size, frame->at[EXPECTED]->path, &a->width, &a->height, error)) return false;
-    b->width = a->width, b->height = a->height;
-    if (regression_may_hide_all(regression, frame, a->width, a->height))
-        return decode_and_judge(regression, frame, data, error);
+static bool judge_same_bytes(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
+    const RegressionFile *file = &frame->files[EXPECTED];
+    if (!check_chunks(frame, files, error)) return false;
+    if (regression_may_hide_all(regression, frame, file->width, file->height))
+        return decode_and_judge(regression, frame, files, error);
     frame->pixels = PIXELS_EQUAL;
     frame->difference = (ImageDifference){.equal = true, .same_size = true, .first_x = -1, .first_y = -1};
     return true;
@@ -157,21 +171,20 @@ static bool is_far(const RegressionFile *a, const RegressionFile *b) {
 }
 
 /* By the headers alone. False: the pictures have to be decoded, or cannot. */
-static bool have_far_sizes(RegressionFrame *frame, uint8_t *const data[SIDES]) {
+static bool have_far_sizes(RegressionFrame *frame, const PngFile files[SIDES]) {
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         RegressionFile *file = &frame->files[side];
-        if (!png_size(data[side], file->size, &file->width, &file->height)) return false;
+        if (!png_size(files[side].data, files[side].size, &file->width, &file->height)) return false;
     }
     return is_far(&frame->files[EXPECTED], &frame->files[ACTUAL]);
 }
 
-static bool judge_sizes(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+static bool judge_sizes(const Regression *regression, RegressionFrame *frame, const PngFile files[SIDES],
                         Error *error) {
+    if (!check_chunks(frame, files, error)) return false;
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        RegressionFile *file = &frame->files[side];
-        const char *path = frame->at[side]->path;
-        if (!png_check(data[side], file->size, path, &file->width, &file->height, error) ||
-            !png_check_pixels(file->width, file->height, regression->options.max_pixels, path, error))
+        const RegressionFile *file = &frame->files[side];
+        if (!png_check_pixels(file->width, file->height, regression->options.max_pixels, files[side].path, error))
             return false;
     }
     frame->pixels = PIXELS_RESIZED;
@@ -180,31 +193,28 @@ static bool judge_sizes(const Regression *regression, RegressionFrame *frame, ui
     return true;
 }
 
-static bool judge(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES], Error *error) {
-    const RegressionOptions *options = &regression->options;
+static bool judge(Regression *regression, RegressionFrame *frame, PngFile files[SIDES], Error *error) {
+    const PngFile *a = &files[EXPECTED], *b = &files[ACTUAL];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (data[1 - side] == NULL) return judge_alone(options, frame, side, data[side], error);
-    if (!regression_judge_states(regression, frame, data, error)) return false;
-    const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
-    if (a->size == b->size && memcmp(data[EXPECTED], data[ACTUAL], a->size) == 0)
-        return judge_same_bytes(regression, frame, data, error);
-    if (!png_display_compare(data[EXPECTED], a->size, data[ACTUAL], b->size, &frame->metadata, error)) return false;
-    frame->metadata_failed = options->strict_metadata && frame->metadata.text[0] != '\0';
-    return have_far_sizes(frame, data) ? judge_sizes(regression, frame, data, error)
-                                       : decode_and_judge(regression, frame, data, error);
+        if (frame->at[1 - side] == NULL) return judge_alone(frame, side, &files[side], error);
+    if (!regression_judge_states(regression, frame, (uint8_t *const[]){a->data, b->data}, error)) return false;
+    if (png_files_are_same(files)) return judge_same_bytes(regression, frame, files, error);
+    if (!png_display_compare(a->data, a->size, b->data, b->size, &frame->metadata, error)) return false;
+    frame->metadata_failed = regression->options.strict_metadata && frame->metadata.text[0] != '\0';
+    return have_far_sizes(frame, files) ? judge_sizes(regression, frame, files, error)
+                                        : decode_and_judge(regression, frame, files, error);
 }
 
 static bool compare_files(Regression *regression, RegressionFrame *frame, Error *error) {
-    uint8_t *data[SIDES] = {NULL, NULL};
+    PngFile files[SIDES] = {{0}};
     bool ok = true;
     for (RegressionSide side = EXPECTED; ok && side < SIDES; side++) {
         if (frame->at[side] == NULL) continue;
-        RegressionFile *file = &frame->files[side];
-        ok = (data[side] = image_load_png(frame->at[side]->path, &file->size, error)) != NULL;
-        if (ok) file->hash = hash_xxh3(data[side], file->size);
+        ok = png_file_open(&files[side], frame->at[side]->path, regression->options.max_pixels, error);
+        frame->files[side] = (RegressionFile){.hash = files[side].hash, .size = files[side].size};
     }
-    ok = ok && judge(regression, frame, data, error);
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) free(data[side]);
+    ok = ok && judge(regression, frame, files, error);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) png_file_close(&files[side]);
     return ok;
 }
 
