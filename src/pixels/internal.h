@@ -142,7 +142,7 @@ bool png_fast_decode_pair(const uint8_t *const data[2], const size_t sizes[2], i
 
 /* One file, or two with the same size in pixels, in memory for some rows. band: bytes of rows that are decompressed at
    once, at least one row. threads: with a second thread. */
-enum { PNG_BAND = 1 << 18 };
+enum { PNG_BAND = 1 << 17 };
 bool png_fast_scan_rows(PngRows *const rows[], int files, size_t band, bool threads, const RowSink *sink);
 bool png_fast_scan(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels, size_t band,
                    bool threads, const RowSink *sink);
