@@ -149,8 +149,8 @@ enum { CAUSES_MAX = 32 };
 
 /* A file as it was when compared. */
 typedef struct RegressionFile {
-    uint64_t hash; /* XXH3 of its bytes */
-    size_t size;   /* of what was in memory: PngFile */
+    uint64_t hash;     /* XXH3 of its bytes */
+    size_t size;       /* of what was in memory: PngFile */
     int width, height; /* of a picture */
 } RegressionFile;
 
