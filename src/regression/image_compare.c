@@ -136,20 +136,39 @@ static void add_colours(const Around *around, int x, Colours *colours) {
         colours->list[colours->count++] = around->rows[REACH - 1 + i / 3] + 4 * (x + REACH - 1 + i % 3);
 }
 
+/* Orders colours by a channel; those that are equal in it by all, so that it does not matter which picture has one. */
+static bool is_less(const uint8_t *a, const uint8_t *b, int channel) {
+    return a[channel] != b[channel] ? a[channel] < b[channel] : memcmp(a, b, CHANNELS) < 0;
+}
+
+/* The channel in which colours differ most. */
+static int widest_channel(const Colours *colours) {
+    uint8_t low[CHANNELS], high[CHANNELS];
+    memcpy(low, colours->list[0], CHANNELS);
+    memcpy(high, colours->list[0], CHANNELS);
+    for (int i = 1; i < colours->count; i++)
+        for (int c = 0; c < CHANNELS; c++) {
+            const uint8_t value = colours->list[i][c];
+            low[c] = value < low[c] ? value : low[c];
+            high[c] = value > high[c] ? value : high[c];
+        }
+    int widest = 0;
+    for (int c = 1; c < CHANNELS; c++)
+        if (high[c] - low[c] > high[widest] - low[widest]) widest = c;
+    return widest;
+}
+
 /* Whether all are mixtures of two, as far as rounding shows. */
 static bool are_mixtures(const Colours *colours) {
     enum { ROUNDING = 2 };
-    const uint8_t *one = NULL, *other = NULL;
-    int most = 0, channel = 0;
-    for (int c = 0; c < CHANNELS; c++) {
-        const uint8_t *low = colours->list[0], *high = low;
-        for (int i = 1; i < colours->count; i++) {
-            if (colours->list[i][c] < low[c]) low = colours->list[i];
-            if (colours->list[i][c] > high[c]) high = colours->list[i];
-        }
-        if (high[c] - low[c] > most) most = high[c] - low[c], one = low, other = high, channel = c;
+    const int channel = widest_channel(colours);
+    const uint8_t *one = colours->list[0], *other = one;
+    for (int i = 1; i < colours->count; i++) {
+        if (is_less(colours->list[i], one, channel)) one = colours->list[i];
+        if (is_less(other, colours->list[i], channel)) other = colours->list[i];
     }
-    for (int i = 0; one != NULL && i < colours->count; i++) {
+    const int most = other[channel] - one[channel];
+    for (int i = 0; i < colours->count; i++) {
         const int part = colours->list[i][channel] - one[channel];
         for (int c = 0; c < CHANNELS; c++)
             if (abs((colours->list[i][c] - one[c]) * most - part * (other[c] - one[c])) > ROUNDING * most) return false;

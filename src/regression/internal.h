@@ -102,7 +102,7 @@ double mask_most_hidden(const Mask *mask, int width, int height);
 
    4. If the colours of each window are mixtures of two, so are those of both together: a line of another colour has not moved.
 
-   Values within 2 + c / 16 of each other count as equal, in 4 within 2.
+   Values within 2 + c / 16 of each other count as equal, in 4 within 2. Exchanging the pictures changes nothing.
 
    Fails: a line of less than two pixels that fades by less than 15% towards the colour around it looks like a line that became
    narrower, and passes; so does a faint mark along an edge of higher contrast. Where lines cross at less than 20 degrees, some
