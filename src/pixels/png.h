@@ -62,7 +62,7 @@ typedef struct RowSink {
     /* The rows in their places; a == b: they are equal, or there is one file. */
     void (*row)(void *context, int y, const uint8_t *a, const uint8_t *b);
     void *context;
-    bool all; /* also rows that are equal */
+    bool all; /* also rows that are equal, far from others */
 } RowSink;
 
 /* A file to compare. A common one, of at most 8 bits per sample and not interlaced, is read in pieces, in little memory. */

@@ -341,7 +341,7 @@ static bool deliver(Scan *scan, bool same) {
                       *b = same ? a : second->band + (size_t)y * second->rows->bytes;
         uint8_t *rgba = NULL, *other = NULL;
         scan->equal = same || (scan->alike && memcmp(a, b, first->rows->bytes) == 0);
-        bool wanted = !scan->equal || sink->all || first->rows->layout.color == PNG_PALETTE;
+        bool wanted = !same || sink->all || first->rows->layout.color == PNG_PALETTE;
         if (wanted && !expand(scan, 0, y, a, &rgba)) return false;
         if (!scan->equal && !expand(scan, 1, y, b, &other)) return false;
         if (!scan->alike) scan->equal = memcmp(rgba, other, 4 * (size_t)first->rows->layout.width) == 0;

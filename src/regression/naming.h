@@ -24,7 +24,8 @@ typedef enum ChangeSubject {
     SUBJECT_TIMELINE,
     SUBJECT_MARKS,      /* contacts, arrows, trails or outlines over a panel */
     SUBJECT_BACKGROUND, /* of a panel: grid and empty space */
-    SUBJECT_PAGE        /* outside all panels and texts */
+    SUBJECT_PAGE,       /* outside all panels and texts */
+    SUBJECT_CONTENT     /* of a picture of which nothing is known */
 } ChangeSubject;
 
 typedef enum ChangeKind {
@@ -33,7 +34,10 @@ typedef enum ChangeKind {
     CHANGE_COLOUR,
     CHANGE_LINE_WIDTH,
     CHANGE_APPEARED,
-    CHANGE_DISAPPEARED
+    CHANGE_DISAPPEARED,
+    CHANGE_REPLACED, /* by other content */
+    CHANGE_NOISE,    /* small or scattered differences, or only along edges */
+    CHANGE_UNSURE    /* looked at, and none of these */
 } ChangeKind;
 
 typedef struct Change {

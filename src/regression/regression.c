@@ -6,6 +6,7 @@
 #include "base/machine.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
+#include "regression/content.h"
 #include "regression/internal.h"
 #include "regression/naming.h"
 
@@ -31,12 +32,15 @@ static bool judge_pixels(Regression *regression, RegressionFrame *frame, uint8_t
     return ok;
 }
 
-/* Row by row, in little memory, where that is enough: nothing is ignored, FLIP is not measured, and nothing can be named. */
+/* Row by row, in little memory, where that is enough: nothing is ignored, FLIP is not measured, and no file says what
+   the pictures show. */
 typedef struct RowJudge {
     int width, height, tolerance;
     ImageDifference difference;
     ImageRegions regions;
     RegionScan *scan;     /* from the first row that differs */
+    ContentTraits traits; /* of some rows */
+    ContentBand band;     /* the rows that differ, if they are few */
     uint8_t *rows[SIDES]; /* [4 * width]; behind them: */
     uint8_t *levels;      /* [width] */
     Error error;
@@ -51,6 +55,7 @@ static bool begin_rows(void *context, int width, int height) {
     if ((judge->rows[EXPECTED] = malloc(9 * count)) == NULL) return error_memory(&judge->error, "image");
     judge->rows[ACTUAL] = judge->rows[EXPECTED] + 4 * count;
     judge->levels = judge->rows[ACTUAL] + 4 * count;
+    content_band_begin(&judge->band, width, height);
     return true;
 }
 
@@ -62,15 +67,36 @@ static uint8_t *place_row(void *context, int side, int y) {
 
 static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
     RowJudge *judge = context;
-    if (a == b || judge->error.kind != ERROR_NONE) return;
+    if (judge->error.kind != ERROR_NONE) return;
+    if (a == b) {
+        content_band_add(&judge->band, y, a, b, false);
+        return;
+    }
     image_levels(a, b, (size_t)judge->width, judge->levels);
     image_count_levels(&judge->difference, y, judge->levels, judge->width, judge->tolerance);
     if (judge->scan == NULL)
         judge->scan = region_scan_create(judge->width, judge->height, &judge->regions, &judge->error);
     if (judge->scan != NULL) region_scan_row(judge->scan, y, judge->levels);
+    if (y % CONTENT_ROWS == 0) traits_add_row(&judge->traits, a, b, judge->levels, 0, judge->width);
+    content_band_add(&judge->band, y, a, b, judge->difference.bottom == y + 1);
 }
 
-/* *done: the files are read in pieces, have one size, and are sound. */
+/* The regions of a frame and their names. *named: false where only whole pictures can tell, and are small enough. */
+static bool name_rows(const RowJudge *judge, RegressionFrame *frame, bool *named, Error *error) {
+    enum { WHOLE_MAX = 10000000 }; /* pixels of a picture that is read twice */
+    const bool ground = content_has_ground(&judge->traits, &judge->difference, judge->width, judge->height);
+    const bool lost = ground && judge->band.lost;
+    *named = !frame_failed(frame) || !lost || (int64_t)judge->width * judge->height > WHOLE_MAX;
+    if (judge->difference.equal || !*named) return true;
+    if (!regression_keep_regions(frame, &judge->regions, error)) return false;
+    if (!frame_failed(frame) || lost) return true;
+    if (ground)
+        return content_band_name(&judge->band, traits_floor(&judge->traits), &judge->difference, frame->changes, error);
+    content_name_most(&judge->traits, frame->changes);
+    return true;
+}
+
+/* *done: the files are read in pieces, have one size, and are sound, and that is enough to name what changed. */
 static bool judge_rows(const Regression *regression, RegressionFrame *frame, PngFile files[SIDES], bool *done,
                        Error *error) {
     RowJudge judge = {.tolerance = regression_level(regression, frame)};
@@ -81,10 +107,10 @@ static bool judge_rows(const Regression *regression, RegressionFrame *frame, Png
         if (judge.scan != NULL) region_scan_end(judge.scan, judge.height);
         judge.difference.equal = judge.difference.pixels == 0;
         frame->difference = judge.difference;
-        ok = regression_decide(regression, frame, NULL, NULL, NULL, error) &&
-             (judge.difference.equal || regression_keep_regions(frame, &judge.regions, error));
+        ok = regression_decide(regression, frame, NULL, NULL, NULL, error) && name_rows(&judge, frame, done, error);
     }
     region_scan_destroy(judge.scan);
+    content_band_end(&judge.band);
     free(judge.rows[EXPECTED]);
     if (judge.error.kind != ERROR_NONE) *error = judge.error;
     return ok;

@@ -415,6 +415,20 @@ static double rounded(double flip) {
     return isfinite(flip) ? strtod(text, NULL) : NAN;
 }
 
+/* Of a region that has a name. */
+static void write_change(JsonWriter *json, const FrameChanges *changes, int region) {
+    static const char *const kinds[] = {
+        [CHANGE_OTHER] = "other",       [CHANGE_MOVED] = "moved",    [CHANGE_COLOUR] = "recoloured",
+        [CHANGE_LINE_WIDTH] = "width",  [CHANGE_APPEARED] = "added", [CHANGE_DISAPPEARED] = "removed",
+        [CHANGE_REPLACED] = "replaced", [CHANGE_NOISE] = "noise",    [CHANGE_UNSURE] = "unsure"};
+    if (changes->region_change[region] < 0) return;
+    const Change *change = &changes->list[changes->region_change[region]];
+    json_put_text(json, "kind", kinds[change->kind]);
+    if (change->kind != CHANGE_MOVED) return;
+    json_put_number(json, "right", rounded(change->right));
+    json_put_number(json, "up", rounded(change->up));
+}
+
 /* At most IMAGE_REGIONS_MAX; a frame must stay one line below the limit of json_read_value(). */
 static void write_regions(JsonWriter *json, const RegressionFrame *frame) {
     const FrameChanges *changes = frame->changes;
@@ -427,6 +441,7 @@ static void write_regions(JsonWriter *json, const RegressionFrame *frame) {
         write_sides(json, region->left, region->top, region->right, region->bottom);
         json_put_int(json, "pixels", region->pixels);
         json_put_text(json, "name", name.text[0] != '\0' ? name.text : NULL);
+        write_change(json, changes, i);
         json_end(json);
     }
     json_end(json);

@@ -6,6 +6,7 @@
 #include "base/machine.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
+#include "regression/content.h"
 #include "regression/internal.h"
 #include "regression/naming.h"
 #include "regression/regression.h"
@@ -263,14 +264,9 @@ bool regression_keep_regions(RegressionFrame *frame, const ImageRegions *regions
     return true;
 }
 
-bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
-                             const Image *const images[SIDES], const uint8_t *masked, Error *error) {
-    const ShownFolder *folders[SIDES];
-    ImageRegions regions;
-    if (!image_regions_find(images[EXPECTED], images[ACTUAL], masked, &frame->difference, &regions, error) ||
-        !regression_keep_regions(frame, &regions, error) || !find_folders(regression, frame, folders, error))
-        return false;
-    FrameChanges *changes = frame->changes;
+/* The names that the views and runs of both folders give. */
+static bool name_own(RegressionFrame *frame, const ShownFolder *const folders[SIDES], uint8_t *const data[SIDES],
+                     const Image *const images[SIDES], const uint8_t *masked, Error *error) {
     const FrameView *a = &folders[EXPECTED]->view, *b = &folders[ACTUAL]->view;
     if (a->width != images[EXPECTED]->width || a->height != images[EXPECTED]->height) return true;
     if (b->width != a->width || b->height != a->height) return true;
@@ -280,7 +276,17 @@ bool regression_find_changes(Regression *regression, RegressionFrame *frame, uin
     if (texts[EXPECTED].card[0] != '\0' || texts[ACTUAL].card[0] != '\0') return true; /* it has a layout of its own */
     frame->other_view = view_difference(a, b).text[0] != '\0';
     if (frame->other_view) return true;
-    return name_changes(folders, texts, images, masked, changes, error);
+    return name_changes(folders, texts, images, masked, frame->changes, error);
+}
+
+bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
+                             const Image *const images[SIDES], const uint8_t *masked, Error *error) {
+    const ShownFolder *folders[SIDES];
+    ImageRegions regions;
+    return image_regions_find(images[EXPECTED], images[ACTUAL], masked, &frame->difference, &regions, error) &&
+           regression_keep_regions(frame, &regions, error) && find_folders(regression, frame, folders, error) &&
+           name_own(frame, folders, data, images, masked, error) &&
+           content_name(images[EXPECTED], images[ACTUAL], masked, &frame->difference, frame->changes, error);
 }
 
 enum { RANGES = 4 };
@@ -383,16 +389,18 @@ static void add_physics(const Causes *causes, int frame) {
     add_cause(causes, frame, what, 0, false);
 }
 
-/* The named changes, or that there is a difference. */
+/* The named changes, or that there is a difference. Content of a picture that is a case of its own has no cause beyond it. */
 static void add_changes(const Causes *causes, int frame) {
     const FrameChanges *changes = causes->regression->frames[frame].changes;
+    const bool alone = causes->regression->frames[frame].alone;
     bool named = changes != NULL && changes->count > 0;
     for (int i = 0; named && i < changes->count; i++) {
         const Change *change = &changes->list[i];
+        if (alone && change->subject == SUBJECT_CONTENT) continue;
         double most = change->kind == CHANGE_MOVED ? fmax(fabs(change->right), fabs(change->up)) : 0;
         add_cause(causes, frame, change_cause(change).text, most, false);
     }
-    if (!named && !causes->regression->frames[frame].alone) add_cause(causes, frame, "pixels differ", 0, false);
+    if (!named && !alone) add_cause(causes, frame, "pixels differ", 0, false);
 }
 
 static void add_causes(const Causes *causes, int frame) {

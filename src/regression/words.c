@@ -22,7 +22,7 @@ static void add_subject(ChangeText *text, const Change *change) {
     static const char *const names[] = {
         [SUBJECT_HEADER] = "header",         [SUBJECT_CAPTION] = "caption",   [SUBJECT_AXIS] = "axis",
         [SUBJECT_LEGEND] = "legend",         [SUBJECT_TIMELINE] = "timeline", [SUBJECT_MARKS] = "marks",
-        [SUBJECT_BACKGROUND] = "background", [SUBJECT_PAGE] = "page"};
+        [SUBJECT_BACKGROUND] = "background", [SUBJECT_PAGE] = "page",         [SUBJECT_CONTENT] = "content"};
     switch (change->subject) {
     case SUBJECT_BODY: text_add(text->text, sizeof text->text, "body %d", change->body); break;
     case SUBJECT_BOMB: text_add(text->text, sizeof text->text, "bomb (body %d)", change->body); break;
@@ -38,7 +38,8 @@ static void add_subject(ChangeText *text, const Change *change) {
     case SUBJECT_TIMELINE:
     case SUBJECT_MARKS:
     case SUBJECT_BACKGROUND:
-    case SUBJECT_PAGE: text_add(text->text, sizeof text->text, "%s", names[change->subject]); break;
+    case SUBJECT_PAGE:
+    case SUBJECT_CONTENT: text_add(text->text, sizeof text->text, "%s", names[change->subject]); break;
     }
     if (change->panel > 0) text_add(text->text, sizeof text->text, " of panel %d", change->panel);
 }
@@ -55,36 +56,51 @@ static void add_pixels(ChangeText *text, double pixels, const char *positive, co
 /* " 0.4 px right", " 3 px right and 2 px up"; a movement along one axis has one part. */
 static void add_amount(ChangeText *text, const Change *change) {
     double right = fabs(change->right), up = fabs(change->up);
+    const char *between = text->text[0] != '\0' ? " " : "";
     bool has_right = right >= SMALL && right >= ALONG * up, has_up = up >= SMALL && up >= ALONG * right;
     bool turns = fabs(change->turn) >= SEEN_TURN;
-    if (has_right || has_up) text_add(text->text, sizeof text->text, " moved");
+    text_add(text->text, sizeof text->text, "%s", between);
+    if (has_right || has_up) text_add(text->text, sizeof text->text, "moved");
     if (has_right) add_pixels(text, change->right, "right", "left");
     if (has_right && has_up) text_add(text->text, sizeof text->text, " and");
     if (has_up) add_pixels(text, change->up, "up", "down");
     if (turns)
-        text_add(text->text, sizeof text->text, "%s %.2g degrees", has_right || has_up ? ", turned" : " turned",
+        text_add(text->text, sizeof text->text, "%s %.2g degrees", has_right || has_up ? ", turned" : "turned",
                  DEGREES * fabs(change->turn));
-    if (!has_right && !has_up && !turns) text_add(text->text, sizeof text->text, " moved less than 0.01 px");
+    if (!has_right && !has_up && !turns) text_add(text->text, sizeof text->text, "moved less than 0.01 px");
+}
+
+static void add_kind(ChangeText *text, const Change *change) {
+    static const char *const kinds[] = {[CHANGE_COLOUR] = ": colour",
+                                        [CHANGE_LINE_WIDTH] = ": line width",
+                                        [CHANGE_APPEARED] = " only in the actual run",
+                                        [CHANGE_DISAPPEARED] = " only in the expected run"};
+    if (change->kind == CHANGE_OTHER)
+        text_add(text->text, sizeof text->text, "%s", change->subject <= SUBJECT_BODIES ? " changed" : "");
+    else
+        text_add(text->text, sizeof text->text, "%s", kinds[change->kind]);
+}
+
+/* Of content of which nothing is known. */
+static void add_content(ChangeText *text, const Change *change) {
+    static const char *const kinds[] = {
+        [CHANGE_COLOUR] = "recoloured", [CHANGE_APPEARED] = "added", [CHANGE_DISAPPEARED] = "removed",
+        [CHANGE_REPLACED] = "replaced", [CHANGE_NOISE] = "noise",    [CHANGE_UNSURE] = "unsure what changed"};
+    text_add(text->text, sizeof text->text, "%s", kinds[change->kind]);
 }
 
 ChangeText change_words(const Change *change) {
     ChangeText text = {""};
-    add_subject(&text, change);
-    switch (change->kind) {
-    case CHANGE_OTHER:
-        if (change->subject <= SUBJECT_BODIES) text_add(text.text, sizeof text.text, " changed");
-        break;
-    case CHANGE_MOVED:
-        if (change->subject == SUBJECT_BODIES)
-            text_add(text.text, sizeof text.text, " moved");
-        else
-            add_amount(&text, change);
-        break;
-    case CHANGE_COLOUR: text_add(text.text, sizeof text.text, ": colour"); break;
-    case CHANGE_LINE_WIDTH: text_add(text.text, sizeof text.text, ": line width"); break;
-    case CHANGE_APPEARED: text_add(text.text, sizeof text.text, " only in the actual run"); break;
-    case CHANGE_DISAPPEARED: text_add(text.text, sizeof text.text, " only in the expected run"); break;
-    }
+    const bool content = change->subject == SUBJECT_CONTENT;
+    if (!content) add_subject(&text, change);
+    if (change->kind == CHANGE_MOVED && change->subject == SUBJECT_BODIES)
+        text_add(text.text, sizeof text.text, " moved");
+    else if (change->kind == CHANGE_MOVED)
+        add_amount(&text, change);
+    else if (content)
+        add_content(&text, change);
+    else
+        add_kind(&text, change);
     return text;
 }
 

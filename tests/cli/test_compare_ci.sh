@@ -51,8 +51,8 @@ annotated() {
 }
 annotated few
 cat >wanted <<'TEXT'
-::error file=few/a/f_1.png,title=pictures differ::f_1.png: 1 pixel differs (50%25) by at most 3, first at (1, 0)
-::error file=few/a/f_3.png,title=pictures differ::f_3.png: 1 pixel differs (50%25) by at most 3, first at (1, 0)
+::error file=few/a/f_1.png,title=pictures differ::f_1.png: 1 pixel differs (50%25) by at most 3, first at (1, 0): noise
+::error file=few/a/f_3.png,title=pictures differ::f_3.png: 1 pixel differs (50%25) by at most 3, first at (1, 0): noise
 TEXT
 equal "the annotations" "$(cat annotations)" "$(cat wanted)"
 # What names files stands where the runner does not look for commands.

@@ -87,7 +87,7 @@ says "10 of 10 frames differ"
 run 0 render a.npz -o card --size 640x360 --frames 0:0 --title Old
 run 0 render a.npz -o other_card --size 640x360 --frames 0:0 --title New
 run 1 compare card other_card
-says "frames 0 to 119: pixels differ"
+says "frames 0 to 119: replaced"
 
 # Other cameras come first, and name the option that avoids them.
 render c.npz c
@@ -99,13 +99,13 @@ cp a/stack-engine.npz c # the run of a, but the camera of c
 run 1 compare a c
 says "the camera differs"
 
-# Hostile manifests give no names, and no failure.
+# Hostile manifests give no names of bodies, and no failure.
 for text in '' '{' '[]' '{"size": [640, 360], "view": 1}' '{"view": {"panels": [], "parts": []}}' \
     '{"size": [640, 360], "view": {"panels": [{"rectangle": [0, 0, 1e9, 1], "runs": ["../a.npz"], "scale": 1, "left": 0, "top": 0}], "parts": []}}' \
     '{"size": [640, 360], "view": {"panels": [{"rectangle": [0, 0, 640, 999], "runs": ["a.npz"], "scale": 1, "left": 0, "top": 0}], "parts": []}}'; do
     echo "$text" >seen/manifest.json
     run 1 compare a seen
-    says "frame 4: pixels differ"
+    says "frame 4: content moved at most 1."
 done
 
 # A picture of noise has as many regions as pixels allow; three are printed.

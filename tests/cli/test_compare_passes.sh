@@ -84,8 +84,8 @@ rm case.b/logo.png
 run 1 compare case.a case.b --report report
 equal "lines of cases" "$(cat out)" "only in case.a: 1 frame: logo.png
 differs: plot3.png: sizes differ: 40 x 8 and 40 x 9 pixels; overlap: equal pixels
-differs: colour.png: 3 pixels differ (0.938%) by at most 255, first at (1, 1); 2 regions, the largest of 2 x 1 pixels at (1, 1)
-differs: aa.png: 1 pixel differs (0.312%) by at most 255, first at (1, 1); one region of 1 x 1 pixels at (1, 1)
+differs: colour.png: 3 pixels differ (0.938%) by at most 255, first at (1, 1): added; 2 regions, the largest of 2 x 1 pixels at (1, 1)
+differs: aa.png: 1 pixel differs (0.312%) by at most 255, first at (1, 1): added; one region of 1 x 1 pixels at (1, 1)
 3 of 4 frames differ
 verdict: pictures differ, 1 frame missing
 report -> report/report.html"
@@ -95,7 +95,7 @@ grep -q '<svg' report/report.html && fail "a plot over pictures that are no film
 fresh
 png b/sub/x.png 8 8 "$white" 1 2 "0 0 0 255"
 run 1 compare a b
-says "sub/x.png: 1 pixel differs (1.56%) by at most 255, first at (1, 2); one region of 1 x 1 pixels at (1, 2)"
+says "sub/x.png: 1 pixel differs (1.56%) by at most 255, first at (1, 2): added; one region of 1 x 1 pixels at (1, 2)"
 run 0 compare a b --no-recursive
 says "equal: 1 frame"
 says "not compared: 1 picture in subfolders of a (--no-recursive)"

@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The header has the definitions. */
+#include "regression/content.h"
+
+#include "base/base.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/internal.h"
+#include "regression/naming.h"
+
+#include <math.h>
+#include <stdio.h>
+double unmapped(const ContentTraits *traits);
+#include <stdlib.h>
+#include <string.h>
+
+/* What a region is called while the others are looked at. */
+typedef struct Verdict {
+    ChangeKind kind; /* CHANGE_OTHER: not known yet */
+    Motion motion;
+    Patch *patch;
+} Verdict;
+
+static const double MOVED = 0.7, CERTAIN = 0.9,
+                    BOTH = 0.15; /* of the squared difference: explained; and what either picture must show */
+
+/* Whether something of these patches appears and something vanishes. Where content leaves, the difference has the other sign than
+   where it arrives; a box that grew on one side has one sign. */
+static bool shows_both(const Patch *const *patches, int count) {
+    enum { EVIDENCE = 12 }; /* pixels; fewer fit to many offsets by chance */
+    double energy[DOT_KINDS] = {0}, total = 0, rise = 0, fall = 0;
+    int dots = 0;
+    for (int i = 0; i < count; i++) {
+        dots += patches[i]->count;
+        total += patches[i]->total, rise += patches[i]->rise, fall += patches[i]->fall;
+        for (int k = 0; k < DOT_KINDS; k++) energy[k] += patches[i]->energy[k];
+    }
+    if (dots < EVIDENCE) return false;
+    const double either = (energy[DOT_CHANGES] + energy[DOT_EDGE]) / 2;
+    return energy[DOT_APPEARS] + either >= BOTH * total && energy[DOT_VANISHES] + either >= BOTH * total &&
+           fmin(rise, fall) >= BOTH * (rise + fall);
+}
+
+static ChangeKind kind_of_patch(const Patch *patch) {
+    static const double MOST = 0.75, LITTLE = 0.1, EACH = 0.1;
+    const double appears = patch_share(patch, DOT_APPEARS), vanishes = patch_share(patch, DOT_VANISHES);
+    if (appears >= MOST && vanishes <= LITTLE) return CHANGE_APPEARED;
+    if (vanishes >= MOST && appears <= LITTLE) return CHANGE_DISAPPEARED;
+    if (traits_are_recoloured(&patch->traits)) return CHANGE_COLOUR;
+    if ((appears >= EACH && vanishes >= EACH) || patch_share(patch, DOT_CHANGES) >= MOST) return CHANGE_REPLACED;
+    return CHANGE_UNSURE;
+}
+
+static bool judge_region(const Image *const pictures[2], const uint8_t *masked, const ImageRegion *region,
+                         bool scattered, const Motion *hint, Verdict *verdict, Error *error) {
+    const Patch *patch = verdict->patch = patch_create(pictures, masked, region, error);
+    if (patch == NULL) return false;
+    const bool noise = scattered || traits_are_noise(&patch->traits);
+    if (!scattered && shows_both(&patch, 1)) verdict->motion = content_motion(&patch, 1, hint);
+    verdict->kind = verdict->motion.explained >= (noise ? CERTAIN : MOVED) ? CHANGE_MOVED
+                    : noise                                                ? CHANGE_NOISE
+                                                                           : kind_of_patch(patch);
+    return true;
+}
+
+static bool have_one_size(const Patch *a, const Patch *b) {
+    enum { NEARLY = 2 };
+    return abs(a->region.right - a->region.left - b->region.right + b->region.left) <= NEARLY &&
+           abs(a->region.bottom - a->region.top - b->region.bottom + b->region.top) <= NEARLY;
+}
+
+/* Whether two regions may be the places of one thing: it vanished in the first and appeared in the second, or one is a part of what
+   moved in the other. */
+static bool may_join(const Verdict *a, const Verdict *b) {
+    const bool a_moved = a->kind == CHANGE_MOVED, b_moved = b->kind == CHANGE_MOVED;
+    if (a->kind == CHANGE_NOISE || b->kind == CHANGE_NOISE || (a_moved && b_moved)) return false;
+    return a_moved || b_moved || have_one_size(a->patch, b->patch);
+}
+
+static void join_pairs(Verdict *verdicts, int count) {
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count; j++) {
+            const Patch *patches[2] = {verdicts[i].patch, verdicts[j].patch};
+            if (i == j || !may_join(&verdicts[i], &verdicts[j]) || !shows_both(patches, 2)) continue;
+            const Verdict *known = verdicts[i].kind == CHANGE_MOVED ? &verdicts[i] : &verdicts[j];
+            const Motion motion = content_motion(patches, 2, &known->motion);
+            if (motion.explained < MOVED) continue;
+            verdicts[i].kind = verdicts[j].kind = CHANGE_MOVED;
+            verdicts[i].motion = verdicts[j].motion = motion;
+        }
+}
+
+/* Regions whose pixels differ along edges only. */
+static bool find_edges(const Image *const pictures[2], Verdict *verdicts, int count, Error *error) {
+    static const double NEARLY_ALL = 0.9;
+    const size_t width = (size_t)pictures[0]->width;
+    uint8_t *edges = NULL;
+    for (int i = 0; i < count; i++) {
+        if (verdicts[i].kind != CHANGE_UNSURE && verdicts[i].kind != CHANGE_REPLACED) continue;
+        if (edges == NULL) {
+            edges = calloc(width, (size_t)pictures[0]->height);
+            if (edges == NULL) return error_memory(error, "regions");
+            if (!antialias_mark(pictures[0], pictures[1], edges, error)) return free(edges), false;
+        }
+        const Patch *patch = verdicts[i].patch;
+        int marked = 0;
+        for (int k = 0; k < patch->count; k++)
+            marked += edges[(size_t)patch->dots[k].y * width + (size_t)patch->dots[k].x] == IGNORED_EDGE;
+        if (marked >= NEARLY_ALL * patch->count) verdicts[i].kind = CHANGE_NOISE;
+    }
+    free(edges);
+    return true;
+}
+
+/* The change of this kind and amount, or -1 if there is no room for a new one. */
+static int change_for(FrameChanges *changes, const Verdict *verdict) {
+    static const double SAME = 0.25; /* pixels */
+    const Change change = {
+        .subject = SUBJECT_CONTENT, .kind = verdict->kind, .right = verdict->motion.right, .up = -verdict->motion.down};
+    const bool moved = verdict->kind == CHANGE_MOVED;
+    for (int i = 0; i < changes->count; i++) {
+        const Change *at = &changes->list[i];
+        if (at->subject == SUBJECT_CONTENT && at->kind == change.kind &&
+            (!moved || (fabs(at->right - change.right) < SAME && fabs(at->up - change.up) < SAME)))
+            return i;
+    }
+    if (changes->count == CHANGES_MAX) return -1;
+    changes->list[changes->count] = change;
+    if (!moved) changes->list[changes->count].right = changes->list[changes->count].up = 0;
+    return changes->count++;
+}
+
+static void add_change(FrameChanges *changes, const Verdict *verdict, int region) {
+    const int change = change_for(changes, verdict);
+    changes->region_change[region] = (int16_t)change;
+    if (change >= 0) changes->list[change].pixels += changes->regions.list[region].pixels;
+}
+
+/* Names the regions by their surroundings. */
+static bool name_regions(const Image *const pictures[2], const uint8_t *masked, FrameChanges *changes, Error *error) {
+    Verdict verdicts[IMAGE_REGIONS_MAX] = {0};
+    Motion hint = {0};
+    int regions[IMAGE_REGIONS_MAX], count = 0;
+    /* Many regions, and all of few pixels. */
+    const bool scattered = changes->regions.count > 4 * IMAGE_REGIONS_MAX && changes->regions.list[0].pixels <= 16;
+    bool ok = true;
+    for (int i = 0; ok && i < changes->regions.kept; i++) {
+        if (changes->region_change[i] >= 0) continue;
+        ok = judge_region(pictures, masked, &changes->regions.list[i], scattered, &hint, &verdicts[count], error);
+        if (verdicts[count].kind == CHANGE_MOVED) hint = verdicts[count].motion;
+        regions[count++] = i;
+    }
+    if (ok) {
+        join_pairs(verdicts, count);
+        ok = find_edges(pictures, verdicts, count, error);
+    }
+    for (int i = 0; ok && i < count; i++) add_change(changes, &verdicts[i], regions[i]);
+    for (int i = 0; i < count; i++) patch_free(verdicts[i].patch);
+    return ok;
+}
+
+static ChangeKind kind_of_most(const ContentTraits *traits) {
+    return traits_are_noise(traits) ? CHANGE_NOISE : traits_are_recoloured(traits) ? CHANGE_COLOUR : CHANGE_UNSURE;
+}
+
+void content_name_most(const ContentTraits *traits, FrameChanges *changes) {
+    const Verdict verdict = {.kind = kind_of_most(traits)};
+    for (int i = 0; i < changes->regions.kept; i++)
+        if (changes->region_change[i] < 0) add_change(changes, &verdict, i);
+}
+
+/* Over every n-th row; levels above `most` are left out. */
+static bool sum_rows(const Image *const pictures[2], const uint8_t *masked, int most, ContentTraits *traits,
+                     Error *error) {
+    const size_t width = (size_t)pictures[0]->width;
+    uint8_t *levels = malloc(width);
+    if (levels == NULL) return error_memory(error, "regions");
+    for (int y = 0; y < pictures[0]->height; y += CONTENT_ROWS) {
+        const size_t first = (size_t)y * width;
+        (void)image_find_levels(pictures[0], pictures[1], masked, first, width, levels);
+        for (size_t x = 0; x < width; x++) levels[x] = levels[x] > most ? 0 : levels[x];
+        traits_add_row(traits, pictures[0]->pixels + 4 * first, pictures[1]->pixels + 4 * first, levels, 0, (int)width);
+    }
+    free(levels);
+    return true;
+}
+
+/* Noise everywhere, and something else that is stronger: the regions become those of the rest, and one of the noise. */
+static bool name_above(const Image *const pictures[2], const uint8_t *masked, int floor,
+                       const ImageDifference *difference, FrameChanges *changes, Error *error) {
+    const size_t count = (size_t)pictures[0]->width * (size_t)pictures[0]->height;
+    const ImageRegion all = {difference->pixels, difference->left, difference->top, difference->right,
+                             difference->bottom};
+    ContentTraits traits = {0};
+    uint8_t *strong = malloc(count);
+    bool ok = (strong != NULL || error_memory(error, "regions")) && sum_rows(pictures, masked, floor, &traits, error);
+    if (ok) {
+        for (size_t i = 0; i < count; i++) strong[i] = masked != NULL ? masked[i] : IGNORED_NOT;
+        level_mark(pictures[0], pictures[1], floor, strong);
+        ok = image_regions_find(pictures[0], pictures[1], strong, difference, &changes->regions, error);
+    }
+    if (ok) {
+        ImageRegions *regions = &changes->regions;
+        if (regions->kept == IMAGE_REGIONS_MAX) regions->kept--;
+        ok = name_regions(pictures, strong, changes, error);
+        regions->list[regions->kept++] = all, regions->count++;
+        for (int i = 0; i < regions->kept - 1; i++) regions->list[regions->kept - 1].pixels -= regions->list[i].pixels;
+        const Verdict verdict = {.kind = kind_of_most(&traits)};
+        if (ok) add_change(changes, &verdict, regions->kept - 1);
+    }
+    free(strong);
+    return ok;
+}
+
+bool content_has_ground(const ContentTraits *traits, const ImageDifference *difference, int width, int height) {
+    const int64_t pixels = (int64_t)width * height;
+    return pixels <= NAMING_PIXELS_MAX && (difference->pixels <= pixels / 2 || traits_floor(traits) > 0);
+}
+
+bool content_name_by_ground(const Image *expected, const Image *actual, const uint8_t *masked, int floor,
+                            const ImageDifference *difference, FrameChanges *changes, Error *error) {
+    const Image *const pictures[2] = {expected, actual};
+    return floor > 0 ? name_above(pictures, masked, floor, difference, changes, error)
+                     : name_regions(pictures, masked, changes, error);
+}
+
+bool content_name(const Image *expected, const Image *actual, const uint8_t *masked, const ImageDifference *difference,
+                  FrameChanges *changes, Error *error) {
+    const Image *const pictures[2] = {expected, actual};
+    ContentTraits traits = {0};
+    if (!sum_rows(pictures, masked, 255, &traits, error)) return false;
+    const int floor = changes->count == 0 ? traits_floor(&traits) : 0;
+    if (content_has_ground(&traits, difference, expected->width, expected->height))
+        return content_name_by_ground(expected, actual, masked, floor, difference, changes, error);
+    content_name_most(&traits, changes);
+    return true;
+}

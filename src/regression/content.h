@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What happened to a region, in pictures of which nothing else is known: it moved, appeared, vanished, has other colours. */
+#pragma once
+#include "base/base.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/naming.h"
+
+/* Names the regions that have no name yet, each by the pixels in it and around it. masked as in image_compare_masked(). Both
+   pictures have one size. False with error set if out of memory.
+
+   A differing pixel is compared with its ground: the nearest pixels to the left, to the right, above and below that are equal in
+   both pictures. If the expected pixel looks like its ground and the actual one does not, something appears there; or it
+   vanishes; or changes, if neither does. Where both do, an edge has moved. Then the first of these is the name:
+
+   noise       small differences, or few and scattered ones, that neighbours do not share
+   moved       an offset explains four fifths of the squared difference: what appears came from it, what vanishes went to it.
+               A region where something vanishes is tried together with one where something appears
+   recoloured  the steps between neighbours are at the same places in both pictures
+   added       at least three quarters of the squared difference appear, and no more than a tenth vanishes
+   removed     the same with vanish
+   noise       nine tenths of the pixels differ only along edges (antialias_mark())
+   replaced    something appears and something vanishes, each a fifth at least, or colours change without their pattern
+
+   What is none of these is unsure. */
+bool content_name(const Image *expected, const Image *actual, const uint8_t *masked, const ImageDifference *difference,
+                  FrameChanges *changes, Error *error);
+
+/* Sums over pixels, for what is known without surroundings. */
+enum { MAPPED = 4 };
+
+typedef struct ContentTraits {
+    double pixels;            /* that differ */
+    double sum[3];            /* differences of red, green and blue, */
+    double absolute, square;  /* their sizes and squares, over all three */
+    double pairs, shared;     /* neighbours that both differ, and the products of their differences */
+    double product, steps[2]; /* sizes of steps to neighbours: products of both pictures, squares of each */
+    double from[MAPPED][MAPPED], to[MAPPED][3]; /* normal equations of a linear map from colours to differences */
+    int64_t levels[256];                        /* pixels by difference */
+} ContentTraits;
+
+enum { CONTENT_ROWS = 8 }; /* of a picture, every n-th row is enough */
+
+/* Adds a row of RGBA pixels. levels[width] as of image_find_levels(); pixels up to `weak` make no steps. */
+void traits_add_row(ContentTraits *traits, const uint8_t *a, const uint8_t *b, const uint8_t *levels, int weak,
+                    int width);
+
+/* Adds a pixel of both pictures and the neighbour that follows after `next` bytes. both: that one differs, too. */
+void traits_add_pair(ContentTraits *traits, const uint8_t *a, const uint8_t *b, size_t next, bool both);
+
+bool traits_are_noise(const ContentTraits *traits);
+bool traits_are_recoloured(const ContentTraits *traits);
+
+/* The level that noise all over the picture reaches, if there is something stronger, too; else 0. */
+int traits_floor(const ContentTraits *traits);
+
+/* Whether enough of a picture is equal to be ground, and it has at most NAMING_PIXELS_MAX. */
+bool content_has_ground(const ContentTraits *traits, const ImageDifference *difference, int width, int height);
+
+/* Gives all regions that have no name the same: noise, recoloured, or unsure. */
+void content_name_most(const ContentTraits *traits, FrameChanges *changes);
+
+/* Names regions as content_name() does where enough of a picture is equal. floor: of traits_floor(). */
+bool content_name_by_ground(const Image *expected, const Image *actual, const uint8_t *masked, int floor,
+                            const ImageDifference *difference, FrameChanges *changes, Error *error);
+
+/* The rows of pictures that are read row by row, from the first difference to the last: a quarter of them at most, and of 16 MB. */
+typedef struct ContentBand {
+    int width, first, count, capacity;
+    uint8_t *rows[2];
+    bool differs, closed, lost; /* a row differs; rows between were not given, or are too many; one of those differs */
+} ContentBand;
+
+void content_band_begin(ContentBand *band, int width, int height);
+void content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, bool differs);
+void content_band_end(ContentBand *band);
+
+/* Must not be lost. False with error set if out of memory. */
+bool content_band_name(const ContentBand *band, int floor, const ImageDifference *difference, FrameChanges *changes,
+                       Error *error);
+
+/* A region as content sees it. */
+
+typedef enum DotKind { DOT_APPEARS, DOT_VANISHES, DOT_CHANGES, DOT_EDGE, DOT_KINDS } DotKind;
+
+typedef struct Dot {
+    int x, y; /* of a pixel */
+    DotKind kind;
+} Dot;
+
+enum { DOTS_MAX = 4096 };
+
+typedef struct Patch {
+    const Image *pictures[2];        /* expected, actual */
+    ViewRect box[2];                 /* of what the expected and the actual picture have; empty: right < left */
+    double energy[DOT_KINDS], total; /* squared differences */
+    double rise, fall;               /* sums of differences by sign */
+    double *mass[2][2];              /* by picture: distance from the ground, by column and by row of the region */
+    ContentTraits traits;
+    ImageRegion region;
+    int count;
+    Dot dots[DOTS_MAX]; /* all differing pixels of the region, or every n-th */
+} Patch;
+
+/* NULL with error set if out of memory. */
+Patch *patch_create(const Image *const pictures[2], const uint8_t *masked, const ImageRegion *region, Error *error);
+void patch_free(Patch *patch);                        /* NULL: does nothing */
+double patch_share(const Patch *patch, DotKind kind); /* of the squared difference */
+
+/* How far content moved: pixels, to the right and down. */
+typedef struct Motion {
+    double right, down;
+    double explained; /* share of the squared difference */
+} Motion;
+
+/* The offset that explains most of one region, or of two: the one that something left, and the one where it arrived. `hint` is
+   tried as well. */
+Motion content_motion(const Patch *const *patches, int count, const Motion *hint);

@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The rows of two pictures from the first difference to the last, kept while the pictures are read row by row. */
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/content.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { ABOVE = 3 /* rows before the first difference, for its ground */, PART = 4, BYTES_MAX = 1 << 24 };
+
+void content_band_begin(ContentBand *band, int width, int height) {
+    const int64_t row = 2 * 4 * (int64_t)width, bytes = row * height / PART;
+    *band = (ContentBand){.width = width, .capacity = (int)((bytes < BYTES_MAX ? bytes : BYTES_MAX) / row)};
+}
+
+static bool has_room(ContentBand *band) {
+    const size_t bytes = 4 * (size_t)band->width * (size_t)band->capacity;
+    for (int i = 0; i < 2 && bytes > 0; i++)
+        if (band->rows[i] == NULL && (band->rows[i] = malloc(bytes)) == NULL) return false;
+    return band->count < band->capacity;
+}
+
+/* Before a difference, the oldest row makes room. */
+static void drop_first(ContentBand *band) {
+    const size_t row = 4 * (size_t)band->width;
+    for (int i = 0; i < 2; i++) memmove(band->rows[i], band->rows[i] + row, (size_t)(band->count - 1) * row);
+    band->first++;
+    band->count--;
+}
+
+void content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, bool differs) {
+    const size_t row = 4 * (size_t)band->width;
+    if (band->lost) return;
+    if (band->count > 0 && y != band->first + band->count) {
+        band->closed = band->differs;
+        if (!band->differs) band->count = 0;
+    }
+    if (!band->differs && band->count == ABOVE) drop_first(band);
+    if (band->closed || !has_room(band)) {
+        band->closed = true;
+        band->lost = differs;
+        return;
+    }
+    if (band->count == 0) band->first = y;
+    memcpy(band->rows[0] + (size_t)band->count * row, a, row);
+    memcpy(band->rows[1] + (size_t)band->count * row, b, row);
+    band->count++;
+    band->differs |= differs;
+}
+
+static void shift(FrameChanges *changes, int down) {
+    for (int i = 0; i < changes->regions.kept; i++)
+        changes->regions.list[i].top += down, changes->regions.list[i].bottom += down;
+}
+
+bool content_band_name(const ContentBand *band, int floor, const ImageDifference *difference, FrameChanges *changes,
+                       Error *error) {
+    const Image images[2] = {{.width = band->width, .height = band->count, .pixels = band->rows[0]},
+                             {.width = band->width, .height = band->count, .pixels = band->rows[1]}};
+    ImageDifference moved = *difference;
+    moved.top -= band->first, moved.bottom -= band->first;
+    shift(changes, -band->first);
+    const bool ok = content_name_by_ground(&images[0], &images[1], NULL, floor, &moved, changes, error);
+    shift(changes, band->first);
+    return ok;
+}
+
+void content_band_end(ContentBand *band) {
+    for (int i = 0; i < 2; i++) free(band->rows[i]);
+}

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The offset by which content moved: whole pixels from several guesses, then part of a pixel by least squares. */
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/content.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { CHANNELS = 4, NEAR = 3, STARTS_MAX = 80, DESCENTS = 3, STEPS_MAX = 40, PROFILE_MAX = 2048, PATCHES_MAX = 2 };
+
+typedef struct Search {
+    const Patch *const *patches;
+    int patch_count;
+    int starts;
+    Motion start[STARTS_MAX];
+} Search;
+
+static int level_at(const Image *image, int x, int y, int c) {
+    x = x < 0 ? 0 : x >= image->width ? image->width - 1 : x;
+    y = y < 0 ? 0 : y >= image->height ? image->height - 1 : y;
+    return image->pixels[4 * ((size_t)y * (size_t)image->width + (size_t)x) + (size_t)c];
+}
+
+/* The squared difference of a pixel from a place in another picture; beyond the picture, from its edge. */
+static double difference_at(const Image *a, int x, int y, const Image *b, int right, int down) {
+    double sum = 0;
+    for (int c = 0; c < CHANNELS; c++) {
+        const double difference = level_at(a, x, y, c) - level_at(b, x + right, y + down, c);
+        sum += difference * difference;
+    }
+    return sum;
+}
+
+/* What appears came from there, what vanishes went there; the rest did both. */
+static double left_over(const Patch *patch, int right, int down) {
+    const Image *a = patch->pictures[0], *b = patch->pictures[1];
+    double sum = 0;
+    for (int i = 0; i < patch->count; i++) {
+        const Dot *dot = &patch->dots[i];
+        const double came = dot->kind == DOT_VANISHES ? 0 : difference_at(b, dot->x, dot->y, a, -right, -down);
+        const double went = dot->kind == DOT_APPEARS ? 0 : difference_at(a, dot->x, dot->y, b, right, down);
+        sum += dot->kind == DOT_APPEARS || dot->kind == DOT_VANISHES ? came + went : (came + went) / 2;
+    }
+    return sum;
+}
+
+/* Of two regions, what is explained of the worse one. */
+static void judge(const Search *search, Motion *motion) {
+    motion->explained = 1;
+    for (int i = 0; i < search->patch_count; i++) {
+        const double left = left_over(search->patches[i], (int)motion->right, (int)motion->down);
+        motion->explained = fmin(motion->explained, 1 - left / fmax(search->patches[i]->total, 1));
+    }
+}
+
+static void add_start(Search *search, double right, double down) {
+    Motion start = {rint(right), rint(down), 0};
+    for (int i = 0; i < search->starts; i++)
+        if (search->start[i].right == start.right && search->start[i].down == start.down) return;
+    if (search->starts == STARTS_MAX || (start.right == 0 && start.down == 0)) return;
+    judge(search, &start);
+    search->start[search->starts++] = start;
+}
+
+/* Corners of what was there and of what is there now. */
+static void add_corners(Search *search) {
+    const ViewRect a = search->patches[0]->box[0], b = search->patches[search->patch_count - 1]->box[1];
+    if (a.right < a.left || b.right < b.left) return;
+    const int right[2] = {b.left - a.left, b.right - a.right}, down[2] = {b.top - a.top, b.bottom - a.bottom};
+    for (int i = 0; i < 4; i++) add_start(search, right[i % 2], down[i / 2]);
+    for (int i = 0; i < 2; i++) add_start(search, right[i], 0), add_start(search, 0, down[i]);
+}
+
+/* The shift of one profile that is most like the other. */
+static int best_shift(const double *a, const double *b, int count) {
+    double least = INFINITY;
+    int best = 0;
+    for (int k = 0; k < 2 * count - 1; k++) {
+        const int shift = k % 2 == 0 ? k / 2 : -(k + 1) / 2; /* 0, -1, 1, -2, ... */
+        double sum = 0;
+        for (int i = 0; i < count && sum < least; i++) {
+            const int j = i + shift;
+            sum += fabs((j < 0 || j >= count ? 0 : b[j]) - a[i]);
+            if (i < shift) sum += b[i];
+            if (i >= count + shift) sum += b[i];
+        }
+        if (sum < least) least = sum, best = shift;
+    }
+    return best;
+}
+
+static void add_profiles(Search *search) {
+    const Patch *patch = search->patches[0];
+    const int width = patch->region.right - patch->region.left, height = patch->region.bottom - patch->region.top;
+    if (search->patch_count > 1 || width > PROFILE_MAX || height > PROFILE_MAX) return;
+    const int right = best_shift(patch->mass[0][0], patch->mass[1][0], width);
+    const int down = best_shift(patch->mass[0][1], patch->mass[1][1], height);
+    add_start(search, right, down);
+    add_start(search, right, 0);
+    add_start(search, 0, down);
+}
+
+/* To a neighbour while that explains more. */
+static void descend(const Search *search, Motion *motion) {
+    for (int i = 0; i < STEPS_MAX; i++) {
+        Motion best = *motion;
+        for (int k = 0; k < 9; k++) {
+            Motion tried = {motion->right + k % 3 - 1, motion->down + k / 3 - 1, 0};
+            if (k == 4) continue;
+            judge(search, &tried);
+            if (tried.explained > best.explained) best = tried;
+        }
+        if (best.explained <= motion->explained) return;
+        *motion = best;
+    }
+}
+
+static int by_explained(const void *a, const void *b) {
+    const Motion *x = a, *y = b;
+    if (x->explained != y->explained) return x->explained > y->explained ? -1 : 1;
+    const double far_x = fabs(x->right) + fabs(x->down), far_y = fabs(y->right) + fabs(y->down);
+    if (far_x != far_y) return far_x < far_y ? -1 : 1;
+    return x->right != y->right ? (x->right < y->right ? -1 : 1) : (x->down > y->down) - (x->down < y->down);
+}
+
+/* Normal equations of the part of a pixel that remains, and the squared difference. */
+typedef struct Remainder {
+    double xx, xy, yy, x, y, square;
+} Remainder;
+
+/* An edge lies in one pixel: if it moves, that pixel changes by the step from one of its neighbours to the other. */
+static double step_across(const Image *image, int x, int y, int right, int down, int c) {
+    return level_at(image, x + right, y + down, c) - level_at(image, x - right, y - down, c);
+}
+
+/* sign: 1 for what came to (x, y) of b from a, -1 for what went from there. */
+static void add_remainder(const Image *a, const Image *b, int x, int y, int right, int down, double sign, double weight,
+                          Remainder *sum) {
+    for (int c = 0; c < CHANNELS; c++) {
+        const int u = x + right, v = y + down;
+        const double e = sign * (level_at(b, x, y, c) - level_at(a, u, v, c));
+        const double gx = (step_across(a, u, v, 1, 0, c) + step_across(b, x, y, 1, 0, c)) / 2;
+        const double gy = (step_across(a, u, v, 0, 1, c) + step_across(b, x, y, 0, 1, c)) / 2;
+        sum->xx += weight * gx * gx, sum->xy += weight * gx * gy, sum->yy += weight * gy * gy;
+        sum->x -= weight * gx * e, sum->y -= weight * gy * e;
+        sum->square += weight * e * e;
+    }
+}
+
+static Remainder remainder_of(const Patch *patch, int right, int down) {
+    Remainder sum = {0};
+    for (int k = 0; k < patch->count; k++) {
+        const Dot *dot = &patch->dots[k];
+        const double weight = dot->kind == DOT_APPEARS || dot->kind == DOT_VANISHES ? 1 : 0.5;
+        if (dot->kind != DOT_VANISHES)
+            add_remainder(patch->pictures[0], patch->pictures[1], dot->x, dot->y, -right, -down, 1, weight, &sum);
+        if (dot->kind != DOT_APPEARS)
+            add_remainder(patch->pictures[1], patch->pictures[0], dot->x, dot->y, right, down, -1, weight, &sum);
+    }
+    return sum;
+}
+
+/* By least squares, the part of a pixel that explains what whole pixels leave. */
+static Motion refined(const Search *search, Motion base) {
+    static const double RIDGE = 1e-6;
+    Remainder parts[PATCHES_MAX], all = {0};
+    for (int i = 0; i < search->patch_count; i++) {
+        const Remainder *part = &parts[i];
+        parts[i] = remainder_of(search->patches[i], (int)base.right, (int)base.down);
+        all.xx += part->xx, all.xy += part->xy, all.yy += part->yy, all.x += part->x, all.y += part->y;
+    }
+    const double ridge = RIDGE * (all.xx + all.yy) + 1, xx = all.xx + ridge, yy = all.yy + ridge;
+    const double determinant = xx * yy - all.xy * all.xy;
+    const double x = (yy * all.x - all.xy * all.y) / determinant, y = (xx * all.y - all.xy * all.x) / determinant;
+    if (fabs(x) > 1 || fabs(y) > 1) return base;
+    Motion found = {base.right + x, base.down + y, 1};
+    for (int i = 0; i < search->patch_count; i++) {
+        const Remainder *part = &parts[i];
+        const double left =
+            part->square - 2 * (x * part->x + y * part->y) + x * x * part->xx + 2 * x * y * part->xy + y * y * part->yy;
+        found.explained = fmin(found.explained, 1 - left / fmax(search->patches[i]->total, 1));
+    }
+    return found;
+}
+
+/* Whether a pixel of this patch came from where the picture changed, or went there. Else another place looks the same by chance:
+   the period of a pattern. */
+static bool has_partner(const Patch *patch, const Dot *dot, int right, int down) {
+    const int sign = dot->kind == DOT_APPEARS ? -1 : 1, x = dot->x + sign * right, y = dot->y + sign * down;
+    const Image *a = patch->pictures[0], *b = patch->pictures[1];
+    return x >= 0 && y >= 0 && x < a->width && y < a->height &&
+           image_pixel_difference(a, b, (size_t)y * (size_t)a->width + (size_t)x) > 0;
+}
+
+static bool has_partners(const Search *search, const Motion *motion) {
+    enum { NEARBY = 1, SHARE = 10 };
+    const int right = (int)rint(motion->right), down = (int)rint(motion->down);
+    if ((abs(right) <= NEARBY && abs(down) <= NEARBY) || search->patch_count > 1) return true;
+    int all = 0, found = 0;
+    for (int i = 0; i < search->patch_count; i++)
+        for (int k = 0; k < search->patches[i]->count; k++, all++)
+            found += has_partner(search->patches[i], &search->patches[i]->dots[k], right, down);
+    return found * SHARE >= all;
+}
+
+Motion content_motion(const Patch *const *patches, int count, const Motion *hint) {
+    static const double EXACT = 0.999;
+    Search search = {.patches = patches, .patch_count = count};
+    add_start(&search, hint->right, hint->down);
+    add_corners(&search);
+    add_profiles(&search);
+    for (int k = 0; k < (2 * NEAR + 1) * (2 * NEAR + 1); k++)
+        add_start(&search, k % (2 * NEAR + 1) - NEAR, k / (2 * NEAR + 1) - NEAR);
+    qsort(search.start, (size_t)search.starts, sizeof *search.start, by_explained);
+    Motion best = {0, 0, 0};
+    for (int i = 0; i < DESCENTS && i < search.starts && best.explained < EXACT; i++) {
+        Motion found = search.start[i];
+        descend(&search, &found);
+        if (found.explained < EXACT) found = refined(&search, found);
+        if (found.explained > best.explained && has_partners(&search, &found)) best = found;
+    }
+    const Motion part = best.explained < EXACT ? refined(&search, (Motion){0, 0, 0}) : best;
+    return part.explained > best.explained ? part : best;
+}

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* A region against its ground: what appears, vanishes, changes. */
+#include "base/base.h"
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/content.h"
+#include "regression/internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHANNELS = 4, MARGIN = 3, NO_GROUND = UINT16_MAX };
+
+static int larger(int a, int b) { return a > b ? a : b; }
+static int smaller(int a, int b) { return a < b ? a : b; }
+
+/* The pixels of a region and some around it. */
+typedef struct Ground {
+    const Image *pictures[2];
+    const uint8_t *masked;
+    int weak;              /* differences up to this count as equal */
+    int plain;             /* distances up to this are those of neighbours in the ground */
+    ViewRect box;          /* with the margin */
+    uint8_t *levels;       /* [its pixels] */
+    uint16_t *distance[2]; /* [its pixels] by picture, from the nearest ground */
+} Ground;
+
+static size_t pixel_of(const Ground *ground, int x, int y) {
+    return (size_t)y * (size_t)ground->pictures[0]->width + (size_t)x;
+}
+
+static size_t place_of(const Ground *ground, int x, int y) {
+    return (size_t)(y - ground->box.top) * (size_t)(ground->box.right - ground->box.left) +
+           (size_t)(x - ground->box.left);
+}
+
+/* The sum of the channels' differences. */
+static int distance_of(const Image *a, size_t i, const Image *b, size_t j) {
+    int sum = 0;
+    for (size_t c = 0; c < CHANNELS; c++) sum += abs(a->pixels[4 * i + c] - b->pixels[4 * j + c]);
+    return sum;
+}
+
+/* Passes a pixel on the way from the ground at *last; SIZE_MAX: none yet. */
+static void pass(Ground *ground, int x, int y, size_t *last) {
+    const size_t pixel = pixel_of(ground, x, y), place = place_of(ground, x, y);
+    if (ground->levels[place] <= ground->weak) {
+        *last = pixel;
+    } else if (*last != SIZE_MAX) {
+        for (int i = 0; i < 2; i++) {
+            const int distance = distance_of(ground->pictures[i], pixel, ground->pictures[i], *last);
+            if (distance < ground->distance[i][place]) ground->distance[i][place] = (uint16_t)distance;
+        }
+    }
+}
+
+static void sweep_row(Ground *ground, int y) {
+    size_t last = SIZE_MAX;
+    for (int x = ground->box.left; x < ground->box.right; x++) pass(ground, x, y, &last);
+    last = SIZE_MAX;
+    for (int x = ground->box.right; x-- > ground->box.left;) pass(ground, x, y, &last);
+}
+
+static void sweep_column(Ground *ground, int x) {
+    size_t last = SIZE_MAX;
+    for (int y = ground->box.top; y < ground->box.bottom; y++) pass(ground, x, y, &last);
+    last = SIZE_MAX;
+    for (int y = ground->box.bottom; y-- > ground->box.top;) pass(ground, x, y, &last);
+}
+
+static void ground_free(Ground *ground) {
+    free(ground->levels);
+    for (int i = 0; i < 2; i++) free(ground->distance[i]);
+}
+
+/* Steps in the ground that are no edges, on average: 0 on a plain one. */
+static int roughness_of(const Ground *ground) {
+    enum { STEP_MAX = 60, USUAL = 12, TIMES = 4 };
+    int64_t sum = 0, count = 0;
+    for (int y = ground->box.top; y < ground->box.bottom; y++)
+        for (int x = ground->box.left; x + 1 < ground->box.right; x++) {
+            const size_t pixel = pixel_of(ground, x, y), place = place_of(ground, x, y);
+            if (ground->levels[place] > 0 || ground->levels[place + 1] > 0) continue;
+            sum += smaller(distance_of(ground->pictures[0], pixel, ground->pictures[0], pixel + 1), STEP_MAX);
+            count++;
+        }
+    return USUAL + (int)(count > 0 ? TIMES * sum / count : 0);
+}
+
+/* ground_free() frees it, also after an error. */
+static bool ground_find(Ground *ground, const ImageRegion *region, Error *error) {
+    const Image *a = ground->pictures[0], *b = ground->pictures[1];
+    ground->box = (ViewRect){larger(region->left - MARGIN, 0), larger(region->top - MARGIN, 0),
+                             smaller(region->right + MARGIN, a->width), smaller(region->bottom + MARGIN, a->height)};
+    const size_t width = (size_t)(ground->box.right - ground->box.left);
+    const size_t count = width * (size_t)(ground->box.bottom - ground->box.top);
+    ground->levels = malloc(count);
+    for (int i = 0; i < 2; i++) ground->distance[i] = malloc(count * sizeof *ground->distance[i]);
+    if (ground->levels == NULL || ground->distance[0] == NULL || ground->distance[1] == NULL)
+        return error_memory(error, "regions");
+    int most = 0;
+    for (int y = ground->box.top; y < ground->box.bottom; y++)
+        (void)image_find_levels(a, b, ground->masked, pixel_of(ground, ground->box.left, y), width,
+                                ground->levels + place_of(ground, ground->box.left, y));
+    for (size_t i = 0; i < count; i++) most = larger(most, ground->levels[i]);
+    ground->weak = most / 8;
+    ground->plain = roughness_of(ground);
+    for (int i = 0; i < 2; i++) memset(ground->distance[i], 0xff, count * sizeof *ground->distance[i]);
+    for (int y = ground->box.top; y < ground->box.bottom; y++) sweep_row(ground, y);
+    for (int x = ground->box.left; x < ground->box.right; x++) sweep_column(ground, x);
+    return true;
+}
+
+static DotKind kind_of(const Ground *ground, size_t place) {
+    const int a = ground->distance[0][place], b = ground->distance[1][place];
+    const bool a_plain = a <= ground->plain, b_plain = b <= ground->plain;
+    if (a == NO_GROUND) return DOT_CHANGES;
+    if (a_plain && (!b_plain || 3 * a < b)) return DOT_APPEARS;
+    if (b_plain && (!a_plain || 3 * b < a)) return DOT_VANISHES;
+    return a_plain ? DOT_EDGE : DOT_CHANGES;
+}
+
+static void extend(ViewRect *box, int x, int y) {
+    box->left = smaller(box->left, x), box->top = smaller(box->top, y);
+    box->right = larger(box->right, x + 1), box->bottom = larger(box->bottom, y + 1);
+}
+
+static void add_energy(const Ground *ground, Patch *patch, size_t pixel, DotKind kind) {
+    const uint8_t *a = ground->pictures[0]->pixels + 4 * pixel, *b = ground->pictures[1]->pixels + 4 * pixel;
+    for (int c = 0; c < CHANNELS; c++) {
+        const double difference = b[c] - a[c];
+        patch->energy[kind] += difference * difference;
+        patch->total += difference * difference;
+        *(difference > 0 ? &patch->rise : &patch->fall) += fabs(difference);
+    }
+}
+
+static void add_mass(const Ground *ground, Patch *patch, int x, int y, size_t place) {
+    for (int i = 0; i < 2; i++) {
+        const double mass = ground->distance[i][place] == NO_GROUND ? 0 : ground->distance[i][place];
+        patch->mass[i][0][x - patch->region.left] += mass;
+        patch->mass[i][1][y - patch->region.top] += mass;
+    }
+}
+
+/* All differing pixels count in the sums, and every n-th becomes a dot. */
+static void add_dots(const Ground *ground, Patch *patch) {
+    const ImageRegion *region = &patch->region;
+    const int64_t stride = region->pixels / DOTS_MAX + 1;
+    int64_t number = 0;
+    for (int y = region->top; y < region->bottom; y++)
+        for (int x = region->left; x < region->right; x++) {
+            const size_t place = place_of(ground, x, y);
+            if (ground->levels[place] <= ground->weak) continue;
+            const DotKind kind = kind_of(ground, place);
+            if (kind != DOT_APPEARS) extend(&patch->box[0], x, y);
+            if (kind != DOT_VANISHES) extend(&patch->box[1], x, y);
+            add_mass(ground, patch, x, y, place);
+            if (number++ % stride != 0 || patch->count == DOTS_MAX) continue;
+            patch->dots[patch->count++] = (Dot){x, y, kind};
+            add_energy(ground, patch, pixel_of(ground, x, y), kind);
+        }
+}
+
+void patch_free(Patch *patch) {
+    if (patch != NULL)
+        for (int i = 0; i < 4; i++) free(patch->mass[i / 2][i % 2]);
+    free(patch);
+}
+
+static void add_traits(const Ground *ground, ContentTraits *traits) {
+    const int width = ground->box.right - ground->box.left;
+    for (int y = ground->box.top; y < ground->box.bottom; y++) {
+        const size_t first = 4 * pixel_of(ground, ground->box.left, y);
+        const uint8_t *a = ground->pictures[0]->pixels + first, *b = ground->pictures[1]->pixels + first;
+        const uint8_t *levels = ground->levels + place_of(ground, ground->box.left, y);
+        traits_add_row(traits, a, b, levels, ground->weak, width);
+        for (int x = 0; x < width && y + 1 < ground->box.bottom; x++)
+            if (levels[x] > ground->weak || levels[width + x] > ground->weak)
+                traits_add_pair(traits, a + 4 * x, b + 4 * x, 4 * (size_t)ground->pictures[0]->width,
+                                levels[x] > 0 && levels[width + x] > 0);
+    }
+}
+
+Patch *patch_create(const Image *const pictures[2], const uint8_t *masked, const ImageRegion *region, Error *error) {
+    Ground ground = {.pictures = {pictures[0], pictures[1]}, .masked = masked};
+    Patch *patch = calloc(1, sizeof *patch);
+    bool ok = (patch != NULL || error_memory(error, "regions")) && ground_find(&ground, region, error);
+    if (ok)
+        *patch = (Patch){.pictures = {pictures[0], pictures[1]},
+                         .region = *region,
+                         .box[0] = {region->right, region->bottom, region->left, region->top},
+                         .box[1] = {region->right, region->bottom, region->left, region->top}};
+    for (int i = 0; ok && i < 4; i++) {
+        const int count = i % 2 == 0 ? region->right - region->left : region->bottom - region->top;
+        patch->mass[i / 2][i % 2] = calloc((size_t)count, sizeof(double));
+        ok = patch->mass[i / 2][i % 2] != NULL || error_memory(error, "regions");
+    }
+    if (ok) {
+        add_dots(&ground, patch);
+        add_traits(&ground, &patch->traits);
+    }
+    ground_free(&ground);
+    if (ok) return patch;
+    patch_free(patch);
+    return NULL;
+}
+
+double patch_share(const Patch *patch, DotKind kind) { return patch->energy[kind] / fmax(patch->total, 1); }
