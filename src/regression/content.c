@@ -42,11 +42,13 @@ static bool shows_both(const Patch *const *patches, int count) {
 }
 
 static ChangeKind kind_of_patch(const Patch *patch) {
+    enum { SMALL = 8 };
     static const double MOST = 0.75, LITTLE = 0.1, EACH = 0.1;
     const double appears = patch_share(patch, DOT_APPEARS), vanishes = patch_share(patch, DOT_VANISHES);
     if (appears >= MOST && vanishes <= LITTLE) return CHANGE_APPEARED;
     if (vanishes >= MOST && appears <= LITTLE) return CHANGE_DISAPPEARED;
     if (traits_are_recoloured(&patch->traits)) return CHANGE_COLOUR;
+    if (traits_are_small(&patch->traits, SMALL)) return CHANGE_NOISE;
     if ((appears >= EACH && vanishes >= EACH) || patch_share(patch, DOT_CHANGES) >= MOST) return CHANGE_REPLACED;
     return CHANGE_UNSURE;
 }
@@ -88,6 +90,29 @@ static void join_pairs(Verdict *verdicts, int count) {
             verdicts[i].kind = verdicts[j].kind = CHANGE_MOVED;
             verdicts[i].motion = verdicts[j].motion = motion;
         }
+}
+
+/* Another rasterizer or compression moves and shades many things, each in its own way. */
+static void find_jitter(Verdict *verdicts, int count) {
+    enum { MANY = 4, FAINT = 16 };
+    static const double SMALL = 2.25, ALIKE = 0.1; /* pixels */
+    int small = 0, agreeing = 0;
+    bool found[IMAGE_REGIONS_MAX] = {false};
+    for (int i = 0; i < count; i++) {
+        const Motion *a = &verdicts[i].motion;
+        const bool moved = verdicts[i].kind == CHANGE_MOVED && fmax(fabs(a->right), fabs(a->down)) <= SMALL;
+        found[i] = moved || verdicts[i].kind == CHANGE_NOISE || traits_are_small(&verdicts[i].patch->traits, FAINT);
+        small += found[i];
+        int alike = 0;
+        for (int k = 0; moved && k < count; k++) {
+            const Motion *b = &verdicts[k].motion;
+            alike += verdicts[k].kind == CHANGE_MOVED && fabs(a->right - b->right) <= ALIKE &&
+                     fabs(a->down - b->down) <= ALIKE;
+        }
+        if (alike > agreeing) agreeing = alike;
+    }
+    for (int i = 0; i < count && small >= MANY && 4 * agreeing < 3 * small; i++)
+        if (found[i]) verdicts[i].kind = CHANGE_NOISE;
 }
 
 /* Regions whose pixels differ along edges only. */
@@ -152,6 +177,7 @@ static bool name_regions(const Image *const pictures[2], const uint8_t *masked, 
     }
     if (ok) {
         join_pairs(verdicts, count);
+        find_jitter(verdicts, count);
         ok = find_edges(pictures, verdicts, count, error);
     }
     for (int i = 0; ok && i < count; i++) add_change(changes, &verdicts[i], regions[i]);

@@ -48,6 +48,7 @@ void traits_add_row(ContentTraits *traits, const uint8_t *a, const uint8_t *b, c
 /* Adds a pixel of both pictures and the neighbour that follows after `next` bytes. both: that one differs, too. */
 void traits_add_pair(ContentTraits *traits, const uint8_t *a, const uint8_t *b, size_t next, bool both);
 
+bool traits_are_small(const ContentTraits *traits, int level); /* differences of at most that on average */
 bool traits_are_noise(const ContentTraits *traits);
 bool traits_are_recoloured(const ContentTraits *traits);
 

@@ -43,12 +43,17 @@ void traits_add_row(ContentTraits *traits, const uint8_t *a, const uint8_t *b, c
     }
 }
 
+bool traits_are_small(const ContentTraits *traits, int level) {
+    return traits->absolute <= 3.0 * level * traits->pixels;
+}
+
 bool traits_are_noise(const ContentTraits *traits) {
-    static const double SMALL = 8, SHARED = 0.35, SCATTERED = 0.3, SPARSE = 0.05, FEW = 8;
+    enum { SMALL = 8 };
+    static const double SHARED = 0.35, SCATTERED = 0.3, SPARSE = 0.05, FEW = 8;
     double all = 0;
     for (int i = 0; i < 256; i++) all += (double)traits->levels[i];
     const double pixels = fmax(traits->pixels, 1), pairs = fmax(traits->pairs, 1);
-    const bool small = traits->absolute <= SMALL * 3 * pixels;
+    const bool small = traits_are_small(traits, SMALL);
     double common = 0; /* the square of the mean difference */
     for (int c = 0; c < 3; c++) common += traits->sum[c] * traits->sum[c] / (pixels * pixels);
     const bool apart = traits->shared / pairs - common < SHARED * (traits->square / pixels - common);
