@@ -122,6 +122,7 @@ static bool find_edges(const Image *const pictures[2], Verdict *verdicts, int co
     uint8_t *edges = NULL;
     for (int i = 0; i < count; i++) {
         if (verdicts[i].kind != CHANGE_UNSURE && verdicts[i].kind != CHANGE_REPLACED) continue;
+        if (traits_fill_areas(&verdicts[i].patch->traits)) continue;
         if (edges == NULL) {
             edges = calloc(width, (size_t)pictures[0]->height);
             if (edges == NULL) return error_memory(error, "regions");

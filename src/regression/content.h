@@ -39,7 +39,7 @@ typedef struct ContentTraits {
     int64_t levels[256];                        /* pixels by difference */
 } ContentTraits;
 
-enum { CONTENT_ROWS = 8 }; /* of a picture, every n-th row is enough */
+enum { CONTENT_ROWS = 32 }; /* of a picture, every n-th row is enough */
 
 /* Adds a row of RGBA pixels. levels[width] as of image_find_levels(); pixels up to `weak` make no steps. */
 void traits_add_row(ContentTraits *traits, const uint8_t *a, const uint8_t *b, const uint8_t *levels, int weak,
@@ -49,6 +49,7 @@ void traits_add_row(ContentTraits *traits, const uint8_t *a, const uint8_t *b, c
 void traits_add_pair(ContentTraits *traits, const uint8_t *a, const uint8_t *b, size_t next, bool both);
 
 bool traits_are_small(const ContentTraits *traits, int level); /* differences of at most that on average */
+bool traits_fill_areas(const ContentTraits *traits);           /* and are not only along edges */
 bool traits_are_noise(const ContentTraits *traits);
 bool traits_are_recoloured(const ContentTraits *traits);
 
@@ -69,11 +70,12 @@ bool content_name_by_ground(const Image *expected, const Image *actual, const ui
 typedef struct ContentBand {
     int width, first, count, capacity;
     uint8_t *rows[2];
+    int64_t pixels;             /* that differ up to here */
     bool differs, closed, lost; /* a row differs; rows between were not given, or are too many; one of those differs */
 } ContentBand;
 
 void content_band_begin(ContentBand *band, int width, int height);
-void content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, bool differs);
+void content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, int64_t pixels);
 void content_band_end(ContentBand *band);
 
 /* Must not be lost. False with error set if out of memory. */
@@ -89,7 +91,7 @@ typedef struct Dot {
     DotKind kind;
 } Dot;
 
-enum { DOTS_MAX = 4096 };
+enum { DOTS_MAX = 1024 };
 
 typedef struct Patch {
     const Image *pictures[2];        /* expected, actual */

@@ -29,15 +29,23 @@ static void drop_first(ContentBand *band) {
     band->count--;
 }
 
-void content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, bool differs) {
+/* Where nearly everything differs, there is no ground to keep. */
+static bool is_filled(const ContentBand *band, int64_t pixels) {
+    enum { ROWS = 32 };
+    return band->count >= ROWS && 4 * pixels > 3 * (int64_t)band->count * band->width;
+}
+
+void content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, int64_t pixels) {
     const size_t row = 4 * (size_t)band->width;
+    const bool differs = pixels > band->pixels;
+    band->pixels = pixels;
     if (band->lost) return;
     if (band->count > 0 && y != band->first + band->count) {
         band->closed = band->differs;
         if (!band->differs) band->count = 0;
     }
     if (!band->differs && band->count == ABOVE) drop_first(band);
-    if (band->closed || !has_room(band)) {
+    if (band->closed || is_filled(band, pixels) || !has_room(band)) {
         band->closed = true;
         band->lost = differs;
         return;

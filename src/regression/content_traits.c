@@ -47,6 +47,8 @@ bool traits_are_small(const ContentTraits *traits, int level) {
     return traits->absolute <= 3.0 * level * traits->pixels;
 }
 
+bool traits_fill_areas(const ContentTraits *traits) { return traits->pairs > 1.7 * traits->pixels; }
+
 bool traits_are_noise(const ContentTraits *traits) {
     enum { SMALL = 8 };
     static const double SHARED = 0.35, SCATTERED = 0.3, SPARSE = 0.05, FEW = 8;

@@ -69,7 +69,7 @@ static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) 
     RowJudge *judge = context;
     if (judge->error.kind != ERROR_NONE) return;
     if (a == b) {
-        content_band_add(&judge->band, y, a, b, false);
+        content_band_add(&judge->band, y, a, b, judge->difference.pixels);
         return;
     }
     image_levels(a, b, (size_t)judge->width, judge->levels);
@@ -78,7 +78,7 @@ static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) 
         judge->scan = region_scan_create(judge->width, judge->height, &judge->regions, &judge->error);
     if (judge->scan != NULL) region_scan_row(judge->scan, y, judge->levels);
     if (y % CONTENT_ROWS == 0) traits_add_row(&judge->traits, a, b, judge->levels, 0, judge->width);
-    content_band_add(&judge->band, y, a, b, judge->difference.bottom == y + 1);
+    content_band_add(&judge->band, y, a, b, judge->difference.pixels);
 }
 
 /* The regions of a frame and their names. *named: false where only whole pictures can tell, and are small enough. */
