@@ -11,18 +11,22 @@
 
    A differing pixel is compared with its ground: the nearest pixels to the left, to the right, above and below that are equal in
    both pictures. If the expected pixel looks like its ground and the actual one does not, something appears there; or it
-   vanishes; or changes, if neither does. Where both do, an edge has moved. Then the first of these is the name:
+   vanishes; or changes, if neither does. Where both do, an edge has moved. The first of these that holds is the name:
 
-   noise       small differences, or few and scattered ones, that neighbours do not share
-   moved       an offset explains four fifths of the squared difference: what appears came from it, what vanishes went to it.
-               A region where something vanishes is tried together with one where something appears
-   recoloured  the steps between neighbours are at the same places in both pictures
+   moved       an offset explains seven tenths of the squared difference: what appears came from it, what vanishes went to it, and
+               one of them is where the picture changed. Regions of one size are tried together, and each with one that moved
+   noise       small differences that neighbours do not share, or scattered pixels
    added       at least three quarters of the squared difference appear, and no more than a tenth vanishes
    removed     the same with vanish
-   noise       nine tenths of the pixels differ only along edges (antialias_mark())
-   replaced    something appears and something vanishes, each a fifth at least, or colours change without their pattern
+   recoloured  the steps between neighbours are at the same places, and one linear map of colours explains the difference
+   noise       small differences of any pattern, or nine tenths of the pixels differ only along edges (antialias_mark())
+   replaced    something appears and something vanishes, a tenth each at least, or colours change without their pattern
 
-   What is none of these is unsure. */
+   What is none of these is unsure. Four regions or more that are faint, or moved by two pixels at most and not by the same, are noise.
+   If noise lies all over a picture, the stronger regions are named without it, and the noise is one region more.
+
+   Fails: a faint watermark beside noise is noise; glyphs that another rasterizer moves all by the same have moved; a new band of
+   colour under lines and one that changed from white are the same picture. tests/bench/compare/changes measures it. */
 bool content_name(const Image *expected, const Image *actual, const uint8_t *masked, const ImageDifference *difference,
                   FrameChanges *changes, Error *error);
 
