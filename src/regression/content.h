@@ -22,7 +22,8 @@
    noise       small differences of any pattern, or nine tenths of the pixels differ only along edges (antialias_mark())
    replaced    something appears and something vanishes, a tenth each at least, or colours change without their pattern
 
-   What is none of these is unsure. Four regions or more that are faint, or moved by two pixels at most and not by the same, are noise.
+   What is none of these is unsure. Four regions or more that are faint, or moved by two pixels at most and not by the same, are
+   noise.
    If noise lies all over a picture, the stronger regions are named without it, and the noise is one region more.
 
    Fails: a faint watermark beside noise is noise; glyphs that another rasterizer moves all by the same have moved; a new band of

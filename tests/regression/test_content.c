@@ -183,6 +183,21 @@ TEST(content_moves_by_a_part_of_a_pixel) {
     }
 }
 
+/* Another rasterizer moves each thing by its own part of a pixel; a camera moves all by the same. */
+TEST(what_moves_apart_is_noise) {
+    for (int apart = 0; apart < 2; apart++) {
+        Image *images[2] = {ground_of(0), ground_of(0)};
+        for (int side = 0; side < 2; side++)
+            for (int i = 0; i < 6; i++) {
+                const double right = side * (apart ? 0.15 * (i - 2.5) : 0.3),
+                             down = side * (apart ? 0.1 * (i % 3) : 0.2);
+                draw_disc(images[side], 25 + 50 * (i % 3) + right, 30 + 60 * (double)(i / 3) + down, 9,
+                          i % 2 == 0 ? red : blue);
+            }
+        assert_int_equal(kind_of(images[0], images[1]), apart ? CHANGE_NOISE : CHANGE_MOVED);
+    }
+}
+
 /* Two edges tell how far a plain box moved. One edge tells nothing: the box may have grown. */
 TEST(a_box_moves_or_grows) {
     for (int by = 1; by <= 3; by++) {
