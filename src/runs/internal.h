@@ -60,12 +60,56 @@ bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line
 /* Index of the body with this number; -1: it has no size. */
 int csv_head_body(const CsvHead *head, int64_t number);
 
-/* Which arrays a run has, and what others may have called them. */
+/* The arrays of a run's .npz, in the order of the file. */
 
-/* False with error set if the file is one of another kind, lacks a needed array, has a part of those that only come
-   together, or has an unknown array that looks like one that it lacks: then the error suggests that name. Other unknown arrays are
-   ignored. */
-bool run_arrays_check(NpzFile *file, Error *error);
+enum {
+    ARRAY_VERSION,
+    ARRAY_SCENE,
+    ARRAY_METHOD,
+    ARRAY_SCENE_HASH,
+    ARRAY_ITERATIONS,
+    ARRAY_DT,
+    ARRAY_BOMB,
+    ARRAY_CAMERA,
+    ARRAY_SIZE,
+    ARRAY_FIXED,
+    ARRAY_POSITION, /* these grow with the run */
+    ARRAY_ANGLE,
+    ARRAY_VELOCITY,
+    ARRAY_ANGULAR_VELOCITY,
+    ARRAY_CONTACT_START,
+    ARRAY_CONTACT_BODIES,
+    ARRAY_CONTACT_FEATURE,
+    ARRAY_CONTACT_POINT,
+    ARRAY_CONTACT_NORMAL,
+    ARRAY_CONTACT_IMPULSE,
+    ARRAY_PROGRAM, /* from here on: known after the run */
+    ARRAY_VERDICT,
+    ARRAY_VERDICT_FRAME,
+    ARRAY_VERDICT_BODY,
+    RUN_ARRAYS
+};
+
+/* In a shape, for numbers that differ from run to run. OF_STEPS: one more than frames. */
+enum { OF_FRAMES = -1, OF_STEPS = -2, OF_BODIES = -3, OF_CONTACTS = -4 };
+
+/* Arrays that come together or not at all. */
+enum { GROUP_NONE, GROUP_VELOCITIES, GROUP_CONTACTS, GROUP_VERDICT, RUN_ARRAY_GROUPS };
+
+enum { RUN_ARRAY_OTHERS = 8 };
+
+typedef struct RunArray {
+    const char *name;
+    NpzType type;
+    int rank, shape[3];
+    int group;
+    const char *others[RUN_ARRAY_OTHERS]; /* what other programs call it, where that is not near its name */
+} RunArray;
+
+extern const RunArray run_arrays[RUN_ARRAYS];
+
+void run_array_shape(const RunArray *array, int64_t frames, int64_t bodies, int64_t contacts,
+                     int64_t shape[NPZ_MAX_RANK]);
 
 /* The rows of a run's CSV, one at a time: a file of a million rows takes no memory but its text. Part of csv_run. */
 

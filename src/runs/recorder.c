@@ -125,14 +125,11 @@ bool recorder_record(Recorder *recorder, int frame, const World *world, Error *e
 void recorder_name_program(Recorder *recorder, const Method *method) {
     ProgramName name;
     if (!method_program(method, &name)) return;
-    char *program = recorder->parts[0]->program;
-    snprintf(program, TRAJECTORY_NAME_SIZE, "%s %s", name.name, name.version);
-    for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_program(recorder->streams[i], program);
+    snprintf(recorder->parts[0]->program, TRAJECTORY_NAME_SIZE, "%s %s", name.name, name.version);
 }
 
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body) {
     trajectory_judge(recorder->parts[0], words, frame, body);
-    for (int i = 0; i < recorder->stream_count; i++) trajectory_stream_judge(recorder->streams[i], words, frame, body);
 }
 
 bool recorder_finish(Recorder *recorder, Error *error) {

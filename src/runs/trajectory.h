@@ -290,16 +290,11 @@ typedef struct TrajectoryStream TrajectoryStream;
 typedef enum TrajectoryFormat { TRAJECTORY_NPZ, TRAJECTORY_CSV, TRAJECTORY_HASHES } TrajectoryFormat;
 
 /* A stream for a run of `frames` frames; names, sizes and all else that does not change are those of `head`, which may
-   be its first part. NULL with error set if no file can be written at `path`. */
+   be its first part and must outlive the stream. Program and verdict are read when it is finished. NULL with error set if no
+   file can be written at `path`. */
 TrajectoryStream *trajectory_stream_create(const Trajectory *head, int frames, TrajectoryFormat format,
                                            const char *path, Error *error);
 bool trajectory_stream_add(TrajectoryStream *stream, const Trajectory *part, Error *error);
-
-/* Sets what the program that makes the run states, which is known when it has begun. Only .npz has it. */
-void trajectory_stream_program(TrajectoryStream *stream, const char *program);
-
-/* Sets the verdict on the run, which is known when all frames have been added (trajectory_judge). Only .npz has it. */
-void trajectory_stream_judge(TrajectoryStream *stream, const char *words, int frame, int body);
 
 /* Writes the file, atomically, when all frames have been added. */
 bool trajectory_stream_finish(TrajectoryStream *stream, Error *error);

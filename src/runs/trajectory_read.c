@@ -192,9 +192,138 @@ bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseToleran
 
 /* Reads trajectories from untrusted files. */
 
+static const char *const group_words[RUN_ARRAY_GROUPS] = {[GROUP_VELOCITIES] = "the two",
+                                                          [GROUP_CONTACTS] = "the six contact arrays",
+                                                          [GROUP_VERDICT] = "the three of the verdict"};
+
+const RunArray run_arrays[RUN_ARRAYS] = {
+    {"version", NPZ_INT32, 0, {0}, GROUP_NONE, {NULL}},
+    {"scene", NPZ_TEXT, 0, {0}, GROUP_NONE, {NULL}},
+    {"method", NPZ_TEXT, 0, {0}, GROUP_NONE, {"engine", "solver", "simulator"}},
+    {"scene_hash", NPZ_UINT64, 0, {0}, GROUP_NONE, {NULL}},
+    {"iterations", NPZ_INT32, 0, {0}, GROUP_NONE, {NULL}},
+    {"dt", NPZ_FLOAT32, 0, {0}, GROUP_NONE, {"DT", "Dt", "delta_t", "h", "step", "time_step", "timestep"}},
+    {"bomb", NPZ_INT32, 0, {0}, GROUP_NONE, {NULL}},
+    {"camera", NPZ_FLOAT32, 2, {2, 2}, GROUP_NONE, {NULL}},
+    {"size", NPZ_FLOAT32, 2, {OF_BODIES, 2}, GROUP_NONE, {"box_size", "dimensions", "extent", "extents"}},
+    {"fixed", NPZ_UINT8, 1, {OF_BODIES}, GROUP_NONE, {"is_static", "static"}},
+    {"position",
+     NPZ_FLOAT32,
+     3,
+     {OF_FRAMES, OF_BODIES, 2},
+     GROUP_NONE,
+     {"center", "centers", "centre", "centres", "pos", "xy"}},
+    {"angle",
+     NPZ_FLOAT32,
+     2,
+     {OF_FRAMES, OF_BODIES},
+     GROUP_NONE,
+     {"orientation", "orientations", "rot", "rotation", "rotations", "theta"}},
+    {"velocity", NPZ_FLOAT32, 3, {OF_FRAMES, OF_BODIES, 2}, GROUP_VELOCITIES, {"linear_velocity", "vel"}},
+    {"angular_velocity", NPZ_FLOAT32, 2, {OF_FRAMES, OF_BODIES}, GROUP_VELOCITIES, {"omega", "spin"}},
+    {"contact_start", NPZ_INT64, 1, {OF_STEPS}, GROUP_CONTACTS, {NULL}},
+    {"contact_bodies", NPZ_INT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS, {NULL}},
+    {"contact_feature", NPZ_UINT32, 1, {OF_CONTACTS}, GROUP_CONTACTS, {NULL}},
+    {"contact_point", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS, {NULL}},
+    {"contact_normal", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS, {NULL}},
+    {"contact_impulse", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS, {NULL}},
+    {"program", NPZ_TEXT, 0, {0}, GROUP_NONE, {NULL}},
+    {"verdict", NPZ_TEXT, 0, {0}, GROUP_VERDICT, {NULL}},
+    {"verdict_frame", NPZ_INT32, 0, {0}, GROUP_VERDICT, {NULL}},
+    {"verdict_body", NPZ_INT32, 0, {0}, GROUP_VERDICT, {NULL}},
+};
+
+void run_array_shape(const RunArray *array, int64_t frames, int64_t bodies, int64_t contacts,
+                     int64_t shape[NPZ_MAX_RANK]) {
+    for (int k = 0; k < array->rank; k++) {
+        const int of = array->shape[k];
+        shape[k] = of == OF_FRAMES     ? frames
+                   : of == OF_STEPS    ? frames + 1
+                   : of == OF_BODIES   ? bodies
+                   : of == OF_CONTACTS ? contacts
+                                       : of;
+    }
+}
+
+static bool is_known(const char *name) {
+    for (int i = 0; i < RUN_ARRAYS; i++)
+        if (strcmp(run_arrays[i].name, name) == 0) return true;
+    return false;
+}
+
+static bool is_other_name(const char *name, int array) {
+    for (int k = 0; k < RUN_ARRAY_OTHERS && run_arrays[array].others[k] != NULL; k++)
+        if (strcmp(run_arrays[array].others[k], name) == 0) return true;
+    return false;
+}
+
+/* The array that an unknown name probably means, among those that the file lacks; NULL: none. */
+static const char *meant(const NpzFile *file, const char *name) {
+    const char *missing[RUN_ARRAYS];
+    int count = 0;
+    for (int i = 0; i < RUN_ARRAYS; i++) {
+        if (npz_has(file, run_arrays[i].name)) continue;
+        if (is_other_name(name, i)) return run_arrays[i].name;
+        missing[count++] = run_arrays[i].name;
+    }
+    return strlen(name) > 3 ? nearest_word(name, missing, count) : NULL;
+}
+
+static bool check_names(const NpzFile *file, Error *error) {
+    const char *name, *right;
+    for (size_t i = 0; (name = npz_name(file, i)) != NULL; i++)
+        if (!is_known(name) && (right = meant(file, name)) != NULL)
+            return error_input(error, npz_path(file), "unknown array '%s': did you mean '%s'? Rename or remove it",
+                               name, right);
+    return true;
+}
+
+static bool check_needed(const NpzFile *file, Error *error) {
+    static const char *const needed[] = {"position", "angle", "size", "dt"};
+    const char *missing = NULL;
+    int found = 0;
+    for (int i = 3; i >= 0; i--) {
+        if (npz_has(file, needed[i]))
+            found++;
+        else
+            missing = needed[i];
+    }
+    return missing == NULL ||
+           error_input(error, npz_path(file), "%shas no array '%s'; a trajectory needs position, angle, size and dt",
+                       found == 0 ? "not a trajectory: " : "", missing);
+}
+
+static bool check_groups(const NpzFile *file, Error *error) {
+    for (int i = 0; i < RUN_ARRAYS; i++)
+        for (int k = 0; k < RUN_ARRAYS && run_arrays[i].group != GROUP_NONE; k++)
+            if (run_arrays[i].group == run_arrays[k].group && npz_has(file, run_arrays[i].name) &&
+                !npz_has(file, run_arrays[k].name))
+                return error_input(error, npz_path(file), "has '%s' but not '%s'; give both, or none of %s",
+                                   run_arrays[i].name, run_arrays[k].name, group_words[run_arrays[i].group]);
+    return true;
+}
+
+/* Other files of twinbox have a text that states their kind. */
+static bool has_kind(const NpzFile *file) {
+    Error ignored = {0};
+    return npz_shape(file, "kind", NPZ_TEXT, 0, NULL, &ignored);
+}
+
+/* False with error set if the file is one of another kind, lacks a needed array, has a part of those that only come
+   together, or has an unknown array that looks like one that it lacks: then the error suggests that name. Other unknown arrays
+   are ignored. */
+static bool check_arrays(NpzFile *file, Error *error) {
+    char kind[64];
+    if (has_kind(file))
+        return npz_read_name(file, "kind", kind, sizeof kind, error) &&
+               error_input(error, npz_path(file), "not a trajectory but a file of kind '%s'", kind);
+    /* A wrong name is the likely cause of a missing array, so it is told first. */
+    return check_names(file, error) && check_needed(file, error) && check_groups(file, error);
+}
+
 static bool read_version(NpzFile *file, const char *path, Error *error) {
     int32_t version = TRAJECTORY_VERSION;
-    if (!run_arrays_check(file, error)) return false;
+    if (!check_arrays(file, error)) return false;
     if (npz_has(file, "version") && !npz_read_scalar(file, "version", NPZ_INT32, &version, sizeof version, error))
         return false;
     return version == TRAJECTORY_VERSION ||
@@ -219,30 +348,11 @@ static bool read_counts(Trajectory *t, NpzFile *file, const char *path, int64_t 
 }
 
 static bool check_shapes(const Trajectory *t, const NpzFile *file, int64_t contacts, Error *error) {
-    const int64_t frames = t->frames, bodies = t->bodies;
-    const NpzArray all[] = {
-        {"scene_hash", NPZ_UINT64, 0, {0}, NULL},
-        {"iterations", NPZ_INT32, 0, {0}, NULL},
-        {"verdict_frame", NPZ_INT32, 0, {0}, NULL},
-        {"verdict_body", NPZ_INT32, 0, {0}, NULL},
-        {"dt", NPZ_FLOAT32, 0, {0}, NULL},
-        {"bomb", NPZ_INT32, 0, {0}, NULL},
-        {"camera", NPZ_FLOAT32, 2, {2, 2}, NULL},
-        {"size", NPZ_FLOAT32, 2, {bodies, 2}, NULL},
-        {"position", NPZ_FLOAT32, 3, {frames, bodies, 2}, NULL},
-        {"angle", NPZ_FLOAT32, 2, {frames, bodies}, NULL},
-        {"fixed", NPZ_UINT8, 1, {bodies}, NULL},
-        {"velocity", NPZ_FLOAT32, 3, {frames, bodies, 2}, NULL},
-        {"angular_velocity", NPZ_FLOAT32, 2, {frames, bodies}, NULL},
-        {"contact_start", NPZ_INT64, 1, {frames + 1}, NULL},
-        {"contact_bodies", NPZ_INT32, 2, {contacts, 2}, NULL},
-        {"contact_feature", NPZ_UINT32, 1, {contacts}, NULL},
-        {"contact_point", NPZ_FLOAT32, 2, {contacts, 2}, NULL},
-        {"contact_normal", NPZ_FLOAT32, 2, {contacts, 2}, NULL},
-        {"contact_impulse", NPZ_FLOAT32, 2, {contacts, 2}, NULL},
-    };
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        if (npz_has(file, all[i].name) && !npz_expect(file, &all[i], 1, error)) return false;
+    for (int i = 0; i < RUN_ARRAYS; i++) {
+        NpzArray array = {run_arrays[i].name, run_arrays[i].type, run_arrays[i].rank, {0}, NULL};
+        run_array_shape(&run_arrays[i], t->frames, t->bodies, contacts, array.shape);
+        if (npz_has(file, array.name) && !npz_expect(file, &array, 1, error)) return false;
+    }
     return true;
 }
 
