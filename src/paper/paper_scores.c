@@ -199,13 +199,11 @@ static bool time_network(const Scores *scores, int i, FILE *lines, Error *error)
            piece_tables_print(lines, &paper_closed_loop_layout, -1, &row, error);
 }
 
-/* Sequentially, on one core. */
+/* One after the other. */
 static bool time_networks(const Scores *scores, FILE *lines, Error *error) {
     bool ok = true;
-    meter_pin();
     for (int i = 0; ok && i < scores->scoring->count; i++)
         if (takes_steps(&scores->scoring->networks[i])) ok = time_network(scores, i, lines, error);
-    meter_unpin();
     return ok;
 }
 

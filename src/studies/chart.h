@@ -416,8 +416,8 @@ typedef struct ClosedLoop {
 /* Runs launches[count] of a scene for CLOSED_LOOP_FRAMES. */
 bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error);
 
-/* Microseconds per step of a method and of the engine, measured in turns on engine states: mean over states, median
-   over repetitions. */
+/* Microseconds per step of a method and of the engine, measured in turns on engine states: mean over the states of the
+   median over the repetitions. */
 bool closed_loop_time(const Method *method, const SnapshotList *states, int repetitions, double *us_step,
                       double *us_step_engine, Error *error);
 

@@ -268,64 +268,17 @@ bool closed_loop_run(const Method *method, const Scene *launches, int count, Clo
     return ok;
 }
 
-/* The engine and a method, each with a world of its own. */
-typedef struct Pair {
-    Stepper *steppers[2]; /* engine, method */
-    World *worlds[2];
-} Pair;
-
-static void pair_end(Pair *pair) {
-    for (int i = 0; i < 2; i++) {
-        stepper_destroy(pair->steppers[i]);
-        world_destroy(pair->worlds[i]);
-    }
-    *pair = (Pair){0};
-}
-
-static bool pair_begin(Pair *pair, const Method *method, const Scene *scene, Error *error) {
-    Method engine;
-    *pair = (Pair){0};
-    if (!method_parse(&engine, "engine", error)) return false;
-    const Method *methods[2] = {&engine, method};
-    for (int i = 0; i < 2; i++) {
-        if ((pair->worlds[i] = scene_world(scene, error)) == NULL ||
-            (pair->steppers[i] = stepper_create(methods[i], scene, error)) == NULL) {
-            pair_end(pair);
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Mean microseconds per step over all states; negative if a step failed. */
-static double time_states(Stepper *stepper, World *world, const SnapshotList *states, Error *error) {
-    const int64_t overhead = meter_time_overhead();
-    int64_t sum = 0;
-    for (int i = 0; i < states->count; i++) {
-        const Snapshot *state = &states->items[i];
-        const Step step = {.scene = state->scene, .frame = state->frame};
-        if (!world_copy(world, state->world, error)) return -1;
-        const int64_t before = meter_time();
-        if (!stepper_step(stepper, world, &step, error)) return -1;
-        sum += meter_without(meter_time() - before, overhead);
-    }
-    return 1e-3 * (double)sum / states->count;
-}
-
 bool closed_loop_time(const Method *method, const SnapshotList *states, int repetitions, double *us_step,
                       double *us_step_engine, Error *error) {
-    Pair pair;
-    double *times = malloc(2 * (size_t)repetitions * sizeof *times);
-    if (times == NULL) return error_memory(error, "closed loop");
-    bool ok = pair_begin(&pair, method, states->items[0].scene, error);
-    for (int r = 0; ok && r < repetitions; r++)
-        for (int i = 0; ok && i < 2; i++)
-            ok = (times[i * repetitions + r] = time_states(pair.steppers[i], pair.worlds[i], states, error)) >= 0;
-    if (ok) {
-        *us_step_engine = statistics_quantile(times, repetitions, 0.5);
-        *us_step = statistics_quantile(times + repetitions, repetitions, 0.5);
-    }
-    pair_end(&pair);
-    free(times);
-    return ok;
+    Contender engine, other = {.method = *method};
+    const Contender *const both[] = {&engine, &other};
+    const TimingOptions options = {
+        .launches = states->items[0].scene, .repetitions = repetitions, .no_instructions = true};
+    StepCost closed[2][PHASES], frozen[2][PHASES];
+    if (!method_parse(&engine.method, "engine", error) ||
+        !timing_measure(both, 2, &options, states, closed, frozen, NULL, error))
+        return false;
+    *us_step_engine = step_cost_mean(frozen[0], false);
+    *us_step = step_cost_mean(frozen[1], false);
+    return true;
 }
