@@ -377,7 +377,7 @@ typedef struct PieceGroup {
 bool piece_tables_print(FILE *results, const CsvLayout *layout, int section, const void *row, Error *error);
 
 /* Writes folder/TABLE.csv of each layout: the header and the table's rows. groups[group_count] cover all pieces; NULL: one
-   without sections. Reads each piece once; memory: that of a piece. */
+   without sections. Reads each piece once; memory: the results of all. */
 bool piece_tables_write(const Pieces *pieces, const char *folder, const CsvLayout *const *layouts, int layout_count,
                         const PieceGroup *groups, int group_count, Error *error);
 

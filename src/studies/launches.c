@@ -13,12 +13,10 @@
 #include "studies/chart.h"
 #include "studies/chart_internal.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* Phases with points: impact and after. */
 static const char *const phase_words[] = {"impact", "after", NULL};
@@ -200,145 +198,89 @@ bool piece_tables_print(FILE *results, const CsvLayout *layout, int section, con
     return csv_row_print(results, layout, row, error);
 }
 
-/* A table that is being written. Its sections are files of their own until their group ends: so every piece is read once,
-   and no row is kept in memory. */
-typedef struct TableFile {
-    const CsvLayout *layout;
-    char path[CSV_PATH_SIZE];
-    int draft, section_count;
-    int *sections; /* [section_count] drafts; -1: no row yet */
-} TableFile;
-
+/* The results of all pieces, while tables are made of them. */
 typedef struct Tables {
-    const Pieces *pieces;
-    TableFile *items; /* [count] */
-    int count;
+    const CsvLayout *const *layouts; /* [layout_count] */
+    const PieceGroup *groups;        /* [group_count] */
+    int layout_count, group_count;
+    char **texts; /* [pieces] */
 } Tables;
 
-static void print_header(FILE *csv, const void *layout) { csv_header_print(csv, layout); }
+/* Whether a line is a row of one of the tables, or a note. Other lines are a fault of the study's. */
+static bool check_line(const Tables *tables, const char *line, int sections, Error *error) {
+    const size_t length = strcspn(line, ":/\n");
+    if (*line == '#') return true;
+    for (int i = 0; i < tables->layout_count; i++) {
+        const char *name = tables->layouts[i]->name;
+        if (strncmp(line, name, length) != 0 || name[length] != '\0') continue;
+        char *end = (char *)line + length;
+        const long section = *end == '/' ? strtol(end + 1, &end, 10) : -1;
+        if (*end == ':' && section >= -1 && section < sections) return true;
+    }
+    return error_system(error, "tables", "a piece has the line '%.*s', which belongs to no table",
+                        (int)strcspn(line, "\n"), line);
+}
 
-static bool begin_table(TableFile *table, const char *folder, const CsvLayout *layout, Error *error) {
+static bool read_piece(const Tables *tables, const Pieces *pieces, int64_t piece, int sections, Error *error) {
     size_t size;
-    table->layout = layout;
-    if (!csv_table_path(table->path, folder, layout, error)) return false;
-    table->draft = file_draft(table->path, error);
-    if (table->draft < 0) return false;
-    char *header = file_print(print_header, layout, &size);
-    const bool done = header != NULL ? file_draft_write(table->draft, table->path, header, size, error)
-                                     : error_memory(error, table->path);
-    free(header);
-    return done;
-}
-
-static void close_sections(TableFile *table) {
-    for (int i = 0; i < table->section_count; i++)
-        if (table->sections[i] >= 0) close(table->sections[i]);
-    free(table->sections);
-    table->sections = NULL;
-    table->section_count = 0;
-}
-
-static bool begin_sections(TableFile *table, int count, Error *error) {
-    if (count == 0) return true;
-    table->sections = malloc((size_t)count * sizeof *table->sections);
-    if (table->sections == NULL) return error_memory(error, table->path);
-    table->section_count = count;
-    for (int i = 0; i < count; i++) table->sections[i] = -1;
+    char *text = tables->texts[piece] = pieces_read(pieces, piece, &size, NULL, error);
+    if (text == NULL) return false;
+    if (size != strlen(text) || (size > 0 && text[size - 1] != '\n'))
+        return error_system(error, "tables", "a piece is not made of lines");
+    for (const char *line = text; *line != '\0'; line += strcspn(line, "\n") + 1)
+        if (!check_line(tables, line, sections, error)) return false;
     return true;
 }
 
-/* The sections, in their order, behind the rows so far. */
-static bool join_sections(TableFile *table, Error *error) {
-    bool done = true;
-    for (int i = 0; done && i < table->section_count; i++)
-        if (table->sections[i] >= 0 && !file_copy(table->draft, table->sections[i]))
-            done = error_system(error, table->path, "cannot write: %s", strerror(errno));
-    close_sections(table);
-    return done;
-}
-
-/* Where the rows of a line go; *row is behind its tag. -1 with error set. A line of no table of ours is a fault of the
-   study's. */
-static int find_draft(Tables *tables, const char *line, const char **row, Error *error) {
-    const size_t length = strcspn(line, ":/\n");
-    for (int i = 0; i < tables->count; i++) {
-        TableFile *table = &tables->items[i];
-        if (strncmp(line, table->layout->name, length) != 0 || table->layout->name[length] != '\0') continue;
-        char *end = (char *)line + length;
-        const long section = *end == '/' ? strtol(end + 1, &end, 10) : -1;
-        if (*end != ':' || section < -1 || section >= table->section_count) break;
-        *row = end + 1;
-        if (section < 0) return table->draft;
-        if (table->sections[section] < 0) table->sections[section] = file_draft(table->path, error);
-        return table->sections[section];
+static bool read_pieces(const Tables *tables, const Pieces *pieces, Error *error) {
+    for (int g = 0; g < tables->group_count; g++) {
+        const PieceGroup *group = &tables->groups[g];
+        for (int64_t i = group->first; i < group->first + group->count; i++)
+            if (!read_piece(tables, pieces, i, group->sections, error)) return false;
     }
-    error_system(error, "tables", "a piece has the line '%.*s', which belongs to no table", (int)strcspn(line, "\n"),
-                 line);
-    return -1;
+    return true;
 }
 
-/* Rows of one table that follow each other are written together. Notes of the study's own are left out. */
-static bool add_lines(Tables *tables, char *text, Error *error) {
-    int draft = -1;
-    char *rows = text, *end = text;
-    for (char *line = text; *line != '\0';) {
-        const char *row;
-        if (*line == '#') {
-            line += strcspn(line, "\n") + 1;
-            continue;
-        }
-        const int target = find_draft(tables, line, &row, error);
-        const size_t size = strcspn(row = target >= 0 ? row : line, "\n") + 1;
-        if (target < 0) return false;
-        if (target != draft && end > rows && !file_draft_write(draft, "table", rows, (size_t)(end - rows), error))
-            return false;
-        if (target != draft) rows = end = line;
-        draft = target;
-        memmove(end, row, size);
-        line = (char *)row + size;
-        end += size;
-    }
-    return end == rows || file_draft_write(draft, "table", rows, (size_t)(end - rows), error);
+/* The rows of a group in a section; -1: those without one. */
+static void print_section(FILE *out, const Tables *tables, const CsvLayout *layout, const PieceGroup *group,
+                          int section) {
+    char tag[CSV_NAME_SIZE + 16] = "";
+    text_add(tag, sizeof tag, "%s", layout->name);
+    if (section >= 0) text_add(tag, sizeof tag, "/%d", section);
+    text_add(tag, sizeof tag, ":");
+    const size_t length = strlen(tag);
+    for (int64_t i = group->first; i < group->first + group->count; i++)
+        for (const char *line = tables->texts[i]; *line != '\0'; line += strcspn(line, "\n") + 1)
+            if (strncmp(line, tag, length) == 0) fwrite(line + length, 1, strcspn(line, "\n") + 1 - length, out);
 }
 
-static bool add_piece(Tables *tables, int64_t piece, Error *error) {
-    size_t size;
-    char *text = pieces_read(tables->pieces, piece, &size, NULL, error);
-    if (text == NULL) return false;
-    const bool whole = size == strlen(text) && (size == 0 || text[size - 1] == '\n'),
-               done = whole ? add_lines(tables, text, error)
-                            : error_system(error, "tables", "a piece is not made of lines");
-    free(text);
-    return done;
-}
+typedef struct Table {
+    const Tables *tables;
+    const CsvLayout *layout;
+} Table;
 
-static bool add_group(Tables *tables, const PieceGroup *group, Error *error) {
-    bool done = true;
-    for (int i = 0; done && i < tables->count; i++) done = begin_sections(&tables->items[i], group->sections, error);
-    for (int64_t i = group->first; done && i < group->first + group->count; i++) done = add_piece(tables, i, error);
-    for (int i = 0; done && i < tables->count; i++) done = join_sections(&tables->items[i], error);
-    return done;
+static void print_table(FILE *out, const void *context) {
+    const Table *table = context;
+    csv_header_print(out, table->layout);
+    for (int g = 0; g < table->tables->group_count; g++)
+        for (int section = -1; section < table->tables->groups[g].sections; section++)
+            print_section(out, table->tables, table->layout, &table->tables->groups[g], section);
 }
 
 bool piece_tables_write(const Pieces *pieces, const char *folder, const CsvLayout *const *layouts, int layout_count,
                         const PieceGroup *groups, int group_count, Error *error) {
-    const PieceGroup all = {0, pieces->plan->count, 0};
-    Tables tables = {pieces, calloc((size_t)layout_count, sizeof *tables.items), 0};
-    bool done = tables.items != NULL || error_memory(error, folder);
-    while (done && tables.count < layout_count) {
-        tables.items[tables.count].draft = -1;
-        done = begin_table(&tables.items[tables.count], folder, layouts[tables.count], error);
-        tables.count++;
+    const int64_t count = pieces->plan->count;
+    const PieceGroup all = {0, count, 0};
+    const Tables tables = {layouts, groups != NULL ? groups : &all, layout_count, groups != NULL ? group_count : 1,
+                           calloc((size_t)count + 1, sizeof *tables.texts)};
+    bool done = (tables.texts != NULL || error_memory(error, folder)) && read_pieces(&tables, pieces, error);
+    for (int i = 0; done && i < layout_count; i++) {
+        char path[CSV_PATH_SIZE];
+        done = csv_table_path(path, folder, layouts[i], error) &&
+               file_write_text(path, print_table, &(Table){&tables, layouts[i]}, error);
     }
-    if (done && groups == NULL) done = add_group(&tables, &all, error);
-    for (int i = 0; done && groups != NULL && i < group_count; i++) done = add_group(&tables, &groups[i], error);
-    for (int i = 0; done && i < tables.count; i++)
-        done = file_draft_publish(tables.items[i].draft, tables.items[i].path, error);
-    for (int i = 0; i < tables.count; i++) {
-        close_sections(&tables.items[i]);
-        if (tables.items[i].draft >= 0) close(tables.items[i].draft);
-    }
-    free(tables.items);
+    for (int64_t i = 0; tables.texts != NULL && i < count; i++) free(tables.texts[i]);
+    free(tables.texts);
     return done;
 }
 
