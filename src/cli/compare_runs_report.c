@@ -183,9 +183,7 @@ static void write_page(FILE *out, const void *context) {
     char moment[PLAYER_LINK_SIZE];
     const PartedBody *first = &c->parting.first;
     house_page_begin(out, "Comparison of two runs", "pre{white-space:pre-wrap}");
-    fprintf(out, "<main>\n<h1>Comparison of two runs: %s</h1>\n<pre>", cause_of(c));
-    html_put(out, c->text);
-    fputs("</pre>\n", out);
+    html_print(out, "<main>\n<h1>Comparison of two runs: %s</h1>\n<pre>%s</pre>\n", cause_of(c), c->text);
     player_link(moment, first->frame > 0 ? first->frame * (double)c->runs[0]->dt : 0, first->body);
     if (c->has_page) fprintf(out, "<p><a href=\"run.html%s\">Both runs, at the first difference</a></p>\n", moment);
     fputs("</main>\n", out);

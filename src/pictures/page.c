@@ -5,6 +5,7 @@
 #include "base/base.h"
 
 #include <ctype.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -33,6 +34,17 @@ void html_put(FILE *file, const char *text) {
                 fputs("\xef\xbf\xbd", file);
         }
     }
+}
+
+void html_print(FILE *file, const char *format, ...) {
+    va_list texts;
+    va_start(texts, format);
+    for (const char *next; (next = strstr(format, "%s")) != NULL; format = next + strlen("%s")) {
+        fwrite(format, 1, (size_t)(next - format), file);
+        html_put(file, va_arg(texts, const char *));
+    }
+    fputs(format, file);
+    va_end(texts);
 }
 
 void html_put_address(FILE *file, const char *name) {

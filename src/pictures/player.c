@@ -292,8 +292,7 @@ static void put_head(FILE *file, const Player *player) {
     for (int i = 0; i < player->picture.count; i++) {
         char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
         caption_method(&player->picture, i, name, note);
-        fputs(i == 0 ? ": " : ", ", file);
-        html_put(file, name);
+        html_print(file, "%s%s", i == 0 ? ": " : ", ", name);
     }
     fprintf(file, "</title>\n<style>\n%s</style>\n</head>\n<body>\n", player_page_css);
 }

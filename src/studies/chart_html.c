@@ -21,16 +21,11 @@ void study_page_begin(FILE *out, const char *title, const char *style) {
 }
 
 void study_page_section(FILE *out, const char *name) {
-    fputs("<section class=\"panel\" aria-label=\"", out);
-    html_put(out, name);
-    fputs("\">\n<h2>", out);
-    html_put(out, name);
+    html_print(out, "<section class=\"panel\" aria-label=\"%s\">\n<h2>%s", name, name);
 }
 
 void study_page_region(FILE *out, const char *style, const char *label, const char *of) {
-    fprintf(out, "<div class=\"%s\" tabindex=\"0\" role=\"region\" aria-label=\"%s", style, label);
-    html_put(out, of);
-    fputs("\">\n", out);
+    html_print(out, "<div class=\"%s\" tabindex=\"0\" role=\"region\" aria-label=\"%s%s\">\n", style, label, of);
 }
 
 void study_page_left_out(FILE *out, const CsvTable *table, size_t page, size_t row_size, const char *what) {
@@ -89,11 +84,8 @@ static void put_point(FILE *out, const Chart *chart, int panel, const ChartMark 
     chart_mark_place(chart, panel, mark, &left, &top);
     fprintf(out, "<a class=\"point\" tabindex=\"-1\" aria-hidden=\"true\" style=\"left:%.3f%%;top:%.3f%%\" href=\"",
             100 * left, 100 * top);
-    html_put(out, page->page);
-    fputs("\" title=\"", out);
-    html_put(out, mark->method);
-    fputs(mark->setting[0] != '\0' ? ":" : "", out);
-    html_put(out, mark->setting);
+    html_print(out, "%s\" title=\"%s%s%s", page->page, mark->method, mark->setting[0] != '\0' ? ":" : "",
+               mark->setting);
     fprintf(out, ": %.3g µs, %.3g m/s\"></a>\n", mark->us, mark->error);
 }
 
@@ -130,22 +122,14 @@ static void put_phase(FILE *out, const ChartHtml *html, const LaunchPage *page) 
     put_number(out, row != NULL ? row->us_solver : (double)NAN);
     put_number(out, row != NULL ? row->error_mean : (double)NAN);
     fputs("<td>", out);
-    if (linked) {
-        fputs("<a href=\"", out);
-        html_put(out, page->page);
-        fputs("\">", out);
-    }
+    if (linked) html_print(out, "<a href=\"%s\">", page->page);
     fprintf(out, "x = %.3g m: %.3g m/s at %.3g s", (double)page->x, page->error, page->time);
     if (page->body >= 0) fprintf(out, ", body %d", page->body);
     fputs(linked ? "</a></td>" : "</td>", out);
 }
 
 static void put_method(FILE *out, const ChartHtml *html, const LaunchPage *page) {
-    fputs("<tr><th scope=\"row\">", out);
-    html_put(out, page->method);
-    fputs("</th><td>", out);
-    html_put(out, page->setting);
-    fputs("</td>", out);
+    html_print(out, "<tr><th scope=\"row\">%s</th><td>%s</td>", page->method, page->setting);
     for (int p = 0; p < CHART_PANELS; p++)
         put_phase(out, html, find_page(html, page->scene, page->method, page->setting, (Phase)p));
     fputs("</tr>\n", out);
@@ -210,11 +194,7 @@ static void put_chart(FILE *out, const void *context) {
           "the same step; of a step, over its bodies.</p>\n",
           out);
     chart_times_note(times, html->chart.rows, html->chart.count);
-    if (times[0] != '\0') {
-        fputs("<p class=\"soft\">", out);
-        html_put(out, times);
-        fputs("</p>\n", out);
-    }
+    if (times[0] != '\0') html_print(out, "<p class=\"soft\">%s</p>\n", times);
     study_page_left_out(out, &html->table, offsetof(LaunchPage, page), sizeof(LaunchPage), "points");
     for (int i = 0; i < html->chart.count; i++)
         if (!html->failed && is_first(html, i)) put_scene(out, html, chart_row(&html->chart, i));

@@ -55,9 +55,8 @@ static void put_look(FILE *out, int look) {
 }
 
 static void put_link(FILE *out, const MapPage *page, int verdict) {
-    fputs("<a href=\"", out);
-    html_put(out, page->page);
-    fprintf(out, "\" aria-label=\"%s at %.3g s\">", verdict_words[verdict], page->time);
+    html_print(out, "<a href=\"%s\"", page->page);
+    fprintf(out, " aria-label=\"%s at %.3g s\">", verdict_words[verdict], page->time);
 }
 
 static void put_cell(FILE *out, const StabilityHtml *html, int panel, MapPlace place) {
@@ -78,9 +77,7 @@ static void put_panel(FILE *out, const StabilityHtml *html, int panel) {
     const MapPanels *map = html->map;
     char method[MAP_METHOD_SIZE];
     map_cell_method(method, map->methods[panel]);
-    fputs("<table>\n<caption>", out);
-    html_put(out, method);
-    fputs("</caption>\n<thead><tr><td></td>", out);
+    html_print(out, "<table>\n<caption>%s</caption>\n<thead><tr><td></td>", method);
     for (int x = 0; x < map->x_count; x++) fprintf(out, "<th scope=\"col\">%.3g</th>", map->x[x]);
     fputs("</tr></thead>\n<tbody>\n", out);
     for (int y = map->y_count - 1; y >= 0; y--) {
@@ -97,11 +94,7 @@ static void put_map(FILE *out, const StabilityHtml *html) {
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
     study_page_section(out, map->first->map);
-    fputs("</h2>\n<p>Across: ", out);
-    html_put(out, x);
-    fputs("; up: ", out);
-    html_put(out, y);
-    fputs(".</p>\n", out);
+    html_print(out, "</h2>\n<p>Across: %s; up: %s.</p>\n", x, y);
     study_page_region(out, "maps scroll", "Maps of each method", "");
     for (int panel = 0; panel < map->panel_count; panel++) put_panel(out, html, panel);
     fputs("</div>\n</section>\n", out);
@@ -154,11 +147,8 @@ static void put_study(FILE *out, const StabilityHtml *html, int first) {
     const StabilityStudy *known = stability_study_find(study->study);
     char axis[STABILITY_TEXT_SIZE];
     stability_axis_text(axis, study->parameter, study->unit);
-    fputs("<tr><th scope=\"row\">", out);
-    html_put(out, known != NULL ? known->title : study->study);
-    fputs("<br><span class=\"soft\">", out);
-    html_put(out, axis);
-    fputs("</span></th>", out);
+    html_print(out, "<tr><th scope=\"row\">%s<br><span class=\"soft\">%s</span></th>",
+               known != NULL ? known->title : study->study, axis);
     for (int m = 0, at; (at = find_border_method(borders, m)) >= 0; m++) {
         fputs("<td>", out);
         for (int i = first; i < borders->count && border_same_study(border_row(borders, i), study); i++)
@@ -179,13 +169,7 @@ static void put_engines(FILE *out, const StabilityHtml *html) {
             seen = strcmp(rows[k].method, rows[i].method) == 0 && strcmp(rows[k].setting, rows[i].setting) == 0;
         if (seen || rows[i].engine[0] == '\0') continue;
         stability_method_name(method, rows[i].method, rows[i].setting);
-        fputs("<p class=\"soft\">", out);
-        html_put(out, method);
-        fputs(" is ", out);
-        html_put(out, rows[i].engine);
-        fputs(" ", out);
-        html_put(out, rows[i].version);
-        fputs(".</p>\n", out);
+        html_print(out, "<p class=\"soft\">%s is %s %s.</p>\n", method, rows[i].engine, rows[i].version);
     }
 }
 
@@ -202,9 +186,7 @@ static void put_borders(FILE *out, const StabilityHtml *html) {
     for (int m = 0, at; (at = find_border_method(borders, m)) >= 0; m++) {
         char method[STABILITY_TEXT_SIZE];
         stability_method_name(method, border_row(borders, at)->method, border_row(borders, at)->setting);
-        fputs("<th scope=\"col\">", out);
-        html_put(out, method);
-        fputs("</th>", out);
+        html_print(out, "<th scope=\"col\">%s</th>", method);
     }
     fputs("</tr></thead>\n<tbody>\n", out);
     for (int i = 0; i < borders->count; i++)
