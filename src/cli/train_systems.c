@@ -21,7 +21,7 @@
 
 #include <string.h>
 
-enum { SAIN_LIST_SIZE = 2048, STEPS_SAVED = 100 };
+enum { LIST_SIZE = 4096, STEPS_SAVED = 100 };
 
 typedef struct SainOptions {
     RelationTraining training;
@@ -49,20 +49,20 @@ static void sain_print_score(void *context, const RelationScore *score) {
     fflush(stdout);
 }
 
-/* Reads the scene of the command line and those of the list. */
-static bool sain_read_scenes(const char *first, const char *more, Scene *scenes[RELATION_SCENES_MAX], int *count,
-                             Error *error) {
-    char list[SAIN_LIST_SIZE], *rest = list;
+/* Reads the scene of the command line, if there is one, and those of a list; *count grows with them, also in a failure. */
+static bool read_scenes(const char *first, const char *more, const char *option, Scene **scenes, int most, int *count,
+                        Error *error) {
+    char list[LIST_SIZE], *rest = list;
     if (snprintf(list, sizeof list, "%s", more != NULL ? more : "") >= (int)sizeof list)
-        return error_input(error, "--with", "the list has more than %d characters", SAIN_LIST_SIZE - 1);
-    for (const char *path = first; path != NULL; path = strtok_r(rest, ",", &rest)) {
-        if (*count == RELATION_SCENES_MAX)
-            return error_input(error, "--with", "more than %d scenes", RELATION_SCENES_MAX);
-        scenes[*count] = scene_read(path, error);
+        return error_input(error, option, "the list has more than %d characters", LIST_SIZE - 1);
+    for (const char *path = first != NULL ? first : strtok_r(rest, ",", &rest); path != NULL;
+         path = strtok_r(rest, ",", &rest)) {
+        if (*count == most) return error_input(error, option, "more than %d scenes", most);
+        scenes[*count] = scene_read(installed_path(path), error);
         if (scenes[*count] == NULL) return false;
         ++*count;
     }
-    return true;
+    return *count > 0 || error_input(error, option, "no scene is given");
 }
 
 static bool sain_train(const TrainRequest *request, RelationTraining *training, Error *error) {
@@ -89,8 +89,9 @@ static bool sain_run(const TrainRequest *request, Error *error) {
     if (!train_read(request, &given, error)) return false;
     RelationTraining *training = &given.training;
     training->scenes = scenes;
-    const bool ok = sain_read_scenes(request->input, given.more, scenes, &training->scene_count, error) &&
-                    sain_train(request, training, error);
+    const bool ok =
+        read_scenes(request->input, given.more, "--with", scenes, RELATION_SCENES_MAX, &training->scene_count, error) &&
+        sain_train(request, training, error);
     for (int i = 0; i < RELATION_SCENES_MAX; i++) scene_destroy(scenes[i]);
     return ok;
 }
@@ -202,8 +203,6 @@ const TrainKind train_hybrid = {
     .result = "memory",
     .command_size = TABULATION_TEXT_SIZE};
 
-enum { GNS_LIST_SIZE = 4096 };
-
 typedef struct GnsOptions {
     GnsTraining training;
     const char *scenes;
@@ -247,27 +246,11 @@ static void print_times(const GnsTraining *training) {
     printf("%.3g ms a simulation step of %d boxes\n", 1e3 * training->seconds_a_pass, training->pass_boxes);
 }
 
-/* Reads the scenes of a list; their number in *count. */
-static bool gns_read_scenes(const char *list, Scene *scenes[GNS_MAX_SCENES], int *count, Error *error) {
-    char names[GNS_LIST_SIZE];
-    *count = 0;
-    if (strlen(list) >= sizeof names) return error_input(error, "--scenes", "the list is too long");
-    strcpy(names, list);
-    for (char *rest = names, *name; (name = strtok_r(rest, ",", &rest)) != NULL;) {
-        if (*count == GNS_MAX_SCENES)
-            return error_input(error, "--scenes", "at most %d scenes can be given", GNS_MAX_SCENES);
-        scenes[*count] = scene_read(installed_path(name), error);
-        if (scenes[*count] == NULL) return false;
-        ++*count;
-    }
-    return *count > 0 || error_input(error, "--scenes", "no scene is given");
-}
-
 static bool gns_train(const TrainRequest *request, GnsOptions *given, Error *error) {
     GnsTraining *training = &given->training;
     Scene *scenes[GNS_MAX_SCENES];
     GnsNet net;
-    if (!gns_read_scenes(given->scenes, scenes, &training->scene_count, error)) {
+    if (!read_scenes(NULL, given->scenes, "--scenes", scenes, GNS_MAX_SCENES, &training->scene_count, error)) {
         for (int i = 0; i < training->scene_count; i++) scene_destroy(scenes[i]);
         return false;
     }
