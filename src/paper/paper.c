@@ -23,6 +23,7 @@ const PaperSize paper_whole_size = {
              .fine = "-5:5:0.1",
              .finest = "-5:5:0.025",
              .paper = "-5:5:0.05",
+             .transfer = "-5:5:0.5",
              .random = 26,
              .mixed_random = 13,
              .impulse_every = 11,
@@ -37,7 +38,6 @@ const PaperSize paper_whole_size = {
     .transfer_iterations = 300,
     .weights = {0.01, 0.1, 1, 10},
     .launches = {1, 2, 4, 8, 16},
-    .transfer_x = {"-5:5:0.5", "-5:5:0.5", "-5:5:0.5"},
     .system_launches = 10,
     .system_timed_frames = 90,
     .system_repetitions = 3,
@@ -49,6 +49,7 @@ const PaperSize paper_quick_size = {
              .fine = "-5:5:0.5",
              .finest = "-5:5:0.5",
              .paper = "-5:5:0.5",
+             .transfer = "-5:5:2",
              .random = 11,
              .mixed_random = 5,
              .impulse_every = 11,
@@ -63,7 +64,6 @@ const PaperSize paper_quick_size = {
     .transfer_iterations = 30,
     .weights = {1},
     .launches = {1, 4},
-    .transfer_x = {"-5:5:2", "-5:5:2", "-5:5:2"},
     .system_launches = 1,
     .system_frames = 60,
     .system_timed_frames = 20,
@@ -152,9 +152,9 @@ static bool write_tables(const PaperPlan *plan, Error *error) {
                                             &paper_closed_loop_layout, &paper_law_layout,     &paper_transfer_layout,
                                             &system_score_layout};
     int count = 7;
-    for (int i = 0; paper_systems[i] != NULL; i++) layouts[count++] = paper_systems[i]->table;
+    for (int i = 0; plan->systems[i] != NULL; i++) layouts[count++] = plan->systems[i]->table;
     return piece_tables_write(plan->pieces, folder, layouts, count, NULL, 0, error) &&
-           system_claims_write(paper_systems, folder, error) && write_facts(plan, error);
+           system_claims_write(plan->systems, folder, error) && write_facts(plan, error);
 }
 
 /* A hash of all that decides the result: the program, the options, the scenes. */

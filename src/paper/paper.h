@@ -60,17 +60,15 @@ extern const char *const paper_scene_names[PAPER_SCENES + 1];
 
 /* Launches of each scene. */
 typedef struct PaperDataSize {
-    const char *swept, *mixed, *fine, *finest, *paper; /* m: "-5:5:0.05" */
-    int random, mixed_random;                          /* launches drawn at random, in addition */
+    const char *swept, *mixed, *fine, *finest, *paper, *transfer; /* m: "-5:5:0.05" */
+    int random, mixed_random;                                     /* launches drawn at random, in addition */
     /* Only every so many rows of single impulses are kept: there are ten times as many as of others. */
     int impulse_every, finest_every;
 } PaperDataSize;
 
 typedef struct StoredDataset {
-    PaperData data;
-    DatasetLabels labels;
-    PairView view;
-    PairTarget target;
+    int first, count; /* scenes */
+    DatasetOptions options;
     Dataset *dataset;
 } StoredDataset;
 
@@ -118,21 +116,6 @@ typedef struct SystemScoreRow {
 } SystemScoreRow;
 
 extern const CsvLayout system_score_layout;
-
-struct PaperSystem;
-
-typedef struct SystemScoring {
-    const struct PaperSystem *const *systems; /* ended by NULL */
-    int scene;                                /* of paper_scene_names */
-    const char *path;                         /* of the scene's file */
-    int launches;
-    int frames;       /* of each run, at most; 0: the scene's */
-    int timed_frames; /* from the start, and after a later launch of the bomb as many from there */
-    int repetitions;  /* of the time measurements */
-} SystemScoring;
-
-/* Lines of system_scores of one scene, as a part of the study. context: a SystemScoring. */
-bool system_scores_write(void *context, FILE *lines, const Progress *progress, Error *error);
 
 /* The score of a method in a scene of paper_scene_names; NULL: it has none. */
 const SystemScoreRow *system_score_find(const SystemScoreRow *rows, int count, const char *method, int scene);
@@ -271,13 +254,6 @@ SYSTEMS(SYSTEM_DECLARED)
 
 /* The list; ends with NULL. */
 extern const PaperSystem *const paper_systems[];
-
-/* A part of a system's study as a part of the whole (paper/paper_internal.h). context: a SystemWork. */
-typedef struct SystemWork {
-    const SystemStudy *study;
-    const SystemPart *part;
-} SystemWork;
-bool system_part_write(void *context, FILE *lines, const Progress *progress, Error *error);
 
 /* The whole study of Avatavului, Ifrim, Voncila (2023), from seed to tables: networks trained in every reading of the
    paper, one factor at a time; their rates of right predictions; their runs in place of the solver; laws of physics in

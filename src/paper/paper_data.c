@@ -147,19 +147,35 @@ static FloatRange range_of(const char *text) {
     return range;
 }
 
-/* Launches of `count` scenes from `first` on, with bomb_x in this range, if not NULL. */
-static Dataset *record(const PaperDatasets *datasets, int first, int count, const char *bomb_x, DatasetOptions options,
-                       Error *error) {
+static bool same_options(const DatasetOptions *a, const DatasetOptions *b) {
+    return a->view == b->view && a->target == b->target && a->labels == b->labels && a->random == b->random &&
+           a->every == b->every && a->context == b->context && memcmp(&a->bomb_x, &b->bomb_x, sizeof a->bomb_x) == 0;
+}
+
+/* The dataset of `count` scenes from `first` on, with launches of bomb_x, if not NULL. */
+static const Dataset *record(PaperDatasets *datasets, int first, int count, const char *bomb_x, DatasetOptions options,
+                             Error *error) {
     const char *scenes[PAPER_SCENES];
+    if (bomb_x != NULL) options.bomb_x = range_of(bomb_x);
+    for (int i = 0; i < datasets->count; i++) {
+        const StoredDataset *stored = &datasets->items[i];
+        if (stored->first == first && stored->count == count && same_options(&stored->options, &options))
+            return stored->dataset;
+    }
+    if (datasets->count == PAPER_DATASETS_MAX)
+        return error_input(error, "study", "more than %d datasets", PAPER_DATASETS_MAX), NULL;
+    StoredDataset *stored = &datasets->items[datasets->count];
+    *stored = (StoredDataset){first, count, options, NULL};
     for (int i = 0; i < count; i++) scenes[i] = datasets->scenes[first + i];
     options.scenes = scenes;
     options.scene_count = count;
     options.seed = datasets->seed;
-    if (bomb_x != NULL) options.bomb_x = range_of(bomb_x);
-    return dataset_record(&options, NULL, error);
+    stored->dataset = dataset_record(&options, NULL, error);
+    datasets->count += stored->dataset != NULL;
+    return stored->dataset;
 }
 
-static Dataset *record_for(const PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
+const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
     const PaperDataSize *size = datasets->size;
     DatasetOptions options = {.view = network->view, .target = network->target, .labels = network->labels};
     const char *const ranges[PAPER_DATA] = {[DATA_SWEPT] = size->swept,
@@ -174,61 +190,21 @@ static Dataset *record_for(const PaperDatasets *datasets, const PaperNetwork *ne
     return record(datasets, 0, PAPER_TRAINING_SCENES, ranges[network->data], options, error);
 }
 
-const Dataset *paper_dataset(PaperDatasets *datasets, const PaperNetwork *network, Error *error) {
-    for (int i = 0; i < datasets->count; i++) {
-        const StoredDataset *stored = &datasets->items[i];
-        if (stored->data == network->data && stored->labels == network->labels && stored->view == network->view &&
-            stored->target == network->target)
-            return stored->dataset;
+bool paper_laws_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
+    const Dataset *dataset = record(&plan->datasets, 0, PAPER_TRAINING_SCENES, plan->size->data.swept,
+                                    (DatasetOptions){.context = true}, error); /* with the pairs' context */
+    LawRow row;
+    return dataset != NULL && law_study_run(dataset, &part->laws, &row, progress, error) &&
+           piece_tables_print(lines, &paper_law_layout, -1, &row, error);
+}
+
+bool paper_transfer_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
+    const Dataset *data[TRANSFER_SCENES];
+    TransferRow row;
+    for (int i = 0; i < TRANSFER_SCENES; i++) {
+        data[i] = record(&plan->datasets, i, 1, plan->size->data.transfer, (DatasetOptions){0}, error);
+        if (data[i] == NULL) return false;
     }
-    if (datasets->count == PAPER_DATASETS_MAX)
-        return error_input(error, "study", "more than %d datasets", PAPER_DATASETS_MAX), NULL;
-    Dataset *dataset = record_for(datasets, network, error);
-    if (dataset == NULL) return NULL;
-    datasets->items[datasets->count++] =
-        (StoredDataset){network->data, network->labels, network->view, network->target, dataset};
-    return dataset;
-}
-
-void paper_outlook_free(PaperOutlook *outlook) {
-    dataset_destroy(outlook->laws);
-    for (int i = 0; i < 3; i++) dataset_destroy(outlook->scenes[i]);
-}
-
-bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Error *error) {
-    PaperLaws *part = context;
-    PaperOutlook *outlook = part->outlook;
-    if (outlook->laws == NULL) /* with the pairs' context */
-        outlook->laws = record(outlook->datasets, 0, PAPER_TRAINING_SCENES, outlook->datasets->size->swept,
-                               (DatasetOptions){.context = true}, error);
-    if (outlook->laws == NULL) return false;
-    LawResult result;
-    const LawStudy *study = &part->study;
-    const bool labels = study->laws == NULL;
-    if (!(labels ? law_study_labels(outlook->laws, &result, error)
-                 : law_study_train(outlook->laws, study, &result, progress, error)))
-        return false;
-    LawRow row = {.laws = labels ? LAW_SET_ENGINE : csv_word(paper_law_words, study->laws),
-                  .weight = labels ? NAN : study->weight,
-                  .seed = labels ? NAN : (double)study->seed,
-                  .test = result.test,
-                  .constant = result.constant};
-    memcpy(row.violation, result.violations.of, sizeof row.violation);
-    return piece_tables_print(lines, &paper_law_layout, -1, &row, error);
-}
-
-bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, Error *error) {
-    PaperTransfer *part = context;
-    PaperOutlook *outlook = part->outlook;
-    for (int i = 0; i < 3; i++) {
-        if (outlook->scenes[i] == NULL)
-            outlook->scenes[i] = record(outlook->datasets, i, 1, outlook->bomb_x[i], (DatasetOptions){0}, error);
-        if (outlook->scenes[i] == NULL) return false;
-    }
-    const TransferData data = {outlook->scenes[0], outlook->scenes[1], outlook->scenes[2]};
-    const TransferStudy *study = &part->study;
-    TransferResult result;
-    if (!transfer_study_run(&data, study, &result, progress, error)) return false;
-    const TransferRow row = {study->transfer, (double)study->seed, study->launches, result.error, result.constant};
-    return piece_tables_print(lines, &paper_transfer_layout, -1, &row, error);
+    return transfer_study_run(data, &part->transfer, &row, progress, error) &&
+           piece_tables_print(lines, &paper_transfer_layout, -1, &row, error);
 }

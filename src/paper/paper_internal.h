@@ -163,24 +163,24 @@ extern ClaimRule *const hybrid_claims[];
 
 /* The network is the paper's 10-8-8-6 (3.1) by Adam, standardised, with the default activations. */
 typedef struct LawStudy {
-    const char *laws; /* none, momentum, energy, approach, cone, all */
+    const char *laws; /* none, momentum, energy, approach, cone, all; NULL: no network, the labels */
     double weight;    /* of each law */
     uint64_t seed;
     int iterations;
 } LawStudy;
 
-typedef struct LawResult {
-    double test, constant; /* mean squared error on the test rows, and the constant predictor's; NAN for labels */
-    LawNumbers violations; /* means over the test rows (laws_measure), in the laws' units */
-} LawResult;
+/* laws.csv: a training with laws in the loss; or the labels by themselves. NAN where a number is not applicable. */
+typedef struct LawRow {
+    int laws; /* of paper_law_words */
+    double weight, seed;
+    double test, constant;  /* mean squared error on the test rows, and the constant predictor's */
+    double violation[LAWS]; /* means over the test rows (laws_measure), in the laws' units */
+} LawRow;
 
-/* Trains one network; the dataset must have context (laws_check). Scores and violations are those of the network with
-   the lowest loss on the training rows. False with error set as by training_run, or if progress_report() stops it. */
-bool law_study_train(const Dataset *dataset, const LawStudy *study, LawResult *result, const Progress *progress,
-                     Error *error);
-
-/* Measures the violations of the labels. */
-bool law_study_labels(const Dataset *dataset, LawResult *result, Error *error);
+/* Trains one network and fills the row; the dataset must have context (laws_check). Scores and violations are those of the
+   network with the lowest loss on the training rows. Of the labels, if study->laws is NULL. False with error set as by
+   training_run, or if progress_report() stops it. */
+bool law_study_run(const Dataset *dataset, const LawStudy *study, LawRow *row, const Progress *progress, Error *error);
 
 /* A scene with some of its held-out launches. */
 
@@ -198,32 +198,10 @@ typedef struct Launched {
 bool launched_begin(Launched *launched, const char *path, int count, Error *error);
 void launched_free(Launched *launched);
 
-/* Rates and closed-loop runs of the networks in one scene, as parts of the study. */
-
-typedef struct PaperScoring {
-    int scene;                    /* of paper_scene_names */
-    const char *path;             /* of the scene's file */
-    const char *folder;           /* of the trained networks */
-    const PaperNetwork *networks; /* [count] */
-    int count;
-    int rate_launches, closed_launches; /* launches to score on; none is a training launch */
-    Sampling sampling;
-    int repetitions; /* of the time measurements */
-} PaperScoring;
-
-/* Lines of the table rates: every network, and the warm start alone. context: a PaperScoring. */
-bool paper_rates_write(void *context, FILE *lines, const Progress *progress, Error *error);
-
-/* Lines of the table closed_loop: every network that can take a step. */
-bool paper_closed_loop_write(void *context, FILE *lines, const Progress *progress, Error *error);
-
 /* Transfer learning, the paper's outlook: does a network that was trained on the single box and the stack need fewer
    launches of the pyramid than one trained from scratch? */
 
-/* All with one view and the target pair. single and stack may be NULL for training from scratch. */
-typedef struct TransferData {
-    const Dataset *single, *stack, *pyramid;
-} TransferData;
+enum { TRANSFER_SCENES = 3 }; /* single, stack, pyramid: the first of paper_scene_names */
 
 /* The network is 10-10-2 (its inputs are the view's), with linear standardised outputs, trained with Adam. */
 typedef struct TransferStudy {
@@ -233,16 +211,20 @@ typedef struct TransferStudy {
     int iterations; /* of each stage; transfer has three stages, of which the pyramid is the last */
 } TransferStudy;
 
-/* RMS errors of the change of relative velocity, over both components, on held-out launches of the pyramid, m/s. */
-typedef struct TransferResult {
+/* transfer.csv: a training. RMS errors of the change of relative velocity, over both components, on held-out launches of the
+   pyramid, m/s. */
+typedef struct TransferRow {
+    int transfer; /* 0: from scratch */
+    double seed, launches;
     double error;    /* of the network */
     double constant; /* of the mean of the pyramid's training rows */
-} TransferResult;
+} TransferRow;
 
-/* Trains in one or three stages. A network keeps the normalisation of its first stage (TrainingOptions.start): with
+/* Trains in one or three stages, on data of one view and the target pair; the first two may be NULL for training from
+   scratch. A network keeps the normalisation of its first stage (TrainingOptions.start): with
    transfer, the pyramid is learned in the units of the single box. Progress restarts with each stage. False with error
    set as by training_run, if there are fewer launches than `launches`, or if progress_report() stops it. */
-bool transfer_study_run(const TransferData *data, const TransferStudy *study, TransferResult *result,
+bool transfer_study_run(const Dataset *const data[TRANSFER_SCENES], const TransferStudy *study, TransferRow *row,
                         const Progress *progress, Error *error);
 
 /* Rates of right predictions. The paper does not define its "successful prediction rate" (section 4: 60 to 91%), so
@@ -294,8 +276,8 @@ typedef struct PaperSize {
     int seeds, law_iterations, transfer_iterations; /* of the outlook */
     double weights[PAPER_WEIGHTS];                  /* of laws, ended by 0 */
     int launches[PAPER_LAUNCHES];                   /* of transfer, ended by 0 */
-    const char *transfer_x[3];                      /* single, stack, pyramid */
-    /* Of the scores of systems (paper/paper.h). */
+    /* Of the scores of systems (paper/paper.h). Frames of each run, at most, 0: the scene's; timed ones from the start,
+       and after a later launch of the bomb as many from there. */
     int system_launches, system_frames, system_timed_frames, system_repetitions;
 } PaperSize;
 
@@ -311,51 +293,6 @@ enum {
 /* For each target: the highest test error, over the constant predictor's, that its best network may have; 0: no aim. */
 extern const double target_aims[PAIR_TARGETS];
 
-/* The paper's outlook (section 5) as parts of the study: laws of physics in the loss, and transfer learning. */
-
-/* Datasets shared by the parts, recorded at their first use. Zero-initialise all but `datasets` and `bomb_x`. */
-typedef struct PaperOutlook {
-    const PaperDatasets *datasets;
-    const char *bomb_x[3]; /* launches of single, stack and pyramid for transfer, m: "-5:5:0.5" */
-    Dataset *laws;
-    Dataset *scenes[3]; /* single, stack, pyramid */
-} PaperOutlook;
-
-void paper_outlook_free(PaperOutlook *outlook);
-
-/* A row of laws.csv: a training, or with laws NULL the labels. context: a PaperLaws. */
-typedef struct PaperLaws {
-    PaperOutlook *outlook;
-    LawStudy study;
-} PaperLaws;
-
-bool paper_laws_write(void *context, FILE *lines, const Progress *progress, Error *error);
-
-/* A row of transfer.csv: a training. context: a PaperTransfer. */
-typedef struct PaperTransfer {
-    PaperOutlook *outlook;
-    TransferStudy study;
-} PaperTransfer;
-
-bool paper_transfer_write(void *context, FILE *lines, const Progress *progress, Error *error);
-
-/* One network of the paper's study: trained, scored and stored. */
-
-typedef struct PaperTraining {
-    PaperDatasets *datasets;
-    PaperNetwork network;
-    const char *folder; /* of the trained networks */
-    uint64_t seed;      /* of the first weights */
-} PaperTraining;
-
-/* Trains, writes folder/NAME.npz, and writes lines of the tables table1 and networks (studies/chart.h), and a note of
-   the file's hash. A PaperPart's write(); context is the PaperTraining. A training that is stopped fails: the name is of a
-   whole training. */
-bool paper_training_write(void *context, FILE *lines, const Progress *progress, Error *error);
-
-/* *there: whether folder/NAME.npz is the network of these lines. False with error set if the system cannot tell. */
-bool paper_training_whole(const PaperTraining *training, const char *lines, bool *there, Error *error);
-
 /* The share of test rows for which all outputs are within 5% of their range over the training rows; NaN without test rows.
    The paper does not define the accuracy of its gate (section 3: 90%); this is a guess. False with error set when memory is
    short. */
@@ -364,42 +301,59 @@ bool paper_accuracy(const Network *network, const Dataset *dataset, double *accu
 /* The paper's study as a list of parts, its pieces (runs/pieces.h): trained networks, their scores, the outlook, the
    systems. Each uses all threads by itself. */
 
-typedef struct PaperPart {
+typedef struct PaperPlan PaperPlan;
+typedef struct PaperPart PaperPart;
+
+/* Writes lines of the part's tables (studies/chart.h). */
+typedef bool PaperWrite(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error);
+
+struct PaperPart {
     char name[PIECE_NAME_SIZE];
     double weight; /* about the seconds on two cores */
     bool timed;
     bool needs_networks; /* the trained ones, all of them */
-    bool (*write)(void *context, FILE *lines, const Progress *progress, Error *error);
-    union {
-        PaperTraining training;
-        PaperScoring scoring;
-        PaperLaws laws;
-        PaperTransfer transfer;
-        SystemWork system;
-        SystemScoring scores;
-    } of; /* the context of write */
-} PaperPart;
+    PaperWrite *write;
+    int index; /* of the plan's network, for paper_training_write; of the scene, for scores */
+    LawStudy laws;
+    TransferStudy transfer;
+    const SystemPart *system;
+};
 
 /* paper_plan_free(), also after a failure. Parts point into it: it stays where it was made. */
-typedef struct PaperPlan {
+struct PaperPlan {
     PiecePlan plan;
     PaperPart *parts; /* [count] the first train networks[network_count] */
     size_t count, capacity;
     const PaperOptions *options;
     const PaperSize *size;
     PaperDatasets datasets;
-    PaperOutlook outlook;
-    SystemStudy systems;
+    const PaperSystem *const *systems; /* ended by NULL */
+    SystemStudy system_study;
     char networks_folder[PAPER_PATH_SIZE];
     PaperNetwork *networks;
     int network_count;
     int64_t first_timed;  /* parts that are timed are done by one shard, so that times of a report are of one machine */
     const Pieces *pieces; /* to be set: what the plan is done by */
-} PaperPlan;
+};
 
 /* ERROR_INPUT for a scene that cannot be read. The options must outlive the plan. */
 bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error);
 void paper_plan_free(PaperPlan *plan);
+
+/* What the parts do. Trains a network, writes networks_folder/NAME.npz, its lines of table1 and networks, and a note of the
+   file's hash. A training that is stopped fails: the name is of a whole training. */
+PaperWrite paper_training_write;
+
+/* *there: whether networks_folder/NAME.npz is the network of these lines. False with error set if the system cannot
+   tell. */
+bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const char *lines, bool *there, Error *error);
+
+/* In one scene, on launches that none was trained on: the table rates of every network and of the warm start alone; the table
+   closed_loop of every network that can take a step; system_scores. */
+PaperWrite paper_rates_write, paper_closed_loop_write, system_scores_write;
+
+/* A row of laws or of transfer. */
+PaperWrite paper_laws_write, paper_transfer_write;
 
 /* The CSV files that the paper's study writes: their rows and layouts (base/csv.h), for the study and for the
    figures and the report that read them. NAN where a number is not applicable. */
@@ -446,19 +400,6 @@ typedef struct ClosedLoopRow {
     int scene; /* of paper_scene_names */
     double frames_until_apart, penetration_max, momentum_error, energy_ratio, us_step, us_step_engine;
 } ClosedLoopRow;
-
-/* laws.csv: a training with laws in the loss (LawStudy, LawResult); or the labels by themselves. */
-typedef struct LawRow {
-    int laws; /* of paper_law_words */
-    double weight, seed, test, constant;
-    double violation[LAWS];
-} LawRow;
-
-/* transfer.csv: a training (TransferStudy, TransferResult). */
-typedef struct TransferRow {
-    int transfer; /* 0: from scratch */
-    double seed, launches, error, constant;
-} TransferRow;
 
 /* study.csv: what was done, as text. */
 typedef struct FactRow {

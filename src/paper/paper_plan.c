@@ -8,6 +8,7 @@
 #include "paper/paper_internal.h"
 #include "runs/pieces.h"
 
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,13 +17,17 @@ static const char *const law_names[] = {"all", "momentum", "energy", "approach",
 enum { LAW_SETS = sizeof law_names / sizeof law_names[0] };
 
 /* A new part, to be filled in. NULL with error set when memory is short. */
-static PaperPart *add_part(PaperPlan *plan, double weight,
-                           bool (*write)(void *context, FILE *lines, const Progress *progress, Error *error),
-                           Error *error) {
+static PaperPart *add_part(PaperPlan *plan, double weight, PaperWrite *write, Error *error, const char *name, ...)
+    PRINTF_LIKE(5, 6);
+static PaperPart *add_part(PaperPlan *plan, double weight, PaperWrite *write, Error *error, const char *name, ...) {
     if (!array_reserve((void **)&plan->parts, &plan->capacity, plan->count + 1, sizeof *plan->parts))
         return error_memory(error, "paper"), NULL;
     PaperPart *part = &plan->parts[plan->count++];
     *part = (PaperPart){.weight = weight, .write = write};
+    va_list arguments;
+    va_start(arguments, name);
+    vsnprintf(part->name, sizeof part->name, name, arguments);
+    va_end(arguments);
     return part;
 }
 
@@ -49,31 +54,22 @@ static double training_weight(const PaperNetwork *network) {
 static bool add_trainings(PaperPlan *plan, Error *error) {
     for (int i = 0; i < plan->network_count; i++) {
         const PaperNetwork *network = &plan->networks[i];
-        PaperPart *part = add_part(plan, training_weight(network), paper_training_write, error);
+        PaperPart *part =
+            add_part(plan, training_weight(network), paper_training_write, error, "network-%s", network->name);
         if (part == NULL) return false;
-        snprintf(part->name, sizeof part->name, "network-%s", network->name);
-        part->of.training = (PaperTraining){&plan->datasets, *network, plan->networks_folder, plan->options->seed};
+        part->index = i;
     }
     return true;
 }
 
 static bool add_scoring(PaperPlan *plan, int scene, bool closed, Error *error) {
-    const PaperSize *size = plan->size;
-    PaperPart *part = add_part(plan, scene < PAPER_TRAINING_SCENES ? 2 : 10,
-                               closed ? paper_closed_loop_write : paper_rates_write, error);
+    PaperPart *part =
+        add_part(plan, scene < PAPER_TRAINING_SCENES ? 2 : 10, closed ? paper_closed_loop_write : paper_rates_write,
+                 error, "%s-%s", closed ? "closed-loop" : "rates", paper_scene_names[scene]);
     if (part == NULL) return false;
-    snprintf(part->name, sizeof part->name, "%s-%s", closed ? "closed-loop" : "rates", paper_scene_names[scene]);
     part->timed = closed;
     part->needs_networks = true;
-    part->of.scoring = (PaperScoring){.scene = scene,
-                                      .path = plan->datasets.scenes[scene],
-                                      .folder = plan->networks_folder,
-                                      .networks = plan->networks,
-                                      .count = plan->network_count,
-                                      .rate_launches = size->rate_launches,
-                                      .closed_launches = size->closed_launches,
-                                      .sampling = size->sampling,
-                                      .repetitions = size->repetitions};
+    part->index = scene;
     return true;
 }
 
@@ -83,13 +79,12 @@ static bool add_scorings(PaperPlan *plan, Error *error) {
     return true;
 }
 
-static bool add_law_set(PaperPlan *plan, const char *laws, double law_weight, Error *error) {
+static bool add_law_set(PaperPlan *plan, const char *laws, double weight, Error *error) {
     for (int seed = 0; seed < (laws == NULL ? 1 : plan->size->seeds); seed++) {
-        PaperPart *part = add_part(plan, laws == NULL ? 0.1 : 2, paper_laws_write, error);
+        PaperPart *part = add_part(plan, laws == NULL ? 0.1 : 2, paper_laws_write, error, "laws-%s-%g-%d",
+                                   laws == NULL ? "engine" : laws, weight, seed);
         if (part == NULL) return false;
-        snprintf(part->name, sizeof part->name, "laws-%s-%g-%d", laws == NULL ? "engine" : laws, law_weight, seed);
-        part->of.laws = (PaperLaws){
-            &plan->outlook, {laws, law_weight, plan->options->seed + (uint64_t)seed, plan->size->law_iterations}};
+        part->laws = (LawStudy){laws, weight, plan->options->seed + (uint64_t)seed, plan->size->law_iterations};
     }
     return true;
 }
@@ -103,14 +98,11 @@ static bool add_laws(PaperPlan *plan, Error *error) {
 }
 
 static bool add_transfer(PaperPlan *plan, bool transfer, int seed, int launches, Error *error) {
-    PaperPart *part = add_part(plan, launches + 2 * transfer, paper_transfer_write, error);
+    PaperPart *part = add_part(plan, launches + 2 * transfer, paper_transfer_write, error, "transfer-%d-%d-%d",
+                               transfer, seed, launches);
     if (part == NULL) return false;
-    snprintf(part->name, sizeof part->name, "transfer-%d-%d-%d", transfer, seed, launches);
-    part->of.transfer = (PaperTransfer){&plan->outlook,
-                                        {.transfer = transfer,
-                                         .seed = plan->options->seed + (uint64_t)seed,
-                                         .launches = launches,
-                                         .iterations = plan->size->transfer_iterations}};
+    part->transfer =
+        (TransferStudy){transfer, plan->options->seed + (uint64_t)seed, launches, plan->size->transfer_iterations};
     return true;
 }
 
@@ -129,35 +121,27 @@ static double scoring_weight(const PaperSize *size, int scene) {
     return size->system_launches * run * (size->system_frames > 0 ? size->system_frames / whole_frames : 1);
 }
 
-static bool add_system_scores(PaperPlan *plan, Error *error) {
-    const PaperSize *size = plan->size;
-    for (int i = 0; i < PAPER_SCENES; i++) {
-        PaperPart *part = add_part(plan, scoring_weight(size, i), system_scores_write, error);
-        if (part == NULL) return false;
-        snprintf(part->name, sizeof part->name, "systems-%s", paper_scene_names[i]);
-        part->timed = true;
-        part->of.scores = (SystemScoring){.systems = paper_systems,
-                                          .scene = i,
-                                          .path = plan->datasets.scenes[i],
-                                          .launches = size->system_launches,
-                                          .frames = size->system_frames,
-                                          .timed_frames = size->system_timed_frames,
-                                          .repetitions = size->system_repetitions};
-    }
-    return true;
+static bool write_system(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
+    return part->system->write(&plan->system_study, part->system->index, lines, progress, error);
 }
 
 static bool add_systems(PaperPlan *plan, Error *error) {
-    for (int i = 0; paper_systems[i] != NULL; i++)
-        for (const SystemPart *own = paper_systems[i]->parts; own->name != NULL; own++) {
-            const double weight = plan->systems.quick ? own->quick_weight : own->weight;
-            PaperPart *part = add_part(plan, weight, system_part_write, error);
+    for (int i = 0; plan->systems[i] != NULL; i++)
+        for (const SystemPart *own = plan->systems[i]->parts; own->name != NULL; own++) {
+            PaperPart *part = add_part(plan, plan->options->quick ? own->quick_weight : own->weight, write_system,
+                                       error, "system-%s-%s", plan->systems[i]->name, own->name);
             if (part == NULL) return false;
-            snprintf(part->name, sizeof part->name, "system-%s-%s", paper_systems[i]->name, own->name);
             part->timed = own->timed;
-            part->of.system = (SystemWork){&plan->systems, own};
+            part->system = own;
         }
-    return add_system_scores(plan, error);
+    for (int i = 0; i < PAPER_SCENES; i++) {
+        PaperPart *part = add_part(plan, scoring_weight(plan->size, i), system_scores_write, error, "systems-%s",
+                                   paper_scene_names[i]);
+        if (part == NULL) return false;
+        part->timed = true;
+        part->index = i;
+    }
+    return true;
 }
 
 static void describe(void *context, int64_t piece, PieceInfo *info) {
@@ -171,8 +155,8 @@ static void describe(void *context, int64_t piece, PieceInfo *info) {
 }
 
 static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
-    PaperPart *part = &((PaperPlan *)context)->parts[piece];
-    return part->write(&part->of, results, progress, error);
+    PaperPlan *plan = context;
+    return plan->parts[piece].write(plan, &plan->parts[piece], results, progress, error);
 }
 
 /* Networks of an earlier study in the folder do not count: those of this one have a piece. */
@@ -188,15 +172,14 @@ static bool whole(void *context, int64_t piece, const char *results, size_t size
     const PaperPlan *plan = context;
     (void)size;
     *there = true;
-    return piece >= plan->network_count || paper_training_whole(&plan->parts[piece].of.training, results, there, error);
+    return piece >= plan->network_count || paper_training_whole(plan, &plan->parts[piece], results, there, error);
 }
 
 static bool begin(PaperPlan *plan, const PaperOptions *options, Error *error) {
     plan->options = options;
     plan->size = options->quick ? &paper_quick_size : &paper_whole_size;
-    plan->systems = (SystemStudy){options->scenes, options->quick, options->seed};
-    plan->outlook.datasets = &plan->datasets;
-    for (int i = 0; i < 3; i++) plan->outlook.bomb_x[i] = plan->size->transfer_x[i];
+    plan->systems = paper_systems;
+    plan->system_study = (SystemStudy){options->scenes, options->quick, options->seed};
     plan->networks = malloc((size_t)paper_network_count * sizeof *plan->networks);
     if (plan->networks == NULL) return error_memory(error, "paper");
     choose_networks(plan);
@@ -222,7 +205,6 @@ bool paper_plan_make(PaperPlan *plan, const PaperOptions *options, Error *error)
 void paper_plan_free(PaperPlan *plan) {
     free(plan->parts);
     free(plan->networks);
-    paper_outlook_free(&plan->outlook);
     paper_datasets_free(&plan->datasets);
     *plan = (PaperPlan){0};
 }

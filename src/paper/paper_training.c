@@ -228,8 +228,9 @@ static bool write_network(FILE *lines, const PaperNetwork *of, const Network *ne
     return piece_tables_print(lines, &paper_trained_layout, -1, &row, error);
 }
 
-static bool network_path(const PaperTraining *training, char path[PAPER_PATH_SIZE], Error *error) {
-    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", training->folder, training->network.name);
+static bool network_path(const PaperPlan *plan, const PaperPart *part, char path[PAPER_PATH_SIZE], Error *error) {
+    return file_path(path, PAPER_PATH_SIZE, error, "%s/%s.npz", plan->networks_folder,
+                     plan->networks[part->index].name);
 }
 
 /* The note that tells a network from one of the same name. */
@@ -242,35 +243,35 @@ static bool print_note(char note[NOTE_SIZE], const char *path, Error *error) {
     return true;
 }
 
-bool paper_training_whole(const PaperTraining *training, const char *lines, bool *there, Error *error) {
+bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const char *lines, bool *there, Error *error) {
     char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
     Error reason = {0};
     *there = false;
-    if (!network_path(training, path, error)) return false;
+    if (!network_path(plan, part, path, error)) return false;
     if (print_note(note, path, &reason)) *there = strstr(lines, note) != NULL;
     if (reason.kind == ERROR_NONE || reason.kind == ERROR_INPUT) return true;
     *error = reason;
     return false;
 }
 
-static bool store(const PaperTraining *training, Network *network, FILE *lines, Error *error) {
+static bool store(const PaperPlan *plan, const PaperPart *part, Network *network, FILE *lines, Error *error) {
     char path[PAPER_PATH_SIZE], note[NOTE_SIZE];
-    snprintf(network->command, sizeof network->command, "twinbox paper: %s", training->network.name);
-    if (!network_path(training, path, error) || !network_write(network, path, error) || !print_note(note, path, error))
+    snprintf(network->command, sizeof network->command, "twinbox paper: %s", plan->networks[part->index].name);
+    if (!network_path(plan, part, path, error) || !network_write(network, path, error) ||
+        !print_note(note, path, error))
         return false;
     fputs(note, lines);
     return true;
 }
 
-bool paper_training_write(void *context, FILE *lines, const Progress *progress, Error *error) {
-    const PaperTraining *training = context;
-    const PaperNetwork *of = &training->network;
-    const Dataset *dataset = paper_dataset(training->datasets, of, error);
+bool paper_training_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
+    const PaperNetwork *of = &plan->networks[part->index];
+    const Dataset *dataset = paper_dataset(&plan->datasets, of, error);
     if (dataset == NULL) return false;
     ScoreWriter writer = {lines, of, {0}, true, error};
     TrainingOptions options = {.optimizer = of->optimizer,
                                .iterations = of->iterations,
-                               .seed = training->seed,
+                               .seed = plan->datasets.seed,
                                .hidden = of->hidden,
                                .output_activation = of->output,
                                .scale = of->scale,
@@ -287,7 +288,7 @@ bool paper_training_write(void *context, FILE *lines, const Progress *progress, 
     score.iteration = iterations;
     double accuracy = NAN;
     ok = ok && paper_accuracy(network, dataset, &accuracy, error) &&
-         write_network(lines, of, network, &score, accuracy, error) && store(training, network, lines, error);
+         write_network(lines, of, network, &score, accuracy, error) && store(plan, part, network, lines, error);
     network_destroy(network);
     return ok;
 }

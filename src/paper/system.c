@@ -38,7 +38,8 @@ typedef struct Scored {
 
 /* A scene's scores in progress. */
 typedef struct Scores {
-    const SystemScoring *scoring;
+    const PaperPlan *plan;
+    int scene;
     Launched launched;
     RunLog *engine, *converged; /* [launches] */
     int count;
@@ -46,10 +47,10 @@ typedef struct Scores {
     LaunchLoop *loops;
 } Scores;
 
-static int count_methods(const SystemScoring *scoring) {
+static int count_methods(const PaperSystem *const *systems) {
     int count = sizeof rivals / sizeof *rivals - 1;
-    for (int i = 0; scoring->systems[i] != NULL; i++)
-        for (int k = 0; scoring->systems[i]->methods[k] != NULL; k++) count++;
+    for (int i = 0; systems[i] != NULL; i++)
+        for (int k = 0; systems[i]->methods[k] != NULL; k++) count++;
     return count;
 }
 
@@ -66,25 +67,27 @@ static bool add_methods(Scores *scores, const char *system, const char *const *t
 }
 
 static void shorten(Scores *scores) {
-    const int frames = scores->scoring->frames;
+    const int frames = scores->plan->size->system_frames;
     for (int i = 0; i < scores->launched.count; i++)
         if (frames > 0 && frames < scores->launched.launches[i].frames) scores->launched.launches[i].frames = frames;
 }
 
-static bool scores_begin(Scores *scores, const SystemScoring *scoring, Error *error) {
-    *scores = (Scores){.scoring = scoring};
-    if (!launched_begin(&scores->launched, scoring->path, scoring->launches, error)) return false;
-    const size_t most = (size_t)count_methods(scoring), launches = (size_t)scoring->launches;
+static bool scores_begin(Scores *scores, const PaperPlan *plan, int scene, Error *error) {
+    const PaperSystem *const *systems = plan->systems;
+    const char *path = plan->datasets.scenes[scene];
+    *scores = (Scores){.plan = plan, .scene = scene};
+    if (!launched_begin(&scores->launched, path, plan->size->system_launches, error)) return false;
+    const size_t most = (size_t)count_methods(systems), launches = (size_t)scores->launched.count;
     scores->methods = calloc(most, sizeof *scores->methods);
     scores->loops = calloc(most * launches, sizeof *scores->loops);
     scores->engine = calloc(launches, sizeof *scores->engine);
     scores->converged = calloc(launches, sizeof *scores->converged);
     if (scores->methods == NULL || scores->loops == NULL || scores->engine == NULL || scores->converged == NULL)
-        return error_memory(error, scoring->path);
+        return error_memory(error, path);
     shorten(scores);
     bool ok = add_methods(scores, SYSTEM_RIVAL, rivals, error);
-    for (int i = 0; ok && scoring->systems[i] != NULL; i++)
-        ok = add_methods(scores, scoring->systems[i]->name, scoring->systems[i]->methods, error);
+    for (int i = 0; ok && systems[i] != NULL; i++)
+        ok = add_methods(scores, systems[i]->name, systems[i]->methods, error);
     return ok;
 }
 
@@ -124,10 +127,10 @@ static bool run_launch(void *context, int i, Error *error) {
 static bool time_method(const Scores *scores, Scored *method, StepCost engine[PHASES], Error *error) {
     const Contender *const turns[] = {&scores->methods[ENGINE].contender, &method->contender};
     const Scene *launched = &scores->launched.launches[0];
-    const int last = scores->scoring->timed_frames + launched->bomb.frame;
+    const int last = scores->plan->size->system_timed_frames + launched->bomb.frame;
     const TimingOptions options = {.launches = launched,
                                    .launch_count = 1,
-                                   .repetitions = scores->scoring->repetitions,
+                                   .repetitions = scores->plan->size->system_repetitions,
                                    .last_frame = last < launched->frames ? last : launched->frames,
                                    .no_instructions = true};
     StepCost closed[2][PHASES], frozen[2][PHASES];
@@ -168,7 +171,7 @@ static bool write_method(const Scores *scores, Scored *method, FILE *lines, Erro
     const Method *of = &method->contender.method;
     SystemScoreRow row = {.system = method->system,
                           .method = of->text,
-                          .scene = scores->scoring->scene,
+                          .scene = scores->scene,
                           .launches = scores->launched.count,
                           .frames = scores->launched.launches[0].frames,
                           .frames_engine = median_frames(scores, method, false),
@@ -179,11 +182,11 @@ static bool write_method(const Scores *scores, Scored *method, FILE *lines, Erro
     return piece_tables_print(lines, &system_score_layout, -1, &row, error);
 }
 
-bool system_scores_write(void *context, FILE *lines, const Progress *progress, Error *error) {
+bool system_scores_write(PaperPlan *plan, const PaperPart *part, FILE *lines, const Progress *progress, Error *error) {
     Scores scores;
     ProgressStage runs = {.whole = progress, .share = 0.7}, times = {.whole = progress, .begin = 0.7, .share = 0.3};
     const Progress of_runs = {progress_stage, &runs}, of_times = {progress_stage, &times};
-    bool ok = scores_begin(&scores, context, error);
+    bool ok = scores_begin(&scores, plan, part->index, error);
     const ParallelWork logging = {log_launch, &scores}, running = {run_launch, &scores};
     ok = ok && parallel_for(&logging, scores.launched.count, "launches", NULL, error) &&
          parallel_for(&running, scores.count * scores.launched.count, "runs of systems", &of_runs, error);
@@ -223,11 +226,6 @@ const SystemScoreRow *system_score_find(const SystemScoreRow *rows, int count, c
 
 #define SYSTEM_LISTED(name) &system_##name,
 const PaperSystem *const paper_systems[] = {SYSTEMS(SYSTEM_LISTED) NULL};
-
-bool system_part_write(void *context, FILE *lines, const Progress *progress, Error *error) {
-    const SystemWork *work = context;
-    return work->part->write(work->study, work->part->index, lines, progress, error);
-}
 
 /* The strips. */
 

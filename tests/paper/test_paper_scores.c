@@ -9,26 +9,23 @@
 
 enum { NETWORKS = 2, TABLE_SIZE = 1 << 14 };
 
-static const PaperNetwork networks[NETWORKS] = {{.name = "pair-net", .target = TARGET_PAIR},
-                                                {.name = "contact-net", .target = TARGET_POINTS}};
-static const PaperScoring scoring = {.path = SOURCE_DIR "/scenes/single.yaml",
-                                     .folder = SOURCE_DIR "/scenes/networks",
-                                     .networks = networks,
-                                     .count = NETWORKS,
-                                     .rate_launches = 3,
-                                     .closed_launches = 2,
-                                     .sampling = {.after = 30, .rest = 200},
-                                     .repetitions = 1};
+static PaperNetwork networks[NETWORKS] = {{.name = "pair-net", .target = TARGET_PAIR},
+                                          {.name = "contact-net", .target = TARGET_POINTS}};
+static const PaperSize size = {
+    .rate_launches = 3, .closed_launches = 2, .sampling = {.after = 30, .rest = 200}, .repetitions = 1};
+static PaperPlan plan = {.size = &size,
+                         .datasets.scenes = {SOURCE_DIR "/scenes/single.yaml"},
+                         .networks_folder = SOURCE_DIR "/scenes/networks",
+                         .networks = networks,
+                         .network_count = NETWORKS};
 
-typedef bool (*WriteTable)(void *context, FILE *lines, const Progress *progress, Error *error);
-
-static void write_table(WriteTable write, int threads, char table[TABLE_SIZE]) {
+static void write_table(PaperWrite *write, int threads, char table[TABLE_SIZE]) {
     Error error = {0};
     const int before = omp_get_max_threads();
     FILE *lines = fmemopen(table, TABLE_SIZE, "w");
     assert_non_null(lines);
     omp_set_num_threads(threads);
-    assert_ok(write((void *)&scoring, lines, NULL, &error), error);
+    assert_ok(write(&plan, &(PaperPart){.index = 0}, lines, NULL, &error), error);
     omp_set_num_threads(before);
     assert_int_equal(fclose(lines), 0);
 }

@@ -8,18 +8,18 @@
 #include <math.h>
 
 static const PaperDataSize size = {.swept = "-2:2:1"};
-static PaperDatasets datasets = {.size = &size, .seed = 1};
-static PaperTraining training = {.datasets = &datasets, .seed = 1};
+static PaperNetwork network;
+static PaperPlan plan = {.networks = &network, .network_count = 1};
+static const PaperPart part = {.index = 0};
 
 FIXTURE(begin) {
-    static char folder[256];
-    assert_ok(paper_datasets_begin(&datasets, SOURCE_DIR "/scenes", &size, 1, &error), error);
-    training.network = paper_network(0);
-    training.network.iterations = 20;
-    training.folder = strcpy(folder, temporary_path("."));
+    assert_ok(paper_datasets_begin(&plan.datasets, SOURCE_DIR "/scenes", &size, 1, &error), error);
+    network = paper_network(0);
+    network.iterations = 20;
+    strcpy(plan.networks_folder, temporary_path("."));
 }
 
-FIXTURE(end) { paper_datasets_free(&datasets); }
+FIXTURE(end) { paper_datasets_free(&plan.datasets); }
 
 static const char *network_path(void) { return temporary_path("baseline.npz"); }
 
@@ -40,7 +40,7 @@ static bool train(int most, Limit *limit, Error *error) {
     FILE *out = open_memstream(&lines, &used);
     *limit = (Limit){.most = most};
     const Progress progress = {stop_after, limit};
-    const bool done = paper_training_write(&training, out, &progress, error);
+    const bool done = paper_training_write(&plan, &part, out, &progress, error);
     assert_int_equal(fclose(out), 0);
     if (done) assert_null(strstr(lines, "nan"));
     free(lines);
@@ -67,35 +67,35 @@ TEST(lines_know_their_network) {
     size_t used;
     bool there;
     FILE *out = open_memstream(&lines, &used);
-    assert_ok(paper_training_write(&training, out, NULL, &error), error);
+    assert_ok(paper_training_write(&plan, &part, out, NULL, &error), error);
     assert_int_equal(fclose(out), 0);
-    assert_ok(paper_training_whole(&training, lines, &there, &error), error);
+    assert_ok(paper_training_whole(&plan, &part, lines, &there, &error), error);
     assert_true(there);
-    PaperTraining other = training;
-    other.seed++;
+    plan.datasets.seed++;
     out = fopen("/dev/null", "w");
-    assert_ok(paper_training_write(&other, out, NULL, &error), error);
+    assert_ok(paper_training_write(&plan, &part, out, NULL, &error), error);
+    plan.datasets.seed--;
     assert_int_equal(fclose(out), 0);
-    assert_ok(paper_training_whole(&training, lines, &there, &error), error);
+    assert_ok(paper_training_whole(&plan, &part, lines, &there, &error), error);
     assert_false(there);
     assert_int_equal(remove(network_path()), 0);
-    assert_ok(paper_training_whole(&training, lines, &there, &error), error);
+    assert_ok(paper_training_whole(&plan, &part, lines, &there, &error), error);
     assert_false(there);
     free(lines);
 }
 
 TEST(without_memory_there_is_no_accuracy) {
-    const Dataset *dataset = paper_dataset(&datasets, &training.network, &error);
-    Network *network = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
+    const Dataset *dataset = paper_dataset(&plan.datasets, &network, &error);
+    Network *trained = network_read(SOURCE_DIR "/scenes/networks/pair-net.npz", &error);
     double accuracy = -1;
-    assert_ok(dataset != NULL && network != NULL, error);
+    assert_ok(dataset != NULL && trained != NULL, error);
     failing_allocation = 1;
-    assert_false(paper_accuracy(network, dataset, &accuracy, &error));
+    assert_false(paper_accuracy(trained, dataset, &accuracy, &error));
     assert_error(error, ERROR_SYSTEM, "out of memory");
     error = (Error){0};
-    assert_ok(paper_accuracy(network, dataset, &accuracy, &error), error);
+    assert_ok(paper_accuracy(trained, dataset, &accuracy, &error), error);
     assert_true(accuracy >= 0 && accuracy <= 1);
-    network_destroy(network);
+    network_destroy(trained);
 }
 
 RUN_TESTS(begin, end)

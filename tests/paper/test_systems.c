@@ -2,6 +2,7 @@
 /* The frame of the systems that the paper cites, tried on a system made for this test: interior with other limits. */
 #include "tables.h"
 
+#include "paper/paper_internal.h"
 #include "sanitized.h"
 #include "studies/chart.h"
 
@@ -61,23 +62,19 @@ static void describe(void *context, int64_t piece, PieceInfo *info) {
 
 /* The parts, then the scores. */
 static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
-    SystemWork part = {&study, &parts[piece]};
-    return parts[piece].name != NULL ? system_part_write(&part, results, progress, error)
-                                     : system_scores_write(context, results, progress, error);
+    return parts[piece].name != NULL ? parts[piece].write(&study, parts[piece].index, results, progress, error)
+                                     : system_scores_write(context, &(PaperPart){.index = 1}, results, progress, error);
 }
 
 /* Does the study's parts in the folder; those that are there are not done again. */
 static void do_parts(Pieces *done, bool end) {
     Error error = {0};
     static const CsvLayout *const layouts[] = {&double_table, &system_score_layout};
-    SystemScoring scoring = {.systems = systems,
-                             .scene = 1,
-                             .path = SOURCE_DIR "/scenes/stack.yaml",
-                             .launches = 2,
-                             .frames = 50,
-                             .timed_frames = 5,
-                             .repetitions = 1};
-    const PiecePlan plan = {.count = 3, .describe = describe, .work = work, .context = &scoring};
+    static const PaperSize size = {
+        .system_launches = 2, .system_frames = 50, .system_timed_frames = 5, .system_repetitions = 1};
+    static PaperPlan whole = {
+        .size = &size, .systems = systems, .datasets.scenes = {[1] = SOURCE_DIR "/scenes/stack.yaml"}};
+    const PiecePlan plan = {.count = 3, .describe = describe, .work = work, .context = &whole};
     assert_ok(pieces_open(done, folder(), false, &(StudyKey){.value = 1}, NULL, &error), error);
     assert_ok(pieces_do(done, &plan, NULL, &error), error);
     assert_ok(piece_tables_write(done, folder(), layouts, 2, NULL, 0, &error), error);
