@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What all trainings share: Adam, and a training's state on disk, progress and interruption. */
+/* What trainings share: eigenvectors, Adam, and a training's state on disk, progress and interruption. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -7,6 +7,10 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* Of a symmetric matrix[size, size], which is destroyed: values[size] falling; vectors[size, size]: row i belongs to value i,
+   has length 1, and its largest entry is positive. By GSL. False when memory is short. */
+bool symmetric_eigenvectors(double *matrix, size_t size, double *values, double *vectors);
 
 /* Adam: each weight steps by its mean slope, divided by the root of its mean squared slope. Same bits on every machine.
    Source: Kingma, Ba, "Adam: A Method for Stochastic Optimization" (2015). */

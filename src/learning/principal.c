@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Principal components of sparse rows: products with their covariance, and the subspace iteration that needs no more. */
 #include "base/base.h"
+#include "learning/learning.h"
 #include "learning/scene_training_internal.h"
 
 #include <float.h>
@@ -10,6 +11,27 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+static void make_largest_positive(double *vector, size_t size) {
+    double largest = 0;
+    for (size_t i = 0; i < size; i++)
+        if (fabs(vector[i]) > fabs(largest)) largest = vector[i];
+    for (size_t i = 0; largest < 0 && i < size; i++) vector[i] = -vector[i];
+}
+
+bool symmetric_eigenvectors(double *matrix, size_t size, double *values, double *vectors) {
+    gsl_set_error_handler_off(); /* its default aborts */
+    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(size);
+    if (work == NULL) return false;
+    gsl_matrix_view of = gsl_matrix_view_array(matrix, size, size), axes = gsl_matrix_view_array(vectors, size, size);
+    gsl_vector_view found = gsl_vector_view_array(values, size);
+    gsl_eigen_symmv(&of.matrix, &found.vector, &axes.matrix, work);
+    gsl_eigen_symmv_free(work);
+    gsl_eigen_symmv_sort(&found.vector, &axes.matrix, GSL_EIGEN_SORT_VAL_DESC);
+    gsl_matrix_transpose(&axes.matrix);
+    for (size_t i = 0; i < size; i++) make_largest_positive(vectors + i * size, size);
+    return true;
+}
 
 enum { PARTS = 8 }; /* of the rows; a fixed number, so that the order of sums does not depend on the threads */
 
@@ -128,20 +150,15 @@ typedef struct Principal {
     size_t columns, width; /* width: number of directions; those beyond the rank become 0 */
     double *basis, *image; /* [columns, width] Q and C Q */
     double *products;      /* [width] work space */
+    double *small, *axes;  /* [width, width] Q^T C Q and its eigenvectors */
+    double *variances;     /* [width] */
     gsl_rng *generator;
-    gsl_matrix *small, *axes; /* [width, width] Q^T C Q and its eigenvectors */
-    gsl_vector *variances;
-    gsl_eigen_symmv_workspace *eigen;
 } Principal;
 
-static void fit_free(Principal *fit) {
+static void principal_free(Principal *fit) {
     sparse_covariance_free(&fit->covariance);
     free(fit->basis);
     if (fit->generator != NULL) gsl_rng_free(fit->generator);
-    if (fit->small != NULL) gsl_matrix_free(fit->small);
-    if (fit->axes != NULL) gsl_matrix_free(fit->axes);
-    if (fit->variances != NULL) gsl_vector_free(fit->variances);
-    if (fit->eigen != NULL) gsl_eigen_symmv_free(fit->eigen);
 }
 
 static bool fit_make(Principal *fit, const SparseRows *rows, int wanted, Error *error) {
@@ -150,16 +167,14 @@ static bool fit_make(Principal *fit, const SparseRows *rows, int wanted, Error *
     const size_t width = (least + DIRECTIONS_BLOCK - 1) / DIRECTIONS_BLOCK * DIRECTIONS_BLOCK;
     *fit = (Principal){.columns = columns, .width = width};
     if (!sparse_covariance_make(&fit->covariance, rows, width, error)) return false;
-    fit->basis = calloc((2 * columns + 1) * width, sizeof *fit->basis);
+    fit->basis = calloc((2 * columns + 2 * width + 2) * width, sizeof *fit->basis);
     fit->generator = gsl_rng_alloc(gsl_rng_mt19937);
-    fit->small = gsl_matrix_calloc(width, width);
-    fit->axes = gsl_matrix_calloc(width, width);
-    fit->variances = gsl_vector_calloc(width);
-    fit->eigen = gsl_eigen_symmv_alloc(width);
-    if (!fit->basis || !fit->generator || !fit->small || !fit->axes || !fit->variances || !fit->eigen)
-        return error_memory(error, "principal components");
+    if (fit->basis == NULL || fit->generator == NULL) return error_memory(error, "principal components");
     fit->image = fit->basis + columns * width;
-    fit->products = fit->image + columns * width;
+    fit->small = fit->image + columns * width;
+    fit->axes = fit->small + width * width;
+    fit->variances = fit->axes + width * width;
+    fit->products = fit->variances + width;
     return true;
 }
 
@@ -203,14 +218,12 @@ static void orthonormalise(Principal *fit) {
 }
 
 /* Eigenvectors of Q^T C Q, strongest first. */
-static void find_axes(Principal *fit) {
-    for (size_t a = 0; a < fit->width; a++) {
-        double *row = gsl_matrix_ptr(fit->small, a, 0);
+static bool find_axes(Principal *fit) {
+    for (size_t a = 0; a < fit->width; a++)
         for (size_t j = 0; j < fit->columns; j++)
-            add_scaled(row, fit->basis[j * fit->width + a], fit->image + j * fit->width, fit->width);
-    }
-    gsl_eigen_symmv(fit->small, fit->variances, fit->axes, fit->eigen);
-    gsl_eigen_symmv_sort(fit->variances, fit->axes, GSL_EIGEN_SORT_VAL_DESC);
+            add_scaled(fit->small + a * fit->width, fit->basis[j * fit->width + a], fit->image + j * fit->width,
+                       fit->width);
+    return symmetric_eigenvectors(fit->small, fit->width, fit->variances, fit->axes);
 }
 
 /* scale: 1 / standard deviation of the component. */
@@ -219,7 +232,7 @@ static void write_component(const Principal *fit, size_t c, double scale, Projec
     float largest = 0;
     for (size_t j = 0; j < fit->columns; j++) {
         double sum = 0;
-        for (size_t a = 0; a < fit->width; a++) sum += fit->basis[j * fit->width + a] * gsl_matrix_get(fit->axes, a, c);
+        for (size_t a = 0; a < fit->width; a++) sum += fit->basis[j * fit->width + a] * fit->axes[c * fit->width + a];
         const float number = projection->rows[j * to + c] = (float)(scale * sum);
         if (fabsf(number) > fabsf(largest)) largest = number;
     }
@@ -236,21 +249,21 @@ static void write_components(const Principal *fit, Projection *projection) {
     memset(projection->rows, 0, fit->columns * to * sizeof *projection->rows);
     memset(projection->centre, 0, to * sizeof *projection->centre);
     /* Below FLT_MIN^2 the scaled direction would overflow float. */
-    const double least = fmax(least_variance * gsl_vector_get(fit->variances, 0), (double)FLT_MIN * (double)FLT_MIN);
+    const double least = fmax(least_variance * fit->variances[0], (double)FLT_MIN * (double)FLT_MIN);
     for (size_t c = 0; c < to; c++) {
-        const double variance = gsl_vector_get(fit->variances, c);
+        const double variance = fit->variances[c];
         if (variance > least) write_component(fit, c, 1 / sqrt(variance), projection);
     }
 }
 
-static void fit_components(Principal *fit, uint64_t seed) {
+static bool fit_components(Principal *fit, uint64_t seed) {
     start(fit, seed);
     for (int pass = 0; pass <= POWER_ITERATIONS; pass++) {
         if (pass > 0) memcpy(fit->basis, fit->image, fit->columns * fit->width * sizeof *fit->basis);
         orthonormalise(fit);
         sparse_covariance_multiply(&fit->covariance, fit->basis, fit->image);
     }
-    find_axes(fit);
+    return find_axes(fit);
 }
 
 bool principal_fit(const SparseRows *rows, uint64_t seed, Projection *projection, Error *error) {
@@ -258,11 +271,9 @@ bool principal_fit(const SparseRows *rows, uint64_t seed, Projection *projection
         return error_input(error, "principal components", "%d rows of %d columns for a projection of %d to %d",
                            rows->rows, rows->columns, projection->from, projection->to);
     Principal fit;
-    const bool ok = fit_make(&fit, rows, projection->to, error);
-    if (ok) {
-        fit_components(&fit, seed);
-        write_components(&fit, projection);
-    }
-    fit_free(&fit);
+    const bool ok = fit_make(&fit, rows, projection->to, error) &&
+                    (fit_components(&fit, seed) || error_memory(error, "principal components"));
+    if (ok) write_components(&fit, projection);
+    principal_free(&fit);
     return ok;
 }

@@ -3,13 +3,13 @@
 #include "testing.h"
 
 #include "engine/uniform.h"
-#include "learning/subspace_training.h"
+#include "learning/learning.h"
 
 #include <math.h>
 
 TEST(two_by_two_in_closed_form) {
     double matrix[4] = {2, 1, 1, 2}, values[2], vectors[4];
-    assert_true(jacobi_eigenvectors(matrix, 2, values, vectors));
+    assert_true(symmetric_eigenvectors(matrix, 2, values, vectors));
     assert_near(values[0], 3, 1e-15);
     assert_near(values[1], 1, 1e-15);
     assert_near(vectors[0], sqrt(0.5), 1e-15);
@@ -28,7 +28,7 @@ TEST(a_large_matrix_is_taken_apart) {
         for (int i = 0; i < SIZE * SIZE; i++) matrix[i] += u[i / SIZE] * u[i % SIZE];
     }
     memcpy(copy, matrix, sizeof copy);
-    assert_true(jacobi_eigenvectors(matrix, SIZE, values, vectors));
+    assert_true(symmetric_eigenvectors(matrix, SIZE, values, vectors));
     for (int k = 0; k < SIZE; k++) {
         const double *v = vectors + k * SIZE;
         if (k > 0) assert_true(values[k] <= values[k - 1]);
