@@ -52,7 +52,7 @@ set(module_sources
     methods/islands methods/method methods/momentum methods/order methods/pair methods/pair_net methods/reference_point
     methods/reference_scalar methods/scene_net methods/soft_step methods/steppers methods/stopping methods/sweeps
     methods/sweeps_scalar methods/sweeps_simd128
-    nets/kernels nets/kernels_scalar nets/net_file nets/network nets/row_kernels_scalar nets/slot_network
+    nets/kernels nets/kernels_scalar nets/net_file nets/network nets/slot_network
     runs/contact_finder runs/framing runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks
     runs/verdict_words
     scenes/parameters scenes/scene scenes/scene_read scenes/scene_world scenes/shapes)
@@ -60,7 +60,7 @@ set(module_sources
 set(module_fast
     engine/box engine/broad_phase engine/contact_problem engine/world methods/block_lu methods/interior
     methods/interior_point methods/interior_scalar methods/islands methods/momentum methods/order methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/soft_step
-    nets/kernels_scalar nets/row_kernels_scalar)
+    nets/kernels_scalar)
 
 if(TWINBOX_LIVE)
     # Only this header of the host: those of its C library would be taken for wasi-libc's.

@@ -197,7 +197,7 @@ bool gns_forward(GnsPass *pass, const GnsLayout *layout, const float *parameters
     const size_t needed = place(pass, NULL, layout, graph);
     if (!array_reserve((void **)&pass->numbers, &pass->capacity, needed, sizeof *pass->numbers)) return false;
     place(pass, pass->numbers, layout, graph);
-    if (pass->kernels == NULL) pass->kernels = gns_kernels_best();
+    if (pass->kernels == NULL) pass->kernels = &kernels_best()->gns;
     apply(pass, &layout->nodes, parameters, &pass->nodes, graph->node_inputs, graph->nodes, pass->node[0]);
     apply(pass, &layout->edges, parameters, &pass->edges, graph->edge_inputs, graph->edges, pass->edge[0]);
     for (int m = 0; m < layout->rounds; m++) {

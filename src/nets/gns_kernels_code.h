@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The code of GnsKernels (kernels.h); included once by each gns_kernels_*.c, which defines ROWS_AT_ONCE: as many rows as have their
-   sums in registers. Every sum runs over its items in rising order. */
+/* The code of GnsKernels (kernels.h); included by kernels_code.h. Every sum runs over its items in rising order. */
 #include "nets/kernels.h"
 
-enum { LANES = 8, COLUMNS = 2 * LANES };
+/* ROWS_AT_ONCE: as many rows as have their sums in registers. */
+enum { WIDE = 8, COLUMNS = 2 * WIDE, ROWS_AT_ONCE = VECTOR_BYTES > 16 ? 4 : 2 };
 
 /* One register with AVX2, two without. */
-typedef float Lanes __attribute__((vector_size(LANES * sizeof(float)), aligned(sizeof(float)), may_alias));
+typedef float Lanes __attribute__((vector_size(WIDE * sizeof(float)), aligned(sizeof(float)), may_alias));
 
 /* The variance of a row of equal numbers is 0. */
 static const float least_variance = 1e-5f;
@@ -18,9 +18,9 @@ static inline __attribute__((always_inline)) void multiply_block(float *out, int
                                                                  const float *b, int depth, const int rows) {
     Lanes sums[ROWS_AT_ONCE][2];
     for (int r = 0; r < rows; r++)
-        for (int v = 0; v < 2; v++) sums[r][v] = *(const Lanes *)(out + (ptrdiff_t)r * columns + v * LANES);
+        for (int v = 0; v < 2; v++) sums[r][v] = *(const Lanes *)(out + (ptrdiff_t)r * columns + v * WIDE);
     for (int d = 0; d < depth; d++) {
-        const Lanes first = *(const Lanes *)b, second = *(const Lanes *)(b + LANES);
+        const Lanes first = *(const Lanes *)b, second = *(const Lanes *)(b + WIDE);
         for (int r = 0; r < rows; r++) {
             const float x = a[r * row_step + d * depth_step];
             sums[r][0] += x * first;
@@ -29,7 +29,7 @@ static inline __attribute__((always_inline)) void multiply_block(float *out, int
         b += columns;
     }
     for (int r = 0; r < rows; r++)
-        for (int v = 0; v < 2; v++) *(Lanes *)(out + (ptrdiff_t)r * columns + v * LANES) = sums[r][v];
+        for (int v = 0; v < 2; v++) *(Lanes *)(out + (ptrdiff_t)r * columns + v * WIDE) = sums[r][v];
 }
 
 static void multiply_add(float *out, int rows, int columns, const float *a, ptrdiff_t row_step, ptrdiff_t depth_step,
@@ -52,14 +52,14 @@ static void multiply_add(float *out, int rows, int columns, const float *a, ptrd
         }
 }
 
-static void multiply(float *out, const float *in, const float *weights, const float *biases, int rows, int inputs,
-                     int outputs) {
+static void gns_multiply(float *out, const float *in, const float *weights, const float *biases, int rows, int inputs,
+                         int outputs) {
     for (int r = 0; biases != NULL && r < rows; r++)
         for (int j = 0; j < outputs; j++) out[(ptrdiff_t)r * outputs + j] = biases[j];
     multiply_add(out, rows, outputs, in, inputs, 1, weights, inputs);
 }
 
-static void add_gradient(float *gradient, const float *in, const float *slopes, int rows, int inputs, int outputs) {
+static void gns_add_gradient(float *gradient, const float *in, const float *slopes, int rows, int inputs, int outputs) {
     multiply_add(gradient, inputs, outputs, in, 1, inputs, slopes, rows);
 }
 
@@ -67,7 +67,7 @@ static void add_rows(float *out, const float *of, const int *at, int rows, int w
     for (int r = 0; r < rows; r++) {
         float *to = out + (ptrdiff_t)r * width;
         const float *from = of + (ptrdiff_t)at[r] * width;
-        for (int j = 0; j < width; j += LANES) *(Lanes *)(to + j) += *(const Lanes *)(from + j);
+        for (int j = 0; j < width; j += WIDE) *(Lanes *)(to + j) += *(const Lanes *)(from + j);
     }
 }
 
@@ -75,7 +75,7 @@ static void add_to_rows(float *out, const float *of, const int *at, int rows, in
     for (int r = 0; r < rows; r++) {
         float *to = out + (ptrdiff_t)at[r] * width;
         const float *from = of + (ptrdiff_t)r * width;
-        for (int j = 0; j < width; j += LANES) *(Lanes *)(to + j) += *(const Lanes *)(from + j);
+        for (int j = 0; j < width; j += WIDE) *(Lanes *)(to + j) += *(const Lanes *)(from + j);
     }
 }
 
@@ -83,7 +83,7 @@ static void gns_relu(float *values, int count) {
     for (int i = 0; i < count; i++) values[i] = values[i] < 0.0f ? 0.0f : values[i];
 }
 
-static inline float total(const Lanes *parts) {
+static inline float gns_total(const Lanes *parts) {
     const float *p = (const float *)parts;
     return ((p[0] + p[4]) + (p[2] + p[6])) + ((p[1] + p[5]) + (p[3] + p[7]));
 }
@@ -92,14 +92,14 @@ static void normalise(float *values, float *inverse, float *out, const float *ga
                       int width) {
     for (int r = 0; r < rows; r++, values += width, out += width) {
         Lanes sum = {0}, squares = {0};
-        for (int j = 0; j < width; j += LANES) sum += *(Lanes *)(values + j);
-        const float mean = total(&sum) / (float)width;
-        for (int j = 0; j < width; j += LANES) {
+        for (int j = 0; j < width; j += WIDE) sum += *(Lanes *)(values + j);
+        const float mean = gns_total(&sum) / (float)width;
+        for (int j = 0; j < width; j += WIDE) {
             *(Lanes *)(values + j) -= mean;
             squares += *(Lanes *)(values + j) * *(Lanes *)(values + j);
         }
-        inverse[r] = 1.0f / sqrtf(total(&squares) / (float)width + least_variance);
-        for (int j = 0; j < width; j += LANES) {
+        inverse[r] = 1.0f / sqrtf(gns_total(&squares) / (float)width + least_variance);
+        for (int j = 0; j < width; j += WIDE) {
             *(Lanes *)(values + j) *= inverse[r];
             *(Lanes *)(out + j) = *(Lanes *)(values + j) * *(const Lanes *)(gain + j) + *(const Lanes *)(offset + j);
         }
@@ -110,17 +110,14 @@ static void normalise_back(float *slopes, const float *normalised, const float *
                            int width) {
     for (int r = 0; r < rows; r++, slopes += width, normalised += width) {
         Lanes sum = {0}, along = {0};
-        for (int j = 0; j < width; j += LANES) {
+        for (int j = 0; j < width; j += WIDE) {
             *(Lanes *)(slopes + j) *= *(const Lanes *)(gain + j);
             sum += *(Lanes *)(slopes + j);
             along += *(Lanes *)(slopes + j) * *(const Lanes *)(normalised + j);
         }
-        const float mean = total(&sum) / (float)width, share = total(&along) / (float)width;
-        for (int j = 0; j < width; j += LANES)
+        const float mean = gns_total(&sum) / (float)width, share = gns_total(&along) / (float)width;
+        for (int j = 0; j < width; j += WIDE)
             *(Lanes *)(slopes + j) =
                 inverse[r] * (*(Lanes *)(slopes + j) - mean - *(const Lanes *)(normalised + j) * share);
     }
 }
-
-const GnsKernels KERNELS = {KERNELS_NAME, multiply, add_gradient, add_rows,
-                            add_to_rows,  gns_relu, normalise,    normalise_back};

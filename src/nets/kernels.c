@@ -2,26 +2,21 @@
 /* The loops that this CPU can run, and rows rounded to bytes. */
 #include "nets/kernels.h"
 
-void row_kernels_list(const RowKernels *list[ROW_KERNELS_MAX + 1]) {
+void kernels_list(const Kernels *list[KERNELS_MAX + 1]) {
     int count = 0;
 #ifdef TWINBOX_AVX
-    if (__builtin_cpu_supports("avx512f")) list[count++] = &row_kernels_avx512;
-    if (__builtin_cpu_supports("avx2")) list[count++] = &row_kernels_avx2;
+    if (__builtin_cpu_supports("avx512f")) list[count++] = &kernels_avx512;
+    if (__builtin_cpu_supports("avx2")) list[count++] = &kernels_avx2;
 #endif
-    list[count++] = &row_kernels_scalar;
+    list[count++] = &kernels_scalar;
     list[count] = NULL;
 }
 
-/* The first of a list is the fastest. */
-#define BEST(Loops, best, list, most)   \
-    const Loops *best(void) {           \
-        const Loops *loops[(most) + 1]; \
-        list(loops);                    \
-        return loops[0];                \
-    }
-BEST(RowKernels, row_kernels_best, row_kernels_list, ROW_KERNELS_MAX)
-BEST(GnsKernels, gns_kernels_best, gns_kernels_list, GNS_KERNELS_MAX)
-BEST(Kernels, kernels_best, kernels_list, KERNELS_MAX)
+const Kernels *kernels_best(void) {
+    const Kernels *list[KERNELS_MAX + 1];
+    kernels_list(list);
+    return list[0];
+}
 
 enum { STEPS = INT8_MAX };
 
@@ -50,23 +45,4 @@ void packed_rows_fill(PackedRows *packed, const float *rows) {
         packed->units[i] = most > nothing ? most / STEPS : 0;
         for (int k = 0; k < packed->width; k++) numbers[k] = nearest(row[k] * steps);
     }
-}
-
-void gns_kernels_list(const GnsKernels *list[GNS_KERNELS_MAX + 1]) {
-    int count = 0;
-#ifdef TWINBOX_AVX
-    if (__builtin_cpu_supports("avx2")) list[count++] = &gns_kernels_avx2;
-#endif
-    list[count++] = &gns_kernels_scalar;
-    list[count] = NULL;
-}
-
-void kernels_list(const Kernels *list[KERNELS_MAX + 1]) {
-    int count = 0;
-#ifdef TWINBOX_AVX
-    if (__builtin_cpu_supports("avx512f")) list[count++] = &kernels_avx512;
-    if (__builtin_cpu_supports("avx2")) list[count++] = &kernels_avx2;
-#endif
-    list[count++] = &kernels_scalar;
-    list[count] = NULL;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The kernels' code; included once by each kernels_*.c. Rows are innermost and independent, so the compiler vectorises
+/* The kernels' code; included once by each kernels_*.c, which defines VECTOR_BYTES, the size of a register. First those of
+   layers: rows are innermost and independent, so the compiler vectorises
    them without changing the order of sums. In the gradient, each forward step is next to its backward step; B stands
    for BLOCK_ROWS. */
 #include "nets/kernels.h"
@@ -181,4 +182,15 @@ static void add_gradient(const NetworkBlock *block, double *gradient) {
     }
 }
 
-const Kernels KERNELS = {KERNELS_NAME, predict, forward, backward, backward_to_inputs, add_gradient, dot};
+#include "nets/gns_kernels_code.h"
+#include "nets/row_kernels_code.h"
+
+const Kernels KERNELS = {KERNELS_NAME,
+                         predict,
+                         forward,
+                         backward,
+                         backward_to_inputs,
+                         add_gradient,
+                         dot,
+                         {add, combine, row_multiply, spread, apply_tanh},
+                         {gns_multiply, gns_add_gradient, add_rows, add_to_rows, gns_relu, normalise, normalise_back}};

@@ -4,19 +4,17 @@
 
 #include <string.h>
 
-/* The code of RowKernels (kernels.h); included once by each row_kernels_*.c, which defines VECTOR_BYTES. */
+/* The code of RowKernels (kernels.h); included by kernels_code.h. */
 #if VECTOR_BYTES > 16
 #include <immintrin.h>
 #endif
 
-typedef float Floats __attribute__((vector_size(VECTOR_BYTES), aligned(sizeof(float)), may_alias));
 typedef float Four __attribute__((vector_size(16), aligned(sizeof(float)), may_alias));
 
 enum {
-    FLOATS = VECTOR_BYTES / sizeof(float),
-    LANE_VECTORS = ROW_LANES / FLOATS,            /* registers for the lanes of one row */
-    CHAINS = 4,                                   /* sums of each column */
-    GROUP = VECTOR_BYTES == 64 ? 4 : LANE_VECTORS /* columns at once, in CHAINS times as many registers */
+    LANE_VECTORS = ROW_LANES / FLOATS,                /* registers for the lanes of one row */
+    CHAINS = 4,                                       /* sums of each column */
+    ROW_GROUP = VECTOR_BYTES == 64 ? 4 : LANE_VECTORS /* columns at once, in CHAINS times as many registers */
 };
 
 /* Converts to floats; gcc 12 splits a vector conversion into single bytes. */
@@ -32,7 +30,7 @@ static inline Floats load(const int8_t *bytes) {
 
 static inline int64_t row_at(const int32_t *index, int i) { return index != NULL ? index[i] : i; }
 
-static inline __attribute__((always_inline)) void add_row(Floats held[GROUP], const PackedRows *rows, int64_t row,
+static inline __attribute__((always_inline)) void add_row(Floats held[ROW_GROUP], const PackedRows *rows, int64_t row,
                                                           float number, int at, const int vectors) {
     const int8_t *from = rows->numbers + row * rows->width + at;
     const float by = number * rows->units[row];
@@ -44,7 +42,7 @@ static inline __attribute__((always_inline)) void add_row(Floats held[GROUP], co
 static inline __attribute__((always_inline)) void add_columns(float *sums, const PackedRows *rows, const int32_t *index,
                                                               const float *numbers, int count, int at,
                                                               const int vectors) {
-    Floats held[CHAINS][GROUP];
+    Floats held[CHAINS][ROW_GROUP];
     for (int v = 0; v < vectors; v++) {
         held[0][v] = ((const Floats *)(sums + at))[v];
         for (int c = 1; c < CHAINS; c++) held[c][v] = (Floats){0};
@@ -60,9 +58,9 @@ static inline __attribute__((always_inline)) void add_columns(float *sums, const
 
 static void add(float *sums, const PackedRows *rows, const int32_t *index, const float *numbers, int count) {
     int at = 0;
-    for (; at + GROUP * FLOATS <= rows->width; at += GROUP * FLOATS)
-        add_columns(sums, rows, index, numbers, count, at, GROUP);
-    for (; 2 * LANE_VECTORS < GROUP && at + 2 * ROW_LANES <= rows->width; at += 2 * ROW_LANES)
+    for (; at + ROW_GROUP * FLOATS <= rows->width; at += ROW_GROUP * FLOATS)
+        add_columns(sums, rows, index, numbers, count, at, ROW_GROUP);
+    for (; 2 * LANE_VECTORS < ROW_GROUP && at + 2 * ROW_LANES <= rows->width; at += 2 * ROW_LANES)
         add_columns(sums, rows, index, numbers, count, at, 2 * LANE_VECTORS);
     for (; at < rows->width; at += ROW_LANES) add_columns(sums, rows, index, numbers, count, at, LANE_VECTORS);
 }
@@ -91,7 +89,8 @@ static inline Four fold(const Floats sums[LANE_VECTORS]) {
     return (quarters[0] + quarters[2]) + (quarters[1] + quarters[3]);
 }
 
-static void multiply(float *products, const PackedRows *rows, const int32_t *index, const float *vector, int count) {
+static void row_multiply(float *products, const PackedRows *rows, const int32_t *index, const float *vector,
+                         int count) {
     const int width = rows->width;
     for (int i = 0; i < count; i++) {
         const int64_t pair = 2 * row_at(index, i);
@@ -122,5 +121,3 @@ static void spread(float *rows, int width, const int32_t *index, const float *nu
 static void apply_tanh(float *numbers, int count) {
     for (int i = 0; i < count; i++) numbers[i] = tanh_float(numbers[i]);
 }
-
-const RowKernels ROW_KERNELS = {ROW_KERNELS_NAME, add, combine, multiply, spread, apply_tanh};

@@ -106,7 +106,7 @@ static SlotNetwork sizes_of(const SlotShape *shape) {
                          .warm = {.from = 2 * slots, .to = shape->warm},
                          .first = {.from = inputs, .to = shape->hidden},
                          .second = {.from = shape->hidden, .to = shape->hidden},
-                         .kernels = row_kernels_best()};
+                         .kernels = &kernels_best()->rows};
 }
 
 static bool allocate(SlotNetwork *network, const Slot *slots, Error *error) {

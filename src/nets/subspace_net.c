@@ -183,7 +183,7 @@ bool subspace_make(Subspace *subspace, const SubspaceNet *net, const SubspacePre
                    Error *error) {
     const size_t lanes = (size_t)predictor->last.lanes, hidden = (size_t)net->shape.hidden,
                  numbers = (size_t)subspace_lanes(SUBSPACE_POSE * net->shape.bodies);
-    *subspace = (Subspace){.net = net, .predictor = predictor, .kernels = row_kernels_best(), .corrects = corrects};
+    *subspace = (Subspace){.net = net, .predictor = predictor, .kernels = &kernels_best()->rows, .corrects = corrects};
     float *at = calloc(3 * lanes + (size_t)predictor->first.from + 2 * hidden + numbers, sizeof *at);
     if (at == NULL) return error_memory(error, "subspace");
     subspace->numbers = at;

@@ -73,17 +73,17 @@ static void predict(const ParticleHeap *heap, const GnsNet *net, const GnsKernel
 TEST(all_kernels_have_the_same_bits) {
     static ParticleHeap heap;
     static float first[HEAP_PARTICLES * GNS_OUTPUTS], other[HEAP_PARTICLES * GNS_OUTPUTS];
-    const GnsKernels *list[GNS_KERNELS_MAX + 1];
-    gns_kernels_list(list);
+    const Kernels *list[KERNELS_MAX + 1];
+    kernels_list(list);
     make_heap(&heap, heap_order);
     for (int width = 16; width <= 48; width += 16) {
         GnsNet net;
         make_net(&net, width, 3);
-        predict(&heap, &net, list[0], false, first);
+        predict(&heap, &net, &list[0]->gns, false, first);
         assert_true(first[0] != first[1]);
         for (int k = 0; list[k] != NULL; k++)
             for (int tape = 0; tape < 2; tape++) {
-                predict(&heap, &net, list[k], tape == 1, other);
+                predict(&heap, &net, &list[k]->gns, tape == 1, other);
                 assert_memory_equal(first, other, sizeof first);
             }
         gns_net_free(&net);

@@ -53,8 +53,8 @@ static void drop_rows(PackedRows *rows) {
     drop(rows->units);
 }
 
-static void assert_bits(const float *found, const float *expected, int count, const RowKernels *kernels,
-                        const char *what, int width) {
+static void assert_bits(const float *found, const float *expected, int count, const Kernels *kernels, const char *what,
+                        int width) {
     for (int i = 0; i < count; i++)
         if (memcmp(&found[i], &expected[i], sizeof *found) != 0)
             fail_msg("%s %s, width %d: number %d is %a, not %a", kernels->name, what, width, i, (double)found[i],
@@ -95,10 +95,10 @@ static void spread(float *rows, int width, const int32_t *index, const float *nu
         for (int c = 0; c < width; c++) rows[index[i] * width + c] += numbers[i] * vector[c];
 }
 
-static void check_add(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
+static void check_add(const Kernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
     PackedRows rows = rows_of(ROWS, width, seed);
     float *numbers = numbers_of(count, seed), *found = numbers_of(width, seed), *expected = copy_of(found, width);
-    kernels->add(found, &rows, index, numbers, count);
+    kernels->rows.add(found, &rows, index, numbers, count);
     add(expected, &rows, index, numbers, count);
     assert_bits(found, expected, width, kernels, "add", width);
     drop_rows(&rows), drop(numbers), drop(found), drop(expected);
@@ -113,43 +113,42 @@ static void combine(float *sums, const float *rows, int width, const float *numb
     }
 }
 
-static void check_combine(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
+static void check_combine(const Kernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
     (void)index;
     float *rows = numbers_of(count * width, seed), *numbers = numbers_of(count, seed), *found = numbers_of(width, seed),
           *expected = copy_of(found, width);
-    kernels->combine(found, rows, width, numbers, count);
+    kernels->rows.combine(found, rows, width, numbers, count);
     combine(expected, rows, width, numbers, count);
     assert_bits(found, expected, width, kernels, "combine", width);
     drop(rows), drop(numbers), drop(found), drop(expected);
 }
 
-static void check_multiply(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
+static void check_multiply(const Kernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
     if (index == NULL && count > PAIRS) count = PAIRS;
     PackedRows rows = rows_of(ROWS, width, seed);
     float *vector = numbers_of(width, seed), *found = numbers_of(2 * count, seed),
           *expected = numbers_of(2 * count, seed);
-    kernels->multiply(found, &rows, index, vector, count);
+    kernels->rows.multiply(found, &rows, index, vector, count);
     multiply(expected, &rows, index, vector, count);
     assert_bits(found, expected, 2 * count, kernels, "multiply", width);
     drop_rows(&rows), drop(vector), drop(found), drop(expected);
 }
 
-static void check_spread(const RowKernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
+static void check_spread(const Kernels *kernels, int width, const int32_t *index, int count, uint32_t *seed) {
     float *found = numbers_of(PAIRS * width, seed), *expected = copy_of(found, PAIRS * width),
           *numbers = numbers_of(count, seed), *vector = numbers_of(width, seed);
-    kernels->spread(found, width, index, numbers, vector, count);
+    kernels->rows.spread(found, width, index, numbers, vector, count);
     spread(expected, width, index, numbers, vector, count);
     assert_bits(found, expected, PAIRS * width, kernels, "spread", width);
     drop(found), drop(expected), drop(numbers), drop(vector);
 }
 
 /* Every kernel, width and count. */
-static void for_all(void (*check)(const RowKernels *kernels, int width, const int32_t *index, int count,
-                                  uint32_t *seed),
+static void for_all(void (*check)(const Kernels *kernels, int width, const int32_t *index, int count, uint32_t *seed),
                     const int32_t *index) {
-    const RowKernels *list[ROW_KERNELS_MAX + 1];
+    const Kernels *list[KERNELS_MAX + 1];
     uint32_t seed = 1;
-    row_kernels_list(list);
+    kernels_list(list);
     for (int k = 0; list[k] != NULL; k++)
         for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++)
             for (int c = 0; c < COUNTS; c++) check(list[k], widths[w], index, counts[c], &seed);
@@ -170,13 +169,13 @@ TEST(rows_are_multiplied_in_lanes_and_halves) {
 TEST(a_vector_is_spread_over_rows) { for_all(check_spread, some); }
 
 TEST(every_number_is_bent) {
-    const RowKernels *list[ROW_KERNELS_MAX + 1];
+    const Kernels *list[KERNELS_MAX + 1];
     uint32_t seed = 2;
-    row_kernels_list(list);
+    kernels_list(list);
     for (int k = 0; list[k] != NULL; k++)
         for (int count = 0; count < 70; count++) {
             float *found = numbers_of(count, &seed), *expected = copy_of(found, count);
-            list[k]->apply_tanh(found, count);
+            list[k]->rows.apply_tanh(found, count);
             for (int i = 0; i < count; i++) expected[i] = tanh_float(expected[i]);
             assert_bits(found, expected, count, list[k], "apply_tanh", count);
             drop(found), drop(expected);
@@ -185,13 +184,13 @@ TEST(every_number_is_bent) {
 
 /* Widest first, plain last, which any processor has. */
 TEST(the_best_is_the_first) {
-    const RowKernels *list[ROW_KERNELS_MAX + 1];
+    const Kernels *list[KERNELS_MAX + 1];
     int count = 0;
-    row_kernels_list(list);
+    kernels_list(list);
     while (list[count] != NULL) count++;
-    assert_in_range(count, 1, ROW_KERNELS_MAX);
-    assert_ptr_equal(list[count - 1], &row_kernels_scalar);
-    assert_ptr_equal(row_kernels_best(), list[0]);
+    assert_in_range(count, 1, KERNELS_MAX);
+    assert_ptr_equal(list[count - 1], &kernels_scalar);
+    assert_ptr_equal(kernels_best(), list[0]);
 }
 
 RUN_TESTS(NULL, NULL)
