@@ -255,11 +255,6 @@ bool key_fit(Tabulation *memory, const float *others, int count, uint64_t seed, 
     return ok;
 }
 
-struct LaunchSteps {
-    const Scene *scene;
-    World *prefix, *world; /* just before the bomb is added; in use */
-};
-
 void asked_steps_clear(AskedSteps *steps) {
     for (int i = 0; i < steps->count; i++) free(steps->items[i].block);
     steps->count = 0;
@@ -306,46 +301,24 @@ static bool see(void *context, const HybridStep *step, Error *error) {
     return true;
 }
 
-static bool run_prefix(LaunchSteps *runs, Error *error) {
-    ContactSolver solver;
-    if (!hybrid_make(&solver, NULL, NULL, error)) return false;
-    runs->prefix = launch_prefix(runs->scene, &solver, error);
-    solver.kind->destroy(solver.state);
-    return runs->prefix != NULL;
+World *hybrid_prefix(const Scene *scene, Error *error) {
+    ContactSolver solver = {0};
+    World *prefix = hybrid_make(&solver, NULL, NULL, error) ? launch_prefix(scene, &solver, error) : NULL;
+    solver_destroy(&solver);
+    return prefix;
 }
 
-LaunchSteps *launch_steps_create(const Scene *scene, Error *error) {
-    LaunchSteps *runs = calloc(1, sizeof *runs);
-    if (runs == NULL) return error_memory(error, "hybrid"), NULL;
-    runs->scene = scene;
-    runs->world = scene_world(scene, error);
-    if (runs->world != NULL && run_prefix(runs, error)) return runs;
-    launch_steps_destroy(runs);
-    return NULL;
+static bool count_step(void *context, const ContactProblem *problem, Phase phase, int since, Error *error) {
+    (void)problem, (void)phase, (void)since, (void)error;
+    ((AskedSteps *)context)->steps++;
+    return true;
 }
 
-void launch_steps_destroy(LaunchSteps *runs) {
-    if (runs == NULL) return;
-    world_destroy(runs->prefix);
-    world_destroy(runs->world);
-    free(runs);
-}
-
-bool launch_steps_run(LaunchSteps *runs, const Launch *launch, const Tabulation *memory, int steps, AskedSteps *asked,
-                      Error *error) {
-    const Scene launched = launch_scene(runs->scene, launch);
-    ContactSolver solver;
-    if (!world_copy(runs->world, runs->prefix, error) || !scene_add_bomb(&launched, runs->world, error) ||
-        !hybrid_make(&solver, memory, &(HybridWatch){see, asked}, error))
-        return false;
-    PhaseTracker tracker = {.impact_frames = steps};
-    bool ok = true, finite = true;
-    for (int frame = launched.bomb.frame + 1; ok && finite && frame <= launched.frames; frame++) {
-        ContactProblem problem;
-        ok = launch_step(runs->scene, &solver, runs->world, &problem, &finite, error);
-        asked->steps++;
-        if (ok && phase_next(&tracker, &problem, frame) == PHASE_AFTER) break;
-    }
-    solver.kind->destroy(solver.state);
+bool launch_steps_run(const Scene *scene, const World *prefix, const Launch *launch, const Tabulation *memory,
+                      int steps, AskedSteps *asked, Error *error) {
+    ContactSolver solver = {0};
+    const bool ok = hybrid_make(&solver, memory, &(HybridWatch){see, asked}, error) &&
+                    launch_run(scene, launch, prefix, &solver, steps, count_step, asked, error);
+    solver_destroy(&solver);
     return ok;
 }

@@ -10,6 +10,7 @@
 #include "learning/scene_training.h"
 #include "learning/scene_training_internal.h"
 #include "methods/methods.h"
+#include "methods/pair.h"
 #include "methods/solvers.h"
 #include "methods/tabulation.h"
 #include "nets/kinds.h"
@@ -27,13 +28,12 @@ static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
 typedef struct Trainer {
     const Scene *scene;
     const TabulationTraining *training;
-    LaunchSteps *runs;
+    World *prefix;
     Launch *launches; /* [training->launches] */
     AskedSteps asked; /* of the launch; at first of all launches so far */
     ContactSolver interior;
-    ContactSolution answer, converged; /* [bodies], [contacts]: work space */
-    size_t answer_bodies, answer_contacts, converged_bodies, converged_contacts;
-    Tabulation *memory; /* NULL until the directions are fitted */
+    PairMoment answer, converged; /* work space */
+    Tabulation *memory;           /* NULL until the directions are fitted */
 } Trainer;
 
 static float draw(uint64_t *state, const SceneSpan *span, const SceneSpan *otherwise) {
@@ -60,13 +60,6 @@ static void draw_launches(Trainer *trainer) {
                                                  training->turned_from >= 0 && i >= training->turned_from);
 }
 
-static bool reserve(ContactSolution *solution, size_t *bodies, size_t *contacts, const ContactProblem *problem) {
-    return array_reserve((void **)&solution->velocities, bodies, (size_t)problem->body_count,
-                         sizeof *solution->velocities) &&
-           array_reserve((void **)&solution->impulses, contacts, (size_t)problem->contact_count + 1,
-                         sizeof *solution->impulses);
-}
-
 static bool fit_keys(Trainer *trainer, Error *error) {
     const AskedSteps *asked = &trainer->asked;
     if (asked->count == 0)
@@ -90,12 +83,12 @@ static bool fit_keys(Trainer *trainer, Error *error) {
 }
 
 static bool check(Trainer *trainer, SolvedStep *step, int entry, TabulationLaunch *launch, Error *error) {
-    if (!reserve(&trainer->converged, &trainer->converged_bodies, &trainer->converged_contacts, step->problem))
-        return error_memory(error, "hybrid");
-    step->solution = &trainer->converged;
-    if (!trainer->interior.kind->solve(trainer->interior.state, step->problem, &trainer->converged, error))
-        return false;
-    launch->error += (double)entry_check(trainer->memory, entry, step, &trainer->answer);
+    if (!pair_moment_reserve(&trainer->converged, step->problem)) return error_memory(error, "hybrid");
+    ContactSolution converged = pair_moment_solution(&trainer->converged),
+                    answer = pair_moment_solution(&trainer->answer);
+    step->solution = &converged;
+    if (!trainer->interior.kind->solve(trainer->interior.state, step->problem, &converged, error)) return false;
+    launch->error += (double)entry_check(trainer->memory, entry, step, &answer);
     launch->checked++;
     return true;
 }
@@ -104,11 +97,11 @@ static bool learn_step(Trainer *trainer, const AskedStep *asked, bool checks, Ta
     float key[TABULATION_KEY_MAX];
     tabulation_key(trainer->memory, asked->bomb, asked->others, key);
     SolvedStep step = {&asked->problem, &asked->solution, {asked->hash, asked->problem.contact_count, key}};
-    if (!reserve(&trainer->answer, &trainer->answer_bodies, &trainer->answer_contacts, &asked->problem))
-        return error_memory(error, "hybrid");
+    if (!pair_moment_reserve(&trainer->answer, &asked->problem)) return error_memory(error, "hybrid");
     if (asked->entry >= 0) return !checks || check(trainer, &step, asked->entry, launch, error);
+    ContactSolution answer = pair_moment_solution(&trainer->answer);
     Lesson lesson;
-    if (!entry_learn(trainer->memory, &step, trainer->training->limit, &trainer->answer, &lesson, error)) return false;
+    if (!entry_learn(trainer->memory, &step, trainer->training->limit, &answer, &lesson, error)) return false;
     launch->grown += lesson == LESSON_GROWN;
     launch->added += lesson == LESSON_ADDED;
     launch->full += lesson == LESSON_FULL;
@@ -126,8 +119,8 @@ static bool do_launch(Trainer *trainer, int i, Error *error) {
     const int before = trainer->asked.count, last = trainer->training->launches - 1;
     const int64_t steps_before = trainer->asked.steps;
     const double seconds_before = trainer->asked.seconds;
-    if (!launch_steps_run(trainer->runs, &trainer->launches[i], trainer->memory, trainer->training->steps,
-                          &trainer->asked, error))
+    if (!launch_steps_run(trainer->scene, trainer->prefix, &trainer->launches[i], trainer->memory,
+                          trainer->training->steps, &trainer->asked, error))
         return false;
     launch.asked = trainer->asked.count - before;
     launch.steps = trainer->asked.steps - steps_before;
@@ -174,8 +167,8 @@ static bool store(const Trainer *trainer, Error *error) {
 static bool train(Trainer *trainer, const Progress *progress, Error *error) {
     const int launches = trainer->training->launches;
     if (!launches_check(trainer->scene, trainer->launches, launches, error) || !resume(trainer, error)) return false;
-    trainer->runs = launch_steps_create(trainer->scene, error);
-    if (trainer->runs == NULL || !hybrid_make(&trainer->interior, NULL, NULL, error)) return false;
+    trainer->prefix = hybrid_prefix(trainer->scene, error);
+    if (trainer->prefix == NULL || !hybrid_make(&trainer->interior, NULL, NULL, error)) return false;
     for (int i = trainer->memory != NULL ? trainer->memory->launches : 0; i < launches; i++) {
         if (!do_launch(trainer, i, error)) return false;
         const bool goes_on = progress_report(progress, i + 1, launches);
@@ -196,14 +189,12 @@ Tabulation *tabulation_training_run(const Scene *scene, const TabulationTraining
         draw_launches(&trainer);
         ok = train(&trainer, progress, error);
     }
-    launch_steps_destroy(trainer.runs);
-    if (trainer.interior.kind != NULL) trainer.interior.kind->destroy(trainer.interior.state);
+    world_destroy(trainer.prefix);
+    solver_destroy(&trainer.interior);
     asked_steps_free(&trainer.asked);
     free(trainer.launches);
-    free(trainer.answer.velocities);
-    free(trainer.answer.impulses);
-    free(trainer.converged.velocities);
-    free(trainer.converged.impulses);
+    pair_moment_free(&trainer.answer);
+    pair_moment_free(&trainer.converged);
     if (ok) return trainer.memory;
     tabulation_destroy(trainer.memory);
     return NULL;

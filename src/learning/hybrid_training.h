@@ -82,16 +82,13 @@ typedef struct AskedSteps {
 void asked_steps_clear(AskedSteps *steps);
 void asked_steps_free(AskedSteps *steps);
 
-typedef struct LaunchSteps LaunchSteps;
+/* The world of the scene, which must have a bomb, just before the bomb appears. NULL with error set. */
+World *hybrid_prefix(const Scene *scene, Error *error);
 
-/* Runs the scene up to its bomb, which it must have. NULL with error set. */
-LaunchSteps *launch_steps_create(const Scene *scene, Error *error);
-void launch_steps_destroy(LaunchSteps *runs);
-
-/* Runs one launch up to `steps` steps from the bomb's first touch, and appends the asked ones. The memory, or NULL, is
-   not changed. A launch ends if its state becomes NaN or infinite. */
-bool launch_steps_run(LaunchSteps *runs, const Launch *launch, const Tabulation *memory, int steps, AskedSteps *asked,
-                      Error *error);
+/* Runs one launch from that world up to `steps` steps from the bomb's first touch, and appends the asked ones. The memory, or
+   NULL, is not changed. A launch ends if its state becomes NaN or infinite. */
+bool launch_steps_run(const Scene *scene, const World *prefix, const Launch *launch, const Tabulation *memory,
+                      int steps, AskedSteps *asked, Error *error);
 
 /* Fills the memory of hybrid (methods/hybrid.c): launch after launch, with the memory frozen within a launch and grown
    between launches from the steps that it did not answer. The first launches find the principal directions of the keys;

@@ -8,6 +8,7 @@
 #include "learning/learning.h"
 #include "learning/scene_training.h"
 #include "methods/methods.h"
+#include "methods/pair.h"
 #include "methods/reference.h"
 #include "methods/relation_view.h"
 #include "methods/solvers.h"
@@ -25,27 +26,21 @@ void relation_samples_free(RelationSamples *samples) {
 /* The engine of sain, and what it fills. */
 typedef struct Engine {
     ContactSolver solver;
-    ContactSolution solution;
-    size_t velocity_capacity, impulse_capacity;
+    PairMoment moment;
     RelationView view;
 } Engine;
 
 static void end(Engine *engine) {
-    if (engine->solver.state != NULL) solver_engine.destroy(engine->solver.state);
-    free(engine->solution.velocities);
-    free(engine->solution.impulses);
+    solver_destroy(&engine->solver);
+    pair_moment_free(&engine->moment);
     relation_view_free(&engine->view);
 }
 
 static bool look(Engine *engine, const ContactProblem *problem, RelationForm form, Error *error) {
-    ContactSolution *solution = &engine->solution;
-    return (array_reserve((void **)&solution->velocities, &engine->velocity_capacity, (size_t)problem->body_count + 1,
-                          sizeof *solution->velocities) &&
-            array_reserve((void **)&solution->impulses, &engine->impulse_capacity, (size_t)problem->contact_count + 1,
-                          sizeof *solution->impulses) &&
-            solver_engine.solve(engine->solver.state, problem, solution, error) &&
-            relation_view_make(&engine->view, problem, solution->velocities, form)) ||
-           error_memory(error, "sain");
+    if (!pair_moment_reserve(&engine->moment, problem)) return error_memory(error, "sain");
+    ContactSolution solution = pair_moment_solution(&engine->moment);
+    return solver_engine.solve(engine->solver.state, problem, &solution, error) &&
+           (relation_view_make(&engine->view, problem, solution.velocities, form) || error_memory(error, "sain"));
 }
 
 static bool reserve(RelationSamples *samples, const RelationView *view) {
@@ -89,8 +84,11 @@ enum { AFTER_STEP = 6, REST_EVERY = 30, FACTORIZATIONS_MAX = 120 /* 95% of the i
 
 static const double converged = 1e-6; /* m/s */
 
+/* Launches of a scene. */
 typedef struct Runs {
-    const RelationRecording *recording;
+    const RelationLaunches *from;
+    const Scene *scene;
+    Launch *launches;
     ImpactProblems *of; /* [launches] */
 } Runs;
 
@@ -127,58 +125,51 @@ static bool run_world(Run *run, const Scene *scene, World *world, const ContactS
     return true;
 }
 
-static bool piece(void *context, int i, Error *error) {
-    const Runs *runs = context;
-    const RelationRecording *recording = runs->recording;
-    const Scene launched = launch_scene(recording->scene, &recording->launches[i]);
-    ContactSolver solver = {0};
-    Run run = {.problems = &runs->of[i], .tracker = {.impact_frames = launched.bomb.impact_frames}};
-    World *world = scene_world(&launched, error);
-    const bool ok = world != NULL && recording->make_solver(recording->context, i, &solver, error) &&
-                    run_world(&run, &launched, world, &solver, error);
-    world_destroy(world);
-    if (solver.kind != NULL) solver.kind->destroy(solver.state);
-    reference_free(&run.reference);
-    return ok;
-}
-
-/* Appends to the problems in the order of launches and frames, for any number of threads. Omits problems whose
-   reference does not converge. A launch ends 60 frames after its impact, or if its state becomes NaN or infinite. */
-static bool record_problems(const RelationRecording *recording, ImpactProblems *problems, const Progress *progress,
-                            Error *error) {
-    Runs runs = {recording, calloc((size_t)recording->count + 1, sizeof *runs.of)};
-    if (runs.of == NULL) return error_memory(error, "recording");
-    const ParallelWork work = {piece, &runs};
-    bool ok = parallel_for(&work, recording->count, "launches", progress, error);
-    for (int i = 0; i < recording->count; i++)
-        if (ok)
-            ok = impact_problems_move(problems, &runs.of[i]) || error_memory(error, "recording");
-        else
-            impact_problems_free(&runs.of[i]);
-    free(runs.of);
-    return ok;
-}
-
-static bool make_solver(void *context, int i, ContactSolver *solver, Error *error) {
-    const RelationDriver *driver = ((const RelationLaunches *)context)->driver;
+static bool make_solver(const RelationDriver *driver, int i, ContactSolver *solver, Error *error) {
     if (driver != NULL) return sain_make(solver, driver->network, driver->form, error);
     return i % 2 == 0 ? solver_with(solver, &solver_engine, RELATION_ENGINE_SETTINGS, error)
                       : solver_with(solver, &solver_momentum, "k=50", error);
 }
 
+static bool piece(void *context, int i, Error *error) {
+    const Runs *runs = context;
+    const Scene launched = launch_scene(runs->scene, &runs->launches[i]);
+    ContactSolver solver = {0};
+    Run run = {.problems = &runs->of[i], .tracker = {.impact_frames = launched.bomb.impact_frames}};
+    World *world = scene_world(&launched, error);
+    const bool ok = world != NULL && make_solver(runs->from->driver, i, &solver, error) &&
+                    run_world(&run, &launched, world, &solver, error);
+    world_destroy(world);
+    solver_destroy(&solver);
+    reference_free(&run.reference);
+    return ok;
+}
+
 /* Launches rise along the family: a round takes every so manieth, so that each covers the family. */
+static bool choose_launches(const Runs *runs, Error *error) {
+    const RelationLaunches *from = runs->from;
+    const int all = from->rounds * from->launches;
+    const bool ok =
+        (from->held_out ? launches_for_scoring : launches_for_training)(runs->scene, all, runs->launches, error);
+    for (int i = 0; ok && i < from->launches; i++) runs->launches[i] = runs->launches[i * from->rounds + from->round];
+    return ok;
+}
+
+/* Appends to the problems in the order of launches and frames, for any number of threads. */
 static bool record_scene(const RelationLaunches *from, const Scene *scene, ImpactProblems *problems,
                          const Progress *progress, Error *error) {
-    const int all = from->rounds * from->launches;
-    Launch *launches = malloc((size_t)all * sizeof *launches);
-    if (launches == NULL) return error_memory(error, scene->name);
-    bool ok = from->held_out ? launches_for_scoring(scene, all, launches, error)
-                             : launches_for_training(scene, all, launches, error);
-    for (int i = 0; ok && i < from->launches; i++) launches[i] = launches[i * from->rounds + from->round];
-    RelationLaunches context = *from;
-    const RelationRecording recording = {scene, launches, from->launches, make_solver, &context};
-    ok = ok && record_problems(&recording, problems, progress, error);
-    free(launches);
+    const size_t count = (size_t)from->launches;
+    Runs runs = {from, scene, malloc((size_t)from->rounds * count * sizeof *runs.launches),
+                 calloc(count + 1, sizeof *runs.of)};
+    bool ok = (runs.launches != NULL && runs.of != NULL) || error_memory(error, scene->name);
+    ok = ok && choose_launches(&runs, error) &&
+         parallel_for(&(ParallelWork){piece, &runs}, from->launches, "launches", progress, error);
+    for (size_t i = 0; runs.of != NULL && i < count; i++) {
+        if (ok) ok = impact_problems_move(problems, &runs.of[i]) || error_memory(error, "recording");
+        impact_problems_free(&runs.of[i]);
+    }
+    free(runs.launches);
+    free(runs.of);
     return ok;
 }
 

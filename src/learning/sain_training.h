@@ -119,19 +119,8 @@ bool relation_fit_step(RelationFit *fit, Adam *adam, uint64_t seed, int64_t numb
 bool relation_fit_errors(RelationFit *fit, const double *weights, const RelationSamples *samples,
                          RelationErrors *errors, Error *error);
 
-/* Runs launches of a scene with a given solver and records contact problems with their converged velocities: all impact
-   frames, and some of those after and of those at rest. */
-
-typedef struct RelationRecording {
-    const Scene *scene;
-    const Launch *launches; /* [count] */
-    int count;
-    /* Makes the solver of launch i; the recording destroys it. */
-    bool (*make_solver)(void *context, int i, ContactSolver *solver, Error *error);
-    void *context;
-} RelationRecording;
-
-/* The launches that a round of training records, of several scenes. */
+/* The launches that a round of training records, of several scenes: contact problems with their converged velocities, all
+   impact frames, and some of those after and of those at rest. */
 
 /* sain with a network in memory. */
 typedef struct RelationDriver {
@@ -148,7 +137,8 @@ typedef struct RelationLaunches {
     const RelationDriver *driver; /* NULL: the engine and, every second launch, sweeps with momentum */
 } RelationLaunches;
 
-/* Appends to the problems, as relation_record(). ERROR_INPUT: a scene's bomb has no family of launches. */
+/* Appends to the problems. Omits those whose reference does not converge. A launch ends 60 frames after its impact, or if its
+   state becomes NaN or infinite. ERROR_INPUT: a scene's bomb has no family of launches. */
 bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *problems, const Progress *progress,
                               Error *error);
 

@@ -98,6 +98,11 @@ bool solver_with(ContactSolver *solver, const ContactSolverKind *kind, const cha
     return state != NULL;
 }
 
+void solver_destroy(ContactSolver *solver) {
+    if (solver->kind != NULL) solver->kind->destroy(solver->state);
+    *solver = (ContactSolver){0};
+}
+
 typedef struct Driver {
     SceneSet set;
     const SlotNetwork *network; /* or NULL: that of the set */

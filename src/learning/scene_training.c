@@ -7,6 +7,7 @@
 #include "engine/engine.h"
 #include "learning/scene_training_internal.h"
 #include "methods/methods.h"
+#include "methods/pair.h"
 #include "methods/reference.h"
 #include "methods/solvers.h"
 #include "nets/kinds.h"
@@ -21,29 +22,18 @@ enum { FEW_SWEEPS = 10, MANY_SWEEPS = 60, MOST_SWEEPS = 200, PASSES = 7 };
 /* No sweeps follow by the stopping rule. */
 static const float never = 1e9f; /* m/s */
 
-/* Space for a solution of any sample. */
-static bool make_solution(ContactSolution *solution, const SlotSamples *samples, Error *error) {
-    size_t bodies = 1, contacts = 1;
-    for (int i = 0; i < samples->count; i++) {
-        const ContactProblem *problem = &samples->items[i].problem;
-        if ((size_t)problem->body_count > bodies) bodies = (size_t)problem->body_count;
-        if ((size_t)problem->contact_count > contacts) contacts = (size_t)problem->contact_count;
-    }
-    *solution = (ContactSolution){.velocities = calloc(bodies, sizeof *solution->velocities),
-                                  .impulses = calloc(contacts, sizeof *solution->impulses)};
-    return (solution->velocities != NULL && solution->impulses != NULL) || error_memory(error, "scene-net");
-}
-
 /* Solves all samples. s: the time of the solver alone, if shorter than before. m/s: the mean error. */
-static bool solve_all(ContactSolver *solver, const SlotSamples *samples, ContactSolution *solution, double *seconds,
+static bool solve_all(ContactSolver *solver, const SlotSamples *samples, PairMoment *space, double *seconds,
                       double *mean, Error *error) {
     double sum = 0, passed = 0;
     for (int i = 0; i < samples->count; i++) {
         const SlotSample *sample = &samples->items[i];
+        if (!pair_moment_reserve(space, &sample->problem)) return error_memory(error, "scene-net");
+        ContactSolution solution = pair_moment_solution(space);
         const double begin = clock_seconds();
-        if (!solver->kind->solve(solver->state, &sample->problem, solution, error)) return false;
+        if (!solver->kind->solve(solver->state, &sample->problem, &solution, error)) return false;
         passed += clock_seconds() - begin;
-        sum += solution_error(&sample->problem, solution->velocities, sample->reference).rms;
+        sum += solution_error(&sample->problem, solution.velocities, sample->reference).rms;
     }
     if (passed < *seconds) *seconds = passed;
     *mean = sum / samples->count;
@@ -56,17 +46,11 @@ static bool make_momentum(ContactSolver *solver, int sweeps, Error *error) {
     return solver_with(solver, &solver_momentum, text, error);
 }
 
-static void destroy(ContactSolver *solver) {
-    if (solver->state != NULL) solver->kind->destroy(solver->state);
-}
-
-static bool momentum_error(const SlotSamples *samples, int sweeps, ContactSolution *solution, double *mean,
-                           Error *error) {
-    ContactSolver solver = {.state = NULL};
+static bool momentum_error(const SlotSamples *samples, int sweeps, PairMoment *space, double *mean, Error *error) {
+    ContactSolver solver = {0};
     double unused = INFINITY;
-    const bool ok =
-        make_momentum(&solver, sweeps, error) && solve_all(&solver, samples, solution, &unused, mean, error);
-    destroy(&solver);
+    const bool ok = make_momentum(&solver, sweeps, error) && solve_all(&solver, samples, space, &unused, mean, error);
+    solver_destroy(&solver);
     return ok;
 }
 
@@ -77,34 +61,32 @@ static int sweeps_of(double seconds, double few, double many) {
     return (int)fmin(fmax(sweeps, 1), MOST_SWEEPS);
 }
 
-static bool measure(ContactSolver rivals[3], const SlotSamples *samples, ContactSolution *solution,
-                    SceneNetVerdict *verdict, Error *error) {
+static bool measure(ContactSolver rivals[3], const SlotSamples *samples, PairMoment *space, SceneNetVerdict *verdict,
+                    Error *error) {
     double seconds[3] = {INFINITY, INFINITY, INFINITY}, mean[3];
     for (int pass = 0; pass < PASSES; pass++)
         for (int i = 0; i < 3; i++)
-            if (!solve_all(&rivals[i], samples, solution, &seconds[i], &mean[i], error)) return false;
+            if (!solve_all(&rivals[i], samples, space, &seconds[i], &mean[i], error)) return false;
     verdict->samples = samples->count;
     verdict->network = mean[0];
     verdict->microseconds = 1e6 * seconds[0] / samples->count;
     verdict->sweeps = sweeps_of(seconds[0], seconds[1], seconds[2]);
-    return momentum_error(samples, verdict->sweeps, solution, &verdict->at_equal_time, error) &&
-           momentum_error(samples, 20, solution, &verdict->at_20, error);
+    return momentum_error(samples, verdict->sweeps, space, &verdict->at_equal_time, error) &&
+           momentum_error(samples, 20, space, &verdict->at_20, error);
 }
 
 /* Solves the samples by the method scene-net and by momentum, in turns, and keeps the shortest time of each. The errors
    are the same on every machine; `sweeps` depends on it. */
 static bool scene_net_verdict(const SlotNetwork *network, const SlotSamples *held_out, SceneNetVerdict *verdict,
                               Error *error) {
-    ContactSolver rivals[3] = {{.state = NULL}, {.state = NULL}, {.state = NULL}};
-    ContactSolution solution = {.velocities = NULL};
+    ContactSolver rivals[3] = {{0}};
+    PairMoment space = {0};
     *verdict = (SceneNetVerdict){.samples = 0};
     bool ok = held_out->count == 0 ||
-              (make_solution(&solution, held_out, error) && scene_net_make(&rivals[0], network, never, error) &&
-               make_momentum(&rivals[1], FEW_SWEEPS, error) && make_momentum(&rivals[2], MANY_SWEEPS, error) &&
-               measure(rivals, held_out, &solution, verdict, error));
-    for (int i = 0; i < 3; i++) destroy(&rivals[i]);
-    free(solution.velocities);
-    free(solution.impulses);
+              (scene_net_make(&rivals[0], network, never, error) && make_momentum(&rivals[1], FEW_SWEEPS, error) &&
+               make_momentum(&rivals[2], MANY_SWEEPS, error) && measure(rivals, held_out, &space, verdict, error));
+    for (int i = 0; i < 3; i++) solver_destroy(&rivals[i]);
+    pair_moment_free(&space);
     return ok;
 }
 
@@ -122,14 +104,12 @@ static bool network_error(const SlotNetwork *network, const SlotSamples *samples
 /* Fills all except `round`; NaN for an empty set. Both sets have the network's inputs (slot_samples_compute_inputs). */
 static bool scene_net_score(const SlotNetwork *network, const SlotSamples *samples, const SlotSamples *held_out,
                             SceneNetScore *score, Error *error) {
-    ContactSolution solution;
+    PairMoment space = {0};
     score->samples = samples->count;
-    const bool ok = make_solution(&solution, held_out, error) &&
-                    network_error(network, samples, &score->train, error) &&
+    const bool ok = network_error(network, samples, &score->train, error) &&
                     network_error(network, held_out, &score->held_out, error) &&
-                    momentum_error(held_out, 20, &solution, &score->momentum, error);
-    free(solution.velocities);
-    free(solution.impulses);
+                    momentum_error(held_out, 20, &space, &score->momentum, error);
+    pair_moment_free(&space);
     return ok;
 }
 

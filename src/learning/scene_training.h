@@ -82,8 +82,11 @@ void unrolled_back(Unrolled *unrolled, const UnrolledProblem *problem, const dou
 bool problem_copy(ContactProblem *copy, const ContactProblem *problem);
 void problem_copy_free(ContactProblem *copy);
 
-/* A solver with the settings of the text, "k=20"; the caller destroys its state. */
+/* A solver with the settings of the text, "k=20". */
 bool solver_with(ContactSolver *solver, const ContactSolverKind *kind, const char *text, Error *error);
+
+/* Does nothing with one that was zero-initialised and not made. */
+void solver_destroy(ContactSolver *solver);
 
 /* Training samples of a slot network: contact problems of impacts with their converged solutions. */
 

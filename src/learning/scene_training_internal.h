@@ -102,12 +102,16 @@ bool slot_loss(SlotLoss *loss, const SlotNetwork *network, const SlotSample *sam
 
 /* Steps of launches. */
 
-/* One step; `problem` is its contact problem. *finite: false if the new state is NaN or infinite. */
-bool launch_step(const Scene *scene, const ContactSolver *solver, World *world, ContactProblem *problem, bool *finite,
-                 Error *error);
-
 /* The world of the scene just before the bomb is added, which all launches share. */
 World *launch_prefix(const Scene *scene, const ContactSolver *solver, Error *error);
+
+/* Sees the contact problem of a step after the step; since: steps since the bomb's first touch. */
+typedef bool LaunchSee(void *context, const ContactProblem *problem, Phase phase, int since, Error *error);
+
+/* Runs a launch from that world on, up to `steps` steps from the bomb's first touch, which are its impact phase. Ends if the
+   state becomes NaN or infinite. */
+bool launch_run(const Scene *scene, const Launch *launch, const World *prefix, const ContactSolver *solver, int steps,
+                LaunchSee *see, void *context, Error *error);
 
 /* Runs launches of a scene with a given solver and records the contact problems of their impacts: the steps after the
    bomb's first touch in which the residual of the warm start reaches the gate (methods/solvers.h). */
@@ -119,7 +123,7 @@ typedef struct SlotRollout {
     int first_launch;       /* SlotSample.launch of the first launch */
     int steps;              /* examined from the first touch */
     float gate;             /* m/s */
-    /* Makes the solver of one thread; slot_rollout() destroys it. */
+    /* Makes the solver of a launch; slot_rollout() destroys it. */
     bool (*make_solver)(void *context, ContactSolver *solver, Error *error);
     void *context;
 } SlotRollout;

@@ -14,7 +14,6 @@
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
-#include <assert.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -164,16 +163,8 @@ bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int 
     return ok;
 }
 
-typedef struct Runs {
-    const SlotRollout *rollout;
-    World *prefix;          /* the world just before the bomb is added; shared by all launches */
-    ContactSolver *solvers; /* [threads] */
-    World **worlds;         /* [threads] */
-    Sweeps *sweeps;         /* [threads] */
-    SlotSamples *samples;   /* [launches] */
-} Runs;
-
-bool launch_step(const Scene *scene, const ContactSolver *solver, World *world, ContactProblem *problem, bool *finite,
+/* *finite: false if the new state is NaN or infinite. */
+static bool step(const Scene *scene, const ContactSolver *solver, World *world, ContactProblem *problem, bool *finite,
                  Error *error) {
     ContactSolution *solution;
     if (!world_begin_step(world, scene->dt, problem, &solution, error) ||
@@ -193,7 +184,7 @@ World *launch_prefix(const Scene *scene, const ContactSolver *solver, Error *err
     bool ok = world != NULL, finite = true;
     for (int frame = 1; ok && frame <= scene->bomb.frame; frame++) {
         ContactProblem problem;
-        ok = launch_step(scene, solver, world, &problem, &finite, error) &&
+        ok = step(scene, solver, world, &problem, &finite, error) &&
              (finite || error_input(error, quiet.name, "a body's state is NaN or infinite before the bomb is added"));
     }
     if (ok) return world;
@@ -201,69 +192,77 @@ World *launch_prefix(const Scene *scene, const ContactSolver *solver, Error *err
     return NULL;
 }
 
+bool launch_run(const Scene *scene, const Launch *launch, const World *prefix, const ContactSolver *solver, int steps,
+                LaunchSee *see, void *context, Error *error) {
+    const Scene launched = launch_scene(scene, launch);
+    World *world = scene_world(scene, error);
+    PhaseTracker tracker = {.impact_frames = steps};
+    Phase phase = PHASE_REST;
+    bool ok = world != NULL && world_copy(world, prefix, error) && scene_add_bomb(&launched, world, error),
+         finite = true;
+    for (int frame = launched.bomb.frame + 1; ok && finite && phase != PHASE_AFTER && frame <= launched.frames;
+         frame++) {
+        ContactProblem problem;
+        ok = step(scene, solver, world, &problem, &finite, error);
+        if (!ok) break;
+        phase = phase_next(&tracker, &problem, frame);
+        ok = see(context, &problem, phase, frame - tracker.touch, error);
+    }
+    world_destroy(world);
+    return ok;
+}
+
+typedef struct Runs {
+    const SlotRollout *rollout;
+    World *prefix;
+    SlotSamples *samples; /* [launches] */
+} Runs;
+
+/* One launch. */
+typedef struct Run {
+    const SlotRollout *rollout;
+    int launch;
+    SlotSamples *samples;
+    Sweeps sweeps;
+} Run;
+
+static bool keep_impact(void *context, const ContactProblem *problem, Phase phase, int since, Error *error) {
+    Run *run = context;
+    if (phase != PHASE_IMPACT) return true;
+    return (sweeps_begin_coloured(&run->sweeps, sweeps_best_kernel(), problem) &&
+            (!residual_reaches(&run->sweeps, problem->contact_count, run->rollout->gate) ||
+             slot_samples_add(run->samples, problem, run->launch, since))) ||
+           error_memory(error, "samples");
+}
+
 static bool run_launch(void *context, int i, Error *error) {
     const Runs *runs = context;
     const SlotRollout *rollout = runs->rollout;
-    const int thread = omp_get_thread_num();
-    const Scene launched = launch_scene(rollout->scene, &rollout->launches[i]);
-    World *world = runs->worlds[thread];
-    if (!world_copy(world, runs->prefix, error) || !scene_add_bomb(&launched, world, error)) return false;
-    PhaseTracker tracker = {.impact_frames = rollout->steps};
-    bool finite = true;
-    for (int frame = launched.bomb.frame + 1; finite && frame <= launched.frames; frame++) {
-        ContactProblem problem;
-        if (!launch_step(rollout->scene, &runs->solvers[thread], world, &problem, &finite, error)) return false;
-        const Phase phase = phase_next(&tracker, &problem, frame);
-        if (phase == PHASE_AFTER) return true;
-        if (phase != PHASE_IMPACT) continue;
-        Sweeps *sweeps = &runs->sweeps[thread];
-        if (!sweeps_begin_coloured(sweeps, sweeps_best_kernel(), &problem)) return error_memory(error, "samples");
-        if (residual_reaches(sweeps, problem.contact_count, rollout->gate) &&
-            !slot_samples_add(&runs->samples[i], &problem, rollout->first_launch + i, frame - tracker.touch))
-            return error_memory(error, "samples");
-    }
-    return true;
-}
-
-static bool begin(Runs *runs, int threads, Error *error) {
-    assert(threads > 0);
-    runs->solvers = calloc((size_t)threads, sizeof *runs->solvers);
-    runs->worlds = calloc((size_t)threads, sizeof(World *));
-    runs->sweeps = calloc((size_t)threads, sizeof *runs->sweeps);
-    runs->samples = calloc((size_t)runs->rollout->launch_count, sizeof *runs->samples);
-    if (runs->sweeps == NULL || runs->solvers == NULL || runs->worlds == NULL || runs->samples == NULL)
-        return error_memory(error, "samples");
-    for (int i = 0; i < threads; i++) {
-        runs->worlds[i] = scene_world(runs->rollout->scene, error);
-        if (runs->worlds[i] == NULL || !runs->rollout->make_solver(runs->rollout->context, &runs->solvers[i], error))
-            return false;
-    }
-    runs->prefix = launch_prefix(runs->rollout->scene, &runs->solvers[0], error);
-    return runs->prefix != NULL;
-}
-
-static void end(Runs *runs, int threads) {
-    for (int i = 0; i < threads; i++) {
-        if (runs->solvers != NULL && runs->solvers[i].kind != NULL)
-            runs->solvers[i].kind->destroy(runs->solvers[i].state);
-        if (runs->worlds != NULL) world_destroy(runs->worlds[i]);
-        if (runs->sweeps != NULL) sweeps_free(&runs->sweeps[i]);
-    }
-    world_destroy(runs->prefix);
-    for (int i = 0; runs->samples != NULL && i < runs->rollout->launch_count; i++) slot_samples_free(&runs->samples[i]);
-    free(runs->solvers);
-    free(runs->worlds);
-    free(runs->sweeps);
-    free(runs->samples);
+    ContactSolver solver = {0};
+    Run run = {.rollout = rollout, .launch = rollout->first_launch + i, .samples = &runs->samples[i]};
+    const bool ok = rollout->make_solver(rollout->context, &solver, error) &&
+                    launch_run(rollout->scene, &rollout->launches[i], runs->prefix, &solver, rollout->steps,
+                               keep_impact, &run, error);
+    solver_destroy(&solver);
+    sweeps_free(&run.sweeps);
+    return ok;
 }
 
 bool slot_rollout(const SlotRollout *rollout, SlotSamples *samples, const Progress *progress, Error *error) {
-    Runs runs = {.rollout = rollout};
-    const int threads = omp_get_max_threads();
-    const ParallelWork work = {run_launch, &runs};
-    bool ok = begin(&runs, threads, error) && parallel_for(&work, rollout->launch_count, "launches", progress, error);
-    for (int i = 0; ok && i < rollout->launch_count; i++)
-        ok = slot_samples_move(samples, &runs.samples[i]) || error_memory(error, "samples");
-    end(&runs, threads);
+    const size_t count = (size_t)rollout->launch_count;
+    Runs runs = {.rollout = rollout, .samples = calloc(count, sizeof *runs.samples)};
+    ContactSolver solver = {0};
+    bool ok = (runs.samples != NULL || error_memory(error, "samples")) &&
+              rollout->make_solver(rollout->context, &solver, error);
+    if (ok) runs.prefix = launch_prefix(rollout->scene, &solver, error);
+    solver_destroy(&solver);
+    ok = ok && runs.prefix != NULL &&
+         parallel_for(&(ParallelWork){run_launch, &runs}, rollout->launch_count, "launches", progress, error);
+    for (size_t i = 0; runs.samples != NULL && i < count; i++) {
+        if (ok) ok = slot_samples_move(samples, &runs.samples[i]) || error_memory(error, "samples");
+        slot_samples_free(&runs.samples[i]);
+    }
+    world_destroy(runs.prefix);
+    free(runs.samples);
     return ok;
 }

@@ -6,7 +6,9 @@
 #include "base/machine.h"
 #include "engine/engine.h"
 #include "learning/hybrid_training.h"
+#include "learning/scene_training.h"
 #include "methods/methods.h"
+#include "methods/pair.h"
 #include "methods/solvers.h"
 #include "methods/tabulation.h"
 #include "paper/paper.h"
@@ -24,7 +26,7 @@ enum { TIMED = 20, QUICK_TIMED = 4, REPETITIONS = 9, QUICK_REPETITIONS = 3, UNLE
 /* What is measured at each row of a learning. */
 typedef struct HybridTimes {
     const Scene *scene;
-    LaunchSteps *runs;
+    World *prefix;                    /* the scene just before its bomb appears */
     int steps, launches, repetitions; /* steps: of each launch, from the first touch */
     uint64_t seed;
 } HybridTimes;
@@ -36,7 +38,7 @@ typedef struct Measuring {
     const HybridTimes *times;
     AskedSteps asked;
     ContactSolver rivals[RIVALS];
-    ContactSolution solutions[RIVALS];
+    PairMoment solutions[RIVALS];
     double *values; /* [asked, RIVALS, repetitions] us */
     double *errors; /* [asked] of answers */
     int answers;
@@ -46,28 +48,17 @@ static bool run_launches(Measuring *measuring, const Tabulation *memory, bool tu
     const HybridTimes *times = measuring->times;
     for (int i = 0; i < times->launches; i++) {
         const Launch launch = tabulation_launch(times->scene, times->seed, UNLEARNED + i, turned);
-        if (!launch_steps_run(times->runs, &launch, memory, times->steps, &measuring->asked, error)) return false;
+        if (!launch_steps_run(times->scene, times->prefix, &launch, memory, times->steps, &measuring->asked, error))
+            return false;
     }
     return true;
 }
 
-static bool reserve(Measuring *measuring, const Tabulation *memory, Error *error) {
-    const size_t count = (size_t)measuring->asked.count, bodies = (size_t)memory->body_count;
-    size_t contacts = 1;
-    for (size_t i = 0; i < count; i++) {
-        const size_t own = (size_t)measuring->asked.items[i].problem.contact_count;
-        contacts = own > contacts ? own : contacts;
-    }
-    measuring->values = malloc((count + 1) * RIVALS * (size_t)measuring->times->repetitions * sizeof(double));
-    measuring->errors = malloc((count + 1) * sizeof(double));
-    bool ok = measuring->values != NULL && measuring->errors != NULL;
-    for (int r = 0; r < RIVALS; r++) {
-        ContactSolution *solution = &measuring->solutions[r];
-        solution->velocities = calloc(bodies, sizeof *solution->velocities);
-        solution->impulses = calloc(contacts, sizeof *solution->impulses);
-        ok = ok && solution->velocities != NULL && solution->impulses != NULL;
-    }
-    return ok || error_memory(error, "hybrid");
+static bool reserve(Measuring *measuring, Error *error) {
+    const size_t count = (size_t)measuring->asked.count + 1;
+    measuring->values = malloc(count * RIVALS * (size_t)measuring->times->repetitions * sizeof(double));
+    measuring->errors = malloc(count * sizeof(double));
+    return (measuring->values != NULL && measuring->errors != NULL) || error_memory(error, "hybrid");
 }
 
 /* All steps by both rivals, once. */
@@ -78,8 +69,10 @@ static bool pass(Measuring *measuring, int repetition, int64_t overhead, Error *
         const AskedStep *step = &measuring->asked.items[i];
         for (int r = 0; r < RIVALS; r++) {
             const ContactSolver *solver = &measuring->rivals[r];
+            if (!pair_moment_reserve(&measuring->solutions[r], &step->problem)) return error_memory(error, "hybrid");
+            ContactSolution solution = pair_moment_solution(&measuring->solutions[r]);
             const int64_t begin = meter_time();
-            if (!solver->kind->solve(solver->state, &step->problem, &measuring->solutions[r], error)) return false;
+            if (!solver->kind->solve(solver->state, &step->problem, &solution, error)) return false;
             const int64_t passed = meter_without(meter_time() - begin, overhead);
             measuring->values[(i * RIVALS + r) * repetitions + repetition] = 1e-3 * (double)passed;
         }
@@ -126,13 +119,12 @@ static bool hybrid_measure(const HybridTimes *times, const Tabulation *memory, H
     Measuring measuring = {.times = times};
     const bool ok = hybrid_make(&measuring.rivals[0], memory, NULL, error) &&
                     hybrid_make(&measuring.rivals[1], NULL, NULL, error) &&
-                    run_launches(&measuring, memory, row->turned != 0, error) && reserve(&measuring, memory, error) &&
+                    run_launches(&measuring, memory, row->turned != 0, error) && reserve(&measuring, error) &&
                     measure(&measuring, error);
     if (ok) summarise(&measuring, row);
     for (int r = 0; r < RIVALS; r++) {
-        if (measuring.rivals[r].state != NULL) measuring.rivals[r].kind->destroy(measuring.rivals[r].state);
-        free(measuring.solutions[r].velocities);
-        free(measuring.solutions[r].impulses);
+        solver_destroy(&measuring.rivals[r]);
+        pair_moment_free(&measuring.solutions[r]);
     }
     asked_steps_free(&measuring.asked);
     free(measuring.values);
@@ -315,16 +307,16 @@ static bool write_learning(const SystemStudy *study, int index, FILE *lines, con
     run->launches = study->quick ? QUICK_LAUNCHES : LAUNCHES;
     run->change = study->quick ? QUICK_CHANGE : CHANGE;
     run->times = (HybridTimes){.scene = scene,
-                               .runs = launch_steps_create(scene, error),
+                               .prefix = hybrid_prefix(scene, error),
                                .steps = learning->steps,
                                .launches = study->quick ? QUICK_TIMED : TIMED,
                                .repetitions = study->quick ? QUICK_REPETITIONS : REPETITIONS,
                                .seed = study->seed};
-    bool ok = run->times.runs != NULL;
+    bool ok = run->times.prefix != NULL;
     if (ok && learning->online && !study->quick) ok = (run->online = online_net_create(study->seed, error)) != NULL;
     ok = ok && learn(run, progress, error);
     online_net_destroy(run->online);
-    launch_steps_destroy(run->times.runs);
+    world_destroy(run->times.prefix);
     free(run);
     scene_destroy(scene);
     return ok;

@@ -10,14 +10,14 @@
 TEST(a_step_that_comes_back_is_learned) {
     AskedSteps asked = {0};
     Scene *scene = scene_named("single");
-    LaunchSteps *runs = launch_steps_create(scene, &error);
-    assert_ok(runs != NULL, error);
+    World *prefix = hybrid_prefix(scene, &error);
+    assert_ok(prefix != NULL, error);
     OnlineNet *net = online_net_create(1, &error);
     assert_ok(net != NULL, error);
     for (int i = 0; i < 5; i++) {
         Launch launch = launch_of(scene);
         launch.x = (float)i / 5;
-        assert_ok(launch_steps_run(runs, &launch, NULL, 3, &asked, &error), error);
+        assert_ok(launch_steps_run(scene, prefix, &launch, NULL, 3, &asked, &error), error);
     }
     assert_true(asked.count >= 5);
     double wrong, seconds, first = NAN, last = NAN;
@@ -33,7 +33,7 @@ TEST(a_step_that_comes_back_is_learned) {
     if (!(last <= first)) fail_msg("from %g to %g m/s", first, last);
     online_net_destroy(net);
     asked_steps_free(&asked);
-    launch_steps_destroy(runs);
+    world_destroy(prefix);
     scene_destroy(scene);
 }
 
