@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Training of hybrid: its memory of impacts, launch after launch, and the network beside it. */
+/* Training of hybrid: its memory of impacts, launch after launch. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -8,21 +8,6 @@
 #include "scenes/scenes.h"
 
 #include <stdint.h>
-
-/* The second form of hybrid's learning: beside the memory a network of scene-net makes one training step for each step that
-   becomes an entry, on that step alone (nets/kinds.h, learning/scene_training_internal.h). Its slots and projections are
-   those of the first entries. Source: Robbins, Monro, "A Stochastic Approximation Method" (1951), with Adam. */
-
-enum { ONLINE_FIRST = 300 }; /* entries that make the network; it trains on the next ones */
-
-typedef struct OnlineNet OnlineNet;
-
-OnlineNet *online_net_create(uint64_t seed, Error *error);
-void online_net_destroy(OnlineNet *net);
-
-/* Learns a step, which is copied. *seconds: processor time of the training step. *wrong: RMS velocity error of the network and its sweeps on it before that, m/s; NAN while
-   there is no network. False with error set when memory is short, or if a weight becomes NaN or infinite. */
-bool online_net_learn(OnlineNet *net, const ContactProblem *problem, double *wrong, double *seconds, Error *error);
 
 /* What a memory learns from a solved impact: nothing, a larger ellipsoid, or a new entry. Source: Pope (1997), 3, and Lu, Pope
    (2009) for the checks of answers; the linear map is a fit over neighbours instead of a derivative (tabulation.h).
@@ -128,8 +113,6 @@ typedef struct TabulationTraining {
     const char *state_path; /* of an interrupted training; NULL: none is kept */
     /* Called after each launch; may be NULL. False with error set stops the training. */
     bool (*on_launch)(void *context, const TabulationLaunch *launch, Error *error);
-    /* Called with each step that becomes an entry; may be NULL. Does not count as time of learning. */
-    bool (*on_added)(void *context, const ContactProblem *problem, Error *error);
     void *context;
 } TabulationTraining;
 

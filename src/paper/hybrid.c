@@ -138,7 +138,6 @@ enum {
     CHANGE = 500,
     QUICK_LAUNCHES = 60,
     QUICK_CHANGE = 50,
-    ONLINE_ENTRIES = 5000,
     IMPACT_STEPS = 14,
     ALL_STEPS = 66,
     MEMORY_LIMIT = 64 << 20
@@ -164,8 +163,6 @@ static const CsvColumn columns[] = {
     NUMBER(us_question),
     NUMBER(us_step),
     NUMBER(us_step_solve),
-    NUMBER(online_error),
-    NUMBER(online_us),
     NUMBER(entries),
     NUMBER(kib),
     NUMBER(learning_ms),
@@ -179,15 +176,15 @@ typedef struct Learning {
     int scene;
     float tolerance;
     int steps;
-    bool changes, online;
+    bool changes;
 } Learning;
 
 /* Steps that a scene's launches are followed for: a pyramid has few impacts after the first steps. The tolerances are
-   compared on the stack; there the second form learns, too, from the first ONLINE_ENTRIES entries of the whole study. */
+   compared on the stack. */
 static const Learning learnings[] = {
-    {0, 0.1f, ALL_STEPS, false, false},    {1, 0.1f, ALL_STEPS, false, true},   {2, 0.1f, IMPACT_STEPS, false, false},
-    {3, 0.1f, IMPACT_STEPS, false, false}, {0, 0.1f, ALL_STEPS, true, false},   {1, 0.1f, ALL_STEPS, true, false},
-    {3, 0.1f, IMPACT_STEPS, true, false},  {1, 0.02f, ALL_STEPS, false, false}, {1, 0.5f, ALL_STEPS, false, false}};
+    {0, 0.1f, ALL_STEPS, false},    {1, 0.1f, ALL_STEPS, false},  {2, 0.1f, IMPACT_STEPS, false},
+    {3, 0.1f, IMPACT_STEPS, false}, {0, 0.1f, ALL_STEPS, true},   {1, 0.1f, ALL_STEPS, true},
+    {3, 0.1f, IMPACT_STEPS, true},  {1, 0.02f, ALL_STEPS, false}, {1, 0.5f, ALL_STEPS, false}};
 
 /* A learning in progress. */
 typedef struct Run {
@@ -201,9 +198,6 @@ typedef struct Run {
     int count;
     double learned, saved; /* s */
     double paid;           /* NAN: not yet */
-    OnlineNet *online;     /* or NULL */
-    double online_error, online_seconds;
-    int online_steps, online_entries; /* since the last row; in all */
 } Run;
 
 static bool is_checkpoint(const Run *run, int launch) {
@@ -245,9 +239,6 @@ static bool add_row(Run *run, const TabulationLaunch *launch, Error *error) {
                      .launches = launch->number};
     if (!hybrid_measure(&run->times, launch->memory, &row, error)) return false;
     account(run, &row);
-    row.online_error = run->online_steps > 0 ? run->online_error / run->online_steps : (double)NAN;
-    row.online_us = run->online_steps > 0 ? 1e6 * run->online_seconds / run->online_steps : (double)NAN;
-    run->online_error = run->online_seconds = run->online_steps = 0;
     row.entries = launch->memory->entry_count;
     row.kib = (double)tabulation_bytes(launch->memory) / 1024;
     row.learning_ms = 1e3 * run->learned;
@@ -262,18 +253,6 @@ static bool note(void *context, const TabulationLaunch *launch, Error *error) {
     return launch->memory == NULL || !is_checkpoint(run, launch->number) || add_row(run, launch, error);
 }
 
-static bool note_entry(void *context, const ContactProblem *problem, Error *error) {
-    Run *run = context;
-    double wrong, seconds;
-    if (run->online_entries++ >= ONLINE_ENTRIES) return true;
-    if (!online_net_learn(run->online, problem, &wrong, &seconds, error)) return false;
-    if (isnan(wrong)) return true;
-    run->online_error += wrong;
-    run->online_seconds += seconds;
-    run->online_steps++;
-    return true;
-}
-
 static bool learn(Run *run, const Progress *progress, Error *error) {
     const TabulationTraining training = {.launches = run->launches,
                                          .turned_from = run->learning->changes ? run->change : -1,
@@ -284,7 +263,6 @@ static bool learn(Run *run, const Progress *progress, Error *error) {
                                          .seed = run->study->seed,
                                          .command = "",
                                          .on_launch = note,
-                                         .on_added = run->online != NULL ? note_entry : NULL,
                                          .context = run};
     Tabulation *memory = tabulation_training_run(run->scene, &training, progress, error);
     const bool whole = memory != NULL && memory->launches == run->launches;
@@ -313,9 +291,7 @@ static bool write_learning(const SystemStudy *study, int index, FILE *lines, con
                                .repetitions = study->quick ? QUICK_REPETITIONS : REPETITIONS,
                                .seed = study->seed};
     bool ok = run->times.prefix != NULL;
-    if (ok && learning->online && !study->quick) ok = (run->online = online_net_create(study->seed, error)) != NULL;
     ok = ok && learn(run, progress, error);
-    online_net_destroy(run->online);
     world_destroy(run->times.prefix);
     free(run);
     scene_destroy(scene);

@@ -145,10 +145,6 @@ typedef struct HybridRow {
     double us_question;   /* what a step that is not answered takes beyond that */
     double us_step;       /* of a step with an impact, answered or not */
     double us_step_solve; /* of the same by interior:near=0.001 */
-    double
-        online_error; /* m/s: of the second form (learning/hybrid_training.h) on the entries since the row before, each
-                            before it was trained on it, mean; NAN: not run */
-    double online_us; /* processor time of such a training step, without the solution that it is trained on */
     double entries, kib;
     double learning_ms; /* spent on learning so far */
     double saved_ms;    /* solving less answering, questions and learning so far */

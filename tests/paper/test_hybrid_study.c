@@ -79,8 +79,6 @@ TEST(verdicts_follow_from_the_table) {
                      .us_question = 1,
                      .us_step = 4,
                      .us_step_solve = 10,
-                     .online_error = NAN,
-                     .online_us = NAN,
                      .entries = 5,
                      .kib = 6,
                      .learning_ms = 7,
