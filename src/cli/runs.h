@@ -150,11 +150,11 @@ void stability_plan_print(const PiecesEstimate *estimate);
 /* The runs that show what happened in a cell of a stability map. */
 
 /* The origin of a map's runs. */
-typedef struct ClipMap {
+typedef struct CellMap {
     const char *name;                      /* as in maps.csv */
     const char *scene;                     /* path of the scene file */
     const char *x_parameter, *y_parameter; /* of the scene; y "": only one is set */
-} ClipMap;
+} CellMap;
 
 /* First the method that holds, if there is one, which is not the cell's own. */
 typedef struct CellRuns {
@@ -169,53 +169,22 @@ enum { CELL_NOTE_SIZE = 160 };
 /* Runs the cell's method and, unless it holds, that of `holder`, if not NULL, until three seconds after the frame that
    decided the cell's verdict, at most 60 frames per second. The runs have the verdicts of the cells. `progress` NULL: each run
    has a bar. Errors name `input`. cell_runs_free() also after a failure. */
-bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapCell *holder, const MapCell *cell, const char *input,
+bool cell_runs_make(CellRuns *runs, const CellMap *map, const MapCell *holder, const MapCell *cell, const char *input,
                     const Progress *progress, Error *error);
 void cell_runs_free(CellRuns *runs);
 
-/* The map of that name; NULL with error set, of `option`, if there is none. */
-const ClipMap *clip_map_find(const ClipMap *maps, int count, const char *name, const char *option, Error *error);
-
-/* A cell of a stability map, as named on the command line. */
-
-/* "MAP:METHOD:X,Y". The method may have settings, so it goes up to the last ':'. */
-typedef struct StabilityCell {
-    char map[CSV_NAME_SIZE], method[METHOD_TEXT_SIZE];
-    double x, y;
-} StabilityCell;
-
-bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error);
-
-/* The row of the table that the cell names. Numbers may be rounded as in the figure: the nearest within 1% counts. NULL
-   with error set if there is none; the error lists the known values. */
-const MapCell *stability_cell_find(const CsvTable *table, const StabilityCell *cell, Error *error);
+/* The map of that name; NULL with error set if there is none. */
+const CellMap *cell_map_find(const CellMap *maps, int count, const char *name, Error *error);
 
 /* The first method that holds in the same cell, or NULL. */
 const MapCell *stability_cell_holder(const CsvTable *table, const MapCell *row);
-
-/* The video of one cell of a stability map. */
-
-typedef struct ClipOptions {
-    const char *folder;  /* of maps.csv */
-    const char *cell;    /* "MAP:METHOD:X,Y" */
-    const ClipMap *maps; /* [map_count] */
-    int map_count;
-    int width, height; /* of a frame, pixels */
-} ClipOptions;
-
-/* Runs the cell again and draws folder/clips/MAP-METHOD-X_Y/frame_000000.png ... and folder/clips/MAP-METHOD-X_Y.mp4,
-   from the start until three seconds after the frame that decided the verdict, at most 60 frames per second. Left: the
-   first method that holds there, which also sets the camera; right: the method of the cell. If that one holds, or none
-   does, it is alone. Captions give methods and verdicts. ERROR_INPUT: the cell does not exist, or the method cannot run
-   its scene; ERROR_SYSTEM: ffmpeg is missing. */
-bool stability_clip(const ClipOptions *options, Error *error);
 
 /* The pages of stability: each plays what happened in a cell of a map, or where a border fails, beside the first method that
    holds there. */
 
 typedef struct StabilityPages {
     const StabilityOptions *study; /* whose folder has the tables */
-    const ClipMap *maps;           /* [map_count] */
+    const CellMap *maps;           /* [map_count] */
     int map_count;
 } StabilityPages;
 

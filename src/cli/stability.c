@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox stability: the cells of its maps, the runs and clips that show them, the command. */
+/* twinbox stability: the cells of its maps, the runs that show them, the command. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
@@ -20,76 +20,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Relative tolerance of a typed number: figures show three digits. */
-static const double share = 0.01;
-
-static bool parse_values(const char *text, double *x, double *y) {
-    const char *rest;
-    return parse_leading_double(text, x, &rest) && *rest == ',' && parse_double(rest + 1, y);
-}
-
-bool stability_cell_parse(StabilityCell *cell, const char *text, Error *error) {
-    const char *first = strchr(text, ':'), *last = strrchr(text, ':');
-    bool parts = first != NULL && first > text && last > first + 1;
-    if (!parts || (size_t)(first - text) >= sizeof cell->map || (size_t)(last - first) > sizeof cell->method ||
-        !parse_values(last + 1, &cell->x, &cell->y))
-        return error_input(error, "--clip", "'%s' is not MAP:METHOD:X,Y", text);
-    snprintf(cell->map, sizeof cell->map, "%.*s", (int)(first - text), text);
-    snprintf(cell->method, sizeof cell->method, "%.*s", (int)(last - first - 1), first + 1);
-    return true;
-}
-
-static bool is_near(double value, double typed) { return fabs(value - typed) <= share * fabs(value); }
-
-/* Names the known values of the part that was not found. */
-static const MapCell *fail(const CsvTable *table, const StabilityCell *cell, bool map_known, bool method_known,
-                           Error *error) {
-    NameList names = {0}, ups = {0};
-    char text[MAP_METHOD_SIZE];
-    for (int i = 0; i < table->count; i++) {
-        const MapCell *row = map_cell(table, i);
-        map_cell_method(text, row);
-        if (map_known && strcmp(row->map, cell->map) != 0) continue;
-        if (map_known && method_known && strcmp(text, cell->method) == 0) {
-            snprintf(text, sizeof text, "%.9g", row->y);
-            name_list_add(&ups, text);
-            snprintf(text, sizeof text, "%.9g", row->x);
-            name_list_add(&names, text);
-        } else if (!map_known || !method_known)
-            name_list_add(&names, map_known ? text : row->map);
-    }
-    if (!map_known)
-        error_input(error, "--clip", "there is no map %s in %s; its maps: %s", cell->map, table->csv.path,
-                    names.used > 0 ? names.text : "none");
-    else if (!method_known)
-        error_input(error, "--clip", "map %s has no method %s; its methods: %s", cell->map, cell->method, names.text);
-    else
-        error_input(error, "--clip", "map %s has no cell %g,%g of method %s; its X: %s; its Y: %s", cell->map, cell->x,
-                    cell->y, cell->method, names.text, ups.text);
-    return NULL;
-}
-
-static double distance(const MapCell *row, const StabilityCell *cell) {
-    return fabs(row->x - cell->x) + fabs(row->y - cell->y);
-}
-
-const MapCell *stability_cell_find(const CsvTable *table, const StabilityCell *cell, Error *error) {
-    const MapCell *found = NULL;
-    bool map_known = false, method_known = false;
-    for (int i = 0; i < table->count; i++) {
-        const MapCell *row = map_cell(table, i);
-        char method[MAP_METHOD_SIZE];
-        if (strcmp(row->map, cell->map) != 0) continue;
-        map_known = true;
-        map_cell_method(method, row);
-        if (strcmp(method, cell->method) != 0) continue;
-        method_known = true;
-        if (!is_near(row->x, cell->x) || !is_near(row->y, cell->y)) continue;
-        if (found == NULL || distance(row, cell) < distance(found, cell)) found = row;
-    }
-    return found != NULL ? found : fail(table, cell, map_known, method_known, error);
-}
-
 const MapCell *stability_cell_holder(const CsvTable *table, const MapCell *row) {
     for (int i = 0; i < table->count; i++) {
         const MapCell *other = map_cell(table, i);
@@ -108,7 +38,7 @@ static const double shown_rate = 60;
 
 typedef struct Making {
     CellRuns *runs;
-    const ClipMap *map;
+    const CellMap *map;
     const char *input;
     const Progress *progress;
 } Making;
@@ -180,7 +110,7 @@ static bool thin_out(CellRuns *runs, Error *error) {
     return true;
 }
 
-bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapCell *holder, const MapCell *cell, const char *input,
+bool cell_runs_make(CellRuns *runs, const CellMap *map, const MapCell *holder, const MapCell *cell, const char *input,
                     const Progress *progress, Error *error) {
     const Making making = {runs, map, input, progress};
     *runs = (CellRuns){.count = 0};
@@ -191,74 +121,19 @@ bool cell_runs_make(CellRuns *runs, const ClipMap *map, const MapCell *holder, c
 
 void cell_runs_free(CellRuns *runs) { panels_free(&runs->panels); }
 
-enum { TITLE_SIZE = 320 };
-
-static const MapCell *find_cell(const ClipOptions *options, const CsvTable *table, Error *error) {
-    StabilityCell cell;
-    if (!stability_cell_parse(&cell, options->cell, error)) return NULL;
-    const MapCell *row = stability_cell_find(table, &cell, error);
-    if (row == NULL || row->verdict < VERDICTS) return row;
-    error_input(error, "--clip", "'%s' is not applicable", options->cell);
-    return NULL;
-}
-
-const ClipMap *clip_map_find(const ClipMap *maps, int count, const char *name, const char *option, Error *error) {
+const CellMap *cell_map_find(const CellMap *maps, int count, const char *name, Error *error) {
     for (int i = 0; i < count; i++)
         if (strcmp(maps[i].name, name) == 0) return &maps[i];
-    return error_input(error, option, "map %s has no scene", name), NULL;
-}
-
-static bool stability_clip_draw(const ClipOptions *options, CellRuns *runs, Error *error) {
-    const MapCell *own = runs->rows[runs->count - 1];
-    char name[MAP_CLIP_SIZE], folder[PATH_MAX], video[PATH_MAX], title[TITLE_SIZE];
-    char notes[2][CELL_NOTE_SIZE];
-    map_cell_clip(name, own);
-    if (!file_path(folder, sizeof folder, error, "%s/%s", options->folder, name) ||
-        !file_path(video, sizeof video, error, "%s.mp4", folder))
-        return false;
-    snprintf(title, sizeof title, "%s %.4g %s, %s %.4g %s", own->x_parameter, own->x, own->x_unit, own->y_parameter,
-             own->y, own->y_unit);
-    RenderOptions render = draw_panels_defaults(folder);
-    render.width = options->width;
-    render.height = options->height;
-    render.title = title;
-    for (int i = 0; i < runs->count; i++) {
-        cell_note(notes[i], runs->rows[i], runs->dt);
-        render.notes[i] = notes[i];
-    }
-    const DrawVideos videos = {1, {video}};
-    RenderResult result;
-    if (!file_make_directory(folder, error) || !draw_videos_check(&videos, render.width, render.height, false, error) ||
-        !draw_panels(&runs->panels, &render, &videos, NULL, &result, error))
-        return false;
-    printf("%s: %s -> %s, %s/frame_%06d.png ... frame_%06d.png\n", options->cell, notes[runs->count - 1], video, folder,
-           result.first, result.last);
-    return true;
-}
-
-bool stability_clip(const ClipOptions *options, Error *error) {
-    CsvTable table;
-    if (!csv_table_read_from(&table, options->folder, &map_layout, error)) return false;
-    CellRuns runs = {.count = 0};
-    const MapCell *row = find_cell(options, &table, error);
-    const ClipMap *map =
-        row != NULL ? clip_map_find(options->maps, options->map_count, row->map, "--clip", error) : NULL;
-    bool ok = map != NULL && video_check_programs(error) &&
-              cell_runs_make(&runs, map, stability_cell_holder(&table, row), row, options->cell, NULL, error) &&
-              stability_clip_draw(options, &runs, error);
-    cell_runs_free(&runs);
-    csv_table_free(&table);
-    return ok;
+    return error_input(error, "--pages", "map %s has no scene", name), NULL;
 }
 
 /* One parameter more than can be varied, which stability_own_make() then refuses. */
-enum { CLIP_WIDTH = 1280, CLIP_HEIGHT = 720, VARY_TEXTS = STABILITY_MAX_VARY + 1 };
+enum { VARY_TEXTS = STABILITY_MAX_VARY + 1 };
 
 typedef struct Options {
     StabilityOptions study;
     bool pages, plan;
     const char *shard; /* or NULL */
-    const char *clip;  /* or NULL */
     const char *scene; /* or NULL */
     int vary_count;
     const char *vary[VARY_TEXTS];
@@ -297,9 +172,6 @@ static const Option option_table[] = {
     {"--pages", 0, NULL,
      "Also write stability.html: borders and maps whose failing cells link to pages that play what happened there",
      OPTION_FLAG(Options, pages)},
-    {"--clip", 0, "CELL",
-     "Only make a video of a map's cell, MAP:METHOD:X,Y, beside a method that holds there; DIR must have the map",
-     OPTION_TEXT(Options, clip)},
     {OPTION_SHARD(Options, shard)},
     {"--plan", 0, NULL, "Only measure some of the pieces, and print what all take on 1 to 100,000 cores; needs no -o",
      OPTION_FLAG(Options, plan)},
@@ -323,22 +195,21 @@ static const CommandSpec spec = {
         "Example: twinbox stability -o out/stability\n"
         "         twinbox stability wall.yaml --vary rows --vary mass=1:100 -o out/wall\n"
         "         twinbox stability scenes/stack.yaml --vary iterations --quick -o out/stack-borders\n"
-        "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height\n"
-        "         twinbox stability -o out/stability --clip height_iterations:engine:15,5"};
+        "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height"};
 
 /* Frees with free_maps(), also after a failure. */
-typedef struct ClipMaps {
-    ClipMap *items; /* [count] */
+typedef struct CellMaps {
+    CellMap *items; /* [count] */
     int count;
     char (*paths)[STABILITY_PATH_SIZE];
-} ClipMaps;
+} CellMaps;
 
-static void free_maps(ClipMaps *maps) {
+static void free_maps(CellMaps *maps) {
     free(maps->paths);
     free(maps->items);
 }
 
-static bool list_maps(ClipMaps *maps, const Options *options, Error *error) {
+static bool list_maps(CellMaps *maps, const Options *options, Error *error) {
     const StabilityOwn *own = options->study.own;
     const StabilityMap *table = own != NULL ? own->maps : stability_maps;
     maps->count = own != NULL ? own->map_count : stability_map_count;
@@ -349,22 +220,13 @@ static bool list_maps(ClipMaps *maps, const Options *options, Error *error) {
         const StabilityMap *map = &table[i];
         const StabilityPlace place = {options->study.scenes, map->scene, map->file};
         if (!stability_path(maps->paths[i], &place, error)) return false;
-        maps->items[i] = (ClipMap){map->name, maps->paths[i], map->x.parameter, map->y.parameter};
+        maps->items[i] = (CellMap){map->name, maps->paths[i], map->x.parameter, map->y.parameter};
     }
     return true;
 }
 
-static bool make_clip(const Options *options, Error *error) {
-    ClipMaps maps = {0};
-    bool ok = list_maps(&maps, options, error);
-    const ClipOptions clip = {options->study.folder, options->clip, maps.items, maps.count, CLIP_WIDTH, CLIP_HEIGHT};
-    ok = ok && stability_clip(&clip, error);
-    free_maps(&maps);
-    return ok;
-}
-
 static bool write_pages(const Options *options, uint64_t key, Error *error) {
-    ClipMaps maps = {0};
+    CellMaps maps = {0};
     bool ok = list_maps(&maps, options, error);
     const StabilityPages pages = {&options->study, maps.items, maps.count};
     ok = ok && stability_pages_write(&pages, key, error);
@@ -406,9 +268,8 @@ static bool estimate(const StabilityOptions *options, Error *error) {
 /* SCENE and --vary go together, and neither with what chooses studies of the table. */
 static bool check_options(const Options *options, Error *error) {
     if (options->study.folder == NULL && !options->plan) return error_input(error, "-o", "-o DIR is needed");
-    if (options->plan && (options->pages || options->clip != NULL || options->shard != NULL))
-        return error_input(error, "--plan", "writes nothing; it cannot be combined with --pages, --clip or --shard");
-    if (options->pages && options->clip != NULL) return error_input(error, "--pages", "cannot be combined with --clip");
+    if (options->plan && (options->pages || options->shard != NULL))
+        return error_input(error, "--plan", "writes nothing; it cannot be combined with --pages or --shard");
     if (options->scene == NULL)
         return options->vary_count == 0 || error_input(error, "--vary", "a scene is needed: its parameters are varied");
     if (options->vary_count == 0)
@@ -435,6 +296,5 @@ bool command_stability(int argc, char **argv, Error *error) {
     options.study.run = &run;
     if (options.plan) return estimate(&options.study, error);
     if (!shard_option_take(&run, options.shard, argc, argv, error)) return false;
-    if (options.clip != NULL) return make_clip(&options, error);
     return output_check_folder(options.study.folder, error) && study(&options.study, error);
 }

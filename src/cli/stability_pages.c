@@ -213,11 +213,10 @@ typedef struct Pages {
     int first, row; /* the map's first part; the row of the table behind it */
 } Pages;
 
-/* Its name is that of the cell's clip. */
 static bool write_page(Pages *pages, const CellRuns *runs, const MapCell *cell, PageFile *file, Error *error) {
     const Trajectory *const *shown = (const Trajectory *const *)runs->panels.runs;
-    char clip[MAP_CLIP_SIZE], title[TITLE_SIZE];
-    map_cell_clip(clip, cell);
+    char name[MAP_NAME_SIZE], title[TITLE_SIZE];
+    map_cell_name(name, cell);
     snprintf(title, sizeof title, "%s %.4g%s%s", cell->x_parameter, cell->x, cell->x_unit[0] != '\0' ? " " : "",
              cell->x_unit);
     if (!isnan(cell->y))
@@ -231,11 +230,11 @@ static bool write_page(Pages *pages, const CellRuns *runs, const MapCell *cell, 
                                    .last = -1,
                                    .title = title,
                                    .describe = method_describe};
-    return page_set_write(&pages->set, strrchr(clip, '/') + 1, shown, runs->panels.count, &options, file, error);
+    return page_set_write(&pages->set, name, shown, runs->panels.count, &options, file, error);
 }
 
 /* holder: what holds there, or NULL. */
-static bool write_cell(Pages *pages, const ClipMap *map, const MapCell *holder, const MapCell *cell, FILE *rows,
+static bool write_cell(Pages *pages, const CellMap *map, const MapCell *holder, const MapCell *cell, FILE *rows,
                        const Progress *progress, Error *error) {
     CellRuns runs;
     PageFile file;
@@ -287,7 +286,7 @@ static bool write_border(Pages *pages, const BorderRow *row, FILE *rows, const P
     if (isnan(row->fails_at) || row->verdict >= VERDICT_ADAPTER_FAILED) return true;
     if (study == NULL) return error_input(error, "--pages", "study %s has no scene", row->study);
     const StabilityPlace place = {options->scenes, study->scene, study->file};
-    const ClipMap map = {row->study, path, row->parameter, study->fixed.name};
+    const CellMap map = {row->study, path, row->parameter, study->fixed.name};
     return stability_path(path, &place, error) &&
            stability_run_cell(study, options->scenes, row, row->fails_at, &cell, error) &&
            (held == NULL || stability_run_cell(study, options->scenes, held, row->fails_at, &holder, error)) &&
@@ -315,7 +314,7 @@ static bool write_part(void *context, int part, FILE *rows, const Progress *prog
     const int count = map_pages_choose(pages->map, pages->panel, places);
     for (int i = 0; i < count; i++) {
         const MapCell *cell = map_panels_cell(pages->map, &pages->table, pages->panel, places[i]);
-        const ClipMap *map = clip_map_find(options->maps, options->map_count, cell->map, "--pages", error);
+        const CellMap *map = cell_map_find(options->maps, options->map_count, cell->map, error);
         ProgressStage stage = {progress, (double)i / count, 1.0 / count, false};
         if (map == NULL || !write_cell(pages, map, stability_cell_holder(&pages->table, cell), cell, rows,
                                        &(Progress){progress_stage, &stage}, error))

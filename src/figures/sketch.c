@@ -308,17 +308,6 @@ void sketch_power_of_ten(Sketch *sketch, Point at, const TextStyle *style, int d
     }
 }
 
-void sketch_link(Sketch *sketch, Point low, Point high, const char *target, const char *title) {
-    const size_t before = sketch->mark_count;
-    sketch_rectangle(sketch, low, high, &(Pen){NO_COLOUR, 1, NO_COLOUR, 0, NULL});
-    if (sketch->failed || sketch->mark_count == before) return;
-    SketchMark *mark = &sketch->marks[before];
-    mark->kind = MARK_LINK;
-    mark->layer = LAYER_TEXTS;
-    mark->text = add_text(sketch, target);
-    mark->reads = add_text(sketch, title);
-}
-
 void text_fit(char *words, size_t size, double points, double width) {
     static const char ellipsis[] = "\xE2\x80\xA6";
     if (type_width(words, points) <= width) return;

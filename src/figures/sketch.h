@@ -132,7 +132,7 @@ typedef struct TextStyle {
 /* From bottom to top. */
 typedef enum SketchLayer { LAYER_PICTURES, LAYER_SHAPES, LAYER_ARROWS, LAYER_TEXTS, SKETCH_LAYERS } SketchLayer;
 
-typedef enum SketchMarkKind { MARK_IMAGE, MARK_PATH, MARK_TEXT, MARK_LINK } SketchMarkKind;
+typedef enum SketchMarkKind { MARK_IMAGE, MARK_PATH, MARK_TEXT } SketchMarkKind;
 
 /* One element of the page. */
 typedef struct SketchMark {
@@ -143,11 +143,11 @@ typedef struct SketchMark {
     Image *image;
     Pen pen;
     bool closed;
-    size_t first, count; /* of a path or a link's area: range in the sketch's points */
+    size_t first, count; /* of a path: range in the sketch's points */
     TextStyle style;
-    size_t text;    /* offset in the sketch's texts; of a link: its target */
+    size_t text;    /* offset in the sketch's texts */
     bool has_reads; /* what readers of a PDF's text get instead is at `reads` in the sketch's texts */
-    size_t reads;   /* of a link: its tooltip */
+    size_t reads;
 } SketchMark;
 
 typedef struct Sketch {
@@ -188,9 +188,6 @@ void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *f
    a PDF it reads "2·10⁻³". */
 void sketch_power_of_ten(Sketch *sketch, Point at, const TextStyle *style, int digit, int power);
 double sketch_power_width(double points, int digit, int power);
-
-/* Makes an area a link with a tooltip, in SVG files only. */
-void sketch_link(Sketch *sketch, Point low, Point high, const char *target, const char *title);
 
 /* Shortens a text to a width in mm, with an ellipsis. */
 void text_fit(char *words, size_t size, double points, double width);

@@ -231,7 +231,6 @@ static void write_marks(FILE *content, const Sketch *sketch, const SketchOutput 
             break;
         case MARK_PATH: write_path(content, sketch, mark); break;
         case MARK_TEXT: write_text(content, sketch, mark); break;
-        case MARK_LINK: break;
         }
     }
 }

@@ -372,7 +372,6 @@ static void draw_mark(Painter *painter, const SketchMark *mark) {
     case MARK_IMAGE: draw_image(painter, mark); break;
     case MARK_PATH: draw_path(painter, mark); break;
     case MARK_TEXT: draw_text(painter, mark); break;
-    case MARK_LINK: break;
     }
 }
 

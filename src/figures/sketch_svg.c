@@ -126,16 +126,6 @@ static void write_path(FILE *file, const Sketch *sketch, const SketchMark *mark)
     fprintf(file, "%s/>\n", count > 0 ? "\"" : "");
 }
 
-static void write_link(FILE *file, const Sketch *sketch, const SketchMark *mark) {
-    const Point *corners = sketch->points + mark->first;
-    fprintf(file, "<a xlink:href=\"");
-    write_escaped(file, sketch->texts + mark->text);
-    fprintf(file, "\"><title>");
-    write_escaped(file, sketch->texts + mark->reads);
-    fprintf(file, "</title><rect x=\"%.3f\" y=\"%.3f\" width=\"%.3f\" height=\"%.3f\" fill-opacity=\"0\"/></a>\n",
-            corners[0].x, sketch->height - corners[2].y, corners[2].x - corners[0].x, corners[2].y - corners[0].y);
-}
-
 static bool write_image(FILE *file, const Sketch *sketch, const SketchMark *mark, Error *error) {
     size_t size;
     char *png = picture_as_png(mark->image, 0, false, &size, error);
@@ -185,7 +175,6 @@ static bool write_document(FILE *file, const Sketch *sketch, const SketchOutput 
         case MARK_IMAGE: whole = write_image(file, sketch, mark, error); break;
         case MARK_PATH: write_path(file, sketch, mark); break;
         case MARK_TEXT: (output->outlines ? write_outlines : write_text)(file, sketch, mark); break;
-        case MARK_LINK: write_link(file, sketch, mark); break;
         }
     }
     fprintf(file, "</svg>\n");

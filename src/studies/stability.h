@@ -309,10 +309,9 @@ bool border_same_study(const BorderRow *a, const BorderRow *b);
 enum { MAP_METHOD_SIZE = CSV_NAME_SIZE + STABILITY_SETTING_SIZE };
 void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell);
 
-/* The path of a cell's clip, relative to the tables' folder and without extension: "clips/MAP-METHOD-X_Y", or without y
-   "clips/MAP-METHOD-X". */
-enum { MAP_CLIP_SIZE = CSV_NAME_SIZE + MAP_METHOD_SIZE + 40 };
-void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell);
+/* What files of a cell are called, without ending: "MAP-METHOD-X_Y", or without y "MAP-METHOD-X". */
+enum { MAP_NAME_SIZE = CSV_NAME_SIZE + MAP_METHOD_SIZE + 40 };
+void map_cell_name(char name[MAP_NAME_SIZE], const MapCell *cell);
 
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
@@ -381,7 +380,7 @@ bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *e
 /* Reads folder/stability.csv and folder/maps.csv, of the studies of a scene file or, with own NULL, of the table, and draws,
    as .png, .svg and a caption .txt of one line, which also explains the words of the figure,
      map-NAME   one per map: a panel per method with a border, a tile per cell; the caption names methods
-                that hold or fail everywhere; in the .svg, tiles link to the cells' clips, whether these exist or not
+                that hold or fail everywhere
      borders    how far each method holds in each study (studies/stability_internal.h)
    into the folder. Readable for the colour-blind, in grey and in black and white. The same tables give the same files.
 

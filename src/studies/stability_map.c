@@ -406,27 +406,6 @@ static void draw_border(const Layout *layout, int panel, const PlotPanel *plot) 
         }
 }
 
-/* Links each cell to its clip; the title is the cell's name as for --clip, with special characters replaced. */
-static void draw_links(const Layout *layout, int panel, const PlotPanel *plot) {
-    const MapPanels *map = layout->map;
-    MapCell cell = *map->methods[panel];
-    char method[MAP_METHOD_SIZE], clip[MAP_CLIP_SIZE], target[MAP_CLIP_SIZE + 4], title[MAP_CLIP_SIZE + 20];
-    map_cell_method(method, &cell);
-    for (int x = 0; x < map->x_count; x++)
-        for (int y = 0; y < map->y_count; y++) {
-            const int look = map->looks[panel][x][y];
-            if (look >= VERDICTS) continue;
-            cell.x = map->x[x];
-            cell.y = map->y[y];
-            map_cell_clip(clip, &cell);
-            snprintf(target, sizeof target, "%s.mp4", clip);
-            snprintf(title, sizeof title, "%s:%s:%.4g,%.4g %s", cell.map, method, cell.x, cell.y, verdict_words[look]);
-            chart_make_plain(title);
-            sketch_link(layout->sketch, plot_place(plot, x - 0.5, y - 0.5), plot_place(plot, x + 0.5, y + 0.5), target,
-                        title);
-        }
-}
-
 static void draw_panel(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
     const MapCell *method = map->methods[panel];
@@ -443,7 +422,6 @@ static void draw_panel(const Layout *layout, int panel) {
     plot_panel_place(&plot);
     draw_tiles(layout, panel, &plot);
     draw_border(layout, panel, &plot);
-    draw_links(layout, panel, &plot);
     plot_panel_draw(layout->sketch, &plot);
 }
 

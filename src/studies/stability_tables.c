@@ -19,13 +19,12 @@ void map_cell_method(char method[MAP_METHOD_SIZE], const MapCell *cell) {
     snprintf(method, MAP_METHOD_SIZE, "%s%s%s", cell->method, cell->setting[0] != '\0' ? ":" : "", cell->setting);
 }
 
-void map_cell_clip(char name[MAP_CLIP_SIZE], const MapCell *cell) {
-    static const char folder[] = "clips/";
+void map_cell_name(char name[MAP_NAME_SIZE], const MapCell *cell) {
     char method[MAP_METHOD_SIZE];
     map_cell_method(method, cell);
-    snprintf(name, MAP_CLIP_SIZE, "%s%s-%s-%.4g", folder, cell->map, method, cell->x);
-    if (!isnan(cell->y)) text_add(name, MAP_CLIP_SIZE, "_%.4g", cell->y);
-    file_name_clean(name + strlen(folder));
+    snprintf(name, MAP_NAME_SIZE, "%s-%s-%.4g", cell->map, method, cell->x);
+    if (!isnan(cell->y)) text_add(name, MAP_NAME_SIZE, "_%.4g", cell->y);
+    file_name_clean(name);
 }
 
 bool map_cell_same_method(const MapCell *a, const MapCell *b) {

@@ -27,12 +27,6 @@ equal "cells" "$(wc -l <map/maps.csv)" 21
 equal "lines printed" "$(wc -l <out)" 5
 equal "figures" "$(cd map && echo *.png)" map-speed_thickness.png
 
-# Clips of cells that are not there. (One that is: test_stability_own.sh.)
-run 2 stability --scenes "$scenes" -o map --clip speed_thickness:momentum:200,0.1
-complains "map speed_thickness has no method momentum; its methods: engine"
-run 2 stability --scenes "$scenes" -o one --clip speed_thickness:engine:200,0.1
-complains "there is no map speed_thickness in one/maps.csv; its maps: none"
-
 ! brief || finish
 
 # 10,000 steps at rest.

@@ -1,61 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Cells of maps as they are named on the command line, and found in the table. */
+/* Cells of maps: what holds there, and the runs that show what happened. The verdicts are made up. */
 #include "testing.h"
 
 #include "cli/runs.h"
 #include "base/file.h"
 
+#include <math.h>
+
 #define HEADER "map,method,setting,x_parameter,x_unit,x,y_parameter,y_unit,y,verdict,frame,body,value,unit\n"
-
-TEST(a_cell_has_a_map_a_method_and_two_numbers) {
-    static const struct {
-        const char *text, *map, *method;
-        double x, y;
-    } cases[] = {{"a:engine:1,2", "a", "engine", 1, 2},
-                 {"spin_x:engine:k=10,warm=off:-2.5,1e3", "spin_x", "engine:k=10,warm=off", -2.5, 1000},
-                 {"a:pair-net:network=b:c.npz:0,0", "a", "pair-net:network=b:c.npz", 0, 0}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        StabilityCell cell;
-        assert_ok(stability_cell_parse(&cell, cases[i].text, &error), error);
-        assert_string_equal(cell.map, cases[i].map);
-        assert_string_equal(cell.method, cases[i].method);
-        assert_true(cell.x == cases[i].x && cell.y == cases[i].y);
-    }
-}
-
-TEST(what_is_no_cell_is_refused) {
-    char map[300], method[300];
-    snprintf(map, sizeof map, "%0*d:engine:1,2", CSV_NAME_SIZE, 1);
-    snprintf(method, sizeof method, "a:%0*d:1,2", METHOD_TEXT_SIZE, 1);
-    const char *const texts[] = {"",
-                                 "a",
-                                 "a:1,2",
-                                 ":engine:1,2",
-                                 "a::1,2",
-                                 "a:engine:",
-                                 "a:engine:1",
-                                 "a:engine:1,",
-                                 "a:engine:,1",
-                                 "a:engine:1,2,3",
-                                 "a:engine:x,y",
-                                 "a:engine:1,nan",
-                                 "a:engine:1,inf",
-                                 "a:engine:1 ,2",
-                                 map,
-                                 method};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        StabilityCell cell;
-        error = (Error){0};
-        if (stability_cell_parse(&cell, texts[i], &error)) fail_msg("'%s' is taken", texts[i]);
-        assert_error(error, ERROR_INPUT, "is not MAP:METHOD:X,Y");
-    }
-    /* One character less has room. */
-    StabilityCell cell;
-    snprintf(map, sizeof map, "%0*d:engine:1,2", CSV_NAME_SIZE - 1, 1);
-    snprintf(method, sizeof method, "a:%0*d:1,2", METHOD_TEXT_SIZE - 1, 1);
-    assert_ok(stability_cell_parse(&cell, map, &error) && stability_cell_parse(&cell, method, &error), error);
-    assert_int_equal(strlen(cell.method), METHOD_TEXT_SIZE - 1);
-}
 
 static CsvTable table;
 
@@ -71,40 +23,55 @@ FIXTURE(read_table) {
 
 FIXTURE(free_table) { csv_table_free(&table); }
 
-/* The row of the table, from 0; -1: there is none, and the error has this text. */
-static void expect_row(const char *text, int row, const char *message) {
-    StabilityCell cell;
-    Error error = {0};
-    assert_ok(stability_cell_parse(&cell, text, &error), error);
-    const MapCell *found = stability_cell_find(&table, &cell, &error);
-    if (row >= 0) {
-        assert_ok(found != NULL, error);
-        assert_int_equal(found - map_cell(&table, 0), row);
-    } else {
-        assert_null(found);
-        assert_error(error, ERROR_INPUT, message);
-    }
-}
-
-TEST(the_nearest_cell_within_a_percent_is_found) {
-    expect_row("a:engine:10,1", 0, NULL);
-    expect_row("a:engine:10.02,1", 0, NULL);
-    expect_row("a:engine:10.03,1", 1, NULL);
-    expect_row("a:engine:-20.1,0", 2, NULL);
-    expect_row("a:engine:k=4:10,1", 3, NULL);
-    expect_row("b:engine:10,1", 6, NULL);
-    expect_row("a:engine:10.2,1", -1, "map a has no cell 10.2,1 of method engine; its X: 10, 10.05, -20; its Y: 1, 0");
-    expect_row("a:engine:-20,0.001", -1, "map a has no cell");
-    expect_row("c:engine:10,1", -1, "there is no map c in");
-    expect_row("c:engine:10,1", -1, "; its maps: a, b");
-    expect_row("a:engine:k=5:10,1", -1,
-               "map a has no method engine:k=5; its methods: engine, engine:k=4, momentum, nncg");
-}
-
 TEST(the_first_method_that_holds_there_is_the_holder) {
     assert_ptr_equal(stability_cell_holder(&table, map_cell(&table, 0)), map_cell(&table, 4));
     assert_null(stability_cell_holder(&table, map_cell(&table, 1))); /* in map b only */
     assert_null(stability_cell_holder(&table, map_cell(&table, 2)));
+}
+
+static const CellMap map = {"m", SOURCE_DIR "/scenes/stability/time_step.yaml", "rate", "height"};
+
+static MapCell cell_of(const char *method, double rate, double height, Verdict verdict, double frame) {
+    return (MapCell){"m", method, "", "rate", "Hz", "height", "", rate, height, (int)verdict, frame, 1, 0.5, "m"};
+}
+
+/* Runs the cell, and expects so many frames of each run, of the holder first. */
+static void expect_frames(const MapCell *holder, const MapCell *cell, int count, int of_first, int of_last) {
+    CellRuns runs;
+    Error error = {0};
+    assert_ok(cell_runs_make(&runs, &map, holder, cell, "m", NULL, &error), error);
+    assert_int_equal(runs.panels.count, count);
+    assert_int_equal(runs.panels.runs[0]->frames, of_first);
+    assert_int_equal(runs.panels.runs[count - 1]->frames, of_last);
+    cell_runs_free(&runs);
+}
+
+/* 20 Hz: frames 0 to 4, and those of three seconds. */
+TEST(runs_go_on_for_three_seconds) {
+    const MapCell cell = cell_of("engine", 20, 2, VERDICT_FALLS, 4),
+                  holder = cell_of("nncg", 20, 2, VERDICT_SETTLES, 2);
+    expect_frames(NULL, &cell, 1, 65, 65);
+    expect_frames(&holder, &cell, 2, 65, 65);
+    expect_frames(&holder, &holder, 1, 63, 63); /* it holds, and is alone */
+}
+
+/* 480 Hz: every eighth frame, up to step 2 + 3 * 480. */
+TEST(no_more_than_sixty_frames_a_second_are_kept) {
+    const MapCell cell = cell_of("momentum", 480, 2, VERDICT_SETTLES, 2);
+    expect_frames(NULL, &cell, 1, 181, 181);
+}
+
+/* The run that leaves the finite numbers in step 3 ends with frame 2; one that holds goes on beside it. */
+TEST(what_is_no_more_finite_ends_before) {
+    const MapCell cell = cell_of("nncg", 20, 2, VERDICT_NON_FINITE, 3);
+    const MapCell holder = cell_of("momentum", 20, 2, VERDICT_SETTLES, 2);
+    expect_frames(&holder, &cell, 2, 64, 3);
+    expect_frames(NULL, &cell, 1, 3, 3);
+}
+
+TEST(a_map_without_a_scene_is_refused) {
+    assert_ptr_equal(cell_map_find(&map, 1, "m", &error), &map);
+    assert_refused(cell_map_find(&map, 1, "n", &error) != NULL, "map n has no scene");
 }
 
 RUN_TESTS(read_table, free_table)

@@ -62,20 +62,6 @@ says "pieces: 30, of which 30 were measured on one core each of "
 says " 30 files, "
 says "if the shared file system makes or opens 1000 files a second:"
 equal "cores that are used" "$(awk '$1 ~ /^[0-9]+$/ { print $1, $2 }' out | xargs)" "1 1 10 10 1000 30 100000 30"
-
-# A map's cell as a video, three seconds longer than its box stands.
-sed 's|^dt: .*|dt: 1/20|' "$ramp" >slide.yaml
-slide="slide.yaml --vary slope=0.4:0.6:0.2 --vary friction=0.05:0.15:0.1 -o slide"
-run 0 stability $slide --methods engine
-PATH= run 3 stability $slide --clip slide_slope_friction:engine:0.6,0.05 -v
-grep -q "ffmpeg: error: " err || fail "no message on a missing program: $(<err)"
-[ -e slide/clips ] && fail "work before the missing program was found"
-run 0 stability $slide --clip slide_slope_friction:engine:0.6,0.05
-says "slide_slope_friction:engine:0.6,0.05: falls at "
-says " -> slide/clips/slide_slope_friction-engine-0.6_0.05.mp4"
-clip=slide/clips/slide_slope_friction-engine-0.6_0.05
-frames=$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 $clip.mp4)
-equal "frames of the clip" "$frames" "$(ls $clip | grep -c png)"
 ! brief || finish
 
 # A run that is interrupted continues, and another range begins again.

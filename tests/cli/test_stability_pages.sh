@@ -101,8 +101,6 @@ assert any(float(row["y"] or 0) > 100 or float(row["x"]) > 100 for row in listed
 PYTHON
 checks=$((checks + 1))
 
-run 2 stability --scenes "$scenes" -o own --pages --clip speed_thickness:engine:12.6,0.27
-complains "--pages: error: cannot be combined with --clip"
 run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o plain
 [ -e plain/stability.html ] && fail "pages that nobody asked for"
 finish

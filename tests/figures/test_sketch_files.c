@@ -245,34 +245,6 @@ TEST(an_svg_of_outlines_needs_no_font) {
     sketch_free(&sketch);
 }
 
-/* In an SVG an area is a link, whose texts cannot end it; in the other formats it is nothing. */
-TEST(a_link_is_in_an_svg_only) {
-    char *data[2][SKETCH_FORMATS];
-    size_t size[2][SKETCH_FORMATS];
-    for (int linked = 0; linked < 2; linked++) {
-        Sketch sketch;
-        sketch_begin(&sketch, 30, 20);
-        sketch_rectangle(&sketch, (Point){1, 1}, (Point){9, 9}, &(Pen){0x336699, 1, NO_COLOUR, 0, NULL});
-        if (linked) sketch_link(&sketch, (Point){2, 3}, (Point){8, 7}, "a\">.mp4", "<it> & that");
-        data[linked][0] = sketch_as_png(&sketch, &white, &size[linked][0], &error);
-        data[linked][1] = sketch_as_svg(&sketch, &white, &size[linked][1], &error);
-        data[linked][2] = sketch_as_pdf(&sketch, &white, &size[linked][2], &error);
-        sketch_free(&sketch);
-    }
-    for (int format = 0; format < SKETCH_FORMATS; format++) {
-        assert_true(data[0][format] != NULL && data[1][format] != NULL);
-        if (format != SKETCH_SVG) {
-            assert_int_equal(size[0][format], size[1][format]);
-            assert_memory_equal(data[0][format], data[1][format], size[0][format]);
-        }
-    }
-    assert_null(strstr(data[0][SKETCH_SVG], "<a "));
-    assert_non_null(strstr(data[1][SKETCH_SVG],
-                           "<a xlink:href=\"a&quot;>.mp4\"><title>&lt;it> &amp; that</title><rect x=\"2.000\" "
-                           "y=\"13.000\" width=\"6.000\" height=\"4.000\" fill-opacity=\"0\"/></a>"));
-    for (int i = 0; i < 2 * SKETCH_FORMATS; i++) free(data[i / SKETCH_FORMATS][i % SKETCH_FORMATS]);
-}
-
 /* poppler reads from a PDF what a reader sees: each text once, in the order of drawing, powers as powers; and its title. */
 TEST(a_pdf_is_read_as_it_is_seen) {
     Sketch sketch;

@@ -50,8 +50,7 @@ TEST(panels_without_a_border_are_left_out_and_named) {
               "    expect(found.count(text), 0, text)\n"
               "for text in ('Left out, as holding everywhere: interior.', 'Left out, as not applicable: scene-net.',\n"
               "             'Left out, as failing everywhere: pair-net, pair-net:net=off.'):\n"
-              "    assert text in words, (text, words)\n"
-              "expect(len(re.findall('<title>m:', read('map-m'))), 4, 'links')\n");
+              "    assert text in words, (text, words)\n");
 }
 
 TEST(without_any_border_all_panels_stay) {
@@ -86,27 +85,6 @@ TEST(captions_explain_their_words) {
               "       'near: sweeps go on while contacts miss their velocity by this, m/s.\\n', 'words')\n");
 }
 
-/* Every cell that was run has one link, over its tile. */
-TEST(cells_link_to_their_clips) {
-    start_afresh(
-        MAPS "m,engine,\"k=4,warm=off\",a,,1,b,,0.5,falls,,,,\nm,engine,\"k=4,warm=off\",a,,2e3,b,,0.5,settles,,,,\n"
-             "m,engine,\"k=4,warm=off\",a,,1,b,,7,not applicable,,,,\n",
-        BORDERS ONE_BORDER);
-    draw();
-    check_svg(
-        "svg = read('map-m')\n"
-        "root, space = tree.fromstring(svg), '{http://www.w3.org/2000/svg}'\n"
-        "for fill, x, verdict in (('#EE9A2E', '1', 'falls'), ('#EAF3FA', '2000', 'settles')):\n"
-        "    link = [a for a in root.iter(space + 'a') if a.find(space + 'title').text ==\n"
-        "            'm:engine:k=4,warm=off:%%s,0.5 %%s' %% (x, verdict)][0]\n"
-        "    target = link.get('{http://www.w3.org/1999/xlink}href')\n"
-        "    expect(target, 'clips/m-engine_k=4_warm=off-%%s_0.5.mp4' %% x, 'target')\n"
-        "    at = [float(link.find(space + 'rect').get(k)) for k in ('x', 'y', 'width', 'height')]\n"
-        "    place = [at[0], at[1], at[0] + at[2], at[1] + at[3]]\n"
-        "    assert all(abs(a - b) < 0.1 for a, b in zip(place, areas(svg, fill)[0])), (place, areas(svg, fill))\n"
-        "expect(len(list(root.iter(space + 'a'))), 2, 'links')\n");
-}
-
 /* A path of 119 bytes, and characters that are special in SVG; 128 bytes are too many. */
 TEST(settings_may_be_paths) {
     char setting[200], maps[1024], borders[1024];
@@ -116,7 +94,6 @@ TEST(settings_may_be_paths) {
     start_afresh(maps, borders);
     draw();
     check_svg("svg = read('map-m')\n"
-              "expect('m:pair-net:network=' + 103 * '0' + '/?it?s?/net.npz:1,2 falls' in svg, True, 'link')\n"
               "expect(texts(svg).count('pair-net:network=net.npz'), 1, 'title')\n"
               "expect(texts(read('borders')).count('pair-net:network=net.npz'), 1, 'label')\n");
     snprintf(maps, sizeof maps, MAPS "m,pair-net,%0128d,a,,1,b,,2,falls,,,,\n", 0);
