@@ -17,8 +17,8 @@
 #include <stdio.h>
 
 /* The commands of twinbox. Each is one file, with its option table and glue only, and one line here: name, summary, and
-   the heading of the group that begins with it, or NULL. Help, manual page and completion have these groups. Old names
-   have no summary. */
+   the heading of the group that begins with it, or NULL. Help, manual page and completion have these groups. One without a
+   summary is not listed. */
 
 #define COMMANDS(COMMAND)                                                                    \
     COMMAND(new, "write a commented scene to start from", "Make")                            \
@@ -39,8 +39,6 @@
     COMMAND(paper, "reproduce the paper, from seed to report", "For research on the method") \
     COMMAND(merge, "join what the shards of a study did", NULL)                              \
     COMMAND(solve, "solve the contact problem of one step with many methods", NULL)          \
-    COMMAND(diverge, NULL, NULL)                                                             \
-    COMMAND(problem, NULL, NULL)                                                             \
     COMMAND(completion, NULL, NULL)
 
 typedef struct Command {

@@ -283,23 +283,11 @@ static bool compare(const CompareOptions *options, Error *error) {
     return same;
 }
 
-static bool run(CompareOptions *options, int argc, char **argv, Error *error) {
-    bool same = compare_options_parse(options, argc, argv, error);
-    if (same && options->server) return compare_serve(error);
-    if (same && options->diverge) note_print("'twinbox diverge' is now 'twinbox compare'; its options stay");
-    same = same && (options->watch ? compare_watch(options, compare, error) : compare(options, error));
-    mask_free(&options->mask);
-    return same;
-}
-
 bool command_compare(int argc, char **argv, Error *error) {
     CompareOptions options = {.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES};
-    return run(&options, argc, argv, error);
-}
-
-bool command_diverge(int argc, char **argv, Error *error) {
-    static char now[] = "twinbox compare";
-    if (argc > 0) argv[0] = now;
-    CompareOptions options = {.max_pixels = IMAGE_MAX_PIXELS, .megabytes = REPORT_MEGABYTES, .diverge = true};
-    return run(&options, argc, argv, error);
+    bool same = compare_options_parse(&options, argc, argv, error);
+    if (same && options.server) return compare_serve(error);
+    same = same && (options.watch ? compare_watch(&options, compare, error) : compare(&options, error));
+    mask_free(&options.mask);
+    return same;
 }

@@ -14,9 +14,7 @@
 
 static bool same_length(const RunComparison *c) { return c->runs[0]->frames == c->runs[1]->frames; }
 
-static bool passed(const RunComparison *c) {
-    return c->same_world && c->parting.beyond.frame < 0 && (same_length(c) || c->options->diverge);
-}
+static bool passed(const RunComparison *c) { return c->same_world && c->parting.beyond.frame < 0 && same_length(c); }
 
 static void print_runs(FILE *out, const char *const paths[2], const Trajectory *a, const Trajectory *b) {
     const Trajectory *const runs[] = {a, b};
@@ -276,7 +274,7 @@ static bool check_worlds(RunComparison *c, Error *error) {
     const CompareOptions *options = c->options;
     c->parting = (TrajectoryParting){.first = {.frame = -1}, .beyond = {.frame = -1}, .step = -1};
     c->same_world = !trajectory_different_worlds(c->runs[0], c->runs[1], c->difference.what, sizeof c->difference.what);
-    return c->same_world || (!options->diverge && options->scene == NULL && options->csv == NULL) ||
+    return c->same_world || (options->scene == NULL && options->csv == NULL) ||
            error_input(error, options->paths[1], "cannot be compared with %s: %s", options->paths[0],
                        c->difference.what);
 }

@@ -35,7 +35,6 @@ typedef struct CompareOptions {
     unsigned metadata;    /* CompareMetadata */
     unsigned annotations; /* CompareAnnotations */
     bool watch, json, server;
-    bool diverge; /* by the old name: runs of other worlds are refused, and what only one run has is not compared */
     Mask mask;
 } CompareOptions;
 

@@ -285,17 +285,3 @@ bool command_solve(int argc, char **argv, Error *error) {
     return options_parse(&spec, argc, argv, &options, error) && check_options(&options, error) &&
            (options.frame > 0 ? solve_step(&options, error) : solve_file(&options, error));
 }
-
-/* The old name of its part that writes. --method was what is now --run-by. */
-bool command_problem(int argc, char **argv, Error *error) {
-    static char now[] = "twinbox solve";
-    Options options = {.bomb_x = NAN};
-    if (argc > 0) argv[0] = now;
-    if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    note_print(
-        "'twinbox problem SCENE --frame N -o P.npz' is now 'twinbox solve SCENE --frame N -o P.npz'; its --method "
-        "is now --run-by");
-    if (options.method_count > 0) options.run_by = options.methods[options.method_count - 1];
-    options.method_count = 0;
-    return check_options(&options, error) && solve_step(&options, error);
-}

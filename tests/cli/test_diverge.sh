@@ -104,20 +104,4 @@ run 2 compare engine.npz more.npz short.npz
 complains "only 2 inputs can be given"
 run 3 compare engine.npz more.npz --csv /nowhere/distance.csv
 complains "/nowhere/distance.csv"
-
-# The old name has the same results. It does not count what only one run has, and refuses other worlds.
-for arguments in "engine.npz more.npz --tolerance 0.01 --scene $stack --csv both.csv" "engine.npz more.npz --json"; do
-    run 1 compare $arguments
-    cp out now
-    run 1 diverge $arguments
-    diff now out >difference || fail "diverge $arguments prints something else: $(<difference)"
-    equal "notes of diverge" "$(grep -c "note: 'twinbox diverge' is now 'twinbox compare'" err)" 1
-done
-run 0 diverge engine.npz short.npz -q
-equal "notes of diverge -q" "$(<err)" ""
-run 0 diverge engine.npz short.npz --json
-run 2 diverge engine.npz single.npz
-complains "single.npz: error: cannot be compared with engine.npz: bodies: 12 and 3"
-run 0 help diverge
-says "Usage: twinbox compare"
 finish

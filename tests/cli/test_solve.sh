@@ -102,19 +102,6 @@ says "reference: residual"
 run 0 solve "$scenes/stack.yaml" --frame 41 -o both.npz -m engine --json
 /usr/bin/python3 -m json.tool <out >/dev/null || fail "-o --json is not JSON"
 
-# The old name of the part that writes. There, --method ran the scene.
-run 0 problem "$scenes/stack.yaml" --frame 41 --method engine:k=3 -o old.npz
-cmp -s old.npz soft.npz || fail "problem writes another problem"
-says "stack, step 41: 12 bodies, 20 contacts -> old.npz"
-equal "lines of problem" "$(wc -l <out)" 1
-equal "notes of problem" "$(grep -c "note: 'twinbox problem SCENE --frame N -o P.npz' is now 'twinbox solve " err)" 1
-run 0 problem "$scenes/stack.yaml" --frame 41 -o old.npz -q
-equal "notes of problem -q" "$(<err)" ""
-run 2 problem "$scenes/stack.yaml" --frame 41 -m engine
-complains "-o P.npz"
-run 0 help problem
-says "Usage: twinbox solve"
-
 run 2 solve impact.npz
 complains "--method NAME or --impulses FILE.csv is needed"
 run 2 solve "$scenes/stack.yaml" --frame 41
