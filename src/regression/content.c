@@ -9,8 +9,6 @@
 #include "regression/naming.h"
 
 #include <math.h>
-#include <stdio.h>
-double unmapped(const ContentTraits *traits);
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,8 +19,8 @@ typedef struct Verdict {
     Patch *patch;
 } Verdict;
 
-static const double MOVED = 0.7, CERTAIN = 0.9,
-                    BOTH = 0.15; /* of the squared difference: explained; and what either picture must show */
+/* Of the squared difference: what a movement explains, and where it looks like noise; what either picture must show. */
+static const double MOVED = 0.7, CERTAIN = 0.9, BOTH = 0.15;
 
 /* Whether something of these patches appears and something vanishes. Where content leaves, the difference has the other sign than
    where it arrives; a box that grew on one side has one sign. */

@@ -82,8 +82,7 @@ static void solve(double from[MAPPED][MAPPED], double to[MAPPED][3]) {
 }
 
 /* The share of the squared difference that no map of colours, linear with an offset, explains. */
-double unmapped(const ContentTraits *traits);
-double unmapped(const ContentTraits *traits) {
+static double unmapped(const ContentTraits *traits) {
     static const double RIDGE = 1e-3;
     double from[MAPPED][MAPPED], map[MAPPED][3], left = traits->square;
     memcpy(from, traits->from, sizeof from);
