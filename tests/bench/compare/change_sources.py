@@ -92,7 +92,8 @@ class Frames:
         bodies = [int(i) for i in numpy.flatnonzero((away < numpy.array(self.view[2:]) / 2 - 1).all(axis=1)) if i > 0]
         elements = []
         for i in bodies:
-            colour = ("box", "ground")
+            # A body of the ground has no arrow, and the bomb's mark is more than a colour.
+            colour = ("box", "ground") if "velocities" not in look and i != int(self.run["bomb"]) else ()
             if self.two:
                 colour = () if "overlay" in look else tuple(rng.permutation([0.0015, 0.004, 0.011, 0.02]))
             elements.append(Element("body", (i,), colour, ("as it is", "turned", "smaller"), movable="overlay" not in look,
