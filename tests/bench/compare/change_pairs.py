@@ -128,7 +128,7 @@ def edges(rng, picture):
 
 def noisy(rng, source, elements, picture):
     """The picture with noise, and the name of it."""
-    makers = {"JPEG": jpeg, "levels": levels, "dither": dither, "edges": edges, "renderer": None}
+    makers = {"JPEG": jpeg, "levels": levels, "dither": dither, "edges": edges, **({"renderer": None} if source.variants else {})}
     how = str(rng.choice(list(makers)))
     made = source.draw(elements, variant=True) if how == "renderer" else makers[how](rng, picture)
     return how, numpy.clip(numpy.round(made), 0, 255).astype(numpy.uint8)

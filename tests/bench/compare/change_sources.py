@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Renderers for the benchmark of named changes: frames of twinbox, charts of matplotlib, pages of Chromium. Each makes a picture
 # out of elements, so that a change is one of an element, drawn by the renderer: begin(rng) returns a new picture's elements,
-# draw(elements) its pixels, draw(elements, variant=True) the same picture as other settings of the rasterizer draw it.
+# draw(elements) its pixels, and where `variants` is true, draw(elements, variant=True) the same picture as other settings of the
+# rasterizer draw it.
 import dataclasses
 import html
 import json
@@ -68,6 +69,7 @@ class Frames:
     """Frames of twinbox. The run that is drawn has one step, written with the elements' changes; its state is in no metadata,
     for pixels alone are kept.
     A body that is removed is in no run; an outline, out of view."""
+    variants = False
     SIZES = "640x400", "800x600", "960x540", "480x480"
     VIEWS = {"single": (0, 4, 14, 10), "stack": (0, 6, 18, 13), "pyramid": (0, 7, 30, 17)}
     LOOKS = [(), ("--show", "velocities"), ("--compare", "overlay"), ("--compare", "difference")]
@@ -105,7 +107,7 @@ class Frames:
         caption = texts(rng, 2, 4)
         return [*elements, Element("caption", (), (), caption[: 1 if "difference" in look else 2], movable=False, removable=False)]
 
-    def state(self, elements, variant, second):
+    def state(self, elements, second):
         """Poses of the bodies as drawn; second: as the other run has them, whose outlines are drawn, or whose distance colours them.
         The last body is out of view, and far from itself in the other run: the header tells the largest distance."""
         state = {key: self.run[key][self.frame].astype(float) for key in ("position", "angle", "velocity", "angular_velocity")}
@@ -116,7 +118,7 @@ class Frames:
                 state["velocity"][i] = turned * e.shown
             elif e.kind == ("outline" if second and "overlay" in self.look else "body"):
                 distance = e.place[1:] if e.kind == "outline" else (e.colours[0], 0) if second else (0, 0)
-                state["position"][i] += distance + (numpy.array([e.dx, -e.dy]) + 0.12 * variant) / self.scale
+                state["position"][i] += distance + numpy.array([e.dx, -e.dy]) / self.scale
                 if not e.shown and e.kind == "outline":
                     state["position"][i] = [4000, 0]
                 state["angle"][i] += 0.5 * (e.contents[0] == "turned")
@@ -124,7 +126,7 @@ class Frames:
         anchor = {"position": [9000 - 18000 * second, 0], "velocity": [fastest + 1e-3, 0]}
         return {key: numpy.concatenate([of, [anchor.get(key, of[0] * 0)]])[None].astype(numpy.float32) for key, of in state.items()}
 
-    def write(self, elements, variant, second):
+    def write(self, elements, second):
         size, fixed = numpy.append(self.run["size"], [[1, 1]], axis=0), numpy.append(self.run["fixed"], numpy.uint8(0))
         for e in elements:
             if e.kind == "body":
@@ -136,16 +138,16 @@ class Frames:
         numpy.savez(path, size=numpy.delete(size, absent, 0), fixed=numpy.delete(fixed, absent), dt=self.run["dt"],
                     bomb=numpy.int32(-1 if bomb in absent else bomb - sum(i < bomb for i in absent)), scene=self.run["scene"],
                     method=self.run["method"], camera=numpy.float32([self.view[:2], self.view[2:]]),
-                    **{key: numpy.delete(of, absent, 1) for key, of in self.state(elements, variant, second).items()})
+                    **{key: numpy.delete(of, absent, 1) for key, of in self.state(elements, second).items()})
         return path
 
-    def draw(self, elements, variant=False):
+    def draw(self, elements):
         if self.scale is None:
             self.scale = 1
             self.draw([dataclasses.replace(e, dx=0, dy=0) for e in elements])
             with open(os.path.join(self.scratch, "drawn", "manifest.json")) as file:
                 self.scale = json.load(file)["view"]["panels"][0]["scale"]
-        runs = [self.write(elements, variant, second) for second in range(1 + self.two)]
+        runs = [self.write(elements, second) for second in range(1 + self.two)]
         captions = ["--caption", elements[-1].contents[0]] + ["--caption", "Other run"] * self.two
         self.call("render", *runs, "--size", self.size, "-o", os.path.join(self.scratch, "drawn"), *self.look, *captions)
         return pixels(os.path.join(self.scratch, "drawn", "frame_000000.png"))
@@ -153,6 +155,7 @@ class Frames:
 
 class Charts:
     """Charts of matplotlib, by Agg."""
+    variants = True
     SIZES = (640, 480), (800, 500), (720, 720), (1000, 600)
 
     def begin(self, rng):
@@ -228,6 +231,7 @@ class Charts:
 
 class Pages:
     """Pages of Chromium. Every element is placed, so that the others stay where one is changed."""
+    variants = True
     SIZES = (800, 600), (1024, 700), (640, 800)
     GROUNDS = ("#ffffff", "#f4f6fa", "linear-gradient(135deg,#eef3ff,#ffeede)",
                "repeating-linear-gradient(45deg,#f7f7f7 0 9px,#ececf2 9px 18px)",
