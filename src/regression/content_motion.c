@@ -205,7 +205,7 @@ static bool has_partners(const Search *search, const Motion *motion) {
 }
 
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint) {
-    static const double EXACT = 0.999;
+    static const double EXACT = 0.999, HOPELESS = 0.1;
     Search search = {.patches = patches, .patch_count = count};
     add_start(&search, hint->right, hint->down);
     add_corners(&search);
@@ -216,6 +216,7 @@ Motion content_motion(const Patch *const *patches, int count, const Motion *hint
     Motion best = {0, 0, 0};
     for (int i = 0; i < DESCENTS && i < search.starts && best.explained < EXACT; i++) {
         Motion found = search.start[i];
+        if (found.explained < HOPELESS) break;
         descend(&search, &found);
         if (found.explained < EXACT) found = refined(&search, found);
         if (found.explained > best.explained && has_partners(&search, &found)) best = found;
