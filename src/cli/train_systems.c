@@ -248,7 +248,7 @@ static void print_times(const GnsTraining *training) {
 
 static bool gns_train(const TrainRequest *request, GnsOptions *given, Error *error) {
     GnsTraining *training = &given->training;
-    Scene *scenes[GNS_MAX_SCENES];
+    Scene *scenes[GNS_MAX_SCENES] = {NULL};
     GnsNet net;
     if (!read_scenes(NULL, given->scenes, "--scenes", scenes, GNS_MAX_SCENES, &training->scene_count, error)) {
         for (int i = 0; i < training->scene_count; i++) scene_destroy(scenes[i]);

@@ -86,9 +86,10 @@ static bool check(Trainer *trainer, SolvedStep *step, int entry, TabulationLaunc
     if (!pair_moment_reserve(&trainer->converged, step->problem)) return error_memory(error, "hybrid");
     ContactSolution converged = pair_moment_solution(&trainer->converged),
                     answer = pair_moment_solution(&trainer->answer);
-    step->solution = &converged;
     if (!trainer->interior.kind->solve(trainer->interior.state, step->problem, &converged, error)) return false;
+    step->solution = &converged;
     launch->error += (double)entry_check(trainer->memory, entry, step, &answer);
+    step->solution = NULL;
     launch->checked++;
     return true;
 }

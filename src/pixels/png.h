@@ -72,6 +72,7 @@ typedef struct PngFile {
     uint64_t hash; /* XXH3 of its bytes */
     uint8_t *data; /* [size] all of it; in pieces: with one empty chunk in place of its compressed pixels */
     size_t size;
+    size_t bytes;         /* of the file, with its pixels */
     bool damaged;         /* as png_files_scan() has found */
     struct PngRows *rows; /* NULL: not in pieces */
 } PngFile;

@@ -344,7 +344,8 @@ static bool deliver(Scan *scan, bool same) {
         bool wanted = !same || sink->all || first->rows->layout.color == PNG_PALETTE;
         if (wanted && !expand(scan, 0, y, a, &rgba)) return false;
         if (!scan->equal && !expand(scan, 1, y, b, &other)) return false;
-        if (!scan->alike) scan->equal = memcmp(rgba, other, 4 * (size_t)first->rows->layout.width) == 0;
+        if (rgba != NULL && other != NULL && !scan->alike)
+            scan->equal = memcmp(rgba, other, 4 * (size_t)first->rows->layout.width) == 0;
         if (wanted) sink->row(sink->context, scan->top + y, rgba, scan->equal ? rgba : other);
     }
     return true;

@@ -92,6 +92,7 @@ bool png_file_open(PngFile *file, const char *path, int64_t max_pixels, Error *e
     file->hash = rows->source.hash;
     file->data = rows->rest;
     file->size = rows->rest_size;
+    file->bytes = rows->source.size;
     return true;
 }
 
@@ -110,6 +111,7 @@ bool png_file_load(PngFile *file, Error *error) {
     file->rows = NULL;
     file->data = image_load_png(file->path, &file->size, error);
     if (file->data == NULL) return false;
+    file->bytes = file->size;
     const uint64_t hash = hash_xxh3(file->data, file->size);
     if (known && hash != file->hash) return error_input(error, file->path, "changed while it was compared");
     file->hash = hash;

@@ -95,7 +95,7 @@ static bool ground_find(Ground *ground, const ImageRegion *region, Error *error)
                              smaller(region->right + MARGIN, a->width), smaller(region->bottom + MARGIN, a->height)};
     const size_t width = (size_t)(ground->box.right - ground->box.left);
     const size_t count = width * (size_t)(ground->box.bottom - ground->box.top);
-    ground->levels = malloc(count);
+    ground->levels = calloc(count, 1);
     for (int i = 0; i < 2; i++) ground->distance[i] = malloc(count * sizeof *ground->distance[i]);
     if (ground->levels == NULL || ground->distance[0] == NULL || ground->distance[1] == NULL)
         return error_memory(error, "regions");

@@ -137,9 +137,9 @@ typedef struct Shown {
     ShownFolder *first;
 } Shown;
 
-/* The folder of a picture. Thread-safe. NULL if out of memory; a folder that has no readable manifest or run has no view
-   or run. */
-const ShownFolder *shown_find(Shown *shown, const char *picture);
+/* The folder of a picture. Thread-safe. NULL with error set if the system fails; a folder that has no readable manifest or
+   run has no view or run. */
+const ShownFolder *shown_find(Shown *shown, const char *picture, Error *error);
 
 /* The run of this file name that the view names, or NULL. */
 const Trajectory *shown_run(const ShownFolder *folder, const char *name);

@@ -240,7 +240,10 @@ static bool compare_files(Regression *regression, RegressionFrame *frame, Error 
         frame->files[side] = (RegressionFile){.hash = files[side].hash, .size = files[side].size};
     }
     ok = ok && judge(regression, frame, files, error);
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) png_file_close(&files[side]);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        frame->files[side].size = files[side].bytes; /* up to here, of what is in memory */
+        png_file_close(&files[side]);
+    }
     return ok;
 }
 

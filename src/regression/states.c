@@ -245,8 +245,7 @@ static bool name_changes(const ShownFolder *const folders[SIDES], const Texts te
 static bool find_folders(Regression *regression, const RegressionFrame *frame, const ShownFolder *folders[SIDES],
                          Error *error) {
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if ((folders[side] = shown_find(&regression->shown, frame->at[side]->path)) == NULL)
-            return error_memory(error, frame_name(frame));
+        if ((folders[side] = shown_find(&regression->shown, frame->at[side]->path, error)) == NULL) return false;
     return true;
 }
 
@@ -367,7 +366,7 @@ static void add_view(const Causes *causes, int frame) {
     const RegressionFrame *at = &causes->regression->frames[frame];
     const ShownFolder *folders[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        folders[side] = shown_find(&causes->regression->shown, at->at[side]->path);
+        folders[side] = shown_find(&causes->regression->shown, at->at[side]->path, &(Error){0}); /* known by now */
     if (folders[EXPECTED] == NULL || folders[ACTUAL] == NULL) return;
     ViewText words = view_difference(&folders[EXPECTED]->view, &folders[ACTUAL]->view);
     char what[sizeof causes->regression->causes->what];

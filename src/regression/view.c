@@ -174,24 +174,33 @@ ViewText view_difference(const FrameView *expected, const FrameView *actual) {
 
 /* What the pictures of a folder show: its view, and the runs that the view names. */
 
-/* Errors are not reported: without a view or a run there are fewer names, and the comparison of runs reports a damaged
-   run itself. */
-static void read_run(ShownFolder *folder, const char *name) {
-    char path[PATH_MAX];
-    for (int i = 0; i < folder->run_count; i++)
-        if (strcmp(folder->names[i], name) == 0) return;
-    if (folder->run_count == VIEW_PANELS_MAX) return;
-    if (file_path(path, sizeof path, &(Error){0}, "%s%s", folder->path, name))
-        folder->runs[folder->run_count] = trajectory_read(path, &(Error){0});
-    folder->names[folder->run_count++] = name;
+/* Damage is not reported: without a view or a run there are fewer names, and the comparison of runs reports a damaged run
+   itself. A failing system is: names must not depend on it. */
+static bool is_harmless(const Error *failure, Error *error) {
+    if (failure->kind == ERROR_SYSTEM) *error = *failure;
+    return failure->kind != ERROR_SYSTEM;
 }
 
-static void read_runs(ShownFolder *folder) {
-    for (int i = 0; i < folder->view.panel_count; i++) {
+static bool read_run(ShownFolder *folder, const char *name, Error *error) {
+    char path[PATH_MAX];
+    Error failure = {0};
+    for (int i = 0; i < folder->run_count; i++)
+        if (strcmp(folder->names[i], name) == 0) return true;
+    if (folder->run_count == VIEW_PANELS_MAX) return true;
+    if (file_path(path, sizeof path, &failure, "%s%s", folder->path, name))
+        folder->runs[folder->run_count] = trajectory_read(path, &failure);
+    folder->names[folder->run_count++] = name;
+    return is_harmless(&failure, error);
+}
+
+static bool read_runs(ShownFolder *folder, Error *error) {
+    bool ok = true;
+    for (int i = 0; ok && i < folder->view.panel_count; i++) {
         const ViewPanel *panel = &folder->view.panels[i];
-        read_run(folder, panel->run);
-        for (int k = 0; k < panel->outline_count; k++) read_run(folder, panel->outlines[k]);
+        ok = read_run(folder, panel->run, error);
+        for (int k = 0; ok && k < panel->outline_count; k++) ok = read_run(folder, panel->outlines[k], error);
     }
+    return ok;
 }
 
 const Trajectory *shown_run(const ShownFolder *folder, const char *name) {
@@ -200,20 +209,26 @@ const Trajectory *shown_run(const ShownFolder *folder, const char *name) {
     return NULL;
 }
 
-static ShownFolder *read_folder(const char *picture, size_t length) {
-    ShownFolder *folder = calloc(1, sizeof *folder);
-    char path[PATH_MAX];
-    if (folder == NULL || (folder->path = strndup(picture, length)) == NULL) {
-        free(folder);
-        return NULL;
-    }
-    if (file_path(path, sizeof path, &(Error){0}, "%smanifest.json", folder->path) &&
-        view_read(&folder->view, path, &(Error){0}))
-        read_runs(folder);
-    return folder;
+static void folder_free(ShownFolder *folder) {
+    for (int i = 0; folder != NULL && i < folder->run_count; i++) trajectory_destroy(folder->runs[i]);
+    if (folder != NULL) free(folder->path);
+    free(folder);
 }
 
-const ShownFolder *shown_find(Shown *shown, const char *picture) {
+static ShownFolder *read_folder(const char *picture, size_t length, Error *error) {
+    ShownFolder *folder = calloc(1, sizeof *folder);
+    char path[PATH_MAX];
+    Error failure = {0};
+    bool ok = (folder != NULL && (folder->path = strndup(picture, length)) != NULL) || error_memory(error, picture);
+    if (ok && file_path(path, sizeof path, &failure, "%smanifest.json", folder->path) &&
+        view_read(&folder->view, path, &failure))
+        ok = read_runs(folder, error);
+    if (ok && is_harmless(&failure, error)) return folder;
+    folder_free(folder);
+    return NULL;
+}
+
+const ShownFolder *shown_find(Shown *shown, const char *picture, Error *error) {
     size_t length = file_folder_length(picture);
     ShownFolder *found = NULL;
 #pragma omp critical(shown_folders)
@@ -221,7 +236,7 @@ const ShownFolder *shown_find(Shown *shown, const char *picture) {
         found = shown->first;
         while (found != NULL && (strncmp(found->path, picture, length) != 0 || found->path[length] != '\0'))
             found = found->next;
-        if (found == NULL && (found = read_folder(picture, length)) != NULL) {
+        if (found == NULL && (found = read_folder(picture, length, error)) != NULL) {
             found->next = shown->first;
             shown->first = found;
         }
@@ -233,8 +248,6 @@ void shown_free(Shown *shown) {
     while (shown->first != NULL) {
         ShownFolder *folder = shown->first;
         shown->first = folder->next;
-        for (int i = 0; i < folder->run_count; i++) trajectory_destroy(folder->runs[i]);
-        free(folder->path);
-        free(folder);
+        folder_free(folder);
     }
 }

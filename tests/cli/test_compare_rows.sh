@@ -68,7 +68,10 @@ mv out whole20.json
 run 1 compare expected actual --json --tolerance 20
 mv out rows20.json
 /usr/bin/python3 - <<'PYTHON' || fail "rows and whole pictures differ"
-import json
+import json, os
+for frame in json.load(open("rows.json"))["frames"]:
+    for side in "expected", "actual":
+        assert frame[side]["size"] == os.path.getsize(os.path.join(side, frame[side]["name"])), frame[side]
 def frames(path):
     return {frame["name"]: {key: frame[key] for key in ("differing", "beyond", "largest", "box", "region_count", "regions")}
             for frame in json.load(open(path))["frames"]}
