@@ -142,18 +142,19 @@ static bool find_edges(const Image *const pictures[2], Verdict *verdicts, int co
 /* The change of this kind and amount, or -1 if there is no room for a new one. */
 static int change_for(FrameChanges *changes, const Verdict *verdict) {
     static const double SAME = 0.25; /* pixels */
-    const Change change = {
-        .subject = SUBJECT_CONTENT, .kind = verdict->kind, .right = verdict->motion.right, .up = -verdict->motion.down};
     const bool moved = verdict->kind == CHANGE_MOVED;
+    const Change change = {.subject = SUBJECT_CONTENT,
+                           .kind = verdict->kind,
+                           .right = moved ? verdict->motion.right : 0,
+                           .up = moved ? 0 - verdict->motion.down : 0}; /* no -0 */
     for (int i = 0; i < changes->count; i++) {
         const Change *at = &changes->list[i];
-        if (at->subject == SUBJECT_CONTENT && at->kind == change.kind &&
-            (!moved || (fabs(at->right - change.right) < SAME && fabs(at->up - change.up) < SAME)))
+        if (at->subject == SUBJECT_CONTENT && at->kind == change.kind && fabs(at->right - change.right) < SAME &&
+            fabs(at->up - change.up) < SAME)
             return i;
     }
     if (changes->count == CHANGES_MAX) return -1;
     changes->list[changes->count] = change;
-    if (!moved) changes->list[changes->count].right = changes->list[changes->count].up = 0;
     return changes->count++;
 }
 
@@ -223,7 +224,10 @@ static bool name_above(const Image *const pictures[2], const uint8_t *masked, in
     uint8_t *strong = malloc(count);
     bool ok = (strong != NULL || error_memory(error, "regions")) && sum_rows(pictures, masked, floor, &traits, error);
     if (ok) {
-        for (size_t i = 0; i < count; i++) strong[i] = masked != NULL ? masked[i] : IGNORED_NOT;
+        if (masked != NULL)
+            memcpy(strong, masked, count);
+        else
+            memset(strong, IGNORED_NOT, count);
         level_mark(pictures[0], pictures[1], floor, strong);
         ok = image_regions_find(pictures[0], pictures[1], strong, difference, &changes->regions, error);
     }

@@ -6,6 +6,8 @@
 #include "regression/compare.h"
 #include "regression/naming.h"
 
+#include <stdlib.h>
+
 /* Names the regions that have no name yet, each by the pixels in it and around it. masked as in image_compare_masked(). Both
    pictures have one size. False with error set if out of memory.
 
@@ -22,9 +24,9 @@
    noise       small differences of any pattern, or nine tenths of the pixels differ only along edges (antialias_mark())
    replaced    something appears and something vanishes, a tenth each at least, or colours change without their pattern
 
-   What is none of these is unsure. Four regions or more that are faint, or moved by two pixels at most and not by the same, are
-   noise.
-   If noise lies all over a picture, the stronger regions are named without it, and the noise is one region more.
+   Anything else is unsure. At last, faint regions and those that moved by at most two pixels become noise, if they are four or
+   more and did not move alike. If noise lies all over a picture, the stronger regions are named without it, and the noise is
+   one more region.
 
    Fails: a faint watermark beside noise is noise; glyphs that another rasterizer moves all by the same have moved; a new band of
    colour under lines and one that changed from white are the same picture. tests/bench/compare/changes measures it. */
@@ -43,6 +45,11 @@ typedef struct ContentTraits {
     double from[MAPPED][MAPPED], to[MAPPED][3]; /* normal equations of a linear map from colours to differences */
     int64_t levels[256];                        /* pixels by difference */
 } ContentTraits;
+
+/* The sum of the channels' differences of two pixels. */
+static inline int pixel_distance(const uint8_t *p, const uint8_t *q) {
+    return abs(p[0] - q[0]) + abs(p[1] - q[1]) + abs(p[2] - q[2]) + abs(p[3] - q[3]);
+}
 
 enum { CONTENT_ROWS = 32 }; /* of a picture, every n-th row is enough */
 
@@ -75,12 +82,14 @@ bool content_name_by_ground(const Image *expected, const Image *actual, const ui
 typedef struct ContentBand {
     int width, first, count, capacity;
     uint8_t *rows[2];
-    int64_t pixels;             /* that differ up to here */
+    int64_t pixels;             /* that differ so far */
     bool differs, closed, lost; /* a row differs; rows between were not given, or are too many; one of those differs */
 } ContentBand;
 
 void content_band_begin(ContentBand *band, int width, int height);
-void content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, int64_t pixels);
+
+/* pixels: how many differ up to this row. False if out of memory. */
+bool content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, int64_t pixels);
 void content_band_end(ContentBand *band);
 
 /* Must not be lost. False with error set if out of memory. */

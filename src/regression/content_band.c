@@ -14,11 +14,11 @@ void content_band_begin(ContentBand *band, int width, int height) {
     *band = (ContentBand){.width = width, .capacity = (int)((bytes < BYTES_MAX ? bytes : BYTES_MAX) / row)};
 }
 
-static bool has_room(ContentBand *band) {
+static bool make_room(ContentBand *band) {
     const size_t bytes = 4 * (size_t)band->width * (size_t)band->capacity;
-    for (int i = 0; i < 2 && bytes > 0; i++)
+    for (int i = 0; i < 2; i++)
         if (band->rows[i] == NULL && (band->rows[i] = malloc(bytes)) == NULL) return false;
-    return band->count < band->capacity;
+    return true;
 }
 
 /* Before a difference, the oldest row makes room. */
@@ -35,26 +35,28 @@ static bool is_filled(const ContentBand *band, int64_t pixels) {
     return band->count >= ROWS && 4 * pixels > 3 * (int64_t)band->count * band->width;
 }
 
-void content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, int64_t pixels) {
+bool content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, int64_t pixels) {
     const size_t row = 4 * (size_t)band->width;
     const bool differs = pixels > band->pixels;
     band->pixels = pixels;
-    if (band->lost) return;
+    if (band->lost) return true;
     if (band->count > 0 && y != band->first + band->count) {
         band->closed = band->differs;
         if (!band->differs) band->count = 0;
     }
     if (!band->differs && band->count == ABOVE) drop_first(band);
-    if (band->closed || is_filled(band, pixels) || !has_room(band)) {
+    if (band->closed || is_filled(band, pixels) || band->count == band->capacity) {
         band->closed = true;
         band->lost = differs;
-        return;
+        return true;
     }
+    if (!make_room(band)) return false;
     if (band->count == 0) band->first = y;
     memcpy(band->rows[0] + (size_t)band->count * row, a, row);
     memcpy(band->rows[1] + (size_t)band->count * row, b, row);
     band->count++;
     band->differs |= differs;
+    return true;
 }
 
 static void shift(FrameChanges *changes, int down) {

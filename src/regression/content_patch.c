@@ -12,9 +12,6 @@
 
 enum { CHANNELS = 4, MARGIN = 3, NO_GROUND = UINT16_MAX };
 
-static int larger(int a, int b) { return a > b ? a : b; }
-static int smaller(int a, int b) { return a < b ? a : b; }
-
 /* The pixels of a region and some around it. */
 typedef struct Ground {
     const Image *pictures[2];
@@ -35,11 +32,9 @@ static size_t place_of(const Ground *ground, int x, int y) {
            (size_t)(x - ground->box.left);
 }
 
-/* The sum of the channels' differences. */
-static int distance_of(const Image *a, size_t i, const Image *b, size_t j) {
-    int sum = 0;
-    for (size_t c = 0; c < CHANNELS; c++) sum += abs(a->pixels[4 * i + c] - b->pixels[4 * j + c]);
-    return sum;
+/* Between two pixels of a picture. */
+static int distance_in(const Image *image, size_t i, size_t j) {
+    return pixel_distance(image->pixels + 4 * i, image->pixels + 4 * j);
 }
 
 /* Passes a pixel on the way from the ground at *last; SIZE_MAX: none yet. */
@@ -49,7 +44,7 @@ static void pass(Ground *ground, int x, int y, size_t *last) {
         *last = pixel;
     } else if (*last != SIZE_MAX) {
         for (int i = 0; i < 2; i++) {
-            const int distance = distance_of(ground->pictures[i], pixel, ground->pictures[i], *last);
+            const int distance = distance_in(ground->pictures[i], pixel, *last);
             if (distance < ground->distance[i][place]) ground->distance[i][place] = (uint16_t)distance;
         }
     }
@@ -82,7 +77,7 @@ static int roughness_of(const Ground *ground) {
         for (int x = ground->box.left; x + 1 < ground->box.right; x++) {
             const size_t pixel = pixel_of(ground, x, y), place = place_of(ground, x, y);
             if (ground->levels[place] > 0 || ground->levels[place + 1] > 0) continue;
-            sum += smaller(distance_of(ground->pictures[0], pixel, ground->pictures[0], pixel + 1), STEP_MAX);
+            sum += smaller(distance_in(ground->pictures[0], pixel, pixel + 1), STEP_MAX);
             count++;
         }
     return USUAL + (int)(count > 0 ? TIMES * sum / count : 0);

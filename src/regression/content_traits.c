@@ -3,15 +3,10 @@
 #include "regression/content.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-static int step_size(const uint8_t *p, const uint8_t *q) {
-    return abs(p[0] - q[0]) + abs(p[1] - q[1]) + abs(p[2] - q[2]) + abs(p[3] - q[3]);
-}
-
 void traits_add_pair(ContentTraits *traits, const uint8_t *a, const uint8_t *b, size_t next, bool both) {
-    const double p = step_size(a, a + next), q = step_size(b, b + next);
+    const double p = pixel_distance(a, a + next), q = pixel_distance(b, b + next);
     traits->product += p * q;
     traits->steps[0] += p * p, traits->steps[1] += q * q;
     if (!both) return;

@@ -56,16 +56,13 @@ static int root_of(Node *nodes, int node) {
     return node;
 }
 
-static int min(int a, int b) { return a < b ? a : b; }
-static int max(int a, int b) { return a > b ? a : b; }
-
 static int join(Scan *scan, int a, int b) {
     int root = root_of(scan->nodes, a), other = root_of(scan->nodes, b);
     if (root == other) return root;
     ImageRegion *to = &scan->nodes[root].region;
     const ImageRegion *from = &scan->nodes[other].region;
-    *to = (ImageRegion){to->pixels + from->pixels, min(to->left, from->left), min(to->top, from->top),
-                        max(to->right, from->right), max(to->bottom, from->bottom)};
+    *to = (ImageRegion){to->pixels + from->pixels, smaller(to->left, from->left), smaller(to->top, from->top),
+                        larger(to->right, from->right), larger(to->bottom, from->bottom)};
     scan->nodes[other].parent = root;
     return root;
 }
@@ -93,7 +90,8 @@ static void compact(Scan *scan, int row) {
 static void add_run(Scan *scan, const uint8_t *levels, int left, int right, int64_t pixels, int row) {
     int node = scan->node_count++, known = -1;
     scan->nodes[node] = (Node){node, {pixels, left, row, right + 1, row + 1}};
-    const int first = max(left - scan->gap, 0), last = min(right + scan->gap, scan->width - 1), reach = row - scan->gap;
+    const int first = larger(left - scan->gap, 0), last = smaller(right + scan->gap, scan->width - 1),
+              reach = row - scan->gap;
     int *nodes = scan->column_node, *rows = scan->column_row;
     for (int x = first; x <= last; x++) {
         if (rows[x] < reach || nodes[x] == known) continue;

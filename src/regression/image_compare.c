@@ -417,8 +417,6 @@ void image_compare(const Image *a, const Image *b, ImageDifference *difference) 
     image_compare_masked(a, b, NULL, 0, difference);
 }
 
-static int smaller(int a, int b) { return a < b ? a : b; }
-
 /* Rows are copied in place: the first byte of a row never lies after its new place. */
 static void cut(Image *image, int width, int height) {
     size_t from = 4 * (size_t)image->width, to = 4 * (size_t)width;

@@ -14,6 +14,9 @@
 #include <limits.h>
 #include <stdio.h>
 
+static inline int larger(int a, int b) { return a > b ? a : b; }
+static inline int smaller(int a, int b) { return a < b ? a : b; }
+
 /* The steps of regression_run(). */
 
 /* Compares the states behind the pictures. */

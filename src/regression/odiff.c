@@ -36,9 +36,6 @@ static int64_t color_delta(const uint8_t *a, const uint8_t *b) {
     return (y * y * FIXED(0.5053) + i * i * FIXED(0.299) + q * q * FIXED(0.1957)) >> (2 * BITS);
 }
 
-static int larger(int a, int b) { return a > b ? a : b; }
-static int smaller(int a, int b) { return a < b ? a : b; }
-
 static bool prepare(OdiffDifference *difference, const Image *base, const Image *compared, const char *name,
                     Error *error) {
     const int width = larger(base->width, compared->width), height = larger(base->height, compared->height);

@@ -65,20 +65,20 @@ static uint8_t *place_row(void *context, int side, int y) {
     return judge->rows[side];
 }
 
-static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
-    RowJudge *judge = context;
-    if (judge->error.kind != ERROR_NONE) return;
-    if (a == b) {
-        content_band_add(&judge->band, y, a, b, judge->difference.pixels);
-        return;
-    }
+static void judge_difference(RowJudge *judge, int y, const uint8_t *a, const uint8_t *b) {
     image_levels(a, b, (size_t)judge->width, judge->levels);
     image_count_levels(&judge->difference, y, judge->levels, judge->width, judge->tolerance);
     if (judge->scan == NULL)
         judge->scan = region_scan_create(judge->width, judge->height, &judge->regions, &judge->error);
     if (judge->scan != NULL) region_scan_row(judge->scan, y, judge->levels);
     if (y % CONTENT_ROWS == 0) traits_add_row(&judge->traits, a, b, judge->levels, 0, judge->width);
-    content_band_add(&judge->band, y, a, b, judge->difference.pixels);
+}
+
+static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
+    RowJudge *judge = context;
+    if (judge->error.kind != ERROR_NONE) return;
+    if (a != b) judge_difference(judge, y, a, b);
+    if (!content_band_add(&judge->band, y, a, b, judge->difference.pixels)) error_memory(&judge->error, "regions");
 }
 
 /* The regions of a frame and their names. *named: false where only whole pictures can tell, and are small enough. */

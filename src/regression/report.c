@@ -44,8 +44,6 @@ static bool measure(const Image *expected, const Image *actual, RegressionFrame 
     return ok;
 }
 
-static int larger(int a, int b) { return a > b ? a : b; }
-
 /* Measures FLIP and, if there is room, draws the difference pictures. Of pictures of different size, the difference
    picture shows both, and FLIP the overlap. */
 static bool draw(const Regression *regression, RegressionFrame *frame, Image *expected, Image *actual,

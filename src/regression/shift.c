@@ -28,9 +28,6 @@ static bool look_equal(const Image *a, size_t i, const Image *b, size_t j, int t
     return true;
 }
 
-static int larger(int a, int b) { return a > b ? a : b; }
-static int smaller(int a, int b) { return a < b ? a : b; }
-
 static bool is_inside(const Image *image, int x, int y) {
     return x >= 0 && y >= 0 && x < image->width && y < image->height;
 }

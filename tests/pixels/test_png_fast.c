@@ -378,7 +378,7 @@ TEST(bands_of_damaged_files_are_read_only_if_libpng_does) {
     assert_true(accepted > 500 && accepted < 10000);
 }
 
-/* Pixels that go on behind IEND are none. The last bits of a small stream may give many rows. */
+/* Pixels behind IEND do not belong to the picture. The last bits of a small stream may give many rows. */
 TEST(pixels_end_before_the_end) {
     static uint8_t rows[32 * 129], packed[ROOM / 2];
     for (int i = 0; i < 400; i++) {
