@@ -94,8 +94,8 @@ double error_curve_at(const CurvePoint *front, int count, double us, CurveReach 
    A family is a method with the words of its setting ("engine:warm=off"); its settings differ in numbers. The rivals of a
    method are the families of other methods that learn nothing; a learned method's silenced twin is no rival of it. The
    best rival at a time is the one with the least error in that time. Closed loop only. Baselines, the reference and rows
-   without time or error are left out; a setting that lost the scene is on no curve. Errors below PARETO_RESOLUTION count
-   as that. */
+   without time or error are left out; a setting that lost the scene is on no curve. Errors below REFERENCE_TOLERANCE
+   count as that. */
 
 typedef enum CurveStatistic { CURVE_MEAN, CURVE_MEDIAN, CURVE_P95 } CurveStatistic;
 
@@ -125,6 +125,9 @@ typedef struct BestRival {
 /* Every method's error next to the error that its best rival has in the same time: equal_time.csv for
    each setting at the time that it takes, equal_time_methods.csv for each method at one time for all in a scene. */
 
+/* Whose error is below PARETO_RESOLUTION. Where both are, their ratio says nothing about what a run looks like. */
+typedef enum ErrorsBelow { BELOW_NONE, BELOW_METHOD, BELOW_RIVAL, BELOW_BOTH } ErrorsBelow;
+
 typedef struct EqualTimeRow {
     const char *scene, *method, *setting;
     Phase phase; /* PHASE_IMPACT or PHASE_AFTER */
@@ -135,6 +138,7 @@ typedef struct EqualTimeRow {
     CurveReach reach;        /* where the time lies on the rival's curve; before: there is no rival */
     double rival_error;      /* m/s, at that time */
     double ratio;            /* error / rival_error; NaN without a rival, or if the method lost the scene */
+    ErrorsBelow below;
     double time_momentum_20; /* us_solver / that of momentum:k=20; NaN if it was not run */
     double error_scene_net;  /* error / that of scene-net in this scene; likewise */
     double time_scene_net;   /* us_solver / that of scene-net in this scene; likewise */
@@ -148,6 +152,7 @@ typedef struct EqualMethodRow {
     double error;      /* m/s, at that time; NaN before */
     const char *rival; /* "": none */
     double rival_error, ratio;
+    ErrorsBelow below;
     int family; /* index into families */
 } EqualMethodRow;
 

@@ -3,6 +3,7 @@
 #include "base/base.h"
 #include "base/csv.h"
 #include "methods/methods.h"
+#include "methods/reference.h"
 #include "scenes/scenes.h"
 #include "studies/chart.h"
 #include "studies/chart_internal.h"
@@ -70,6 +71,9 @@ static double curve_error(const ChartRow *row, CurveStatistic statistic) {
     return errors[statistic];
 }
 
+/* An error that has a logarithm. */
+static double positive(double error) { return fmax(error, REFERENCE_TOLERANCE); }
+
 /* The error of a family at a time, as error_curve_at(); NAN and CURVE_BEFORE too for a family without a curve. */
 static double rival_curves_error(const RivalCurves *curves, int family, Phase phase, CurveStatistic statistic,
                                  double us, CurveReach *reach) {
@@ -77,7 +81,7 @@ static double rival_curves_error(const RivalCurves *curves, int family, Phase ph
     for (int i = 0; i < curves->count; i++) {
         const ChartRow *row = curves->rows[i];
         if (curves->family[i] != family || curves->lost[i] || row->phase != phase) continue;
-        curves->points[count++] = (CurvePoint){row->us_solver, fmax(curve_error(row, statistic), PARETO_RESOLUTION)};
+        curves->points[count++] = (CurvePoint){row->us_solver, positive(curve_error(row, statistic))};
     }
     *reach = CURVE_BEFORE;
     return count == 0 ? NAN : error_curve_at(curves->points, error_curve_front(curves->points, count), us, reach);
@@ -102,6 +106,7 @@ static BestRival rival_curves_best(const RivalCurves *curves, int family, Phase 
 
 static const char *const phase_words[] = {"impact", "after", NULL};
 static const char *const statistic_words[] = {"mean", "median", "p95", NULL};
+static const char *const below_words[] = {"none", "method", "rival", "both", NULL};
 static const char *const reach_words[] = {"before", "within", "beyond", NULL};
 
 #define NUMBER(Row, member) CSV_MEMBER(Row, member, CSV_OPTIONAL, .maximum = INFINITY)
@@ -121,6 +126,7 @@ static const CsvColumn columns[] = {
     WORD(EqualTimeRow, reach, reach_words, false),
     NUMBER(EqualTimeRow, rival_error),
     NUMBER(EqualTimeRow, ratio),
+    WORD(EqualTimeRow, below, below_words, false),
     NUMBER(EqualTimeRow, time_momentum_20),
     NUMBER(EqualTimeRow, error_scene_net),
     NUMBER(EqualTimeRow, time_scene_net),
@@ -135,6 +141,7 @@ static const CsvColumn method_columns[] = {
     TEXT(EqualMethodRow, rival, CHART_FAMILY_SIZE, false),
     NUMBER(EqualMethodRow, rival_error),
     NUMBER(EqualMethodRow, ratio),
+    WORD(EqualMethodRow, below, below_words, false),
 };
 
 const CsvLayout equal_time_layout = CSV_LAYOUT("equal_time", columns, EqualTimeRow, .min_rows = 0,
@@ -142,7 +149,11 @@ const CsvLayout equal_time_layout = CSV_LAYOUT("equal_time", columns, EqualTimeR
 const CsvLayout equal_methods_layout = CSV_LAYOUT("equal_time_methods", method_columns, EqualMethodRow, .min_rows = 0,
                                                   .max_rows = CHART_MAX_ROWS, .header = CSV_EXACT);
 
-static double floored(double error) { return fmax(error, PARETO_RESOLUTION); }
+/* Comparisons with NaN are false. */
+static ErrorsBelow which_below(double error, double rival_error) {
+    const bool method = error < PARETO_RESOLUTION, rival = rival_error < PARETO_RESOLUTION;
+    return method && rival ? BELOW_BOTH : method ? BELOW_METHOD : rival ? BELOW_RIVAL : BELOW_NONE;
+}
 
 static const char *name_rival(const RivalCurves *curves, const BestRival *rival) {
     return rival->family < 0 ? "" : curves->families[rival->family].name;
@@ -174,9 +185,11 @@ static EqualTimeRow compare_setting(const RivalCurves *curves, int i, CurveStati
                           .rival = name_rival(curves, &rival),
                           .reach = rival.reach,
                           .rival_error = rival.error,
-                          .ratio = curves->lost[i] ? NAN : floored(error) / rival.error,
+                          .ratio = curves->lost[i] ? NAN : positive(error) / rival.error,
+                          .below = which_below(error, rival.error),
                           .time_momentum_20 = momentum == NULL ? NAN : row->us_solver / momentum->us_solver,
-                          .error_scene_net = net == NULL ? NAN : floored(error) / floored(curve_error(net, statistic)),
+                          .error_scene_net =
+                              net == NULL ? NAN : positive(error) / positive(curve_error(net, statistic)),
                           .time_scene_net = net == NULL ? NAN : row->us_solver / net->us_solver};
 }
 
@@ -196,6 +209,7 @@ static EqualMethodRow compare_method(const RivalCurves *curves, const char *scen
     row.rival = name_rival(curves, &rival);
     row.rival_error = rival.error;
     row.ratio = row.error / rival.error;
+    row.below = which_below(row.error, rival.error);
     return row;
 }
 

@@ -21,6 +21,7 @@ enum { EQUAL_TIME_COLUMNS = 40, EQUAL_TIME_SCENES = 64 };
 typedef struct EqualTimeCell {
     bool ran;
     double ratio; /* EqualMethodRow; NaN: none */
+    bool below;   /* both errors are below PARETO_RESOLUTION */
 } EqualTimeCell;
 
 typedef struct EqualTimeGrid {
@@ -119,13 +120,13 @@ static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const c
         const int scene = find_scene(grid, row->scene);
         if (scene == EQUAL_TIME_SCENES)
             return error_input(error, path, "a figure has at most %d scenes", EQUAL_TIME_SCENES);
-        grid->cells[scene][column_of[row->family]] = (EqualTimeCell){true, row->ratio};
+        grid->cells[scene][column_of[row->family]] = (EqualTimeCell){true, row->ratio, row->below == BELOW_BOTH};
     }
     return true;
 }
 
 /* mm */
-static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, foot = 16, note_height = 3.5,
+static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, foot = 19.5, note_height = 3.5,
                     bar_height = 2.6, bar_width = 62, note_width = 76;
 static const double degrees = 40, name_points = 8;
 static const double strongest = 1000; /* ratio, and its inverse, with the full colour */
@@ -189,9 +190,10 @@ static uint32_t ink_on(uint32_t rgb) {
     return luminance < lightest ? 0xFFFFFF : 0x000000;
 }
 
-static void draw_box(Sketch *sketch, PlotBox box, uint32_t colour) {
+static void draw_box(Sketch *sketch, PlotBox box, uint32_t colour, uint32_t line) {
+    const Pen pen = pen_fill(colour, 1, line);
     sketch_rectangle(sketch, (Point){box.left, box.bottom}, (Point){box.left + box.width, box.bottom + box.height},
-                     &(Pen){colour, 1, NO_COLOUR, 0, NULL});
+                     &pen);
 }
 
 /* Two digits: "1/52", "1/3.1", "1", "×2.4"; what is beyond a factor of 9999 does not fit into a cell. */
@@ -214,8 +216,9 @@ static void draw_cell(const EqualTimePlotLayout *layout, int row, int column) {
     char text[24];
     if (!cell->ran) return;
     const bool none = isnan(cell->ratio);
-    const uint32_t colour = none ? 0xD8D8D8 : colour_of(cell->ratio);
-    draw_box(layout->sketch, (PlotBox){x + edge, y + edge, layout->cell - 2 * edge, cell_height - 2 * edge}, colour);
+    const uint32_t colour = none ? 0xD8D8D8 : cell->below ? 0xFFFFFF : colour_of(cell->ratio);
+    draw_box(layout->sketch, (PlotBox){x + edge, y + edge, layout->cell - 2 * edge, cell_height - 2 * edge}, colour,
+             !none && cell->below ? 0xB0B0B0 : NO_COLOUR);
     if (none)
         strcpy(text, "–");
     else
@@ -246,7 +249,7 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
     const double words = layout->grid->times[0] != '\0' ? note_height : 0;
     for (int i = 0; i < STEPS; i++)
         draw_box(sketch, (PlotBox){layout->left + bar_width * i / STEPS, bottom, bar_width / STEPS + 0.05, bar_height},
-                 colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)));
+                 colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)), NO_COLOUR);
     for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
         name_ratio(text, marks[i]);
         plot_text(sketch, (Point){layout->left + bar_width * (strength(marks[i]) + 1) / 2, bottom - 2}, TEXT_CENTER, 7,
@@ -259,6 +262,8 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
     plot_text(sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, WORD_POINTS, layout->grid->times);
     plot_text(sketch, (Point){right, bottom - 2}, TEXT_LEFT, 8, note);
     plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower, or unstable before the impact");
+    snprintf(note, sizeof note, "white: both below %g m/s", PARETO_RESOLUTION);
+    plot_text(sketch, (Point){right, bottom - 9}, TEXT_LEFT, 8, note);
     words_draw(&layout->grid->words, sketch, layout->left, words + 0.5);
 }
 

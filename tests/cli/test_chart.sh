@@ -44,8 +44,10 @@ for i, row in enumerate(table):
     assert (row["rival"] == "") == (row["reach"] == "before") == (row["rival_error"] == ""), row
     assert row["rival"].split(":")[0] != row["method"], row
     if row["ratio"]:
-        ratio = max(float(row["error"]), 1e-4) / float(row["rival_error"])
-        assert abs(float(row["ratio"]) / ratio - 1) < 1e-4, row
+        error, rival = float(row["error"]), float(row["rival_error"])
+        assert abs(float(row["ratio"]) / (max(error, 1e-9) / rival) - 1) < 1e-4, row
+        below = {(0, 0): "none", (1, 0): "method", (0, 1): "rival", (1, 1): "both"}[error < 1e-4, rival < 1e-4]
+        assert row["below"] == below, row
     assert row["method"] != "momentum" or row["setting"] != "k=20" or row["time_momentum_20"] == "1", row
 methods = list(csv.DictReader(open("quick/equal_time_methods.csv")))
 assert {row["method"].split(":")[0] for row in methods} == {row["method"] for row in chart}, methods

@@ -108,6 +108,29 @@ TEST(methods_are_compared_at_one_time) {
     csv_table_free(&rows);
 }
 
+/* A loss by four remains one where nobody can see it, and is marked; so is what only one of the two is below. */
+TEST(errors_below_the_resolution_are_compared_as_they_are) {
+    static const char small[] = IMPACT("momentum", "k=50", "20", "4e-5", "4e-5", "8e-5")
+        IMPACT("interior", "near=0.02", "20", "1e-5", "2e-4", "3e-5");
+    static const struct {
+        double ratio;
+        ErrorsBelow below;
+    } wanted[] = {{4, BELOW_BOTH},    {0.2, BELOW_METHOD}, {8. / 3, BELOW_BOTH},
+                  {0.25, BELOW_BOTH}, {5, BELOW_RIVAL},    {0.375, BELOW_BOTH}};
+    CsvTable rows;
+    EqualTime table;
+    assert_ok(csv_table_read(&rows, write_chart(small), &chart_layout, &error), error);
+    assert_ok(equal_time_make(&table, rows.rows, rows.count, &error), error);
+    for (int i = 0; i < 6; i++) {
+        assert_near(table.rows[i].ratio / wanted[i].ratio, 1, 1e-9);
+        assert_int_equal(table.rows[i].below, wanted[i].below);
+    }
+    assert_int_equal(table.methods[0].below, BELOW_BOTH);
+    assert_near(table.methods[0].ratio, 4, 1e-9);
+    equal_time_free(&table);
+    csv_table_free(&rows);
+}
+
 /* The most of 20, 50 and 100 sweeps that the chart has. */
 TEST(the_time_is_that_of_the_most_sweeps) {
     static const char *const settings[] = {"k=100", "k=20"};
