@@ -58,7 +58,7 @@ void csv_put(FILE *file, const char *text, bool quoted);
      const CsvLayout rate_layout = CSV_LAYOUT("rates", rate_columns, RateRow, .min_rows = 1, .max_rows = 5000);
 */
 
-enum { CSV_NAME_SIZE = 40, CSV_MAX_COLUMNS = 24, CSV_PATH_SIZE = 4096 };
+enum { CSV_NAME_SIZE = 40, CSV_MAX_COLUMNS = 32, CSV_PATH_SIZE = 4096 };
 
 /* What a field holds, and the type of the member that takes it. */
 typedef enum CsvKind {
@@ -83,7 +83,7 @@ typedef struct CsvColumn {
     bool optional;            /* a file may lack the column, if it is one of the last: older ones do */
 } CsvColumn;
 
-/* Which headers are accepted. Members without a column are 0; optional texts are empty. */
+/* Which headers are accepted. Members without a column are 0; optional texts are empty, optional figures NaN. */
 typedef enum CsvHeader {
     CSV_ALL,   /* all columns, in any order; further columns are ignored */
     CSV_EXACT, /* these columns in this order */

@@ -210,9 +210,12 @@ typedef struct Reading {
 
 static bool read_field(const CsvCell *cell, void *row, Error *error) {
     static const char *const empty = "";
+    static const double unknown = NAN;
     if (cell->field >= 0) return read_cell(cell, row, error);
     if (cell->column->optional && cell->column->kind == CSV_TEXT)
         memcpy((char *)row + cell->column->offset, &empty, sizeof empty);
+    if (cell->column->optional && cell->column->kind == CSV_OPTIONAL)
+        memcpy((char *)row + cell->column->offset, &unknown, sizeof unknown);
     return true;
 }
 

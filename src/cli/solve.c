@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "engine/engine.h"
+#include "methods/criteria.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
 #include "methods/sweeps.h"
@@ -62,7 +63,11 @@ static const CommandSpec spec = {
         "against the converged solution: RMS error of the "
         "bodies' velocities (m/s, spin weighted by 1/sqrt 6), bodies whose velocity is right (within 0.05 m/s or 5% of "
         "the change made by the contacts), and the residual of the method's impulses: the largest change of a "
-        "contact's velocity by one more sweep (m/s; a method without impulses counts as impulses of 0).\v"
+        "contact's velocity by one more sweep (m/s; a method without impulses counts as impulses of 0). Then the laws "
+        "of contact, each 0 where it is kept: Signorini (largest gap velocity times impulse, J), the friction cone "
+        "(largest distance of an impulse from it, N s), dissipation (largest energy that friction failed to take, J); "
+        "nan: the method has no impulses. Last, to compare with the method reference: the deepest penetration that the "
+        "step leads to (m), and the kinetic energy that contacts add (J; negative: take).\v"
         "Example: twinbox solve scenes/stack.yaml --frame 41 --method engine:k=10 --method engine:k=100\n"
         "         twinbox solve scenes/stack.yaml --frame 41 -o impact.npz\n"
         "         twinbox solve impact.npz --method momentum:k=20\n"
@@ -71,6 +76,7 @@ static const CommandSpec spec = {
 typedef struct Score {
     SolutionError error;
     double residual; /* m/s */
+    ContactCriteria criteria;
 } Score;
 
 typedef struct Result {
@@ -91,6 +97,7 @@ static bool score(const Result *result, const Method *method, ContactSolution *s
     bool ok = solver.kind->solve(solver.state, problem, solution, error) &&
               reference_residual(&work, problem, solution->impulses, &score->residual, error);
     if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
+    if (ok) score->criteria = contact_criteria(problem, solution, true);
     reference_free(&work);
     solver.kind->destroy(solver.state);
     return ok;
@@ -133,6 +140,7 @@ static bool score_impulses(const Result *result, ContactSolution *solution, Scor
     const bool ok = apply_table(&table, problem, solution, error) &&
                     reference_residual(&work, problem, solution->impulses, &score->residual, error);
     if (ok) score->error = solution_error(problem, solution->velocities, result->truth.velocities);
+    if (ok) score->criteria = contact_criteria(problem, solution, true);
     reference_free(&work);
     csv_table_free(&table);
     return ok;
@@ -167,11 +175,14 @@ static void print(const Result *result) {
     printf("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after %d factorizations\n", stored->scene,
            stored->frame, stored->problem.body_count, stored->problem.contact_count, result->truth.residual,
            result->truth.factorizations);
-    printf("%-40s %12s %12s %12s\n", "method", "error m/s", "right  ", "residual m/s");
+    printf("%-40s %12s %12s %12s %12s %10s %14s %14s %10s\n", "method", "error m/s", "right  ", "residual m/s",
+           "signorini J", "cone N s", "dissipation J", "penetration m", "energy J");
     for (int i = 0; i < row_count(result); i++) {
         const Score *row = &result->scores[i];
-        printf("%-40s %12.4g %7d/%-4d %12.4g\n", row_name(result, i), row->error.rms, row->error.right,
-               row->error.counted, row->residual);
+        const ContactCriteria *laws = &row->criteria;
+        printf("%-40s %12.4g %7d/%-4d %12.4g %12.4g %10.4g %14.4g %14.4g %10.4g\n", row_name(result, i), row->error.rms,
+               row->error.right, row->error.counted, row->residual, laws->signorini, laws->cone, laws->dissipation,
+               laws->penetration, laws->energy);
     }
 }
 
@@ -194,6 +205,11 @@ static void write_result(JsonWriter *json, const void *context) {
         json_put_int(json, "right", row->error.right);
         json_put_int(json, "counted", row->error.counted);
         json_put_number(json, "residual", row->residual);
+        json_put_number(json, "signorini", row->criteria.signorini);
+        json_put_number(json, "cone", row->criteria.cone);
+        json_put_number(json, "dissipation", row->criteria.dissipation);
+        json_put_number(json, "penetration", row->criteria.penetration);
+        json_put_number(json, "energy", row->criteria.energy);
         json_end(json);
     }
     json_end(json);

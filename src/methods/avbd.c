@@ -388,7 +388,7 @@ const SteppingKind stepping_avbd = {
                     .settings = settings,
                     .own_settings = "k=10",
                     .no_push_out = true,
-                    .chart = METHOD_RUNS("k=4", "k=10", "k=20", "k=50"),
+                    .chart = METHOD_RUNS("k=2,beta=1e6", "k=2,beta=1e6,gamma=0.95", "k=10", "k=20", "k=50"),
                     .chart_quick = METHOD_RUNS("k=10"),
                     .stability = METHOD_NO_RUNS},
     .create = create,

@@ -441,7 +441,7 @@ const ContactSolverKind solver_interior = {
                     .look = {METHOD_PURPLE, METHOD_DIAMOND},
                     .settings = settings,
                     .falls_back = true,
-                    .chart = METHOD_RUNS("near=0.1", "near=0.02", "near=0.002"),
+                    .chart = METHOD_RUNS("near=1", "near=0.1", "near=0.02", "near=0.002", "near=0.0005", "near=0.0001"),
                     .chart_quick = METHOD_RUNS("near=0.002"),
                     .stability_place = 2},
     .create = create,

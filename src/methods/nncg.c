@@ -155,14 +155,17 @@ static void destroy(void *state) {
     free(solver);
 }
 
-const ContactSolverKind solver_nncg = {.description = {.name = "nncg",
-                                                       .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
-                                                       .caption = "conjugate gradients over sweeps",
-                                                       .look = {METHOD_BLACK, METHOD_DIAMOND},
-                                                       .settings = settings,
-                                                       .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100"),
-                                                       .chart_quick = METHOD_RUNS("k=20"),
-                                                       .stability_place = 5},
-                                       .create = create,
-                                       .solve = solve,
-                                       .destroy = destroy};
+const ContactSolverKind solver_nncg = {
+    .description = {.name = "nncg",
+                    .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
+                    .caption = "conjugate gradients over sweeps",
+                    .look = {METHOD_BLACK, METHOD_DIAMOND},
+                    .settings = settings,
+                    .chart = METHOD_RUNS("k=5", "k=20", "k=50", "k=1,near=0.5,more=10000", "k=1,near=0.02,more=10000",
+                                         "k=5,near=0.02,more=10000", "k=5,near=0.001,more=10000",
+                                         "k=5,near=0.0002,more=10000"),
+                    .chart_quick = METHOD_RUNS("k=20", "k=1,near=0.02,more=10000"),
+                    .stability_place = 5},
+    .create = create,
+    .solve = solve,
+    .destroy = destroy};

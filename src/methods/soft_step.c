@@ -313,8 +313,8 @@ const SteppingKind stepping_soft_step = {
                     .settings = settings,
                     .own_settings = "substeps=4",
                     .no_push_out = true,
-                    .chart =
-                        METHOD_RUNS("substeps=2", "substeps=4", "substeps=8", "substeps=16", "substeps=4,keep=0.05"),
+                    .chart = METHOD_RUNS("substeps=1", "substeps=2", "substeps=2,hertz=15", "substeps=4", "substeps=8",
+                                         "substeps=16", "substeps=32,hertz=60", "substeps=4,keep=0.05"),
                     .chart_quick = METHOD_RUNS("substeps=4"),
                     .stability = METHOD_RUNS("", "keep=0.05")},
     .create = create,

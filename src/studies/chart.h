@@ -5,6 +5,7 @@
 #include "base/csv.h"
 #include "base/machine.h"
 #include "engine/engine.h"
+#include "methods/criteria.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
 #include "runs/pieces.h"
@@ -91,18 +92,25 @@ typedef struct StepPlace {
     int frame, body; /* body -1: none */
 } StepPlace;
 
+/* The laws of contact (methods/criteria.h), summed over the scored steps in which the method has impulses. */
+typedef struct CriteriaSum {
+    double signorini, cone, dissipation; /* J, N s, J */
+    int64_t steps;
+} CriteriaSum;
+
 /* Errors of the scored steps. Zero-initialise; free with step_scores_free(). */
 typedef struct StepScores {
     int count;
     double *error;    /* [count] m/s, RMS over the dynamic bodies */
     double *share;    /* [count] share of bodies that are right (methods/reference.h) */
     StepPlace *place; /* [count] */
+    CriteriaSum criteria;
     size_t error_capacity, share_capacity, place_capacity;
 } StepScores;
 
-/* Adds the step to `frame`, given its final velocities. False if out of memory. */
-bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const BodyVelocity *velocities,
-                     const ReferenceVelocity *reference);
+/* Adds the step to `frame`, given its solution. push_out: as contact_criteria(). False if out of memory. */
+bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const ContactSolution *solution,
+                     const ReferenceVelocity *reference, bool push_out);
 void step_scores_free(StepScores *scores);
 
 /* All impact frames are scored; of the frames after and at rest, every n-th: reference solves dominate the run time. */
@@ -186,9 +194,11 @@ typedef struct ChartRow {
     const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
     double
         us_engine; /* of an external method, which has no other times: what its engine says that a step took; median */
+    /* J, N s, J: largest violation of a step (methods/criteria.h), mean over the scored steps. NaN without impulses. */
+    double signorini, cone, dissipation;
 } ChartRow;
 
-/* The header is exact, but that the last columns, cpu and us_engine, may be missing. Refused: a median time outside its quartiles. */
+/* The header is exact, but that the last columns, from cpu on, may be missing. Refused: a median time outside its quartiles. */
 extern const CsvLayout chart_layout;
 
 static inline const ChartRow *chart_row(const CsvTable *table, int i) { return (const ChartRow *)table->rows + i; }

@@ -42,6 +42,7 @@ bool stored_scores_open(StoredScores *stored, const char *path, const char *byte
 typedef struct PhaseScores {
     int count;
     double *error, *share; /* [count], as in StepScores */
+    CriteriaSum criteria;
     size_t error_capacity, share_capacity;
 } PhaseScores;
 
@@ -64,7 +65,7 @@ void method_scores_free(MethodScores *scores);
 /* A row with names but without results. The names must outlive the row. */
 ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase);
 
-/* Sets mean, quantiles and share over all steps of the row's phase; sorts the scores. */
+/* Sets mean, quantiles, share and criteria over all steps of the row's phase; sorts the scores. */
 void scene_row_errors(ChartRow *row, const PhaseScores *scores);
 
 /* Largest penetration and means of the other measures over measures[count], one per launch. */

@@ -120,14 +120,25 @@ void step_scores_free(StepScores *scores) {
     *scores = (StepScores){0};
 }
 
-bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const BodyVelocity *velocities,
-                     const ReferenceVelocity *reference) {
+/* A method without impulses has none of the criteria. */
+static void add_criteria(CriteriaSum *sum, const ContactCriteria *found) {
+    if (isnan(found->signorini)) return;
+    sum->signorini += found->signorini;
+    sum->cone += found->cone;
+    sum->dissipation += found->dissipation;
+    sum->steps++;
+}
+
+bool step_scores_add(StepScores *scores, int frame, const ContactProblem *problem, const ContactSolution *solution,
+                     const ReferenceVelocity *reference, bool push_out) {
     size_t wanted = (size_t)scores->count + 1;
     if (!array_reserve((void **)&scores->error, &scores->error_capacity, wanted, sizeof *scores->error) ||
         !array_reserve((void **)&scores->share, &scores->share_capacity, wanted, sizeof *scores->share) ||
         !array_reserve((void **)&scores->place, &scores->place_capacity, wanted, sizeof *scores->place))
         return false;
-    SolutionError found = solution_error(problem, velocities, reference);
+    const SolutionError found = solution_error(problem, solution->velocities, reference);
+    const ContactCriteria criteria = contact_criteria(problem, solution, push_out);
+    add_criteria(&scores->criteria, &criteria);
     scores->error[scores->count] = found.rms;
     scores->place[scores->count] = (StepPlace){frame, found.worst};
     scores->share[scores->count++] = found.counted > 0 ? (double)found.right / found.counted : 1;
@@ -153,8 +164,8 @@ static bool score(Rollout *rollout, int frame, bool push_out, StepScores *scores
     const bool found = converged_step_found(&rollout->converged);
     rollout->unconverged += !found;
     return !found ||
-           step_scores_add(scores, frame, problem, world_solution(rollout->world)->velocities,
-                           rollout->converged.reference.velocities) ||
+           step_scores_add(scores, frame, problem, world_solution(rollout->world),
+                           rollout->converged.reference.velocities, push_out) ||
            error_memory(error, "study");
 }
 

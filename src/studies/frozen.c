@@ -247,8 +247,8 @@ bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, S
         const Snapshot *snapshot = &list->items[i];
         const Step step = {.scene = snapshot->scene, .frame = snapshot->frame};
         if (!world_copy(world, snapshot->world, error) || !stepper_step(stepper, world, &step, error)) return false;
-        if (!step_scores_add(&scores[snapshot->phase], snapshot->frame, world_problem(world),
-                             world_solution(world)->velocities, push_out ? snapshot->reference : snapshot->no_push_out))
+        if (!step_scores_add(&scores[snapshot->phase], snapshot->frame, world_problem(world), world_solution(world),
+                             push_out ? snapshot->reference : snapshot->no_push_out, push_out))
             return error_memory(error, "study");
     }
     return true;

@@ -24,10 +24,12 @@ typedef struct LaunchHead {
 typedef struct PartHead {
     int64_t unconverged;
     int32_t counts[PROTOCOLS][PHASES];
+    CriteriaSum criteria[PROTOCOLS][PHASES];
     RunMeasures measures;
 } PartHead;
 
-static_assert(sizeof(PartHead) == sizeof(int64_t) + PROTOCOLS * PHASES * sizeof(int32_t) + sizeof(RunMeasures),
+static_assert(sizeof(PartHead) ==
+                  sizeof(int64_t) + PROTOCOLS * PHASES * (sizeof(int32_t) + sizeof(CriteriaSum)) + sizeof(RunMeasures),
               "no byte is left undefined");
 
 void launch_scores_free(LaunchScores *scores) {
@@ -38,8 +40,10 @@ void launch_scores_free(LaunchScores *scores) {
 static PartHead head_of(const LaunchScores *scores) {
     PartHead head = {.unconverged = scores->unconverged, .measures = scores->measures};
     for (int protocol = 0; protocol < PROTOCOLS; protocol++)
-        for (int phase = 0; phase < PHASES; phase++)
+        for (int phase = 0; phase < PHASES; phase++) {
             head.counts[protocol][phase] = scores->steps[protocol][phase].count;
+            head.criteria[protocol][phase] = scores->steps[protocol][phase].criteria;
+        }
     return head;
 }
 
@@ -123,6 +127,18 @@ static bool are_scores(const double *values, int count, double most) {
     return true;
 }
 
+/* Of so many steps, at most as many have impulses. */
+static bool are_criteria(const CriteriaSum *sum, int count) {
+    return sum->signorini >= 0 && sum->cone >= 0 && sum->dissipation >= 0 && sum->steps >= 0 && sum->steps <= count;
+}
+
+static void append_criteria(CriteriaSum *all, const CriteriaSum *more) {
+    all->signorini += more->signorini;
+    all->cone += more->cone;
+    all->dissipation += more->dissipation;
+    all->steps += more->steps;
+}
+
 /* Adds `count` errors and shares. False if out of memory. */
 static bool append(PhaseScores *steps, const char *bytes, int count) {
     const size_t before = (size_t)steps->count, more = (size_t)count;
@@ -142,6 +158,8 @@ static bool append_all(MethodScores *scores, const StoredScores *stored, const P
         for (int phase = 0; phase < PHASES; phase++) {
             PhaseScores *steps = &scores->steps[protocol][phase];
             const int before = steps->count, count = head->counts[protocol][phase];
+            if (!are_criteria(&head->criteria[protocol][phase], count)) return refuse(stored, error);
+            append_criteria(&steps->criteria, &head->criteria[protocol][phase]);
             if (!append(steps, bytes, count)) return error_memory(error, "study");
             if (count == 0) continue;
             if (!are_scores(steps->error + before, count, INFINITY) || !are_scores(steps->share + before, count, 1))
@@ -184,6 +202,11 @@ void scene_row_errors(ChartRow *row, const PhaseScores *scores) {
     row->share_right = statistics_mean(scores->share, scores->count);
     row->error_median = statistics_quantile(scores->error, scores->count, 0.5);
     row->error_p95 = statistics_quantile(scores->error, scores->count, 0.95);
+    if (scores->criteria.steps == 0) return;
+    const double steps = (double)scores->criteria.steps;
+    row->signorini = scores->criteria.signorini / steps;
+    row->cone = scores->criteria.cone / steps;
+    row->dissipation = scores->criteria.dissipation / steps;
 }
 
 /* Mean or largest over the launches for which the measure at byte `offset` is not NaN. */
@@ -229,7 +252,10 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .energy = NAN,
                       .moved = NAN,
                       .cpu = "",
-                      .us_engine = NAN};
+                      .us_engine = NAN,
+                      .signorini = NAN,
+                      .cone = NAN,
+                      .dissipation = NAN};
 }
 
 void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {
@@ -364,6 +390,9 @@ static const CsvColumn columns[] = {
     FIGURE(moved, 0, INFINITY),
     CSV_MEMBER(ChartRow, cpu, CSV_TEXT, .maximum = CPU_NAME_SIZE - 1, .optional = true),
     CSV_MEMBER(ChartRow, us_engine, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, signorini, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, cone, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, dissipation, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
 };
 
 enum { SOLVER_MEDIAN = 6 };

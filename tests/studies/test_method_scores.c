@@ -24,6 +24,8 @@ static LaunchScores make_scores(int launch, int method) {
         for (int phase = 0; phase < PHASES; phase++) {
             StepScores *steps = &scores.steps[protocol][phase];
             steps->count = steps_of(launch, method, phase);
+            /* The method 2 has no impulses. */
+            if (method < 2) steps->criteria = (CriteriaSum){launch + 1, 2, 10 * phase, steps->count};
             steps->error = malloc((size_t)steps->count * sizeof(double) + 1);
             steps->share = malloc((size_t)steps->count * sizeof(double) + 1);
             assert_true(steps->error != NULL && steps->share != NULL);
@@ -58,6 +60,12 @@ static void assert_whole(const MethodScores *scores, int method) {
                     assert_true(steps->share[at] == 1.0 / (1 + i));
                 }
             assert_int_equal(steps->count, at);
+            ChartRow row = {.signorini = NAN};
+            scene_row_errors(&row, steps);
+            if (method == 2 || at == 0)
+                assert_true(isnan(row.signorini));
+            else
+                assert_true(row.signorini == 3. / at && row.cone == 4. / at && row.dissipation == 20. * phase / at);
         }
 }
 
@@ -110,8 +118,9 @@ TEST(damaged_results_are_refused) {
     for (size_t cut = 1; cut < size; cut++) assert_false(are_read(bytes, cut, METHODS));
     /* The number of methods, the index and the head of the first part; a few more steps may have been left out. */
     const size_t index = 2 * sizeof(int64_t), part = index + METHODS * sizeof(int64_t), counts = part + sizeof(int64_t),
-                 values = counts + sizeof(int32_t[PROTOCOLS][PHASES]) + 64;
-    for (size_t at = 0; at < counts + sizeof(int32_t[PROTOCOLS][PHASES]); at++) {
+                 criteria = counts + sizeof(int32_t[PROTOCOLS][PHASES]),
+                 values = criteria + sizeof(CriteriaSum[PROTOCOLS][PHASES]) + 64;
+    for (size_t at = 0; at < criteria; at++) {
         if ((at >= sizeof(int64_t) && at < index) || (at >= part && at < part + 3)) continue;
         for (int bit = 0; bit < 8; bit++) {
             bytes[at] = (char)(bytes[at] ^ 1 << bit);
@@ -127,6 +136,14 @@ TEST(damaged_results_are_refused) {
         memcpy(at, &wrong[i], sizeof kept);
         assert_false(are_read(bytes, size, METHODS));
         memcpy(at, kept, sizeof kept);
+    }
+    const CriteriaSum sums[] = {{-1, 0, 0, 1}, {0, NAN, 0, 1}, {0, 0, -1, 1}, {0, 0, 0, 3}, {0, 0, 0, -1}};
+    for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) { /* two steps were scored */
+        char kept[sizeof *sums];
+        memcpy(kept, bytes + criteria, sizeof kept);
+        memcpy(bytes + criteria, &sums[i], sizeof kept);
+        assert_false(are_read(bytes, size, METHODS));
+        memcpy(bytes + criteria, kept, sizeof kept);
     }
     assert_true(are_read(bytes, size, METHODS));
     free(bytes);
