@@ -58,11 +58,30 @@ static bool add_rates(const FindingsFile *file, const StudyTables *study) {
     return add_number(file, "rates", rows) && add_number(file, "rates_not_above_constant", beaten);
 }
 
+/* How many networks of the study differ from the paper's in one factor, and in several. */
+static bool add_networks(const FindingsFile *file, const StudyTables *study) {
+    const PaperNetwork baseline = paper_network(0);
+    int one = 0, several = 0;
+    for (int i = 0; i < paper_network_count; i++) {
+        char names[PAPER_FACTORS_SIZE];
+        const PaperNetwork network = paper_network(i);
+        if (study_network(study, network.name) == NULL) continue;
+        const int factors = paper_network_factors(&network, &baseline, names);
+        one += factors == 1;
+        several += factors > 1;
+    }
+    return add_number(file, "networks_one_factor", one) && add_number(file, "networks_several_factors", several);
+}
+
+/* Runs of networks; solvers stand beside them. */
 static bool add_runs(const FindingsFile *file, const StudyTables *study) {
     enum { STACK = 1 }; /* of paper_scene_names */
-    int complete = 0, stacks = 0, stacks_complete = 0;
-    double shortest = CLOSED_LOOP_FRAMES;
+    int runs = 0, complete = 0, stacks = 0, stacks_complete = 0;
+    double shortest = CLOSED_LOOP_FRAMES, longest = 0;
     for (int i = 0; i < study->run_count; i++) {
+        if (study_network(study, study->runs[i].network) == NULL) continue;
+        runs++;
+        longest = fmax(longest, study->runs[i].frames_until_apart);
         const bool stack = study->runs[i].scene == STACK;
         const bool whole = study->runs[i].frames_until_apart >= CLOSED_LOOP_FRAMES;
         complete += whole;
@@ -70,9 +89,9 @@ static bool add_runs(const FindingsFile *file, const StudyTables *study) {
         stacks_complete += stack && whole;
         shortest = fmin(shortest, study->runs[i].frames_until_apart);
     }
-    return add_number(file, "runs", study->run_count) && add_number(file, "runs_complete", complete) &&
-           add_number(file, "shortest_run", shortest) && add_number(file, "stack_runs", stacks) &&
-           add_number(file, "stack_runs_complete", stacks_complete);
+    return add_number(file, "runs", runs) && add_number(file, "runs_complete", complete) &&
+           add_number(file, "shortest_run", shortest) && add_number(file, "longest_run", longest) &&
+           add_number(file, "stack_runs", stacks) && add_number(file, "stack_runs_complete", stacks_complete);
 }
 
 static bool add_costs(const FindingsFile *file, const StudyTables *study) {
@@ -80,6 +99,7 @@ static bool add_costs(const FindingsFile *file, const StudyTables *study) {
     double most = NAN;
     const char *scene = "";
     for (int i = 0; i < study->run_count; i++) {
+        if (study_network(study, study->runs[i].network) == NULL) continue;
         const double cost = ratio_of(study->runs[i].us_step, study->runs[i].us_step_engine);
         timed += !isnan(cost);
         slower += cost > 1;
@@ -128,7 +148,8 @@ static bool add_claims(const FindingsFile *file, const StudyTables *study) {
 static bool write_summary(const FindingsFile *file, const StudyTables *study) {
     return add_number(file, "paper_rows", PUBLISHED_SCORES) && add_number(file, "small_network", SMALL_NETWORK) &&
            add_number(file, "last_frame", CLOSED_LOOP_FRAMES) && add_number(file, "after_frames", AFTER_FRAMES) &&
-           add_gate(file, study) && add_rates(file, study) && add_runs(file, study) && add_costs(file, study) &&
+           add_networks(file, study) && add_gate(file, study) && add_rates(file, study) && add_runs(file, study) &&
+           add_costs(file, study) &&
            add_number(file, "momentum_error_contact_net", largest_momentum_error(study, "contact-net")) &&
            add_number(file, "momentum_error_baseline", largest_momentum_error(study, "baseline")) &&
            add_laws(file, study) && add_transfer(file, study) && add_claims(file, study);
@@ -384,9 +405,10 @@ static bool write_rows(void *context, FILE *out, Error *error) {
 }
 
 bool findings_write(const char *folder, Error *error) {
-    static const FindingsTable *const tables[] = {
-        &findings_summary, &findings_targets,  &findings_paper_table1, &findings_factors, &findings_definitions,
-        &findings_laws,    &findings_transfer, &findings_aims,         &findings_claims,  &findings_systems};
+    static const FindingsTable *const tables[] = {&findings_summary,  &findings_targets,     &findings_paper_table1,
+                                                  &findings_factors,  &findings_definitions, &findings_laws,
+                                                  &findings_transfer, &findings_aims,        &findings_claims,
+                                                  &findings_systems,  &findings_loops};
     StudyTables study;
     char path[PATH_MAX];
     if (!file_path(path, sizeof path, error, "%s/findings", folder) || !study_tables_read(&study, folder, error))

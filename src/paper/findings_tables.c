@@ -38,8 +38,7 @@ void study_tables_free(StudyTables *study) {
     for (int i = 0; i < STUDY_TABLES; i++) csv_table_free(&study->tables[i]);
 }
 
-/* NULL if no network has that name. */
-static const TrainedRow *study_network(const StudyTables *study, const char *name) {
+const TrainedRow *study_network(const StudyTables *study, const char *name) {
     for (int i = 0; i < study->network_count; i++)
         if (strcmp(study->networks[i].network, name) == 0) return &study->networks[i];
     return NULL;
@@ -83,6 +82,56 @@ static const RateRow *study_rate_of(const StudyTables *study, const char *networ
 }
 
 double ratio_of(double a, double b) { return b > 0 ? a / b : NAN; }
+
+/* Closed loops: what networks reach in a scene, beside what solvers do. */
+
+typedef struct LoopRow {
+    const char *scene, *network; /* network: that follows the converged run for longest */
+    int networks;
+    double median, longest;              /* of the networks, frames */
+    double engine, engine_100, interior; /* frames; NAN: not run */
+} LoopRow;
+
+static double frames_of(const StudyTables *study, int scene, const char *solver) {
+    for (int i = 0; i < study->run_count; i++)
+        if (study->runs[i].scene == scene && strcmp(study->runs[i].network, solver) == 0)
+            return study->runs[i].frames_until_apart;
+    return NAN;
+}
+
+static LoopRow compare_loops(const StudyTables *study, int scene) {
+    double frames[PAPER_MAX_LOOPS];
+    LoopRow row = {.scene = paper_scene_names[scene],
+                   .network = "",
+                   .longest = -1,
+                   .engine = frames_of(study, scene, "engine:k=10"),
+                   .engine_100 = frames_of(study, scene, "engine:k=100"),
+                   .interior = frames_of(study, scene, "interior")};
+    for (int i = 0; i < study->run_count; i++) {
+        const ClosedLoopRow *run = &study->runs[i];
+        if (run->scene != scene || study_network(study, run->network) == NULL) continue;
+        frames[row.networks++] = run->frames_until_apart;
+        if (run->frames_until_apart <= row.longest) continue;
+        row.longest = run->frames_until_apart;
+        row.network = run->network;
+    }
+    row.median = statistics_quantile(frames, row.networks, 0.5);
+    return row;
+}
+
+static bool write_loops(const FindingsFile *file, const StudyTables *study) {
+    for (int scene = 0; scene < PAPER_SCENES; scene++) {
+        const LoopRow row = compare_loops(study, scene);
+        if (row.networks > 0 && !findings_add(file, &row)) return false;
+    }
+    return true;
+}
+
+static const CsvColumn loop_columns[] = {FINDINGS_TEXT(LoopRow, scene),        FINDINGS_COUNT(LoopRow, networks),
+                                         FINDINGS_NUMBER(LoopRow, median),     FINDINGS_NUMBER(LoopRow, longest),
+                                         FINDINGS_TEXT(LoopRow, network),      FINDINGS_NUMBER(LoopRow, engine),
+                                         FINDINGS_NUMBER(LoopRow, engine_100), FINDINGS_NUMBER(LoopRow, interior)};
+const FindingsTable findings_loops = FINDINGS_TABLE("loops", loop_columns, LoopRow, write_loops);
 
 /* Scores during training beside those of the paper's Table 1. */
 

@@ -51,6 +51,12 @@ extern const int paper_network_count;
 /* With all defaults set. */
 PaperNetwork paper_network(int i);
 
+enum { PAPER_FACTORS_SIZE = 256 };
+
+/* In how many factors two networks with all defaults differ; names: "data layers ". The first width follows from the inputs, the
+   last is the outputs'; the scaling belongs to the output's activation. */
+int paper_network_factors(const PaperNetwork *a, const PaperNetwork *b, char names[PAPER_FACTORS_SIZE]);
+
 /* The datasets of the paper's study, each recorded at its first use. */
 
 enum { PAPER_SCENES = 4, PAPER_TRAINING_SCENES = 2, PAPER_PATH_SIZE = 4096, PAPER_DATASETS_MAX = 32 };

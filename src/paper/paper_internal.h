@@ -345,7 +345,7 @@ PaperWrite paper_training_write;
 bool paper_training_whole(const PaperPlan *plan, const PaperPart *part, const char *lines, bool *there, Error *error);
 
 /* In one scene, on launches that none was trained on: the table rates of every network and of the warm start alone; the table
-   closed_loop of every network that can take a step; system_scores. */
+   closed_loop of every network that can take a step, and of solvers beside them; system_scores. */
 PaperWrite paper_rates_write, paper_closed_loop_write, system_scores_write;
 
 /* A row of laws or of transfer. */
@@ -392,8 +392,8 @@ typedef struct RateRow {
 
 /* closed_loop.csv: a network in place of the solver (studies/chart.h). */
 typedef struct ClosedLoopRow {
-    const char *network;
-    int scene; /* of paper_scene_names */
+    const char *network; /* or a solver, as on the command line */
+    int scene;           /* of paper_scene_names */
     double frames_until_apart, penetration_max, momentum_error, energy_ratio, us_step, us_step_engine;
 } ClosedLoopRow;
 

@@ -117,13 +117,20 @@ bool law_study_run(const Dataset *dataset, const LawStudy *study, LawRow *row, c
     return true;
 }
 
+/* What solvers reach beside the networks in closed loop: the engine with its own and with ten times as many sweeps, and the
+   most accurate one. */
+static const char *const solvers[] = {"engine:k=10", "engine:k=100", "interior"};
+
+enum { SOLVERS = sizeof solvers / sizeof *solvers };
+
 /* One scene's study in progress. */
 typedef struct Scores {
     const PaperPlan *plan;
     int scene;
     Launched launched;
     PairRates *rates;   /* [network_count + 1]; the last is the warm start's */
-    ClosedLoop *closed; /* [network_count] */
+    RunLog *converged;  /* [launches] */
+    ClosedLoop *closed; /* [network_count + SOLVERS] */
 } Scores;
 
 /* A network of single impulses with inputs by contact would need impulses at points: it cannot take a step. */
@@ -179,24 +186,36 @@ bool paper_rates_write(PaperPlan *plan, const PaperPart *part, FILE *lines, cons
     return ok;
 }
 
+/* Of a network, or of the solvers behind them. */
 static bool method_of(const PaperPlan *plan, int i, Method *method, Error *error) {
     char path[PAPER_PATH_SIZE];
+    if (i >= plan->network_count) return method_parse(method, solvers[i - plan->network_count], error);
     const char *name = plan->networks[i].target == TARGET_POINTS ? "contact-net" : "pair-net";
     return network_path(plan, i, path, error) && method_with_network(method, name, path, error);
 }
 
-static bool close_network(void *context, int i, Error *error) {
+static bool log_launch(void *context, int i, Error *error) {
     Scores *scores = context;
-    Method method;
-    if (!takes_steps(&scores->plan->networks[i])) return true;
-    return method_of(scores->plan, i, &method, error) &&
-           closed_loop_run(&method, scores->launched.launches, scores->launched.count, &scores->closed[i], error);
+    return closed_loop_log_converged(&scores->converged[i], &scores->launched.launches[i], error);
 }
 
-static bool time_network(const Scores *scores, int i, FILE *lines, Error *error) {
+static bool is_closed(const PaperPlan *plan, int i) {
+    return i >= plan->network_count || takes_steps(&plan->networks[i]);
+}
+
+static bool close_method(void *context, int i, Error *error) {
+    Scores *scores = context;
+    const Launched *launched = &scores->launched;
+    Method method;
+    if (!is_closed(scores->plan, i)) return true;
+    return method_of(scores->plan, i, &method, error) &&
+           closed_loop_run(&method, launched->launches, scores->converged, launched->count, &scores->closed[i], error);
+}
+
+static bool time_method(const Scores *scores, int i, FILE *lines, Error *error) {
     const PaperPlan *plan = scores->plan;
     const ClosedLoop *closed = &scores->closed[i];
-    ClosedLoopRow row = {.network = plan->networks[i].name,
+    ClosedLoopRow row = {.network = i < plan->network_count ? plan->networks[i].name : solvers[i - plan->network_count],
                          .scene = scores->scene,
                          .frames_until_apart = closed->frames_until_apart,
                          .penetration_max = closed->penetration_max,
@@ -210,10 +229,10 @@ static bool time_network(const Scores *scores, int i, FILE *lines, Error *error)
 }
 
 /* One after the other. */
-static bool time_networks(const Scores *scores, FILE *lines, Error *error) {
+static bool time_methods(const Scores *scores, FILE *lines, Error *error) {
     bool ok = true;
-    for (int i = 0; ok && i < scores->plan->network_count; i++)
-        if (takes_steps(&scores->plan->networks[i])) ok = time_network(scores, i, lines, error);
+    for (int i = 0; ok && i < scores->plan->network_count + SOLVERS; i++)
+        if (is_closed(scores->plan, i)) ok = time_method(scores, i, lines, error);
     return ok;
 }
 
@@ -222,11 +241,16 @@ bool paper_closed_loop_write(PaperPlan *plan, const PaperPart *part, FILE *lines
     Scores scores = {.plan = plan, .scene = part->index};
     if (!launched_begin(&scores.launched, plan->datasets.scenes[scores.scene], plan->size->closed_launches, error))
         return false;
-    scores.closed = calloc((size_t)plan->network_count, sizeof *scores.closed);
-    const ParallelWork closing = {close_network, &scores};
-    bool ok = (scores.closed != NULL || error_memory(error, "closed loop")) &&
-              parallel_for(&closing, plan->network_count, "networks in closed loop", progress, error) &&
-              sample_launch(&scores, 0, error) && time_networks(&scores, lines, error);
+    const int methods = plan->network_count + SOLVERS, launches = scores.launched.count;
+    scores.closed = calloc((size_t)methods, sizeof *scores.closed);
+    scores.converged = calloc((size_t)launches, sizeof *scores.converged);
+    const ParallelWork logging = {log_launch, &scores}, closing = {close_method, &scores};
+    bool ok = ((scores.closed != NULL && scores.converged != NULL) || error_memory(error, "closed loop")) &&
+              parallel_for(&logging, launches, "converged runs", NULL, error) &&
+              parallel_for(&closing, methods, "networks in closed loop", progress, error) &&
+              sample_launch(&scores, 0, error) && time_methods(&scores, lines, error);
+    for (int i = 0; scores.converged != NULL && i < launches; i++) run_log_free(&scores.converged[i]);
+    free(scores.converged);
     free(scores.closed);
     launched_free(&scores.launched);
     return ok;

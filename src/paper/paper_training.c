@@ -126,6 +126,39 @@ PaperNetwork paper_network(int i) {
     return network;
 }
 
+/* The hidden widths of "10-8-8-2": "-8-8-"; the last one follows. */
+static size_t hidden_widths(const char *layers, const char **begin) {
+    *begin = layers + strcspn(layers, "-");
+    return (size_t)(strrchr(layers, '-') + 1 - *begin);
+}
+
+int paper_network_factors(const PaperNetwork *a, const PaperNetwork *b, char names[PAPER_FACTORS_SIZE]) {
+    const char *hidden_a, *hidden_b;
+    const size_t length_a = hidden_widths(a->layers, &hidden_a), length_b = hidden_widths(b->layers, &hidden_b);
+    const struct {
+        const char *name;
+        bool differs;
+    } factors[] = {{"data", a->data != b->data},
+                   {"labels", a->labels != b->labels},
+                   {"inputs", a->view != b->view},
+                   {"target", a->target != b->target},
+                   {"outputs", strcmp(hidden_a + length_a, hidden_b + length_b) != 0},
+                   {"layers", length_a != length_b || strncmp(hidden_a, hidden_b, length_a) != 0},
+                   {"hidden", strcmp(a->hidden, b->hidden) != 0},
+                   {"scaling", strcmp(a->output, b->output) != 0 || strcmp(a->scale, b->scale) != 0},
+                   {"optimizer", strcmp(a->optimizer, b->optimizer) != 0},
+                   {"loss", strcmp(a->loss, b->loss) != 0},
+                   {"iterations", a->iterations != b->iterations}};
+    int count = 0;
+    names[0] = '\0';
+    for (size_t i = 0; i < sizeof factors / sizeof *factors; i++) {
+        if (!factors[i].differs) continue;
+        strcat(strcat(names, factors[i].name), " ");
+        count++;
+    }
+    return count;
+}
+
 static const double near_share = 0.05; /* of the outputs' range */
 
 enum { NOTE_SIZE = 64, NETWORK_MAX_SIZE = 1 << 26 };

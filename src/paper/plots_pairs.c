@@ -318,7 +318,8 @@ bool plot_closed_loop(const CsvTable *table, PlotPage *page, Error *error) {
         .legend_left = loop_left,
         .legend_top = 2.7,
         .caption =
-            "Networks in place of the solver. Left: frames until a body is 0.1 m from its place in the engine's run "
+            "Networks and solvers in closed loop. Left: frames until a body is 0.1 m from its place in the converged "
+            "run "
             "(600, dashed: never). Right: time of a step over that of the engine with its own solver (dashed: equal)."};
     if (!plot_draw(page, &spec, table->csv.path, error)) return false;
     draw_names(&loop, &page->sketch);

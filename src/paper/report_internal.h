@@ -142,6 +142,9 @@ typedef struct StudyTables {
 bool study_tables_read(StudyTables *study, const char *folder, Error *error);
 void study_tables_free(StudyTables *study);
 
+/* NULL if no network has that name. */
+const TrainedRow *study_network(const StudyTables *study, const char *name);
+
 /* The baseline; NULL if the study has none, or none with a ratio. */
 const TrainedRow *study_baseline(const StudyTables *study);
 
@@ -196,7 +199,7 @@ struct FindingsFile {
 
 /* In findings_tables.c; the others are in findings.c. */
 extern const FindingsTable findings_targets, findings_paper_table1, findings_definitions, findings_laws,
-    findings_transfer;
+    findings_transfer, findings_loops;
 
 /* Columns of a row with members of these names; a text, a count, a number that may be NAN. */
 #define FINDINGS_TEXT(Row, member) CSV_MEMBER(Row, member, CSV_TEXT)

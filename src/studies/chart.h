@@ -391,15 +391,15 @@ bool piece_tables_print(FILE *results, const CsvLayout *layout, int section, con
 bool piece_tables_write(const Pieces *pieces, const char *folder, const CsvLayout *const *layouts, int layout_count,
                         const PieceGroup *groups, int group_count, Error *error);
 
-/* Closed-loop comparison: a method and the engine run the same launches, each on its own trajectory. */
+/* Closed-loop comparison: a method, the engine and the reference run the same launches, each on its own trajectory. */
 
 enum { CLOSED_LOOP_FRAMES = 600 };
 
 /* A run of one launch beside others of the same launch. */
 typedef struct LaunchLoop {
     double frames_engine;    /* first frame in which a body is more than 0.1 m from its place in the engine's
-                                run; the scene's frames: never */
-    double frames_converged; /* the same of the converged run; NAN without one */
+                                run; the scene's frames: never; NAN without a run to compare with */
+    double frames_converged; /* the same of the converged run */
     double moved;            /* boxes that moved more than 0.5 m in the 5 s after the launch */
     double penetration;      /* m: the deepest contact */
     double energy_put_in;    /* J: mechanical energy when the bomb was added */
@@ -408,8 +408,7 @@ typedef struct LaunchLoop {
     int steps, fallen_back;  /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
 } LaunchLoop;
 
-/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch; converged
-   may be NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch. */
+/* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch, or NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch. */
 bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
                         const RunLog *converged, LaunchLoop *result, Error *error);
 
@@ -417,14 +416,18 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
 bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error);
 
 typedef struct ClosedLoop {
-    double frames_until_apart; /* LaunchLoop.frames_engine, median over launches */
+    double frames_until_apart; /* LaunchLoop.frames_converged, median over launches */
     double penetration_max;    /* m: of all launches */
     double momentum_error;     /* N s: momentum created per step (ContactSolution), mean */
     double energy_ratio;       /* largest mechanical energy / energy when the bomb was added; largest of all launches */
 } ClosedLoop;
 
-/* Runs launches[count] of a scene for CLOSED_LOOP_FRAMES. */
-bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error);
+/* Logs the converged run of a launch for CLOSED_LOOP_FRAMES. Errors as closed_loop_log(). */
+bool closed_loop_log_converged(RunLog *log, const Scene *launched, Error *error);
+
+/* Runs launches[count] of a scene for as long. converged[count]: the logs of their converged runs. */
+bool closed_loop_run(const Method *method, const Scene *launches, const RunLog *converged, int count,
+                     ClosedLoop *result, Error *error);
 
 /* Microseconds per step of a method and of the engine, measured in turns on engine states: mean over the states of the
    median over the repetitions. */

@@ -224,6 +224,10 @@ static void measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
     }
 }
 
+static double frames_apart(const RunLog *log, const RunLog *other, int frames) {
+    return other != NULL ? (double)run_log_apart(log, other, apart_distance, frames) : (double)NAN;
+}
+
 bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
                         const RunLog *converged, LaunchLoop *result, Error *error) {
     Stepper *stepper = stepper_create(method, launched, error);
@@ -232,10 +236,8 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
     if (!ok) return false;
     const RunLog *log = &rollout->log;
     const int frames = launched->frames;
-    *result = (LaunchLoop){.frames_engine = run_log_apart(log, engine, apart_distance, frames),
-                           .frames_converged = converged != NULL
-                                                   ? (double)run_log_apart(log, converged, apart_distance, frames)
-                                                   : (double)NAN,
+    *result = (LaunchLoop){.frames_engine = frames_apart(log, engine, frames),
+                           .frames_converged = frames_apart(log, converged, frames),
                            .moved = run_log_moved(log, launched),
                            .momentum_error = log->momentum_error,
                            .steps = log->frames,
@@ -244,26 +246,30 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
     return true;
 }
 
-static bool run_launch(Rollout *rollout, RunLog *engine, const Method *method, const Scene *launched,
-                       LaunchLoop *result, Error *error) {
+static Scene closed_loop_scene(const Scene *launched) {
     Scene scene = *launched;
     scene.frames = CLOSED_LOOP_FRAMES;
-    return closed_loop_log(engine, "engine", &scene, error) &&
-           closed_loop_launch(rollout, method, &scene, engine, NULL, result, error);
+    return scene;
 }
 
-bool closed_loop_run(const Method *method, const Scene *launches, int count, ClosedLoop *result, Error *error) {
+bool closed_loop_log_converged(RunLog *log, const Scene *launched, Error *error) {
+    const Scene scene = closed_loop_scene(launched);
+    return closed_loop_log(log, "reference", &scene, error);
+}
+
+bool closed_loop_run(const Method *method, const Scene *launches, const RunLog *converged, int count,
+                     ClosedLoop *result, Error *error) {
     double *frames = malloc((size_t)count * sizeof *frames), momentum = 0, steps = 0;
     if (frames == NULL) return error_memory(error, "closed loop");
     Rollout rollout = {0};
-    RunLog engine = {0};
     *result = (ClosedLoop){0};
     bool ok = true;
     for (int i = 0; ok && i < count; i++) {
         LaunchLoop launch;
-        ok = run_launch(&rollout, &engine, method, &launches[i], &launch, error);
+        const Scene scene = closed_loop_scene(&launches[i]);
+        ok = closed_loop_launch(&rollout, method, &scene, NULL, &converged[i], &launch, error);
         if (!ok) break;
-        frames[i] = launch.frames_engine;
+        frames[i] = launch.frames_converged;
         result->penetration_max = fmax(result->penetration_max, launch.penetration);
         result->energy_ratio = fmax(result->energy_ratio, launch.energy_most / launch.energy_put_in);
         momentum += launch.momentum_error;
@@ -273,7 +279,6 @@ bool closed_loop_run(const Method *method, const Scene *launches, int count, Clo
         result->frames_until_apart = statistics_quantile(frames, count, 0.5);
         result->momentum_error = steps > 0 ? momentum / steps : 0;
     }
-    run_log_free(&engine);
     rollout_free(&rollout);
     free(frames);
     return ok;

@@ -4,30 +4,6 @@
 
 #include "paper/paper.h"
 
-/* Factors in which a network can be other than the baseline. The first width follows from the inputs, the last from
-   the outputs; the scaling belongs to the output's activation. */
-static void find_factors(const PaperNetwork *a, const PaperNetwork *b, char *factors) {
-    int widths_a[2], widths_b[2];
-    const char *last_a = strrchr(a->layers, '-') + 1, *last_b = strrchr(b->layers, '-') + 1;
-    const size_t first_a = strcspn(a->layers, "-"), first_b = strcspn(b->layers, "-");
-    widths_a[0] = atoi(a->layers), widths_a[1] = atoi(last_a);
-    widths_b[0] = atoi(b->layers), widths_b[1] = atoi(last_b);
-    const size_t middle_a = (size_t)(last_a - a->layers) - first_a, middle_b = (size_t)(last_b - b->layers) - first_b;
-    factors[0] = '\0';
-    if (a->data != b->data) strcat(factors, "data ");
-    if (a->labels != b->labels) strcat(factors, "labels ");
-    if (a->view != b->view) strcat(factors, "inputs ");
-    if (a->target != b->target) strcat(factors, "target ");
-    if (widths_a[1] != widths_b[1]) strcat(factors, "outputs ");
-    if (middle_a != middle_b || strncmp(a->layers + first_a, b->layers + first_b, middle_a) != 0)
-        strcat(factors, "layers ");
-    if (strcmp(a->hidden, b->hidden) != 0) strcat(factors, "hidden ");
-    if (strcmp(a->output, b->output) != 0 || strcmp(a->scale, b->scale) != 0) strcat(factors, "scaling ");
-    if (strcmp(a->optimizer, b->optimizer) != 0) strcat(factors, "optimizer ");
-    if (strcmp(a->loss, b->loss) != 0) strcat(factors, "loss ");
-    if (a->iterations != b->iterations) strcat(factors, "iterations ");
-}
-
 TEST(one_factor_is_varied_at_a_time) {
     const PaperNetwork baseline = paper_network(0);
     int checked = 0;
@@ -39,13 +15,40 @@ TEST(one_factor_is_varied_at_a_time) {
         if (strcmp(network.name, "outputs-six-two-layers") == 0 || strcmp(network.factor, "best") == 0 ||
             strcmp(network.factor, "contact-net") == 0)
             continue;
-        char found[256], wanted[64];
-        find_factors(&network, &other, found);
+        char found[PAPER_FACTORS_SIZE], wanted[64];
+        paper_network_factors(&network, &other, found);
         snprintf(wanted, sizeof wanted, "%s ", network.factor);
         if (strcmp(found, wanted) != 0) fail_msg("%s varies %s, not %s", network.name, found, wanted);
         checked++;
     }
     assert_true(checked > 25);
+}
+
+/* What README.md says of the networks: most differ from the paper's in one thing, some in several. */
+TEST(networks_that_differ_in_several_things_are_counted) {
+    static const char *const several[] = {"outputs-six-two-layers",
+                                          "net-gd",
+                                          "net-bfgs",
+                                          "net-lm",
+                                          "impulse-gd",
+                                          "impulse-bfgs",
+                                          "impulse-lm",
+                                          "best-pair",
+                                          "best-net",
+                                          "best-impulse",
+                                          "contact-net"};
+    const PaperNetwork baseline = paper_network(0);
+    int counts[3] = {0};
+    for (int i = 0; i < paper_network_count; i++) {
+        char found[PAPER_FACTORS_SIZE];
+        const PaperNetwork network = paper_network(i);
+        const int differences = paper_network_factors(&network, &baseline, found);
+        if (differences > 1) assert_string_equal(network.name, several[counts[2]]);
+        counts[differences > 1 ? 2 : differences]++;
+    }
+    assert_int_equal(counts[0], 1);
+    assert_int_equal(counts[1], 28);
+    assert_int_equal(counts[2], sizeof several / sizeof *several);
 }
 
 TEST(names_are_file_names_and_differ) {

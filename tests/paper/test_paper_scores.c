@@ -70,6 +70,9 @@ TEST(threads_close_the_loop_alike) {
     assert_string_equal(one, three);
     assert_int_equal(count_lines(one, "closed_loop:pair-net,single,"), 1);
     assert_int_equal(count_lines(one, "closed_loop:contact-net,single,"), 1);
+    assert_int_equal(count_lines(one, "closed_loop:engine:k=10,single,"), 1);
+    assert_int_equal(count_lines(one, "closed_loop:engine:k=100,single,"), 1);
+    assert_int_equal(count_lines(one, "closed_loop:interior,single,600,"), 1); /* one box has no chaos */
 }
 
 /* A thread that has yet to be created would be too late for the few pieces. */
