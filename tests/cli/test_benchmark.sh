@@ -67,6 +67,10 @@ assert len(rows) == 37
 stack, gate, rest, towers = (rows[name] for name in ("stack-2", "gate-1", "stack_10", "towers-1"))
 assert float(stack["impact"]) == 0 and float(stack["step"]) < 1e-5 and float(stack["residual"]) < 1e-5, stack
 assert float(stack["follows"]) > 4, stack
+# The reference's impulses keep all laws; without any, nothing pushes, and no energy is lost.
+assert max(abs(float(stack[law])) for law in ("signorini", "cone", "dissipation", "penetration", "energy")) < 1e-3, stack
+assert float(towers["signorini"]) == float(towers["dissipation"]) == float(towers["cone"]) == 0, towers
+assert float(towers["energy"]) > 1 and float(towers["penetration"]) > 0, towers
 assert 0.01 < float(gate["impact"]) < 10 and float(gate["follows"]) < 0.5, gate
 assert rest["verdict"] == "settles" and rest["holds"] == "True" and float(rest["drift"]) < 1e-3, rest
 assert float(towers["step"]) > 1 and towers["impact"] == "", towers
