@@ -120,9 +120,9 @@ void step_scores_free(StepScores *scores) {
     *scores = (StepScores){0};
 }
 
-/* A method without impulses has none of the criteria. */
-static void add_criteria(CriteriaSum *sum, const ContactCriteria *found) {
-    if (isnan(found->signorini)) return;
+/* Without contacts there is no law to break. A step without impulses makes the sums NaN: the method has none. */
+static void add_criteria(CriteriaSum *sum, const ContactProblem *problem, const ContactCriteria *found) {
+    if (problem->contact_count == 0) return;
     sum->signorini += found->signorini;
     sum->cone += found->cone;
     sum->dissipation += found->dissipation;
@@ -138,7 +138,7 @@ bool step_scores_add(StepScores *scores, int frame, const ContactProblem *proble
         return false;
     const SolutionError found = solution_error(problem, solution->velocities, reference);
     const ContactCriteria criteria = contact_criteria(problem, solution, push_out);
-    add_criteria(&scores->criteria, &criteria);
+    add_criteria(&scores->criteria, problem, &criteria);
     scores->error[scores->count] = found.rms;
     scores->place[scores->count] = (StepPlace){frame, found.worst};
     scores->share[scores->count++] = found.counted > 0 ? (double)found.right / found.counted : 1;
