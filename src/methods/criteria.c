@@ -72,14 +72,7 @@ static double energy_added(const ContactProblem *problem, const BodyVelocity *ve
 static bool lacks_impulses(const ContactProblem *problem, const ContactSolution *solution) {
     for (int i = 0; i < problem->contact_count; i++)
         if (solution->impulses[i].normal != 0 || solution->impulses[i].tangent != 0) return false;
-    for (int i = 0; i < problem->body_count; i++) {
-        const ProblemBody *body = &problem->bodies[i];
-        const BodyVelocity *after = &solution->velocities[i];
-        if (after->linear.x != body->velocity.x || after->linear.y != body->velocity.y ||
-            after->angular != body->angular_velocity)
-            return true;
-    }
-    return false;
+    return problem->contact_count > 0;
 }
 
 ContactCriteria contact_criteria(const ContactProblem *problem, const ContactSolution *solution, bool push_out) {

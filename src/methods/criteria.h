@@ -21,6 +21,6 @@ typedef struct ContactCriteria {
 } ContactCriteria;
 
 /* velocities [body_count] and impulses [contact_count] of a solution. push_out: whether position correction is part of what it
-   solves; else a positive bias counts as 0. The first three are NaN for a method without impulses (all are 0, and some body's
-   velocity has changed), and all five are infinite if a number is NaN or infinite. */
+   solves; else a positive bias counts as 0. The first three are NaN where contacts have no impulses, as of a method without them, and all five are infinite
+   if a number is NaN or infinite. */
 ContactCriteria contact_criteria(const ContactProblem *problem, const ContactSolution *solution, bool push_out);

@@ -92,7 +92,7 @@ typedef struct StepPlace {
     int frame, body; /* body -1: none */
 } StepPlace;
 
-/* The laws of contact (methods/criteria.h), summed over the scored steps with contacts; NaN for a method without impulses. */
+/* The laws of contact (methods/criteria.h), summed over the scored steps with impulses. */
 typedef struct CriteriaSum {
     double signorini, cone, dissipation; /* J, N s, J */
     int64_t steps;
@@ -194,7 +194,7 @@ typedef struct ChartRow {
     const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
     double
         us_engine; /* of an external method, which has no other times: what its engine says that a step took; median */
-    /* J, N s, J: largest violation of a step (methods/criteria.h), mean over the scored steps with contacts. NaN without impulses. */
+    /* J, N s, J: largest violation of a step (methods/criteria.h), mean over the scored steps with impulses. NaN: none has. */
     double signorini, cone, dissipation;
 } ChartRow;
 

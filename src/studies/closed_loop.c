@@ -120,9 +120,9 @@ void step_scores_free(StepScores *scores) {
     *scores = (StepScores){0};
 }
 
-/* Without contacts there is no law to break. A step without impulses makes the sums NaN: the method has none. */
+/* Without contacts or impulses there is no law to break. */
 static void add_criteria(CriteriaSum *sum, const ContactProblem *problem, const ContactCriteria *found) {
-    if (problem->contact_count == 0) return;
+    if (problem->contact_count == 0 || isnan(found->signorini)) return;
     sum->signorini += found->signorini;
     sum->cone += found->cone;
     sum->dissipation += found->dissipation;

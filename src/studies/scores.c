@@ -127,10 +127,9 @@ static bool are_scores(const double *values, int count, double most) {
     return true;
 }
 
-/* Of so many steps, at most as many have contacts. NaN is no damage. */
+/* Of so many steps, at most as many have impulses. */
 static bool are_criteria(const CriteriaSum *sum, int count) {
-    return !(sum->signorini < 0) && !(sum->cone < 0) && !(sum->dissipation < 0) && sum->steps >= 0 &&
-           sum->steps <= count;
+    return sum->signorini >= 0 && sum->cone >= 0 && sum->dissipation >= 0 && sum->steps >= 0 && sum->steps <= count;
 }
 
 static void append_criteria(CriteriaSum *all, const CriteriaSum *more) {

@@ -25,8 +25,7 @@ static LaunchScores make_scores(int launch, int method) {
             StepScores *steps = &scores.steps[protocol][phase];
             steps->count = steps_of(launch, method, phase);
             /* The method 2 has no impulses. */
-            const double first = method < 2 ? launch + 1 : (double)NAN;
-            steps->criteria = (CriteriaSum){first, 2, 10 * phase, steps->count};
+            if (method < 2) steps->criteria = (CriteriaSum){launch + 1, 2, 10 * phase, steps->count};
             steps->error = malloc((size_t)steps->count * sizeof(double) + 1);
             steps->share = malloc((size_t)steps->count * sizeof(double) + 1);
             assert_true(steps->error != NULL && steps->share != NULL);
@@ -138,7 +137,7 @@ TEST(damaged_results_are_refused) {
         assert_false(are_read(bytes, size, METHODS));
         memcpy(at, kept, sizeof kept);
     }
-    const CriteriaSum sums[] = {{-1, 0, 0, 1}, {0, -1, 0, 1}, {0, 0, -1, 1}, {0, 0, 0, 3}, {0, 0, 0, -1}};
+    const CriteriaSum sums[] = {{-1, 0, 0, 1}, {0, NAN, 0, 1}, {0, 0, -1, 1}, {0, 0, 0, 3}, {0, 0, 0, -1}};
     for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) { /* two steps were scored */
         char kept[sizeof *sums];
         memcpy(kept, bytes + criteria, sizeof kept);
