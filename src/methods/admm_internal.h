@@ -1,25 +1,26 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Proximal ADMM, the alternating direction method of multipliers: a factorization over all bodies, then many solutions with
-   it. With G = J M^-1 J^T over the rows of all contacts, their velocities g before any impulse less the bias, the friction
-   cones K, and s = mu |slip| on each normal (De Saxce), an iteration is
+/* Proximal ADMM, the alternating direction method of multipliers: a factorization over all bodies, then many solutions
+   with it. With G = J M^-1 J^T over the rows of all contacts, their velocities g before any impulse less the bias, the
+   friction cones K, and s = mu |slip| on each normal (De Saxce), an iteration is
 
        x = (G + (r + e) I)^-1 (z + r y + e x - g - s),   y = the point of K nearest to x - z / r,   z = z - r (x - y)
 
-   until x = y, the impulses, and z = G x + g + s. So friction is Coulomb's, not its convex relaxation. The proximal term is
-   e = 1e-6; r starts at sqrt(L e) (L / e)^0.2 / 2, with L the largest eigenvalue of G, and is multiplied or divided by
-   (L / e)^0.05, and the matrix factorized again, while one of |x - y| and |r dy + e dx| is ten times the other (the spectral
-   rule). Source of the method and of all these numbers: Carpentier, Le Lidec, Montaut, "From Compliant to Rigid Contact
-   Simulation: a Unified and Efficient Approach" (2024), and Pinocchio, their program. That keeps r from step to step; here
-   it starts anew, so that a problem has one answer. Rows are scaled by the roots of their effective masses, as a preconditioner may
-   there: G has ones on its diagonal, and no unit of length or mass changes an iteration.
+   until x = y, the impulses, and z = G x + g + s. So friction is Coulomb's, not its convex relaxation. The proximal
+   term is e = 1e-6; r starts at sqrt(L e) (L / e)^0.2 / 2, with L the largest eigenvalue of G, and is multiplied or
+   divided by (L / e)^0.05, and the matrix factorized again, while one of |x - y| and |r dy + e dx| is ten times the
+   other (the spectral rule). Source of the method and of all these numbers: Carpentier, Le Lidec, Montaut, "From
+   Compliant to Rigid Contact Simulation: a Unified and Efficient Approach" (2024), and Pinocchio, their program. That
+   keeps r from step to step; here it starts anew, so that a problem has one answer. Rows are scaled by the roots of
+   their effective masses, as a preconditioner may there: G has ones on its diagonal, and no unit of length or mass
+   changes an iteration.
 
-   With D = r + e and w = (M + J^T J / D)^-1 J^T q / D, the solution for q is (q - J w) / D: so what is factorized has a
-   block for each pair of touching bodies (block_lu.h), however many contacts they have. Same bits on every instruction set, as
-   interior points (interior_point_internal.h).
+   With D = r + e and w = (M + J^T J / D)^-1 J^T q / D, the solution for q is (q - J w) / D: so what is factorized has
+   a block for each pair of touching bodies (block_lu.h), however many contacts they have. Same bits on every
+   instruction set, as interior points (interior_point_internal.h).
 
-   Fails where it is stopped early. A sweep dissipates, but few iterations may add energy: with ten, walls explode. Impacts
-   take hundreds of iterations, each as long as two sweeps with momentum, which need no more of them. Stacks at rest take
-   few, whatever their mass ratios. */
+   Fails where it is stopped early. A sweep dissipates, but few iterations may add energy: with ten, walls explode.
+   Impacts take hundreds of iterations, each as long as two sweeps with momentum, which need no more of them. Stacks at
+   rest take few, whatever their mass ratios. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The closed form: each contact answers once, by itself, as a damped spring that only pushes. Nothing is iterated, learned or
-   carried from step to step. In the plane the dual of a friction cone has two facets. With the velocities v before any
-   impulse, the separation s (negative: overlap), the target velocity b and the effective mass M of a facet,
+/* The closed form: each contact answers once, by itself, as a damped spring that only pushes. Nothing is iterated,
+   learned or carried from step to step. In the plane the dual of a friction cone has two facets. With the velocities v
+   before any impulse, the separation s (negative: overlap), the target velocity b and the effective mass M of a facet,
 
        v+- = (J_n +- mu J_t) v,   p+- = M+- / 2 max(0, damping (b - v+-) - stiffness (v+- + s / dt)),
        normal impulse p+ + p-,   tangent impulse mu (p+ - p-),
 
    inside the cone whatever the numbers are. The dual of the contact problem couples all facets by a matrix; here its
-   diagonal stands for it. Each of the two facets of a contact has half of its mass, so that a contact without friction stops
-   if the settings add up to 1, and none overshoots. Sources: Jin, "Complementarity-Free Multi-Contact Modeling and
-   Optimization for Dexterous Manipulation" (2024); Borse, Xie, Huang, Jin, "ComFree-Sim: A GPU-Parallelized Analytical
-   Contact Physics Engine" (2026). The latter's stiffness 0.2 and damping 0.001, for steps of 2 ms and MuJoCo's impedance of
-   0.9, are a spring of 900/s^2 and a damper of 4.5/s, which the default settings are at 60 Hz.
+   diagonal stands for it. Each of the two facets of a contact has half of its mass, so that a contact without friction
+   stops if the settings add up to 1, and none overshoots. Sources: Jin, "Complementarity-Free Multi-Contact Modeling
+   and Optimization for Dexterous Manipulation" (2024); Borse, Xie, Huang, Jin, "ComFree-Sim: A GPU-Parallelized
+   Analytical Contact Physics Engine" (2026). The latter's stiffness 0.2 and damping 0.001, for steps of 2 ms and
+   MuJoCo's impedance of 0.9, are a spring of 900/s^2 and a damper of 4.5/s, which the default settings are at 60 Hz.
 
-   Fails wherever something rests: contacts feel weight only as overlap, so two boxes on each other sink in; friction needs a
-   slip, so boxes creep down every slope; what slides fast is lifted, and a heap gains energy
-   from it; an impact reaches no further than the first box. */
+   Fails wherever something rests: contacts feel weight only as overlap, so a stack of three sinks into itself;
+   friction needs a slip, so boxes creep down every slope; what slides fast is lifted, and deep stacks gain energy; an
+   impact reaches no further than the first box. */
 #include "methods/methods.h"
 #include "methods/sweeps.h"
 

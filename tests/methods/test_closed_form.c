@@ -78,8 +78,8 @@ TEST(random_problems_stay_in_the_cone) {
     }
 }
 
-/* Sum of half the masses of the four facets between a unit box of 1 kg and the ground, or another one, with friction 0.2: along
-   a facet of length 1.04 an impulse also turns boxes, with arms of 0.5 +- 0.1. */
+/* Sum of half the masses of the four facets between a unit box of 1 kg and the ground, or another one, with friction
+   0.2: along a facet of length 1.04 an impulse also turns boxes, with arms of 0.5 +- 0.1. */
 static const double on_ground = 1 / (1.04 + 6 * 0.6 * 0.6) + 1 / (1.04 + 6 * 0.4 * 0.4),
                     on_box = 2 / (2 * 1.04 + 6 * (0.6 * 0.6 + 0.4 * 0.4));
 
