@@ -18,9 +18,9 @@
    a block for each pair of touching bodies (block_lu.h), however many contacts they have. Same bits on every
    instruction set, as interior points (interior_point_internal.h).
 
-   Fails where it is stopped early. A sweep dissipates, but few iterations may add energy: with ten, walls explode.
-   Impacts take hundreds of iterations, each as long as two sweeps with momentum, which need no more of them. Stacks at
-   rest take few, whatever their mass ratios. */
+   Fails where boxes hold one another in loops, as in pyramids and walls, and where it is stopped early: few iterations
+   may add energy, which a sweep does not. Impacts take hundreds, each as long as one or two sweeps with momentum, which
+   need fewer. Stacks at rest take some ten, whatever their mass ratios. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
