@@ -124,7 +124,9 @@ typedef struct ContactSolver {
     SOLVER(hybrid)                \
     STEPPING(gns)                 \
     STEPPING(subspace)            \
-    STEPPING(exec)
+    STEPPING(exec)                \
+    SOLVER(closed_form)           \
+    SOLVER(admm)
 
 #define METHOD_OMITTED(name)
 #define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;

@@ -6,7 +6,9 @@ static const ContactSolverKind *judged; /* the solver whose laws are tested */
 
 /* The settings of the judged solver: those given, which are numbers of sweeps, or a tight tolerance. */
 static ContactSolver make_judged(const char *sweeps) {
-    return make_solver(judged, judged == &solver_interior ? "near=1e-6" : sweeps);
+    return make_solver(judged, judged == &solver_interior ? "near=1e-6"
+                               : judged == &solver_admm   ? "near=1e-6,more=10000"
+                                                          : sweeps);
 }
 
 /* Semi-implicit Euler: after k steps v = -g k dt and y = y0 - g dt^2 k (k + 1) / 2. */
@@ -166,7 +168,7 @@ TEST(the_form_without_accumulation_keeps_a_box_up) {
 }
 
 int main(void) {
-    static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_interior};
+    static const ContactSolverKind *const kinds[] = {&solver_engine, &solver_interior, &solver_admm};
     int failed = 0;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         judged = kinds[i];

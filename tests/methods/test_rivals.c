@@ -13,10 +13,13 @@
 static const struct {
     const ContactSolverKind *kind;
     const char *text;
-} converged[] = {{&solver_momentum, "k=2000"}, {&solver_nncg, "k=200"}, {&solver_engine, "k=20000,warm=off"}};
+} converged[] = {{&solver_momentum, "k=2000"},
+                 {&solver_nncg, "k=200"},
+                 {&solver_admm, "k=400"},
+                 {&solver_engine, "k=20000,warm=off"}};
 
 /* Solvers with the setting k. */
-static const ContactSolverKind *const sweepers[] = {&solver_engine, &solver_momentum, &solver_nncg};
+static const ContactSolverKind *const sweepers[] = {&solver_engine, &solver_momentum, &solver_nncg, &solver_admm};
 
 /* Four boxes in the air, which a fast and heavy one is about to hit; no ground, so momentum is kept. */
 static World *make_crash(void) {
