@@ -30,7 +30,7 @@ TEST(a_comma_separates_methods_or_settings) {
 
 TEST(a_name_alone_stands_for_all_its_settings) {
     ContenderList engine = parse("engine"), both = parse("engine,momentum"), all = parse(NULL);
-    assert_contender(&engine, 0, "engine", "k=1");
+    assert_contender(&engine, 0, "engine", "k=5");
     assert_true(engine.count > 4);
     assert_true(both.count > engine.count);
     assert_contender(&both, engine.count, "momentum", "k=5");
