@@ -194,6 +194,8 @@ typedef struct ChartRow {
     const char *cpu; /* processor that times and instructions were measured on; "": not measured, or not known */
     double
         us_engine; /* of an external method, which has no other times: what its engine says that a step took; median */
+    double
+        us_varies; /* 1: us_solver varies more than the times of other rows, also when measured again (StepCost); else 0. NaN: unknown */
     /* J, N s, J: largest violation of a step (methods/criteria.h), mean over the scored steps with impulses. NaN: none has. */
     double signorini, cone, dissipation;
 } ChartRow;
@@ -434,7 +436,16 @@ bool closed_loop_run(const Method *method, const Scene *launches, const RunLog *
 bool closed_loop_time(const Method *method, const SnapshotList *states, int repetitions, double *us_step,
                       double *us_step_engine, Error *error);
 
-/* Measures the cost of contenders, in turns on one core, with repetitions. */
+/* Measures the cost of contenders, in turns on one core, with repetitions. The first steps of each, those of one launch, do
+   not count.
+
+   A time varies if the distance of its quartiles, as a share of its median, is more than TIMES_VARY_FACTOR that of the middle
+   one of the other contenders in the same protocol and phase, more than TIMES_VARY_LEAST, and more than a clock's own error,
+   TIMES_VARY_US. A contender with such a time is measured again, and has the times of the second measurement only. */
+
+#define TIMES_VARY_FACTOR 3.0
+#define TIMES_VARY_LEAST 0.1
+#define TIMES_VARY_US 0.1
 
 /* Microseconds per step in one phase: means over the steps of the median and the quartiles that each step has over the
    repetitions. NaN if the phase does not occur. */
@@ -444,6 +455,7 @@ typedef struct StepCost {
     double engine;                       /* of an external method, instead of all others: median; else NaN */
     int steps;                           /* of the phase, in each repetition */
     double instructions;                 /* of the solver; NaN if they cannot be counted */
+    bool varies;                         /* also when it was measured again */
 } StepCost;
 
 typedef struct TimingOptions {
@@ -469,7 +481,7 @@ double step_cost_mean(const StepCost costs[PHASES], bool only_solver);
 void meter_pin(void);
 void meter_unpin(void);
 
-/* Nanoseconds of a monotonic clock. */
+/* Nanoseconds of a monotonic clock. Tests put a clock that counts in the place of the system's (tests/studies/test_times.c). */
 int64_t meter_time(void);
 
 /* Nanoseconds between two consecutive calls of meter_time(), to be subtracted from every measurement. */
@@ -486,7 +498,7 @@ void meter_close_instructions(void);
 
 enum { CHART_FAMILY_SIZE = CHART_NAME_SIZE + 2 * CHART_SETTING_SIZE };
 
-enum { CHART_TIMES_SIZE = CPU_NAME_SIZE + 80 };
+enum { CHART_TIMES_SIZE = CPU_NAME_SIZE + 200 };
 
 /* Splits "k=20,warm=off" into numbers "k=20" and words "warm=off", appended to texts of 2 * CHART_SETTING_SIZE. */
 void chart_split_setting(const char *setting, char *numbers, char *words);
@@ -498,8 +510,8 @@ void chart_row_family(const ChartRow *row, char family[CHART_FAMILY_SIZE]);
 /* True if the boxes drifted by half a metre before the bomb came: the method was scored on another scene. */
 bool chart_row_lost(const ChartRow *rows, int count, const ChartRow *row);
 
-/* "Times measured on PROCESSOR.", and whether those of others are left out (twinbox merge --times first); "" if no row names
-   one. */
+/* "Times measured on PROCESSOR.", whether those of others are left out (twinbox merge --times first), and how many vary
+   (us_varies); "" if no row names one. */
 void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count);
 
 /* Whether the times of a scene are left out: rows of other scenes have times, and name their processor. */

@@ -114,6 +114,7 @@ static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel
     mark.line = find_line(chart, key);
     mark.error = fmax(row->error_mean, PARETO_RESOLUTION);
     mark.floored = row->error_mean < PARETO_RESOLUTION;
+    mark.varies = row->us_varies > 0;
     mark.on_front = on_front;
     mark.shipped = is_shipped(row);
     ChartLine *line = &chart->lines[mark.line];
@@ -163,6 +164,7 @@ static void fit_axes(Chart *chart) {
                 continue;
             }
             line->marks[p]++;
+            line->varying += mark.varies;
             chart->floored += mark.floored;
             widen(chart, &mark);
             panel->marks[kept++] = mark;

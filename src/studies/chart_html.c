@@ -105,9 +105,9 @@ static void put_figure(FILE *out, const ChartHtml *html, const Chart *chart, con
     fputs("</figure>\n</div>\n", out);
 }
 
-static void put_number(FILE *out, double number) {
+static void put_number(FILE *out, double number, const char *after) {
     fputs("<td class=\"number\">", out);
-    if (!isnan(number)) fprintf(out, "%.3g", number);
+    if (!isnan(number)) fprintf(out, "%.3g%s", number, after);
     fputs("</td>", out);
 }
 
@@ -119,8 +119,8 @@ static void put_phase(FILE *out, const ChartHtml *html, const LaunchPage *page) 
     }
     const ChartRow *row = find_row(html, page);
     const bool linked = page->page[0] != '\0';
-    put_number(out, row != NULL ? row->us_solver : (double)NAN);
-    put_number(out, row != NULL ? row->error_mean : (double)NAN);
+    put_number(out, row != NULL ? row->us_solver : (double)NAN, row != NULL && row->us_varies > 0 ? " varies" : "");
+    put_number(out, row != NULL ? row->error_mean : (double)NAN, "");
     fputs("<td>", out);
     if (linked) html_print(out, "<a href=\"%s\">", page->page);
     fprintf(out, "x = %.3g m: %.3g m/s at %.3g s", (double)page->x, page->error, page->time);

@@ -223,6 +223,7 @@ typedef struct ChartLine {
     char name[CHART_TEXT_SIZE];   /* plain, truncated */
     char common[CHART_TEXT_SIZE]; /* settings that all its marks have and labels leave out: "k=2, more=400"; plain */
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
+    int varying;                       /* number of marks drawn whose time varies (ChartRow.us_varies) */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
     bool no_push_out;                  /* as in the method's description */
     bool competes;                     /* or unknown; baselines and the reference do not */
@@ -236,6 +237,7 @@ typedef struct ChartMark {
     double us, us_q1, us_q3; /* solver time per step: median and quartiles, microseconds */
     double error;            /* mean velocity error, m/s; at least PARETO_RESOLUTION */
     bool floored;            /* it was less */
+    bool varies;             /* ChartRow.us_varies */
     bool on_front;
     bool shipped;                 /* the setting that the method's description calls shipped */
     char label[CHART_TEXT_SIZE];  /* "k=20"; of several numeric settings those in which its line's marks differ */

@@ -74,6 +74,7 @@ static void write_range(char note[SKETCH_TEXT_SIZE], const double range[2], cons
 
 static void write_times(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
     text_add(note, SKETCH_TEXT_SIZE, "%s", chart->times);
+    write_counts(note, chart, " Here: ", offsetof(ChartLine, varying));
 }
 
 static void write_beyond(char note[SKETCH_TEXT_SIZE], const Chart *chart) {

@@ -406,8 +406,8 @@ bool scene_times_write(const SceneStudy *study, FILE *results, const Progress *p
         for (int p = 0; p < PROTOCOLS; p++)
             for (int phase = 0; phase < PHASES; phase++) {
                 const StepCost *cost = &times.costs[p][i][phase];
-                const double stored[] = {cost->solver, cost->solver_q1,    cost->solver_q3,
-                                         cost->step,   cost->instructions, cost->engine};
+                const double stored[] = {cost->solver,       cost->solver_q1, cost->solver_q3, cost->step,
+                                         cost->instructions, cost->engine,    cost->varies};
                 fwrite(stored, sizeof stored, 1, results);
             }
     scene_times_end(&times);
@@ -423,7 +423,7 @@ static bool is_cost(const StepCost *cost) {
 }
 
 MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const char *bytes, size_t size, Error *error) {
-    double stored[6];
+    double stored[7];
     const size_t count = (size_t)study->contender_count;
     MethodTimes *times = calloc(count + 1, sizeof *times);
     if (times == NULL) return error_memory(error, path), NULL;
@@ -431,8 +431,14 @@ MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const c
     for (size_t i = 0; whole && i < count * PROTOCOLS * PHASES; i++) {
         memcpy(stored, bytes + i * sizeof stored, sizeof stored);
         StepCost *cost = &times[i / (PROTOCOLS * PHASES)].costs[i / PHASES % PROTOCOLS][i % PHASES];
-        *cost = (StepCost){stored[0], stored[1], stored[2], stored[3], .instructions = stored[4], .engine = stored[5]};
-        whole = is_cost(cost);
+        *cost = (StepCost){stored[0],
+                           stored[1],
+                           stored[2],
+                           stored[3],
+                           .instructions = stored[4],
+                           .engine = stored[5],
+                           .varies = stored[6] == 1};
+        whole = is_cost(cost) && (stored[6] == 0 || stored[6] == 1);
     }
     if (whole) return times;
     error_input(error, path, "is no result of times; delete it, and its shard does it again");

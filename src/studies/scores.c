@@ -253,6 +253,7 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .moved = NAN,
                       .cpu = "",
                       .us_engine = NAN,
+                      .us_varies = NAN,
                       .signorini = NAN,
                       .cone = NAN,
                       .dissipation = NAN};
@@ -265,6 +266,7 @@ void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {
     row->us_step = cost->step;
     row->instructions = cost->instructions;
     row->us_engine = cost->engine;
+    row->us_varies = isnan(cost->solver) ? (double)NAN : cost->varies;
     if (!isnan(cost->solver) || !isnan(cost->engine)) row->cpu = cpu;
 }
 
@@ -339,16 +341,21 @@ static bool is_left_out(const ChartRow *row) {
 void chart_times_note(char note[CHART_TIMES_SIZE], const ChartRow *rows, int count) {
     const char *cpu = NULL;
     bool left_out = false, others = false;
+    int times = 0, vary = 0;
     for (int i = 0; i < count; i++) {
         left_out |= is_left_out(&rows[i]);
+        times += !isnan(rows[i].us_solver);
+        vary += rows[i].us_varies > 0;
         if (rows[i].cpu[0] == '\0') continue;
         if (cpu == NULL) cpu = rows[i].cpu;
         others |= strcmp(rows[i].cpu, cpu) != 0;
     }
     note[0] = '\0';
-    if (cpu != NULL)
-        snprintf(note, CHART_TIMES_SIZE, "Times measured on %s%s.%s", cpu, others ? " and others" : "",
-                 left_out ? " Those of other processors are left out." : "");
+    if (cpu == NULL) return;
+    snprintf(note, CHART_TIMES_SIZE, "Times measured on %s%s.%s", cpu, others ? " and others" : "",
+             left_out ? " Those of other processors are left out." : "");
+    if (vary > 0)
+        text_add(note, CHART_TIMES_SIZE, " %d of %d vary more than the others, also when measured again.", vary, times);
 }
 
 bool chart_scene_untimed(const ChartRow *rows, int count, const char *scene) {
@@ -390,6 +397,7 @@ static const CsvColumn columns[] = {
     FIGURE(moved, 0, INFINITY),
     CSV_MEMBER(ChartRow, cpu, CSV_TEXT, .maximum = CPU_NAME_SIZE - 1, .optional = true),
     CSV_MEMBER(ChartRow, us_engine, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, us_varies, CSV_OPTIONAL, .maximum = 1, .optional = true),
     CSV_MEMBER(ChartRow, signorini, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
     CSV_MEMBER(ChartRow, cone, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
     CSV_MEMBER(ChartRow, dissipation, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),

@@ -219,27 +219,61 @@ typedef struct Timing {
     const SnapshotList *snapshots;
     World *world;
     int count;
-    Timed *items;  /* [count] */
-    double *times; /* scratch, [repetitions] */
+    Timed *items;                         /* [count] */
+    StepCost (*costs[PROTOCOLS])[PHASES]; /* [count] each: the caller's */
+    double *numbers;                      /* scratch, [repetitions] and [count] */
 } Timing;
 
 static bool is_external(const Timed *timed) { return stepper_describe(timed->stepper)->external; }
 
-static bool run_both(const Timing *timing, const Timed *timed, const Meter *meter, StepLog *closed, StepLog *frozen,
-                     Error *error) {
-    for (int i = 0; i < timing->options->launch_count; i++)
+static bool run_both(const Timing *timing, const Timed *timed, int launches, const Meter *meter, StepLog *closed,
+                     StepLog *frozen, Error *error) {
+    for (int i = 0; i < launches; i++)
         if (!run_closed(timed->stepper, &timing->options->launches[i], timing->options->last_frame, meter, closed,
                         error))
             return false;
     return is_external(timed) || run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
 }
 
-static bool repeat(Timing *timing, int repetition, const Meter *meter, Error *error) {
+static bool varies(const Timing *timing, int contender) {
+    bool any = false;
+    for (int p = 0; p < PROTOCOLS; p++)
+        for (int phase = 0; phase < PHASES; phase++) any |= timing->costs[p][contender][phase].varies;
+    return any;
+}
+
+/* Memory grows and caches fill in the first steps of a stepper: these do not count. */
+static bool warm_up(const Timing *timing, const Meter *meter, Error *error) {
+    const int launches = timing->options->launch_count > 0;
+    bool ok = true;
+    for (int i = 0; ok && i < timing->count; i++) {
+        StepLog logs[PROTOCOLS] = {0};
+        ok =
+            run_both(timing, &timing->items[i], launches, meter, &logs[PROTOCOL_CLOSED], &logs[PROTOCOL_FROZEN], error);
+        for (int p = 0; p < PROTOCOLS; p++) free(logs[p].items);
+    }
+    return ok;
+}
+
+/* All contenders, or those that vary, in turns. */
+static bool repeat(Timing *timing, int repetition, bool again, const Meter *meter, Error *error) {
     for (int i = 0; i < timing->count; i++) {
         const Timed *timed = &timing->items[i];
-        if (!run_both(timing, timed, meter, &timed->logs[PROTOCOL_CLOSED][repetition],
-                      &timed->logs[PROTOCOL_FROZEN][repetition], error))
-            return false;
+        if (again && !varies(timing, i)) continue;
+        StepLog *closed = &timed->logs[PROTOCOL_CLOSED][repetition],
+                *frozen = &timed->logs[PROTOCOL_FROZEN][repetition];
+        closed->count = frozen->count = 0;
+        if (!run_both(timing, timed, timing->options->launch_count, meter, closed, frozen, error)) return false;
+    }
+    return true;
+}
+
+static bool repeat_all(Timing *timing, bool again, const Meter *meter, const Progress *progress, Error *error) {
+    const int repetitions = timing->options->repetitions;
+    for (int r = 0; r < repetitions; r++) {
+        if (!repeat(timing, r, again, meter, error)) return false;
+        if (!progress_report(progress, again ? repetitions : r + 1, repetitions))
+            return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
     }
     return true;
 }
@@ -265,7 +299,8 @@ static bool count_instructions(Timing *timing, Error *error) {
         StepLog logs[PROTOCOLS] = {0};
         const bool counts = can && !is_external(&timing->items[i]); /* those of this thread are not the engine's */
         if (counts)
-            ok = run_both(timing, &timing->items[i], &meter, &logs[PROTOCOL_CLOSED], &logs[PROTOCOL_FROZEN], error);
+            ok = run_both(timing, &timing->items[i], timing->options->launch_count, &meter, &logs[PROTOCOL_CLOSED],
+                          &logs[PROTOCOL_FROZEN], error);
         for (int p = 0; p < PROTOCOLS; p++) {
             for (int phase = 0; phase < PHASES; phase++)
                 timing->items[i].instructions[p][phase] = counts ? mean_count(&logs[p], phase) : NAN;
@@ -318,12 +353,38 @@ static StepCost summarise(const Timed *timed, int protocol, int phase, int repet
                       .instructions = timed->instructions[protocol][phase]};
 }
 
+static double distance(const StepCost *cost) { return cost->solver_q3 - cost->solver_q1; }
+
+static double spread(const StepCost *cost) { return distance(cost) / cost->solver; }
+
+/* Whether a time varies more than those of the others in that phase: another process may have disturbed it. */
+static bool is_disturbed(const StepCost (*costs)[PHASES], int count, int contender, int phase, double *spreads) {
+    int others = 0;
+    for (int i = 0; i < count; i++)
+        if (i != contender && costs[i][phase].solver > 0) spreads[others++] = spread(&costs[i][phase]);
+    const double usual = statistics_quantile(spreads, others, 0.5), own = spread(&costs[contender][phase]);
+    return own > TIMES_VARY_FACTOR * usual && own > TIMES_VARY_LEAST &&
+           distance(&costs[contender][phase]) > TIMES_VARY_US;
+}
+
+static void summarise_all(const Timing *timing) {
+    for (int p = 0; p < PROTOCOLS; p++)
+        for (int phase = 0; phase < PHASES; phase++) {
+            StepCost(*costs)[PHASES] = timing->costs[p];
+            for (int i = 0; i < timing->count; i++)
+                costs[i][phase] = summarise(&timing->items[i], p, phase, timing->options->repetitions, timing->numbers);
+            for (int i = 0; i < timing->count; i++)
+                costs[i][phase].varies =
+                    is_disturbed((const StepCost(*)[PHASES])costs, timing->count, i, phase, timing->numbers);
+        }
+}
+
 static bool timing_begin(Timing *timing, const Contender *const *contenders, Error *error) {
     const Scene *scene = &timing->options->launches[0];
     const size_t repetitions = (size_t)timing->options->repetitions;
-    timing->times = malloc(repetitions * sizeof *timing->times);
+    timing->numbers = malloc((repetitions + (size_t)timing->count) * sizeof *timing->numbers);
     timing->items = calloc((size_t)timing->count, sizeof *timing->items);
-    if (timing->items == NULL || timing->times == NULL) return error_memory(error, "timing");
+    if (timing->items == NULL || timing->numbers == NULL) return error_memory(error, "timing");
     for (int i = 0; i < timing->count; i++) {
         Timed *timed = &timing->items[i];
         timed->stepper = stepper_create(&contenders[i]->method, scene, error);
@@ -348,33 +409,31 @@ static void timing_end(Timing *timing) {
         }
     }
     free(timing->items);
-    free(timing->times);
+    free(timing->numbers);
     world_destroy(timing->world);
 }
 
 static bool measure(Timing *timing, const Progress *progress, Error *error) {
-    const int repetitions = timing->options->repetitions;
     const Meter clock = {meter_time, meter_time_overhead()};
-    for (int r = 0; r < repetitions; r++) {
-        if (!repeat(timing, r, &clock, error)) return false;
-        if (!progress_report(progress, r + 1, repetitions))
-            return error_interrupted(error, "timing", "stopped after %d of %d repetitions", r + 1, repetitions);
-    }
-    return count_instructions(timing, error);
+    if (!warm_up(timing, &clock, error) || !repeat_all(timing, false, &clock, progress, error) ||
+        !count_instructions(timing, error))
+        return false;
+    summarise_all(timing);
+    if (!repeat_all(timing, true, &clock, progress, error)) return false;
+    summarise_all(timing);
+    return true;
 }
 
 bool timing_measure(const Contender *const *contenders, int count, const TimingOptions *options,
                     const SnapshotList *snapshots, StepCost (*closed)[PHASES], StepCost (*frozen)[PHASES],
                     const Progress *progress, Error *error) {
-    Timing timing = {.options = options, .snapshots = snapshots, .count = count};
+    Timing timing = {.options = options,
+                     .snapshots = snapshots,
+                     .count = count,
+                     .costs = {[PROTOCOL_CLOSED] = closed, [PROTOCOL_FROZEN] = frozen}};
     meter_pin();
-    bool ok = timing_begin(&timing, contenders, error) && measure(&timing, progress, error);
+    const bool ok = timing_begin(&timing, contenders, error) && measure(&timing, progress, error);
     meter_unpin();
-    for (int i = 0; ok && i < count; i++)
-        for (int phase = 0; phase < PHASES; phase++) {
-            closed[i][phase] = summarise(&timing.items[i], PROTOCOL_CLOSED, phase, options->repetitions, timing.times);
-            frozen[i][phase] = summarise(&timing.items[i], PROTOCOL_FROZEN, phase, options->repetitions, timing.times);
-        }
     timing_end(&timing);
     return ok;
 }

@@ -86,7 +86,25 @@ TEST(a_network_that_predicts_the_mean_has_the_constants_rates) {
     }
 }
 
-/* all = (impact + 20 after + 60 rest) / (their counts, weighted alike): a value between its parts. */
+/* all = (impact + 20 after + 60 rest) / (their counts, weighted alike), of bodies that move. */
+TEST(sampled_phases_weigh_as_all_their_steps) {
+    const PairRates rates = measure(NULL);
+    const double(*share)[RATE_COLUMNS] = rates.share[RATE_BODIES];
+    static const double weights[PHASES] = {1, 20, 60};
+    double right = 0, all = 0;
+    for (int i = 0; i < list.count; i++) {
+        const World *world = list.items[i].world;
+        const Phase phase = list.items[i].phase;
+        for (int body = 0; body < world_body_count(world); body++)
+            if (world_bodies(world)[body].inv_mass > 0) {
+                right += weights[phase] * share[phase][RATE_ENGINE1];
+                all += weights[phase];
+            }
+    }
+    assert_near(share[RATE_ALL][RATE_ENGINE1], right / all, 1e-12);
+}
+
+/* A value between its parts. */
 TEST(all_lies_between_the_phases) {
     const PairRates rates = measure(NULL);
     const double(*share)[RATE_COLUMNS] = rates.share[RATE_ABSOLUTE];

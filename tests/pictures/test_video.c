@@ -10,6 +10,7 @@
 #include "sanitized.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -84,6 +85,65 @@ TEST(each_form_has_all_its_frames_and_the_same_bytes_again) {
         assert_same_file(options.path, again.path);
     }
     assert_nothing_left(temporary_folder);
+}
+
+/* Players that know no tags guess the matrix from the size. */
+TEST(films_state_their_colours) {
+    static const char *const names[] = {"tagged.mp4", "tagged.webm"};
+    for (int i = 0; i < 2; i++) {
+        char text[256], name[300];
+        Process process;
+        VideoOptions options = options_for(temporary_path(names[i]));
+        assert_ok(video_encode(&options, NULL, &error), error);
+        snprintf(name, sizeof name, "file:%s", options.path);
+        const char *argv[] = {
+            "ffprobe", "-v", "error", "-show_entries", "stream=color_space,color_transfer,color_primaries", "-of",
+            "csv=p=0", name, NULL};
+        assert_ok(process_start(&process, argv, &error), error);
+        assert_ok(process_finish(&process, text, sizeof text, &error), error);
+        assert_string_equal(text, "bt709,bt709,bt709\n");
+    }
+}
+
+static double light_of(const uint8_t rgb[3]) { return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]; }
+
+/* The root of the mean square, in levels of 255, by which the light of a film's frames differs from the pictures'. Colours
+   have half the pixels. */
+static double film_error(const VideoOptions *options) {
+    enum { PIXELS = WIDTH * HEIGHT };
+    char from[300], text[256], decoded[300];
+    static uint8_t rgb[3 * PIXELS];
+    Error error = {0};
+    Process process;
+    double squares = 0;
+    snprintf(from, sizeof from, "file:%s", options->path);
+    snprintf(decoded, sizeof decoded, "file:%s", temporary_path("decoded"));
+    const char *argv[] = {"ffmpeg", "-y",       "-v",       "error", "-i",    from,
+                          "-f",     "rawvideo", "-pix_fmt", "rgb24", decoded, NULL};
+    assert_ok(process_start(&process, argv, &error), error);
+    assert_ok(process_finish(&process, text, sizeof text, &error), error);
+    FILE *file = fopen(decoded + strlen("file:"), "rb");
+    assert_non_null(file);
+    for (int frame = 0; frame < FRAMES; frame++) {
+        Image *image = image_read_png(frame_path(folder, frame), &error);
+        assert_ok(image != NULL, error);
+        assert_int_equal(fread(rgb, 3, PIXELS, file), PIXELS);
+        for (int i = 0; i < PIXELS; i++) squares += pow(light_of(rgb + 3 * i) - light_of(image->pixels + 4 * i), 2);
+        image_destroy(image);
+    }
+    fclose(file);
+    return sqrt(squares / ((double)PIXELS * FRAMES));
+}
+
+/* TODO */
+TEST(films_look_like_their_frames) {
+    static const char *const names[] = {"close.mp4", "close.webm"};
+    for (int i = 0; i < 2; i++) {
+        VideoOptions options = options_for(temporary_path(names[i]));
+        assert_ok(video_encode(&options, NULL, &error), error);
+        const double found = film_error(&options);
+        fprintf(stderr,"%g\n",found); if (!(found < 100)) fail_msg("%s: %g levels", names[i], found);
+    }
 }
 
 /* A GIF of a chosen rate has up to 50 frames per second, of the run's rate up to 25. */

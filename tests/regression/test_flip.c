@@ -181,6 +181,47 @@ TEST(kernels_are_derivatives_of_a_gaussian) {
     }
 }
 
+/* Of the Gaussian exp(-x^2 / 2 deviation^2), x in degrees. */
+static void assert_gaussian(const FlipKernel *kernel, double deviation) {
+    const double width = deviation * FLIP_PIXELS_PER_DEGREE;
+    const float *middle = kernel->weights + kernel->radius;
+    for (int k = -kernel->radius; k <= kernel->radius; k++)
+        assert_near(middle[k] / middle[0], exp(-k * k / (2 * width * width)), 1e-6);
+}
+
+/* The constants of the paper's table 1: a1, b1, a2, b2 of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees, and the width
+   of a feature, 0.082 degrees, which is two deviations. A filter is the sum of both Gaussians over all pixels. */
+TEST(filters_have_the_published_widths) {
+    static const double scale[FLIP_CHANNELS][2] = {{1, 0}, {1, 0}, {34.1, 13.5}},
+                        spread[FLIP_CHANNELS][2] = {{0.0047, 1e-5}, {0.0053, 1e-5}, {0.04, 0.025}};
+    const double pi = acos(-1);
+    FlipFeatures features;
+    for (int channel = 0; channel < FLIP_CHANNELS; channel++) {
+        FlipBlur blur;
+        double whole[2] = {0, 0};
+        flip_make_blur(&blur, (FlipChannel)channel, FLIP_PIXELS_PER_DEGREE);
+        assert_int_equal(blur.count, scale[channel][1] > 0 ? 2 : 1);
+        for (int i = 0; i < blur.count; i++) {
+            assert_gaussian(&blur.kernels[i], sqrt(spread[channel][i] / 2) / pi);
+            for (int x = -10; x <= 10; x++)
+                for (int y = -10; y <= 10; y++)
+                    whole[i] += scale[channel][i] * sqrt(pi / spread[channel][i]) *
+                                exp(-pi * pi / spread[channel][i] * (x * x + y * y) / pow(FLIP_PIXELS_PER_DEGREE, 2));
+        }
+        for (int i = 0; i < blur.count; i++) assert_near(blur.share[i], whole[i] / (whole[0] + whole[1]), 1e-5);
+    }
+    flip_make_features(&features, FLIP_PIXELS_PER_DEGREE);
+    assert_gaussian(&features.across, 0.082 / 2);
+}
+
+/* Equation 20: the colour's error to the power of 1 - sqrt(feature / sqrt(2)). */
+TEST(features_amplify_as_published) {
+    for (double feature = 0; feature <= 1; feature += 0.125)
+        assert_near(flip_amplify(0.25f, (float)feature), pow(0.25, 1 - sqrt(feature / sqrt(2))), 1e-6);
+    assert_near(flip_amplify(0.25f, 2), 1, 1e-6);
+    assert_true(flip_amplify(0, 1) == 0);
+}
+
 /* Filters a plane along rows, or along columns, of `stride` values; the result begins `radius` after `from`. */
 static void filter(const float *from, const FlipKernel *kernel, size_t step, float *to) {
     flip_filter(from, kernel, step, 4 * FLIP_BLOCK, 2 * FLIP_BLOCK, 2 * FLIP_BLOCK, to);

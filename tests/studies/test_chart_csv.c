@@ -28,6 +28,7 @@ static const ChartRow full = {"stack",
                               1.5,
                               "AMD EPYC",
                               NAN,
+                              1,
                               0.5,
                               0.25,
                               0.75};
@@ -39,17 +40,18 @@ static ChartRow bare(void) {
                       NAN,          NAN,        NAN, NAN,
                       NAN,          NAN,        NAN, NAN,
                       "",           1.25,       NAN, NAN,
-                      NAN};
+                      NAN,          NAN};
 }
 
 TEST(rows_are_written_in_the_order_of_the_header) {
     const ChartRow rows[] = {full, bare()};
     const char *path = temporary_path("written.csv");
     assert_ok(csv_table_write(path, &chart_layout, rows, 2, &error), error);
-    assert_file(path, CHART_HEADER ",cpu,us_engine,signorini,cone,dissipation\nstack,momentum,\"k=20,warm=off\",closed,"
-                                   "after,40,10.5,9.25,11.75,52.5,123456,"
-                                   "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5,AMD EPYC,,0.5,0.25,0.75\n"
-                                   "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,,,1.25,,,\n");
+    assert_file(path, CHART_HEADER
+                ",cpu,us_engine,us_varies,signorini,cone,dissipation\nstack,momentum,\"k=20,warm=off\",closed,"
+                "after,40,10.5,9.25,11.75,52.5,123456,"
+                "0.0625,0.03125,0.25,0.125,0.5,0.001,-0.00025,-2.5,1.5,AMD EPYC,,1,0.5,0.25,0.75\n"
+                "stack,playback,,frozen,impact,0,,,,,,,,,,,,,,,,1.25,,,,\n");
 }
 
 static void assert_same_figure(double found, double expected) {
@@ -99,7 +101,7 @@ TEST(the_processor_may_be_missing) {
     CsvTable table;
     assert_ok(csv_table_read(&table, write_chart(GOOD), &chart_layout, &error), error);
     assert_string_equal(chart_row(&table, 0)->cpu, "");
-    assert_true(chart_row(&table, 0)->us_solver == 5);
+    assert_true(chart_row(&table, 0)->us_solver == 5 && isnan(chart_row(&table, 0)->us_varies));
     csv_table_free(&table);
     const char *path = temporary_path("first.csv");
     static const char text[] = "cpu," CHART_HEADER "\nAMD," GOOD;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the page of a chart says of times: on which processor they were measured, and which are left out. */
+/* What the page of a chart says of times: on which processor they were measured, which are left out, and which vary. */
 #include "testing.h"
 #include "files.h"
 
@@ -59,6 +59,22 @@ TEST(a_scene_without_times_has_no_chart) {
     assert_non_null(strstr(stack, "Without a chart: its times were measured on another processor."));
     assert_null(strstr(text, "src=\"chart-stack.svg\""));
     assert_non_null(strstr(text, "src=\"chart-single.svg\""));
+    free(text);
+}
+
+TEST(times_that_vary_are_named) {
+    ChartRow rows[] = {make_row("single", "engine", "AMD"), make_row("single", "momentum", "AMD")};
+    const LaunchPage pages[] = {
+        {.scene = "single", .method = "engine", .setting = "k=10", .launch = 1, .mass = 1, .page = ""},
+        {.scene = "single", .method = "momentum", .setting = "k=10", .launch = 1, .mass = 1, .page = ""}};
+    rows[1].us_varies = 1;
+    assert_ok(csv_table_write(temporary_path("chart.csv"), &chart_layout, rows, 2, &error), error);
+    assert_ok(csv_table_write(temporary_path("chart_pages.csv"), &launch_page_layout, pages, 2, &error), error);
+    assert_ok(chart_html_write(temporary_folder, &error), error);
+    char *text = text_of(temporary_path("chart.html"));
+    assert_non_null(strstr(text, "Times measured on AMD. 1 of 2 vary more than the others, also when measured again."));
+    assert_non_null(strstr(text, "<th scope=\"row\">engine</th><td>k=10</td><td class=\"number\">5</td>"));
+    assert_non_null(strstr(text, "<th scope=\"row\">momentum</th><td>k=10</td><td class=\"number\">5 varies</td>"));
     free(text);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* chart.csv: invented numbers, modelled on measured ones; twelve methods. */
+#include "charts.h"
 #include "files.h"
 #include "python.h"
 
@@ -115,6 +116,23 @@ TEST(one_mark_and_one_panel_are_enough) {
         chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &error),
         error);
     assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
+}
+
+TEST(times_that_vary_are_noted) {
+    size_t size;
+    const char *path = temporary_path("chart.csv");
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fputs(CHART_HEADER ",cpu,us_engine,us_varies\n"
+                       "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,,AMD,,0\n"
+                       "stack,engine,k=20,closed,impact,40,9,5,9,,,1,,,,,,,,,AMD,,1\n",
+          file);
+    assert_int_equal(fclose(file), 0);
+    assert_ok(chart_plot(path, "stack", folder(), &error), error);
+    char *noted = read_drawn("stack", "svg", &size);
+    assert_non_null(strstr(noted, "Times measured on AMD. 1 of 2 vary more than the others, also when measured again. "
+                                  "Here: engine (1)."));
+    free(noted);
 }
 
 /* A note names the methods whose errors have another target. Without such methods the chart has no note. */

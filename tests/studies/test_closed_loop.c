@@ -46,6 +46,50 @@ TEST(energy_counts_from_the_bomb_on) {
     scene_destroy(scene);
 }
 
+/* A light bomb brings nothing, and comes after the heavy box has lost its height of 3.5 m. */
+TEST(energy_before_the_bomb_does_not_count) {
+    Scene *scene = scene_named("single");
+    scene->bomb.frame = 120;
+    scene->bomb.body.mass = 0.001f;
+    const ClosedLoop result = run("engine", scene);
+    assert_true(result.energy_ratio >= 1 && result.energy_ratio < 1.001);
+    scene_destroy(scene);
+}
+
+/* The log of the engine, moved by a centimetre more in each frame. */
+TEST(runs_have_parted_at_a_tenth_of_a_metre) {
+    Scene *scene = scene_named("single");
+    RunLog engine = {0};
+    Rollout rollout = {0};
+    LaunchLoop loop;
+    const Method method = method_named("engine");
+    scene->frames = 40;
+    assert_ok(closed_loop_log(&engine, "engine", scene, &error), error);
+    for (int frame = 0; frame <= engine.frames; frame++)
+        engine.position[frame * engine.bodies + 1].x += 0.01f * ((float)frame - 0.5f);
+    assert_ok(closed_loop_launch(&rollout, &method, scene, &engine, NULL, &loop, &error), error);
+    assert_near(loop.frames_engine, 11, 0);
+    rollout_free(&rollout);
+    run_log_free(&engine);
+    scene_destroy(scene);
+}
+
+/* avbd moves bodies without equal and opposite impulses. */
+TEST(momentum_is_that_of_a_step) {
+    Scene *scene = scene_named("stack");
+    Rollout rollout = {0};
+    const Method method = method_named("avbd:k=2");
+    Stepper *stepper = stepper_of(scene, &method);
+    const ClosedLoop result = run("avbd:k=2", scene);
+    scene->frames = CLOSED_LOOP_FRAMES;
+    assert_ok(rollout_run(&rollout, stepper, scene, NULL, NULL, &error), error);
+    assert_true(rollout.log.momentum_error > 0);
+    assert_near(result.momentum_error, rollout.log.momentum_error / rollout.log.frames, 1e-12);
+    stepper_destroy(stepper);
+    rollout_free(&rollout);
+    scene_destroy(scene);
+}
+
 /* The interior method is close to the converged run of the pyramid for longer than to the engine's. */
 TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
     Scene *scene = scene_named("pyramid");

@@ -92,6 +92,22 @@ TEST(launches_are_put_together) {
     for (int i = 0; i < METHODS; i++) method_scores_free(&scores[i]);
 }
 
+/* Squares of 0 to 100 m/s: the median is 50^2, 95% are at most 95^2, and the mean is 100 (2 100 + 1) / 6. */
+TEST(a_row_has_mean_median_and_95th_percentile) {
+    double errors[101], shares[101];
+    const PhaseScores scores = {.count = 101, .error = errors, .share = shares};
+    ChartRow row;
+    for (int i = 0; i <= 100; i++) {
+        errors[i * 37 % 101] = i * i;
+        shares[i] = i < 25 ? 1 : 0;
+    }
+    scene_row_errors(&row, &scores);
+    assert_near(row.error_mean, 3350, 1e-9);
+    assert_near(row.error_median, 2500, 1e-9);
+    assert_near(row.error_p95, 9025, 1e-9);
+    assert_near(row.share_right, 25.0 / 101, 1e-12);
+}
+
 /* Whether all methods of these bytes are read. */
 static bool are_read(const char *bytes, size_t size, int methods) {
     Error error = {0};

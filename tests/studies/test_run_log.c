@@ -75,6 +75,29 @@ TEST(differences_are_assigned_to_their_phase) {
     assert_near(measures.moved, 1, 0);
 }
 
+/* One run's bomb touches in step 5, the other's in 7: the drift is that of step 4, whichever came first. */
+TEST(drift_ends_before_the_first_touch) {
+    for (int first = 0; first < 2; first++) {
+        Handmade a, b;
+        const Scene scene = scene_by_hand();
+        RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
+        *(first == 0 ? &log.touch : &converged.touch) = 7;
+        a.position[4 * BODIES + 1] = vec2(1.5f, 0);
+        for (int frame = 5; frame <= FRAMES; frame++) a.position[frame * BODIES + 1] = vec2(9, 0);
+        assert_near(run_measures(&log, &converged, &scene).drift, 0.25, 1e-6);
+    }
+}
+
+/* Both runs lose the same, each step more. */
+TEST(energy_is_compared_at_the_same_frame) {
+    Handmade a, b;
+    const Scene scene = scene_by_hand();
+    const RunLog log = log_by_hand(&a), converged = log_by_hand(&b);
+    for (int frame = 0; frame <= FRAMES; frame++) a.at[frame].energy = b.at[frame].energy = -frame * frame;
+    const RunMeasures measures = run_measures(&log, &converged, &scene);
+    for (int phase = 0; phase < PHASES; phase++) assert_near(measures.energy[phase], 0, 0);
+}
+
 TEST(motion_before_the_launch_is_not_counted) {
     Handmade a, b;
     const Scene scene = scene_by_hand();
