@@ -25,7 +25,7 @@
 #define LABEL_POINTS 6.5
 #define RING_RADIUS 2.2 /* mm: around a setting as shipped */
 
-enum { CHART_NOTES = 6 };
+enum { CHART_NOTES = 7 };
 
 typedef struct ChartLayout {
     const Chart *chart;
@@ -74,7 +74,10 @@ static void write_range(char note[SKETCH_TEXT_SIZE], const double range[2], cons
 
 static void write_times(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
     text_add(note, SKETCH_TEXT_SIZE, "%s", chart->times);
-    write_counts(note, chart, " Here: ", offsetof(ChartLine, varying));
+}
+
+static void write_varying(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
+    write_counts(note, chart, "Times here that vary: ", offsetof(ChartLine, varying));
 }
 
 static void write_beyond(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
@@ -126,7 +129,7 @@ static void write_phases(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
 /* From the bottom; those with nothing to say have no row. */
 static void write_notes(ChartLayout *layout) {
     static void (*const writers[CHART_NOTES])(char[SKETCH_TEXT_SIZE], const Chart *) = {
-        write_all_counts, write_no_push_out, write_beyond, write_times, write_phases, write_error};
+        write_all_counts, write_no_push_out, write_beyond, write_varying, write_times, write_phases, write_error};
     for (int i = 0; i < CHART_NOTES; i++) {
         char *note = layout->notes[layout->foot_rows];
         note[0] = '\0';

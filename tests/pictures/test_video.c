@@ -135,14 +135,14 @@ static double film_error(const VideoOptions *options) {
     return sqrt(squares / ((double)PIXELS * FRAMES));
 }
 
-/* TODO */
+/* 3.5 levels as .mp4 and 2.4 as .webm; with -crf 40 and 46 instead of 18 and 24 they are 18 and 5.8. */
 TEST(films_look_like_their_frames) {
     static const char *const names[] = {"close.mp4", "close.webm"};
     for (int i = 0; i < 2; i++) {
         VideoOptions options = options_for(temporary_path(names[i]));
         assert_ok(video_encode(&options, NULL, &error), error);
         const double found = film_error(&options);
-        fprintf(stderr,"%g\n",found); if (!(found < 100)) fail_msg("%s: %g levels", names[i], found);
+        if (!(found < 5)) fail_msg("%s: %g levels", names[i], found);
     }
 }
 
