@@ -115,7 +115,7 @@ static bool print_rest(const char *folder, Error *error) {
     const RunRow *rows = table.rows;
     for (int i = 0; i < table.count;) {
         if (i == 0 || !same_study(&rows[i], &rows[i - 1]))
-            printf("%s: the last %s that holds, drift and energy after %d s\n", rows[i].study, rows[i].parameter,
+            printf("%s: the last %s that holds, drift and energy after %d falls\n", rows[i].study, rows[i].parameter,
                    VERDICT_CREEP_FROM);
         i = print_method_at_rest(rows, table.count, i);
     }

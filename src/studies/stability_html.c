@@ -19,9 +19,11 @@ extern const char stability_css[]; /* page/, embedded */
 
 /* A letter for each verdict: colours alone would not do. */
 static const char letters[VERDICT_LOOKS] = {
-    [VERDICT_SETTLES] = 's',        [VERDICT_SWAYS] = 'w',       [VERDICT_CREEPS] = 'c',   [VERDICT_FALLS] = 'F',
-    [VERDICT_SINKS] = 'S',          [VERDICT_TUNNELS] = 'T',     [VERDICT_EXPLODES] = 'E', [VERDICT_NON_FINITE] = 'N',
-    [VERDICT_ADAPTER_FAILED] = 'A', [LOOK_NOT_APPLICABLE] = '-', [LOOK_MISSING] = ' ',
+    [VERDICT_SETTLES] = 's',  [VERDICT_AGREES] = 'a',     [VERDICT_STANDS] = 'h',         [VERDICT_MOVES] = 'm',
+    [VERDICT_CREEPS] = 'c',   [VERDICT_EDGE] = 'e',       [VERDICT_FALLS] = 'F',          [VERDICT_COLLAPSES] = 'C',
+    [VERDICT_TOO_FEW] = 'L',  [VERDICT_TOO_MANY] = 'M',   [VERDICT_SINKS] = 'S',          [VERDICT_TUNNELS] = 'T',
+    [VERDICT_EXPLODES] = 'E', [VERDICT_NON_FINITE] = 'N', [VERDICT_ADAPTER_FAILED] = 'A', [LOOK_NOT_APPLICABLE] = '-',
+    [LOOK_MISSING] = ' ',
 };
 
 typedef struct StabilityHtml {
