@@ -70,9 +70,7 @@ static const char *quantity(const VerdictReading *reading) {
     if (reading->verdict == VERDICT_MOVES)
         return strcmp(reading->unit, "s") == 0 ? "time in the air" : "speed of the fastest body";
     if (reading->verdict == VERDICT_FALLS)
-        return strcmp(reading->unit, "deg") == 0     ? "rotation"
-               : strcmp(reading->unit, "boxes") == 0 ? "bodies that fell"
-                                                     : "descent";
+        return reading->struck ? "bodies that fell" : strcmp(reading->unit, "deg") == 0 ? "rotation" : "descent";
     return quantities[reading->verdict];
 }
 

@@ -76,8 +76,9 @@ static bool print_borders(const char *folder, Error *error) {
         const BorderRow *row = border_row(&table, i);
         if (i == 0 || !border_same_study(row, row - 1)) {
             const StabilityStudy *study = stability_study_find(row->study);
-            printf("%s: %s%s%s, holds | fails", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "",
-                   row->unit);
+            printf("%s: %s%s%s, %s", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "", row->unit,
+                   border_is_struck(&table, i) ? "agrees with the reference | differs; reference: stands | falls"
+                                               : "holds | fails");
             if (study != NULL && study->rigid != NULL && strcmp(study->parameter, row->parameter) == 0)
                 printf(" (rigid boxes: %.4g)", study->rigid());
             printf("\n");

@@ -13,10 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const verdict_words[VERDICTS + 2] = {"settles",      "agrees",        "stands",         "moves",
-                                                 "creeps",       "near the edge", "falls",          "collapses",
-                                                 "too few fall", "too many fall", "sinks",          "tunnels",
-                                                 "explodes",     "non-finite",    "adapter failed", "not applicable"};
+const char *const verdict_words[VERDICTS + 2] = {
+    "settles",      "agrees",        "stands", "moves",   "creeps",   "undecided",  "falls",          "collapses",
+    "too few fall", "too many fall", "sinks",  "tunnels", "explodes", "non-finite", "adapter failed", "not applicable"};
 
 const char *verdict_name(Verdict verdict) { return verdict_words[verdict]; }
 
@@ -245,6 +244,7 @@ static VerdictCount count_bodies(const VerdictWatch *watch) {
 
 /* What stands of a struck scene. */
 static void read_struck(const VerdictCount *count, VerdictReading *reading) {
+    reading->struck = true;
     if (count->fell == 0) {
         reading->verdict = VERDICT_STANDS;
         reading->value = count->farthest;
@@ -274,7 +274,7 @@ static VerdictReading read_verdict(const VerdictWatch *watch) {
     }
     reading.moving = !calm;
     reading.count = count_bodies(watch);
-    if (watch->run.struck != NULL && reading.verdict < VERDICT_EDGE) read_struck(&reading.count, &reading);
+    if (watch->run.struck != NULL && reading.verdict < VERDICT_UNDECIDED) read_struck(&reading.count, &reading);
     return reading;
 }
 

@@ -74,7 +74,7 @@ typedef enum Verdict {
     VERDICT_STANDS,
     VERDICT_MOVES,
     VERDICT_CREEPS,
-    VERDICT_EDGE,
+    VERDICT_UNDECIDED,
     VERDICT_FALLS,
     VERDICT_COLLAPSES,
     VERDICT_TOO_FEW,
@@ -172,6 +172,7 @@ typedef struct VerdictReading {
     const char *unit; /* "J", "m", "deg", "m/s", "s", "boxes" */
     int other;        /* tunnels: the body that was passed through; else -1 */
     VerdictCount count;
+    bool struck; /* the verdict is what stands of a struck scene */
     bool moving;                      /* a body that started at rest, and has not left, is not at rest at the end */
     char reason[VERDICT_REASON_SIZE]; /* adapter failed: how; else empty */
     uint64_t state;                   /* set by verdict_run() only: FNV-1a of the bodies after the last step */

@@ -96,10 +96,13 @@ static unsigned sides_between(const PassPose *a, const PassPose *b, double depth
     return sides;
 }
 
-/* b was on one side of a, and is on the opposite one. */
+/* b was on one side of a, and is on the opposite one, and no side stayed, as seen from one of them: the sides of one that
+   rotates fast are others after a step. */
 static bool changes_places(unsigned before, unsigned after) {
-    const unsigned opposite = (before & 0x55u) << 1 | (before >> 1 & 0x55u);
-    return (before & after) == 0 && (opposite & after) != 0;
+    const unsigned opposite = (before & 0x55u) << 1 | (before >> 1 & 0x55u), stayed = before & after;
+    const unsigned of_a = 0x0fu, of_b = 0xf0u;
+    return ((stayed & of_a) == 0 && (opposite & after & of_a) != 0) ||
+           ((stayed & of_b) == 0 && (opposite & after & of_b) != 0);
 }
 
 static double between(double from, double to, double part) { return from + part * (to - from); }

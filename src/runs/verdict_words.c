@@ -90,16 +90,12 @@ static void write_whole(const SimulateVerdict *verdict, char words[TRAJECTORY_VE
              reading->frame * (double)verdict->scene->dt, figure);
 }
 
-/* Of the scene's dynamic bodies that started at rest. */
-static bool says_what_stands(Verdict verdict, const char *unit) {
-    return verdict == VERDICT_STANDS || strcmp(unit, "boxes") == 0;
-}
-
 /* "8 of 10 boxes fell, 2 of them out of the scene, first at 1.2 s" */
 static void add_fallen(const SimulateVerdict *verdict, const char *between, char words[TRAJECTORY_VERDICT_SIZE]) {
     const VerdictCount *count = &verdict->reading.count;
     if (count->fell == 0) return;
-    text_add(words, TRAJECTORY_VERDICT_SIZE, "%s%d of %d boxes fell", between, count->fell, count->stood);
+    text_add(words, TRAJECTORY_VERDICT_SIZE, "%s%d of %d box%s fell", between, count->fell, count->stood,
+             count->stood == 1 ? "" : "es");
     if (count->left > 0) text_add(words, TRAJECTORY_VERDICT_SIZE, ", %d of them out of the scene", count->left);
     text_add(words, TRAJECTORY_VERDICT_SIZE, ", first at %.3g s", count->first * (double)verdict->scene->dt);
 }
@@ -107,7 +103,7 @@ static void add_fallen(const SimulateVerdict *verdict, const char *between, char
 void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
     const VerdictReading *reading = &verdict->reading;
     const VerdictCount *count = &reading->count;
-    if (!says_what_stands(reading->verdict, reading->unit)) {
+    if (!reading->struck) {
         write_whole(verdict, words);
         if (verdict->watch.run.struck != NULL) add_fallen(verdict, "; ", words);
         return;

@@ -269,9 +269,9 @@ TEST(the_worst_verdict_counts_with_its_first_frame) {
 }
 
 TEST(verdicts_have_names) {
-    const char *const names[VERDICTS] = {"settles",       "agrees",  "stands",    "moves",        "creeps",
-                                         "near the edge", "falls",   "collapses", "too few fall", "too many fall",
-                                         "sinks",         "tunnels", "explodes",  "non-finite",   "adapter failed"};
+    const char *const names[VERDICTS] = {"settles",   "agrees",  "stands",    "moves",        "creeps",
+                                         "undecided", "falls",   "collapses", "too few fall", "too many fall",
+                                         "sinks",     "tunnels", "explodes",  "non-finite",   "adapter failed"};
     for (int i = 0; i < VERDICTS; i++) {
         assert_string_equal(verdict_name((Verdict)i), names[i]);
         assert_true(verdict_holds((Verdict)i) == (i < 5));

@@ -134,7 +134,7 @@ static Scene *scene_at(const StabilityStudy *study, double value) {
 
 /* Both ends and the middle of every study. */
 TEST(copies_in_other_units_have_the_same_verdict) {
-    enum { FRAMES = 400 };
+    enum { FRAMES = 300 };
     static const char *const methods[] = {"engine", "momentum"};
     bool seen[VERDICTS] = {false};
     int differ = 0;
