@@ -9,6 +9,7 @@
 #include <string.h>
 
 #undef error_input
+#undef error_failure
 #undef error_incomplete
 #undef error_system
 #undef error_interrupted
@@ -52,6 +53,15 @@ SETTER(error_input, ERROR_INPUT)
 SETTER(error_system, ERROR_SYSTEM)
 SETTER(error_interrupted, ERROR_INTERRUPTED)
 SETTER(error_incomplete, ERROR_INCOMPLETE)
+
+bool error_failure(Error *error, MethodFailure failure, const char *where, const char *format, ...) {
+    va_list arguments;
+    if (error->kind == ERROR_NONE) error->failure = failure;
+    va_start(arguments, format);
+    set(error, ERROR_INPUT, where, format, arguments);
+    va_end(arguments);
+    return false;
+}
 
 bool error_memory(Error *error, const char *where) { return error_system(error, where, "out of memory"); }
 

@@ -21,9 +21,17 @@ typedef enum ErrorKind {
     ERROR_INTERRUPTED = 130
 } ErrorKind;
 
+/* Whether a method failed at its work, rather than what it was given: to a study that is a result. */
+typedef enum MethodFailure {
+    FAILURE_NONE,
+    FAILURE_NOT_FINITE, /* the state of the run became NaN or infinite */
+    FAILURE_ADAPTER     /* the program of the method `exec` */
+} MethodFailure;
+
 typedef struct Error {
     ErrorKind kind;
     char message[2048];
+    MethodFailure failure; /* of ERROR_INPUT */
 } Error;
 
 #define PRINTF_LIKE(text, first) __attribute__((format(printf, text, first)))
@@ -31,6 +39,9 @@ typedef struct Error {
 /* Bad usage or input. The message becomes "where: error: text"; where names a file, `file:line:column` or an option.
    The text may have further lines (an excerpt of the file with a caret). */
 bool error_input(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* The same, of a method that failed. */
+bool error_failure(Error *error, MethodFailure failure, const char *where, const char *format, ...) PRINTF_LIKE(4, 5);
 
 /* The system failed: disk, memory, a missing library or program. */
 bool error_system(Error *error, const char *where, const char *format, ...) PRINTF_LIKE(3, 4);
@@ -53,6 +64,7 @@ static inline bool error_false(bool set) {
     return false;
 }
 #define error_input(...) error_false(error_input(__VA_ARGS__))
+#define error_failure(...) error_false(error_failure(__VA_ARGS__))
 #define error_incomplete(...) error_false(error_incomplete(__VA_ARGS__))
 #define error_system(...) error_false(error_system(__VA_ARGS__))
 #define error_interrupted(...) error_false(error_interrupted(__VA_ARGS__))

@@ -27,8 +27,8 @@ typedef struct Options {
     bool json;
 } Options;
 
-static const char *const verdicts[] = {"any",   "holds",   "settles",  "sways",      "creeps", "falls",
-                                       "sinks", "tunnels", "explodes", "non-finite", NULL};
+static const char *const verdicts[] = {"any",       "holds", "settles", "stands",   "moves",      "creeps", "falls",
+                                       "collapses", "sinks", "tunnels", "explodes", "non-finite", NULL};
 
 static const Option option_table[] = {
     {"--output", 'o', "FILE.png",
@@ -38,11 +38,11 @@ static const Option option_table[] = {
     {.help = "Runs (.npz):"},
     OPTIONS_JUDGE(Options, run.judge),
     {"--verdict", 0, "WORD",
-     "Fail with exit status 1 unless the verdict is this: holds (settles, sways or creeps), settles, sways, creeps, "
-     "falls, sinks, tunnels, explodes, non-finite (default: any)",
+     "Fail with exit status 1 unless the verdict is this: holds (settles, stands, moves or creeps), settles, stands, "
+     "moves, creeps, falls, collapses, sinks, tunnels, explodes, non-finite (default: any)",
      OPTION_ENUM(Options, verdict, verdicts)},
     {"--max-overlap", 0, "M", "Fail if two boxes overlap by more, m", OPTION_DOUBLE(Options, run.max_overlap, 0, 1e6)},
-    {"--max-drift", 0, "M", "Fail if a body moves further after the first 10 s, m",
+    {"--max-drift", 0, "M", "Fail if a body moves further after the time that the verdict names, m",
      OPTION_DOUBLE(Options, run.max_drift, 0, 1e6)},
     {"--max-gain", 0, "J", "Fail if the energy exceeds that of the start and the bomb by more, J",
      OPTION_DOUBLE(Options, run.max_gain, 0, 1e12)},

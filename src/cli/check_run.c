@@ -35,7 +35,9 @@ bool judged_run_find(JudgedRun *judged, const Trajectory *run, const JudgeOption
 void judged_run_print(const JudgedRun *judged, const JudgeOptions *options) {
     const VerdictReading *reading = &judged->verdict.reading;
     printf("    verdict: %s\n    deepest overlap: %.3g m\n", judged->words, reading->deepest);
-    if (!isnan(reading->drift)) printf("    drift after the first %d s: %.3g m\n", VERDICT_CREEP_FROM, reading->drift);
+    if (!isnan(reading->drift))
+        printf("    drift after the first %.3g s: %.3g m\n",
+               simulate_verdict_falls(&judged->verdict, VERDICT_CREEP_FROM), reading->drift);
     if (isnan(reading->excess))
         printf("    energy gained: unknown without masses\n");
     else
@@ -67,8 +69,9 @@ static bool check_limits(CheckedRun *checked, Error *error) {
     const VerdictReading *reading = &checked->judged.verdict.reading;
     const char *word = verdict_name(reading->verdict), *wanted = options->verdict;
     if (!isnan(options->max_drift) && isnan(reading->drift))
-        return error_input(error, options->path, "lasts %.3g s: --max-drift needs a run of more than %d s",
-                           (checked->run->frames - 1) * (double)checked->run->dt, VERDICT_CREEP_FROM);
+        return error_input(error, options->path, "lasts %.3g s: --max-drift needs a run of more than %.3g s",
+                           (checked->run->frames - 1) * (double)checked->run->dt,
+                           simulate_verdict_falls(&checked->judged.verdict, VERDICT_CREEP_FROM));
     if (!isnan(options->max_gain) && isnan(reading->excess))
         return error_input(error, options->path,
                            "has a bomb, or bodies that start with a speed: --max-gain needs --scene");

@@ -57,32 +57,43 @@ Trajectory *simulate_judged(const Scene *scene, const Method *method, const Prog
 /* What the value is. */
 static const char *quantity(const VerdictReading *reading) {
     static const char *const quantities[VERDICTS] = {
-        [VERDICT_SETTLES] = "mean kinetic energy of a body",
-        [VERDICT_SWAYS] = "mean kinetic energy of a body",
-        [VERDICT_CREEPS] = "distance in 10 s",
+        [VERDICT_SETTLES] = "speed of the fastest body",
+        [VERDICT_STANDS] = "distance moved",
+        [VERDICT_CREEPS] = "distance in 10 falls",
+        [VERDICT_COLLAPSES] = "bodies that fell",
         [VERDICT_SINKS] = "penetration",
         [VERDICT_TUNNELS] = "speed",
         [VERDICT_EXPLODES] = "energy gained",
         [VERDICT_NON_FINITE] = "highest speed before",
         [VERDICT_ADAPTER_FAILED] = "highest speed before",
     };
-    if (reading->verdict == VERDICT_FALLS) return strcmp(reading->unit, "deg") == 0 ? "rotation" : "descent";
+    if (reading->verdict == VERDICT_MOVES)
+        return strcmp(reading->unit, "s") == 0 ? "time in the air" : "speed of the fastest body";
+    if (reading->verdict == VERDICT_FALLS)
+        return reading->struck ? "bodies that fell" : strcmp(reading->unit, "deg") == 0 ? "rotation" : "descent";
     return quantities[reading->verdict];
 }
 
+/* What became of the bodies that started at rest. */
 static void write_fallen(const SimulateVerdict *verdict, JsonWriter *json) {
-    int fallen;
-    json_put_int(json, "bodies", simulate_verdict_bodies(verdict, &fallen));
+    const VerdictWatch *watch = &verdict->watch;
+    const VerdictCount *count = &verdict->reading.count;
+    json_put_int(json, "bodies", count->stood);
     json_begin_array(json, "fallen", JSON_ONE_LINE);
-    for (int i = 0; i < verdict->scene->body_count && i < verdict->watch.body_count; i++)
-        if (verdict->watch.bodies[i].fallen) json_put_int(json, NULL, i);
+    for (int i = 0; i < watch->body_count; i++)
+        if (watch->bodies[i].stands && watch->bodies[i].fell > 0) json_put_int(json, NULL, i);
     json_end(json);
+    json_put_int(json, "left", count->left);
+    json_put_int(json, "moved", count->moved);
+    json_put_number(json, "farthest", count->farthest);
+    json_put_bool(json, "at_rest", !verdict->reading.moving);
 }
 
 static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     const VerdictReading *reading = &verdict->reading;
     json_put_text(json, "verdict", verdict_name(reading->verdict));
     json_put_bool(json, "holds", verdict_holds(reading->verdict));
+    json_put_bool(json, "sound", verdict_sound(reading->verdict));
     json_put_int(json, "frame", reading->frame);
     json_put_number(json, "time", reading->frame * (double)verdict->scene->dt);
     if (!json_put_absent(json, "body", reading->body < 0)) json_put_int(json, "body", reading->body);
@@ -216,9 +227,9 @@ static const CommandSpec spec = {
             "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
             "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
             "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
-            "The verdict tells how the run ended: settles, sways, creeps, falls, sinks, tunnels, explodes, non-finite, "
+            "The verdict tells how the run ended: settles, moves, creeps, falls, sinks, tunnels, explodes, non-finite, "
             "adapter "
-            "failed.\n"
+            "failed; where a bomb or another body strikes: stands, falls or collapses, and how many boxes fell.\n"
             "In Python: run = numpy.load('engine.npz'); run['position'] has shape (frames, bodies, 2)."};
 
 static bool override_bomb(SceneBomb *bomb, const Options *options, Error *error) {
@@ -283,7 +294,7 @@ static bool record(const Scene *scene, const Method *method, const Options *opti
 
 /* A run that ends in a NaN or infinite state has a verdict, too; one that was interrupted has none. */
 static bool judge(SimulateResult *result, const Options *options, Error *error) {
-    if (!result->judged || (error->kind != ERROR_NONE && !verdict_is_failure(error))) return false;
+    if (!result->judged || (error->kind != ERROR_NONE && error->failure == FAILURE_NONE)) return false;
     if (!options->json) simulate_verdict_print(&result->verdict);
     return options->verdict == NULL || simulate_verdict_write(&result->verdict, options->verdict, error);
 }

@@ -79,7 +79,7 @@ static bool run_row(const Making *making, Scene *scene, const MapCell *row, int 
     int decided = isnan(row->frame) || row->frame < 1 ? shown : (int)row->frame;
     scene->frames = row->verdict >= VERDICT_NON_FINITE && decided > 1 ? decided - 1 : shown;
     if (add_run(making, scene, row, &failure)) return true;
-    if (row->verdict != VERDICT_EXPLODES || failure.kind != ERROR_INPUT || decided >= shown)
+    if (row->verdict != VERDICT_EXPLODES || failure.failure == FAILURE_NONE || decided >= shown)
         return *error = failure, false;
     scene->frames = decided;
     return add_run(making, scene, row, error);
@@ -184,7 +184,9 @@ static const CommandSpec spec = {
     .help =
         "Find where each method fails. Along one parameter of a scene (height of a stack, mass ratio, time step, ...): "
         "every border between holding and failing, and how it fails there. Over two parameters: maps. A run holds if "
-        "it settles, sways or creeps. Takes up to twenty minutes on two cores. An interrupted run continues where it "
+        "it settles, moves or creeps; where a bomb or a moving body strikes, if as many boxes fall as in the converged "
+        "run: none, "
+        "fewer than half, or more. Takes up to twenty minutes on two cores. An interrupted run continues where it "
         "stopped.\n"
         "With SCENE: the same along one or two parameters, of that scene or of every scene. A parameter takes 13 runs "
         "of every "

@@ -76,8 +76,9 @@ static bool print_borders(const char *folder, Error *error) {
         const BorderRow *row = border_row(&table, i);
         if (i == 0 || !border_same_study(row, row - 1)) {
             const StabilityStudy *study = stability_study_find(row->study);
-            printf("%s: %s%s%s, holds | fails", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "",
-                   row->unit);
+            printf("%s: %s%s%s, %s", row->study, row->parameter, row->unit[0] != '\0' ? " in " : "", row->unit,
+                   border_is_struck(&table, i) ? "agrees with the reference | differs; reference: stands | falls"
+                                               : "holds | fails");
             if (study != NULL && study->rigid != NULL && strcmp(study->parameter, row->parameter) == 0)
                 printf(" (rigid boxes: %.4g)", study->rigid());
             printf("\n");
@@ -115,7 +116,7 @@ static bool print_rest(const char *folder, Error *error) {
     const RunRow *rows = table.rows;
     for (int i = 0; i < table.count;) {
         if (i == 0 || !same_study(&rows[i], &rows[i - 1]))
-            printf("%s: the last %s that holds, drift and energy after %d s\n", rows[i].study, rows[i].parameter,
+            printf("%s: the last %s that holds, drift and energy after %d falls\n", rows[i].study, rows[i].parameter,
                    VERDICT_CREEP_FROM);
         i = print_method_at_rest(rows, table.count, i);
     }

@@ -178,8 +178,9 @@ static void move_body(World *world, int i) {
 static bool check_finite(const World *world, Error *error) {
     for (int i = 0; i < world->body_count; i++)
         if (!is_finite_body(&world->moved[i]))
-            return error_input(error, "world", "the state of body %d is NaN or infinite (its velocity was %g, %g m/s)",
-                               i, (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
+            return error_failure(error, FAILURE_NOT_FINITE, "world",
+                                 "the state of body %d is NaN or infinite (its velocity was %g, %g m/s)", i,
+                                 (double)world->bodies[i].velocity.x, (double)world->bodies[i].velocity.y);
     return true;
 }
 

@@ -118,7 +118,7 @@ static bool run_world(Run *run, const Scene *scene, World *world, const ContactS
     for (int frame = 1; frame <= scene->frames && !is_over(run, frame); frame++) {
         Error failure = {0};
         if (!world_step(world, solver->kind->solve, solver->state, scene->dt, &failure))
-            return failure.kind == ERROR_INPUT || (*error = failure, false);
+            return failure.failure != FAILURE_NONE || (*error = failure, false);
         if (!keep(run, world_problem(world), frame, error)) return false;
         if (frame == scene->bomb.frame && !scene_add_bomb(scene, world, error)) return false;
     }

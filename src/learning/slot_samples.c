@@ -172,7 +172,7 @@ static bool step(const Scene *scene, const ContactSolver *solver, World *world, 
         return false;
     Error failure = {0};
     *finite = world_end_step(world, &failure);
-    if (*finite || failure.kind == ERROR_INPUT) return true;
+    if (*finite || failure.failure != FAILURE_NONE) return true;
     *error = failure;
     return false;
 }

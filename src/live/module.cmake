@@ -54,6 +54,7 @@ set(module_sources
     methods/sweeps_scalar methods/sweeps_simd128
     nets/kernels nets/kernels_scalar nets/net_file nets/network nets/slot_network
     runs/contact_finder runs/framing runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks
+    runs/verdict_energy runs/verdict_passes
     runs/verdict_words
     scenes/parameters scenes/scene scenes/scene_read scenes/scene_world scenes/shapes)
 # Where most of the time is spent; the rest is made small.

@@ -80,7 +80,7 @@ static void destroy(void *state) {
 
 static bool fail(Exec *exec, Error *error, const char *why) {
     if (clock_seconds() >= exec->end) why = "the run has taken longer than its run_limit";
-    error_input(error, exec->where, "adapter failed: %s", why);
+    error_failure(error, FAILURE_ADAPTER, exec->where, "adapter failed: %s", why);
     program_failed(error->message);
     adapter_end(exec->adapter);
     exec->adapter = NULL;

@@ -64,7 +64,7 @@ static bool step_learned(Runs *runs, int frame, Error *error) {
     StepMeter meter = {.now = meter_time};
     const Step step = {runs->scene, frame, &meter};
     if (!runs->broken) runs->broken = !stepping_step(&stepping_gns, runs->gns, runs->learned, &step, &failure);
-    if (failure.kind != ERROR_NONE && failure.kind != ERROR_INPUT) return *error = failure, false;
+    if (failure.kind != ERROR_NONE && failure.failure == FAILURE_NONE) return *error = failure, false;
     runs->nanoseconds += meter.solving;
     return frame != runs->scene->bomb.frame || scene_add_bomb(runs->scene, runs->learned, error);
 }

@@ -82,8 +82,8 @@ static bool run_shifted(const Scene *scene, const Method *method, Watch *watch, 
     for (int frame = 0; frame < chaos->frames; frame++) chaos->distance[frame] = NAN;
     chaos->distance[0] = trajectory_has(watch->unshifted, 0, chaos->body) ? chaos->shift : 0;
     Error failure = {0};
-    /* An input error during the run means that the state became NaN or infinite. That is a valid result. */
-    if (simulate_observed(scene, method, &observer, &failure) || failure.kind == ERROR_INPUT) return true;
+    /* A run that ends in a NaN or infinite state is a valid result. */
+    if (simulate_observed(scene, method, &observer, &failure) || failure.failure != FAILURE_NONE) return true;
     *error = failure;
     return false;
 }

@@ -172,13 +172,17 @@ static inline size_t csv_import_place(const Trajectory *run, int64_t frame, int 
 
 /* The checks of a watch for one step. They run before the watch stores the step's positions as the last ones. */
 
-/* Stores the verdict if it is worse than the worst so far. */
-void verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, const char *unit);
+/* Stores the verdict if it is worse than the worst so far. Returns whether it is. */
+bool verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, const char *unit);
 
 /* False if a body's state is NaN or infinite. */
 bool check_finite(VerdictWatch *watch, const VerdictStep *step);
 void check_energy(VerdictWatch *watch, const VerdictStep *step);
-void check_tunnels(VerdictWatch *watch, const VerdictStep *step);
+
+/* False if memory is short. */
+bool check_passes(VerdictWatch *watch, const VerdictStep *step, Error *error);
+void pass_finder_free(PassFinder *passes);
+
 void check_depth(VerdictWatch *watch, const VerdictStep *step);
 void check_falls(VerdictWatch *watch, const VerdictStep *step);
 void check_creep(VerdictWatch *watch, const VerdictStep *step);
@@ -187,5 +191,11 @@ void check_calm(VerdictWatch *watch, const VerdictStep *step);
 /* m */
 double smaller_side(const Body *body);
 
-/* Seconds rounded to whole steps; at least one. */
-int verdict_steps(double seconds, float dt);
+/* m: of the bodies of a contact. */
+double smaller_size(const VerdictStep *step, const ContactPoint *contact);
+
+/* m: height of the centre along the direction opposite to gravity; 0 without gravity. */
+double body_height(const Body *body, Vec2 gravity);
+
+/* Falls (VERDICT_FALL_SIZES) rounded to whole steps; at least one. */
+int falls_in_steps(const VerdictWatch *watch, double falls);

@@ -13,18 +13,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const verdict_words[VERDICTS + 2] = {"settles",        "sways",         "creeps",   "falls",
-                                                 "sinks",          "tunnels",       "explodes", "non-finite",
-                                                 "adapter failed", "not applicable"};
+const char *const verdict_words[VERDICTS + 2] = {
+    "settles",      "agrees",        "stands", "moves",   "creeps",   "undecided",  "falls",          "collapses",
+    "too few fall", "too many fall", "sinks",  "tunnels", "explodes", "non-finite", "adapter failed", "not applicable"};
 
 const char *verdict_name(Verdict verdict) { return verdict_words[verdict]; }
 
 bool verdict_holds(Verdict verdict) { return verdict <= VERDICT_CREEPS; }
 
+bool verdict_sound(Verdict verdict) { return verdict < VERDICT_SINKS; }
+
 void verdict_watch_free(VerdictWatch *watch) {
     free(watch->bodies);
     free(watch->statics);
     contact_finder_free(&watch->finder);
+    pass_finder_free(&watch->passes);
     *watch = (VerdictWatch){0};
 }
 
@@ -43,33 +46,74 @@ static bool add_static(VerdictWatch *watch, const Body *body, int index, Error *
     return true;
 }
 
+/* Of the first dynamic bodies. */
+static void set_fall(VerdictWatch *watch, const Body *bodies, int count) {
+    const double dt = (double)watch->run.dt;
+    double sum = 0;
+    int moving = 0;
+    for (int i = 0; i < count; i++) {
+        if (bodies[i].inv_mass == 0) continue;
+        sum += verdict_size(&bodies[i]);
+        moving++;
+    }
+    if (watch->fall > 0 || moving == 0) return;
+    const double way = 2 * VERDICT_FALL_SIZES * sum / moving, pull = vec2_distance(watch->run.gravity, vec2(0, 0));
+    const double steps = pull > 0 ? fmin(sqrt(way / pull) / dt, SCENE_MAX_FRAMES) : VERDICT_CALM_FRAMES;
+    watch->fall = steps > 1 ? (int)lround(steps) : 1;
+    watch->pull = pull > 0 ? pull : way / (steps * dt * steps * dt);
+}
+
+/* A body of the scene starts at rest unless it has a speed; one that is not in it is the bomb. */
+static bool starts_still(const Scene *scene, int i) {
+    const BodyDef *body = &scene->bodies[i];
+    return i < scene->body_count && body->velocity.x == 0 && body->velocity.y == 0 && body->angular_velocity == 0;
+}
+
 static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
     if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies))
         return error_memory(error, "verdict");
     while (watch->static_count > 0 && watch->statics[watch->static_count - 1].body >= count) watch->static_count--;
-    for (int i = count; i < watch->body_count; i++) watch->touched_count -= watch->bodies[i].touched;
+    set_fall(watch, bodies, count);
     for (int i = watch->body_count; i < count; i++) {
+        const bool dynamic = bodies[i].inv_mass != 0;
+        const double lowest =
+            body_height(&bodies[i], watch->run.gravity) - vec2_distance(bodies[i].size, vec2(0, 0)) / 2;
         watch->bodies[i] =
-            (WatchedBody){.outside = bodies[i].position, .last = bodies[i].position, .last_angle = bodies[i].angle};
-        if (bodies[i].inv_mass != 0) watch->smallest = fmin(watch->smallest, smaller_side(&bodies[i]));
-        if (bodies[i].inv_mass == 0 && !add_static(watch, &bodies[i], i, error)) return false;
+            (WatchedBody){.size = verdict_size(&bodies[i]),
+                          .outside = bodies[i].position,
+                          .last = bodies[i].position,
+                          .stood = bodies[i].position,
+                          .stood_angle = bodies[i].angle,
+                          .last_angle = bodies[i].angle,
+                          .below = -1,
+                          .stands = dynamic && (watch->run.struck == NULL || starts_still(watch->run.struck, i))};
+        if (dynamic) watch->smallest = fmin(watch->smallest, smaller_side(&bodies[i]));
+        if (dynamic) continue;
+        watch->floor = fmin(watch->floor, lowest);
+        if (!add_static(watch, &bodies[i], i, error)) return false;
     }
     watch->body_count = count;
     return true;
 }
 
 static bool starts_at_rest(const Scene *scene) {
-    for (int i = 0; i < scene->body_count; i++) {
-        const BodyDef *body = &scene->bodies[i];
-        if (body->velocity.x != 0 || body->velocity.y != 0 || body->angular_velocity != 0) return false;
-    }
+    for (int i = 0; i < scene->body_count; i++)
+        if (!starts_still(scene, i)) return false;
     return true;
+}
+
+const Scene *verdict_struck(const Scene *scene) {
+    if (!scene_has_launch(scene) && starts_at_rest(scene)) return NULL;
+    for (int i = 0; i < scene->body_count; i++)
+        if (!scene->bodies[i].fixed && starts_still(scene, i)) return scene;
+    return NULL;
 }
 
 void verdict_run_set_engine(VerdictRun *run, const Method *method) {
     run->other_engine = method->kind->description->external;
     const char *text = run->other_engine ? settings_get(&method->settings, "skin") : NULL;
-    if (text != NULL) run->finds_contacts = parse_float(text, &run->skin);
+    run->finds_contacts = run->other_engine;
+    if (text != NULL && !parse_float(text, &run->skin)) run->skin = 0;
 }
 
 VerdictRun verdict_run_of(const Scene *scene) {
@@ -78,12 +122,16 @@ VerdictRun verdict_run_of(const Scene *scene) {
                         .dt = scene->dt,
                         .frames = scene->frames,
                         .stands = rests && !bomb,
-                        .until_bomb = rests && bomb};
+                        .until_bomb = rests && bomb,
+                        .struck = verdict_struck(scene)};
 }
 
-/* The contacts of the next step. */
+/* The contacts of the next step. Another engine may let bodies rest a little apart: they carry each other within a share of the
+   smallest side. */
 static bool find_contacts(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
-    return !watch->run.finds_contacts || contact_finder_find(&watch->finder, bodies, count, watch->run.skin, error);
+    const float near = 0.005f, smallest = isfinite(watch->smallest) ? (float)watch->smallest : 0;
+    const float skin = watch->run.skin + (watch->run.other_engine ? near * smallest : 0);
+    return !watch->run.finds_contacts || contact_finder_find(&watch->finder, bodies, count, skin, error);
 }
 
 bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body *bodies, int count, Error *error) {
@@ -91,12 +139,16 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
         return error_input(error, "verdict", "the converged run has only %d of %d frames", run->converged->frames,
                            run->frames);
     *watch = (VerdictWatch){.run = *run,
+                            .worst = {.other = -1},
                             .smallest = INFINITY,
+                            .floor = INFINITY,
                             .bodies = watch->bodies,
                             .capacity = watch->capacity,
                             .statics = watch->statics,
                             .finder = watch->finder,
+                            .passes = watch->passes,
                             .static_capacity = watch->static_capacity};
+    watch->passes.deep_count = 0;
     energy_balance_begin(&watch->own, run->gravity, bodies, count);
     watch->kept = watch->brought = watch->own.energy;
     return add_bodies(watch, bodies, count, error) && find_contacts(watch, bodies, count, error);
@@ -122,13 +174,13 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *er
     if (!check_finite(watch, step)) return true;
     check_energy(watch, step);
     if (!add_bodies(watch, step->bodies, step->body_count, error)) return false;
-    check_tunnels(watch, step);
+    if (!check_passes(watch, step, error)) return false;
     check_depth(watch, step);
     check_falls(watch, step);
     check_creep(watch, step);
     check_calm(watch, step);
     store_last(watch, step->bodies);
-    if (step->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) store_rested(watch);
+    if (step->frame == falls_in_steps(watch, VERDICT_CREEP_FROM)) store_rested(watch);
     return find_contacts(watch, step->bodies, step->body_count, error);
 }
 
@@ -143,15 +195,6 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
     return verdict_watch_step(watch, &step, error);
 }
 
-/* The words of exec.c. */
-static const char adapter_failed[] = "adapter failed: ";
-
-/* The words of world.c, soft_step.c and avbd.c. */
-bool verdict_is_failure(const Error *failure) {
-    return failure->kind == ERROR_INPUT &&
-           (strstr(failure->message, "NaN or infinite") != NULL || strstr(failure->message, adapter_failed) != NULL);
-}
-
 /* Without the place, which is that of the verdict. */
 static void copy_reason(char reason[VERDICT_REASON_SIZE], const char *text) {
     const char *place = NULL;
@@ -163,23 +206,76 @@ static void copy_reason(char reason[VERDICT_REASON_SIZE], const char *text) {
 }
 
 void verdict_watch_failed(VerdictWatch *watch, int frame, const Error *failure) {
-    const char *adapter = strstr(failure->message, adapter_failed);
+    static const char before[] = "adapter failed: ";
+    const bool adapter = failure->failure == FAILURE_ADAPTER;
     if (watch->worst.verdict >= VERDICT_NON_FINITE) return;
     watch->frame = frame;
-    verdict_note(watch, adapter != NULL ? VERDICT_ADAPTER_FAILED : VERDICT_NON_FINITE, -1, watch->speed, "m/s");
-    if (adapter != NULL) copy_reason(watch->worst.reason, adapter + strlen(adapter_failed));
+    verdict_note(watch, adapter ? VERDICT_ADAPTER_FAILED : VERDICT_NON_FINITE, -1, watch->speed, "m/s");
+    const char *why = strstr(failure->message, before);
+    if (adapter) copy_reason(watch->worst.reason, why != NULL ? why + strlen(before) : failure->message);
 }
 
 bool verdict_watch_is_final(const VerdictWatch *watch) { return watch->worst.verdict >= VERDICT_EXPLODES; }
 
+/* m: how far a body is beside where it stood. */
+static double moved_by(const VerdictWatch *watch, const WatchedBody *body) {
+    const Vec2 way = vec2_sub(body->last, body->stood), gravity = watch->run.gravity;
+    const double pull = vec2_distance(gravity, vec2(0, 0));
+    return pull > 0 ? fabs((double)way.x * gravity.y - (double)way.y * gravity.x) / pull
+                    : vec2_distance(way, vec2(0, 0));
+}
+
+static VerdictCount count_bodies(const VerdictWatch *watch) {
+    VerdictCount count = {.body = -1};
+    for (int i = 0; i < watch->body_count; i++) {
+        const WatchedBody *body = &watch->bodies[i];
+        if (!body->stands) continue;
+        count.stood++;
+        count.fell += body->fell > 0;
+        count.left += body->left;
+        if (body->fell > 0 && (count.body < 0 || body->fell < count.first)) count.first = body->fell, count.body = i;
+        const double way = body->landed && body->fell == 0 ? moved_by(watch, body) : 0;
+        if (way <= VERDICT_MOVED_SHARE * body->size) continue;
+        count.moved++;
+        count.farthest = fmax(count.farthest, way);
+    }
+    return count;
+}
+
+/* What stands of a struck scene. */
+static void read_struck(const VerdictCount *count, VerdictReading *reading) {
+    reading->struck = true;
+    if (count->fell == 0) {
+        reading->verdict = VERDICT_STANDS;
+        reading->value = count->farthest;
+        reading->unit = "m";
+        return;
+    }
+    reading->verdict = 2 * count->fell < count->stood ? VERDICT_FALLS : VERDICT_COLLAPSES;
+    reading->frame = count->first;
+    reading->body = count->body;
+    reading->value = count->fell;
+    reading->unit = "boxes";
+}
+
 static VerdictReading read_verdict(const VerdictWatch *watch) {
-    if (watch->worst.verdict > VERDICT_SWAYS) return watch->worst;
     const bool calm = watch->calm >= VERDICT_CALM_FRAMES;
-    return (VerdictReading){.verdict = calm ? VERDICT_SETTLES : VERDICT_SWAYS,
-                            .frame = watch->frame - watch->calm + (calm ? 1 : 0),
-                            .body = -1,
-                            .value = calm ? watch->kinetic : watch->kinetic_not_calm,
-                            .unit = "J"};
+    VerdictReading reading = watch->worst;
+    if (reading.verdict < VERDICT_CREEPS) {
+        const int which = calm ? 0 : 1;
+        const bool hangs = !calm && watch->restless[1] >= 0 && watch->unrest[1] == 0;
+        reading = (VerdictReading){.verdict = calm ? VERDICT_SETTLES : VERDICT_MOVES,
+                                   .frame = watch->frame - watch->calm + (calm ? 1 : 0),
+                                   .body = calm ? -1 : watch->restless[1],
+                                   .value = hangs ? watch->bodies[watch->restless[1]].air * (double)watch->run.dt
+                                                  : watch->unrest[which],
+                                   .unit = hangs ? "s" : "m/s",
+                                   .other = -1};
+    }
+    reading.moving = !calm;
+    reading.count = count_bodies(watch);
+    if (watch->run.struck != NULL && reading.verdict < VERDICT_UNDECIDED) read_struck(&reading.count, &reading);
+    return reading;
 }
 
 VerdictReading verdict_watch_end(const VerdictWatch *watch) {
@@ -187,7 +283,7 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     reading.drift = reading.gained = NAN;
     reading.deepest = watch->deepest;
     reading.excess = watch->run.no_energy ? NAN : watch->excess;
-    if (watch->rested_count == 0 || watch->frame == verdict_steps(VERDICT_CREEP_FROM, watch->run.dt)) return reading;
+    if (watch->rested_count == 0 || watch->frame == falls_in_steps(watch, VERDICT_CREEP_FROM)) return reading;
     reading.drift = 0;
     reading.gained = watch->energy - watch->rested;
     for (int i = 0; i < watch->rested_count && i < watch->body_count; i++)
@@ -200,16 +296,15 @@ static uint64_t hash_bodies(const Body *bodies, int count) {
     return count > 0 ? hash_fnv1a64(FNV1A64_START, bodies, (size_t)count * sizeof *bodies) : FNV1A64_START;
 }
 
-/* An input error during the run means that the state became NaN or infinite, or that a program failed. That is a valid
-   result. */
+/* A method that fails is a valid result. */
 static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const Step *step, Error *error) {
     Error failure = {0};
     if (simulate_step(stepper, world, step, &failure)) return verdict_watch_observe(watch, step->frame, world, error);
-    if (failure.kind == ERROR_INPUT)
+    if (failure.failure != FAILURE_NONE)
         verdict_watch_failed(watch, step->frame, &failure);
     else
         *error = failure;
-    return failure.kind == ERROR_INPUT;
+    return failure.failure != FAILURE_NONE;
 }
 
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,

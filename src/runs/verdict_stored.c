@@ -147,6 +147,6 @@ bool simulate_verdict_of_run(SimulateVerdict *verdict, const RunScene *by, const
     world_destroy(world);
     if (!ok) return false;
     Error failure = {0};
-    if (ended_in_nan(run)) error_input(&failure, run->scene, "NaN or infinite");
+    if (ended_in_nan(run)) error_failure(&failure, FAILURE_NOT_FINITE, run->scene, "NaN or infinite");
     return simulate_verdict_end(verdict, &failure);
 }

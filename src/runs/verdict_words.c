@@ -27,7 +27,7 @@ StepObserver simulate_verdict_observer(SimulateVerdict *verdict) {
 }
 
 bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure) {
-    if (failure->kind != ERROR_NONE && !verdict_is_failure(failure)) return false;
+    if (failure->kind != ERROR_NONE && failure->failure == FAILURE_NONE) return false;
     if (failure->kind != ERROR_NONE) verdict_watch_failed(&verdict->watch, verdict->watch.frame + 1, failure);
     verdict->reading = verdict_watch_end(&verdict->watch);
     return true;
@@ -35,39 +35,37 @@ bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure) {
 
 void simulate_verdict_free(SimulateVerdict *verdict) { verdict_watch_free(&verdict->watch); }
 
-int simulate_verdict_bodies(const SimulateVerdict *verdict, int *fallen) {
-    const Scene *scene = verdict->scene;
-    int count = 0;
-    *fallen = 0;
-    for (int i = 0; i < scene->body_count && i < verdict->watch.body_count; i++) {
-        if (scene->bodies[i].fixed) continue;
-        count++;
-        *fallen += verdict->watch.bodies[i].fallen;
-    }
-    return count;
+double simulate_verdict_falls(const SimulateVerdict *verdict, double falls) {
+    return falls * verdict->watch.fall * (double)verdict->scene->dt;
 }
-
-static bool runs_to_the_end(const SimulateVerdict *verdict) { return verdict->reading.frame >= verdict->watch.frame; }
 
 /* "body 7, 0.53 m lower" */
 static void write_figure(const SimulateVerdict *verdict, char figure[FIGURE_SIZE]) {
     const VerdictReading *reading = &verdict->reading;
     const double value = reading->value;
     const int body = reading->body;
-    const bool turned = strcmp(reading->unit, "deg") == 0;
+    const bool turned = strcmp(reading->unit, "deg") == 0, hangs = strcmp(reading->unit, "s") == 0;
     switch (reading->verdict) {
+    case VERDICT_MOVES:
+        snprintf(figure, FIGURE_SIZE, hangs ? "body %d, in the air for %.3g s" : "body %d at %.3g m/s", body, value);
+        return;
     case VERDICT_CREEPS:
-        snprintf(figure, FIGURE_SIZE, "body %d, %.3g m in %d s", body, value, VERDICT_CREEP_SECONDS);
+        snprintf(figure, FIGURE_SIZE, "body %d, %.3g m in %.3g s", body, value,
+                 simulate_verdict_falls(verdict, VERDICT_CREEP_FALLS));
         return;
     case VERDICT_FALLS:
         snprintf(figure, FIGURE_SIZE, turned ? "body %d, rotated by %.3g degrees" : "body %d, %.3g m lower", body,
                  value);
         return;
     case VERDICT_SINKS:
-        snprintf(figure, FIGURE_SIZE, "body %d, %.3g m deep for %g s", body, value, VERDICT_SINK_TIME);
+        snprintf(figure, FIGURE_SIZE, "body %d, %.3g m deep for %.3g s", body, value,
+                 simulate_verdict_falls(verdict, VERDICT_SINK_TIME));
         return;
     case VERDICT_TUNNELS:
-        snprintf(figure, FIGURE_SIZE, "body %d, at %.3g m/s through a static box", body, value);
+        if (reading->other < 0)
+            snprintf(figure, FIGURE_SIZE, "body %d, at %.3g m/s through a static box", body, value);
+        else
+            snprintf(figure, FIGURE_SIZE, "body %d, at %.3g m/s through body %d", body, value, reading->other);
         return;
     case VERDICT_EXPLODES:
         snprintf(figure, FIGURE_SIZE, "body %d is the most energetic, %.3g J gained", body, value);
@@ -76,21 +74,44 @@ static void write_figure(const SimulateVerdict *verdict, char figure[FIGURE_SIZE
         snprintf(figure, FIGURE_SIZE, "a body's state is NaN or infinite; fastest body before: %.3g m/s", value);
         return;
     case VERDICT_ADAPTER_FAILED: snprintf(figure, FIGURE_SIZE, "%s", reading->reason); return;
-    default: snprintf(figure, FIGURE_SIZE, "kinetic energy %.3g J per body", value);
+    default: snprintf(figure, FIGURE_SIZE, "no body above %.3g m/s", value);
     }
+}
+
+/* "settles at 0.5 s (...)", "falls at 4.22 s (body 7, 0.53 m lower)" */
+static void write_whole(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
+    const VerdictReading *reading = &verdict->reading;
+    char figure[FIGURE_SIZE];
+    write_figure(verdict, figure);
+    const char *when = reading->verdict != VERDICT_MOVES        ? " at"
+                       : reading->frame >= verdict->watch.frame ? ": still at the end,"
+                                                                : " until";
+    snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s%s %.3g s (%s)", verdict_name(reading->verdict), when,
+             reading->frame * (double)verdict->scene->dt, figure);
+}
+
+/* "8 of 10 boxes fell, 2 of them out of the scene, first at 1.2 s" */
+static void add_fallen(const SimulateVerdict *verdict, const char *between, char words[TRAJECTORY_VERDICT_SIZE]) {
+    const VerdictCount *count = &verdict->reading.count;
+    if (count->fell == 0) return;
+    text_add(words, TRAJECTORY_VERDICT_SIZE, "%s%d of %d box%s fell", between, count->fell, count->stood,
+             count->stood == 1 ? "" : "es");
+    if (count->left > 0) text_add(words, TRAJECTORY_VERDICT_SIZE, ", %d of them out of the scene", count->left);
+    text_add(words, TRAJECTORY_VERDICT_SIZE, ", first at %.3g s", count->first * (double)verdict->scene->dt);
 }
 
 void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
     const VerdictReading *reading = &verdict->reading;
-    const double time = reading->frame * (double)verdict->scene->dt;
-    char figure[FIGURE_SIZE];
-    int fallen;
-    const int count = simulate_verdict_bodies(verdict, &fallen);
-    write_figure(verdict, figure);
-    const char *when = reading->verdict != VERDICT_SWAYS ? " at"
-                       : runs_to_the_end(verdict)        ? ": still moves at the end,"
-                                                         : ": moves until";
-    snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s%s %.3g s (%s)", verdict_name(reading->verdict), when, time, figure);
-    if (!verdict->watch.run.stands && fallen > 0)
-        text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d of %d bodies have fallen", fallen, count);
+    const VerdictCount *count = &reading->count;
+    if (!reading->struck) {
+        write_whole(verdict, words);
+        if (verdict->watch.run.struck != NULL) add_fallen(verdict, "; ", words);
+        return;
+    }
+    snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s", verdict_name(reading->verdict));
+    add_fallen(verdict, ": ", words);
+    if (count->moved > 0)
+        text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d of %d moved by %s%.2g m", count->moved, count->stood,
+                 count->moved > 1 ? "up to " : "", count->farthest);
+    if (reading->moving) text_add(words, TRAJECTORY_VERDICT_SIZE, "; still moves at the end");
 }

@@ -66,7 +66,7 @@ static bool evaluate(const Search *search, Sample *sample, int first, int last, 
     for (int seed = first; seed < last; seed++) {
         Verdict verdict;
         if (!search->probe->evaluate(search->probe->context, sample->value, seed, &verdict, error)) return false;
-        Side side = verdict_holds(verdict) ? SIDE_HOLDS : SIDE_FAILS;
+        Side side = verdict_holds(verdict) ? SIDE_HOLDS : verdict == VERDICT_UNDECIDED ? SIDE_UNDECIDED : SIDE_FAILS;
         if (seed > 0 && side != sample->side) side = SIDE_UNDECIDED;
         if (seed == 0 || verdict > sample->verdict) sample->verdict = verdict;
         sample->side = side;

@@ -371,11 +371,14 @@ static void draw_legend(const Borders *borders) {
 static void write_caption(const Borders *borders, PlotPage *page) {
     LeftOut left_out = {0};
     WordList words = {0};
+    bool struck = false;
+    for (int i = 0; i < borders->table->count; i++) struck |= border_is_struck(borders->table, i);
     text_add(page->caption, sizeof page->caption,
              "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a "
              "method fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at "
              "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.%s",
              borders->signs == BORDER_SIGNS ? " Dashed line: rigid boxes hold up to here, in closed form." : "");
+    if (struck) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
     for (int i = 0; i < borders->left_out_count; i++) {
         const BorderRow *row = border_row(borders->table, borders->left_out[i]);
         left_out_add(&left_out, "Left out, as not applicable: ", row->method, row->setting);

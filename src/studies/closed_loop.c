@@ -185,8 +185,7 @@ bool rollout_run(Rollout *rollout, Stepper *stepper, const Scene *launched, cons
         const Step step = {.scene = launched, .frame = frame};
         Error failure = {0};
         if (!simulate_step(stepper, rollout->world, &step, &failure)) {
-            /* An input error during the run means that the state became NaN or infinite. That is a valid result. */
-            if (failure.kind == ERROR_INPUT) return true;
+            if (failure.failure != FAILURE_NONE) return true; /* a valid result */
             *error = failure;
             return false;
         }

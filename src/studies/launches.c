@@ -321,8 +321,9 @@ static bool find_touch(const Scene *launched, int *touch, Error *error) {
     world_destroy(world);
     stepper_destroy(stepper);
     if (failure.kind == ERROR_NONE) return ok;
+    if (failure.failure != FAILURE_NONE) return true;
     *error = failure;
-    return failure.kind == ERROR_INPUT;
+    return false;
 }
 
 static bool prepare_launch(void *context, int i, Error *error) {

@@ -190,6 +190,15 @@ Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings
 VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
                                  const EnergyLog *converged);
 
+/* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses (runs/verdict.h).
+   Near the edge, where runs that are shifted by a micrometre differ in that, or where the converged run is not sound, the truth is
+   undecided, and so is every method. Of a scene that is not struck the truth is VERDICT_SETTLES. */
+bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Error *error);
+
+/* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is not sound,
+   or falls before it is struck, stays as it is. Of the reference it is what it does itself, so that a study shows the truth. */
+Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method);
+
 /* The unit of a parameter of the scene, or "". */
 const char *stability_unit(const Scene *scene, const char *parameter);
 
@@ -208,6 +217,7 @@ bool stability_takes_iterations(const Method *method);
 typedef struct ConvergedRun {
     double value;
     EnergyLog log;
+    Verdict truth;
 } ConvergedRun;
 
 /* Counts runs and reports progress. Zero-initialise. */
@@ -230,8 +240,10 @@ typedef struct ConvergedRuns {
     ConvergedRun **runs; /* [count] */
 } ConvergedRuns;
 
-/* The run of the scene at the value by the method "reference". NULL with error set if it fails. */
-const EnergyLog *converged_runs_get(ConvergedRuns *runs, const Scene *scene, double value, Error *error);
+/* The run of the scene at the value by the method "reference", and its truth, judged as `judged`, without a converged run. NULL with
+   error set if it fails. */
+const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
+                                       Error *error);
 void converged_runs_free(ConvergedRuns *runs);
 
 /* The converged run of a scene, not cached. */
@@ -300,6 +312,12 @@ static inline const MapCell *map_cell(const CsvTable *table, int i) { return (co
 static inline const BorderRow *border_row(const CsvTable *table, int i) { return (const BorderRow *)table->rows + i; }
 
 bool border_same_method(const BorderRow *a, const BorderRow *b);
+
+/* What studies of struck scenes show, for captions and pages. */
+extern const char stability_struck_words[];
+
+/* The study of row i is one of a struck scene: it tells where methods agree with the reference. */
+bool border_is_struck(const CsvTable *table, int i);
 
 /* The method of the row holds at the value. Only for methods with one row in the study. */
 bool border_holds(const BorderRow *row, double value);

@@ -33,6 +33,7 @@ VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene
     if (place->file == NULL) {
         run.stands = stands;
         run.until_bomb = false;
+        if (stands) run.struck = NULL;
     }
     run.converged = converged;
     return run;
@@ -43,10 +44,14 @@ const char *stability_unit(const Scene *scene, const char *parameter) {
     return found != NULL ? found->unit : "";
 }
 
+static BodyDef *first_dynamic(Scene *scene) {
+    for (int i = 0; i < scene->body_count; i++)
+        if (!scene->bodies[i].fixed) return &scene->bodies[i];
+    return scene->bomb.present ? &scene->bomb.body : NULL;
+}
+
 void stability_shift(Scene *scene, int seed) {
-    BodyDef *body = scene->bomb.present ? &scene->bomb.body : NULL;
-    for (int i = scene->body_count - 1; i >= 0; i--)
-        if (!scene->bodies[i].fixed) body = &scene->bodies[i];
+    BodyDef *body = first_dynamic(scene);
     if (body == NULL || seed == 0) return;
     body->position.x += seed == 1 ? shift : -shift;
 }
@@ -84,12 +89,43 @@ bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error) {
     return method_parse(&reference, "reference", error) && energy_log_run(log, &warm, &reference, error);
 }
 
-static const EnergyLog *find(const ConvergedRuns *runs, double value) {
-    const EnergyLog *log = NULL;
+/* The scene is the same afterwards. */
+bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Error *error) {
+    Method reference;
+    BodyDef *first = first_dynamic(scene);
+    const bool warm = scene->warm_starting;
+    *truth = VERDICT_SETTLES;
+    if (judged->struck == NULL) return true;
+    if (!method_parse(&reference, "reference", error)) return false;
+    const Vec2 place = first->position;
+    bool ok = true;
+    scene->warm_starting = true;
+    for (int seed = 0; ok && seed < BORDER_SEEDS; seed++) {
+        VerdictReading reading;
+        stability_shift(scene, seed);
+        ok = verdict_run(&reading, scene, &reference, judged, error);
+        first->position = place;
+        if (ok && seed == 0) *truth = reading.verdict;
+        if (ok && (reading.verdict != *truth || !verdict_sound(reading.verdict))) *truth = VERDICT_UNDECIDED;
+    }
+    scene->warm_starting = warm;
+    return ok;
+}
+
+Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method) {
+    const bool is_truth = method->kind->description->role == METHOD_REFERENCE;
+    if (truth == VERDICT_SETTLES || is_truth || !reading->struck) return reading->verdict;
+    if (truth == VERDICT_UNDECIDED) return VERDICT_UNDECIDED;
+    if (reading->verdict == truth) return VERDICT_AGREES;
+    return reading->verdict < truth ? VERDICT_TOO_FEW : VERDICT_TOO_MANY;
+}
+
+static const ConvergedRun *find(const ConvergedRuns *runs, double value) {
+    const ConvergedRun *run = NULL;
 #pragma omp critical(converged_runs)
     for (int i = 0; i < runs->count; i++)
-        if (runs->runs[i]->value == value) log = &runs->runs[i]->log;
-    return log;
+        if (runs->runs[i]->value == value) run = runs->runs[i];
+    return run;
 }
 
 static bool store(ConvergedRuns *runs, ConvergedRun *run, Error *error) {
@@ -102,13 +138,16 @@ static bool store(ConvergedRuns *runs, ConvergedRun *run, Error *error) {
     return ok || error_memory(error, "converged run");
 }
 
-const EnergyLog *converged_runs_get(ConvergedRuns *runs, const Scene *scene, double value, Error *error) {
-    const EnergyLog *known = find(runs, value);
+const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
+                                       Error *error) {
+    const ConvergedRun *known = find(runs, value);
     if (known != NULL) return known;
     ConvergedRun *run = calloc(1, sizeof *run);
     if (run == NULL) return error_memory(error, "converged run"), NULL;
     run->value = value;
-    if (converged_run_once(&run->log, scene, error) && store(runs, run, error)) return &run->log;
+    if (converged_run_once(&run->log, scene, error) && stability_truth(scene, judged, &run->truth, error) &&
+        store(runs, run, error))
+        return run;
     energy_log_free(&run->log);
     free(run);
     return NULL;
@@ -148,16 +187,20 @@ static Scene *scene_at(const StabilityGrid *grid, double x, double y, Error *err
     return read_scene(grid, settings, 2, error);
 }
 
-static bool judge_scene(Run *run, int i, const Scene *scene, const EnergyLog *converged, Error *error) {
+static bool judge_scene(Run *run, int i, Scene *scene, const EnergyLog *converged, Error *error) {
     const GridContext *context = run->context;
     const StabilityMap *map = context->grid->map;
     const StabilityPlace place = place_of(context->grid);
     const VerdictRun judged = stability_verdict_run(&place, scene, map->stands, converged);
-    for (int m = 0; m < context->method_count; m++)
-        if (!verdict_run(&run->readings[i * context->method_count + m], scene, &context->methods[m]->method, &judged,
-                         error) ||
-            !run_counter_add(&run->counter, map->name, error))
+    Verdict truth;
+    if (!stability_truth(scene, &judged, &truth, error)) return false;
+    for (int m = 0; m < context->method_count; m++) {
+        const Method *method = &context->methods[m]->method;
+        VerdictReading *reading = &run->readings[i * context->method_count + m];
+        if (!verdict_run(reading, scene, method, &judged, error) || !run_counter_add(&run->counter, map->name, error))
             return false;
+        reading->verdict = stability_compare(reading, truth, method);
+    }
     return true;
 }
 
@@ -212,10 +255,17 @@ static bool find_whether_it_applies(const GridContext *context, const Method *me
     return reason.kind != ERROR_SYSTEM;
 }
 
+/* Its panel of the reference shows the truth. */
+static bool is_struck(const GridContext *context) {
+    const StabilityMap *map = context->grid->map;
+    const StabilityPlace place = place_of(context->grid);
+    return stability_verdict_run(&place, context->typical, map->stands, NULL).struck != NULL;
+}
+
 static bool add_method(GridContext *context, const Contender *contender, Error *error) {
     const Method *method = &contender->method;
     bool applies;
-    if (method->kind->description->role == METHOD_REFERENCE) return true;
+    if (method->kind->description->role == METHOD_REFERENCE && !is_struck(context)) return true;
     if (context->grid->map->iterations && !stability_takes_iterations(method)) return true;
     if (!find_whether_it_applies(context, method, &applies, error)) return false;
     if (applies) context->methods[context->method_count++] = contender;

@@ -19,9 +19,11 @@ extern const char stability_css[]; /* page/, embedded */
 
 /* A letter for each verdict: colours alone would not do. */
 static const char letters[VERDICT_LOOKS] = {
-    [VERDICT_SETTLES] = 's',        [VERDICT_SWAYS] = 'w',       [VERDICT_CREEPS] = 'c',   [VERDICT_FALLS] = 'F',
-    [VERDICT_SINKS] = 'S',          [VERDICT_TUNNELS] = 'T',     [VERDICT_EXPLODES] = 'E', [VERDICT_NON_FINITE] = 'N',
-    [VERDICT_ADAPTER_FAILED] = 'A', [LOOK_NOT_APPLICABLE] = '-', [LOOK_MISSING] = ' ',
+    [VERDICT_SETTLES] = 's',  [VERDICT_AGREES] = 'a',     [VERDICT_STANDS] = 'h',         [VERDICT_MOVES] = 'm',
+    [VERDICT_CREEPS] = 'c',   [VERDICT_UNDECIDED] = 'u',  [VERDICT_FALLS] = 'F',          [VERDICT_COLLAPSES] = 'C',
+    [VERDICT_TOO_FEW] = 'L',  [VERDICT_TOO_MANY] = 'M',   [VERDICT_SINKS] = 'S',          [VERDICT_TUNNELS] = 'T',
+    [VERDICT_EXPLODES] = 'E', [VERDICT_NON_FINITE] = 'N', [VERDICT_ADAPTER_FAILED] = 'A', [LOOK_NOT_APPLICABLE] = '-',
+    [LOOK_MISSING] = ' ',
 };
 
 typedef struct StabilityHtml {
@@ -179,8 +181,12 @@ static void put_borders(FILE *out, const StabilityHtml *html) {
     study_page_section(out, "Borders");
     fputs(
         "</h2>\n<p>The last value that holds | the first that fails, and how it fails there, or how it holds over the "
-        "whole range. Between them, a start shifted by a micrometre decides.</p>\n",
+        "whole range. Between them, a start shifted by a micrometre decides.",
         out);
+    bool struck = false;
+    for (int i = 0; i < borders->count; i++) struck |= border_is_struck(borders, i);
+    if (struck) html_print(out, " %s", stability_struck_words);
+    fputs("</p>\n", out);
     study_page_region(out, "borders scroll", "Borders", "");
     fputs("<table>\n<thead><tr><th scope=\"col\">Study</th>", out);
     for (int m = 0, at; (at = find_border_method(borders, m)) >= 0; m++) {

@@ -67,7 +67,7 @@ void stability_grid_end(GridContext *context);
 
 /* Judges the cells first .. end - 1, row by row from the least y, and writes their rows of the table "maps", with a section
    for each of grid->methods (studies/chart.h). Omits methods that do not apply to the scene, methods that set their own
-   number of sweeps if the map scans it, and the reference, by which runs are judged. */
+   number of sweeps if the map scans it, and the reference, by which runs are judged, unless the scene is struck. */
 bool stability_grid_write(const GridContext *context, int first, int end, FILE *results, const Progress *progress,
                           Error *error);
 

@@ -177,12 +177,19 @@ const MapCell *map_panels_cell(const MapPanels *map, const CsvTable *table, int 
     return NULL;
 }
 
-/* Blues, then orange to red to black: hues that the colour-blind can distinguish. */
+/* Blues, then orange to red to black: hues that the colour-blind can distinguish. In studies of struck scenes what agrees is
+   green, and a bar or a cross says that too few or too many fall. */
 const VerdictLook verdict_looks[VERDICT_LOOKS] = {
     [VERDICT_SETTLES] = {"settles", 0xEAF3FA, 0x7FA6BF, METHOD_CIRCLE, false, 0.35},
-    [VERDICT_SWAYS] = {"sways", 0xCBE2F1, 0x2F6C94, METHOD_CIRCLE, true, 0.8},
+    [VERDICT_AGREES] = {"agrees", 0xDDEBE0, 0x4F7D5E, METHOD_SQUARE, false, 0.35},
+    [VERDICT_STANDS] = {"stands", 0xE6F1F9, 0x4E7A96, METHOD_DIAMOND, false, 0.35},
+    [VERDICT_MOVES] = {"moves", 0xCBE2F1, 0x2F6C94, METHOD_CIRCLE, true, 0.8},
     [VERDICT_CREEPS] = {"creeps", 0xA3CBE5, 0x14486B, METHOD_CIRCLE, false, 0.8},
+    [VERDICT_UNDECIDED] = {"undecided", 0xF2F0E6, 0x6E6850, METHOD_PENTAGON, true, 0.8},
     [VERDICT_FALLS] = {"falls", 0xEE9A2E, 0x3D2000, METHOD_INVERTED_TRIANGLE, false, 0.9},
+    [VERDICT_COLLAPSES] = {"collapses", 0xDF7F20, 0x3D2000, METHOD_TRIANGLE, false, 0.9},
+    [VERDICT_TOO_FEW] = {"too few fall", 0xE3B23C, 0x3D2000, PLOT_LEVEL, false, 1},
+    [VERDICT_TOO_MANY] = {"too many fall", 0xDE8128, 0x2A1400, PLOT_PLUS, false, 1.1},
     [VERDICT_SINKS] = {"sinks", 0xCF6414, 0xFFFFFF, METHOD_SQUARE, true, 0.9},
     [VERDICT_TUNNELS] = {"tunnels", 0xA83232, 0xFFFFFF, METHOD_DIAMOND, true, 0.95},
     [VERDICT_EXPLODES] = {"explodes", 0x6E1650, 0xFFFFFF, PLOT_STAR, false, 1.1},
@@ -443,9 +450,16 @@ static void write_caption(const MapPanels *map, PlotPage *page) {
     text_add(
         page->caption, sizeof page->caption,
         "Where each method fails: map %s. Across: %s; up: %s. Each cell is one run and its worst verdict; darker is "
-        "worse. Settling, swaying and creeping count as holding; the black line separates them from failing. All "
+        "worse. Settling, moving and creeping count as holding; the black line separates them from failing. All "
         "cells have the same size, whatever their values.",
         map->first->map, x, y);
+    bool struck = false;
+    for (int panel = 0; panel < map->panel_count; panel++)
+        for (int cell = 0; cell < map->x_count * map->y_count; cell++) {
+            const int look = map->looks[panel][cell % map->x_count][cell / map->x_count];
+            struck |= look == VERDICT_AGREES || look == VERDICT_TOO_FEW || look == VERDICT_TOO_MANY;
+        }
+    if (struck) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
 }
 
 /* The figure and its caption. All cells have the same size; ticks show their values. */

@@ -54,20 +54,18 @@ static Scene *scene_at(const StabilityScan *scan, double value, Error *error) {
     return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
 }
 
-static bool judge(const StabilityScan *scan, const Scene *scene, const Method *method, const EnergyLog *log,
-                  VerdictReading *reading, Error *error) {
-    const StabilityPlace place = place_of(scan);
-    const VerdictRun run = stability_verdict_run(&place, scene, scan->study->stands, log);
-    return verdict_run(reading, scene, method, &run, error);
-}
-
 bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
                         ConvergedRuns *converged, VerdictReading *reading, Error *error) {
+    const StabilityPlace place = place_of(scan);
     Scene *scene = scene_at(scan, value, error);
-    const EnergyLog *log = scene != NULL ? converged_runs_get(converged, scene, value, error) : NULL;
-    if (scene != NULL) stability_shift(scene, seed);
-    if (scene != NULL && method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
-    bool ok = log != NULL && judge(scan, scene, method, log, reading, error);
+    if (scene == NULL) return false;
+    VerdictRun judged = stability_verdict_run(&place, scene, scan->study->stands, NULL);
+    const ConvergedRun *run = converged_runs_get(converged, scene, value, &judged, error);
+    stability_shift(scene, seed);
+    if (method->kind->description->role == METHOD_REFERENCE) scene->warm_starting = true;
+    if (run != NULL) judged.converged = &run->log;
+    const bool ok = run != NULL && verdict_run(reading, scene, method, &judged, error);
+    if (ok) reading->verdict = stability_compare(reading, run->truth, method);
     scene_destroy(scene);
     return ok;
 }

@@ -43,6 +43,22 @@ bool border_holds(const BorderRow *row, double value) {
 
 bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a->study, b->study) == 0; }
 
+const char stability_struck_words[] = "Where a bomb or a moving body strikes, a method holds where it agrees with the "
+                                      "reference: as there, no box falls, fewer "
+                                      "than half of the boxes, or at least half; the reference itself holds where it "
+                                      "stands. Undecided: a micrometre decides.";
+
+bool border_is_struck(const CsvTable *table, int i) {
+    for (int k = 0; k < table->count; k++) {
+        const int verdict = border_row(table, k)->verdict;
+        if (!border_same_study(border_row(table, k), border_row(table, i))) continue;
+        if (verdict == VERDICT_AGREES || verdict == VERDICT_STANDS || verdict == VERDICT_UNDECIDED ||
+            verdict == VERDICT_TOO_FEW || verdict == VERDICT_TOO_MANY || verdict == VERDICT_COLLAPSES)
+            return true;
+    }
+    return false;
+}
+
 void stability_method_name(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting) {
     char whole[CSV_NAME_SIZE + STABILITY_SETTING_SIZE];
     snprintf(whole, sizeof whole, "%s%s%s", method, setting[0] != '\0' ? ":" : "", setting);

@@ -188,7 +188,7 @@ static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, 
             break;
     }
     world_destroy(world);
-    if (failure.kind != ERROR_SYSTEM) return true;
+    if (failure.kind == ERROR_NONE || failure.failure != FAILURE_NONE) return true;
     *error = failure;
     return false;
 }

@@ -31,7 +31,7 @@ equal "figures" "$(cd map && echo *.png)" map-speed_thickness.png
 
 # 10,000 steps at rest.
 run 0 stability --scenes "$scenes" --study at_rest --methods interior,pair-net -o rest
-says "at_rest: the last height that holds, drift and energy after 10 s"
+says "at_rest: the last height that holds, drift and energy after 10 falls"
 says "  interior                 20 settles, "
 says "  pair-net                 1 explodes"
 equal "runs that stay in place" \

@@ -15,7 +15,7 @@ FIXTURE(read_table) {
     static const char text[] = HEADER "a,engine,,h,,10,i,,1,falls,9,1,1,m\na,engine,,h,,10.05,i,,1,sinks,9,1,1,m\n"
                                       "a,engine,,h,,-20,i,,0,falls,9,1,1,m\n"
                                       "a,engine,k=4,h,,10,i,,1,not applicable,,,,\n"
-                                      "a,momentum,,h,,10,i,,1,sways,9,1,1,J\na,nncg,,h,,10,i,,1,settles,9,1,1,J\n"
+                                      "a,momentum,,h,,10,i,,1,moves,9,1,1,J\na,nncg,,h,,10,i,,1,settles,9,1,1,J\n"
                                       "b,engine,,h,,10.05,i,,1,settles,9,1,1,J\n";
     assert_ok(file_write_soon(temporary_path("maps.csv"), text, strlen(text), &error), error);
     assert_ok(csv_table_read_from(&table, temporary_folder, &map_layout, &error), error);

@@ -10,7 +10,7 @@ run 0 stability --scenes "$scenes" -o maps --pages $maps --methods $methods
 says " MB together -> maps/pages; links to them -> maps/stability.html"
 /usr/bin/python3 - <<'PYTHON' || fail "stability.html"
 import collections, csv, os, pages
-HOLDS = {"settles", "sways", "creeps"}
+HOLDS = {"settles", "moves", "creeps"}
 cells = collections.defaultdict(dict)
 for row in csv.DictReader(open("maps/maps.csv")):
     cells[row["map"], row["method"], row["setting"]][float(row["x"]), float(row["y"])] = row

@@ -139,7 +139,7 @@ TEST(invalid_borders_are_refused_with_their_place) {
         {"s,engine,,h,,1,2,\n", "stability.csv:2:18: error: verdict: the field is empty"},
         {"s,engine,,h,,1,2,settles\n", "stability.csv:2:1: error: 'settles' contradicts the values"},
         {"s,engine,,h,,,,settles\n", "stability.csv:2:1: error: 'settles' contradicts the values"},
-        {"s,engine,,h,,,2,sways\n", "stability.csv:2:1: error: 'sways' contradicts the values"},
+        {"s,engine,,h,,,2,moves\n", "stability.csv:2:1: error: 'moves' contradicts the values"},
         {"s,engine,,h,,1,2,not applicable\n", "stability.csv:2:1: error: 'not applicable' cannot have values"},
         {"s,engine,,h,,1,2,falls\ns,nncg,,h,m,1,2,falls\n",
          "stability.csv:3:1: error: the study 's' had another parameter before"},

@@ -6,7 +6,7 @@
 
 /* One cell of each verdict, and one sample in the legend. */
 TEST(each_verdict_has_its_tile) {
-    char *maps = make_map(1, 5, 2);
+    char *maps = make_map(1, 8, 2);
     start_afresh(maps, BORDERS ONE_BORDER);
     free(maps);
     draw();
@@ -22,7 +22,7 @@ TEST(each_verdict_has_its_tile) {
 /* Two edges: between two cells side by side, and between two cells one above the other, with a gap in their values.
    Missing and not applicable cells have no edges. */
 TEST(the_border_separates_holding_from_failing) {
-    start_afresh(MAPS "m,engine,,a,,1,b,,1,settles,,,,\nm,engine,,a,,2,b,,1,sways,,,,\nm,engine,,a,,3,b,,1,falls,,,,\n"
+    start_afresh(MAPS "m,engine,,a,,1,b,,1,settles,,,,\nm,engine,,a,,2,b,,1,moves,,,,\nm,engine,,a,,3,b,,1,falls,,,,\n"
                       "m,engine,,a,,1,b,,2,creeps,,,,\nm,engine,,a,,3,b,,2,sinks,,,,\n"
                       "m,engine,,a,,1,b,,5,explodes,,,,\nm,engine,,a,,2,b,,5,not applicable,,,,\n",
                  BORDERS ONE_BORDER);
@@ -38,13 +38,13 @@ TEST(the_border_separates_holding_from_failing) {
 /* The legend has the verdicts of the panels that stay, too. */
 TEST(panels_without_a_border_are_left_out_and_named) {
     start_afresh(MAPS CELLS("engine,k=4", "settles", "falls") CELLS("interior,", "settles", "creeps")
-                     CELLS("momentum,", "sways", "falls") CELLS("pair-net,", "explodes", "falls")
+                     CELLS("momentum,", "moves", "falls") CELLS("pair-net,", "explodes", "falls")
                          CELLS("pair-net,net=off", "explodes", "not applicable")
                              CELLS("scene-net,", "not applicable", "not applicable"),
                  BORDERS ONE_BORDER);
     draw();
     check_svg("found, words = texts(read('map-m')), caption('map-m')\n"
-              "for text in ('engine:k=4', 'momentum', 'settles', 'sways', 'falls'):\n"
+              "for text in ('engine:k=4', 'momentum', 'settles', 'moves', 'falls'):\n"
               "    expect(found.count(text), 1, text)\n"
               "for text in ('interior', 'pair-net', 'scene-net', 'creeps', 'explodes', 'not applicable'):\n"
               "    expect(found.count(text), 0, text)\n"
@@ -54,7 +54,7 @@ TEST(panels_without_a_border_are_left_out_and_named) {
 }
 
 TEST(without_any_border_all_panels_stay) {
-    start_afresh(MAPS CELLS("engine,", "settles", "sways") CELLS("nncg,", "falls", "falls"), BORDERS ONE_BORDER);
+    start_afresh(MAPS CELLS("engine,", "settles", "moves") CELLS("nncg,", "falls", "falls"), BORDERS ONE_BORDER);
     draw();
     check_svg("assert {'engine', 'nncg'} < set(texts(read('map-m'))), texts(read('map-m'))\n"
               "assert 'Left out' not in caption('map-m'), caption('map-m')\n");
@@ -73,7 +73,7 @@ TEST(no_place_of_three_panels_is_empty) {
 
 /* Only the words that occur, each once. */
 TEST(captions_explain_their_words) {
-    start_afresh(MAPS CELLS("engine,k=4", "settles", "falls") CELLS("engine,\"k=50,warm=off\"", "sways", "falls")
+    start_afresh(MAPS CELLS("engine,k=4", "settles", "falls") CELLS("engine,\"k=50,warm=off\"", "moves", "falls")
                      CELLS("scene-net,net=off", "settles", "falls") CELLS("unknown,q=1", "settles", "falls"),
                  BORDERS "s,nncg,near=0.5,h,,1,2,falls\n");
     draw();
@@ -154,7 +154,7 @@ TEST(invalid_maps_are_refused_with_their_place) {
     static const struct {
         const char *rows, *message;
     } cases[] = {
-        {START "1,dances,,,,\n", "maps.csv:2:25: error: verdict: 'dances' is not one of settles, sways"},
+        {START "1,dances,,,,\n", "maps.csv:2:25: error: verdict: 'dances' is not one of settles, agrees"},
         {START "one,falls,,,,\n", "maps.csv:2:23: error: y: 'one' is not a number"},
         {START ",falls,,,,\n", "maps.csv:2:23: error: y: the field is empty"},
         {START "inf,falls,,,,\n", "maps.csv:2:23: error: y: 'inf' is not a number"},

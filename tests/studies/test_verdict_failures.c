@@ -232,7 +232,8 @@ TEST(a_failed_step_is_non_finite) {
     trial_begin(&trial);
     trial.bodies[1].velocity = vec2(-3, 4);
     trial_go(&trial, 7);
-    const Error failure = {ERROR_INPUT, "world: error: the state of body 1 is NaN or infinite"};
+    Error failure = {0};
+    error_failure(&failure, FAILURE_NOT_FINITE, "world", "the state of body 1 is NaN or infinite");
     verdict_watch_failed(&trial.watch, 8, &failure);
     verdict_watch_failed(&trial.watch, 9, &failure);
     assert_true(verdict_watch_is_final(&trial.watch));
@@ -268,11 +269,12 @@ TEST(the_worst_verdict_counts_with_its_first_frame) {
 }
 
 TEST(verdicts_have_names) {
-    const char *const names[VERDICTS] = {"settles", "sways",    "creeps",     "falls",         "sinks",
-                                         "tunnels", "explodes", "non-finite", "adapter failed"};
+    const char *const names[VERDICTS] = {"settles",   "agrees",  "stands",    "moves",        "creeps",
+                                         "undecided", "falls",   "collapses", "too few fall", "too many fall",
+                                         "sinks",     "tunnels", "explodes",  "non-finite",   "adapter failed"};
     for (int i = 0; i < VERDICTS; i++) {
         assert_string_equal(verdict_name((Verdict)i), names[i]);
-        assert_true(verdict_holds((Verdict)i) == (i < 3));
+        assert_true(verdict_holds((Verdict)i) == (i < 5));
     }
 }
 

@@ -10,7 +10,7 @@ enum { TRIAL_FRAMES = 3600, TRIAL_SECOND = 60 };
 typedef struct Trial {
     int frame, count, contact_count, bomb;
     Body bodies[4];
-    ContactPoint contacts[2];
+    ContactPoint contacts[4];
     VerdictRun run;
     EnergyLog converged;
     double energy[TRIAL_FRAMES + 1]; /* the converged run's */

@@ -18,8 +18,8 @@ function tell_runs() {
   ui.summary.textContent = `${runs.length} run${runs.length > 1 ? "s" : ""} of ` +
     `${six_digits((data.total - 1) * data.dt / data.every)} s, ` +
     `${[...new Set(runs.map(run => run.bodies))].join(" and ")} bodies. ` +
-    sentence(`Against ${names[0]}: `, runs.map(where_apart).map(of_run).slice(1)) +
-    sentence("Verdicts: ", runs.map((_, run) => of_run(short_verdict(run), run)).filter(text => text));
+    sentence("", runs.map((_, run) => of_run(short_verdict(run), run)).filter(text => text)) +
+    sentence(`Against ${names[0]}: `, runs.map(where_apart).map(of_run).slice(1));
   ui["left-out"].textContent = sentence("Left out of this page: ", data.left_out);
 
   /* Equal values of all runs stand once. */
