@@ -80,7 +80,8 @@ const ContactSolverKind solver_closed_form = {
                     .caption = "complementarity-free contact",
                     .look = {METHOD_VERMILION, METHOD_CIRCLE},
                     .settings = settings,
-                    .chart = METHOD_RUNS("", "damping=0.6", "stiffness=0,damping=1")},
+                    .chart = METHOD_RUNS("", "damping=0.6", "stiffness=0,damping=1", "stiffness=0.5,damping=0.02",
+                                         "stiffness=1,damping=0.5", "stiffness=1,damping=1")},
     .create = create,
     .solve = solve,
     .destroy = free};
