@@ -370,7 +370,8 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
     if (!begin(avbd, begun)) return error_memory(error, "avbd");
     make_passes(avbd, begun->step, begun->problem, begun->solution);
     begun->poses = avbd->poses;
-    return end(avbd, begun->problem, begun->solution) || error_failure(error, FAILURE_NOT_FINITE, "avbd", "an impulse is NaN or infinite");
+    return end(avbd, begun->problem, begun->solution) ||
+           error_failure(error, FAILURE_NOT_FINITE, "avbd", "an impulse is NaN or infinite");
 }
 
 static void keep(void *state, const World *world) {

@@ -296,7 +296,8 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
     if (!begin(stepping, begun)) return error_memory(error, "soft-step");
     take_substeps(stepping, begun->step->scene->gravity, begun->problem->dt);
     begun->poses = stepping->poses;
-    return end(stepping, begun->solution) || error_failure(error, FAILURE_NOT_FINITE, "soft-step", "an impulse is NaN or infinite");
+    return end(stepping, begun->solution) ||
+           error_failure(error, FAILURE_NOT_FINITE, "soft-step", "an impulse is NaN or infinite");
 }
 
 static void keep(void *state, const World *world) {

@@ -36,8 +36,8 @@ TEST(learned_methods_stand_beside_their_twins) {
 TEST(tables_and_three_formats_are_written) {
     static const char *const files[] = {"equal_time.csv", "equal_time_methods.csv", "equal_time.png", "equal_time.pdf"};
     static const char *const begins[] = {"scene,method,setting,phase,statistic,launches,us_solver,error,rival,",
-                                         "scene,method,us_solver,reach,error,rival,rival_error,ratio,below\n", "\x89PNG",
-                                         "%PDF-"};
+                                         "scene,method,us_solver,reach,error,rival,rival_error,ratio,below\n",
+                                         "\x89PNG", "%PDF-"};
     for (int i = 0; i < 4; i++) {
         size_t size;
         char *data = read_whole(temporary_path(files[i]), &size);
