@@ -75,6 +75,39 @@ static void print_bodies(FILE *out, const Scene *scene) {
     if (scene->overlaps_allowed) fprintf(out, "    overlaps: allowed\n");
 }
 
+/* Where the engine's lengths do not fit the scene: shares of the smallest side of a box. */
+typedef struct Fit {
+    double side; /* m; NAN: no box */
+    double slop; /* of that, what contacts leave uncorrected */
+    double step; /* of that, how far a box at rest falls in a step before its contact is felt */
+} Fit;
+
+static const double fits = 0.05;
+
+static Fit find_fit(const Scene *scene) {
+    const double dt = (double)scene->dt, pull = vec2_distance(scene->gravity, vec2(0, 0));
+    double side = INFINITY;
+    for (int i = 0; i < scene->body_count; i++)
+        if (!scene->bodies[i].fixed)
+            side = fmin(side, fmin((double)scene->bodies[i].size.x, (double)scene->bodies[i].size.y));
+    if (isinf(side)) return (Fit){NAN, 0, 0};
+    return (Fit){side, (double)CONTACT_SLOP / side, pull * dt * dt / side};
+}
+
+static void print_fit(FILE *out, const Scene *scene) {
+    const Fit fit = find_fit(scene);
+    if (fit.slop > fits)
+        fprintf(out,
+                "    size: contacts leave overlaps of %g m (slop), %.3g%% of the smallest side, %.3g m: make the scene "
+                "larger\n",
+                (double)CONTACT_SLOP, 100 * fit.slop, fit.side);
+    if (fit.step > fits)
+        fprintf(out,
+                "    size: in a step a box falls by %.3g%% of the smallest side, %.3g m, and is pushed out again by a "
+                "fifth a step: make dt shorter\n",
+                100 * fit.step, fit.side);
+}
+
 /* ", x from -5 to 5 m": behind the family so far. */
 static void add_family(char *text, size_t size, const char *name, const SceneSpan *span, const char *unit) {
     if (scene_span_varies(span))
@@ -174,6 +207,11 @@ static void write_result(JsonWriter *json, const void *context) {
     json_put_number(json, "dt", (double)scene->dt);
     json_put_int(json, "iterations", scene->iterations);
     json_put_bool(json, "overlaps_allowed", scene->overlaps_allowed);
+    const Fit fit = find_fit(scene);
+    json_begin_object(json, "of_smallest_side", JSON_ONE_LINE);
+    json_put_number(json, "slop", fit.slop);
+    json_put_number(json, "step", fit.step);
+    json_end(json);
     if (!json_put_absent(json, "bomb", !scene->bomb.present)) put_bomb(json, scene);
     json_begin_array(json, "parameters", JSON_LINES);
     for (int i = 0; i < scene->parameter_count; i++) {
@@ -199,6 +237,7 @@ static void print_summary(FILE *out, const char *path, const Scene *scene) {
     print_bodies(out, scene);
     print_bomb(out, scene);
     print_lists(out, scene);
+    print_fit(out, scene);
     fflush(out);
 }
 

@@ -32,7 +32,7 @@ static Value show(double number) {
     return value;
 }
 
-/* "14 | 15 falls"; without a value on one side: "40 | - sways". */
+/* "14 | 15 falls"; without a value on one side: "40 | - moves". */
 static void describe(const BorderRow *row, char text[LABEL_SIZE]) {
     const char *verdict = verdict_words[row->verdict];
     if (isnan(row->holds_at) && isnan(row->fails_at))
