@@ -112,4 +112,13 @@ complains "missing.yaml: error: cannot open"
 # Scenes of the repository are in order (tests/scenes/test_stability.c and tests/runs/test_launch_check.c read them all).
 ! brief || finish
 for file in "$scenes"/*.yaml "$scenes"/families/g*.yaml "$scenes"/stability/{arch,overlap}.yaml; do run 0 check "$file" -o first.png; done
+# Where slop and steps do not fit the size of the boxes: 10 mm of 50 mm; 10 m/s^2 (1/60 s)^2 are 2.8 mm.
+printf '%s\n' "gravity: [0, -10]" "dt: 1/60" "iterations: 10" "frames: 2" "bodies:" \
+    "  - {static: true, size: [10, 1], position: [0, -0.5]}" "  - {mass: 1, size: [1, 0.05], position: [0, 0.025]}" >thin.yaml
+run 0 check thin.yaml -o thin.png
+says "size: contacts leave overlaps of 0.01 m (slop), 20% of the smallest side, 0.05 m"
+says "size: in a step a box falls by 5.56% of the smallest side, 0.05 m"
+sed 's/0.05]/0.5]/; s/0.025]/0.25]/' thin.yaml >thick.yaml
+run 0 check thick.yaml -o thick.png
+equal "lines about the size" "$(grep -c size: out)" 0
 finish
