@@ -31,12 +31,14 @@ def poses_only(path):
 def make(twinbox, run, folder):
     """Makes a run, as its .npz and, but for an imported one, the verdict while it was made. Returns both paths."""
     npz, verdict = os.path.join(folder, "run.npz"), os.path.join(folder, "verdict.json")
-    poses = None
+    options, poses = shlex.split(run["options"]), None
     if run["source"] == "poses":
         poses = subprocess.run([os.path.join(HERE, "poses"), run["scene"]], stdout=subprocess.PIPE, check=True).stdout
+    elif run["source"] == "engine":
+        command(twinbox, "import", run["scene"], *options, "-o", npz)
     else:
-        command(twinbox, "simulate", run["scene"], "--method", run["method"], *shlex.split(run["options"]),
-                "--no-contacts", "-o", npz, "--verdict", verdict)
+        command(twinbox, "simulate", run["scene"], "--method", run["method"], *options, "--no-contacts", "-o", npz,
+                "--verdict", verdict)
     if run["source"] == "csv":
         command(twinbox, "export", npz, "-o", npz + ".csv")
         poses = poses_only(npz + ".csv")
