@@ -177,6 +177,7 @@ bool verdict_note(VerdictWatch *watch, Verdict verdict, int body, double value, 
 
 /* False if a body's state is NaN or infinite. */
 bool check_finite(VerdictWatch *watch, const VerdictStep *step);
+void check_bursts(VerdictWatch *watch, const VerdictStep *step); /* after new bodies are added */
 void check_energy(VerdictWatch *watch, const VerdictStep *step);
 
 /* False if memory is short. */

@@ -69,6 +69,14 @@ static bool starts_still(const Scene *scene, int i) {
     return i < scene->body_count && body->velocity.x == 0 && body->velocity.y == 0 && body->angular_velocity == 0;
 }
 
+/* What energy can come from, and the smallest side. */
+static void add_source(VerdictWatch *watch, const Body *body) {
+    watch->smallest = fmin(watch->smallest, smaller_side(body));
+    watch->largest = fmax(watch->largest, verdict_size(body));
+    watch->highest = fmax(watch->highest, body_height(body, watch->run.gravity));
+    watch->liveliest = fmax(watch->liveliest, body_energy(body, vec2(0, 0)) * body->inv_mass);
+}
+
 static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, Error *error) {
     if (!array_reserve((void **)&watch->bodies, &watch->capacity, (size_t)count, sizeof *watch->bodies))
         return error_memory(error, "verdict");
@@ -87,7 +95,7 @@ static bool add_bodies(VerdictWatch *watch, const Body *bodies, int count, Error
                           .last_angle = bodies[i].angle,
                           .below = -1,
                           .stands = dynamic && (watch->run.struck == NULL || starts_still(watch->run.struck, i))};
-        if (dynamic) watch->smallest = fmin(watch->smallest, smaller_side(&bodies[i]));
+        if (dynamic) add_source(watch, &bodies[i]);
         if (dynamic) continue;
         watch->floor = fmin(watch->floor, lowest);
         if (!add_static(watch, &bodies[i], i, error)) return false;
@@ -142,6 +150,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
                             .worst = {.other = -1},
                             .smallest = INFINITY,
                             .floor = INFINITY,
+                            .highest = -INFINITY,
                             .bodies = watch->bodies,
                             .capacity = watch->capacity,
                             .statics = watch->statics,
@@ -174,6 +183,7 @@ bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *given, Error *er
     if (!check_finite(watch, step)) return true;
     check_energy(watch, step);
     if (!add_bodies(watch, step->bodies, step->body_count, error)) return false;
+    check_bursts(watch, step);
     if (!check_passes(watch, step, error)) return false;
     check_depth(watch, step);
     check_falls(watch, step);
@@ -227,9 +237,10 @@ static double moved_by(const VerdictWatch *watch, const WatchedBody *body) {
 
 static VerdictCount count_bodies(const VerdictWatch *watch) {
     VerdictCount count = {.body = -1};
+    const bool gravity = vec2_dot(watch->run.gravity, watch->run.gravity) > 0;
     for (int i = 0; i < watch->body_count; i++) {
         const WatchedBody *body = &watch->bodies[i];
-        if (!body->stands) continue;
+        if (!body->stands || (gravity && !body->landed)) continue;
         count.stood++;
         count.fell += body->fell > 0;
         count.left += body->left;
@@ -259,7 +270,7 @@ static void read_struck(const VerdictCount *count, VerdictReading *reading) {
 }
 
 static VerdictReading read_verdict(const VerdictWatch *watch) {
-    const bool calm = watch->calm >= VERDICT_CALM_FRAMES;
+    const bool calm = watch->calm >= falls_in_steps(watch, VERDICT_CALM_FALLS);
     VerdictReading reading = watch->worst;
     if (reading.verdict < VERDICT_CREEPS) {
         const int which = calm ? 0 : 1;
@@ -274,7 +285,8 @@ static VerdictReading read_verdict(const VerdictWatch *watch) {
     }
     reading.moving = !calm;
     reading.count = count_bodies(watch);
-    if (watch->run.struck != NULL && reading.verdict < VERDICT_UNDECIDED) read_struck(&reading.count, &reading);
+    if (watch->run.struck != NULL && reading.count.stood > 0 && reading.verdict < VERDICT_UNDECIDED)
+        read_struck(&reading.count, &reading);
     return reading;
 }
 

@@ -94,11 +94,12 @@ double verdict_size(const Body *body);
    whole steps. Without gravity, VERDICT_CALM_FRAMES steps, and gravity is taken as what would lead to that. */
 #define VERDICT_FALL_SIZES 5.0
 
-/* Settles: over the last VERDICT_CALM_FRAMES frames, each body rests: its kinetic energy is below that of a fall by
-   VERDICT_CALM_SHARE of its size (14 mm/s), and contacts have carried it in the last VERDICT_AIR_TIME falls, from a static
+/* Settles: over the last VERDICT_CALM_FALLS falls, each body rests: its kinetic energy is below that of a fall by
+   VERDICT_CALM_SHARE of its size (45 mm/s), and contacts have carried it in the last VERDICT_AIR_TIME falls, from a static
    body on, directly or through other bodies; without gravity nothing needs to be carried. Moves: otherwise. */
 enum { VERDICT_CALM_FRAMES = 60 };
-#define VERDICT_CALM_SHARE 1e-5
+#define VERDICT_CALM_FALLS 0.5
+#define VERDICT_CALM_SHARE 1e-4
 #define VERDICT_AIR_TIME 0.1
 
 /* Creeps: a body has moved more than VERDICT_CREEP_SHARE of its size (50 mm) in VERDICT_CREEP_FALLS, but not more than
@@ -139,6 +140,10 @@ enum { VERDICT_CREEP_FALLS = 10, VERDICT_CREEP_FROM = 10 };
    overlap by more than VERDICT_START_OVERLAP of their smaller size (10 mm) at the start. */
 #define VERDICT_REGAIN_SHARE 0.05
 #define VERDICT_START_OVERLAP 0.0105
+
+/* Explodes, too: a body has VERDICT_BURST times the energy per kg, kinetic and potential, that the fastest body and the highest one
+   have at the start, or when added: light boxes that a heavy one shoots away have no more than it had to lose. */
+#define VERDICT_BURST 5.0
 
 /* "settles", ... "adapter failed"; then "not applicable", for cells and borders without a verdict; then NULL. */
 extern const char *const verdict_words[VERDICTS + 2];
@@ -233,7 +238,9 @@ typedef struct WatchedBody {
     Vec2 outside;     /* m: last position of the centre outside all static boxes; initially the start */
     Vec2 last, stood; /* m: in the last frame; before the step in which it landed, initially the start */
     float last_angle, stood_angle;
-    bool stands; /* dynamic, and started at rest */
+    bool stands;           /* dynamic, and started at rest; not the bomb, nor what it struck in the air */
+    bool dropped, arrived; /* landed from far above; has come to rest since */
+    int still;             /* consecutive frames at rest, and carried */
     bool touched,
         landed; /* has had a contact; and one that carries it, by bodies that have landed, from a static one on */
     bool held, carried; /* in this frame: by a contact from below; by contacts, from a static body on */
@@ -291,10 +298,11 @@ typedef struct VerdictWatch {
     double smallest;   /* m: side of a dynamic body */
     double floor;      /* m: lowest height of a static body */
     double pull;       /* m/s^2: gravity, or what stands for it */
-    int fall;          /* steps of a fall; 0: no dynamic body so far */
-    double rested;     /* J: energy after VERDICT_CREEP_FROM falls */
-    double kinetic;    /* J: mean of the dynamic bodies */
-    double speed;      /* m/s: of the fastest body */
+    double liveliest, highest, largest; /* of a dynamic body at the start, or when added: J/kg, m, m */
+    int fall;                           /* steps of a fall; 0: no dynamic body so far */
+    double rested;                      /* J: energy after VERDICT_CREEP_FROM falls */
+    double kinetic;                     /* J: mean of the dynamic bodies */
+    double speed;                       /* m/s: of the fastest body */
     int restless[2];  /* the body that is farthest from rest, in the last frame and in the last one that was not calm */
     double unrest[2]; /* its speed, m/s; 0: it hangs in the air */
     int calm, deep;   /* consecutive calm frames; consecutive frames with a deep contact */
@@ -329,8 +337,8 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs: `verdict_alone`
    in tests/stability.
 
-   Of another engine every bound is higher by what gravity does in a step, m (g dt)^2 / 2: Chipmunk moves bodies before it
-   changes velocities, and so states both half a step apart.
+   What gravity does in a step, m (g dt)^2 / 2, is no explosion, however little energy is available. Of another engine every bound
+   is higher by it: Chipmunk moves bodies before it changes velocities, and so states both half a step apart.
 
    With a skin, boxes that a scene places side by side are pushed apart: each bound is higher by what lifts every body
    by two skins for each body that may be below it, its height over the smallest side.
@@ -339,7 +347,8 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    all static boxes intersects one. Not if the centre is inside a box for a step and is pushed out again; if it stays
    inside, it sinks. Also finds bodies that leave the world through the ground, but not past its edge.
 
-   Falls: a body stood where it was when it landed, so that gaps that a scene starts with may close. Its sag is
+   Falls: a body stood where it was when it landed, so that gaps that a scene starts with may close; if it dropped from above, where it
+   came to rest, or was when the bomb struck. What has not landed has not stood. Its sag is
    subtracted: the mean depth of the contact from below, and the sag of the body there, the most if there are several. A
    contact is from below if its normal is nearer to gravity than to the horizontal. A column that leans gets no
    sag, and falls. A pile that gives way without end sinks. */
@@ -354,7 +363,7 @@ void verdict_watch_failed(VerdictWatch *watch, int frame, const Error *failure);
 /* True if the run can be stopped: it explodes, is non-finite, or its adapter failed. */
 bool verdict_watch_is_final(const VerdictWatch *watch);
 
-/* The verdict on the run up to the last step. A run shorter than VERDICT_CALM_FRAMES cannot settle. */
+/* The verdict on the run up to the last step. A run shorter than VERDICT_CALM_FALLS cannot settle. */
 VerdictReading verdict_watch_end(const VerdictWatch *watch);
 
 /* Runs the scene with the method, whose skin counts, until the verdict is final. A method that fails is a verdict, not an

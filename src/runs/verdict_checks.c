@@ -152,6 +152,9 @@ static void find_lower(const VerdictWatch *watch, const VerdictStep *step) {
 static bool land(const VerdictStep *step, int on, int i, VerdictWatch *watch) {
     WatchedBody *body = &watch->bodies[i];
     if (body->landed || (step->bodies[on].inv_mass != 0 && !watch->bodies[on].landed)) return false;
+    const double pull = vec2_distance(watch->run.gravity, vec2(0, 0));
+    const double drop = pull > 0 ? descent(body->stood, body->last, watch->run.gravity) / pull : 0;
+    body->dropped = drop > VERDICT_FALL_SHARE * smaller_side(&step->bodies[i]);
     body->stood = body->last;
     body->stood_angle = body->last_angle;
     return body->landed = true;
@@ -170,6 +173,17 @@ static bool land_all(VerdictWatch *watch, const VerdictStep *step) {
     return more;
 }
 
+/* What the bomb strikes before it has landed does not stand, nor does the bomb. */
+static void strike_in_the_air(VerdictWatch *watch, const VerdictStep *step) {
+    for (int i = 0; i < step->contact_count; i++) {
+        const ContactPoint *contact = &step->contacts[i];
+        if (!exists(step, contact) || (contact->a != step->bomb && contact->b != step->bomb)) continue;
+        WatchedBody *body = &watch->bodies[contact->a == step->bomb ? contact->b : contact->a];
+        body->stands &= body->landed;
+    }
+    watch->bodies[step->bomb].stands = false;
+}
+
 static void note_contacts(VerdictWatch *watch, const VerdictStep *step) {
     BodyPair pair;
     for (int i = 0; i < step->body_count; i++) watch->bodies[i].held = false;
@@ -182,19 +196,33 @@ static void note_contacts(VerdictWatch *watch, const VerdictStep *step) {
         watch->bodies[pair.b].below = pair.a;
     }
     while (land_all(watch, step)) continue;
+    if (step->bomb >= 0) strike_in_the_air(watch, step);
+}
+
+/* What drops into place stands where it comes to rest, or where it is when the bomb strikes. */
+static bool arrives(const VerdictWatch *watch, const VerdictStep *step, int i) {
+    WatchedBody *body = &watch->bodies[i];
+    if (!body->dropped || body->arrived || (step->bomb >= 0 && watch->bodies[step->bomb].touched)) return false;
+    body->stood = step->bodies[i].position;
+    body->stood_angle = step->bodies[i].angle;
+    body->fell = 0;
+    return true;
 }
 
 void check_falls(VerdictWatch *watch, const VerdictStep *step) {
     note_contacts(watch, step);
-    for (int i = 0; i < step->body_count; i++)
-        watch->bodies[i].landed |=
-            body_height(&step->bodies[i], watch->run.gravity) < watch->floor; /* nothing to land on */
+    for (int i = 0; i < step->body_count; i++) {
+        WatchedBody *body = &watch->bodies[i];
+        if (body->landed || body_height(&step->bodies[i], watch->run.gravity) >= watch->floor) continue;
+        body->landed = true; /* nothing to land on */
+        body->stands = false;
+    }
     const bool judged = judges_falls(watch, step->bomb);
     find_lower(watch, step);
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
         WatchedBody *watched = &watch->bodies[i];
-        if (body->inv_mass == 0 || !watched->landed) continue;
+        if (body->inv_mass == 0 || !watched->landed || arrives(watch, step, i)) continue;
         const double turned = fabs((double)body->angle - watched->stood_angle) * degrees;
         const bool is_lower = watched->lower - watched->sag > VERDICT_FALL_SHARE * smaller_side(body);
         const bool is_turned = turned > VERDICT_FALL_ANGLE;
@@ -280,6 +308,8 @@ void check_calm(VerdictWatch *watch, const VerdictStep *step) {
             share = 1;
             speed = 0;
         }
+        watched->still = share < 1 && watched->air == 0 && watched->landed ? watched->still + 1 : 0;
+        watched->arrived |= watched->still > longest;
         if (!must_rest(watch, i) || share < most || (share == most && watch->restless[0] >= 0)) continue;
         most = share;
         watch->restless[0] = i;

@@ -153,11 +153,16 @@ static double step_rounding(const VerdictWatch *watch, const VerdictStep *step) 
     return sum;
 }
 
+/* J: what gravity does in a step, m (g dt)^2 / 2. */
+static double step_energy(const VerdictWatch *watch) {
+    const double dt = (double)watch->run.dt, gravity = vec2_distance(watch->run.gravity, vec2(0, 0));
+    return watch->own.weight * gravity * dt * dt / 2;
+}
+
 /* J: what is no gain: rounding; of another engine, what its skins may lift, and what gravity does in a step. */
 static double tolerated_energy(const VerdictWatch *watch) {
     const EnergyBalance *own = &watch->own;
-    const double dt = (double)watch->run.dt, gravity = sqrt((double)vec2_dot(watch->run.gravity, watch->run.gravity));
-    const double step = watch->run.other_engine ? own->weight * gravity * dt * dt / 2 : 0;
+    const double step = watch->run.other_engine ? step_energy(watch) : 0;
     if (!isfinite(watch->smallest)) return step + watch->rounding;
     return step + watch->rounding + 2 * (double)watch->run.skin * (own->weight + own->potential / watch->smallest);
 }
@@ -167,7 +172,8 @@ static double tolerated_energy(const VerdictWatch *watch) {
 static double excess_beside(const VerdictWatch *watch, int frame) {
     const EnergyLog *converged = watch->run.converged;
     const double allowed =
-        VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_LIFT * watch->own.lift) +
+        fmax(VERDICT_ENERGY_SHARE * fmax(converged->balance.available, VERDICT_LEAST_LIFT * watch->own.lift),
+             step_energy(watch)) +
         tolerated_energy(watch);
     if (watch->energy <= watch->kept + allowed) return 0;
     const double bound =
@@ -180,9 +186,10 @@ static double excess_alone(const VerdictWatch *watch) {
     const double tolerated = tolerated_energy(watch);
     const EnergyBalance *own = &watch->own;
     const double available = fmax(fmax(own->available, own->potential + own->kinetic), VERDICT_LEAST_LIFT * own->lift);
-    if (watch->energy > watch->brought + VERDICT_ENERGY_SHARE * available + tolerated)
-        return watch->energy - watch->brought;
-    return watch->energy > watch->kept + VERDICT_REGAIN_SHARE * available + tolerated ? watch->energy - watch->kept : 0;
+    const double gain = fmax(VERDICT_ENERGY_SHARE * available, step_energy(watch)),
+                 regain = fmax(VERDICT_REGAIN_SHARE * available, step_energy(watch));
+    if (watch->energy > watch->brought + gain + tolerated) return watch->energy - watch->brought;
+    return watch->energy > watch->kept + regain + tolerated ? watch->energy - watch->kept : 0;
 }
 
 void check_energy(VerdictWatch *watch, const VerdictStep *step) {
@@ -205,4 +212,20 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
     if (watch->peak_steps < falls_in_steps(watch, VERDICT_ENERGY_TIME)) return;
     end_fall(watch, fmin(watch->kept, watch->peak));
     if (isinf(watch->brought)) watch->brought = watch->peak;
+}
+
+void check_bursts(VerdictWatch *watch, const VerdictStep *step) {
+    const Vec2 gravity = watch->run.gravity;
+    const double pull = vec2_distance(gravity, vec2(0, 0)), lowest = watch->own.lowest;
+    if (!isfinite(watch->highest)) return;
+    const double height = (pull > 0 ? watch->highest - lowest : 0) + watch->largest;
+    const double source = watch->liveliest + watch->pull * height; /* J/kg */
+    for (int i = 0; i < step->body_count; i++) {
+        const Body *body = &step->bodies[i];
+        if (body->inv_mass == 0) continue;
+        const double lift = pull > 0 ? pull * (body_height(body, gravity) - lowest) : 0;
+        const double energy = body_energy(body, vec2(0, 0)) * body->inv_mass + lift;
+        if (energy > VERDICT_BURST * source + watch->rounding * body->inv_mass)
+            verdict_note(watch, VERDICT_EXPLODES, i, (energy - source) / body->inv_mass, "J");
+    }
 }
