@@ -34,6 +34,8 @@ typedef struct Reference {
     int attempts;                  /* 0: the start's contact states were right; 1: interior points; more: begun again */
     bool scalar;                   /* set by the caller: no vector instructions; slower, with the same bits */
     /* workspace */
+    ReferenceVelocity *other_velocities; /* of another answer */
+    ReferenceImpulse *other_impulses;
     BlockGraph graph;
     int group_count, pair_count, contact_count; /* contact_count: that act on a moving body */
     ReferenceGroup *groups;
@@ -48,6 +50,8 @@ typedef struct Reference {
     } kept[2];          /* interior points to go back to */
     double aim, enough; /* m/s: residuals that end a solve: as soon as reached; once steps get short */
     int most;           /* factorizations that a solve may use */
+    bool persist;       /* goes on where a method would rather leave a step to sweeps */
+    bool push_out;      /* contacts have their bias */
     double jammed;      /* m/s: the impulse over effective mass that ends a solve, as there is no solution */
     int left;           /* that this attempt may still use */
     double stiffest;    /* a contact resists by at most this times its effective mass */
@@ -74,7 +78,13 @@ void reference_free(Reference *reference);
 bool reference_reserve(Reference *reference, const ContactProblem *problem);
 
 /* Solves until the residual is at most REFERENCE_TOLERANCE. start: initial impulses [contact_count]; NULL: the
-   problem's warm start. Not to reach the tolerance is not an error; see `residual`. False only when memory is short. */
+   problem's warm start. Not to reach the tolerance is not an error; see `residual`. False only when memory is short.
+
+   Where all attempts end above 1e-5 m/s, the step may have no solution. Its answer is then never one that adds energy: the best
+   that was found, or the solution without position correction, whichever has the smaller residual. Position correction
+   alone makes steps unsolvable: with a bias of 0, rest is allowed, and the problem has a solution (Anitescu, Potra,
+   "Formulating Dynamic Multi-Rigid-Body Contact Problems with Friction as Solvable LCPs", 1997) with no more kinetic
+   energy than before its impulses. An answer with more is shortened: all impulses times the share that has the least energy. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, const ContactImpulse *start, Error *error);
 
 /* The same, but ends as soon as the residual is at most `tolerance` (m/s), after about `most` factorizations, or when

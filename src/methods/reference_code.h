@@ -4,7 +4,8 @@
    1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
       sliding) are those of a solution, a linear solve finds it (polish): nearly always at rest.
    2. Else the central path is followed to the solution (reference_path.h), also where it turns back.
-   3. If the path is lost, again from another distance and with another stiffness.
+   3. If the path is lost, again from another distance and with another stiffness; then from other starts: what more
+      sweeps make of the best answer so far, and of no impulses. A path that is lost from one start mostly ends from another.
 
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
    on the start. Included once by each reference_*.c. */
@@ -64,7 +65,13 @@ static double polish(Reference *r, double aim, double ahead) {
     return miss;
 }
 
-enum { START_SWEEPS = 2, FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
+enum { FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
+
+/* The first start is the warm start, the others the best answer or no impulses; then sweeps. */
+static const struct {
+    int sweeps;
+    bool from_nothing;
+} starts[] = {{2, false}, {100, false}, {100, true}, {800, false}, {800, true}};
 
 /* scale: distance of the start from its bounds, times its residual. stiffest: see Reference; with less, redundant
    contacts drift, with more, rounding hides the masses. most: factorizations. carefully: by the path's length. */
@@ -74,7 +81,7 @@ static const struct {
     bool carefully;
 } attempts[] = {{3, 1e12, 200, false},  {30, 1e13, 200, false}, {300, 1e12, 200, false}, {30, 1e12, 400, true},
                 {300, 1e13, 400, true}, {3, 1e14, 400, true},   {10, 1e11, 400, true},   {1000, 1e12, 400, true}};
-static const double look_ahead[] = {1e3, 1e6, 1e9, 1e11, 1e13}, near_solution = 1e-5; /* m/s */
+static const double look_ahead[] = {1e3, 1e6, 1e9, 1e11, 1e13};
 
 static void keep_start(Reference *r) {
     for (int i = 0; i < r->group_count; i++) {
@@ -109,20 +116,42 @@ static bool finish(Reference *r) {
     return r->best <= r->enough;
 }
 
-static void run(Reference *r) {
-    for (int i = 0; i < START_SWEEPS; i++) sweep(r);
+static void sweep_start(Reference *r, int sweeps) {
+    for (int i = 0; i < sweeps; i++) sweep(r);
     apply(r);
     keep_start(r);
-    r->best = INFINITY;
     keep_best(r, missed(r, NULL));
     keep_best(r, polish(r, r->aim, 1));
+}
+
+static bool try_all(Reference *r) {
     const int count = sizeof attempts / sizeof *attempts;
     bool solved = r->best <= r->aim;
-    for (; !solved && r->attempts < count && r->factorizations < r->most; r->attempts++) {
-        const int left = r->most - r->factorizations, most = attempts[r->attempts].most;
-        r->stiffest = attempts[r->attempts].stiffest;
-        begin(r, attempts[r->attempts].scale);
-        solved = follow(r, most < left ? most : left, attempts[r->attempts].carefully) || finish(r);
+    for (int i = 0; !solved && i < count && r->factorizations < r->most; i++) {
+        const int left = r->most - r->factorizations, most = attempts[i].most;
+        r->attempts++;
+        r->stiffest = attempts[i].stiffest;
+        begin(r, attempts[i].scale);
+        solved = follow(r, most < left ? most : left, attempts[i].carefully) || finish(r);
+    }
+    return solved;
+}
+
+static void begin_from(Reference *r, bool nothing) {
+    take_best(r);
+    for (int i = 0; nothing && i < r->group_count; i++) r->groups[i].normal = r->groups[i].tangent = all4(0);
+    apply(r);
+}
+
+static void run(Reference *r) {
+    const int count = sizeof starts / sizeof *starts;
+    r->best = INFINITY;
+    sweep_start(r, starts[0].sweeps);
+    bool solved = try_all(r);
+    for (int i = 1; r->persist && !solved && i < count; i++) {
+        begin_from(r, starts[i].from_nothing);
+        sweep_start(r, starts[i].sweeps);
+        solved = try_all(r);
     }
     take_best(r);
 }

@@ -412,6 +412,9 @@ static double largest_impulse(const Reference *r) {
     return largest;
 }
 
+/* Short steps in a row that end an attempt which had no long one yet: where masses differ much, dozens lead to the path. */
+enum { PATIENCE = 40 };
+
 static bool follow(Reference *r, int most, bool carefully) {
     const double good = 0.8, short_step = 0.1;
     const double near_end = 1e-4 > 25 * r->aim * r->aim ? 1e-4 : 25 * r->aim * r->aim; /* (m/s)^2 */
@@ -434,7 +437,7 @@ static bool follow(Reference *r, int most, bool carefully) {
             begun = true;
         }
         stuck = length < short_step || !forward ? stuck + 1 : 0;
-        if (stuck < 2 && !(carefully && length >= good)) continue;
+        if (stuck < (begun || !r->persist ? 2 : PATIENCE) && !(carefully && length >= good)) continue;
         if (!begun || !pass_fold(r, carefully)) break;
         mean = mean_product(r);
         stuck = 0;

@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Without friction, a cone this narrow: its inside is not empty. */
 static const double friction_min = 1e-12;
@@ -28,6 +29,7 @@ static bool reserve(Reference *r, const ContactProblem *problem) {
     const size_t pairs = contacts + BLOCK_PAIRS, groups = pairs / BLOCK_PAIRS + 1;
     return block_graph_reserve(&r->graph, problem->body_count, problem->contact_count) &&
            ARRAY_BLOCK_RESERVE(&r->memory, ARRAY_PART(r->velocities, bodies), ARRAY_PART(r->impulses, contacts),
+                               ARRAY_PART(r->other_velocities, bodies), ARRAY_PART(r->other_impulses, contacts),
                                ARRAY_PART(r->groups, groups), ARRAY_PART(r->pairs, pairs), ARRAY_PART(r->first, pairs),
                                ARRAY_PART(r->kept[0].points, groups), ARRAY_PART(r->kept[1].points, groups),
                                ARRAY_PART(r->kept[0].moved, bodies), ARRAY_PART(r->kept[1].moved, bodies),
@@ -49,9 +51,11 @@ static void find_pairs(Reference *r, const ContactProblem *problem) {
     r->group_count = (r->pair_count + BLOCK_PAIRS - 1) / BLOCK_PAIRS;
 }
 
-static void load_slot(ReferenceGroup *group, int slot, BlockPair *pair, int k, const ContactProblem *problem, int i) {
+static void load_slot(ReferenceGroup *group, int slot, BlockPair *pair, int k, const ContactProblem *problem, int i,
+                      bool push_out) {
     const ContactPoint *contact = &problem->contacts[i];
     const double friction = (double)contact->friction;
+    const double bias = push_out || contact->bias < 0 ? (double)contact->bias : 0;
     const Vec4 before = block_pair_velocity(&problem->bodies[contact->a], &problem->bodies[contact->b]);
     block_rows_load(&group->rows, slot, pair, k, contact->normal, contact->arm_a, contact->arm_b);
     group->weight[slot] = 1;
@@ -60,7 +64,7 @@ static void load_slot(ReferenceGroup *group, int slot, BlockPair *pair, int k, c
     group->inverse_normal[slot] = 1 / (double)contact->mass_normal;
     group->inverse_tangent[slot] = 1 / (double)contact->mass_tangent;
     group->friction[slot] = friction > friction_min ? friction : friction_min;
-    group->free_normal[slot] = sum4(pair->normal[k] * before) - (double)contact->bias;
+    group->free_normal[slot] = sum4(pair->normal[k] * before) - bias;
     group->free_tangent[slot] = sum4(pair->tangent[k] * before);
 }
 
@@ -78,7 +82,7 @@ static void load_pair(Reference *r, int i, const ContactProblem *problem) {
     const int first = r->first[i], count = r->first[i + 1] - first;
     r->contact_count += count;
     for (int k = 0; k < count; k++)
-        load_slot(&r->groups[i / BLOCK_PAIRS], i % BLOCK_PAIRS * 2 + k, pair, k, problem, first + k);
+        load_slot(&r->groups[i / BLOCK_PAIRS], i % BLOCK_PAIRS * 2 + k, pair, k, problem, first + k, r->push_out);
 }
 
 bool reference_reserve(Reference *r, const ContactProblem *problem) {
@@ -109,6 +113,15 @@ static void set_start(Reference *r, const ContactProblem *problem, const Contact
             ReferenceGroup *group = &r->groups[i / BLOCK_PAIRS];
             group->normal[slot] = (double)(given != NULL ? given[x].normal : contact->warm_normal);
             group->tangent[slot] = (double)(given != NULL ? given[x].tangent : contact->warm_tangent);
+        }
+}
+
+/* The last answer. */
+static void set_answer(Reference *r) {
+    for (int i = 0; i < r->pair_count; i++)
+        for (int x = r->first[i], slot = i % BLOCK_PAIRS * 2; x < r->first[i + 1]; x++, slot++) {
+            r->groups[i / BLOCK_PAIRS].normal[slot] = r->impulses[x].normal;
+            r->groups[i / BLOCK_PAIRS].tangent[slot] = r->impulses[x].tangent;
         }
 }
 
@@ -148,20 +161,86 @@ static bool solve_scaled(Reference *r, const ContactProblem *problem, const Cont
     return true;
 }
 
+/* The share of the change of velocity that has the least kinetic energy if the whole of it adds some, else 1: energy is a
+   square in the share, and at the share 0 what it was before. */
+static double share_without_gain(const Reference *r, const ContactProblem *problem) {
+    double across = 0, square = 0; /* m v dv and m dv dv */
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        const double x = (double)body->velocity.x, y = (double)body->velocity.y, spin = (double)body->angular_velocity;
+        const double dx = r->velocities[i].x - x, dy = r->velocities[i].y - y, turn = r->velocities[i].spin - spin;
+        if (body->inv_mass > 0) {
+            across += (x * dx + y * dy) / (double)body->inv_mass;
+            square += (dx * dx + dy * dy) / (double)body->inv_mass;
+        }
+        if (body->inv_inertia > 0) {
+            across += spin * turn / (double)body->inv_inertia;
+            square += turn * turn / (double)body->inv_inertia;
+        }
+    }
+    return 2 * across + square <= 0 ? 1 : across < 0 ? -across / square : 0;
+}
+
+/* Shortens the answer so far that it adds no energy, and finds its residual. */
+static bool take_without_gain(Reference *r, const ContactProblem *problem, Error *error) {
+    const double share = share_without_gain(r, problem);
+    r->push_out = true;
+    if (!load(r, problem)) return error_memory(error, "reference");
+    for (int i = 0; i < problem->contact_count; i++) {
+        r->impulses[i].normal *= share;
+        r->impulses[i].tangent *= share;
+    }
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        ReferenceVelocity *v = &r->velocities[i];
+        v->x = (double)body->velocity.x + share * (v->x - (double)body->velocity.x);
+        v->y = (double)body->velocity.y + share * (v->y - (double)body->velocity.y);
+        v->spin = (double)body->angular_velocity + share * (v->spin - (double)body->angular_velocity);
+    }
+    set_answer(r);
+    r->residual = kernels(r)->residual(r);
+    return true;
+}
+
+/* Of a step without a solution: see reference.h. */
+static bool answer_unsolved(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
+    const size_t impulses = (size_t)problem->contact_count * sizeof *r->impulses;
+    const size_t velocities = (size_t)problem->body_count * sizeof *r->velocities;
+    const int factorizations = r->factorizations, attempts = r->attempts;
+    if (!take_without_gain(r, problem, error)) return false;
+    const double residual = r->residual;
+    memcpy(r->other_impulses, r->impulses, impulses);
+    memcpy(r->other_velocities, r->velocities, velocities);
+    r->push_out = false;
+    if (!solve_scaled(r, problem, start, error)) return false;
+    const int more = r->factorizations;
+    if (!take_without_gain(r, problem, error)) return false;
+    r->factorizations = factorizations + more;
+    r->attempts = attempts;
+    if (!(residual < r->residual)) return true;
+    r->residual = residual;
+    memcpy(r->impulses, r->other_impulses, impulses);
+    memcpy(r->velocities, r->other_velocities, velocities);
+    return true;
+}
+
 bool reference_solve(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
     r->aim = REFERENCE_TOLERANCE / 10;
     r->enough = REFERENCE_TOLERANCE / 4;
     r->most = INT_MAX;
     r->jammed = INFINITY;
+    r->persist = r->push_out = true;
     if (!solve_scaled(r, problem, start, error)) return false;
     r->residual = kernels(r)->residual(r);
-    return true;
+    return r->residual <= near_solution || answer_unsolved(r, problem, start, error);
 }
 
 bool reference_solve_to(Reference *r, const ContactProblem *problem, double tolerance, int most, Error *error) {
     r->aim = r->enough = tolerance;
     r->most = most;
     r->jammed = jammed;
+    r->persist = false;
+    r->push_out = true;
     if (!solve_scaled(r, problem, NULL, error)) return false;
     r->residual = r->best;
     return true;
@@ -178,6 +257,7 @@ void reference_round(const Reference *r, const ContactProblem *problem, ContactS
 
 bool reference_residual(Reference *r, const ContactProblem *problem, const ContactImpulse *impulses, double *residual,
                         Error *error) {
+    r->push_out = true;
     if (!load(r, problem)) return error_memory(error, "reference");
     set_start(r, problem, impulses);
     *residual = kernels(r)->residual(r);

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The reference over whole runs: it converges where masses differ by a million, and gives no energy where it cannot.
+   tests/deep/run structures runs a thousand of these. */
+#include "made.h"
+#include "random_structures.h"
+#include "reference_worlds.h"
+
+typedef struct Converged {
+    Reference reference;
+    int steps, failed;
+    double gained; /* J: the most that a step's impulses added to the kinetic energy */
+} Converged;
+
+static double kinetic(const ContactProblem *problem, const BodyVelocity *velocities) {
+    double sum = 0;
+    for (int i = 0; i < problem->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        const Vec2 v = velocities != NULL ? velocities[i].linear : body->velocity;
+        const double spin = (double)(velocities != NULL ? velocities[i].angular : body->angular_velocity);
+        if (body->inv_mass > 0) sum += (double)vec2_dot(v, v) / (double)body->inv_mass;
+        if (body->inv_inertia > 0) sum += spin * spin / (double)body->inv_inertia;
+    }
+    return sum / 2;
+}
+
+static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
+    Converged *run = state;
+    if (!reference_solve(&run->reference, problem, NULL, error)) return false;
+    reference_round(&run->reference, problem, solution);
+    run->steps++;
+    if (!(run->reference.residual <= tight)) {
+        run->failed++;
+        run->gained = fmax(run->gained, kinetic(problem, solution->velocities) - kinetic(problem, NULL));
+    }
+    return true;
+}
+
+static Converged run_scene(const Scene *scene) {
+    Error error = {0};
+    Converged run = {0};
+    World *world = world_of(scene);
+    for (int i = 0; i < scene->frames; i++) assert_ok(world_step(world, solve, &run, scene->dt, &error), error);
+    reference_free(&run.reference);
+    world_destroy(world);
+    return run;
+}
+
+static Converged run_file(const char *name) {
+    char path[512];
+    snprintf(path, sizeof path, SOURCE_DIR "/tests/methods/scenes/%s.yaml", name);
+    Scene *scene = scene_from(path);
+    const Converged run = run_scene(scene);
+    assert_int_equal(run.steps, scene->frames);
+    scene_destroy(scene);
+    return run;
+}
+
+TEST(masses_spread_by_a_million_converge) {
+    assert_int_equal(run_file("bridge").failed, 0);
+    assert_int_equal(run_file("feather").failed, 0);
+}
+
+/* Of those that an attempt which gives up after two short steps leaves unsolved. */
+TEST(random_structures_converge) {
+    static const int seeds[] = {773, 783, 824, 828, 850, 873, 886, 894, 910, 970};
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++) {
+        Scene *scene = random_structure(seeds[i]);
+        if (run_scene(scene).failed > 0) fail_msg("%s", scene->name);
+        scene_destroy(scene);
+    }
+}
+
+/* Position correction pushes the box out between walls that its friction holds it to. */
+TEST(a_step_without_a_solution_adds_no_energy) {
+    const Converged run = run_file("wedge");
+    assert_true(run.failed > 0);
+    assert_true(run.gained <= 1e-9);
+}
+
+RUN_TESTS(NULL, NULL)
