@@ -9,6 +9,7 @@
 #include "cli/runs.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "methods/reference.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
@@ -142,10 +143,11 @@ typedef struct Fallback {
     int count;
 } Fallback;
 
-enum { FALLBACKS = 4 };
+enum { FALLBACKS = 5 };
 
 static void list_fallbacks(const NetworkFallbacks *fallbacks, Fallback list[FALLBACKS]) {
     const Fallback all[FALLBACKS] = {
+        {"not_converged", "steps that did not converge", fallbacks->not_converged},
         {"by_sweeps", "steps solved by sweeps instead", fallbacks->by_sweeps},
         {"beyond_training", "steps unlike the training of the network", fallbacks->beyond_training},
         {"not_finite", "outputs of the network that were NaN, infinite or out of bounds", fallbacks->not_finite},
@@ -164,6 +166,9 @@ static void simulate_result_print(const SimulateResult *result) {
     list_fallbacks(&result->fallbacks, fallbacks);
     for (int i = 0; i < FALLBACKS; i++)
         if (fallbacks[i].count > 0) printf("    %s: %d\n", fallbacks[i].what, fallbacks[i].count);
+    if (result->fallbacks.not_converged > 0)
+        printf("    largest residual: %.2g m/s, above %g m/s: this run is no yardstick\n", result->fallbacks.residual,
+               REFERENCE_TOLERANCE);
 }
 
 static void write_result(JsonWriter *json, const void *context) {
@@ -179,6 +184,7 @@ static void write_result(JsonWriter *json, const void *context) {
     json_begin_object(json, "fallbacks", JSON_ONE_LINE);
     list_fallbacks(&result->fallbacks, fallbacks);
     for (int i = 0; i < FALLBACKS; i++) json_put_int(json, fallbacks[i].key, fallbacks[i].count);
+    json_put_number(json, "residual", result->fallbacks.residual);
     json_end(json);
     simulate_verdict_put(&result->verdict, json, "verdict");
 }

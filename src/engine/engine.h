@@ -231,6 +231,8 @@ typedef struct NetworkFallbacks {
                             were clamped to its range (the method's file says which) */
     int by_sweeps;       /* steps in which sweeps solved an island, because the residual of interior-point steps stayed
                             high or it is too large for them */
+    int not_converged;   /* steps in which the reference stayed above its tolerance: no yardstick for other methods */
+    double residual;     /* m/s: the largest of those */
 } NetworkFallbacks;
 
 static inline void network_fallbacks_add(NetworkFallbacks *sum, const NetworkFallbacks *step) {
@@ -238,6 +240,8 @@ static inline void network_fallbacks_add(NetworkFallbacks *sum, const NetworkFal
     sum->outside_cone += step->outside_cone;
     sum->beyond_training += step->beyond_training;
     sum->by_sweeps += step->by_sweeps;
+    sum->not_converged += step->not_converged;
+    if (step->not_converged > 0 && !(step->residual <= sum->residual)) sum->residual = step->residual;
 }
 
 /* What a solver fills in; the arrays are the caller's. */

@@ -72,6 +72,11 @@ typedef struct Reference {
    Their residual stays high. */
 #define REFERENCE_TOLERANCE 1e-9
 
+/* Whether the last solve reached it. Without it, nothing is to be scored against the answer. */
+static inline bool reference_converged(const Reference *reference) {
+    return reference->residual <= REFERENCE_TOLERANCE;
+}
+
 void reference_free(Reference *reference);
 
 /* Allocates what a solve of this problem needs. False when memory is short. */

@@ -303,7 +303,7 @@ SolutionError solution_error(const ContactProblem *problem, const BodyVelocity *
 }
 
 /* The reference (methods/reference.h) as a contact solver, for runs of converged steps. A step that does not
-   converge ends with its best answer. */
+   converge ends with the answer that reference.h states, and is counted. */
 
 static void *create(const Settings *chosen, Error *error) {
     (void)chosen;
@@ -316,6 +316,9 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     Reference *reference = state;
     if (!reference_solve(reference, problem, NULL, error)) return false;
     reference_round(reference, problem, solution);
+    solution->fallbacks = (NetworkFallbacks){0};
+    if (!reference_converged(reference))
+        solution->fallbacks = (NetworkFallbacks){.not_converged = 1, .residual = reference->residual};
     return true;
 }
 

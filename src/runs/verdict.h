@@ -41,7 +41,8 @@ void energy_balance_begin(EnergyBalance *balance, Vec2 gravity, const Body *bodi
 typedef struct EnergyLog {
     int frames;            /* of the run */
     double *energy;        /* [frames + 1] J: as in EnergyBalance */
-    EnergyBalance balance; /* after the last frame */
+    EnergyBalance balance; /* after the last frame, or before the first that is unconverged */
+    int unconverged; /* the first step whose solution did not converge, from which on the log bounds nothing; 0: none */
     size_t capacity;
 } EnergyLog;
 
@@ -177,7 +178,7 @@ typedef struct VerdictReading {
     const char *unit; /* "J", "m", "deg", "m/s", "s", "boxes" */
     int other;        /* tunnels: the body that was passed through; else -1 */
     VerdictCount count;
-    bool struck; /* the verdict is what stands of a struck scene */
+    bool struck;                      /* the verdict is what stands of a struck scene */
     bool moving;                      /* a body that started at rest, and has not left, is not at rest at the end */
     char reason[VERDICT_REASON_SIZE]; /* adapter failed: how; else empty */
     uint64_t state;                   /* set by verdict_run() only: FNV-1a of the bodies after the last step */

@@ -73,6 +73,7 @@ bool energy_log_begin(EnergyLog *log, Vec2 gravity, int frames, const Body *bodi
     if (!array_reserve((void **)&log->energy, &log->capacity, (size_t)frames + 1, sizeof *log->energy))
         return error_memory(error, "energy log");
     log->frames = frames;
+    log->unconverged = 0;
     energy_balance_begin(&log->balance, gravity, bodies, count);
     log->energy[0] = log->balance.energy;
     return true;
@@ -84,8 +85,10 @@ void energy_log_step(EnergyLog *log, int frame, const Body *bodies, int count) {
 }
 
 static bool observe(void *context, int frame, const World *world, Error *error) {
+    EnergyLog *log = context;
     (void)error;
-    energy_log_step(context, frame, world_bodies(world), world_body_count(world));
+    if (log->unconverged == 0 && world_solution(world)->fallbacks.not_converged > 0) log->unconverged = frame;
+    if (log->unconverged == 0) energy_log_step(log, frame, world_bodies(world), world_body_count(world));
     return true;
 }
 
@@ -114,10 +117,16 @@ static void end_fall(VerdictWatch *watch, double kept) {
     watch->peak_steps = 0;
 }
 
+/* Whether the run is judged beside a converged one in this frame. */
+static bool is_beside(const VerdictRun *run, int frame) {
+    return run->converged != NULL && (run->converged->unconverged == 0 || frame < run->converged->unconverged);
+}
+
 /* J: bound (b) of verdict_watch_step(). */
 static double converged_energy(const VerdictRun *run, int frame, int fall) {
     const int from = frame > fall ? frame - fall : 0;
-    const int to = run->converged->frames - frame > fall ? frame + fall : run->converged->frames;
+    const int first = run->converged->unconverged, last = first > 0 ? first - 1 : run->converged->frames;
+    const int to = last - frame > fall ? frame + fall : last;
     double most = -INFINITY;
     for (int i = from; i <= to; i++) most = fmax(most, run->converged->energy[i]);
     return most;
@@ -205,8 +214,9 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
         watch->peak += change;
     }
     if (step->body_count < watch->body_count) end_fall(watch, energy);
-    if (step->frame == 1 && run->converged == NULL && overlaps_at_start(step)) watch->kept = watch->brought = INFINITY;
-    const double gained = run->converged != NULL ? excess_beside(watch, step->frame) : excess_alone(watch);
+    const bool alone = run->converged == NULL || run->converged->unconverged > 0;
+    if (step->frame == 1 && alone && overlaps_at_start(step)) watch->kept = watch->brought = INFINITY;
+    const double gained = is_beside(run, step->frame) ? excess_beside(watch, step->frame) : excess_alone(watch);
     if (gained > 0 && !run->no_energy) verdict_note(watch, VERDICT_EXPLODES, most_kinetic(step), gained, "J");
     watch->peak = watch->peak_steps++ > 0 ? fmax(watch->peak, energy) : energy;
     if (watch->peak_steps < falls_in_steps(watch, VERDICT_ENERGY_TIME)) return;

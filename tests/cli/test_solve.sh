@@ -146,4 +146,16 @@ hostile contact_bodies 'p["contact_bodies"] = p["contact_bodies"].reshape(-1)'
 hostile contact_feature 'p["contact_feature"] = p["contact_feature"][1:]'
 hostile version 'p["version"] = numpy.int32(2)'
 hostile bodies 'p["contact_bodies"][0, 1] = 1 << 30'
+
+# A step without a solution: nothing is scored against its answer.
+wedge=$(dirname "$scenes")/tests/methods/scenes/wedge.yaml
+run 0 solve "$wedge" --frame 50 -m engine
+says "The reference did not converge (tolerance: 1e-09 m/s); nothing is scored against it."
+grep -Eq '^engine +- +-/1 ' out || fail "scored against a step that did not converge"
+run 0 solve "$wedge" --frame 50 -m engine --json
+says '"converged": false'
+grep -q '"error"' out && fail "an error against a step that did not converge"
+run 0 simulate "$wedge" -m reference
+grep -Eq '^    steps that did not converge: [1-9]' out || fail "unconverged steps are not counted"
+says "this run is no yardstick"
 finish

@@ -58,7 +58,7 @@ static inline ContactSolution solution_by(const ContactSolverKind *kind, const c
                                           ContactImpulse *impulses) {
     Error error = {0};
     ContactSolver solver = make_network_solver(kind, path, sweeps);
-    ContactSolution solution = {velocities, impulses, -1, {-1, -1, -1, -1}};
+    ContactSolution solution = {velocities, impulses, -1, {-1, -1, -1, -1, -1, -1}};
     assert_ok(solver.kind->solve(solver.state, problem, &solution, &error), error);
     free_solver(&solver);
     return solution;

@@ -5,6 +5,8 @@
 #include "random_structures.h"
 #include "reference_worlds.h"
 
+#include "runs/verdict.h"
+
 typedef struct Converged {
     Reference reference;
     int steps, failed;
@@ -75,6 +77,28 @@ TEST(a_step_without_a_solution_adds_no_energy) {
     const Converged run = run_file("wedge");
     assert_true(run.failed > 0);
     assert_true(run.gained <= 1e-9);
+}
+
+/* A run tells how many of its steps did not converge, and the largest residual. */
+TEST(a_run_counts_steps_without_a_solution) {
+    Scene *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
+    const Method method = method_named("reference");
+    NetworkFallbacks fallbacks = {0};
+    assert_ok(simulate_watched(scene, &method, &(RunWatch){.fallbacks = &fallbacks}, &error), error);
+    assert_int_equal(fallbacks.not_converged, run_scene(scene).failed);
+    assert_true(fallbacks.residual > tight);
+    scene_destroy(scene);
+}
+
+/* The log of such a run bounds nothing from there on. */
+TEST(a_log_ends_at_the_first_step_without_a_solution) {
+    EnergyLog log = {0};
+    Scene *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
+    const Method method = method_named("reference");
+    assert_ok(energy_log_run(&log, scene, &method, &error), error);
+    assert_true(log.unconverged > 0 && log.unconverged < scene->frames);
+    energy_log_free(&log);
+    scene_destroy(scene);
 }
 
 RUN_TESTS(NULL, NULL)
