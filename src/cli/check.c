@@ -27,8 +27,8 @@ typedef struct Options {
     bool json;
 } Options;
 
-static const char *const verdicts[] = {"any",       "holds", "settles", "stands",   "moves",      "creeps", "falls",
-                                       "collapses", "sinks", "tunnels", "explodes", "non-finite", NULL};
+static const char *const verdicts[] = {"any",   "sound",     "holds", "settles", "stands",   "moves",      "creeps",
+                                       "falls", "collapses", "sinks", "tunnels", "explodes", "non-finite", NULL};
 
 static const Option option_table[] = {
     {"--output", 'o', "FILE.png",
@@ -38,8 +38,9 @@ static const Option option_table[] = {
     {.help = "Runs (.npz):"},
     OPTIONS_JUDGE(Options, run.judge),
     {"--verdict", 0, "WORD",
-     "Fail with exit status 1 unless the verdict is this: holds (settles, stands, moves or creeps), settles, stands, "
-     "moves, creeps, falls, collapses, sinks, tunnels, explodes, non-finite (default: any)",
+     "Fail with exit status 1 unless the verdict is this: sound (nothing sinks, tunnels or explodes; it may fall), "
+     "holds (settles, stands, moves or creeps), settles, stands, moves, creeps, falls, collapses, sinks, tunnels, "
+     "explodes, non-finite (default: any)",
      OPTION_ENUM(Options, verdict, verdicts)},
     {"--max-overlap", 0, "M", "Fail if two boxes overlap by more, m", OPTION_DOUBLE(Options, run.max_overlap, 0, 1e6)},
     {"--max-drift", 0, "M", "Fail if a body moves further after the time that the verdict names, m",
@@ -58,7 +59,7 @@ static const CommandSpec spec = {
         "Or judge a stored run of any engine: the verdict that simulate prints, the deepest overlap, drift and energy "
         "gained. Contacts are found again from the poses.\v"
         "Example: twinbox check scenes/stack.yaml -o first.png\n"
-        "         twinbox check engine.npz --scene scenes/stack.yaml --verdict holds"};
+        "         twinbox check engine.npz --scene scenes/stack.yaml --verdict sound"};
 
 static void print_bodies(FILE *out, const Scene *scene) {
     double mass = 0;

@@ -64,6 +64,12 @@ static void check_limit(CheckedRun *checked, const char *what, double value, con
     if (value > most) fail(checked, "%s %.4g %s, more than %.4g %s", what, value, unit, most, unit);
 }
 
+static bool is_wanted(const char *wanted, Verdict verdict) {
+    if (strcmp(wanted, "sound") == 0) return verdict_sound(verdict);
+    if (strcmp(wanted, "holds") == 0) return verdict_holds(verdict);
+    return strcmp(wanted, verdict_name(verdict)) == 0;
+}
+
 static bool check_limits(CheckedRun *checked, Error *error) {
     const CheckRunOptions *options = checked->options;
     const VerdictReading *reading = &checked->judged.verdict.reading;
@@ -75,8 +81,7 @@ static bool check_limits(CheckedRun *checked, Error *error) {
     if (!isnan(options->max_gain) && isnan(reading->excess))
         return error_input(error, options->path,
                            "has a bomb, or bodies that start with a speed: --max-gain needs --scene");
-    if (wanted != NULL && (strcmp(wanted, "holds") == 0 ? !verdict_holds(reading->verdict) : strcmp(wanted, word) != 0))
-        fail(checked, "verdict %s, not %s", word, wanted);
+    if (wanted != NULL && !is_wanted(wanted, reading->verdict)) fail(checked, "verdict %s, not %s", word, wanted);
     check_limit(checked, "overlap", reading->deepest, "m", options->max_overlap);
     check_limit(checked, "drift", reading->drift, "m", options->max_drift);
     check_limit(checked, "energy gained", reading->excess, "J", options->max_gain);

@@ -43,6 +43,7 @@ typedef struct EnergyLog {
     double *energy;        /* [frames + 1] J: as in EnergyBalance */
     EnergyBalance balance; /* after the last frame, or before the first that is unconverged */
     int unconverged; /* the first step whose solution did not converge, from which on the log bounds nothing; 0: none */
+    double liveliest; /* J/kg: the most energy of a body in any frame; potential: above the lowest at the start */
     size_t capacity;
 } EnergyLog;
 
@@ -142,8 +143,9 @@ enum { VERDICT_CREEP_FALLS = 10, VERDICT_CREEP_FROM = 10 };
 #define VERDICT_REGAIN_SHARE 0.05
 #define VERDICT_START_OVERLAP 0.0105
 
-/* Explodes, too: a body has VERDICT_BURST times the energy per kg, kinetic and potential, that the fastest body and the highest one
-   have at the start, or when added: light boxes that a heavy one shoots away have no more than it had to lose. */
+/* Explodes, too: a body has VERDICT_BURST times the energy per kg, kinetic and potential, that the fastest body and the
+   highest one have at the start, or when added: light boxes that a heavy one shoots away have no more than it had to
+   lose. Where overlaps at the start shoot bodies away in the converged run, too, the most that one has there. */
 #define VERDICT_BURST 5.0
 
 /* "settles", ... "adapter failed"; then "not applicable", for cells and borders without a verdict; then NULL. */

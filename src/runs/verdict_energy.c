@@ -64,6 +64,13 @@ static void energy_balance_step(EnergyBalance *balance, const Body *bodies, int 
     balance->body_count = count;
 }
 
+/* J/kg, above a height. */
+static double energy_per_kg(const Body *body, Vec2 gravity, double lowest) {
+    const double pull = vec2_distance(gravity, vec2(0, 0));
+    return body_energy(body, vec2(0, 0)) * body->inv_mass +
+           (pull > 0 ? pull * (body_height(body, gravity) - lowest) : 0);
+}
+
 void energy_log_free(EnergyLog *log) {
     free(log->energy);
     *log = (EnergyLog){0};
@@ -74,6 +81,7 @@ bool energy_log_begin(EnergyLog *log, Vec2 gravity, int frames, const Body *bodi
         return error_memory(error, "energy log");
     log->frames = frames;
     log->unconverged = 0;
+    log->liveliest = 0;
     energy_balance_begin(&log->balance, gravity, bodies, count);
     log->energy[0] = log->balance.energy;
     return true;
@@ -82,6 +90,9 @@ bool energy_log_begin(EnergyLog *log, Vec2 gravity, int frames, const Body *bodi
 void energy_log_step(EnergyLog *log, int frame, const Body *bodies, int count) {
     energy_balance_step(&log->balance, bodies, count);
     log->energy[frame] = log->balance.energy;
+    for (int i = 0; i < count; i++)
+        if (bodies[i].inv_mass != 0)
+            log->liveliest = fmax(log->liveliest, energy_per_kg(&bodies[i], log->balance.gravity, log->balance.lowest));
 }
 
 static bool observe(void *context, int frame, const World *world, Error *error) {
@@ -225,16 +236,16 @@ void check_energy(VerdictWatch *watch, const VerdictStep *step) {
 }
 
 void check_bursts(VerdictWatch *watch, const VerdictStep *step) {
-    const Vec2 gravity = watch->run.gravity;
-    const double pull = vec2_distance(gravity, vec2(0, 0)), lowest = watch->own.lowest;
+    const VerdictRun *run = &watch->run;
+    const double pull = vec2_distance(run->gravity, vec2(0, 0)), lowest = watch->own.lowest;
     if (!isfinite(watch->highest)) return;
     const double height = (pull > 0 ? watch->highest - lowest : 0) + watch->largest;
-    const double source = watch->liveliest + watch->pull * height; /* J/kg */
+    const double own = watch->liveliest + watch->pull * height; /* J/kg */
+    const double source = run->converged != NULL ? fmax(own, run->converged->liveliest) : own;
     for (int i = 0; i < step->body_count; i++) {
         const Body *body = &step->bodies[i];
         if (body->inv_mass == 0) continue;
-        const double lift = pull > 0 ? pull * (body_height(body, gravity) - lowest) : 0;
-        const double energy = body_energy(body, vec2(0, 0)) * body->inv_mass + lift;
+        const double energy = energy_per_kg(body, run->gravity, lowest);
         if (energy > VERDICT_BURST * source + watch->rounding * body->inv_mass)
             verdict_note(watch, VERDICT_EXPLODES, i, (energy - source) / body->inv_mass, "J");
     }

@@ -69,7 +69,7 @@ assert float(stack["impact"]) == 0 and float(stack["step"]) < 1e-5 and float(sta
 assert float(stack["follows"]) > 4, stack
 # The reference's impulses keep all laws; without any, nothing pushes, and no energy is lost.
 assert max(abs(float(stack[law])) for law in ("signorini", "cone", "dissipation", "penetration", "energy")) < 1e-3, stack
-assert float(towers["signorini"]) == float(towers["dissipation"]) == float(towers["cone"]) == 0, towers
+assert towers["signorini"] == towers["dissipation"] == towers["cone"] == "", towers
 assert float(towers["energy"]) > 1 and float(towers["penetration"]) > 0, towers
 assert 0.01 < float(gate["impact"]) < 10 and float(gate["follows"]) < 0.5, gate
 assert rest["verdict"] == "settles" and rest["holds"] == "True" and float(rest["drift"]) < 1e-3, rest

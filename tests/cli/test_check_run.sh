@@ -14,6 +14,7 @@ says "    energy gained: 0 J above what start and bomb brought"
 run 0 check stands.npz --verdict holds --max-overlap 0.1 --max-drift 0.01 --max-gain 0.1
 says "$words"
 complains "assumed: bodies of 1 kg/m2 and a gravity of 10 m/s2"
+run 0 check stands.npz --verdict sound
 run 1 check stands.npz --max-overlap 0.001 --verdict falls
 says "failed: verdict settles, not falls"
 says "failed: overlap 0.0"
@@ -69,6 +70,7 @@ run 1 check skin.npz --verdict settles
 run 0 import bursts.csv -o bursts.npz --skin 0.0075
 says "    verdict: explodes at "
 run 1 check bursts.npz --skin 0.0075 --verdict holds
+run 1 check bursts.npz --skin 0.0075 --verdict sound
 
 # What import found is in the file, and pictures say it.
 /usr/bin/python3 -c 'import numpy; v = str(numpy.load("bursts.npz")["verdict"]); assert v.startswith("explodes at"), v' ||

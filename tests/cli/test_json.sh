@@ -67,7 +67,8 @@ states("%s, step %d: %d bodies, %d contacts; reference: residual %.2g m/s after 
     result["scene"], result["step"], result["bodies"], result["contacts"],
     result["reference"]["residual"], result["reference"]["factorizations"]))
 for row in result["methods"]:
-    states("%-40s %12.4g %7d/%-4d %12.4g " % tuple(row[key] for key in ("method", "error", "right", "counted", "residual")))
+    keys = ("method", "error", "right", "counted", "residual", "signorini", "cone", "dissipation", "penetration", "energy")
+    states("%-40s %12.4g %7d/%-4d %12.4g %12.4g %10.4g %14.4g %14.4g %10.4g\n" % tuple(row[key] for key in keys))
 PYTHON
 
 "$twinbox" simulate "$scenes/stack.yaml" -o engine.npz >/dev/null
