@@ -191,8 +191,9 @@ VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene
                                  const EnergyLog *converged);
 
 /* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses (runs/verdict.h).
-   Near the edge, where runs that are shifted by a micrometre differ in that, or where the converged run is not sound, the truth is
-   undecided, and so is every method. Of a scene that is not struck the truth is VERDICT_SETTLES. */
+   It is undecided, and so is every method, near the edge, where runs that are shifted by a micrometre differ in that, and where
+   the converged run is not sound or has a step that did not converge. Of a scene that is not struck it is
+   VERDICT_SETTLES. */
 bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Error *error);
 
 /* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is not sound,

@@ -106,7 +106,8 @@ bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Err
         ok = verdict_run(&reading, scene, &reference, judged, error);
         first->position = place;
         if (ok && seed == 0) *truth = reading.verdict;
-        if (ok && (reading.verdict != *truth || !verdict_sound(reading.verdict))) *truth = VERDICT_UNDECIDED;
+        const bool known = verdict_sound(reading.verdict) && reading.fallbacks.not_converged == 0;
+        if (ok && (reading.verdict != *truth || !known)) *truth = VERDICT_UNDECIDED;
     }
     scene->warm_starting = warm;
     return ok;
