@@ -352,8 +352,20 @@ static void draw_panel(const Borders *borders, int place) {
     plot_panel_draw(borders->sketch, &panel);
 }
 
+/* How many rows are of struck scenes. */
+static int struck_rows(const Borders *borders) {
+    int count = 0;
+    for (int i = 0; i < borders->table->count; i++) count += border_is_struck(borders->table, i);
+    return count;
+}
+
+/* Of struck scenes a bar says that a method agrees with the reference, not that boxes stand. */
 static void draw_samples(const Borders *borders, const LegendPlace *place, int first) {
-    static const char *const names[BORDER_SIGNS] = {"holds", "holds throughout", "never holds", "rigid boxes"};
+    static const char *const holds[BORDER_SIGNS] = {"holds", "holds throughout", "never holds", "rigid boxes"};
+    static const char *const agrees[BORDER_SIGNS] = {"as the reference", "throughout", "never", "rigid boxes"};
+    static const char *const both[BORDER_SIGNS] = {"holds, or as reference", "throughout", "never", "rigid boxes"};
+    const int struck = struck_rows(borders);
+    const char *const *names = struck == 0 ? holds : struck == borders->table->count ? agrees : both;
     for (int i = 0; i < borders->signs; i++) {
         const Point at = {place->left + place->width * ((first + i) % place->columns),
                           place->top - LEGEND_ROW * ((first + i) / place->columns)};
@@ -371,14 +383,12 @@ static void draw_legend(const Borders *borders) {
 static void write_caption(const Borders *borders, PlotPage *page) {
     LeftOut left_out = {0};
     WordList words = {0};
-    bool struck = false;
-    for (int i = 0; i < borders->table->count; i++) struck |= border_is_struck(borders->table, i);
     text_add(page->caption, sizeof page->caption,
              "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a "
              "method fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at "
              "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.%s",
              borders->signs == BORDER_SIGNS ? " Dashed line: rigid boxes hold up to here, in closed form." : "");
-    if (struck) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
+    if (struck_rows(borders) > 0) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
     for (int i = 0; i < borders->left_out_count; i++) {
         const BorderRow *row = border_row(borders->table, borders->left_out[i]);
         left_out_add(&left_out, "Left out, as not applicable: ", row->method, row->setting);
