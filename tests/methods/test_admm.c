@@ -8,6 +8,7 @@
 #include "methods/admm_internal.h"
 #include "methods/solvers.h"
 
+#ifdef TWINBOX_AVX
 /* Some iterations of these kernels; the caller frees all. */
 static void run_kernels(Admm *admm, const AdmmKernels *kernels, const ContactProblem *problem) {
     assert_true(sweeps_begin(&admm->sweeps, sweeps_best_kernel(), problem, true));
@@ -26,6 +27,7 @@ static void free_kernels_run(Admm *admm) {
     interior_free(&admm->interior);
     free(admm->memory.memory);
 }
+#endif
 
 TEST(all_kernels_have_the_same_bits) {
 #ifdef TWINBOX_AVX
