@@ -89,7 +89,9 @@ for row in rows["networks"]:
 assert {row["seed"] for row in rows["transfer"]} == {"1", "2", "3"}
 # Counts of the report are those of the tables.
 findings = dict(csv.reader(open("quick/findings/summary.csv")))
-assert int(findings["runs"]) == len(rows["closed_loop"]) and int(findings["gate_networks"]) == len(rows["networks"])
+names = {row["network"] for row in rows["networks"]} # solvers stand beside them
+assert int(findings["runs"]) == sum(row["network"] in names for row in rows["closed_loop"]) < len(rows["closed_loop"])
+assert int(findings["gate_networks"]) == len(rows["networks"])
 assert int(findings["rates"]) == sum(row["rate"] != "" and row["constant"] != "" for row in rows["rates"])
 html = open("quick/report.html").read()
 pages = set(re.findall(r'href="(figures/strip-[a-z]+\.html)#t=0\.5"', html))
