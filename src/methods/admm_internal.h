@@ -10,7 +10,7 @@
    divided by (L / e)^0.05, and the matrix factorized again, while one of |x - y| and |r dy + e dx| is ten times the
    other (the spectral rule). Source of the method and of all these numbers: Carpentier, Le Lidec, Montaut, "From
    Compliant to Rigid Contact Simulation: a Unified and Efficient Approach" (2024), and Pinocchio, their program. That
-   keeps r from step to step; here it starts anew, so that a problem has one answer. Rows are scaled by the roots of
+   keeps r from step to step; here each step begins with its own, so that a problem has one answer. Rows are scaled by the roots of
    their effective masses, as a preconditioner may there: G has ones on its diagonal, and no unit of length or mass
    changes an iteration.
 

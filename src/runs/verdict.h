@@ -72,7 +72,7 @@ bool energy_log_run(EnergyLog *log, const Scene *scene, const Method *method, Er
 /* From the best to the worst. */
 typedef enum Verdict {
     VERDICT_SETTLES,
-    VERDICT_AGREES, /* these four only in studies of struck scenes (studies/stability.h) */
+    VERDICT_AGREES, /* as are undecided, too few, too many: only in studies of struck scenes (studies/stability.h) */
     VERDICT_STANDS,
     VERDICT_MOVES,
     VERDICT_CREEPS,

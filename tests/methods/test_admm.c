@@ -149,7 +149,7 @@ TEST(a_heavy_box_on_a_light_one_is_carried_at_once) {
     world_destroy(world);
 }
 
-/* A number that is none ends in the engine's sweeps, which are the same everywhere, and is counted. */
+/* NaN or infinity ends in the engine's sweeps, with the same bits everywhere, and is counted. */
 TEST(what_is_not_finite_is_left_to_sweeps) {
     static RandomProblem random;
     uint32_t seed = 9;
