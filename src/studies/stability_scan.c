@@ -130,14 +130,23 @@ static bool is_side(const BorderList *borders, double value) {
     return false;
 }
 
-/* Other programs may give another result each time: on both sides of a border it would matter most. */
+static bool has_sides(const BorderList *borders) {
+    for (int i = 0; i < borders->count; i++)
+        if (!isnan(borders->items[i].holds_at) || !isnan(borders->items[i].fails_at)) return true;
+    return false;
+}
+
+/* Other programs may give another result each time: on both sides of a border it would matter most. Without a side,
+   every value was undecided: perhaps for that very reason. */
 static bool repeat_runs(const ProbeContext *probed, Error *error) {
     Run *run = probed->run;
     Result *result = probed->result;
+    const bool sides = has_sides(&result->borders);
     for (int i = 0; i < result->run_count; i++) {
         const ScanRun *first = &result->runs[i];
         VerdictReading again;
-        if (first->reading.verdict == VERDICT_ADAPTER_FAILED || !is_side(&result->borders, first->value)) continue;
+        if (first->reading.verdict == VERDICT_ADAPTER_FAILED) continue;
+        if (sides && !is_side(&result->borders, first->value)) continue;
         if (!stability_scan_run(run->scan, probed->method, first->value, 0, &run->context->converged, &again, error) ||
             !run_counter_add(&run->counter, run->scan->study->name, error))
             return false;

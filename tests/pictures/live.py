@@ -144,7 +144,7 @@ def check_framing(checks, browser):
             near = (f"(found => Object.entries({json.dumps(wanted)}).every(([key, value]) =>"
                     " value === found[key] || Math.abs(value - found[key]) < 1e-6))(player.data.framing)")
             try:
-                page.wait(near, limit=20)
+                page.wait(near)
                 found = wanted
             except ScriptError:
                 found = page.run("player.data.framing")
