@@ -151,7 +151,7 @@ static void list_names(void) {
 
 static const Option option_table[] = {
     {"--output", 'o', "DIR",
-     "Folder for stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv and the figures",
+     "Folder for stability.csv, maps.csv, refusals.csv, fallbacks.csv, rest.csv, unconverged.csv and the figures",
      OPTION_TEXT(Options, study.folder)},
     {"--methods", 0, "LIST",
      "Methods, separated by commas; a name alone makes as many sweeps as the scene sets (default: all that the study "

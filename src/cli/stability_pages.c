@@ -124,6 +124,23 @@ static bool print_rest(const char *folder, Error *error) {
     return true;
 }
 
+/* A line a study or map, in the order of the table. */
+static bool print_unconverged(const char *folder, Error *error) {
+    CsvTable table;
+    if (!csv_table_read_from(&table, folder, &unconverged_layout, error)) return false;
+    printf("steps of the reference that did not converge%s -> %s/unconverged.csv\n", table.count == 0 ? ": none" : "",
+           folder);
+    for (int i = 0; i < table.count; i++) {
+        const char *study = map_cell(&table, i)->map;
+        char text[UNCONVERGED_TEXT_SIZE];
+        if (i > 0 && strcmp(study, map_cell(&table, i - 1)->map) == 0) continue;
+        stability_unconverged(&table, study, text);
+        printf("  %-*s %s\n", LABEL_WIDTH, study, text);
+    }
+    csv_table_free(&table);
+    return true;
+}
+
 /* If there is such a table. */
 static bool print_engines(const char *folder, Error *error) {
     CsvTable table;
@@ -152,7 +169,7 @@ bool stability_print(const char *folder, Error *error) {
     printf("why methods do not apply -> %s/refusals.csv\n", folder);
     printf("discarded outputs of networks, steps that fell back -> %s/fallbacks.csv\n", folder);
     printf("drift and energy at rest -> %s/rest.csv\n", folder);
-    return true;
+    return print_unconverged(folder, error);
 }
 
 /* A file system that many nodes share; its server makes or opens about as many files in a second. */

@@ -43,6 +43,7 @@ typedef struct EnergyLog {
     double *energy;        /* [frames + 1] J: as in EnergyBalance */
     EnergyBalance balance; /* after the last frame, or before the first that is unconverged */
     int unconverged; /* the first step whose solution did not converge, from which on the log bounds nothing; 0: none */
+    NetworkFallbacks fallbacks; /* of all steps: how many did not converge, and their largest residual */
     double liveliest; /* J/kg: the most energy of a body in any frame; potential: above the lowest at the start */
     size_t capacity;
 } EnergyLog;

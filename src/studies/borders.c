@@ -231,8 +231,10 @@ enum { LEGEND_COLUMNS = 5 };
 
 typedef struct Borders {
     const CsvTable *table;
+    const CsvTable *unconverged;
     const StabilityOwn *own; /* or NULL */
     Sketch *sketch;
+    LeftOut foot; /* what is left out, where the reference did not converge */
     int study_count, method_count;
     int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* first row of each */
     int left_out[BORDERS_MAX_METHODS], left_out_count;              /* the same of methods that no study applies to */
@@ -284,8 +286,18 @@ static bool gather(Borders *borders, Error *error) {
     return true;
 }
 
-/* mm: of the line that names what is left out. */
-static double foot_of(const Borders *borders) { return borders->left_out_count > 0 ? WORD_ROW : 0; }
+static void list_left_out(Borders *borders) {
+    for (int i = 0; i < borders->left_out_count; i++) {
+        const BorderRow *row = border_row(borders->table, borders->left_out[i]);
+        left_out_add(&borders->foot, "Left out, as not applicable: ", row->method, row->setting);
+    }
+    for (int i = 0; i < borders->study_count; i++)
+        left_out_add_unconverged(&borders->foot, borders->unconverged,
+                                 border_row(borders->table, borders->studies[i])->study);
+}
+
+/* mm */
+static double foot_of(const Borders *borders) { return borders->foot.count * WORD_ROW; }
 
 /* Uses the height of a printed page if that gives rows of a readable height. */
 static void lay_out(Borders *borders) {
@@ -381,7 +393,6 @@ static void draw_legend(const Borders *borders) {
 }
 
 static void write_caption(const Borders *borders, PlotPage *page) {
-    LeftOut left_out = {0};
     WordList words = {0};
     text_add(page->caption, sizeof page->caption,
              "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a "
@@ -389,11 +400,9 @@ static void write_caption(const Borders *borders, PlotPage *page) {
              "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.%s",
              borders->signs == BORDER_SIGNS ? " Dashed line: rigid boxes hold up to here, in closed form." : "");
     if (struck_rows(borders) > 0) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
-    for (int i = 0; i < borders->left_out_count; i++) {
-        const BorderRow *row = border_row(borders->table, borders->left_out[i]);
-        left_out_add(&left_out, "Left out, as not applicable: ", row->method, row->setting);
-    }
-    left_out_draw(&left_out, page, legend_left);
+    if (borders->foot.count > (borders->left_out_count > 0))
+        text_add(page->caption, sizeof page->caption, " %s", stability_unconverged_words);
+    left_out_draw(&borders->foot, page, legend_left);
     for (int i = 0; i < borders->method_count; i++)
         words_add_method(&words, border_row(borders->table, borders->methods[i])->method);
     for (int i = 0; i < borders->method_count; i++) {
@@ -403,9 +412,11 @@ static void write_caption(const Borders *borders, PlotPage *page) {
     words_join(&words, page->caption, sizeof page->caption);
 }
 
-bool stability_borders_write(const CsvTable *table, const StabilityOwn *own, PlotPage *page, Error *error) {
-    Borders borders = {.table = table, .own = own, .sketch = &page->sketch};
+bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged, const StabilityOwn *own,
+                             PlotPage *page, Error *error) {
+    Borders borders = {.table = table, .unconverged = unconverged, .own = own, .sketch = &page->sketch};
     if (!gather(&borders, error)) return false;
+    list_left_out(&borders);
     lay_out(&borders);
     sketch_begin(&page->sketch, borders.grid.width, borders.grid.height);
     for (int study = 0; study < borders.study_count; study++) draw_panel(&borders, study);

@@ -319,8 +319,8 @@ static bool find_key(const Run *run, StudyKey *key, Error *error) {
 }
 
 static bool write_tables(const Run *run, const Pieces *pieces, Error *error) {
-    static const CsvLayout *const layouts[] = {&border_layout,   &map_layout,  &refusal_layout,
-                                               &fallback_layout, &rest_layout, &engine_layout};
+    static const CsvLayout *const layouts[] = {&border_layout, &map_layout,         &refusal_layout, &fallback_layout,
+                                               &rest_layout,   &unconverged_layout, &engine_layout};
     bool external = false;
     for (int i = 0; i < run->methods.count; i++) external |= run->methods.items[i].method.kind->description->external;
     const int count = (int)(sizeof layouts / sizeof *layouts) - !external;

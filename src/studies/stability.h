@@ -190,14 +190,23 @@ Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings
 VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
                                  const EnergyLog *converged);
 
+/* How far the converged runs at a value converged: the run by which methods are judged and, of a struck scene, those that are
+   shifted by a micrometre. */
+typedef struct Convergence {
+    int steps;                  /* of all of them */
+    int first;                  /* step that did not converge, in the run by which methods are judged; 0: none */
+    NetworkFallbacks fallbacks; /* of all of them */
+} Convergence;
+
 /* A struck scene is judged by the truth, which is what the converged run does: stands, falls or collapses (runs/verdict.h).
    It is undecided, and so is every method, near the edge, where runs that are shifted by a micrometre differ in that, and where
    the converged run is not sound or has a step that did not converge. Of a scene that is not struck it is
-   VERDICT_SETTLES. */
-bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Error *error);
+   VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
+bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error);
 
 /* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is not sound,
-   or falls before it is struck, stays as it is. Of the reference it is what it does itself, so that a study shows the truth. */
+   or falls before it is struck, stays as it is. Of the reference it is what it does itself, so that a study shows the truth: undecided, if a step did
+   not converge. */
 Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method);
 
 /* The unit of a parameter of the scene, or "". */
@@ -219,6 +228,7 @@ typedef struct ConvergedRun {
     double value;
     EnergyLog log;
     Verdict truth;
+    Convergence convergence;
 } ConvergedRun;
 
 /* Counts runs and reports progress. Zero-initialise. */
@@ -245,10 +255,14 @@ typedef struct ConvergedRuns {
    error set if it fails. */
 const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
                                        Error *error);
+
+/* The same, if it was computed before; else NULL. */
+const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value);
 void converged_runs_free(ConvergedRuns *runs);
 
 /* The converged run of a scene, not cached. */
 bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error);
+Convergence convergence_of(const EnergyLog *log);
 
 /* The tables of a stability study: their rows and layouts (base/csv.h), used by the study, the figures and the
    command line. Names are plain (csv_plain_length); a setting is stored as given and may contain the path of a network. */
@@ -261,14 +275,16 @@ enum {
     STABILITY_SETTING_SIZE = 128
 };
 
-/* maps.csv: a cell of a map. A run of a study along one parameter is a cell, too, which is in no table: `map` is the study,
-   y its fixed parameter or, without one, NAN and "". */
+/* maps.csv: a cell of a map. unconverged.csv: an unshifted run beside converged runs with steps that did not converge: a cell of a
+   map, or a run of a study along one parameter: `map` is the study, y its fixed parameter or, without one, NAN and "". */
 typedef struct MapCell {
     const char *map, *method, *setting, *x_parameter, *x_unit, *y_parameter, *y_unit;
     double x, y;
     int verdict;               /* a Verdict, or LOOK_NOT_APPLICABLE */
-    double frame, body, value; /* as in VerdictReading, or NAN */
-    const char *unit;
+    double frame, body, value; /* maps.csv: as in VerdictReading, or NAN */
+    const char *unit;          /* maps.csv */
+    int steps, not_converged;  /* unconverged.csv: as in Convergence */
+    double residual, first;    /* unconverged.csv: m/s, NAN: not finite; as in Convergence, NAN: none */
 } MapCell;
 
 /* stability.csv: a border of a method: the last value that holds and the first that fails. */
@@ -307,7 +323,8 @@ typedef struct EngineRow {
 /* Refused: a map whose name is not a file name, maps (or methods of a map) whose rows are not together, and more than
    STABILITY_MAX_PANELS methods of maps; rows that give a study another parameter, and verdicts that contradict their
    values: a method that fails somewhere cannot hold, and one that does not apply has no values. */
-extern const CsvLayout map_layout, border_layout, refusal_layout, rest_layout, fallback_layout, engine_layout;
+extern const CsvLayout map_layout, border_layout, refusal_layout, rest_layout, fallback_layout, engine_layout,
+    unconverged_layout;
 
 static inline const MapCell *map_cell(const CsvTable *table, int i) { return (const MapCell *)table->rows + i; }
 static inline const BorderRow *border_row(const CsvTable *table, int i) { return (const BorderRow *)table->rows + i; }
@@ -319,6 +336,14 @@ extern const char stability_struck_words[];
 
 /* The study of row i is one of a struck scene: it tells where methods agree with the reference. */
 bool border_is_struck(const CsvTable *table, int i);
+
+/* Writes at which values of a study or map the reference did not converge, by unconverged.csv, into text: "at rows 22, 26 (12
+   of 900 steps, residual up to 3e-07 m/s)"; of many values the first. False, and "", if there are none. */
+enum { UNCONVERGED_TEXT_SIZE = 512 };
+bool stability_unconverged(const CsvTable *table, const char *study, char text[UNCONVERGED_TEXT_SIZE]);
+
+/* What follows from such steps, for captions and pages. */
+extern const char stability_unconverged_words[];
 
 /* The method of the row holds at the value. Only for methods with one row in the study. */
 bool border_holds(const BorderRow *row, double value);
@@ -344,7 +369,8 @@ void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, 
 
 /* The stability study: where each method fails. Tables: borders between holding and failing along one parameter
    (stability.csv), maps over two parameters (maps.csv), methods that do not apply to a scene (refusals.csv), network
-   outputs that were rejected and steps that fell back (fallbacks.csv), drift of undisturbed bodies (rest.csv). */
+   outputs that were rejected and steps that fell back (fallbacks.csv), drift of undisturbed bodies (rest.csv), runs beside
+   which the reference did not converge (unconverged.csv). */
 
 enum { STABILITY_MAX_NAMES = 64 };
 

@@ -12,6 +12,7 @@
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,8 +90,12 @@ bool converged_run_once(EnergyLog *log, const Scene *scene, Error *error) {
     return method_parse(&reference, "reference", error) && energy_log_run(log, &warm, &reference, error);
 }
 
+Convergence convergence_of(const EnergyLog *log) {
+    return (Convergence){.steps = log->frames, .first = log->unconverged, .fallbacks = log->fallbacks};
+}
+
 /* The scene is the same afterwards. */
-bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Error *error) {
+bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error) {
     Method reference;
     BodyDef *first = first_dynamic(scene);
     const bool warm = scene->warm_starting;
@@ -108,6 +113,9 @@ bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Err
         if (ok && seed == 0) *truth = reading.verdict;
         const bool known = verdict_sound(reading.verdict) && reading.fallbacks.not_converged == 0;
         if (ok && (reading.verdict != *truth || !known)) *truth = VERDICT_UNDECIDED;
+        if (!ok || seed == 0) continue; /* that run is known */
+        convergence->steps += scene->frames;
+        network_fallbacks_add(&convergence->fallbacks, &reading.fallbacks);
     }
     scene->warm_starting = warm;
     return ok;
@@ -115,13 +123,14 @@ bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Err
 
 Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method) {
     const bool is_truth = method->kind->description->role == METHOD_REFERENCE;
-    if (truth == VERDICT_SETTLES || is_truth || !reading->struck) return reading->verdict;
+    if (truth == VERDICT_SETTLES || !reading->struck) return reading->verdict;
+    if (is_truth) return reading->fallbacks.not_converged > 0 ? VERDICT_UNDECIDED : reading->verdict;
     if (truth == VERDICT_UNDECIDED) return VERDICT_UNDECIDED;
     if (reading->verdict == truth) return VERDICT_AGREES;
     return reading->verdict < truth ? VERDICT_TOO_FEW : VERDICT_TOO_MANY;
 }
 
-static const ConvergedRun *find(const ConvergedRuns *runs, double value) {
+const ConvergedRun *converged_runs_find(const ConvergedRuns *runs, double value) {
     const ConvergedRun *run = NULL;
 #pragma omp critical(converged_runs)
     for (int i = 0; i < runs->count; i++)
@@ -141,14 +150,15 @@ static bool store(ConvergedRuns *runs, ConvergedRun *run, Error *error) {
 
 const ConvergedRun *converged_runs_get(ConvergedRuns *runs, Scene *scene, double value, const VerdictRun *judged,
                                        Error *error) {
-    const ConvergedRun *known = find(runs, value);
+    const ConvergedRun *known = converged_runs_find(runs, value);
     if (known != NULL) return known;
     ConvergedRun *run = calloc(1, sizeof *run);
     if (run == NULL) return error_memory(error, "converged run"), NULL;
     run->value = value;
-    if (converged_run_once(&run->log, scene, error) && stability_truth(scene, judged, &run->truth, error) &&
-        store(runs, run, error))
-        return run;
+    bool ok = converged_run_once(&run->log, scene, error);
+    if (ok) run->convergence = convergence_of(&run->log);
+    ok = ok && stability_truth(scene, judged, &run->truth, &run->convergence, error) && store(runs, run, error);
+    if (ok) return run;
     energy_log_free(&run->log);
     free(run);
     return NULL;
@@ -163,12 +173,23 @@ void converged_runs_free(ConvergedRuns *runs) {
     *runs = (ConvergedRuns){0};
 }
 
+bool unconverged_print(FILE *results, int section, MapCell *row, const Convergence *convergence, Error *error) {
+    const NetworkFallbacks *fallbacks = &convergence->fallbacks;
+    if (fallbacks->not_converged == 0) return true;
+    row->steps = convergence->steps;
+    row->not_converged = fallbacks->not_converged;
+    row->residual = isfinite(fallbacks->residual) ? fallbacks->residual : NAN;
+    row->first = convergence->first > 0 ? (double)convergence->first : NAN;
+    return piece_tables_print(results, &unconverged_layout, section, row, error);
+}
+
 /* A map. */
 
 typedef struct Run {
     const GridContext *context;
     int first, cells;         /* of the piece */
     VerdictReading *readings; /* [cells, methods] */
+    Convergence *converged;   /* [cells] */
     RunCounter counter;
 } Run;
 
@@ -194,7 +215,8 @@ static bool judge_scene(Run *run, int i, Scene *scene, const EnergyLog *converge
     const StabilityPlace place = place_of(context->grid);
     const VerdictRun judged = stability_verdict_run(&place, scene, map->stands, converged);
     Verdict truth;
-    if (!stability_truth(scene, &judged, &truth, error)) return false;
+    run->converged[i] = convergence_of(converged);
+    if (!stability_truth(scene, &judged, &truth, &run->converged[i], error)) return false;
     for (int m = 0; m < context->method_count; m++) {
         const Method *method = &context->methods[m]->method;
         VerdictReading *reading = &run->readings[i * context->method_count + m];
@@ -225,21 +247,23 @@ static bool write_cell(const Run *run, int i, int m, FILE *results, Error *error
     const Contender *method = context->methods[m];
     const VerdictReading *reading = &run->readings[i * context->method_count + m];
     const int cell = run->first + i;
-    const MapCell row = {.map = map->name,
-                         .method = method->name,
-                         .setting = method->setting,
-                         .x_parameter = map->x.parameter,
-                         .x_unit = stability_unit(context->typical, map->x.parameter),
-                         .x = context->x[cell % context->x_count],
-                         .y_parameter = map->y.parameter,
-                         .y_unit = stability_unit(context->typical, map->y.parameter),
-                         .y = context->y[cell / context->x_count],
-                         .verdict = (int)reading->verdict,
-                         .frame = reading->frame,
-                         .body = reading->body,
-                         .value = reading->value,
-                         .unit = reading->unit};
-    return piece_tables_print(results, &map_layout, (int)(method - context->grid->methods->items), &row, error);
+    MapCell row = {.map = map->name,
+                   .method = method->name,
+                   .setting = method->setting,
+                   .x_parameter = map->x.parameter,
+                   .x_unit = stability_unit(context->typical, map->x.parameter),
+                   .x = context->x[cell % context->x_count],
+                   .y_parameter = map->y.parameter,
+                   .y_unit = stability_unit(context->typical, map->y.parameter),
+                   .y = context->y[cell / context->x_count],
+                   .verdict = (int)reading->verdict,
+                   .frame = reading->frame,
+                   .body = reading->body,
+                   .value = reading->value,
+                   .unit = reading->unit};
+    const int section = (int)(method - context->grid->methods->items);
+    return piece_tables_print(results, &map_layout, section, &row, error) &&
+           unconverged_print(results, section, &row, &run->converged[i], error);
 }
 
 /* Tests the first and the last cell. False with error set if the system fails. */
@@ -311,11 +335,14 @@ bool stability_grid_write(const GridContext *context, int first, int end, FILE *
                .first = first,
                .cells = cells,
                .readings = malloc((size_t)methods * (size_t)cells * sizeof *run.readings),
+               .converged = malloc((size_t)cells * sizeof *run.converged),
                .counter = {.progress = progress, .expected = (double)cells * methods}};
     const ParallelWork work = {judge_cell, &run};
-    bool ok = (run.readings != NULL || error_memory(error, name)) && parallel_for(&work, cells, name, NULL, error);
+    bool ok = ((run.readings != NULL && run.converged != NULL) || error_memory(error, name)) &&
+              parallel_for(&work, cells, name, NULL, error);
     for (int m = 0; ok && m < methods; m++)
         for (int i = 0; ok && i < cells; i++) ok = write_cell(&run, i, m, results, error);
     free(run.readings);
+    free(run.converged);
     return ok;
 }

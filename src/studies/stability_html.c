@@ -29,7 +29,8 @@ static const char letters[VERDICT_LOOKS] = {
 typedef struct StabilityHtml {
     CsvTable maps, borders;
     CsvTable engines; /* of EngineRow; empty without such a table */
-    CsvTable table;   /* of MapPage */
+    CsvTable unconverged;
+    CsvTable table; /* of MapPage */
     const MapPage *pages;
     MapPanels *map; /* the current one */
     Error *error;
@@ -90,6 +91,13 @@ static void put_panel(FILE *out, const StabilityHtml *html, int panel) {
     fputs("</tbody>\n</table>\n", out);
 }
 
+/* Where the reference did not converge. */
+static void put_unconverged(FILE *out, const StabilityHtml *html, const char *study) {
+    char text[UNCONVERGED_TEXT_SIZE];
+    if (!stability_unconverged(&html->unconverged, study, text)) return;
+    html_print(out, "<p>%s: the reference did not converge %s. %s</p>\n", study, text, stability_unconverged_words);
+}
+
 static void put_map(FILE *out, const StabilityHtml *html) {
     const MapPanels *map = html->map;
     char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
@@ -97,6 +105,7 @@ static void put_map(FILE *out, const StabilityHtml *html) {
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
     study_page_section(out, map->first->map);
     html_print(out, "</h2>\n<p>Across: %s; up: %s.</p>\n", x, y);
+    put_unconverged(out, html, map->first->map);
     study_page_region(out, "maps scroll", "Maps of each method", "");
     for (int panel = 0; panel < map->panel_count; panel++) put_panel(out, html, panel);
     fputs("</div>\n</section>\n", out);
@@ -187,6 +196,9 @@ static void put_borders(FILE *out, const StabilityHtml *html) {
     for (int i = 0; i < borders->count; i++) struck |= border_is_struck(borders, i);
     if (struck) html_print(out, " %s", stability_struck_words);
     fputs("</p>\n", out);
+    for (int i = 0; i < borders->count; i++)
+        if (i == 0 || !border_same_study(border_row(borders, i), border_row(borders, i - 1)))
+            put_unconverged(out, html, border_row(borders, i)->study);
     study_page_region(out, "borders scroll", "Borders", "");
     fputs("<table>\n<thead><tr><th scope=\"col\">Study</th>", out);
     for (int m = 0, at; (at = find_border_method(borders, m)) >= 0; m++) {
@@ -244,6 +256,7 @@ bool stability_html_write(const char *folder, Error *error) {
         !csv_table_read_from(&html.maps, folder, &map_layout, error))
         return false;
     bool done = csv_table_read_from(&html.borders, folder, &border_layout, error) &&
+                csv_table_read_from(&html.unconverged, folder, &unconverged_layout, error) &&
                 csv_table_read_from(&html.table, folder, &map_page_layout, error) && read_engines(&html, folder, error);
     html.pages = html.table.rows;
     html.map = malloc(sizeof *html.map);
@@ -252,6 +265,7 @@ bool stability_html_write(const char *folder, Error *error) {
     free(html.map);
     csv_table_free(&html.engines);
     csv_table_free(&html.borders);
+    csv_table_free(&html.unconverged);
     csv_table_free(&html.table);
     csv_table_free(&html.maps);
     return done;

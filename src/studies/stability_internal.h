@@ -18,11 +18,14 @@ enum { LEFT_OUT_SIZE = 8192 };
 
 typedef struct LeftOut {
     int count;
-    char lines[3][LEFT_OUT_SIZE];
+    char lines[4][LEFT_OUT_SIZE];
 } LeftOut;
 
-/* Methods of one reason follow each other; at most three reasons, "Left out, as not applicable: ". */
+/* Methods of one reason follow each other; at most three reasons, "Left out, as not applicable: ", */
 void left_out_add(LeftOut *left_out, const char *why, const char *method, const char *setting);
+
+/* and then where the reference did not converge. */
+void left_out_add_unconverged(LeftOut *left_out, const CsvTable *unconverged, const char *study);
 
 /* From `left` to the edge of the page; a line is WORD_ROW high. */
 void left_out_draw(const LeftOut *left_out, PlotPage *page, double left);
@@ -35,9 +38,14 @@ enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
    of them; the caption names the others. The axis has the range of the study, of `own` or, if it is NULL, of the table of
    studies; of other studies, that of their borders. A bar covers the values that hold, up to holds_at. A tile at fails_at
    shows how the method fails (studies/stability.h); if the values beyond the bar are undecided, it is at the far end. An
-   arrow marks a method that holds over the whole range, a cross one that never holds. ERROR_INPUT, with
+   arrow marks a method that holds over the whole range, a cross one that never holds. The foot names where the reference did
+   not converge, by unconverged.csv. ERROR_INPUT, with
    path:line:column: more than BORDERS_MAX_METHODS methods or BORDERS_MAX_STUDIES studies. */
-bool stability_borders_write(const CsvTable *table, const StabilityOwn *own, PlotPage *page, Error *error);
+bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged, const StabilityOwn *own,
+                             PlotPage *page, Error *error);
+
+/* Writes the run's row of the table "unconverged", if a step of its converged runs did not converge; fills it in. */
+bool unconverged_print(FILE *results, int section, MapCell *row, const Convergence *convergence, Error *error);
 
 /* One stability map: the verdict of every method in every cell of a grid. */
 
@@ -65,7 +73,7 @@ int stability_grid_cells(const StabilityMap *map, bool quick);
 bool stability_grid_begin(GridContext *context, const StabilityGrid *grid, Error *error);
 void stability_grid_end(GridContext *context);
 
-/* Judges the cells first .. end - 1, row by row from the least y, and writes their rows of the table "maps", with a section
+/* Judges the cells first .. end - 1, row by row from the least y, and writes their rows of the tables "maps" and "unconverged", with a section
    for each of grid->methods (studies/chart.h). Omits methods that do not apply to the scene, methods that set their own
    number of sweeps if the map scans it, and the reference, by which runs are judged, unless the scene is struck. */
 bool stability_grid_write(const GridContext *context, int first, int end, FILE *results, const Progress *progress,
@@ -91,8 +99,8 @@ bool stability_scan_begin(ScanContext *context, const StabilityScan *scan, Error
 void stability_scan_end(ScanContext *context);
 
 /* Does the methods first .. end - 1 and writes their rows (studies/chart.h) of the tables "stability", "refusals",
-   "fallbacks" (every unshifted run of a method that may fall back) and "rest" (every unshifted run, if study.rests), ordered
-   by method. Omits methods that set their own number of sweeps if the study scans it. */
+   "fallbacks" (every unshifted run of a method that may fall back), "rest" (every unshifted run, if study.rests) and
+   "unconverged" (every unshifted run whose converged runs did not converge throughout), ordered by method. Omits methods that set their own number of sweeps if the study scans it. */
 bool stability_scan_write(ScanContext *context, int first, int end, FILE *results, const Progress *progress,
                           Error *error);
 

@@ -278,6 +278,15 @@ void left_out_add(LeftOut *left_out, const char *why, const char *method, const 
     text_add(line, LEFT_OUT_SIZE, "%s%s", next ? ", " : why, name);
 }
 
+void left_out_add_unconverged(LeftOut *left_out, const CsvTable *unconverged, const char *study) {
+    char text[UNCONVERGED_TEXT_SIZE];
+    if (!stability_unconverged(unconverged, study, text)) return;
+    const char *const why = "The reference did not converge: ";
+    const bool next = left_out->count > 0 && strncmp(left_out->lines[left_out->count - 1], why, strlen(why)) == 0;
+    if (!next) left_out->count++;
+    text_add(left_out->lines[left_out->count - 1], LEFT_OUT_SIZE, "%s%s %s", next ? "; " : why, study, text);
+}
+
 void left_out_draw(const LeftOut *left_out, PlotPage *page, double left) {
     for (int i = 0; i < left_out->count; i++) {
         char line[LEFT_OUT_SIZE];
@@ -443,7 +452,7 @@ static void draw_legend(const Layout *layout) {
     plot_text(layout->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS, "border of holding");
 }
 
-static void write_caption(const MapPanels *map, PlotPage *page) {
+static void write_caption(const MapPanels *map, bool converged, PlotPage *page) {
     char x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
@@ -460,18 +469,21 @@ static void write_caption(const MapPanels *map, PlotPage *page) {
             struck |= look == VERDICT_AGREES || look == VERDICT_TOO_FEW || look == VERDICT_TOO_MANY;
         }
     if (struck) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
+    if (!converged) text_add(page->caption, sizeof page->caption, " %s", stability_unconverged_words);
 }
 
 /* The figure and its caption. All cells have the same size; ticks show their values. */
-static void write_map(MapPanels *map, PlotPage *page) {
+static void write_map(MapPanels *map, const CsvTable *unconverged, PlotPage *page) {
     LeftOut left_out = {0};
     WordList words = {0};
     leave_out(map, &left_out);
+    const int reasons = left_out.count;
+    left_out_add_unconverged(&left_out, unconverged, map->first->map);
     const Layout layout = lay_out(map, left_out.count * WORD_ROW, &page->sketch);
     sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
     draw_legend(&layout);
-    write_caption(map, page);
+    write_caption(map, left_out.count == reasons, page);
     left_out_draw(&left_out, page, layout.grid.left);
     for (int panel = 0; panel < map->panel_count; panel++) words_add_method(&words, map->methods[panel]->method);
     for (int panel = 0; panel < map->panel_count; panel++)
@@ -485,14 +497,15 @@ static bool go_on(int done, int total, const char *folder, const Progress *progr
 }
 
 /* Gathers every map and, if `draw`, draws it. A first pass without drawing detects errors before anything is drawn. */
-static bool process_maps(const CsvTable *table, const char *folder, bool draw, const Progress *progress, Error *error) {
+static bool process_maps(const CsvTable *table, const CsvTable *unconverged, const char *folder, bool draw,
+                         const Progress *progress, Error *error) {
     MapPanels *map = malloc(sizeof *map);
     bool ok = map != NULL || error_memory(error, folder);
     for (int row = 0; ok && row < table->count;) {
         ok = go_on(row, table->count, folder, progress, error) && map_panels_gather(map, table, &row, error);
         if (!ok || !draw) continue;
         PlotPage page = {0};
-        write_map(map, &page);
+        write_map(map, unconverged, &page);
         ok = plot_page_write(&page, folder, "map-", map->first->map, error);
         plot_page_free(&page);
     }
@@ -500,11 +513,11 @@ static bool process_maps(const CsvTable *table, const char *folder, bool draw, c
     return ok;
 }
 
-static bool draw_borders(const CsvTable *table, const char *folder, const StabilityOwn *own, const Progress *progress,
-                         Error *error) {
+static bool draw_borders(const CsvTable *table, const CsvTable *unconverged, const char *folder,
+                         const StabilityOwn *own, const Progress *progress, Error *error) {
     if (table->count == 0) return true;
     PlotPage page = {0};
-    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, own, &page, error) &&
+    bool ok = go_on(0, 1, folder, progress, error) && stability_borders_write(table, unconverged, own, &page, error) &&
               plot_page_write(&page, folder, "", "borders", error);
     plot_page_free(&page);
     return ok;
@@ -513,10 +526,14 @@ static bool draw_borders(const CsvTable *table, const char *folder, const Stabil
 bool stability_figures_write(const char *folder, const StabilityOwn *own, const Progress *progress, Error *error) {
     CsvTable maps = {0};
     CsvTable borders = {0};
+    CsvTable unconverged = {0};
     bool ok = csv_table_read_from(&borders, folder, &border_layout, error) &&
               csv_table_read_from(&maps, folder, &map_layout, error) &&
-              process_maps(&maps, folder, false, NULL, error) && draw_borders(&borders, folder, own, progress, error) &&
-              process_maps(&maps, folder, true, progress, error);
+              csv_table_read_from(&unconverged, folder, &unconverged_layout, error) &&
+              process_maps(&maps, &unconverged, folder, false, NULL, error) &&
+              draw_borders(&borders, &unconverged, folder, own, progress, error) &&
+              process_maps(&maps, &unconverged, folder, true, progress, error);
+    csv_table_free(&unconverged);
     csv_table_free(&maps);
     csv_table_free(&borders);
     return ok;

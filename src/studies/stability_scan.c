@@ -70,6 +70,20 @@ bool stability_scan_run(const StabilityScan *scan, const Method *method, double 
     return ok;
 }
 
+/* A run as a cell, without what it showed. */
+static MapCell cell_at(const StabilityStudy *study, double value, const char *unit, const char *method,
+                       const char *setting) {
+    return (MapCell){.map = study->name,
+                     .method = method,
+                     .setting = setting,
+                     .x_parameter = study->parameter,
+                     .x_unit = unit,
+                     .x = value,
+                     .y_parameter = study->fixed.name,
+                     .y_unit = "",
+                     .y = study->fixed.name[0] != '\0' ? study->fixed.value : NAN};
+}
+
 bool stability_run_cell(const StabilityStudy *study, const char *scenes, const BorderRow *row, double value,
                         MapCell *cell, Error *error) {
     const StabilityScan scan = {study, scenes, NULL};
@@ -77,15 +91,7 @@ bool stability_run_cell(const StabilityStudy *study, const char *scenes, const B
     VerdictReading reading;
     Method method;
     char text[MAP_METHOD_SIZE];
-    *cell = (MapCell){.map = row->study,
-                      .method = row->method,
-                      .setting = row->setting,
-                      .x_parameter = row->parameter,
-                      .x_unit = row->unit,
-                      .x = value,
-                      .y_parameter = study->fixed.name,
-                      .y_unit = "",
-                      .y = study->fixed.name[0] != '\0' ? study->fixed.value : NAN};
+    *cell = cell_at(study, value, row->unit, row->method, row->setting);
     map_cell_method(text, cell);
     const bool ok =
         method_parse(&method, text, error) && stability_scan_run(&scan, &method, value, 0, &converged, &reading, error);
@@ -209,6 +215,13 @@ static int by_value(const void *left, const void *right) {
 
 static double finite_or_nan(double number) { return isfinite(number) ? number : NAN; }
 
+static bool write_unconverged(const Run *run, const RunRow *row, FILE *lines, Error *error) {
+    const ConvergedRun *converged = converged_runs_find(&run->context->converged, row->value);
+    MapCell cell = cell_at(run->scan->study, row->value, row->unit, row->method, row->setting);
+    cell.verdict = row->verdict;
+    return unconverged_print(lines, -1, &cell, &converged->convergence, error);
+}
+
 static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *lines, Error *error) {
     const Contender *contender = contender_of(run, i);
     const StabilityStudy *study = run->scan->study;
@@ -230,7 +243,8 @@ static bool write_run(const Run *run, int i, const ScanRun *scan_run, FILE *line
     const MethodDescription *method = contender->method.kind->description;
     const bool may_fall_back = method->needs_network || method->falls_back;
     if (may_fall_back && !piece_tables_print(lines, &fallback_layout, -1, &row, error)) return false;
-    return !study->rests || piece_tables_print(lines, &rest_layout, -1, &row, error);
+    if (study->rests && !piece_tables_print(lines, &rest_layout, -1, &row, error)) return false;
+    return write_unconverged(run, &row, lines, error);
 }
 
 static bool write_runs(const Run *run, int i, FILE *lines, Error *error) {

@@ -46,7 +46,53 @@ bool border_same_study(const BorderRow *a, const BorderRow *b) { return strcmp(a
 const char stability_struck_words[] = "Where a bomb or a moving body strikes, a method holds where it agrees with the "
                                       "reference: as there, no box falls, fewer "
                                       "than half of the boxes, or at least half; the reference itself holds where it "
-                                      "stands. Undecided: a micrometre decides.";
+                                      "stands. Undecided: a micrometre decides, or the reference did not converge.";
+
+const char stability_unconverged_words[] =
+    "From a step on that did not converge no run is judged by the reference, and "
+    "what a strike must do is undecided.";
+
+static bool same_place(const MapCell *a, const MapCell *b) {
+    return strcmp(a->map, b->map) == 0 && a->x == b->x && (a->y == b->y || (isnan(a->y) && isnan(b->y)));
+}
+
+/* The first row of its values: other methods have the same converged runs. */
+static bool is_first_there(const CsvTable *table, int i) {
+    bool first = true;
+    for (int k = 0; first && k < i; k++) first = !same_place(map_cell(table, k), map_cell(table, i));
+    return first;
+}
+
+/* "at rows 22", or of a map "at rows/rate 22/60"; further places without the names. */
+static void add_place(char *text, const MapCell *cell, int places) {
+    const bool map = !isnan(cell->y);
+    if (places > 0)
+        text_add(text, UNCONVERGED_TEXT_SIZE, ", ");
+    else
+        text_add(text, UNCONVERGED_TEXT_SIZE, map ? "at %s/%s " : "at %s ", cell->x_parameter, cell->y_parameter);
+    text_add(text, UNCONVERGED_TEXT_SIZE, map ? "%.4g/%.4g" : "%.4g", cell->x, cell->y);
+}
+
+bool stability_unconverged(const CsvTable *table, const char *study, char text[UNCONVERGED_TEXT_SIZE]) {
+    enum { NAMED = 12 };
+    double steps = 0, not_converged = 0, residual = 0;
+    int places = 0;
+    text[0] = '\0';
+    for (int i = 0; i < table->count; i++) {
+        const MapCell *cell = map_cell(table, i);
+        if (strcmp(cell->map, study) != 0 || !is_first_there(table, i)) continue;
+        if (places < NAMED) add_place(text, cell, places);
+        places++;
+        steps += cell->steps;
+        not_converged += cell->not_converged;
+        if (!(cell->residual <= residual)) residual = cell->residual;
+    }
+    if (places > NAMED) text_add(text, UNCONVERGED_TEXT_SIZE, " and %d more", places - NAMED);
+    if (places > 0) text_add(text, UNCONVERGED_TEXT_SIZE, " (%.0f of %.0f steps, residual ", not_converged, steps);
+    if (places > 0)
+        text_add(text, UNCONVERGED_TEXT_SIZE, isnan(residual) ? "not finite)" : "up to %.2g m/s)", residual);
+    return places > 0;
+}
 
 bool border_is_struck(const CsvTable *table, int i) {
     for (int k = 0; k < table->count; k++) {
@@ -152,21 +198,27 @@ enum { REASON_SIZE = 2048, VALUE_DIGITS = 9, REST_DIGITS = 4 };
     CSV_MEMBER(Row, member, sort, .minimum = least, .maximum = most, .digits = count)
 #define COUNT(Row, member, least) NUMBER(Row, member, CSV_INTEGER, least, INT_MAX, 0)
 
+/* The columns that tables of cells begin with. y_sort: whether y may be missing */
+#define CELL_COLUMNS(y_sort)                                                                         \
+    NAME(MapCell, map), NAME(MapCell, method), TEXT(MapCell, setting, STABILITY_SETTING_SIZE),       \
+        NAME(MapCell, x_parameter), NAME(MapCell, x_unit),                                           \
+        NUMBER(MapCell, x, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS), NAME(MapCell, y_parameter), \
+        NAME(MapCell, y_unit), NUMBER(MapCell, y, y_sort, -LARGEST, LARGEST, VALUE_DIGITS), VERDICT(MapCell)
+
 static const CsvColumn map_columns[] = {
-    NAME(MapCell, map),
-    NAME(MapCell, method),
-    TEXT(MapCell, setting, STABILITY_SETTING_SIZE),
-    NAME(MapCell, x_parameter),
-    NAME(MapCell, x_unit),
-    NUMBER(MapCell, x, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
-    NAME(MapCell, y_parameter),
-    NAME(MapCell, y_unit),
-    NUMBER(MapCell, y, CSV_NUMBER, -LARGEST, LARGEST, VALUE_DIGITS),
-    VERDICT(MapCell),
+    CELL_COLUMNS(CSV_NUMBER),
     NUMBER(MapCell, frame, CSV_OPTIONAL, 0, SCENE_MAX_FRAMES, VALUE_DIGITS),
     NUMBER(MapCell, body, CSV_OPTIONAL, -1, SCENE_MAX_BODIES, VALUE_DIGITS),
     NUMBER(MapCell, value, CSV_OPTIONAL, -LARGEST, LARGEST, 0),
     NAME(MapCell, unit),
+};
+
+static const CsvColumn unconverged_columns[] = {
+    CELL_COLUMNS(CSV_OPTIONAL),
+    COUNT(MapCell, steps, 1),
+    COUNT(MapCell, not_converged, 1),
+    NUMBER(MapCell, residual, CSV_OPTIONAL, 0, LARGEST, REST_DIGITS),
+    NUMBER(MapCell, first, CSV_OPTIONAL, 1, SCENE_MAX_FRAMES, VALUE_DIGITS),
 };
 
 /* The columns that these tables begin with. */
@@ -225,6 +277,8 @@ const CsvLayout map_layout =
     CSV_LAYOUT("maps", map_columns, MapCell, .max_rows = STABILITY_MAX_CELLS, .check = check_cells);
 const CsvLayout border_layout =
     CSV_LAYOUT("stability", border_columns, BorderRow, .max_rows = STABILITY_MAX_BORDERS, .check = check_borders);
+const CsvLayout unconverged_layout =
+    CSV_LAYOUT("unconverged", unconverged_columns, MapCell, .max_rows = STABILITY_MAX_CELLS);
 const CsvLayout refusal_layout = CSV_LAYOUT("refusals", refusal_columns, RefusalRow, .max_rows = STABILITY_MAX_RUNS);
 const CsvLayout rest_layout = CSV_LAYOUT("rest", rest_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);
 const CsvLayout fallback_layout = CSV_LAYOUT("fallbacks", fallback_columns, RunRow, .max_rows = STABILITY_MAX_RUNS);

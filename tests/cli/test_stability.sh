@@ -9,10 +9,11 @@ says "bomb_speed: speed in m/s, holds | fails"
 says "heavy_on_one: ratio, holds | fails"
 says "  scene-net                not applicable"
 says "borders -> one/stability.csv; maps -> one/maps.csv"
+says "steps of the reference that did not converge: none -> one/unconverged.csv"
 [ "$(awk '{ if (length > n) n = length } END { print n }' out)" -le 80 ] || fail "the table is wider than 80 columns"
 equal "lines a method" "$(grep -cE '^  engine:k=4 +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 3
 equal "lines a method with two settings" "$(grep -cE '^  engine:k=10,warm=off +[0-9.]+ \| [0-9.]+ [a-z]+' out)" 2
-tables="fallbacks.csv maps.csv refusals.csv rest.csv stability.csv"
+tables="fallbacks.csv maps.csv refusals.csv rest.csv stability.csv unconverged.csv"
 equal "files" "$(echo $(ls one))" "borders.png borders.svg borders.txt $tables"
 equal "maps" "$(wc -l <one/maps.csv)" 1
 OMP_NUM_THREADS=3 run 0 stability $few -o three
@@ -24,7 +25,7 @@ done
 run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o map
 equal "header of borders" "$(cat map/stability.csv)" "study,method,setting,parameter,unit,holds_at,fails_at,verdict"
 equal "cells" "$(wc -l <map/maps.csv)" 21
-equal "lines printed" "$(wc -l <out)" 5
+equal "lines printed" "$(wc -l <out)" 6
 equal "figures" "$(cd map && echo *.png)" map-speed_thickness.png
 
 ! brief || finish

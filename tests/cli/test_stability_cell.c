@@ -32,7 +32,20 @@ TEST(the_first_method_that_holds_there_is_the_holder) {
 static const CellMap map = {"m", SOURCE_DIR "/scenes/stability/time_step.yaml", "rate", "height"};
 
 static MapCell cell_of(const char *method, double rate, double height, Verdict verdict, double frame) {
-    return (MapCell){"m", method, "", "rate", "Hz", "height", "", rate, height, (int)verdict, frame, 1, 0.5, "m"};
+    return (MapCell){.map = "m",
+                     .method = method,
+                     .setting = "",
+                     .x_parameter = "rate",
+                     .x_unit = "Hz",
+                     .x = rate,
+                     .y_parameter = "height",
+                     .y_unit = "",
+                     .y = height,
+                     .verdict = (int)verdict,
+                     .frame = frame,
+                     .body = 1,
+                     .value = 0.5,
+                     .unit = "m"};
 }
 
 /* Runs the cell, and expects so many frames of each run, of the holder first. */

@@ -89,6 +89,28 @@ TEST(an_axis_has_the_range_of_its_study) {
                       "assert 'Stack height' in texts(read('borders'))\n");
 }
 
+#define UNCONVERGED_RUN(map, method, x, y, rest) map "," method ",,h,," x ",v,," y ",settles," rest "\n"
+
+/* Once for all methods, with what all values have together; a map names both values. */
+TEST(where_the_reference_did_not_converge_is_named) {
+    start_afresh(MAPS "m,engine,,h,,2,v,,3,settles,,,,\nm,engine,,h,,2,v,,4,falls,,,,\n",
+                 BORDERS "s,engine,,h,,1,2,falls\ns,nncg,,h,,1,2,falls\nt,nncg,,h,,1,2,falls\n");
+    draw();
+    check_svg("for name in ('borders', 'map-m'):\n"
+              "    assert 'converge' not in caption(name) + str(texts(read(name))), caption(name)\n");
+    write_table("unconverged.csv", UNCONVERGED UNCONVERGED_RUN("s", "engine", "2", "", "100,7,2e-08,3")
+                                       UNCONVERGED_RUN("s", "engine", "5", "", "300,1,0.02,")
+                                           UNCONVERGED_RUN("s", "nncg", "2", "", "100,7,2e-08,3")
+                                               UNCONVERGED_RUN("m", "engine", "2", "4", "50,50,,1"));
+    draw();
+    check_svg("for name, where in (('borders', 's at h 2, 5 (8 of 400 steps, residual up to 0.02 m/s).'),\n"
+              "                    ('map-m', 'm at h/v 2/4 (50 of 50 steps, residual not finite).')):\n"
+              "    line = 'The reference did not converge: ' + where\n"
+              "    assert any(text[:40] == line[:40] for text in texts(read(name))), name\n"
+              "    expect(caption(name).count('%s ' + line), 1, name)\n",
+              stability_unconverged_words);
+}
+
 /* Of a scene file: "Scene high, by height", and not the name of the study. */
 TEST(studies_of_a_scene_have_their_range_and_title) {
     const char *scene = temporary_path("high.yaml"), *const vary[] = {"height=3:30", "bomb_mass"};

@@ -72,6 +72,9 @@ TEST(a_study_compares_with_the_truth) {
         assert_int_equal(stability_compare(&struck, VERDICT_UNDECIDED, &engine), VERDICT_UNDECIDED);
         assert_int_equal(stability_compare(&struck, VERDICT_SETTLES, &engine), stands[own]);
     }
+    const VerdictReading unknown = {
+        .verdict = VERDICT_STANDS, .struck = true, .fallbacks = {.not_converged = 1, .residual = 1}};
+    assert_int_equal(stability_compare(&unknown, VERDICT_UNDECIDED, &reference), VERDICT_UNDECIDED);
     const VerdictReading explodes = {.verdict = VERDICT_EXPLODES}, early = {.verdict = VERDICT_FALLS};
     assert_int_equal(stability_compare(&explodes, VERDICT_COLLAPSES, &engine), VERDICT_EXPLODES);
     assert_int_equal(stability_compare(&early, VERDICT_COLLAPSES, &engine), VERDICT_FALLS);
@@ -94,8 +97,11 @@ static Verdict truth_at(float past, int frames) {
     scene.bomb = (SceneBomb){.present = true, .frame = 1, .body = {.size = {1, 1}, .mass = 1, .position = {-8, 0.5f}}};
     const VerdictRun judged = verdict_run_of(&scene);
     Verdict truth;
+    Convergence convergence = {0};
     Error error = {0};
-    assert_ok(stability_truth(&scene, &judged, &truth, &error), error);
+    assert_ok(stability_truth(&scene, &judged, &truth, &convergence, &error), error);
+    assert_int_equal(convergence.steps, (BORDER_SEEDS - 1) * frames);
+    assert_int_equal(convergence.fallbacks.not_converged, 0);
     assert_true(bodies[1].position.x == past && scene.warm_starting);
     return truth;
 }
