@@ -75,8 +75,7 @@ bool scene_check_networks(const Scene *scene, Error *error);
    error ends with the parameter: "(with height = 20, an end of its range)". */
 bool scene_check_ends(const char *path, const Scene *scene, Error *error);
 
-/* A trajectory of a scene and a method in memory, with room for this many frames; none is filled. NULL with error set.
-   */
+/* A trajectory of a scene and a method in memory, with room for this many frames; none is filled. NULL, error set. */
 Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int frames, Error *error);
 
 /* Fills a frame from the world; the contacts are those of the step that led to it, in rising order of frames. */
