@@ -55,7 +55,9 @@ static const CommandSpec spec = {
     .inputs = {1, 1, "input"},
     .help =
         "Validate a scene: all keys, boxes that start inside others, the launches of the bomb, the networks that it "
-        "names, and each parameter at both ends. Prints a summary and draws the first frame with the way of the bomb.\n"
+        "names, and each parameter at both ends. Prints a summary, which names launches that strike no box (of 41 at "
+        "most that it "
+        "tries with the engine), and draws the first frame with the way of the bomb.\n"
         "Or judge a stored run of any engine: the verdict that simulate prints, the deepest overlap, drift and energy "
         "gained. Contacts are found again from the poses.\v"
         "Example: twinbox check scenes/stack.yaml -o first.png\n"
@@ -78,12 +80,10 @@ static void print_bodies(FILE *out, const Scene *scene) {
 
 /* Where the engine's lengths do not fit the scene: shares of the smallest side of a box. */
 typedef struct Fit {
-    double side; /* m; NAN: no box */
+    double side; /* m; INFINITY: no box */
     double slop; /* of that, what contacts leave uncorrected */
     double step; /* of that, how far a box at rest falls in a step before its contact is felt */
 } Fit;
-
-static const double fits = 0.05;
 
 static Fit find_fit(const Scene *scene) {
     const double dt = (double)scene->dt, pull = vec2_distance(scene->gravity, vec2(0, 0));
@@ -91,22 +91,45 @@ static Fit find_fit(const Scene *scene) {
     for (int i = 0; i < scene->body_count; i++)
         if (!scene->bodies[i].fixed)
             side = fmin(side, fmin((double)scene->bodies[i].size.x, (double)scene->bodies[i].size.y));
-    if (isinf(side)) return (Fit){NAN, 0, 0};
     return (Fit){side, (double)CONTACT_SLOP / side, pull * dt * dt / side};
+}
+
+static bool fits(const Fit *fit) {
+    const double most = 0.05;
+    return fit->slop <= most && fit->step <= most;
 }
 
 static void print_fit(FILE *out, const Scene *scene) {
     const Fit fit = find_fit(scene);
-    if (fit.slop > fits)
-        fprintf(out,
-                "    size: contacts leave overlaps of %g m (slop), %.3g%% of the smallest side, %.3g m: make the scene "
-                "larger\n",
-                (double)CONTACT_SLOP, 100 * fit.slop, fit.side);
-    if (fit.step > fits)
-        fprintf(out,
-                "    size: in a step a box falls by %.3g%% of the smallest side, %.3g m, and is pushed out again by a "
-                "fifth a step: make dt shorter\n",
-                100 * fit.step, fit.side);
+    if (!fits(&fit))
+        fprintf(
+            out,
+            "    size: of the smallest side, %.3g m, contacts leave %.3g%% as overlap (slop, %g m), and a box falls by "
+            "%.3g%% in a step: make the scene larger, or dt shorter\n",
+            fit.side, 100 * fit.slop, (double)CONTACT_SLOP, 100 * fit.step);
+}
+
+/* ", x = -5 to 1 m": where launches miss, if they differ in x. */
+static void describe_misses(const Scene *scene, const LaunchMisses *misses, char *text, size_t size) {
+    if (!scene_span_varies(&scene->bomb.x) || misses->span_count == 0) return;
+    for (int i = 0; i < misses->span_count; i++) {
+        const OverlapSpan *span = &misses->spans[i];
+        text_add(text, size, "%s%.3g", i == 0 ? ", x = " : ", ", span->from);
+        if (span->from < span->to) text_add(text, size, " to %.3g", span->to);
+    }
+    text_add(text, size, " m");
+}
+
+static void print_misses(FILE *out, const Scene *scene, const LaunchMisses *misses) {
+    char where[400] = "";
+    describe_misses(scene, misses, where, sizeof where);
+    if (misses->tried == 0)
+        fprintf(out, "    misses: not looked for, as the scene is large\n");
+    else if (misses->missed > 0 && misses->tried == 1)
+        fprintf(out, "    misses: the bomb strikes no box\n");
+    else if (misses->missed > 0)
+        fprintf(out, "    misses: the bomb strikes no box in %d of %d launches tried%s\n", misses->missed,
+                misses->tried, where);
 }
 
 /* ", x from -5 to 5 m": behind the family so far. */
@@ -171,7 +194,29 @@ static bool draw_first_frame(const Scene *scene, const char *path, Error *error)
     return ok;
 }
 
-static void put_bomb(JsonWriter *json, const Scene *scene) {
+/* null if all fits, as there is no remark then. */
+static void put_fit(JsonWriter *json, const Scene *scene) {
+    const Fit fit = find_fit(scene);
+    if (json_put_absent(json, "size", fits(&fit))) return;
+    json_begin_object(json, "size", JSON_ONE_LINE);
+    json_put_number(json, "smallest_side", fit.side);
+    json_put_number(json, "slop", fit.slop);
+    json_put_number(json, "step", fit.step);
+    json_end(json);
+}
+
+static void put_misses(JsonWriter *json, const LaunchMisses *misses) {
+    json_begin_object(json, "misses", JSON_ONE_LINE);
+    json_put_int(json, "tried", misses->tried);
+    json_put_int(json, "missed", misses->missed);
+    json_begin_array(json, "x", JSON_ONE_LINE);
+    for (int i = 0; i < misses->span_count; i++)
+        json_output_pair(json, NULL, misses->spans[i].from, misses->spans[i].to);
+    json_end(json);
+    json_end(json);
+}
+
+static void put_bomb(JsonWriter *json, const Scene *scene, const LaunchMisses *misses) {
     const SceneBomb *bomb = &scene->bomb;
     const BodyDef body = scene_bomb_body(scene);
     const struct {
@@ -188,11 +233,13 @@ static void put_bomb(JsonWriter *json, const Scene *scene) {
         if (scene_span_varies(family[i].span))
             json_output_pair(json, family[i].name, (double)family[i].span->from, (double)family[i].span->to);
     json_end(json);
+    put_misses(json, misses);
     json_end(json);
 }
 
 typedef struct Checked {
     const Scene *scene;
+    const LaunchMisses *misses;
     const char *path, *picture;
 } Checked;
 
@@ -208,12 +255,8 @@ static void write_result(JsonWriter *json, const void *context) {
     json_put_number(json, "dt", (double)scene->dt);
     json_put_int(json, "iterations", scene->iterations);
     json_put_bool(json, "overlaps_allowed", scene->overlaps_allowed);
-    const Fit fit = find_fit(scene);
-    json_begin_object(json, "of_smallest_side", JSON_ONE_LINE);
-    json_put_number(json, "slop", fit.slop);
-    json_put_number(json, "step", fit.step);
-    json_end(json);
-    if (!json_put_absent(json, "bomb", !scene->bomb.present)) put_bomb(json, scene);
+    put_fit(json, scene);
+    if (!json_put_absent(json, "bomb", !scene->bomb.present)) put_bomb(json, scene, checked->misses);
     json_begin_array(json, "parameters", JSON_LINES);
     for (int i = 0; i < scene->parameter_count; i++) {
         const SceneParameter *parameter = &scene->parameters[i];
@@ -233,10 +276,11 @@ static void write_result(JsonWriter *json, const void *context) {
     json_put_text(json, "picture", checked->picture);
 }
 
-static void print_summary(FILE *out, const char *path, const Scene *scene) {
+static void print_summary(FILE *out, const char *path, const Scene *scene, const LaunchMisses *misses) {
     fprintf(out, "%s is valid\n", path);
     print_bodies(out, scene);
     print_bomb(out, scene);
+    if (scene->bomb.present) print_misses(out, scene, misses);
     print_lists(out, scene);
     print_fit(out, scene);
     fflush(out);
@@ -248,14 +292,16 @@ static bool check(const Scene *scene, const Options *options, Error *error) {
     char standard[SCENE_NAME_SIZE + 32];
     snprintf(standard, sizeof standard, "%s-first-frame.png", scene->name);
     file_name_clean(standard);
+    LaunchMisses misses = {0};
     if (!scene_check_launches(scene, error) || !scene_check_networks(scene, error) ||
-        !scene_check_ends(options->scene, scene, error))
+        !scene_check_ends(options->scene, scene, error) ||
+        (scene->bomb.present && !launches_find_misses(scene, &misses, error)))
         return false;
-    if (!options->json) print_summary(out, options->scene, scene);
+    if (!options->json) print_summary(out, options->scene, scene, &misses);
     const char *picture = to_output ? "/dev/stdout" : options->output != NULL ? options->output : standard;
     if (!draw_first_frame(scene, picture, error)) return false;
     if (options->json)
-        return json_output("twinbox check 1", write_result, &(Checked){scene, options->scene, picture}, error);
+        return json_output("twinbox check 1", write_result, &(Checked){scene, &misses, options->scene, picture}, error);
     if (to_output) return true;
     fprintf(out, "first frame -> %s\n", picture);
     next_film(options->scene);

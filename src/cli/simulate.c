@@ -92,7 +92,10 @@ static void write_fallen(const SimulateVerdict *verdict, JsonWriter *json) {
 
 static void write_reading(const SimulateVerdict *verdict, JsonWriter *json) {
     const VerdictReading *reading = &verdict->reading;
+    char words[TRAJECTORY_VERDICT_SIZE];
+    simulate_verdict_words(verdict, words);
     json_put_text(json, "verdict", verdict_name(reading->verdict));
+    json_put_text(json, "words", words);
     json_put_bool(json, "holds", verdict_holds(reading->verdict));
     json_put_bool(json, "sound", verdict_sound(reading->verdict));
     json_put_int(json, "frame", reading->frame);

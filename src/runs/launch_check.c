@@ -178,6 +178,57 @@ bool scene_check_launches(const Scene *scene, Error *error) {
     return launches_check(scene, launches, count, error);
 }
 
+bool launch_find_touch(const Scene *launched, const char *method_text, int *touch, Error *error) {
+    Method method;
+    Error failure = {0};
+    PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
+    Stepper *stepper = method_parse(&method, method_text, error) ? stepper_create(&method, launched, error) : NULL;
+    World *world = stepper != NULL ? scene_world(launched, error) : NULL;
+    bool ok = world != NULL;
+    for (int frame = 1; ok && tracker.touch == 0 && frame <= launched->frames; frame++) {
+        ok = simulate_step(stepper, world, &(Step){.scene = launched, .frame = frame}, &failure);
+        if (ok) phase_next(&tracker, world_problem(world), frame);
+    }
+    *touch = tracker.touch;
+    world_destroy(world);
+    stepper_destroy(stepper);
+    if (failure.kind == ERROR_NONE) return ok;
+    if (failure.failure != FAILURE_NONE) return true;
+    *error = failure;
+    return false;
+}
+
+/* Bodies times steps that all tries together may take: some seconds. */
+static const double most_states = 1e6;
+
+static int affordable_tries(const Scene *scene, int wanted) {
+    return (int)fmin(wanted, most_states / ((scene->body_count + 1.0) * fmax(scene->frames, 1)));
+}
+
+/* Launches of one side that miss, each next to the one before, are a span. */
+static void add_miss(LaunchMisses *misses, float x, bool next) {
+    misses->missed++;
+    if (!next) misses->spans[misses->span_count++].from = (double)x;
+    misses->spans[misses->span_count - 1].to = (double)x;
+}
+
+bool launches_find_misses(const Scene *scene, LaunchMisses *misses, Error *error) {
+    Launch launches[LAUNCH_TRIES];
+    const bool family = launch_has_family(scene);
+    *misses = (LaunchMisses){.tried = affordable_tries(scene, family ? LAUNCH_TRIES : 1)};
+    launches[0] = launch_of(scene);
+    if (family && !launches_for_training(scene, misses->tried, launches, error)) return false;
+    bool missed = false;
+    for (int i = 0; i < misses->tried; i++) {
+        const Scene launched = launch_scene(scene, &launches[i]);
+        int touch;
+        if (!launch_find_touch(&launched, "engine", &touch, error)) return false;
+        if (touch == 0) add_miss(misses, launches[i].x, missed);
+        missed = touch == 0;
+    }
+    return true;
+}
+
 static bool ignore(void *context, int frame, const World *world, Error *error) {
     (void)context, (void)frame, (void)world, (void)error;
     return true;

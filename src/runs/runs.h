@@ -18,8 +18,8 @@ typedef struct Simulation {
     Stepper *stepper;
 } Simulation;
 
-/* The world before the first step. The scene outlives the run. On failure there is nothing to end. ERROR_INPUT also if the
-   bomb would start inside a body. */
+/* The world before the first step. The scene outlives the run. On failure there is nothing to end. ERROR_INPUT also if
+   the bomb would start inside a body. */
 bool simulation_begin(Simulation *run, const Scene *scene, const Method *method, Error *error);
 
 /* Step `frame`: 1, 2, ... in order. */
@@ -75,7 +75,7 @@ bool scene_check_networks(const Scene *scene, Error *error);
    error ends with the parameter: "(with height = 20, an end of its range)". */
 bool scene_check_ends(const char *path, const Scene *scene, Error *error);
 
-/* A trajectory of a scene and a method in memory, with room for this many frames; none is filled. NULL with error set. */
+/* A trajectory of a scene and a method in memory, with room for this many frames; none is filled. NULL, error set. */
 Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int frames, Error *error);
 
 /* Fills a frame from the world; the contacts are those of the step that led to it, in rising order of frames. */
@@ -125,8 +125,8 @@ void recorder_destroy(Recorder *recorder);
 /* Records a frame; 0: before the first step. Frames in rising order, without gaps. RunWatch does it. */
 bool recorder_record(Recorder *recorder, int frame, const World *world, Error *error);
 
-/* After the run, before recorder_finish() or recorder_take(): what its program states (method_program), and the verdict on it
-   (trajectory_judge). */
+/* After the run, before recorder_finish() or recorder_take(): what its program states (method_program), and the verdict
+   on it (trajectory_judge). */
 void recorder_name_program(Recorder *recorder, const Method *method);
 void recorder_judge(Recorder *recorder, const char *words, int frame, int body);
 
@@ -150,6 +150,23 @@ bool launches_check(const Scene *scene, const Launch *launches, int count, Error
 /* True if the scene's bomb, added to this world now, would start inside none of its bodies. */
 bool launch_is_free(const Scene *scene, const World *world);
 
+/* The first step in which the bomb of this launch touches a box that can move, as the method has it; 0 if it does not,
+   or if the method fails before (MethodFailure). */
+bool launch_find_touch(const Scene *launched, const char *method, int *touch, Error *error);
+
+/* Launches of the scene's family, spread evenly, that touch no box that can move, by the engine. */
+
+enum { LAUNCH_TRIES = 41 };
+
+typedef struct LaunchMisses {
+    int tried, missed; /* fewer than LAUNCH_TRIES in large scenes, down to 0; without a family 1 */
+    OverlapSpan spans[LAUNCH_TRIES / 2 + 1]; /* [span_count] of x, rising: launches tried in them miss, one and all */
+    int span_count;
+} LaunchMisses;
+
+/* The scene must have a bomb. */
+bool launches_find_misses(const Scene *scene, LaunchMisses *misses, Error *error);
+
 /* Contact problems as bytes, for files that only the same program reads again (runs/pieces.h). */
 
 /* What is left of the contents of a file. */
@@ -168,8 +185,8 @@ bool problem_bytes_refuse(const ProblemBytes *bytes, Error *error);
 /* Whether writing failed is for the stream to tell. */
 void problem_bytes_write(const ContactProblem *problem, FILE *out);
 
-/* Takes a problem off the front; problem_bytes_free(), also after a failure. ERROR_INPUT if bytes are missing, counts are too
-   large, numbers are NaN or infinite, or pairs are out of range or not sorted. */
+/* Takes a problem off the front; problem_bytes_free(), also after a failure. ERROR_INPUT if bytes are missing, counts
+   are too large, numbers are NaN or infinite, or pairs are out of range or not sorted. */
 bool problem_bytes_read(ContactProblem *problem, ProblemBytes *bytes, Error *error);
 void problem_bytes_free(ContactProblem *problem);
 

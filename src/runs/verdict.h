@@ -66,9 +66,9 @@ bool energy_log_run(EnergyLog *log, const Scene *scene, const Method *method, Er
    frame at which it applied. SI units.
 
    Limits scale with the run, so that it has the same verdict in other units of mass, and as a copy whose lengths are s
-   times as long and whose times are the root of s: lengths are shares of the bodies' sizes, energies those that lift bodies by
-   their sizes, times are counted in falls. For boxes of 1 m and 1 kg, and a gravity of 10 m/s^2, the comments say what
-   that is in SI units. */
+   times as long and whose times are the root of s: lengths are shares of the bodies' sizes, energies those that lift
+   bodies by their sizes, times are counted in falls. For boxes of 1 m and 1 kg, and a gravity of 10 m/s^2, the comments
+   say what that is in SI units. */
 
 /* From the best to the worst. */
 typedef enum Verdict {
@@ -93,54 +93,54 @@ typedef enum Verdict {
 /* The size of a body: a square of this side has its area. m */
 double verdict_size(const Body *body);
 
-/* The unit of time, a fall (1 s): in it a body falls by five times the mean size of the dynamic bodies at the start. Rounded to
-   whole steps. Without gravity, VERDICT_CALM_FRAMES steps, and gravity is taken as what would lead to that. */
+/* The unit of time, a fall (1 s): in it a body falls by five times the mean size of the dynamic bodies at the start.
+   Rounded to whole steps. Without gravity, VERDICT_CALM_FRAMES steps, and gravity is what would lead to that. */
 #define VERDICT_FALL_SIZES 5.0
 
 /* Settles: over the last VERDICT_CALM_FALLS falls, each body rests: its kinetic energy is below that of a fall by
-   VERDICT_CALM_SHARE of its size (45 mm/s), and contacts have carried it in the last VERDICT_AIR_TIME falls, from a static
-   body on, directly or through other bodies; without gravity nothing needs to be carried. Moves: otherwise. */
+   VERDICT_CALM_SHARE of its size (45 mm/s), and contacts have carried it in the last VERDICT_AIR_TIME falls, from a
+   static body on, directly or through other bodies; without gravity nothing needs to be carried. Moves: otherwise. */
 enum { VERDICT_CALM_FRAMES = 60 };
 #define VERDICT_CALM_FALLS 0.5
 #define VERDICT_CALM_SHARE 1e-4
 #define VERDICT_AIR_TIME 0.1
 
 /* Creeps: a body has moved more than VERDICT_CREEP_SHARE of its size (50 mm) in VERDICT_CREEP_FALLS, but not more than
-   VERDICT_CREEP_MOST of its size: what slides or falls freely does not creep. Checked every fall, counted back from the last
-   frame, and only after VERDICT_CREEP_FROM falls, when bodies have come to rest. */
+   VERDICT_CREEP_MOST of its size: what slides or falls freely does not creep. Checked every fall, counted back from the
+   last frame, and only after VERDICT_CREEP_FROM falls, when bodies have come to rest. */
 #define VERDICT_CREEP_SHARE 0.05
 #define VERDICT_CREEP_MOST 2.0
 enum { VERDICT_CREEP_FALLS = 10, VERDICT_CREEP_FROM = 10 };
 
 /* Falls: a body is lower than where it stood by more than VERDICT_FALL_SHARE of its smaller side, or has rotated by
-   more than VERDICT_FALL_ANGLE (degrees), even if it comes to rest there; or it is below all static bodies. Sag does not count: a tall pile
-   whose contacts give way by some millimetres each is lower at its top, and stands. */
+   more than VERDICT_FALL_ANGLE (degrees), even if it comes to rest there; or it is below all static bodies. Sag does
+   not count: a tall pile whose contacts give way by some millimetres each is lower at its top, and stands. */
 #define VERDICT_FALL_SHARE 0.5
 #define VERDICT_FALL_ANGLE 30.0
 
-/* A struck scene, which has a bomb or bodies that move at the start, is judged by what stands at its end of the bodies that
-   started at rest. Stands: none has fallen. Falls: some have. Collapses: half of them or more. Of those that
-   stand, the ones that are VERDICT_MOVED_SHARE of their size beside where they stood have moved. A body that is
-   below all static ones has left the scene. */
+/* A struck scene, which has a bomb or bodies that move at the start, is judged by what stands at its end of the bodies
+   that started at rest. Stands: none has fallen. Falls: some have. Collapses: half of them or more. Of those that
+   stand, the ones that are VERDICT_MOVED_SHARE of their size beside where they stood have moved. A body that is below
+   all static ones has left the scene. */
 #define VERDICT_MOVED_SHARE 0.1
 
-/* Sinks: for VERDICT_SINK_TIME falls, every step has a contact deeper than VERDICT_SINK_SHARE of the smaller size of its
-   bodies (0.15 m) or than half of their smallest side. The penetration of an impact is corrected faster. */
+/* Sinks: for VERDICT_SINK_TIME falls, every step has a contact deeper than VERDICT_SINK_SHARE of the smaller size of
+   its bodies (0.15 m) or than half of their smallest side. The penetration of an impact is corrected faster. */
 #define VERDICT_SINK_SHARE 0.15
 #define VERDICT_SINK_HALF 0.5
 #define VERDICT_SINK_TIME 1.0
 
 /* Explodes: the energy exceeds its bounds (verdict_watch_step) by more than VERDICT_ENERGY_SHARE of the energy
    available in the converged run or, without one, in this run, taken as at least what lifts all bodies by
-   VERDICT_LEAST_LIFT of their sizes (1 J): otherwise rounding would make a scene at rest explode. The bounds use intervals
-   of VERDICT_ENERGY_TIME falls: an impact stores energy in penetration and releases it in far less time. */
+   VERDICT_LEAST_LIFT of their sizes (1 J): otherwise rounding would make a scene at rest explode. The bounds use
+   intervals of VERDICT_ENERGY_TIME falls: an impact stores energy in penetration and releases it in far less time. */
 #define VERDICT_ENERGY_SHARE 0.01
 #define VERDICT_ENERGY_TIME 1.0
 #define VERDICT_LEAST_LIFT 0.1
 
-/* Without a converged run: a run that has lost energy may regain VERDICT_REGAIN_SHARE of the available energy, as a stack
-   that sank under its weight does when it is pushed up again; and the energy of the first fall is not judged if bodies
-   overlap by more than VERDICT_START_OVERLAP of their smaller size (10 mm) at the start. */
+/* Without a converged run: a run that has lost energy may regain VERDICT_REGAIN_SHARE of the available energy, as a
+   stack that sank under its weight does when it is pushed up again; and the energy of the first fall is not judged if
+   bodies overlap by more than VERDICT_START_OVERLAP of their smaller size (10 mm) at the start. */
 #define VERDICT_REGAIN_SHARE 0.05
 #define VERDICT_START_OVERLAP 0.0105
 
@@ -159,7 +159,8 @@ bool verdict_holds(Verdict verdict);
 /* The physics is sound: nothing sinks, tunnels or explodes, or is NaN. What falls may be sound. */
 bool verdict_sound(Verdict verdict);
 
-/* Of the bodies that started at rest, how many there are and what became of them; the others are static, the bomb, or moved. */
+/* Of the bodies that started at rest, how many there are and what became of them; the others are static, the bomb, or
+   moved. */
 typedef struct VerdictCount {
     int stood, fell, left, moved; /* those that left have fallen, too */
     int first, body;              /* frame and body of the first fall that lasts; 0, -1: none */
@@ -172,11 +173,11 @@ typedef struct VerdictReading {
     Verdict verdict;
     int frame; /* the first at which it applied; settles, stands: first calm frame; moves: last that was not calm */
     int body;  /* or -1 */
-    /* The deciding quantity at that frame. Settles, moves: speed of the body that is farthest from rest, which includes its
-       rotation; or the time that nothing has carried it. Creeps: distance in 10 falls. Falls: m lower, or degrees rotated;
-       in a struck scene, falls, collapses: bodies; stands: the farthest that one has moved. Sinks: penetration. Tunnels:
-       speed. Explodes: excess energy (`body` has the most kinetic energy). Non-finite, adapter failed: the highest speed
-       before. */
+    /* The deciding quantity at that frame. Settles, moves: speed of the body that is farthest from rest, which includes
+       its rotation; or the time that nothing has carried it. Creeps: distance in 10 falls. Falls: m lower, or degrees
+       rotated; in a struck scene, falls, collapses: bodies; stands: the farthest that one has moved. Sinks:
+       penetration. Tunnels: speed. Explodes: excess energy (`body` has the most kinetic energy). Non-finite, adapter
+       failed: the highest speed before. */
     double value;
     const char *unit; /* "J", "m", "deg", "m/s", "s", "boxes" */
     int other;        /* tunnels: the body that was passed through; else -1 */
@@ -203,8 +204,8 @@ typedef struct VerdictRun {
        and not for the bomb, which may roll. */
     bool stands;
     bool until_bomb; /* falling is judged until the bomb first touches something */
-    /* A struck scene: its bodies tell which started at rest; outlives the watch. NULL: all did, and the run is judged by
-       the members above alone. */
+    /* A struck scene: its bodies tell which started at rest; outlives the watch. NULL: all did, and the run is judged
+       by the members above alone. */
     const Scene *struck;
     /* m: what the run's engine adds to each side of a box, so that boxes rest apart by twice that (Box2D before version
        3: 0.0075). Boxes touch within it, and may rise by it. 0: none. */
@@ -335,14 +336,15 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    pushing apart boxes that overlap at the start adds energy in the converged run too. (a) uses peaks, since in an
    impact of any unconverged method boxes penetrate and are pushed out again, like a bounce.
 
-   Explodes, without a converged run: energy can only come from added bodies, so (c) is the energy at the start plus that
-   of all added bodies. It exceeds (c) by more than VERDICT_ENERGY_SHARE, or (a) by more than VERDICT_REGAIN_SHARE, of the
-   available energy, which includes the kinetic energy of the start and of added bodies. If bodies overlap at the start,
-   (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs: `verdict_alone`
-   in tests/stability.
+   Explodes, without a converged run: energy can only come from added bodies, so (c) is the energy at the start plus
+   that of all added bodies. It exceeds (c) by more than VERDICT_ENERGY_SHARE, or (a) by more than VERDICT_REGAIN_SHARE,
+   of the available energy, which includes the kinetic energy of the start and of added bodies. If bodies overlap at the
+   start, (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs:
+   `verdict_alone` in tests/stability.
 
-   What gravity does in a step, m (g dt)^2 / 2, is no explosion, however little energy is available. Of another engine every bound
-   is higher by it: Chipmunk moves bodies before it changes velocities, and so states both half a step apart.
+   What gravity does in a step, m (g dt)^2 / 2, is no explosion, however little energy is available. Of another engine
+   every bound is higher by it: Chipmunk moves bodies before it changes velocities, and so states both half a step
+   apart.
 
    With a skin, boxes that a scene places side by side are pushed apart: each bound is higher by what lifts every body
    by two skins for each body that may be below it, its height over the smallest side.
@@ -351,11 +353,11 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    all static boxes intersects one. Not if the centre is inside a box for a step and is pushed out again; if it stays
    inside, it sinks. Also finds bodies that leave the world through the ground, but not past its edge.
 
-   Falls: a body stood where it was when it landed, so that gaps that a scene starts with may close; if it dropped from above, where it
-   came to rest, or was when the bomb struck. What has not landed has not stood. Its sag is
-   subtracted: the mean depth of the contact from below, and the sag of the body there, the most if there are several. A
-   contact is from below if its normal is nearer to gravity than to the horizontal. A column that leans gets no
-   sag, and falls. A pile that gives way without end sinks. */
+   Falls: a body stood where it was when it landed, so that gaps that a scene starts with may close; if it dropped from
+   above, where it came to rest, or was when the bomb struck. What has not landed has not stood. Its sag is subtracted:
+   the mean depth of the contact from below, and the sag of the body there, the most if there are several. A contact is
+   from below if its normal is nearer to gravity than to the horizontal. A column that leans gets no sag, and falls. A
+   pile that gives way without end sinks. */
 bool verdict_watch_step(VerdictWatch *watch, const VerdictStep *step, Error *error);
 
 /* The same for a world; a StepObserver callback. */
@@ -370,9 +372,9 @@ bool verdict_watch_is_final(const VerdictWatch *watch);
 /* The verdict on the run up to the last step. A run shorter than VERDICT_CALM_FALLS cannot settle. */
 VerdictReading verdict_watch_end(const VerdictWatch *watch);
 
-/* Runs the scene with the method, whose skin counts, until the verdict is final. A method that fails is a verdict, not an
-   error. False with error set if the method cannot be created, the launch is refused, too many bodies are near each other, or
-   memory is short. */
+/* Runs the scene with the method, whose skin counts, until the verdict is final. A method that fails is a verdict, not
+   an error. False with error set if the method cannot be created, the launch is refused, too many bodies are near each
+   other, or memory is short. */
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
                  Error *error);
 
@@ -396,8 +398,8 @@ StepObserver simulate_verdict_observer(SimulateVerdict *verdict);
 bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
 void simulate_verdict_free(SimulateVerdict *verdict);
 
-/* After simulate_verdict_end(): "falls at 4.22 s (body 7, 0.53 m lower)"; of a struck scene, what stands: "collapses: 8 of 10
-   boxes fell, first at 1.2 s", "stands; 1 of 10 moved by 0.3 m". */
+/* After simulate_verdict_end(): "falls at 4.22 s (body 7, 0.53 m lower)"; of a struck scene, what stands: "collapses: 8
+   of 10 boxes fell, first at 1.2 s", "stands; 1 of 10 moved by 0.3 m". */
 void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]);
 
 /* s: so many falls of the run, VERDICT_CREEP_FROM for instance. */

@@ -110,8 +110,12 @@ void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTOR
     }
     snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s", verdict_name(reading->verdict));
     add_fallen(verdict, ": ", words);
+    /* What has fallen moved, too, and is not counted again. */
+    if (count->moved > 0 && count->fell > 0) text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d more", count->moved);
+    if (count->moved > 0 && count->fell == 0)
+        text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d of %d", count->moved, count->stood);
     if (count->moved > 0)
-        text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d of %d moved by %s%.2g m", count->moved, count->stood,
-                 count->moved > 1 ? "up to " : "", count->farthest);
+        text_add(words, TRAJECTORY_VERDICT_SIZE, " moved by %s%.2g m", count->moved > 1 ? "up to " : "",
+                 count->farthest);
     if (reading->moving) text_add(words, TRAJECTORY_VERDICT_SIZE, "; still moves at the end");
 }

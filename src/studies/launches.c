@@ -304,35 +304,13 @@ typedef struct SceneTimes {
     StepCost (*costs[PROTOCOLS])[PHASES]; /* [contenders] */
 } SceneTimes;
 
-/* The first step in which the bomb touches a box in the converged run; 0 if it does not, or if the state becomes NaN or
-   infinite before. */
-static bool find_touch(const Scene *launched, int *touch, Error *error) {
-    Method method;
-    Error failure = {0};
-    PhaseTracker tracker = {.impact_frames = launched->bomb.impact_frames};
-    Stepper *stepper = method_parse(&method, "reference", error) ? stepper_create(&method, launched, error) : NULL;
-    World *world = stepper != NULL ? scene_world(launched, error) : NULL;
-    bool ok = world != NULL;
-    for (int frame = 1; ok && tracker.touch == 0 && frame <= launched->frames; frame++) {
-        ok = simulate_step(stepper, world, &(Step){.scene = launched, .frame = frame}, &failure);
-        if (ok) phase_next(&tracker, world_problem(world), frame);
-    }
-    *touch = tracker.touch;
-    world_destroy(world);
-    stepper_destroy(stepper);
-    if (failure.kind == ERROR_NONE) return ok;
-    if (failure.failure != FAILURE_NONE) return true;
-    *error = failure;
-    return false;
-}
-
 static bool prepare_launch(void *context, int i, Error *error) {
     SceneTimes *times = context;
     Timed *timed = &times->timed[i];
     const SceneStudy *study = times->study;
     Scene *launched = &times->launches[i];
     *launched = scene_study_launch(study, (2 * i + 1) * study->launch_count / (2 * times->count)); /* spread evenly */
-    return find_touch(launched, &timed->touch, error) &&
+    return launch_find_touch(launched, "reference", &timed->touch, error) &&
            snapshots_add(&timed->snapshots, launched, &study->size.frozen, error);
 }
 

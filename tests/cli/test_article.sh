@@ -61,6 +61,8 @@ sed 's/stack_height:[^]]*/stack_height:Toy/' "$sources/scenes/article/article.md
 "$make" site "$twinbox" --text article.md >made 2>err || fail "make: $(cat err)"
 says_made() { grep -qF -- "$1" made || fail "no '$1' in: $(cat made)"; }
 says_made "site/index.html: "
+run 0 simulate "$scenes/stack.yaml" --method engine:k=500 -o run.npz
+grep -o 'verdict: .*' out >words
 /usr/bin/python3 - "$sources/scenes/article" <<'PYTHON' || fail "the site"
 import html.parser
 import json
@@ -76,7 +78,13 @@ for name, values in json.load(open("wanted.json")).items():
     number = float(values[0]) / (float(values[1]) if len(values) == 2 else 1)
     close = [text for text in shown if re.fullmatch(r"[\d.,]+", text) and abs(float(text.replace(",", "")) / number - 1) < 0.06]
     assert close, (name, values, shown)
-assert "Toy 1.0" in page and ">3 | 4</a>" in page
+assert "Toy 1.0" in page and ">3 | 4 falls</a>" in page
+# What fell in each live figure, in the words of simulate; where the reader predicts, only how many.
+words = open("words").read().strip().removeprefix("verdict: ")
+assert f'<span class="verdict">engine:k=500: {words}</span>' in page, words
+panels = [line.split("|")[2].split() for line in open("article.md") if line.startswith("[[live") and "predict=" not in line]
+assert page.count('<span class="verdict">') == sum(map(len, panels)) > 10, panels
+assert re.search(r"(None|One|Two|Three|Four) fall and (none|one|two|three|four) stand\.", page)
 assert not re.search(r"\{\w+\}|\[\[|<!--", page), "something is not filled in"
 
 

@@ -62,6 +62,7 @@ PYTHON
 "$score" bench entry --cases cases.csv >table 2>progress || fail "score: $(tail -1 progress)"
 /usr/bin/python3 - <<'PYTHON' || fail "scores of an entry: $(cat table cases.csv)"
 import csv
+import re
 rows = {row["case"]: row for row in csv.DictReader(open("cases.csv"))}
 assert len(rows) == 37
 stack, gate, rest, towers = (rows[name] for name in ("stack-2", "gate-1", "stack_10", "towers-1"))
@@ -75,6 +76,12 @@ assert 0.01 < float(gate["impact"]) < 10 and float(gate["follows"]) < 0.5, gate
 assert rest["verdict"] == "settles" and rest["holds"] == "True" and float(rest["drift"]) < 1e-3, rest
 assert float(towers["step"]) > 1 and towers["impact"] == "", towers
 assert rows["wall-1"]["impact"] == rows["wall-1"]["step"] == "", rows["wall-1"]
+# What fell, in the words of the verdict; two struck runs and one at rest are sound.
+for row in stack, gate:
+    assert f"{row['verdict']}: {row['fell']} of {row['stood']} boxes fell, first at " in row["words"], row
+line = re.split("  +", open("table").read().splitlines()[1])
+fell, stood = (sum(int(row[key]) for row in (stack, gate)) for key in ("fell", "stood"))
+assert line[9:11] == ["3 of 3", f"{fell} of {stood}"], line
 line = open("table").read().splitlines()[1].split()
 assert line[0] == "entry" and line[-3:] == ["3", "of", "37"] and line[-7:-4] == ["1", "of", "1"], line
 PYTHON
@@ -92,7 +99,7 @@ for i, line in enumerate(lines):
 open("entry/stack_10.csv", "w").writelines(lines)
 PYTHON
 "$score" bench entry --cases faulty.csv >table 2>progress || fail "score: $(tail -1 progress)"
-equal "the verdict on a planted fault" "$(sed -n 's/^entry,stack_10,.*,\(sinks\|explodes\),False,.*/found/p' faulty.csv)" found
+equal "the verdict on a planted fault" "$(sed -n 's/^entry,stack_10,.*,False,[0-9]*,10,\(sinks\|explodes\),.*,False,.*/found/p' faulty.csv)" found
 
 # What cannot be scored.
 mkdir empty

@@ -47,6 +47,7 @@ assert found["format"] == "twinbox check 1" and found["scene"] == "tower.yaml", 
 assert (found["bodies"], found["static"], found["steps"], found["iterations"]) == (5, 1, 120, 10), found
 assert found["bomb"]["position"] == [4, 25] and found["bomb"]["launches"] == {"x": [-5, 5]}, found
 assert found["parameters"] == [{"name": "height", "value": 5, "from": 1, "to": 20, "unit": "boxes"}], found
+assert found["size"] is None and found["bomb"]["misses"] == {"tried": 41, "missed": 0, "x": []}, found
 assert found["networks"] == {} and found["picture"] == "tower-first-frame.png", found
 PYTHON
 run 0 check "$scenes/single.yaml" --json
@@ -54,6 +55,20 @@ grep -q '"pair-net": ".*networks/pair-net.npz"' out || fail "no networks: $(<out
 run 2 check tower.yaml --json -o -
 complains "--json: error: cannot be combined with a picture on standard output"
 
+# A bomb that falls straight down from x beyond 1 m strikes no box of the tower.
+scene "bomb: {x: {from: -5, to: 5, value: 4}, y: 25, size: [1, 1], mass: 20, frame: 30, velocity: [0, -20]}" "$height"
+run 0 check tower.yaml -o misses.png
+says "    misses: the bomb strikes no box in 32 of 41 launches tried, x = -4.9 to -1.25, 1.25 to 4.9 m"
+run 0 check tower.yaml -o misses.png --json
+says '"misses": {"tried": 41, "missed": 32, "x": [[-4.9'
+scene "bomb: {x: 4, y: 25, size: [1, 1], mass: 20, frame: 30}" "$height"
+run 0 check tower.yaml -o misses.png
+says "    misses: the bomb strikes no box"
+sed 's/^frames: .*/frames: 200000/' tower.yaml >long.yaml
+run 0 check long.yaml -o misses.png
+says "    misses: not looked for, as the scene is large"
+
+scene "$(bomb 25)" "$height"
 run 0 check tower.yaml -o -
 cmp -s out first.png || fail "-o - does not write the picture"
 equal "the summary on standard error" "$(cat err)" "$(head -n 6 expected)"
@@ -116,9 +131,12 @@ for file in "$scenes"/*.yaml "$scenes"/families/g*.yaml "$scenes"/stability/{arc
 printf '%s\n' "gravity: [0, -10]" "dt: 1/60" "iterations: 10" "frames: 2" "bodies:" \
     "  - {static: true, size: [10, 1], position: [0, -0.5]}" "  - {mass: 1, size: [1, 0.05], position: [0, 0.025]}" >thin.yaml
 run 0 check thin.yaml -o thin.png
-says "size: contacts leave overlaps of 0.01 m (slop), 20% of the smallest side, 0.05 m"
-says "size: in a step a box falls by 5.56% of the smallest side, 0.05 m"
+says "    size: of the smallest side, 0.05 m, contacts leave 20% as overlap (slop, 0.01 m), and a box falls by 5.56% in a step: "
+run 0 check thin.yaml -o thin.png --json
+says '"size": {"smallest_side": 0.05'
 sed 's/0.05]/0.5]/; s/0.025]/0.25]/' thin.yaml >thick.yaml
 run 0 check thick.yaml -o thick.png
 equal "lines about the size" "$(grep -c size: out)" 0
+run 0 check thick.yaml -o thick.png --json
+says '"size": null'
 finish

@@ -30,7 +30,7 @@ import urllib.parse
 from markdown_page import Page
 
 README_LINES, README_WORDS = 150, 1300
-NOT_IN_A_CLONE = {".git", "build", "out"}
+NOT_IN_A_CLONE = {".git", "build", "out", "node_modules"}
 PLACEHOLDER = re.compile("NAME|ROOM|COMMAND|WHAT")
 TIME = re.compile(r"\d[\d.]*(e[+-]?\d+)?( ?(ns|µs|us|ms|s|min)\b)")
 

@@ -108,4 +108,37 @@ TEST(shipped_scenes_have_room_for_their_launches) {
     }
 }
 
+/* A bomb that falls straight down touches the box of 1 m at x = 0 if its own half metre and the box's reach so far. */
+TEST(launches_that_strike_nothing_are_found) {
+    Scene *scene = read_scene(falling, "");
+    LaunchMisses misses;
+    Launch tried[LAUNCH_TRIES];
+    int beside = 0, touch;
+    scene->bomb.body.position.y = 3;
+    assert_ok(launches_for_training(scene, LAUNCH_TRIES, tried, &error), error);
+    for (int i = 0; i < LAUNCH_TRIES; i++) beside += fabsf(tried[i].x) > 1;
+    assert_ok(launches_find_misses(scene, &misses, &error), error);
+    assert_int_equal(misses.tried, LAUNCH_TRIES);
+    assert_int_equal(misses.missed, beside);
+    assert_int_equal(misses.span_count, 2);
+    assert_near(misses.spans[0].from, tried[0].x, 0);
+    assert_true(misses.spans[0].to < -1 && misses.spans[0].to > -1.2);
+    assert_true(misses.spans[1].from > 1 && misses.spans[1].from < 1.2);
+    assert_near(misses.spans[1].to, tried[LAUNCH_TRIES - 1].x, 0);
+    /* From its lower face at 2.5 m to the box's upper one at 1 m: 0.5 (10 m/s^2) (0.548 s)^2, 33 steps. */
+    Scene launched = launch_scene(scene, &(Launch){.x = 0, .mass = 5, .frame = 60});
+    assert_ok(launch_find_touch(&launched, "engine", &touch, &error), error);
+    assert_in_range(touch, 60 + 32, 60 + 35);
+    launched.frames = 60 + 30; /* the run ends before */
+    assert_ok(launch_find_touch(&launched, "engine", &touch, &error), error);
+    assert_int_equal(touch, 0);
+    scene->bomb.x.from = scene->bomb.x.to = 3; /* one launch */
+    assert_ok(launches_find_misses(scene, &misses, &error), error);
+    assert_true(misses.tried == 1 && misses.missed == 1);
+    scene->frames = SCENE_MAX_FRAMES; /* would take long */
+    assert_ok(launches_find_misses(scene, &misses, &error), error);
+    assert_true(misses.tried == 0 && misses.missed == 0);
+    scene_destroy(scene);
+}
+
 RUN_TESTS(NULL, NULL)
