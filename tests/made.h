@@ -22,6 +22,20 @@ static inline Scene *scene_named(const char *name) {
     return scene_from(path);
 }
 
+/* Of these bodies, as shipped scenes are: 10 m/s^2, 60 Hz, 10 iterations. */
+static inline Scene scene_of_bodies(BodyDef *bodies, int count, int frames) {
+    return (Scene){.name = "by hand",
+                   .gravity = {0, -10},
+                   .dt = 1.0f / 60.0f,
+                   .iterations = 10,
+                   .warm_starting = true,
+                   .accumulate_impulses = true,
+                   .position_correction = true,
+                   .frames = frames,
+                   .body_count = count,
+                   .bodies = bodies};
+}
+
 static inline Method method_named(const char *text) {
     Error error = {0};
     Method method;

@@ -12,10 +12,7 @@ static const double start_power = 0.2, step_power = 0.05, share = 0.5, balance =
 
 static const SettingSpec settings[] = {
     {"k", "iterations per step (default: the scene's, else 10)", SETTING_INT(StoppingRule, k, 1, SWEEPS_MAX)},
-    {"near",
-     "iterations go on while contacts miss their velocity by this, m/s (after k, in blocks of 8; default: none)",
-     SETTING_OWN},
-    {"more", "iterations that near may add (rounded up to whole blocks; default: 48)", SETTING_OWN},
+    STOPPING_SETTINGS("iterations"),
     {0}};
 
 static void *create(const Settings *chosen, Error *error) {

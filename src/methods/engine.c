@@ -20,7 +20,7 @@ static const SettingSpec settings[] = {
     {"accumulate", "on|off: clamp accumulated impulses, not each increment (default: the scene's, else on)",
      SETTING_BOOL(State, options.accumulate)},
     {"warm", "on|off: warm start from the previous step's impulses (default: on)", SETTING_BOOL(State, options.warm)},
-    STOPPING_SETTINGS,
+    STOPPING_SETTINGS("sweeps"),
     KEEP_SETTING(SETTING_OWN),
     {0}};
 

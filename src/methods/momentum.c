@@ -119,7 +119,7 @@ typedef struct State {
     float *factors; /* [rule.k] */
 } State;
 
-static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS, KEEP_SETTING(SETTING_OWN), {0}};
+static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS("sweeps"), KEEP_SETTING(SETTING_OWN), {0}};
 
 static void destroy(void *state) {
     State *solver = state;

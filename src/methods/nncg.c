@@ -41,7 +41,7 @@ typedef struct Nncg {
     ArrayBlock arrays;
 } Nncg;
 
-static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS, KEEP_SETTING(SETTING_OWN), {0}};
+static const SettingSpec settings[] = {SWEEPS_SETTING, STOPPING_SETTINGS("sweeps"), KEEP_SETTING(SETTING_OWN), {0}};
 
 static void *create(const Settings *chosen, Error *error) {
     static const Nncg standard = {.rule.k = 10};

@@ -91,17 +91,17 @@ typedef struct StoppingRule {
     int more;   /* a multiple of STOPPING_BLOCK */
 } StoppingRule;
 
-/* The rule's settings, for the table of a method whose state begins with its rule. */
+/* The rule's settings, for the table of a method whose state begins with its rule. sweeps: what it counts, "sweeps". */
 #define SWEEPS_SETTING                                                            \
     {                                                                             \
         "k", "sweeps over all contacts per step (default: the scene's, else 10)", \
             SETTING_INT(StoppingRule, k, 1, SWEEPS_MAX)                           \
     }
-#define STOPPING_SETTINGS                                                                                             \
-    {"near", "sweeps go on while contacts miss their velocity by this, m/s (after k, in blocks of 8; default: none)", \
-     SETTING_OWN},                                                                                                    \
-    {                                                                                                                 \
-        "more", "sweeps that near may add (rounded up to whole blocks; default: 48)", SETTING_OWN                     \
+#define STOPPING_SETTINGS(sweeps)                                                                                      \
+    {"near", sweeps " go on while contacts miss their velocity by this, m/s (after k, in blocks of 8; default: none)", \
+     SETTING_OWN},                                                                                                     \
+    {                                                                                                                  \
+        "more", sweeps " that near may add (rounded up to whole blocks; default: 48)", SETTING_OWN                     \
     }
 
 /* Overwrites the rule, which has the method's defaults, with `near` and `more`. ERROR_INPUT for a value out of range, and

@@ -185,6 +185,9 @@ bool stability_path(char path[STABILITY_PATH_SIZE], const StabilityPlace *place,
 /* Reads the scene with these parameter values. The caller frees it. */
 Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings, int count, Error *error);
 
+/* The study's scene, in this folder, with a value of its parameter. The caller frees it. */
+Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, double value, Error *error);
+
 /* How the run of a study's scene is judged: beside the converged run; whether the scene is meant to stand is given by the
    table of studies, or follows from the scene if it is a file. */
 VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,

@@ -28,6 +28,13 @@ Scene *stability_scene(const StabilityPlace *place, const SceneSetting *settings
     return stability_path(path, place, error) ? scene_read_with(path, settings, count, error) : NULL;
 }
 
+Scene *stability_study_scene(const StabilityStudy *study, const char *scenes, double value, Error *error) {
+    const StabilityPlace place = {scenes, study->scene, study->file};
+    SceneSetting settings[2] = {{.value = value}, study->fixed};
+    snprintf(settings[0].name, sizeof settings[0].name, "%s", study->parameter);
+    return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
+}
+
 VerdictRun stability_verdict_run(const StabilityPlace *place, const Scene *scene, bool stands,
                                  const EnergyLog *converged) {
     VerdictRun run = verdict_run_of(scene);

@@ -47,17 +47,10 @@ static StabilityPlace place_of(const StabilityScan *scan) {
     return (StabilityPlace){scan->scenes, scan->study->scene, scan->study->file};
 }
 
-static Scene *scene_at(const StabilityScan *scan, double value, Error *error) {
-    const StabilityPlace place = place_of(scan);
-    SceneSetting settings[2] = {{.value = value}, scan->study->fixed};
-    snprintf(settings[0].name, sizeof settings[0].name, "%s", scan->study->parameter);
-    return stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, error);
-}
-
 bool stability_scan_run(const StabilityScan *scan, const Method *method, double value, int seed,
                         ConvergedRuns *converged, VerdictReading *reading, Error *error) {
     const StabilityPlace place = place_of(scan);
-    Scene *scene = scene_at(scan, value, error);
+    Scene *scene = stability_study_scene(scan->study, scan->scenes, value, error);
     if (scene == NULL) return false;
     VerdictRun judged = stability_verdict_run(&place, scene, scan->study->stands, NULL);
     const ConvergedRun *run = converged_runs_get(converged, scene, value, &judged, error);
@@ -166,7 +159,7 @@ static bool applies(const StabilityScan *scan, const Method *method, Error *reas
     const double ends[] = {scan->study->scan.from, scan->study->scan.to};
     bool ok = true;
     for (int i = 0; ok && i < 2; i++) {
-        Scene *scene = scene_at(scan, ends[i], reason);
+        Scene *scene = stability_study_scene(scan->study, scan->scenes, ends[i], reason);
         ok = scene != NULL && stability_applies(method, scene, reason);
         scene_destroy(scene);
     }

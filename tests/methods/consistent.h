@@ -52,6 +52,14 @@ static inline void assert_velocities_fit(const ContactProblem *problem, const Co
     }
 }
 
+/* Impulses push, and friction is at most mu times the normal impulse. */
+static inline void assert_in_cone(const ContactProblem *problem, const ContactImpulse *impulses) {
+    for (int i = 0; i < problem->contact_count; i++) {
+        assert_true(impulses[i].normal >= 0);
+        assert_true(fabsf(impulses[i].tangent) <= problem->contacts[i].friction * impulses[i].normal);
+    }
+}
+
 /* N s: momentum of all bodies, which move; before the solve with NULL. */
 static inline void linear_momentum(const ContactProblem *problem, const BodyVelocity *after, double sum[2]) {
     sum[0] = sum[1] = 0;

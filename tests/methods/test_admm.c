@@ -122,10 +122,7 @@ TEST(the_unit_of_mass_changes_no_bit) {
 
 /* Coulomb's friction, not its convex relaxation, which would lift it by mu times its slip: 4.5 m/s. */
 TEST(what_slides_stays_on_the_ground) {
-    World *world = make_world();
-    add_ground(world, 0.5f);
-    add_body(world,
-             &(BodyDef){.size = {10, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {9, 0}});
+    World *world = make_sliding_box();
     ContactSolver solver = make_solver(&solver_admm, "k=400");
     run(world, &solver, 1);
     assert_near(world_bodies(world)[1].velocity.y, 0, 1e-4);
@@ -136,10 +133,7 @@ TEST(what_slides_stays_on_the_ground) {
 
 /* Where sweeps carry nothing: 10,000 times the mass on a box. */
 TEST(a_heavy_box_on_a_light_one_is_carried_at_once) {
-    World *world = make_world();
-    add_ground(world, 0.2f);
-    add_box(world, 1, 0.2f, vec2(0, 0.499f));
-    add_box(world, 10000, 0.2f, vec2(0, 1.498f));
+    World *world = make_heavy_on_light(10000, 0.499f, 1.498f);
     ContactSolver solver = make_solver(&solver_admm, "k=50");
     run(world, &solver, 1);
     const ContactImpulse *impulses = world_solution(world)->impulses;

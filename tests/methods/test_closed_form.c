@@ -68,11 +68,7 @@ TEST(random_problems_stay_in_the_cone) {
         make_random(&random, &seed, 2 + i % 30, 0.3f, 1);
         ContactSolution found = make_solution(&random.problem);
         solve_with(&solver_closed_form, "damping=1", &random.problem, &found);
-        for (int k = 0; k < random.problem.contact_count; k++) {
-            const ContactImpulse p = found.impulses[k];
-            assert_true(p.normal >= 0);
-            assert_true(fabsf(p.tangent) <= random.contacts[k].friction * p.normal);
-        }
+        assert_in_cone(&random.problem, found.impulses);
         assert_velocities_fit(&random.problem, &found);
         free_solution(&found);
     }

@@ -137,10 +137,7 @@ TEST(a_landing_box_stops) {
 
 /* Friction is an impulse of at most mu times the normal one: a fast box keeps sliding with v - mu (v_n + g dt). */
 TEST(friction_stays_in_its_cone) {
-    World *world = make_world();
-    add_ground(world, 0.5f);
-    add_body(world,
-             &(BodyDef){.size = {10, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {9, 0}});
+    World *world = make_sliding_box();
     ContactSolver solver = make_judged("k=200");
     run(world, &solver, 1);
     assert_near(world_bodies(world)[1].velocity.x, 9 - 0.5f * 10 * world_dt, 1e-4f);

@@ -19,15 +19,9 @@ static BodyDef box_at(float x, float y) {
 }
 
 static Scene scene_of(BodyDef *bodies, int count, Vec2 gravity) {
-    return (Scene){.name = "laws",
-                   .gravity = gravity,
-                   .dt = 1.0f / 60.0f,
-                   .iterations = 10,
-                   .warm_starting = true,
-                   .accumulate_impulses = true,
-                   .position_correction = true,
-                   .body_count = count,
-                   .bodies = bodies};
+    Scene scene = scene_of_bodies(bodies, count, 0);
+    scene.gravity = gravity;
+    return scene;
 }
 
 static void take_steps(Stepper *stepper, World *world, const Scene *scene, int first, int last) {

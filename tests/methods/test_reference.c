@@ -86,10 +86,7 @@ TEST(boxes_that_crash_go_on_together) {
 
 /* 1000 kg on 1 kg on the ground: what slows the sweeps (10 of them leave half the weight) does not matter here. */
 TEST(a_light_box_carries_a_heavy_one) {
-    World *world = make_world();
-    add_ground(world, 0.2f);
-    add_box(world, 1, 0.2f, vec2(0, 0.5f));
-    add_box(world, 1000, 0.2f, vec2(0, 1.5f));
+    World *world = make_heavy_on_light(1000, 0.5f, 1.5f);
     Reference reference = {0};
     solve_next(world, &reference);
     double dt = (double)world_dt;

@@ -63,11 +63,7 @@ TEST(cone_momentum_and_velocities_fit_after_every_sweep) {
             solve_with(sweepers[rival], text, problem, &found);
             linear_momentum(problem, found.velocities, after);
             for (int i = 0; i < 2; i++) assert_near(before[i], after[i], 4e-3);
-            for (int i = 0; i < problem->contact_count; i++) {
-                ContactImpulse p = found.impulses[i];
-                assert_true(p.normal >= 0);
-                assert_true(fabsf(p.tangent) <= problem->contacts[i].friction * p.normal);
-            }
+            assert_in_cone(problem, found.impulses);
             assert_consistent(problem, &found);
         }
     }

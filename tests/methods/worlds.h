@@ -77,6 +77,24 @@ static inline void add_ground(World *world, float friction) {
     add_body(world, &ground);
 }
 
+/* A wide box that slides fast: friction is at its limit, mu times what the ground holds. */
+static inline World *make_sliding_box(void) {
+    World *world = make_world();
+    add_ground(world, 0.5f);
+    add_body(world,
+             &(BodyDef){.size = {10, 1}, .mass = 1, .friction = 0.5f, .position = {0, 0.495f}, .velocity = {9, 0}});
+    return world;
+}
+
+/* A box of 1 kg on the ground carries a heavy one; their positions are those of the first contacts or of rest. */
+static inline World *make_heavy_on_light(float heavy, float light_at, float heavy_at) {
+    World *world = make_world();
+    add_ground(world, 0.2f);
+    add_box(world, 1, 0.2f, vec2(0, light_at));
+    add_box(world, heavy, 0.2f, vec2(0, heavy_at));
+    return world;
+}
+
 static inline void run(World *world, const ContactSolver *solver, int steps) {
     Error error = {0};
     for (int i = 0; i < steps; i++)

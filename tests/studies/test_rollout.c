@@ -183,16 +183,7 @@ static void assert_errors(const Scene *scene, Stepper *stepper, double expected,
 TEST(push_out_counts_for_methods_that_have_it) {
     BodyDef bodies[] = {{.fixed = true, .size = {200, 20}, .position = {0, -10}, .friction = 0.2f},
                         {.size = {1, 1}, .mass = 2, .friction = 0.2f, .position = {0, 0.44f}}};
-    Scene scene = {.name = "overlap",
-                   .gravity = {0, -10},
-                   .dt = 1.0f / 60.0f,
-                   .iterations = 10,
-                   .frames = 3,
-                   .warm_starting = true,
-                   .accumulate_impulses = true,
-                   .position_correction = true,
-                   .body_count = 2,
-                   .bodies = bodies};
+    Scene scene = scene_of_bodies(bodies, 2, 3);
     assert_errors(&scene, make_still_stepper(&scene, false), 0.6, 1e-5);
     assert_errors(&scene, make_still_stepper(&scene, true), 0, 1e-5);
     assert_errors(&scene, stepper_by(&scene, "avbd:k=50"), 0, 1e-3);

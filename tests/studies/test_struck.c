@@ -84,16 +84,7 @@ TEST(a_study_compares_with_the_truth) {
 static Verdict truth_at(float past, int frames) {
     BodyDef bodies[] = {{.size = {10, 2}, .fixed = true, .friction = 0.5f, .position = {-5, -1}},
                         {.size = {1, 1}, .mass = 1, .friction = 0.5f, .position = {past, 0.5f}}};
-    Scene scene = {.name = "edge",
-                   .gravity = {0, -10},
-                   .dt = 1.0f / 60,
-                   .iterations = 10,
-                   .warm_starting = true,
-                   .accumulate_impulses = true,
-                   .position_correction = true,
-                   .frames = frames,
-                   .body_count = 2,
-                   .bodies = bodies};
+    Scene scene = scene_of_bodies(bodies, 2, frames);
     scene.bomb = (SceneBomb){.present = true, .frame = 1, .body = {.size = {1, 1}, .mass = 1, .position = {-8, 0.5f}}};
     const VerdictRun judged = verdict_run_of(&scene);
     Verdict truth;

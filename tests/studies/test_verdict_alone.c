@@ -153,23 +153,15 @@ TEST(falling_is_judged_until_the_bomb_touches) {
     assert_false(fallen);
 }
 
-static Scene *scene_at(const StabilityStudy *study, double value) {
-    Error error = {0};
-    SceneSetting settings[2] = {{.value = value}, study->fixed};
-    snprintf(settings[0].name, sizeof settings[0].name, "%s", study->parameter);
-    const StabilityPlace place = {.scenes = SOURCE_DIR "/scenes", .scene = study->scene};
-    Scene *scene = stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
-
 /* The rule and the table of studies agree on which scenes are meant to stand. Of those with a rigid answer, two come to
    stand after a start with a speed. */
 TEST(scenes_without_bomb_and_speed_stand) {
     for (int i = 0; i < stability_study_count; i++) {
-        Scene *scene = scene_at(&stability_studies[i], stability_studies[i].scan.to);
-        if (verdict_run_of(scene).stands != stability_studies[i].stands && stability_studies[i].rigid == NULL)
-            fail_msg("%s is %smeant to stand", stability_studies[i].name, stability_studies[i].stands ? "" : "not ");
+        const StabilityStudy *study = &stability_studies[i];
+        Scene *scene = stability_study_scene(study, SOURCE_DIR "/scenes", study->scan.to, &error);
+        assert_ok(scene != NULL, error);
+        if (verdict_run_of(scene).stands != study->stands && study->rigid == NULL)
+            fail_msg("%s is %smeant to stand", study->name, study->stands ? "" : "not ");
         scene_destroy(scene);
     }
 }
@@ -197,7 +189,8 @@ TEST(verdicts_agree_with_those_beside_the_converged_run) {
         const int value_count = border_scan_values(&study->scan, values);
         for (int v = 0; v < value_count; v++) {
             EnergyLog converged = {0};
-            Scene *scene = scene_at(study, values[v]);
+            Scene *scene = stability_study_scene(study, SOURCE_DIR "/scenes", values[v], &error);
+            assert_ok(scene != NULL, error);
             if (scene->frames > 600) scene->frames = 600;
             assert_ok(converged_run_once(&converged, scene, &error), error);
             for (size_t m = 0; m < sizeof methods / sizeof *methods; m++, count++)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The energy available in converged runs, and verdicts on scenes. */
+#include "made.h"
 #include "studies/trial.h"
 
 /* Boxes of 1 kg at 10 m/s^2: 10 J per metre. From 3 m to 1 m, 20 of 30 J are lost. A box is added with 40 J; with both
@@ -80,26 +81,13 @@ static VerdictReading judge(const Scene *scene, bool stands, const EnergyLog *co
     return reading;
 }
 
-static Scene scene_of(BodyDef *bodies, int count, int frames) {
-    return (Scene){.name = "by hand",
-                   .gravity = {0, -10},
-                   .dt = 1.0f / 60.0f,
-                   .iterations = 10,
-                   .warm_starting = true,
-                   .accumulate_impulses = true,
-                   .position_correction = true,
-                   .frames = frames,
-                   .body_count = count,
-                   .bodies = bodies};
-}
-
 /* Two boxes of 1 kg, the upper one 1 m above the lower. They sink to the slop, 0.01 and 0.02 m, which loses less: at
    most 0.3 J. */
 TEST(a_stack_of_two_settles) {
     BodyDef bodies[] = {{.size = {100, 20}, .fixed = true, .friction = 0.2f, .position = {0, -10}},
                         {.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 0.5f}},
                         {.size = {1, 1}, .mass = 1, .friction = 0.2f, .position = {0, 1.5f}}};
-    const Scene scene = scene_of(bodies, 3, 1500);
+    const Scene scene = scene_of_bodies(bodies, 3, 1500);
     EnergyLog converged = {0};
     converge(&converged, &scene);
     assert_near(converged.balance.available, 10, 1e-5);
@@ -113,7 +101,7 @@ TEST(a_stack_of_two_settles) {
 /* Dropped on a slab of 0.25 m from 1.5 m above its centre; added after frame 5. */
 static Scene shot_at_slab(BodyDef *slab, float speed) {
     *slab = (BodyDef){.size = {20, 0.25f}, .fixed = true, .friction = 0.2f};
-    Scene scene = scene_of(slab, 1, 100);
+    Scene scene = scene_of_bodies(slab, 1, 100);
     scene.bomb.present = true;
     scene.bomb.frame = 5;
     scene.bomb.body =

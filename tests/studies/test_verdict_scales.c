@@ -122,16 +122,6 @@ static int compare(const Scene *scene, const char *method, const char *name, boo
     return differ;
 }
 
-static Scene *scene_at(const StabilityStudy *study, double value) {
-    Error error = {0};
-    SceneSetting settings[2] = {{.value = value}, study->fixed};
-    snprintf(settings[0].name, sizeof settings[0].name, "%s", study->parameter);
-    const StabilityPlace place = {.scenes = SOURCE_DIR "/scenes", .scene = study->scene};
-    Scene *scene = stability_scene(&place, settings, settings[1].name[0] != '\0' ? 2 : 1, &error);
-    assert_ok(scene != NULL, error);
-    return scene;
-}
-
 /* Both ends and the middle of every study. */
 TEST(copies_in_other_units_have_the_same_verdict) {
     enum { FRAMES = 300 };
@@ -143,7 +133,8 @@ TEST(copies_in_other_units_have_the_same_verdict) {
         double values[BORDER_POINTS_MAX];
         const int count = border_scan_values(&study->scan, values);
         for (int end = 0; end < 3; end++) {
-            Scene *scene = scene_at(study, values[(count - 1) * end / 2]);
+            Scene *scene = stability_study_scene(study, SOURCE_DIR "/scenes", values[(count - 1) * end / 2], &error);
+            assert_ok(scene != NULL, error);
             if (scene->frames > FRAMES) scene->frames = FRAMES;
             for (size_t m = 0; m < sizeof methods / sizeof *methods; m++)
                 differ += compare(scene, methods[m], study->name, seen);
