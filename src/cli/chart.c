@@ -235,10 +235,12 @@ static bool draw_scene(const char *csv, const Drawn *drawn, const char *folder, 
 }
 
 static bool draw_equal_time(const char *csv, const char *folder, Error *error) {
-    bool drawn;
-    if (!equal_time_plot(csv, folder, &drawn, error)) return false;
+    EqualTimeFigure figure;
+    if (!equal_time_plot(csv, folder, &figure, error)) return false;
     printf("error at equal time -> %s/equal_time.csv, equal_time_methods.csv%s\n", folder,
-           drawn ? ", equal_time.png, .svg, .pdf" : "");
+           figure.drawn ? ", equal_time.png, .svg, .pdf" : "");
+    if (figure.drawn && figure.left_out.used > 0)
+        printf("    left out of the figure, as without a ratio: %s\n", figure.left_out.text);
     return true;
 }
 

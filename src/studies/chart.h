@@ -551,10 +551,15 @@ bool chart_html_write(const char *folder, Error *error);
 
 /* The table and the figure of errors at equal time (studies/chart_internal.h). */
 
+typedef struct EqualTimeFigure {
+    bool drawn; /* false if no method has a rival: there are tables only */
+    NameList left_out;
+} EqualTimeFigure;
+
 /* Reads a chart.csv and writes folder/equal_time.csv and equal_time_methods.csv, and the latter as a figure,
    folder/equal_time.png, .svg and .pdf: a row for each scene, a column for each method, in each cell its error as a ratio to
-   that of its best rival in the same time. *drawn: false if no method has a rival. */
-bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Error *error);
+   that of its best rival in the same time. Methods and scenes without any ratio are left out, and named there. */
+bool equal_time_plot(const char *chart_csv, const char *folder, EqualTimeFigure *figure, Error *error);
 
 /* Charts of speed against accuracy, drawn from chart.csv. */
 

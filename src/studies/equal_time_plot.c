@@ -31,6 +31,7 @@ typedef struct EqualTimeGrid {
     bool joined[EQUAL_TIME_COLUMNS]; /* the column and the one before it differ only in what was learned */
     char scenes[EQUAL_TIME_SCENES][CHART_TEXT_SIZE];
     char times[CHART_TIMES_SIZE]; /* chart_times_note(), plain; set by the caller */
+    NameList left_out;            /* methods and scenes without a ratio */
     WordList words;               /* methods and what sets learned ones apart from their twins */
     EqualTimeCell cells[EQUAL_TIME_SCENES][EQUAL_TIME_COLUMNS];
 } EqualTimeGrid;
@@ -66,20 +67,36 @@ static bool is_silenced(const RivalCurves *curves, int family) {
     return false;
 }
 
-static void add(Columns *columns, int family, bool joined) {
-    if (columns->count == EQUAL_TIME_COLUMNS) return;
-    columns->family[columns->count] = family;
-    columns->joined[columns->count++] = joined;
+/* Of a method, or of any (-1), in a scene, or in any (NULL). */
+static bool has_ratio(const EqualTime *table, int family, const char *scene) {
+    for (int i = 0; i < table->method_count; i++) {
+        const EqualMethodRow *row = &table->methods[i];
+        if ((family < 0 || row->family == family) && (scene == NULL || strcmp(row->scene, scene) == 0) &&
+            !isnan(row->ratio))
+            return true;
+    }
+    return false;
 }
 
-static void order_columns(Columns *columns, const RivalCurves *curves) {
+static void add(Columns *columns, EqualTimeGrid *grid, const EqualTime *table, int family, bool joined) {
+    if (!has_ratio(table, family, NULL))
+        name_list_add(&grid->left_out, table->curves.families[family].name);
+    else if (columns->count < EQUAL_TIME_COLUMNS) {
+        columns->family[columns->count] = family;
+        columns->joined[columns->count++] = joined;
+    }
+}
+
+/* Learned methods stand beside their silenced twins. */
+static void order_columns(Columns *columns, EqualTimeGrid *grid, const EqualTime *table) {
+    const RivalCurves *curves = &table->curves;
     for (int i = 0; i < curves->family_count; i++)
-        if (twin_of(curves, i) == NULL) add(columns, i, false);
+        if (twin_of(curves, i) == NULL) add(columns, grid, table, i, false);
     for (int i = 0; i < curves->family_count; i++) {
         const int twin = find_twin(curves, i);
         if (twin_of(curves, i) == NULL || is_silenced(curves, i)) continue;
-        add(columns, i, false);
-        if (twin >= 0) add(columns, twin, true);
+        add(columns, grid, table, i, false);
+        if (twin >= 0) add(columns, grid, table, twin, has_ratio(table, i, NULL));
     }
 }
 
@@ -92,16 +109,31 @@ static int find_scene(EqualTimeGrid *grid, const char *scene) {
     return i;
 }
 
-/* Learned methods stand beside their silenced twins. ERROR_INPUT with the path if the grid has no room. */
+static bool fill_cells(EqualTimeGrid *grid, const EqualTime *table, const Columns *columns, const char *path,
+                       Error *error) {
+    for (int i = 0; i < table->method_count; i++) {
+        const EqualMethodRow *row = &table->methods[i];
+        int column = 0;
+        while (column < columns->count && columns->family[column] != row->family) column++;
+        if (!has_ratio(table, -1, row->scene)) name_list_add(&grid->left_out, row->scene);
+        if (column == columns->count || !has_ratio(table, -1, row->scene)) continue;
+        const int scene = find_scene(grid, row->scene);
+        if (scene == EQUAL_TIME_SCENES)
+            return error_input(error, path, "a figure has at most %d scenes", EQUAL_TIME_SCENES);
+        grid->cells[scene][column] = (EqualTimeCell){true, row->ratio, row->below == BELOW_BOTH};
+    }
+    return true;
+}
+
+/* ERROR_INPUT with the path if the grid has no room. */
 static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const char *path, Error *error) {
     const RivalCurves *curves = &table->curves;
     Columns columns = {0};
-    int column_of[EQUAL_TIME_COLUMNS];
     *grid = (EqualTimeGrid){0};
     if (curves->family_count > EQUAL_TIME_COLUMNS)
         return error_input(error, path, "a figure has at most %d methods (got %d)", EQUAL_TIME_COLUMNS,
                            curves->family_count);
-    order_columns(&columns, curves);
+    order_columns(&columns, grid, table);
     grid->columns = columns.count;
     chart_plain(grid->time, table->time);
     words_add(&grid->words, "rival", "any other method without a network");
@@ -111,18 +143,10 @@ static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const c
         words_add_settings(&grid->words, name, name + strcspn(name, ":") + (strchr(name, ':') != NULL));
     }
     for (int i = 0; i < columns.count; i++) {
-        column_of[columns.family[i]] = i;
         chart_plain(grid->methods[i], curves->families[columns.family[i]].name);
         grid->joined[i] = columns.joined[i];
     }
-    for (int i = 0; i < table->method_count; i++) {
-        const EqualMethodRow *row = &table->methods[i];
-        const int scene = find_scene(grid, row->scene);
-        if (scene == EQUAL_TIME_SCENES)
-            return error_input(error, path, "a figure has at most %d scenes", EQUAL_TIME_SCENES);
-        grid->cells[scene][column_of[row->family]] = (EqualTimeCell){true, row->ratio, row->below == BELOW_BOTH};
-    }
-    return true;
+    return fill_cells(grid, table, &columns, path, error);
 }
 
 /* mm */
@@ -136,7 +160,7 @@ typedef struct EqualTimePlotLayout {
     Sketch *sketch;
     double width, height;   /* mm: of the page */
     double left, top, cell; /* mm: left of the first cell, top of the first row, width of a cell */
-    double foot;            /* mm: height of all below the rows */
+    double foot, notes;     /* mm: height of all below the rows, and of the notes at the end */
 } EqualTimePlotLayout;
 
 static double longest(const char (*names)[CHART_TEXT_SIZE], int count) {
@@ -158,12 +182,17 @@ static double column_x(const EqualTimePlotLayout *layout, int column) {
 static EqualTimePlotLayout lay_out(const EqualTimeGrid *grid) {
     EqualTimePlotLayout layout = {.grid = grid, .left = longest(grid->scenes, grid->rows) + 4};
     const double gaps = gap * gaps_before(grid, grid->columns - 1);
-    const double turned = degrees * acos(-1) / 180, last = type_width(grid->methods[grid->columns - 1], name_points);
-    const double right = fmax(last * cos(turned) - cell_least / 2 + 2, 3);
+    const double turned = degrees * acos(-1) / 180;
+    double right = 3;
+    for (int i = 0; i < grid->columns; i++) {
+        const double past = type_width(grid->methods[i], name_points) * cos(turned) + 2;
+        right = fmax(right, past - (grid->columns - i - 0.5) * cell_least);
+    }
     const double room = (FIGURE_PAGE_WIDTH - layout.left - right - gaps) / grid->columns;
     layout.cell = fmin(fmax(room, cell_least), cell_most);
     layout.width = fmax(layout.left + grid->columns * layout.cell + gaps + right, layout.left + bar_width + note_width);
-    layout.foot = foot + words_height(&grid->words) + (grid->times[0] != '\0' ? note_height : 0);
+    layout.notes = (grid->times[0] != '\0' ? note_height : 0) + (grid->left_out.used > 0 ? note_height : 0);
+    layout.foot = foot + words_height(&grid->words) + layout.notes;
     layout.top = layout.foot + grid->rows * cell_height;
     layout.height = layout.top + longest(grid->methods, grid->columns) * sin(turned) + 5;
     return layout;
@@ -196,35 +225,54 @@ static void draw_box(Sketch *sketch, PlotBox box, uint32_t colour, uint32_t line
                      &pen);
 }
 
-/* Two digits: "1/52", "1/3.1", "1", "×2.4"; what is beyond a factor of 9999 does not fit into a cell. */
+/* Two digits: "1/52", "1/3.1", "1", "×2.4". */
 static void name_ratio(char text[24], double ratio) {
     const double factor = ratio < 1 ? 1 / ratio : ratio;
     const char *before = ratio < 1 ? "1/" : "×";
     if (factor < 1.05)
         strcpy(text, "1");
-    else if (!(factor < 9995))
-        strcpy(text, ratio < 1 ? "<1/9999" : ">×9999");
     else if (factor < 9.95)
         snprintf(text, 24, "%s%.1f", before, factor);
     else
         snprintf(text, 24, "%s%.0f", before, factor < 99.5 ? factor : 10 * round(factor / 10));
 }
 
+/* What does not fit into a cell is beyond a power of ten: ">10⁵", "<10⁻⁴". */
+static void draw_power(Sketch *sketch, Point at, const TextStyle *style, double ratio) {
+    const int power = ratio < 1 ? -(int)floor(-log10(ratio)) : (int)floor(log10(ratio));
+    const char *beyond = ratio < 1 ? "<" : ">";
+    TextStyle left = *style;
+    left.align = TEXT_LEFT;
+    at.x -= (type_width(beyond, style->points) + sketch_power_width(style->points, 1, power)) / 2;
+    sketch_text(sketch, at, &left, "%s", beyond);
+    at.x += type_width(beyond, style->points);
+    sketch_power_of_ten(sketch, at, &left, 1, power);
+}
+
+static void draw_ratio(Sketch *sketch, Point at, const TextStyle *style, double ratio) {
+    char text[24];
+    if (fabs(log10(ratio)) >= log10(9995)) {
+        draw_power(sketch, at, style, ratio);
+        return;
+    }
+    name_ratio(text, ratio);
+    sketch_text(sketch, at, style, "%s", text);
+}
+
 static void draw_cell(const EqualTimePlotLayout *layout, int row, int column) {
     const EqualTimeCell *cell = &layout->grid->cells[row][column];
     const double x = column_x(layout, column), y = layout->top - (row + 1) * cell_height, edge = 0.25;
-    char text[24];
     if (!cell->ran) return;
     const bool none = isnan(cell->ratio);
     const uint32_t colour = none ? 0xD8D8D8 : cell->below ? 0xFFFFFF : colour_of(cell->ratio);
     draw_box(layout->sketch, (PlotBox){x + edge, y + edge, layout->cell - 2 * edge, cell_height - 2 * edge}, colour,
              !none && cell->below ? 0xB0B0B0 : NO_COLOUR);
+    const Point middle = {x + layout->cell / 2, y + cell_height / 2};
+    const TextStyle style = {7.5, TEXT_CENTER, ink_on(colour), 0, false};
     if (none)
-        strcpy(text, "–");
+        sketch_text(layout->sketch, middle, &style, "–");
     else
-        name_ratio(text, cell->ratio);
-    sketch_text(layout->sketch, (Point){x + layout->cell / 2, y + cell_height / 2},
-                &(TextStyle){7.5, TEXT_CENTER, ink_on(colour), 0, false}, "%s", text);
+        draw_ratio(layout->sketch, middle, &style, cell->ratio);
 }
 
 static void draw_names(const EqualTimePlotLayout *layout) {
@@ -246,7 +294,6 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
     Sketch *sketch = layout->sketch;
     const double bottom = layout->foot - 7.2, right = layout->left + bar_width + 6;
     char text[24], note[CHART_TEXT_SIZE + 64];
-    const double words = layout->grid->times[0] != '\0' ? note_height : 0;
     for (int i = 0; i < STEPS; i++)
         draw_box(sketch, (PlotBox){layout->left + bar_width * i / STEPS, bottom, bar_width / STEPS + 0.05, bar_height},
                  colour_of(pow(strongest, 2 * (i + 0.5) / STEPS - 1)), NO_COLOUR);
@@ -259,12 +306,22 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
              layout->grid->time + strcspn(layout->grid->time, "0123456789"));
     plot_text(sketch, (Point){right, bottom + bar_height / 2}, TEXT_LEFT, 8,
               "error at the impact / error of the best rival,");
-    plot_text(sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, WORD_POINTS, layout->grid->times);
     plot_text(sketch, (Point){right, bottom - 2}, TEXT_LEFT, 8, note);
     plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower, or unstable before the impact");
     snprintf(note, sizeof note, "white: both below %g m/s", PARETO_RESOLUTION);
     plot_text(sketch, (Point){right, bottom - 9}, TEXT_LEFT, 8, note);
-    words_draw(&layout->grid->words, sketch, layout->left, words + 0.5);
+    words_draw(&layout->grid->words, sketch, layout->left, layout->notes + 0.5);
+}
+
+static void draw_notes(const EqualTimePlotLayout *layout) {
+    const EqualTimeGrid *grid = layout->grid;
+    char note[sizeof grid->left_out.text + 64];
+    plot_text(layout->sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, WORD_POINTS, grid->times);
+    if (grid->left_out.used == 0) return;
+    snprintf(note, sizeof note, "Left out, as without a ratio: %s", grid->left_out.text);
+    chart_make_plain(note);
+    text_fit(note, sizeof note, WORD_POINTS, layout->width - layout->left - 1);
+    plot_text(layout->sketch, (Point){layout->left, layout->notes - note_height / 2}, TEXT_LEFT, WORD_POINTS, note);
 }
 
 static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
@@ -279,19 +336,13 @@ static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
         for (int column = 0; column < grid->columns; column++) draw_cell(&layout, row, column);
     draw_names(&layout);
     draw_scale(&layout);
+    draw_notes(&layout);
     const bool drawn = sketch_draw(&sketch, stem, SKETCH_PDF, error);
     sketch_free(&sketch);
     return drawn;
 }
 
-static bool has_ratio(const EqualTimeGrid *grid) {
-    for (int row = 0; row < grid->rows; row++)
-        for (int column = 0; column < grid->columns; column++)
-            if (!isnan(grid->cells[row][column].ratio) && grid->cells[row][column].ran) return true;
-    return false;
-}
-
-bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Error *error) {
+bool equal_time_plot(const char *chart_csv, const char *folder, EqualTimeFigure *figure, Error *error) {
     CsvTable chart;
     EqualTime table;
     char path[CSV_PATH_SIZE], methods[CSV_PATH_SIZE];
@@ -310,8 +361,8 @@ bool equal_time_plot(const char *chart_csv, const char *folder, bool *drawn, Err
             chart_times_note(grid->times, chart.rows, chart.count);
             chart_make_plain(grid->times);
         }
-        *drawn = ok && has_ratio(grid);
-        ok = ok && (!*drawn || draw(grid, folder, error));
+        if (ok) *figure = (EqualTimeFigure){grid->columns > 0, grid->left_out};
+        ok = ok && (!figure->drawn || draw(grid, folder, error));
         equal_time_free(&table);
     }
     free(grid);
