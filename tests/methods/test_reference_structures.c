@@ -4,6 +4,7 @@
 #include "made.h"
 #include "random_structures.h"
 #include "reference_worlds.h"
+#include "sanitized.h"
 
 #include "runs/verdict.h"
 
@@ -99,6 +100,17 @@ TEST(a_log_ends_at_the_first_step_without_a_solution) {
     assert_true(log.unconverged > 0 && log.unconverged < scene->frames);
     energy_log_free(&log);
     scene_destroy(scene);
+}
+
+/* As they come, none chosen: one step of number 59 is left. */
+TEST(the_first_structures_converge) {
+    int failed = 0;
+    for (int seed = 0; seed < 60; seed += sampled(4)) {
+        Scene *scene = random_structure(seed);
+        failed += run_scene(scene).failed;
+        scene_destroy(scene);
+    }
+    assert_true(failed <= 1);
 }
 
 RUN_TESTS(NULL, NULL)
