@@ -141,7 +141,7 @@ def check_sizes(checks, browser):
     for size in (700, 600, 2), (320, 480, 1), (2200, 700, 1.5), (1440, 900, 1):
         page.resize(*size)
         page.settle()
-        page.wait(SHARP, limit=20)
+        page.wait(SHARP)
     checks.quiet("other windows", page)
     page.close()
 

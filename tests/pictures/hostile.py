@@ -198,7 +198,7 @@ class Pages:
             file.write(text[:at] + text[at + 400:])
         page = self.browser.open("damaged.html")
         words = "damaged|cannot be decoded|do not have the hash|not decoded"
-        said = page.wait(f"document.body.innerText.match(/[^.\\n]*({words})[^.\\n]*/)?.[0]", limit=20)
+        said = page.wait(f"document.body.innerText.match(/[^.\\n]*({words})[^.\\n]*/)?.[0]")
         self.checks.true("a damaged page says so", said, said)
         self.checks.quiet("a damaged page", page)
         page.close()

@@ -46,6 +46,16 @@ def check_hashes(checks, page, scene, methods, what):
         checks.equal(f"{scene} {setting} {what}", page.run(HASHES), list(states))
 
 
+def becomes(checks, page, what, script, wanted):
+    """What the page shows in a later frame, or when the clipboard has it: the expression, which may be a promise."""
+    try:
+        page.wait(f"Promise.resolve({script}).then(found => found === {json.dumps(wanted)})")
+        found = wanted
+    except ScriptError:
+        found = page.run(script)
+    checks.equal(what, found, wanted)
+
+
 def open_scene(checks, browser, scene, *methods, fragment="", **looks):
     name = scene.replace("/", "-") + ".html"
     options = [word for each in methods for word in ("--method", each)]
@@ -93,8 +103,8 @@ def check_controls(checks, browser):
     check_hashes(checks, page, "stack", METHODS, "by keys")
     page.run("player.choose('dt', 0.01)")
     check_hashes(checks, page, "stack", METHODS, "with other steps")
-    checks.equal("the time of other steps", page.run("document.getElementById('time').textContent.split(',')[0]"),
-                 f"t = {page.run('player.view.frame') / 100:.3f} s")
+    becomes(checks, page, "the time of other steps", "document.getElementById('time').textContent.split(',')[0]",
+            f"t = {page.run('player.view.frame') / 100:.3f} s")
     page.run("player.choose('iterations', 4)")
     page.run("player.add_panel('momentum:k=20')")
     page.wait("player.runs.length === 3")
@@ -102,9 +112,10 @@ def check_controls(checks, browser):
     page.run("player.set_method(player.runs[2], 'soft-step:substeps=8')")
     check_hashes(checks, page, "stack", [*METHODS, "soft-step:substeps=8"], "with another method")
     page.run("document.getElementById('copy-command').click()")
-    command = page.wait("navigator.clipboard.readText()")
+    command = page.wait("navigator.clipboard.readText().then(text => text.startsWith('twinbox') && text)")
     page.run("player.change({frame: 20})")
-    link = page.wait("location.hash.includes('methods=') && location.hash.includes('set=') && location.hash")
+    link = page.wait("location.hash.includes('t=0.2&') && location.hash.includes('methods=') &&"
+                     " location.hash.includes('set=') && location.hash")
     wanted = page.run(HASHES)
     page.close()
     for each in command.split(" && ")[:3]:
@@ -162,8 +173,8 @@ def check_prediction(checks, browser):
     said = page.run("document.getElementById('question').textContent")
     checks.true("the answer", said.startswith("You said pair-net: it does not."), said)
     page.run("location.hash = '#predict=1'")
-    page.settle()
-    checks.true("a link asks", page.run("document.body.classList.contains('asked') && document.getElementById('predict').checked"))
+    becomes(checks, page, "a link asks", "document.body.classList.contains('asked') && document.getElementById('predict').checked",
+            True)
     page.close()
 
 
@@ -246,7 +257,7 @@ def check_keyboard(checks, browser):
     checks.true("a prediction by keys", said.startswith("You said engine"), said)
     tab_to(page, "e.id === 'copy-link'")
     page.press("Enter")
-    checks.true("a link by keys", "bomb_mass%3D9" in page.wait("navigator.clipboard.readText()"))
+    becomes(checks, page, "a link by keys", "navigator.clipboard.readText().then(text => text.includes('bomb_mass%3D9'))", True)
     tab_to(page, "e.id === 'reset'")
     page.press("Enter")
     page.wait(ENDED)
@@ -262,7 +273,7 @@ def check_rubbish(checks, browser):
         page = browser.open("stack.html", fragment)
         found = page.wait(PROBLEM)
         checks.true(f"#{fragment}", words in found, found)
-        page.wait("player.ready(player.view.frame)", limit=20)  # whatever there is to see is drawn
+        page.wait("player.ready(player.view.frame)")  # whatever there is to see is drawn
         page.close()
     with open("stack.html", encoding="utf-8") as file:
         text = file.read()
@@ -270,7 +281,7 @@ def check_rubbish(checks, browser):
         file.write(re.sub('(id="module">)[^<]*', r"\1AAAA", text))
     page = browser.open("damaged.html", "t=1")
     checks.true("a damaged module", "cannot be stepped" in page.wait(PROBLEM), page.run(PROBLEM))
-    page.wait("player.ready(player.view.frame)", limit=20)
+    page.wait("player.ready(player.view.frame)")
     page.close()
     for fragment in "x=1e999", "t=-1e999&body=-1e9&view=,,&run=7", "t=NaN&show=<b>&speed=0", "%%%&&==&t=":
         page = browser.open("stack.html", fragment)
