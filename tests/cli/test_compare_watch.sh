@@ -11,7 +11,7 @@ cp -r expected actual
 
 # seen COUNT TEXT: waits until the output has so many lines with this text.
 seen() {
-    for _ in $(seq 600); do
+    for _ in $(seq 2400); do
         [ "$(cat watched watched.err | grep -cF -- "$2")" -ge "$1" ] && break
         sleep 0.05
     done

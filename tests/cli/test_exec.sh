@@ -45,7 +45,7 @@ run 0 page json.npz binary.npz -o page.html
 # fails KIND TEXT [SETTINGS]: the run ends with this verdict, in time, and no process is left.
 fails() {
     cp json.npz kept.npz
-    run 2 simulate fall.yaml --method "$(method "$1"),step_limit=${3:-5}" -o kept.npz
+    run 2 simulate fall.yaml --method "$(method "$1"),step_limit=${3:-60}" -o kept.npz
     complains "adapter failed: $2"
     says "verdict: adapter failed at"
     equal "the file of a run that failed" "$(md5sum <kept.npz)" "$(md5sum <json.npz)"

@@ -23,7 +23,7 @@ start() {
     "$twinbox" "$@" >out 2>err <&3 &
     running=$!
     # Bit 14 of the caught signals is SIGTERM; before, the process is still the shell.
-    for _ in $(seq 500); do
+    for _ in $(seq 3000); do
         [ "$(readlink /proc/$running/exe)" = "$(readlink -f "$twinbox")" ] &&
             grep -q '^SigCgt:.*[4-7c-f]...$' /proc/$running/status && break
         sleep 0.01
