@@ -81,7 +81,7 @@ for name, values in json.load(open("wanted.json")).items():
 assert "Toy 1.0" in page and ">3 | 4 falls</a>" in page
 # What fell in each live figure, in the words of simulate; where the reader predicts, only how many.
 words = open("words").read().strip().removeprefix("verdict: ")
-assert f'<span class="verdict">engine:k=500: {words}</span>' in page, words
+assert f'<span class="verdict">engine:k=500 {words}</span>' in page, words
 panels = [line.split("|")[2].split() for line in open("article.md") if line.startswith("[[live") and "predict=" not in line]
 assert page.count('<span class="verdict">') == sum(map(len, panels)) > 10, panels
 assert re.search(r"(None|One|Two|Three|Four) fall and (none|one|two|three|four) stand\.", page)
