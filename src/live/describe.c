@@ -143,7 +143,6 @@ static void write_verdict(JsonWriter *json, const void *context) {
     simulate_verdict_words(verdict, words);
     json_begin_object(json, NULL, JSON_LINES);
     json_put_text(json, "verdict", verdict_name(verdict->reading.verdict));
-    json_put_bool(json, "holds", verdict_holds(verdict->reading.verdict));
     json_put_int(json, "frame", verdict->reading.frame);
     json_put_int(json, "body", verdict->reading.body);
     json_put_text(json, "words", words);

@@ -114,7 +114,7 @@ LIVE_EXPORT(live_contacts) const void *live_contacts(const LiveRun *run);
 /* The hash of a frame that `twinbox simulate` prints of the last one, and writes with --hash. */
 LIVE_EXPORT(live_hash) uint64_t live_hash(const LiveRun *run, int frame);
 
-/* The verdict on the run so far as JSON: verdict, holds, frame, body (or -1), words: "falls at 4.22 s (body 7, 0.53 m lower)".
+/* The verdict on the run so far as JSON: verdict, frame, body (or -1), words: "falls at 4.22 s (body 7, 0.53 m lower)".
    NULL if a step failed for another reason than a NaN or infinite state. */
 LIVE_EXPORT(live_verdict) const char *live_verdict(const LiveRun *run);
 

@@ -258,6 +258,7 @@ static void read_struck(const VerdictCount *count, VerdictReading *reading) {
     reading->struck = true;
     if (count->fell == 0) {
         reading->verdict = VERDICT_STANDS;
+        reading->body = -1;
         reading->value = count->farthest;
         reading->unit = "m";
         return;

@@ -2,7 +2,7 @@
 const NEAR_BOMB = 22; /* pixels from its middle, for fingers */
 const METHODS_MAX = 6;
 const inputs = new Map(); /* of the scene's settings, by name */
-let held = null, asked = false;
+let held = null, asked = false, chosen_run = null; /* the run that was chosen as the one that stands */
 
 const parameter = name => setup.scene?.parameters.find(each => each.name === name);
 const value_of = name => chosen.get(name) ?? parameter(name)?.value;
@@ -169,6 +169,7 @@ const nudge_bomb = (name, by) => data.live && choose(name, value_of(name) + by);
 /* Which panel will stand? Until it is answered only the first frame is shown. */
 function ask(on) {
   asked = on;
+  chosen_run = null;
   document.body.classList.toggle("asked", on);
   tell(ui.question, on ? "Which of these stands at the end? Click its panel, or press its number." : "");
   if (on) change({frame: 0, playing: false});
@@ -179,10 +180,18 @@ function answer(panel) {
   if (run === undefined) return;
   ask(false);
   ui.predict.checked = false;
-  const words = runs.map((each, i) => `${names[i]} ${short_verdict(i)}`).join("; ");
-  tell(ui.question, `You said ${names[run]}: ${runs[run].holds ? "it stands." : "it does not."} ${words}.`);
+  chosen_run = runs[run];
+  tell_answer();
   toggle_play();
 }
+
+/* In the words of the verdict, when there is one. */
+function tell_answer() {
+  const run = runs.indexOf(chosen_run);
+  if (run >= 0) tell(ui.question, `You said ${names[run]}. It ${short_verdict(run) || "still runs"}.`);
+}
+
+on_runs.push(tell_answer);
 
 ui.reset.onclick = () => {
   read_set(first_set);

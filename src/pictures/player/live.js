@@ -48,6 +48,7 @@ function start(run) {
 /* Steps all live runs from the start. */
 function launch() {
   launched++;
+  if (chosen_run) ask(false); /* the answer was of another launch */
   live_runs().forEach(start);
 }
 
@@ -176,13 +177,12 @@ function take_part(run, part) {
     if (part.first !== 0) return; /* the rest of a launch that is not shown any more */
     into = run.next = make_states({shown: part.id, reached: -1}, part.frames, part.bodies);
     Object.assign(into, {size: pairs(part.sizes), fixed: Array.from(part.fixed, Boolean), bomb: part.bomb,
-      ...part.scene, contacts: part.recorded, distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: "", holds: null});
+      ...part.scene, contacts: part.recorded, distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: ""});
   }
   copy_part(into, part);
   into.framing = part.framing ?? into.framing;
   if (part.ended) {
     into.hash = part.hash;
-    into.holds = part.verdict?.holds ?? false;
     into.verdict = part.verdict && {text: part.verdict.words, frame: part.verdict.frame, body: part.verdict.body};
     if (part.failure || part.id === launched) complain(run, part.failure);
   }

@@ -1,4 +1,4 @@
-/* The runs in words: where they part, what cannot be compared, where they come from. */
+/* The runs in words: what happens in each, where they part, what cannot be compared, where they come from. */
 const FACTS = {
   method: "method", description: "note", scene: "scene", iterations: "iterations", "time step, s": "dt", steps: "steps",
   verdict: "ended", "state hash": "hash", "scene hash": "scene_hash", twinbox: "version",
@@ -15,11 +15,11 @@ function where_apart({compared, why, differs, apart}) {
 function tell_runs() {
   ui.title.textContent = `${cut(data.title, 80)}: ${names.join(", ")}`;
   ui.title.title = data.title;
-  ui.summary.textContent = `${runs.length} run${runs.length > 1 ? "s" : ""} of ` +
+  const verdicts = runs.map((_, run) => sentence("", [of_run(short_verdict(run), run)].filter(text => text)));
+  ui.summary.replaceChildren(make("strong", verdicts.join("")), `${runs.length} run${runs.length > 1 ? "s" : ""} of ` +
     `${six_digits((data.total - 1) * data.dt / data.every)} s, ` +
     `${[...new Set(runs.map(run => run.bodies))].join(" and ")} bodies. ` +
-    sentence("", runs.map((_, run) => of_run(short_verdict(run), run)).filter(text => text)) +
-    sentence(`Against ${names[0]}: `, runs.map(where_apart).map(of_run).slice(1));
+    sentence(`Against ${names[0]}: `, runs.map(where_apart).map(of_run).slice(1)));
   ui["left-out"].textContent = sentence("Left out of this page: ", data.left_out);
 
   /* Equal values of all runs stand once. */
