@@ -40,7 +40,9 @@ static const Option option_table[] = {
      "its bodies; impulse, by one visit of the pair in one sweep; points (with contact or neighbours), impulses at its "
      "points beyond the warm start",
      OPTION_ENUM(Options, dataset.target, pair_target_names)},
-    {"--labels", 0, "NAME", "Solver that is recorded: engine (default) or the converged reference",
+    {"--labels", 0, "NAME",
+     "Solver that is recorded: engine (default) or the converged reference, without the steps in which it does not "
+     "converge",
      OPTION_ENUM(Options, dataset.labels, dataset_label_names)},
     {"--context", 0, NULL, "Also record masses, normals, friction and lever arms, which train --laws needs",
      OPTION_FLAG(Options, dataset.context)},
@@ -63,8 +65,10 @@ static const CommandSpec spec = {
         "Example: twinbox dataset scenes/single.yaml scenes/stack.yaml -o pairs.npz\n"
         "         twinbox dataset scenes/single.yaml -o impulses.npz --random 200 --inputs raw --target impulse"};
 
-static void print_rows(const Options *options, int64_t rows, int launches) {
+static void print_rows(const Options *options, int64_t rows, int64_t unconverged, int launches) {
     printf("%" PRId64 " rows of %d launches -> %s\n", rows, launches, options->output);
+    if (options->dataset.labels == DATASET_BY_REFERENCE)
+        printf("    steps left out, as the reference does not converge: %" PRId64 "\n", unconverged);
 }
 
 /* A pipe has no folder for pieces. */
@@ -72,18 +76,18 @@ static bool record_in_memory(const Options *options, Error *error) {
     Dataset *dataset = dataset_record(&options->dataset, progress_bar_begin("recording launches"), error);
     progress_bar_end();
     const bool ok = dataset != NULL && dataset_write(dataset, options->output, error);
-    if (ok) print_rows(options, dataset->rows, dataset->launches);
+    if (ok) print_rows(options, dataset->rows, dataset->unconverged, dataset->launches);
     dataset_destroy(dataset);
     return ok;
 }
 
 static bool join_pieces(const Options *options, const DatasetPieces *dataset, const Pieces *pieces, Error *error) {
-    int64_t rows;
-    const bool ok =
-        dataset_pieces_write(dataset, pieces, options->output, &rows, progress_bar_begin("writing"), error) &&
-        pieces_end(pieces, error) && dataset_check_rows(rows, error);
+    int64_t rows, unconverged;
+    const bool ok = dataset_pieces_write(dataset, pieces, options->output, &rows, &unconverged,
+                                         progress_bar_begin("writing"), error) &&
+                    pieces_end(pieces, error) && dataset_check_rows(rows, unconverged, error);
     progress_bar_end();
-    if (ok) print_rows(options, rows, dataset->recording.dataset->launches);
+    if (ok) print_rows(options, rows, unconverged, dataset->recording.dataset->launches);
     return ok;
 }
 

@@ -43,9 +43,9 @@ static const Option sain_options[] = {
 static void sain_print_score(void *context, const RelationScore *score) {
     (void)context;
     progress_bar_clear();
-    printf("%-8s  %5d  %8zu  %7zu  %7.4f  %8.4f  %7.4f  %8.4f\n", relation_form_names[score->form], score->round,
-           score->problems, score->bodies, score->loss, score->held_out.with, score->held_out.without,
-           score->held_out.constant);
+    printf("%-8s  %5d  %8zu  %11zu  %7zu  %7.4f  %8.4f  %7.4f  %8.4f\n", relation_form_names[score->form], score->round,
+           score->problems, score->unconverged, score->bodies, score->loss, score->held_out.with,
+           score->held_out.without, score->held_out.constant);
     fflush(stdout);
 }
 
@@ -70,7 +70,7 @@ static bool sain_train(const TrainRequest *request, RelationTraining *training, 
     training->command = request->command;
     training->state_path = request->state;
     printf("held-out impacts, velocity error in m/s\n"
-           "engine    round  problems   bodies     loss      sain   engine  constant\n");
+           "engine    round  problems  unconverged   bodies     loss      sain   engine  constant\n");
     bool ok = relation_training_run(training, &networks, progress_bar_begin("training"), error);
     progress_bar_end();
     snprintf(networks.command, sizeof networks.command, "%s", request->command);
@@ -425,6 +425,7 @@ static SlotNetwork *scene_net_train(const Scene *scene, SceneTraining *training,
            training->widths.hidden);
     SlotNetwork *network = scene_training_run(scene, training, progress_bar_begin("training"), error);
     progress_bar_end();
+    if (network != NULL) printf("impacts left out, as the reference does not converge: %d\n", score->unconverged);
     return network;
 }
 

@@ -33,13 +33,16 @@ static bool reserve(PairMoment *moment, const ContactProblem *problem, ContactSo
     return true;
 }
 
-/* The solution that the changes are computed from. */
-static bool label(LaunchRecorder *recorder, const World *world, ContactSolution *solution, Error *error) {
+/* The solution that the changes are computed from. *known: false if it did not converge, which is counted. */
+static bool label(LaunchRecorder *recorder, const World *world, ContactSolution *solution, bool *known, Error *error) {
     const ContactProblem *problem = world_problem(world);
     *solution = *world_solution(world);
+    *known = true;
     if (recorder->dataset->labels == DATASET_BY_ENGINE) return true;
     Reference *reference = &recorder->reference;
     if (!reference_solve(reference, problem, NULL, error)) return false;
+    *known = reference_converged(reference);
+    recorder->launch->unconverged += !*known;
     if (!reserve(&recorder->labels, problem, solution, error)) return false;
     for (int i = 0; i < problem->body_count; i++) {
         const ReferenceVelocity *v = &reference->velocities[i];
@@ -81,7 +84,10 @@ static bool record_step(LaunchRecorder *recorder, int frame, const World *world,
     const ContactProblem *problem = world_problem(world);
     const SequentialOptions options = sweeps_of(recorder->scene);
     ContactSolution solution, begun;
-    if (!label(recorder, world, &solution, error) || !reserve(&recorder->now, problem, &begun, error)) return false;
+    bool known;
+    if (!label(recorder, world, &solution, &known, error)) return false;
+    if (!known) return true;
+    if (!reserve(&recorder->now, problem, &begun, error)) return false;
     const bool by_contact = pair_views[dataset->view].by_contact;
     if (by_contact) sequential_impulses_begin(problem, &options, &begun);
     if (dataset->view == PAIR_NEIGHBOURS) pair_moment_jacobi(&recorder->now, problem);

@@ -41,7 +41,7 @@ static inline const BodyPose *launch_runs_frame(const LaunchRuns *runs, int laun
 enum { DATASET_VERSION = 3, DATASET_MAX_SCENES = 16, DATASET_NAME_SIZE = 128, DATASET_MAX_LAUNCHES = 100000 };
 
 /* The source of the changes: the engine's solution, or the converged solution of the same contact problem
-   (methods/reference.h), the paper's more accurate source. */
+   (methods/reference.h), the paper's more accurate source. Steps that do not converge have no rows. */
 typedef enum DatasetLabels { DATASET_BY_ENGINE, DATASET_BY_REFERENCE, DATASET_LABELS } DatasetLabels;
 
 extern const char *const dataset_label_names[DATASET_LABELS + 1]; /* ends with NULL */
@@ -64,6 +64,7 @@ typedef struct Dataset {
     int scene_count;
     char scenes[DATASET_MAX_SCENES][DATASET_NAME_SIZE];
     void *row_block, *launch_block; /* the arrays of rows, and of launches */
+    int64_t unconverged; /* steps without rows, as the reference did not converge; of a recording, not in files */
 } Dataset;
 
 /* Number of inputs. */
@@ -116,7 +117,8 @@ typedef struct PairRow {
 typedef struct LaunchRows {
     PairRow *rows;
     size_t count, capacity;
-    size_t start; /* index of its first row in the dataset */
+    size_t start;    /* index of its first row in the dataset */
+    int unconverged; /* as in Dataset */
 } LaunchRows;
 
 /* Runs a launched scene with the engine, and appends the rows for the dataset's view, target and labels. */
@@ -130,8 +132,8 @@ typedef struct DatasetRecording {
     Dataset *dataset; /* its launches, and no rows yet */
 } DatasetRecording;
 
-/* ERROR_INPUT if there are no rows. */
-bool dataset_check_rows(int64_t rows, Error *error);
+/* ERROR_INPUT if there are no rows. unconverged: as in Dataset. */
+bool dataset_check_rows(int64_t rows, int64_t unconverged, Error *error);
 
 /* The launches of a dataset. */
 
@@ -196,12 +198,13 @@ void dataset_pieces_free(DatasetPieces *pieces);
 /* Hashes everything that determines the file. */
 bool dataset_pieces_key(const DatasetPieces *pieces, StudyKey *key, Error *error);
 
-/* The number of rows in the results of a piece, which are the arrays of rows one after the other. -1 with error set: the
-   results, which are those of the file `path`, are not of these launches. */
+/* The number of rows in the results of a piece, which are its unconverged steps, in DATASET_PIECE_HEAD bytes, and the arrays of
+   rows one after the other. -1 with error set: the results, which are those of the file `path`, are not of these launches. */
+enum { DATASET_PIECE_HEAD = sizeof(int64_t) };
 int64_t dataset_piece_rows(const DatasetPieces *pieces, int64_t piece, const char *results, size_t size,
-                           const char *path, Error *error);
+                           int64_t *unconverged, const char *path, Error *error);
 
-/* Writes the file that dataset_write() writes of dataset_record(), in bounded memory. *rows: in the file. Without rows,
-   nothing is written: dataset_check_rows() refuses that. */
+/* Writes the file that dataset_write() writes of dataset_record(), in bounded memory. *rows: in the file. *unconverged: as in
+   Dataset. Without rows, nothing is written: dataset_check_rows() refuses that. */
 bool dataset_pieces_write(const DatasetPieces *pieces, const Pieces *done, const char *path, int64_t *rows,
-                          const Progress *progress, Error *error);
+                          int64_t *unconverged, const Progress *progress, Error *error);

@@ -67,6 +67,7 @@ static bool gather(const Runs *runs, Dataset *dataset, Error *error) {
     for (int i = 0; i < runs->count; i++) {
         launches[i].start = rows;
         rows += launches[i].count;
+        dataset->unconverged += launches[i].unconverged;
     }
     if (!dataset_make_rows(dataset, (int64_t)rows, context)) return error_memory(error, "dataset");
         /* In parallel: most of the time is page faults at the first write. */
@@ -89,7 +90,9 @@ static bool record_launches(const DatasetRecording *recording, int first, int en
     return ok;
 }
 
-bool dataset_check_rows(int64_t rows, Error *error) {
+bool dataset_check_rows(int64_t rows, int64_t unconverged, Error *error) {
+    if (rows == 0 && unconverged > 0)
+        return error_input(error, "dataset", "the reference converges in no step in which bodies touch");
     return rows > 0 || error_input(error, "dataset", "no two bodies touched in any launch");
 }
 
@@ -142,7 +145,7 @@ Dataset *dataset_record(const DatasetOptions *options, const Progress *progress,
     Dataset *dataset = NULL;
     if (begin_recording(&recording, options, error) &&
         record_launches(&recording, 0, recording.dataset->launches, recording.dataset, progress, error) &&
-        dataset_check_rows(recording.dataset->rows, error)) {
+        dataset_check_rows(recording.dataset->rows, recording.dataset->unconverged, error)) {
         dataset = recording.dataset;
         recording.dataset = NULL;
     }
@@ -192,6 +195,7 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
     piece_ranges_find(&pieces->launches, piece, &first, &end);
     const bool ok = record_launches(&pieces->recording, (int)first, (int)end, &part, progress, error);
     dataset_arrays(&part, true, &arrays);
+    if (ok) stream_put(results, &part.unconverged, sizeof part.unconverged, 1);
     for (int i = 0; ok && i < row_arrays(pieces); i++) {
         const NpzArray *array = &arrays.list[DATASET_FIRST_ROWS + i];
         stream_put(results, array->data, dataset_row_size(array), (size_t)part.rows);
@@ -232,18 +236,23 @@ bool dataset_pieces_key(const DatasetPieces *pieces, StudyKey *key, Error *error
 }
 
 int64_t dataset_piece_rows(const DatasetPieces *pieces, int64_t piece, const char *results, size_t size,
-                           const char *path, Error *error) {
-    const size_t whole = whole_row_size(pieces), rows = size / whole;
+                           int64_t *unconverged, const char *path, Error *error) {
+    const size_t whole = whole_row_size(pieces), head = DATASET_PIECE_HEAD;
+    const size_t rows = size < head ? 0 : (size - head) / whole;
     int64_t first, end;
-    bool fits = size % whole == 0;
+    bool fits = size == head + rows * whole;
+    *unconverged = 0;
+    if (fits) memcpy(unconverged, results, head);
+    fits = fits && *unconverged >= 0;
     piece_ranges_find(&pieces->launches, piece, &first, &end);
     /* Inputs and changes precede the launches. */
     const Dataset *dataset = pieces->recording.dataset;
-    const size_t before = sizeof(float) * (size_t)(dataset_inputs(dataset) + pair_change_count(dataset->target));
+    const size_t numbers = (size_t)(dataset_inputs(dataset) + pair_change_count(dataset->target));
+    const char *launches = results + head + sizeof(float) * numbers * rows;
     int32_t last = (int32_t)first;
     for (size_t i = 0; fits && i < rows; i++) {
         int32_t launch;
-        memcpy(&launch, results + before * rows + i * sizeof launch, sizeof launch);
+        memcpy(&launch, launches + i * sizeof launch, sizeof launch);
         fits = launch >= last && launch < end;
         last = launch;
     }
@@ -257,13 +266,15 @@ int64_t dataset_piece_rows(const DatasetPieces *pieces, int64_t piece, const cha
 
 /* Appends the rows of a piece to the arrays, whose numbers in the stream are those in the file. */
 static bool add_piece(const DatasetPieces *pieces, const Pieces *done, int64_t piece, NpzStream *stream,
-                      int64_t *all_rows, Error *error) {
+                      int64_t *all_rows, int64_t *all_unconverged, Error *error) {
     char path[PIECES_PATH_SIZE];
     DatasetArrays arrays;
-    size_t size, at = 0;
+    int64_t unconverged;
+    size_t size, at = DATASET_PIECE_HEAD;
     if (!pieces_path(done, piece, path, error)) return false;
     char *results = pieces_read(done, piece, &size, NULL, error);
-    const int64_t rows = results != NULL ? dataset_piece_rows(pieces, piece, results, size, path, error) : -1;
+    const int64_t rows =
+        results != NULL ? dataset_piece_rows(pieces, piece, results, size, &unconverged, path, error) : -1;
     bool ok = rows >= 0;
     dataset_arrays(pieces->recording.dataset, true, &arrays);
     for (int i = DATASET_FIRST_ROWS; ok && i < DATASET_FIRST_ROWS + row_arrays(pieces); i++) {
@@ -271,21 +282,22 @@ static bool add_piece(const DatasetPieces *pieces, const Pieces *done, int64_t p
         at += dataset_row_size(&arrays.list[i]) * (size_t)rows;
     }
     if (ok) *all_rows += rows;
+    if (ok) *all_unconverged += unconverged;
     free(results);
     return ok;
 }
 
 bool dataset_pieces_write(const DatasetPieces *pieces, const Pieces *done, const char *path, int64_t *rows,
-                          const Progress *progress, Error *error) {
+                          int64_t *unconverged, const Progress *progress, Error *error) {
     DatasetArrays arrays;
     const int count = dataset_arrays(pieces->recording.dataset, pieces->recording.options->context, &arrays);
     const int64_t all = pieces->plan.count;
     NpzStream *stream = npz_stream_create(path, count, error);
     bool ok = stream != NULL;
-    *rows = 0;
+    *rows = *unconverged = 0;
     for (int i = 0; ok && i < count; i++) ok = npz_stream_add(stream, &arrays.list[i], error) >= 0;
     for (int64_t i = 0; ok && i < all; i++) {
-        ok = add_piece(pieces, done, i, stream, rows, error);
+        ok = add_piece(pieces, done, i, stream, rows, unconverged, error);
         if (ok && !progress_report(progress, (double)i + 1, (double)all))
             ok = error_interrupted(error, path, "stopped; finished pieces are kept");
     }

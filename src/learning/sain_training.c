@@ -65,6 +65,7 @@ static void add_body(RelationSamples *samples, const RelationView *view, int b, 
 
 bool relation_samples_add(RelationSamples *samples, const ImpactProblems *problems, bool impacts_only, Error *error) {
     Engine engine = {0};
+    samples->unconverged += problems->unconverged;
     bool ok = solver_with(&engine.solver, &solver_engine, RELATION_ENGINE_SETTINGS, error);
     for (size_t p = 0; ok && p < problems->count; p++) {
         const ImpactProblem *item = &problems->items[p];
@@ -105,7 +106,7 @@ static bool keep(Run *run, const ContactProblem *problem, int frame, Error *erro
                         (phase == PHASE_AFTER ? (frame - run->tracker.touch) % AFTER_STEP : frame % REST_EVERY) == 0;
     if (!wanted || problem->contact_count == 0) return true;
     if (!reference_solve_to(&run->reference, problem, converged, FACTORIZATIONS_MAX, error)) return false;
-    if (run->reference.residual > converged) return true;
+    if (!(run->reference.residual <= converged)) return run->problems->unconverged++, true;
     return impact_problems_add(run->problems, problem, run->reference.velocities, phase == PHASE_IMPACT) ||
            error_memory(error, "recording");
 }
@@ -232,8 +233,12 @@ static bool record_round(Trainer *trainer, int form, int round, Error *error) {
 static bool report(Trainer *trainer, double loss, Error *error) {
     const RelationTraining *training = trainer->training;
     const int form = stage_form(trainer);
-    RelationScore score = {
-        (RelationForm)form, stage_round(trainer), trainer->samples.problems, trainer->samples.count, loss, {0, 0, 0}};
+    RelationScore score = {.form = (RelationForm)form,
+                           .round = stage_round(trainer),
+                           .problems = trainer->samples.problems,
+                           .bodies = trainer->samples.count,
+                           .unconverged = trainer->samples.unconverged + trainer->held_out_samples.unconverged,
+                           .loss = loss};
     if (training->on_score == NULL) return true;
     if (!relation_fit_errors(&trainer->batches, trainer->fit.adam.weights + set_at(trainer, form, 0),
                              &trainer->held_out_samples, &score.held_out, error))

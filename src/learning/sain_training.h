@@ -31,6 +31,7 @@ typedef struct RelationSamples {
     RelationSample *items;
     RelationRowInputs *rows;
     size_t count, row_count, problems;
+    size_t unconverged; /* problems left out, as the reference did not converge */
     size_t item_capacity, row_capacity;
 } RelationSamples;
 
@@ -137,7 +138,7 @@ typedef struct RelationLaunches {
     const RelationDriver *driver; /* NULL: the engine and, every second launch, sweeps with momentum */
 } RelationLaunches;
 
-/* Appends to the problems. Omits those whose reference does not converge. A launch ends 60 frames after its impact, or if its
+/* Appends to the problems. Omits those whose reference does not converge (to 1e-6 m/s), and counts them. A launch ends 60 frames after its impact, or if its
    state becomes NaN or infinite. ERROR_INPUT: a scene's bomb has no family of launches. */
 bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *problems, const Progress *progress,
                               Error *error);
@@ -155,6 +156,7 @@ typedef struct RelationScore {
     RelationForm form;
     int round;
     size_t problems, bodies; /* trained on */
+    size_t unconverged;      /* problems left out of the training and of the score, as the reference did not converge */
     double loss;             /* mean over the last steps */
     RelationErrors held_out; /* impacts of other launches, all scenes */
 } RelationScore;

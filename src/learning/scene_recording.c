@@ -47,6 +47,7 @@ bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from) {
         memcpy(problems->items + problems->count, from->items, from->count * sizeof *from->items);
     if (ok) {
         problems->count += from->count;
+        problems->unconverged += from->unconverged;
         from->count = 0;
     }
     impact_problems_free(from);

@@ -169,7 +169,8 @@ static bool next_round(Trainer *trainer, double share, Error *error) {
 }
 
 static bool score(const Trainer *trainer, int round, Error *error) {
-    SceneNetScore result = {.round = round};
+    SceneNetScore result = {.round = round,
+                            .unconverged = trainer->samples.unconverged + trainer->held_out.unconverged};
     if (!scene_net_score(trainer->network, &trainer->samples, &trainer->held_out, &result, error)) return false;
     if (trainer->training->on_score != NULL) trainer->training->on_score(trainer->training->context, &result);
     return true;

@@ -106,6 +106,7 @@ typedef struct SlotSample {
 typedef struct SlotSamples {
     SlotSample *items;
     int count;
+    int unconverged; /* samples that slot_samples_label() left out */
     size_t capacity;
 } SlotSamples;
 
@@ -117,14 +118,14 @@ bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int l
 /* Moves all of `from` to the end of the samples. False if out of memory. */
 bool slot_samples_move(SlotSamples *samples, SlotSamples *from);
 
-/* Solves the samples from index `first` by the reference. */
+/* Solves the samples from index `first` by the reference, and leaves out those that do not converge. */
 bool slot_samples_label(SlotSamples *samples, int first, const Progress *progress, Error *error);
 
 /* Computes the view and the network inputs of the samples from index `first`. The inputs are valid only if the network
    has projections. */
 bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error);
 
-/* Labelled samples as bytes, without view and inputs, which follow from the network. Whether writing failed is for the stream
+/* Labelled samples as bytes, and how many were left out; without view and inputs, which follow from the network. Whether writing failed is for the stream
    to tell. */
 void slot_samples_write(const SlotSamples *samples, FILE *out);
 
@@ -136,6 +137,7 @@ bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int 
 
 typedef struct SceneNetScore {
     int round, samples;
+    int unconverged;        /* impacts left out so far, as the reference did not converge */
     double train, held_out; /* m/s: mean error of network + sweeps on training and on held-out launches */
     double momentum;        /* m/s: mean error of momentum with 20 sweeps and warm start, held-out launches */
 } SceneNetScore;
@@ -199,6 +201,7 @@ typedef struct ImpactProblem {
 typedef struct ImpactProblems {
     ImpactProblem *items;
     size_t count, capacity;
+    size_t unconverged; /* not appended, as the reference did not converge */
 } ImpactProblems;
 
 void impact_problems_free(ImpactProblems *problems);

@@ -62,6 +62,7 @@ bool slot_samples_add(SlotSamples *samples, const ContactProblem *problem, int l
 bool slot_samples_move(SlotSamples *samples, SlotSamples *from) {
     if (!reserve(samples, from->count + 1)) return false;
     for (int i = 0; i < from->count; i++) samples->items[samples->count++] = from->items[i];
+    samples->unconverged += from->unconverged;
     free(from->items);
     *from = (SlotSamples){0};
     return true;
@@ -89,10 +90,23 @@ static bool label(void *context, int i, Error *error) {
     SlotSample *sample = &labels->items[i];
     Reference *reference = &labels->references[omp_get_thread_num()];
     if (!reference_solve(reference, &sample->problem, NULL, error)) return false;
+    if (!reference_converged(reference)) return true; /* no label */
     if (!begin_label(sample, reference->velocities)) return error_memory(error, "labels");
     for (int k = 0; k < sample->problem.contact_count; k++)
         sample->goal[k] = (ContactImpulse){(float)reference->impulses[k].normal, (float)reference->impulses[k].tangent};
     return true;
+}
+
+static void leave_out_unlabelled(SlotSamples *samples, int first) {
+    int kept = first;
+    for (int i = first; i < samples->count; i++) {
+        if (samples->items[i].goal != NULL)
+            samples->items[kept++] = samples->items[i];
+        else
+            free_sample(&samples->items[i]);
+    }
+    samples->unconverged += samples->count - kept;
+    samples->count = kept;
 }
 
 bool slot_samples_label(SlotSamples *samples, int first, const Progress *progress, Error *error) {
@@ -104,6 +118,7 @@ bool slot_samples_label(SlotSamples *samples, int first, const Progress *progres
     bool ok = parallel_for(&work, samples->count - first, "labels", progress, error);
     for (int i = 0; i < threads; i++) reference_free(&references[i]);
     free(references);
+    if (ok) leave_out_unlabelled(samples, first);
     return ok;
 }
 
@@ -123,6 +138,8 @@ bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetw
 }
 
 void slot_samples_write(const SlotSamples *samples, FILE *out) {
+    const int32_t unconverged = samples->unconverged;
+    fwrite(&unconverged, sizeof unconverged, 1, out);
     for (int i = 0; i < samples->count; i++) {
         const SlotSample *sample = &samples->items[i];
         const int32_t place[2] = {sample->launch, sample->since};
@@ -133,7 +150,7 @@ void slot_samples_write(const SlotSamples *samples, FILE *out) {
     }
 }
 
-/* The numbers of reference and goal are not checked: a reference that diverged is NaN in the training, too. */
+/* The numbers of reference and goal are not checked: of NaN the training refuses its loss. */
 static bool read_label(SlotSample *sample, const ReferenceVelocity *velocities, ProblemBytes *bytes, Error *error) {
     return (begin_label(sample, velocities) || error_memory(error, bytes->path)) &&
            problem_bytes_take(bytes, sample->goal, (size_t)sample->problem.contact_count, sizeof *sample->goal, error);
@@ -158,7 +175,10 @@ static bool read_sample(SlotSamples *samples, ProblemBytes *bytes, int bodies, E
 bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int bodies, const char *path,
                        Error *error) {
     ProblemBytes bytes = {data, size, path};
-    bool ok = true;
+    int32_t unconverged;
+    bool ok = problem_bytes_take(&bytes, &unconverged, 1, sizeof unconverged, error) &&
+              (unconverged >= 0 || problem_bytes_refuse(&bytes, error));
+    if (ok) samples->unconverged += unconverged;
     while (ok && bytes.left > 0) ok = read_sample(samples, &bytes, bodies, error);
     return ok;
 }

@@ -26,6 +26,8 @@ few=--bomb-x=-5:5:0.4
 same pair single.yaml stack.yaml $few --context --random 6
 ! brief || finish
 same net stack.yaml $few --target net --inputs raw --labels reference
+same wedge "$sources/tests/methods/scenes/wedge_launches.yaml" --bomb-x=20:40:2 --labels reference
+grep -Eq "^    steps left out, as the reference does not converge: [1-9]" out || fail "unconverged labels: $(cat out)"
 same impulse stack.yaml $few --target impulse --inputs raw-unturned
 same points stack.yaml $few --target points --inputs neighbours --seed 5
 same table single.yaml stack.yaml --launches launches.csv --inputs contact

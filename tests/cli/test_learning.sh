@@ -54,6 +54,7 @@ run 2 dataset alone.yaml -o none.npz
 complains "alone: error: the bomb has one launch and no family"
 
 run 0 dataset single.yaml -o raw.npz --random 10 --inputs raw --target net --labels reference
+says "    steps left out, as the reference does not converge: 0"
 says "of 10 launches -> raw.npz"
 run 0 dataset single.yaml -o mixed.npz --random 10 --bomb-x=-2:2:1 --inputs raw-unturned --target impulse
 says "of 15 launches -> mixed.npz"

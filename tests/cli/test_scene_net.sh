@@ -7,6 +7,7 @@ sed '/scene-net:/d; s/^frames:.*/frames: 60/' "$scenes/stack.yaml" >stack.yaml
 small="--launches 16 --rounds 2 --iterations 6 --width 16"
 
 run 0 train --kind scene-net stack.yaml -o net.npz $small --seed 3
+says "impacts left out, as the reference does not converge: 0"
 equal "rounds printed" "$(awk '$1 ~ /^[0-9]+$/ && NF == 5 { printf "%s ", $1 }' out)" "0 1 "
 awk '$1 == 0 { first = $2 } $1 == 1 { exit !($2 > first && first > 16) }' out || fail "samples: $(cat out)"
 says "parameters -> net.npz"

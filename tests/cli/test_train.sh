@@ -51,6 +51,7 @@ run 0 dataset single.yaml -o pairs.npz --bomb-x=-2:2:1
 run 0 train --loss smooth-l1 pairs.npz --iterations 3 -o pair.npz --hidden tanh
 run 0 train --kind scene-net stack.yaml -o scene.npz --launches 10 --rounds 1 --iterations 1 --width 16
 run 0 train --kind sain stack.yaml --with single.yaml -o sain.npz --launches 2 --rounds 1 --steps 4
+equal "problems left out" "$(awk '$1 ~ /^(on|off|shuffled)$/ { print $4 }' out | xargs)" "0 0 0"
 run 0 train --kind hybrid stack.yaml -o memory.npz --launches 3 --steps 4 --limit 0.03
 says "  full"
 run 0 train --kind gns -o gns.npz --scenes single.yaml --launches 2 --steps 20 --rounds 1

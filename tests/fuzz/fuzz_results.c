@@ -32,9 +32,12 @@ void fuzz_rows(const uint8_t *data, size_t size) {
     piece_ranges_add(&pieces.launches, launches.launches, 2);
     const size_t left = size - 1;
     fuzz_begin();
-    const int64_t rows = dataset_piece_rows(&pieces, 1, (const char *)data + 1, left, "rows", &error);
+    int64_t unconverged;
+    const int64_t rows = dataset_piece_rows(&pieces, 1, (const char *)data + 1, left, &unconverged, "rows", &error);
     fuzz_end(rows >= 0, &error, "rows");
-    if (rows > 0 && left % (size_t)rows != 0) fuzz_fail("%zu bytes are %lld rows", left, (long long)rows);
+    if (rows >= 0 && unconverged < 0) fuzz_fail("%lld unconverged steps", (long long)unconverged);
+    if (rows > 0 && (left - DATASET_PIECE_HEAD) % (size_t)rows != 0)
+        fuzz_fail("%zu bytes are %lld rows", left, (long long)rows);
 }
 
 /* The first byte has the number of bodies. */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is recorded, for each target: laws that tie them together. */
-#include "testing.h"
+#include "made.h"
 
 #include "learning/dataset.h"
+#include "methods/reference.h"
 
 #include <math.h>
 
@@ -109,6 +110,48 @@ TEST(the_reference_labels_what_the_engine_met) {
     assert_memory_equal(engine->inputs, reference->inputs, (size_t)engine->rows * PAIR_INPUTS * sizeof(float));
     dataset_destroy(engine);
     dataset_destroy(reference);
+}
+
+typedef struct Steps {
+    Reference reference;
+    bool touching[61], unsolved[61]; /* of a launch, by frame */
+} Steps;
+
+static bool solve_again(void *context, int frame, const World *world, Error *error) {
+    Steps *steps = context;
+    const ContactProblem *problem = world_problem(world);
+    if (!reference_solve(&steps->reference, problem, NULL, error)) return false;
+    steps->touching[frame] = problem->contact_count > 0;
+    steps->unsolved[frame] = steps->reference.residual > 1e-9;
+    return true;
+}
+
+TEST(steps_without_a_solution_have_no_rows_and_are_counted) {
+    const char *path = SOURCE_DIR "/tests/methods/scenes/wedge_launches.yaml";
+    DatasetOptions options = {.scenes = &path, .scene_count = 1, .target = TARGET_NET, .labels = DATASET_BY_REFERENCE};
+    assert_true(parse_range("20:40:4", 10, &options.bomb_x));
+    Dataset *dataset = dataset_record(&options, NULL, &error);
+    assert_ok(dataset != NULL, error);
+    Scene *scene = scene_from(path);
+    const Method engine = method_named("engine");
+    int64_t unsolved = 0, row = 0;
+    for (int launch = 0; launch < dataset->launches; launch++) {
+        Steps steps = {.reference = {0}};
+        const Scene launched = dataset_launch(dataset, &scene, launch);
+        assert_ok(simulate_observed(&launched, &engine, &(StepObserver){solve_again, &steps}, &error), error);
+        for (int frame = 1; frame <= 60; frame++) {
+            const int64_t first = row;
+            while (row < dataset->rows && dataset->launch[row] == launch && dataset->frame[row] == frame) row++;
+            assert_true((row > first) == (steps.touching[frame] && !steps.unsolved[frame]));
+            unsolved += steps.unsolved[frame];
+        }
+        reference_free(&steps.reference);
+    }
+    assert_int_equal(row, dataset->rows);
+    assert_true(unsolved > 6 * 10);
+    assert_int_equal(dataset->unconverged, unsolved);
+    scene_destroy(scene);
+    dataset_destroy(dataset);
 }
 
 /* The ground is static, the box has 200 kg, the bomb 50. What an impulse at the middle of the points does to a body is

@@ -3,6 +3,8 @@
 #include "trainings.h"
 
 #include "learning/sain_training.h"
+#include "learning/scene_training.h"
+#include "methods/reference.h"
 
 static Scene *scene;
 
@@ -44,6 +46,27 @@ TEST(an_interrupted_training_has_the_same_bits) {
     assert_same(&whole, &resumed);
     relation_networks_destroy(&whole);
     relation_networks_destroy(&resumed);
+    scene_destroy(scene);
+}
+
+/* A box in a V that its friction holds apart from: what is trained on has a solution, what is left out is counted. */
+TEST(problems_without_a_solution_are_left_out_and_counted) {
+    scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge_launches.yaml");
+    const RelationLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 3, .rounds = 1};
+    ImpactProblems problems = {.unconverged = 0};
+    RelationSamples samples = {.unconverged = 1};
+    Reference reference = {0};
+    assert_ok(relation_launches_record(&launches, &problems, NULL, &error), error);
+    for (size_t i = 0; i < problems.count; i++) {
+        assert_ok(reference_solve_to(&reference, &problems.items[i].problem, 1e-6, 120, &error), error);
+        assert_true(reference.residual <= 1e-6);
+    }
+    assert_int_equal(problems.unconverged, 3 * 2); /* of each launch frames 30 and 60: the box wedges at frame 26 */
+    assert_ok(relation_samples_add(&samples, &problems, false, &error), error);
+    assert_int_equal(samples.unconverged, 1 + 3 * 2);
+    relation_samples_free(&samples);
+    impact_problems_free(&problems);
+    reference_free(&reference);
     scene_destroy(scene);
 }
 

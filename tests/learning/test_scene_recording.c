@@ -12,6 +12,7 @@ static const SceneTraining training = {.launches = 230, .rounds = 1, .seed = 5};
 
 static void assert_equal_samples(const SlotSamples *samples, const SlotSamples *others) {
     assert_int_equal(samples->count, others->count);
+    assert_int_equal(samples->unconverged, others->unconverged);
     for (int i = 0; i < samples->count; i++) {
         const SlotSample *one = &samples->items[i], *two = &others->items[i];
         const size_t bodies = (size_t)one->problem.body_count, contacts = (size_t)one->problem.contact_count;
@@ -64,25 +65,35 @@ static bool is_refused(const char *bytes, size_t size, int bodies) {
     return !read;
 }
 
+static void write_samples(const SlotSamples *samples, char **bytes, size_t *size) {
+    FILE *out = memory_stream(bytes, size);
+    assert_non_null(out);
+    slot_samples_write(samples, out);
+    assert_int_equal(fclose(out), 0);
+}
+
 TEST(damaged_samples_are_refused) {
+    const size_t head = sizeof(int32_t);
     SlotSamples samples = labelled_impacts(2), read = {0};
-    char *bytes = NULL;
-    size_t size;
+    char *bytes = NULL, *bytes_of_one = NULL;
+    size_t size, size_of_one;
     assert_in_range(samples.count, 2, 100);
     const int bodies = samples.items[0].problem.body_count;
-    FILE *out = memory_stream(&bytes, &size);
-    assert_non_null(out);
-    slot_samples_write(&(SlotSamples){samples.items, 1, 1}, out);
-    assert_int_equal(fflush(out), 0);
-    const size_t whole = size;
-    slot_samples_write(&(SlotSamples){samples.items + 1, 1, 1}, out);
-    assert_int_equal(fclose(out), 0);
+    const SlotSamples one = {.items = samples.items, .count = 1}, two = {.items = samples.items, .count = 2, 5};
+    write_samples(&one, &bytes_of_one, &size_of_one);
+    write_samples(&two, &bytes, &size);
     assert_ok(slot_samples_read(&read, bytes, size, bodies, "piece", &error), error);
-    assert_equal_samples(&read, &(SlotSamples){samples.items, 2, 2});
-    for (size_t cut = 0; cut < size; cut++) assert_int_equal(is_refused(bytes, cut, bodies), cut != 0 && cut != whole);
+    assert_equal_samples(&read, &two);
+    for (size_t cut = 0; cut < size; cut++)
+        assert_int_equal(is_refused(bytes, cut, bodies), cut != head && cut != size_of_one);
     assert_true(is_refused(bytes, size, bodies + 1));
-    bytes[3] = (char)0x80; /* a negative launch */
+    bytes[head + 3] = (char)0x80; /* a negative launch */
     assert_true(is_refused(bytes, size, bodies));
+    bytes[head + 3] = 0;
+    assert_false(is_refused(bytes, size, bodies));
+    bytes[head - 1] = (char)0x80; /* a negative number of samples that were left out */
+    assert_true(is_refused(bytes, size, bodies));
+    free(bytes_of_one);
     free(bytes);
     slot_samples_free(&samples);
     slot_samples_free(&read);

@@ -86,6 +86,48 @@ TEST(only_samples_from_the_given_index_are_labelled) {
     slot_samples_free(&samples);
 }
 
+typedef struct Wedge {
+    SlotSamples samples;
+    Reference reference;
+    int solved;
+} Wedge;
+
+static bool keep_step(void *context, int frame, const World *world, Error *error) {
+    Wedge *wedge = context;
+    const ContactProblem *problem = world_problem(world);
+    if (!reference_solve(&wedge->reference, problem, NULL, error)) return false;
+    wedge->solved += wedge->reference.residual <= 1e-9;
+    return slot_samples_add(&wedge->samples, problem, frame, 0);
+}
+
+/* A box in a V that its friction holds apart from: steps with a solution and without. */
+TEST(samples_without_a_solution_are_left_out_and_counted) {
+    Wedge wedge = {.solved = 0};
+    Scene *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge.yaml");
+    const Method engine = method_named("engine");
+    assert_ok(simulate_observed(scene, &engine, &(StepObserver){keep_step, &wedge}, &error), error);
+    const int all = wedge.samples.count;
+    assert_int_equal(all, scene->frames);
+    assert_in_range(wedge.solved, 10, all - 10);
+    assert_ok(slot_samples_label(&wedge.samples, 0, NULL, &error), error);
+    assert_int_equal(wedge.samples.count, wedge.solved);
+    assert_int_equal(wedge.samples.unconverged, all - wedge.solved);
+    for (int i = 0; i < wedge.samples.count; i++) {
+        const SlotSample *sample = &wedge.samples.items[i];
+        assert_ok(reference_solve(&wedge.reference, &sample->problem, NULL, &error), error);
+        assert_true(wedge.reference.residual <= 1e-9);
+        assert_memory_equal(sample->reference, wedge.reference.velocities,
+                            (size_t)sample->problem.body_count * sizeof *sample->reference);
+        assert_true(i == 0 || sample->launch > sample[-1].launch);
+    }
+    SlotSamples moved = {.unconverged = 2};
+    assert_true(slot_samples_move(&moved, &wedge.samples));
+    assert_int_equal(moved.unconverged, 2 + all - wedge.solved);
+    slot_samples_free(&moved);
+    reference_free(&wedge.reference);
+    scene_destroy(scene);
+}
+
 TEST(inputs_are_those_of_the_network) {
     SlotSamples shaped = labelled_impacts(LAUNCHES), samples = {0};
     SlotNetwork *network = network_for(&shaped);
