@@ -202,6 +202,7 @@ bool verdict_watch_observe(void *watch, int frame, const World *world, Error *er
                               .bomb = problem->marked,
                               .bodies = world_bodies(world),
                               .contacts = problem->contacts};
+    network_fallbacks_add(&((VerdictWatch *)watch)->fallbacks, &world_solution(world)->fallbacks);
     return verdict_watch_step(watch, &step, error);
 }
 
@@ -295,6 +296,7 @@ VerdictReading verdict_watch_end(const VerdictWatch *watch) {
     VerdictReading reading = read_verdict(watch);
     reading.drift = reading.gained = NAN;
     reading.deepest = watch->deepest;
+    reading.fallbacks = watch->fallbacks;
     reading.excess = watch->run.no_energy ? NAN : watch->excess;
     if (watch->rested_count == 0 || watch->frame == falls_in_steps(watch, VERDICT_CREEP_FROM)) return reading;
     reading.drift = 0;
@@ -313,11 +315,10 @@ static uint64_t hash_bodies(const Body *bodies, int count) {
 static bool run_step(VerdictWatch *watch, Stepper *stepper, World *world, const Step *step, Error *error) {
     Error failure = {0};
     if (simulate_step(stepper, world, step, &failure)) return verdict_watch_observe(watch, step->frame, world, error);
-    if (failure.failure != FAILURE_NONE)
-        verdict_watch_failed(watch, step->frame, &failure);
-    else
-        *error = failure;
-    return failure.failure != FAILURE_NONE;
+    if (failure.failure == FAILURE_NONE) return *error = failure, false;
+    network_fallbacks_add(&watch->fallbacks, &world_solution(world)->fallbacks);
+    verdict_watch_failed(watch, step->frame, &failure);
+    return true;
 }
 
 bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *method, const VerdictRun *run,
@@ -329,16 +330,12 @@ bool verdict_run(VerdictReading *reading, const Scene *scene, const Method *meth
     Stepper *stepper = world != NULL ? stepper_create(method, scene, error) : NULL;
     bool ok =
         stepper != NULL && verdict_watch_begin(&watch, &judged, world_bodies(world), world_body_count(world), error);
-    NetworkFallbacks fallbacks = {0};
-    for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++) {
+    for (int frame = 1; ok && frame <= scene->frames && !verdict_watch_is_final(&watch); frame++)
         ok = run_step(&watch, stepper, world, &(Step){.scene = scene, .frame = frame}, error);
-        network_fallbacks_add(&fallbacks, &world_solution(world)->fallbacks);
-    }
     if (ok) {
         *reading = verdict_watch_end(&watch);
         reading->state = hash_bodies(world_bodies(world), world_body_count(world));
         reading->steps = watch.frame;
-        reading->fallbacks = fallbacks;
     }
     verdict_watch_free(&watch);
     stepper_destroy(stepper);

@@ -191,8 +191,8 @@ typedef struct VerdictReading {
     double drift, gained;
     double deepest; /* m: penetration of the deepest contact of all steps */
     double excess;  /* J: most energy above what the start and added bodies brought; >= 0; NaN if not judged */
-    int steps;      /* set by verdict_run() only, as are fallbacks */
-    NetworkFallbacks fallbacks;
+    int steps;      /* set by verdict_run() only */
+    NetworkFallbacks fallbacks; /* of all steps that were observed */
 } VerdictReading;
 
 /* The run to be judged. */
@@ -314,7 +314,8 @@ typedef struct VerdictWatch {
     int peak_steps;   /* of the current fall */
     int rested_count; /* bodies after VERDICT_CREEP_FROM falls; 0 before */
     double deepest, excess; /* as in VerdictReading */
-    ContactFinder finder;   /* of a run that finds its contacts */
+    NetworkFallbacks fallbacks;
+    ContactFinder finder; /* of a run that finds its contacts */
     PassFinder passes;
 } VerdictWatch;
 
@@ -399,7 +400,8 @@ bool simulate_verdict_end(SimulateVerdict *verdict, const Error *failure);
 void simulate_verdict_free(SimulateVerdict *verdict);
 
 /* After simulate_verdict_end(): "falls at 4.22 s (body 7, 0.53 m lower)"; of a struck scene, what stands: "collapses: 8
-   of 10 boxes fell, first at 1.2 s", "stands; 1 of 10 moved by 0.3 m". */
+   of 10 boxes fell, first at 1.2 s", "stands; 1 of 10 moved by 0.3 m". They go with a stored run, so they also say what makes it
+   no yardstick: "; 175 steps did not converge". */
 void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]);
 
 /* s: so many falls of the run, VERDICT_CREEP_FROM for instance. */

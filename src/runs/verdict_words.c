@@ -100,14 +100,10 @@ static void add_fallen(const SimulateVerdict *verdict, const char *between, char
     text_add(words, TRAJECTORY_VERDICT_SIZE, ", first at %.3g s", count->first * (double)verdict->scene->dt);
 }
 
-void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
+/* "collapses: 8 of 10 boxes fell, first at 1.2 s; 1 more moved by 0.3 m" */
+static void write_struck(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
     const VerdictReading *reading = &verdict->reading;
     const VerdictCount *count = &reading->count;
-    if (!reading->struck) {
-        write_whole(verdict, words);
-        if (verdict->watch.run.struck != NULL) add_fallen(verdict, "; ", words);
-        return;
-    }
     snprintf(words, TRAJECTORY_VERDICT_SIZE, "%s", verdict_name(reading->verdict));
     add_fallen(verdict, ": ", words);
     /* What has fallen moved, too, and is not counted again. */
@@ -118,4 +114,17 @@ void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTOR
         text_add(words, TRAJECTORY_VERDICT_SIZE, " moved by %s%.2g m", count->moved > 1 ? "up to " : "",
                  count->farthest);
     if (reading->moving) text_add(words, TRAJECTORY_VERDICT_SIZE, "; still moves at the end");
+}
+
+void simulate_verdict_words(const SimulateVerdict *verdict, char words[TRAJECTORY_VERDICT_SIZE]) {
+    const int unconverged = verdict->reading.fallbacks.not_converged;
+    if (verdict->reading.struck) {
+        write_struck(verdict, words);
+    } else {
+        write_whole(verdict, words);
+        if (verdict->watch.run.struck != NULL) add_fallen(verdict, "; ", words);
+    }
+    if (unconverged > 0)
+        text_add(words, TRAJECTORY_VERDICT_SIZE, "; %d step%s did not converge", unconverged,
+                 unconverged == 1 ? "" : "s");
 }

@@ -7,6 +7,11 @@ make=$sources/scenes/benchmark/make score=$sources/scenes/benchmark/score
 
 "$make" bench >made || fail "make: $(tail -1 made)"
 equal "cases" "$(tail -n +2 bench/cases.csv | wc -l)" 37
+# A reference with steps that did not converge is no yardstick.
+printf '#!/bin/sh\n"%s" "$@" | sed "s/.not_converged.: 0/\\"not_converged\\": 3/"\n' "$twinbox" >unconverged
+chmod +x unconverged
+TWINBOX=$PWD/unconverged "$make" none 2>refused && fail "a benchmark of unconverged references"
+grep -q "stack-1: 3 steps of the reference did not converge" refused || fail "make: $(cat refused)"
 equal "files whose sums differ" "$(cd bench && sha256sum -c SHA256SUMS 2>/dev/null | grep -vc OK)" 0
 /usr/bin/python3 - <<'PYTHON' || fail "cases.csv"
 import csv

@@ -155,7 +155,15 @@ grep -Eq '^engine +- +-/1 ' out || fail "scored against a step that did not conv
 run 0 solve "$wedge" --frame 50 -m engine --json
 says '"converged": false'
 grep -q '"error"' out && fail "an error against a step that did not converge"
-run 0 simulate "$wedge" -m reference
+run 0 simulate "$wedge" -m reference -o wedge.npz
 grep -Eq '^    steps that did not converge: [1-9]' out || fail "unconverged steps are not counted"
 says "this run is no yardstick"
+count=$(sed -n 's/^    steps that did not converge: //p' out)
+# The words of the verdict go with the run, to pages, films and comparisons.
+grep -Eq "^    verdict: settles .*; $count steps did not converge$" out || fail "the verdict: $(cat out)"
+run 0 simulate "$wedge" -m engine -o engine.npz
+run 1 compare engine.npz wedge.npz
+grep -q "^not compared: the verdict, .*; $count steps did not converge" out || fail "compare beside a run that is no yardstick"
+run 0 page engine.npz wedge.npz -o wedge.html
+[ "$(grep -c "$count steps did not converge" wedge.html)" -gt 0 ] || fail "a page of a run that is no yardstick"
 finish
