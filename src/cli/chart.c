@@ -284,6 +284,10 @@ static bool draw_measured(const SpeedAccuracyOptions *options, const char *csv, 
     printf("    not scored, as the reference does not converge: %" PRId64 " of %" PRId64 " frozen steps, %" PRId64
            " of %" PRId64 " in closed loop\n",
            solves->frozen_unconverged, solves->frozen, solves->closed_unconverged, solves->closed);
+    if (solves->runs_unconverged > 0)
+        printf("    energy and drift are compared before the converged runs' steps that did not converge: %" PRId64
+               "\n",
+               solves->runs_unconverged);
     return true;
 }
 

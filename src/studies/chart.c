@@ -219,6 +219,7 @@ static bool add_launch(const Assembly *assembly, int launch, int first, int end,
     StoredScores stored;
     bool ok = open_launch(assembly, launch, path, &stored, &text, error);
     if (ok && first == 0) assembly->solves->frozen_unconverged += stored.unconverged;
+    if (ok && first == 0) assembly->solves->runs_unconverged += stored.run_unconverged;
     for (int i = first; ok && i < end; i++) ok = method_scores_add(&assembly->scores[i], &stored, i, error);
     free(text);
     return ok;

@@ -61,6 +61,8 @@ typedef struct RunLog {
     LoggedFrame *at;             /* [frames + 1] */
     double momentum_error;       /* N s: momentum created by steps (ContactSolution), sum */
     int fallen_back;             /* steps with discarded outputs, beyond training or solved by sweeps */
+    int unconverged;             /* steps that did not converge, of the reference */
+    int first_unconverged;       /* the first of them, from which on the log is no yardstick; 0: none */
     size_t position_capacity, at_capacity;
 } RunLog;
 
@@ -75,7 +77,8 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
    launch; if the log ended early (NaN or infinite), at the latest the frame after its last; `frames` if never. */
 int run_log_apart(const RunLog *log, const RunLog *other, double limit, int frames);
 
-/* A run compared with the converged run of the same launch; NaN if a phase does not occur. */
+/* A run compared with the converged run of the same launch; NaN if a phase does not occur. Energy and drift are compared before
+   the converged run's first step that did not converge. */
 typedef struct RunMeasures {
     double penetration[PHASES]; /* m: largest of the phase */
     double energy[PHASES];      /* J: excess over the converged run at the same frame, mean over the phase */
@@ -324,6 +327,7 @@ bool worst_launch_find(const SceneStudy *study, const Method *method, WorstLaunc
 typedef struct SceneSolves {
     int64_t frozen, frozen_unconverged; /* frozen steps; those left out of them (converged_step_found()) */
     int64_t closed, closed_unconverged; /* the same in closed loop, of all methods together */
+    int64_t runs_unconverged;           /* steps of the converged runs that did not converge */
 } SceneSolves;
 
 /* The speed-accuracy study: every method in every scene, on held-out launches.

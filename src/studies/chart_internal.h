@@ -23,16 +23,18 @@ typedef struct LaunchScores {
 
 void launch_scores_free(LaunchScores *scores);
 
-/* Writes those of all methods, scores[count]. unconverged: frozen steps, as in SnapshotList. */
-void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged);
+/* Writes those of all methods, scores[count]. unconverged: frozen steps, as in SnapshotList. run_unconverged: as in RunLog, of the
+   converged run. */
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged, int run_unconverged);
 
 /* What is stored of a launch. */
 typedef struct StoredScores {
     const char *path; /* for messages */
     const char *bytes;
     size_t size;
-    int count;           /* methods */
-    int64_t unconverged; /* frozen steps */
+    int count;               /* methods */
+    int64_t unconverged;     /* frozen steps */
+    int64_t run_unconverged; /* steps of the converged run */
 } StoredScores;
 
 /* Looks at stored results with so many methods. ERROR_INPUT if they are damaged. The bytes must outlive *stored. */

@@ -24,7 +24,7 @@ void run_log_free(RunLog *log) {
 bool run_log_begin(RunLog *log, const Scene *scene, const World *world) {
     size_t rows = (size_t)scene->frames + 1;
     log->bodies = scene->body_count;
-    log->touch = log->fallen_back = 0;
+    log->touch = log->fallen_back = log->unconverged = log->first_unconverged = 0;
     log->momentum_error = 0;
     log->launch_frame = scene->bomb.frame < scene->frames ? scene->bomb.frame : scene->frames;
     double end = log->launch_frame + moved_after / (double)scene->dt;
@@ -52,6 +52,8 @@ void run_log_step(RunLog *log, const Scene *scene, const World *world, int frame
         .bomb = world_body_count(world) > log->bodies ? world_bodies(world)[log->bodies].position : vec2(0, 0)};
     log->momentum_error += (double)world_solution(world)->momentum_error;
     log->fallen_back += fell_back(&world_solution(world)->fallbacks);
+    if (frame == 0 || world_solution(world)->fallbacks.not_converged == 0) return;
+    if (log->unconverged++ == 0) log->first_unconverged = frame;
 }
 
 static double distance_apart(const RunLog *log, const RunLog *other, int frame) {
@@ -94,22 +96,25 @@ static double mean_distance(const RunLog *log, const RunLog *other, const Scene 
 
 RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene) {
     RunMeasures measures = {.drift = NAN, .moved = run_log_moved(log, scene)};
-    int frames[PHASES] = {0}, last = log->frames < converged->frames ? log->frames : converged->frames;
+    int frames[PHASES] = {0}, compared[PHASES] = {0};
+    const int last = log->frames < converged->frames ? log->frames : converged->frames;
+    const int known = converged->first_unconverged > 0 ? converged->first_unconverged - 1 : converged->frames;
     double energy[PHASES] = {0};
     for (int frame = 1; frame <= last; frame++) {
         Phase phase = log->at[frame].phase;
-        energy[phase] += log->at[frame].energy - converged->at[frame].energy;
+        if (frame <= known) energy[phase] += log->at[frame].energy - converged->at[frame].energy;
+        compared[phase] += frame <= known;
         frames[phase]++;
         if (log->at[frame].penetration > measures.penetration[phase])
             measures.penetration[phase] = log->at[frame].penetration;
     }
     for (int phase = 0; phase < PHASES; phase++) {
-        measures.energy[phase] = frames[phase] > 0 ? energy[phase] / frames[phase] : NAN;
+        measures.energy[phase] = compared[phase] > 0 ? energy[phase] / compared[phase] : NAN;
         if (frames[phase] == 0) measures.penetration[phase] = NAN;
     }
     int rest = converged->touch > 0 ? converged->touch - 1 : last;
     if (log->touch > 0 && log->touch - 1 < rest) rest = log->touch - 1;
-    if (rest > 0 && rest <= last) measures.drift = mean_distance(log, converged, scene, rest);
+    if (rest > 0 && rest <= last && rest <= known) measures.drift = mean_distance(log, converged, scene, rest);
     return measures;
 }
 

@@ -185,7 +185,9 @@ bool launch_piece_write(SceneStudy *study, int launch, FILE *results, const Prog
     const bool ok =
         launch_piece_begin(&piece, study, launch, error) && prepare(&piece, error) &&
         parallel_for(&work, study->contender_count, study->scene->name, &(Progress){progress_stage, &stage}, error);
-    if (ok) launch_scores_write(results, piece.scores, study->contender_count, piece.snapshots.unconverged);
+    if (ok)
+        launch_scores_write(results, piece.scores, study->contender_count, piece.snapshots.unconverged,
+                            piece.converged.unconverged);
     launch_piece_end(&piece);
     return ok;
 }

@@ -17,7 +17,7 @@
 
 typedef struct LaunchHead {
     int64_t count; /* of methods */
-    int64_t unconverged;
+    int64_t unconverged, run_unconverged;
 } LaunchHead;
 
 /* Followed by the errors and the shares of each protocol and phase. */
@@ -65,8 +65,8 @@ static void write_part(FILE *results, const LaunchScores *scores) {
         }
 }
 
-void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged) {
-    const LaunchHead head = {count, unconverged};
+void launch_scores_write(FILE *results, const LaunchScores *scores, int count, int unconverged, int run_unconverged) {
+    const LaunchHead head = {count, unconverged, run_unconverged};
     int64_t end = (int64_t)sizeof head + count * (int64_t)sizeof end;
     fwrite(&head, sizeof head, 1, results);
     for (int i = 0; i < count; i++) {
@@ -97,7 +97,8 @@ bool stored_scores_open(StoredScores *stored, const char *path, const char *byte
     *stored = (StoredScores){.path = path, .bytes = bytes, .size = size, .count = count};
     if (size >= sizeof head) memcpy(&head, bytes, sizeof head);
     const size_t begin = sizeof head + (size_t)count * sizeof(int64_t);
-    if (size < begin || head.count != count || !is_step_count(head.unconverged)) return refuse(stored, error);
+    if (size < begin || head.count != count || !is_step_count(head.unconverged) || !is_step_count(head.run_unconverged))
+        return refuse(stored, error);
     for (int i = 0; i < count; i++) {
         const int64_t end = part_begin(stored, i + 1);
         if (end > (int64_t)size || end < part_begin(stored, i) + (int64_t)sizeof(PartHead))
@@ -105,6 +106,7 @@ bool stored_scores_open(StoredScores *stored, const char *path, const char *byte
     }
     if (part_begin(stored, count) != (int64_t)size) return refuse(stored, error);
     stored->unconverged = head.unconverged;
+    stored->run_unconverged = head.run_unconverged;
     return true;
 }
 

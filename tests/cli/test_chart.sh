@@ -65,6 +65,15 @@ run 2 chart nowhere.csv -o again
 complains "nowhere.csv: error:"
 
 ! brief || finish
+
+# A box in a V that its friction holds apart from: steps of the converged runs without a solution are counted.
+sed 's/x: {from: 20, to: 40, value: 20}, y: 0.5/x: {from: -3, to: 3, value: 0}, y: 8/; s/frames: 60/frames: 120/' \
+    "$sources/tests/methods/scenes/wedge_launches.yaml" >wedge.yaml
+run 0 chart wedge.yaml -o wedge --quick --methods engine
+grep -Eq "^    not scored, as the reference does not converge: [1-9][0-9]* of [0-9]+ frozen steps, [1-9]" out ||
+    fail "unconverged steps of a chart: $(cat out)"
+grep -Eq "^    energy and drift are compared before the converged runs' steps that did not converge: [1-9]" out ||
+    fail "unconverged steps of the converged runs: $(cat out)"
 few=engine:k=10,momentum:k=20,substepping:substeps=10,pair-net,scene-net
 run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
 without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||

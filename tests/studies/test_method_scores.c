@@ -43,7 +43,7 @@ static char *write_launch(int launch, size_t *size) {
     FILE *stream = memory_stream(&bytes, size);
     assert_non_null(stream);
     for (int i = 0; i < METHODS; i++) scores[i] = make_scores(launch, i);
-    launch_scores_write(stream, scores, METHODS, 5 + launch);
+    launch_scores_write(stream, scores, METHODS, 5 + launch, 3 * launch);
     assert_int_equal(fclose(stream), 0);
     for (int i = 0; i < METHODS; i++) launch_scores_free(&scores[i]);
     return bytes;
@@ -77,6 +77,7 @@ TEST(launches_are_put_together) {
         char *bytes = write_launch(launch, &size);
         assert_ok(stored_scores_open(&stored, "launch", bytes, size, METHODS, &error), error);
         assert_int_equal(stored.unconverged, 5 + launch);
+        assert_int_equal(stored.run_unconverged, 3 * launch);
         for (int i = 0; i < METHODS; i++) assert_ok(method_scores_add(&scores[i], &stored, i, &error), error);
         free(bytes);
     }
@@ -133,7 +134,7 @@ TEST(damaged_results_are_refused) {
     assert_false(are_read(bytes, 0, METHODS));
     for (size_t cut = 1; cut < size; cut++) assert_false(are_read(bytes, cut, METHODS));
     /* The number of methods, the index and the head of the first part; a few more steps may have been left out. */
-    const size_t index = 2 * sizeof(int64_t), part = index + METHODS * sizeof(int64_t), counts = part + sizeof(int64_t),
+    const size_t index = 3 * sizeof(int64_t), part = index + METHODS * sizeof(int64_t), counts = part + sizeof(int64_t),
                  criteria = counts + sizeof(int32_t[PROTOCOLS][PHASES]),
                  values = criteria + sizeof(CriteriaSum[PROTOCOLS][PHASES]) + 64;
     for (size_t at = 0; at < criteria; at++) {

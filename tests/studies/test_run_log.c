@@ -54,6 +54,41 @@ TEST(equal_runs_have_no_differences) {
     assert_near(measures.moved, 0, 0);
 }
 
+/* The converged run is one until frame 5, the first of the impact. */
+TEST(nothing_is_compared_with_steps_that_did_not_converge) {
+    Handmade a, b;
+    const Scene scene = scene_by_hand();
+    const RunLog log = log_by_hand(&a);
+    RunLog converged = log_by_hand(&b);
+    a.at[5].energy += 4;
+    a.at[8].penetration = 0.5;
+    for (int frame = 6; frame <= FRAMES; frame++) a.at[frame].energy += 1000;
+    converged.unconverged = 2;
+    converged.first_unconverged = 6;
+    RunMeasures measures = run_measures(&log, &converged, &scene);
+    assert_near(measures.energy[PHASE_REST], 0, 0);
+    assert_near(measures.energy[PHASE_IMPACT], 4, 0);
+    assert_true(isnan(measures.energy[PHASE_AFTER]));
+    assert_near(measures.penetration[PHASE_AFTER], 0.5, 0);
+    assert_near(measures.drift, 0, 0);
+    converged.first_unconverged = 4; /* before the touch, where drift is measured */
+    measures = run_measures(&log, &converged, &scene);
+    assert_true(isnan(measures.drift) && isnan(measures.energy[PHASE_IMPACT]));
+}
+
+/* A box in a V that its friction holds apart from. */
+TEST(steps_that_did_not_converge_are_counted) {
+    Scene *scene = scene_from(SOURCE_DIR "/tests/methods/scenes/wedge_launches.yaml");
+    RunLog log = {0};
+    assert_ok(closed_loop_log(&log, "reference", scene, &error), error);
+    assert_in_range(log.unconverged, 10, 50);
+    assert_int_equal(log.unconverged, scene->frames + 1 - log.first_unconverged);
+    assert_ok(closed_loop_log(&log, "engine", scene, &error), error);
+    assert_int_equal(log.unconverged, 0);
+    run_log_free(&log);
+    scene_destroy(scene);
+}
+
 TEST(differences_are_assigned_to_their_phase) {
     Handmade a, b;
     const Scene scene = scene_by_hand();
