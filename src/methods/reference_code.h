@@ -4,8 +4,9 @@
    1. Two sweeps of projected Gauss-Seidel from the warm start. If the contact states they lead to (open, sticking,
       sliding) are those of a solution, a linear solve finds it (polish): nearly always at rest.
    2. Else the central path is followed to the solution (reference_path.h), also where it turns back.
-   3. If the path is lost, again from another distance and with another stiffness; then from other starts: what more
-      sweeps make of the best answer so far, and of no impulses. A path that is lost from one start mostly ends from another.
+   3. If the path is lost, again from another distance and with another stiffness; then with impulses measured by the
+      heaviest body (weigh), from other starts: what more sweeps make of the best answer so far, and of no impulses. A path
+      that is lost from one start mostly ends from another.
 
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
    on the start. Included once by each reference_*.c. */
@@ -146,9 +147,11 @@ static void begin_from(Reference *r, bool nothing) {
 static void run(Reference *r) {
     const int count = sizeof starts / sizeof *starts;
     r->best = INFINITY;
+    weigh(r, false);
     sweep_start(r, starts[0].sweeps);
     bool solved = try_all(r);
     for (int i = 1; r->persist && !solved && i < count; i++) {
+        weigh(r, true);
         begin_from(r, starts[i].from_nothing);
         sweep_start(r, starts[i].sweeps);
         solved = try_all(r);
