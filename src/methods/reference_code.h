@@ -6,6 +6,7 @@
    2. Else the central path is followed to the solution (reference_path.h), also where it turns back.
    3. If the path is lost, again from another distance and with another stiffness; then from other starts: what more
       sweeps make of the best answer so far, and of no impulses. A path that is lost from one start mostly ends from another.
+   4. Then all of these again, with impulses measured by the heaviest body (weigh).
 
    The solution of 1 is the one that the sweeps lead to; that of 2 is the end of the central path, which does not depend
    on the start. Included once by each reference_*.c. */
@@ -70,8 +71,9 @@ enum { FINISH_ROUNDS = 3, FINISH_SWEEPS = 100 };
 /* The first start is the warm start, the others the best answer or no impulses; then sweeps. */
 static const struct {
     int sweeps;
-    bool from_nothing;
-} starts[] = {{2, false}, {100, false}, {100, true}, {800, false}, {800, true}};
+    bool from_nothing, by_heaviest;
+} starts[] = {{2, false, false},  {100, false, false}, {100, true, false}, {800, false, false}, {800, true, false},
+              {100, false, true}, {100, true, true},   {800, false, true}, {800, true, true}};
 
 /* scale: distance of the start from its bounds, times its residual. stiffest: see Reference; with less, redundant
    contacts drift, with more, rounding hides the masses. most: factorizations. carefully: by the path's length. */
@@ -146,9 +148,11 @@ static void begin_from(Reference *r, bool nothing) {
 static void run(Reference *r) {
     const int count = sizeof starts / sizeof *starts;
     r->best = INFINITY;
+    weigh(r, starts[0].by_heaviest);
     sweep_start(r, starts[0].sweeps);
     bool solved = try_all(r);
     for (int i = 1; r->persist && !solved && i < count; i++) {
+        weigh(r, starts[i].by_heaviest);
         begin_from(r, starts[i].from_nothing);
         sweep_start(r, starts[i].sweeps);
         solved = try_all(r);

@@ -20,7 +20,8 @@ typedef struct ReferencePoint {
 /* Four contact slots. One without a contact has weight 0, rows of zeros, and ones in `now`. */
 struct ReferenceGroup {
     Vec4 weight, mass_normal, mass_tangent, inverse_normal, inverse_tangent; /* kg and 1/kg, effective masses */
-    Vec4 friction;                                                           /* mu */
+    Vec4 load_normal, load_tangent; /* kg, what the path measures impulses by */
+    Vec4 friction;                  /* mu */
     BlockRows rows;
     Vec4 free_normal, free_tangent; /* m/s: velocities before the contacts along the rows; normal: minus the bias */
     Vec4 start_normal, start_tangent, normal, tangent, best_normal, best_tangent; /* N s, impulses inside the cone */

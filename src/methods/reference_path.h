@@ -4,7 +4,7 @@
        M v = J_n^T l + J_t^T t,   z = J_n v + free,   q - p = J_t v + free,
        l z = c m_n,   (mu l - t) p = (mu l + t) q = c m_t mu,
 
-   all of l, z, mu l - t, mu l + t, p, q positive; for c = 0 this is the contact problem. Steps are Newton's, with
+   with masses m_n and m_t of each contact (weigh), all of l, z, mu l - t, mu l + t, p, q positive; for c = 0 this is the contact problem. Steps are Newton's, with
    Mehrotra's choice of the next target and his correction of second order, cut short before the nearest bound. Contacts
    may be redundant: a tiny compliance around the current impulses keeps the system regular and does not move its
    solution. Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); Friedlander,
@@ -22,6 +22,21 @@ static const double least_shrink = 1e-4;       /* of the target, in a step */
 
 static Vec4 beyond_rounding(Vec4 x) { return x - clamp_between(x, all4(rounding)); }
 
+/* The masses m_n and m_t: a contact's own effective masses, or for all the mass of the heaviest body. A light box between
+   heavy ones passes on impulses that are a million times larger than those that move it. Measured by its own masses, they are so
+   far from the start that the path is lost on the way. */
+static void weigh(Reference *r, bool by_heaviest) {
+    double most = 0;
+    for (int k = 0; k < r->graph.lu.count; k++)
+        if (r->graph.inverses[k][0] > 0) most = r->graph.masses[k][0] > most ? r->graph.masses[k][0] : most;
+    for (int i = 0; i < r->group_count; i++) {
+        ReferenceGroup *g = &r->groups[i];
+        const Mask4 heavy = (Mask4)(g->weight > all4(by_heaviest && most > 0 ? 0 : 1));
+        g->load_normal = choose4(heavy, all4(most), g->mass_normal);
+        g->load_tangent = choose4(heavy, all4(most), g->mass_tangent);
+    }
+}
+
 static void begin(Reference *r, double scale) {
     double rms;
     for (int i = 0; i < r->group_count; i++) {
@@ -35,7 +50,7 @@ static void begin(Reference *r, double scale) {
         ReferenceGroup *g = &r->groups[i];
         ReferencePoint *now = &g->now;
         const Mask4 used = (Mask4)(g->weight > zero);
-        now->l = choose4(used, g->normal + off * g->mass_normal, one);
+        now->l = choose4(used, g->normal + off * g->load_normal, one);
         now->t = clamp_between(g->tangent, 0.9 * g->friction * now->l);
         now->u = g->friction * now->l - now->t;
         now->w = g->friction * now->l + now->t;
@@ -60,8 +75,8 @@ static inline void linearise(ReferenceGroup *g, Vec4 soft) {
 /* Products of the target, less `second` times those of the changes in `step`. */
 static inline void towards(ReferenceGroup *g, double target, double second) {
     const ReferencePoint *now = &g->now, *by = &g->step;
-    const Vec4 along = target * g->mass_tangent * g->friction;
-    g->wanted_n = target * g->mass_normal - now->l * now->z;
+    const Vec4 along = target * g->load_tangent * g->friction;
+    g->wanted_n = target * g->load_normal - now->l * now->z;
     g->wanted_p = along - now->u * now->p;
     g->wanted_q = along - now->w * now->q;
     if (second > 0) {
@@ -151,7 +166,8 @@ static double end_step(Reference *r) {
 }
 
 static inline Vec4 products(const ReferenceGroup *g, Vec4 normal, Vec4 up, Vec4 down) {
-    return g->weight * (normal * g->inverse_normal + (up + down) * g->inverse_tangent / g->friction);
+    const Vec4 one = all4(1);
+    return g->weight * (normal * (one / g->load_normal) + (up + down) * (one / g->load_tangent) / g->friction);
 }
 
 /* The mean of the products, over their masses: the target that the point is nearest to. */
@@ -367,15 +383,15 @@ static void keep_best(Reference *r, double miss) {
 
 /* The impulses that the point stands for: bounds that it is close to are reached. Keeps them if they are the best. */
 static void answer(Reference *r) {
-    const Vec4 zero = all4(0);
+    const Vec4 zero = all4(0), one = all4(1);
     for (int i = 0; i < r->group_count; i++) {
         ReferenceGroup *g = &r->groups[i];
         const ReferencePoint *now = &g->now;
-        const Mask4 closed = (Mask4)(now->l * g->inverse_normal > now->z);
+        const Vec4 inverse_normal = one / g->load_normal, inverse_tangent = one / g->load_tangent;
+        const Mask4 closed = (Mask4)(now->l * inverse_normal > now->z);
         g->normal = choose4(closed, now->l, zero);
         const Vec4 bound = g->friction * g->normal;
-        const Mask4 up = (Mask4)(now->u * g->inverse_tangent < now->p),
-                    down = (Mask4)(now->w * g->inverse_tangent < now->q);
+        const Mask4 up = (Mask4)(now->u * inverse_tangent < now->p), down = (Mask4)(now->w * inverse_tangent < now->q);
         g->tangent = choose4(up, bound, choose4(down, -bound, clamp_between(now->t, bound)));
     }
     Vec4 *moved = r->moved;
