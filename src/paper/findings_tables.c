@@ -111,11 +111,12 @@ static LoopRow compare_loops(const StudyTables *study, int scene) {
         const ClosedLoopRow *run = &study->runs[i];
         if (run->scene != scene || study_network(study, run->network) == NULL) continue;
         frames[row.networks++] = run->frames_until_apart;
-        if (run->frames_until_apart <= row.longest) continue;
+        if (!(run->frames_until_apart > row.longest)) continue;
         row.longest = run->frames_until_apart;
         row.network = run->network;
     }
-    row.median = statistics_quantile(frames, row.networks, 0.5);
+    if (row.longest < 0) row.longest = NAN;
+    row.median = statistics_quantile(frames, statistics_known(frames, row.networks), 0.5);
     return row;
 }
 

@@ -110,15 +110,17 @@ typedef struct SystemScoreRow {
     double launches, frames;     /* how many; frames of each run */
     double frames_engine;        /* first frame in which a body is 0.1 m from its place in the engine's run; median over
                                     launches; `frames`: never */
-    double frames_converged;     /* the same of the run of the converged solver */
-    double moved;                /* boxes that moved more than 0.5 m in the 5 s after the launch, mean (ChartRow) */
-    double penetration_max;      /* m: the deepest contact */
-    double energy_created; /* J: the largest mechanical energy above that when the bomb was added; 0: never above */
-    double momentum_error; /* N s: momentum created per step (ContactSolution), mean */
-    double fallback_share; /* 0 to 1: steps with discarded outputs, beyond training, or solved by sweeps */
-    double us_step;        /* microseconds per step of a held-out launch, everything counted: the whole step; of
+    double frames_converged; /* the same of the run of the converged solver, over the launches of which it is known */
+    double moved;            /* boxes that moved more than 0.5 m in the 5 s after the launch, mean (ChartRow) */
+    double penetration_max;  /* m: the deepest contact */
+    double energy_created;   /* J: the largest mechanical energy above that when the bomb was added; 0: never above */
+    double momentum_error;   /* N s: momentum created per step (ContactSolution), mean */
+    double fallback_share;   /* 0 to 1: steps with discarded outputs, beyond training, or solved by sweeps */
+    double us_step;          /* microseconds per step of a held-out launch, everything counted: the whole step; of
                                     methods without contacts their own work (no_contacts in its description) */
-    double us_step_engine; /* of the engine, measured in turns with it */
+    double us_step_engine;   /* of the engine, measured in turns with it */
+    double
+        unconverged; /* launches in which the converged run has an unconverged step before the method parts from it */
 } SystemScoreRow;
 
 extern const CsvLayout system_score_layout;

@@ -79,10 +79,11 @@ static const CsvColumn rate_columns[] = {
 static const CsvColumn closed_loop_columns[] = {
     CSV_MEMBER(ClosedLoopRow, network, CSV_NAME),
     CSV_MEMBER(ClosedLoopRow, scene, CSV_WORD, .words = paper_scene_names),
-    CSV_MEMBER(ClosedLoopRow, frames_until_apart, CSV_NUMBER, .maximum = CLOSED_LOOP_FRAMES),
+    CSV_MEMBER(ClosedLoopRow, frames_until_apart, CSV_OPTIONAL, .maximum = CLOSED_LOOP_FRAMES),
     CSV_MEMBER(ClosedLoopRow, penetration_max, CSV_OPTIONAL, .maximum = ERROR_MOST),
     CSV_MEMBER(ClosedLoopRow, momentum_error, CSV_OPTIONAL, .maximum = ERROR_MOST),
     CSV_MEMBER(ClosedLoopRow, energy_ratio, CSV_OPTIONAL, .maximum = ERROR_MOST),
+    CSV_MEMBER(ClosedLoopRow, unconverged, CSV_OPTIONAL, .maximum = LAUNCHED_MAX, .optional = true),
     CSV_MEMBER(ClosedLoopRow, us_step, CSV_OPTIONAL, .maximum = TIME_MOST),
     CSV_MEMBER(ClosedLoopRow, us_step_engine, CSV_OPTIONAL, .minimum = 1e-6, .maximum = TIME_MOST),
 };

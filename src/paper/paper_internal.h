@@ -394,7 +394,7 @@ typedef struct RateRow {
 typedef struct ClosedLoopRow {
     const char *network; /* or a solver, as on the command line */
     int scene;           /* of paper_scene_names */
-    double frames_until_apart, penetration_max, momentum_error, energy_ratio, us_step, us_step_engine;
+    double frames_until_apart, penetration_max, momentum_error, energy_ratio, us_step, us_step_engine, unconverged;
 } ClosedLoopRow;
 
 /* study.csv: what was done, as text. */

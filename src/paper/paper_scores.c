@@ -220,7 +220,8 @@ static bool time_method(const Scores *scores, int i, FILE *lines, Error *error) 
                          .frames_until_apart = closed->frames_until_apart,
                          .penetration_max = closed->penetration_max,
                          .momentum_error = closed->momentum_error,
-                         .energy_ratio = closed->energy_ratio};
+                         .energy_ratio = closed->energy_ratio,
+                         .unconverged = closed->unconverged};
     Method method;
     return method_of(plan, i, &method, error) &&
            closed_loop_time(&method, &scores->launched.states[0], plan->size->repetitions, &row.us_step,

@@ -141,13 +141,15 @@ static bool time_method(const Scores *scores, Scored *method, StepCost engine[PH
     return true;
 }
 
-/* Of frames_engine; or of frames_converged. */
-static double median_frames(const Scores *scores, const Scored *method, bool converged) {
+/* Of frames_engine; or of frames_converged. unknown: launches without it. */
+static double median_frames(const Scores *scores, const Scored *method, bool converged, int *unknown) {
     double frames[LAUNCHED_MAX];
     const int count = scores->launched.count;
     for (int i = 0; i < count; i++)
         frames[i] = converged ? method->loops[i].frames_converged : method->loops[i].frames_engine;
-    return statistics_quantile(frames, count, 0.5);
+    const int known = statistics_known(frames, count);
+    *unknown = count - known;
+    return statistics_quantile(frames, known, 0.5);
 }
 
 static void sum_loops(const Scores *scores, const Scored *method, SystemScoreRow *row) {
@@ -167,6 +169,7 @@ static void sum_loops(const Scores *scores, const Scored *method, SystemScoreRow
 
 static bool write_method(const Scores *scores, Scored *method, FILE *lines, Error *error) {
     StepCost engine[PHASES];
+    int unconverged, none;
     if (!time_method(scores, method, engine, error)) return false;
     const Method *of = &method->contender.method;
     SystemScoreRow row = {.system = method->system,
@@ -174,10 +177,11 @@ static bool write_method(const Scores *scores, Scored *method, FILE *lines, Erro
                           .scene = scores->scene,
                           .launches = scores->launched.count,
                           .frames = scores->launched.launches[0].frames,
-                          .frames_engine = median_frames(scores, method, false),
-                          .frames_converged = median_frames(scores, method, true),
+                          .frames_engine = median_frames(scores, method, false, &none),
+                          .frames_converged = median_frames(scores, method, true, &unconverged),
                           .us_step = step_cost_mean(method->closed, of->kind->description->no_contacts),
                           .us_step_engine = step_cost_mean(engine, false)};
+    row.unconverged = unconverged;
     sum_loops(scores, method, &row);
     return piece_tables_print(lines, &system_score_layout, -1, &row, error);
 }
@@ -206,12 +210,13 @@ static const CsvColumn columns[] = {
     CSV_MEMBER(SystemScoreRow, launches, CSV_NUMBER, .minimum = 1, .maximum = LAUNCHED_MAX),
     CSV_MEMBER(SystemScoreRow, frames, CSV_NUMBER, .minimum = 1, .maximum = 1e6),
     CSV_MEMBER(SystemScoreRow, frames_engine, CSV_NUMBER, .maximum = 1e6),
-    CSV_MEMBER(SystemScoreRow, frames_converged, CSV_NUMBER, .maximum = 1e6),
+    CSV_MEMBER(SystemScoreRow, frames_converged, CSV_OPTIONAL, .maximum = 1e6),
     CSV_MEMBER(SystemScoreRow, moved, CSV_NUMBER, .maximum = 1e6),
     CSV_MEMBER(SystemScoreRow, penetration_max, CSV_NUMBER, .maximum = MOST),
     CSV_MEMBER(SystemScoreRow, energy_created, CSV_NUMBER, .maximum = MOST),
     CSV_MEMBER(SystemScoreRow, momentum_error, CSV_OPTIONAL, .maximum = MOST),
     CSV_MEMBER(SystemScoreRow, fallback_share, CSV_OPTIONAL, .maximum = 1),
+    CSV_MEMBER(SystemScoreRow, unconverged, CSV_OPTIONAL, .maximum = LAUNCHED_MAX, .optional = true),
     CSV_MEMBER(SystemScoreRow, us_step, CSV_OPTIONAL, .maximum = MOST),
     CSV_MEMBER(SystemScoreRow, us_step_engine, CSV_OPTIONAL, .maximum = MOST),
 };

@@ -403,15 +403,16 @@ enum { CLOSED_LOOP_FRAMES = 600 };
 
 /* A run of one launch beside others of the same launch. */
 typedef struct LaunchLoop {
-    double frames_engine;    /* first frame in which a body is more than 0.1 m from its place in the engine's
+    double frames_engine; /* first frame in which a body is more than 0.1 m from its place in the engine's
                                 run; the scene's frames: never; NAN without a run to compare with */
-    double frames_converged; /* the same of the converged run */
-    double moved;            /* boxes that moved more than 0.5 m in the 5 s after the launch */
-    double penetration;      /* m: the deepest contact */
-    double energy_put_in;    /* J: mechanical energy when the bomb was added */
-    double energy_most;      /* J: the largest from then on */
-    double momentum_error;   /* N s: momentum created by all steps (ContactSolution), sum */
-    int steps, fallen_back;  /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
+    double
+        frames_converged;   /* the same of the converged run; NAN, too, if that is not converged before the runs part */
+    double moved;           /* boxes that moved more than 0.5 m in the 5 s after the launch */
+    double penetration;     /* m: the deepest contact */
+    double energy_put_in;   /* J: mechanical energy when the bomb was added */
+    double energy_most;     /* J: the largest from then on */
+    double momentum_error;  /* N s: momentum created by all steps (ContactSolution), sum */
+    int steps, fallen_back; /* steps taken; those with discarded outputs, beyond training or solved by sweeps */
 } LaunchLoop;
 
 /* Runs a launched scene for its frames and compares. engine, converged: logs of whole runs of this launch, or NULL. The run ends early if its state becomes NaN or infinite. rollout: scratch. */
@@ -422,7 +423,8 @@ bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *lau
 bool closed_loop_log(RunLog *log, const char *method, const Scene *launched, Error *error);
 
 typedef struct ClosedLoop {
-    double frames_until_apart; /* LaunchLoop.frames_converged, median over launches */
+    double frames_until_apart; /* LaunchLoop.frames_converged, median over the launches of which it is known */
+    int unconverged;           /* launches of which it is not */
     double penetration_max;    /* m: of all launches */
     double momentum_error;     /* N s: momentum created per step (ContactSolution), mean */
     double energy_ratio;       /* largest mechanical energy / energy when the bomb was added; largest of all launches */
@@ -524,6 +526,9 @@ bool chart_scene_untimed(const ChartRow *rows, int count, const char *scene);
 /* Statistics of a list of numbers; NaN if it is empty. */
 
 double statistics_mean(const double *values, int count);
+
+/* Moves the values that are not NaN to the front; how many. */
+int statistics_known(double *values, int count);
 
 /* Sorts the values; interpolates linearly. fraction: 0.5 for the median, 0.25 and 0.75 for the quartiles. */
 double statistics_quantile(double *values, int count, double fraction);

@@ -229,7 +229,9 @@ static void measure(const RunLog *log, const Scene *scene, LaunchLoop *result) {
 }
 
 static double frames_apart(const RunLog *log, const RunLog *other, int frames) {
-    return other != NULL ? (double)run_log_apart(log, other, apart_distance, frames) : (double)NAN;
+    if (other == NULL) return NAN;
+    const int apart = run_log_apart(log, other, apart_distance, frames);
+    return other->first_unconverged == 0 || apart < other->first_unconverged ? apart : (double)NAN;
 }
 
 bool closed_loop_launch(Rollout *rollout, const Method *method, const Scene *launched, const RunLog *engine,
@@ -280,7 +282,9 @@ bool closed_loop_run(const Method *method, const Scene *launches, const RunLog *
         steps += launch.steps;
     }
     if (ok) {
-        result->frames_until_apart = statistics_quantile(frames, count, 0.5);
+        const int known = statistics_known(frames, count);
+        result->frames_until_apart = statistics_quantile(frames, known, 0.5);
+        result->unconverged = count - known;
         result->momentum_error = steps > 0 ? momentum / steps : 0;
     }
     rollout_free(&rollout);

@@ -20,6 +20,13 @@ double statistics_mean(const double *values, int count) {
     return count > 0 ? sum / count : NAN;
 }
 
+int statistics_known(double *values, int count) {
+    int known = 0;
+    for (int i = 0; i < count; i++)
+        if (!isnan(values[i])) values[known++] = values[i];
+    return known;
+}
+
 double statistics_quantile(double *values, int count, double fraction) {
     if (count == 0) return NAN;
     gsl_sort(values, 1, (size_t)count);

@@ -114,6 +114,34 @@ TEST(runs_are_compared_with_the_engine_and_with_the_converged_run) {
     scene_destroy(scene);
 }
 
+/* The converged run tells when another parts from it, up to its first unconverged step. */
+TEST(launches_that_part_after_an_unconverged_step_do_not_count) {
+    enum { LAUNCHES = 3 };
+    Scene *scene = scene_named("stack");
+    const Scene launches[LAUNCHES] = {*scene, *scene, *scene};
+    RunLog converged[LAUNCHES] = {0};
+    ClosedLoop all, some, none;
+    const Method method = method_named("engine:k=1");
+    for (int i = 0; i < LAUNCHES; i++) assert_ok(closed_loop_log_converged(&converged[i], scene, &error), error);
+    assert_ok(closed_loop_run(&method, launches, converged, LAUNCHES, &all, &error), error);
+    assert_int_equal(all.unconverged, 0);
+
+    const int parts = (int)all.frames_until_apart;
+    assert_true(parts > 2 && parts < 100);
+    converged[0].first_unconverged = parts;
+    converged[1].first_unconverged = parts + 1;
+    assert_ok(closed_loop_run(&method, launches, converged, LAUNCHES, &some, &error), error);
+    assert_int_equal(some.unconverged, 1);
+    assert_near(some.frames_until_apart, parts, 0);
+
+    for (int i = 0; i < LAUNCHES; i++) converged[i].first_unconverged = 1;
+    assert_ok(closed_loop_run(&method, launches, converged, LAUNCHES, &none, &error), error);
+    assert_int_equal(none.unconverged, LAUNCHES);
+    assert_true(isnan(none.frames_until_apart));
+    for (int i = 0; i < LAUNCHES; i++) run_log_free(&converged[i]);
+    scene_destroy(scene);
+}
+
 TEST(both_methods_are_timed) {
     Scene *scene = scene_named("stack");
     scene->frames = 60;
