@@ -247,7 +247,7 @@ int64_t dataset_piece_rows(const DatasetPieces *pieces, int64_t piece, const cha
     piece_ranges_find(&pieces->launches, piece, &first, &end);
     /* Inputs and changes precede the launches. */
     const Dataset *dataset = pieces->recording.dataset;
-    const size_t numbers = (size_t)(dataset_inputs(dataset) + pair_change_count(dataset->target));
+    const size_t numbers = (size_t)dataset_inputs(dataset) + (size_t)pair_change_count(dataset->target);
     const char *launches = results + head + sizeof(float) * numbers * rows;
     int32_t last = (int32_t)first;
     for (size_t i = 0; fits && i < rows; i++) {
