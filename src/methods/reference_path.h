@@ -4,11 +4,12 @@
        M v = J_n^T l + J_t^T t,   z = J_n v + free,   q - p = J_t v + free,
        l z = c m_n,   (mu l - t) p = (mu l + t) q = c m_t mu,
 
-   with masses m_n and m_t of each contact (weigh), all of l, z, mu l - t, mu l + t, p, q positive; for c = 0 this is the contact problem. Steps are Newton's, with
-   Mehrotra's choice of the next target and his correction of second order, cut short before the nearest bound. Contacts
-   may be redundant: a tiny compliance around the current impulses keeps the system regular and does not move its
-   solution. Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior Point Method" (1992); Friedlander,
-   Orban, "A Primal-Dual Regularized Interior-Point Method for Convex Quadratic Programs" (2012). */
+   with masses m_n and m_t of each contact (weigh), all of l, z, mu l - t, mu l + t, p, q positive; for c = 0 this is
+   the contact problem. Steps are Newton's, with Mehrotra's choice of the next target and his correction of second order,
+   cut short before the nearest bound. Contacts may be redundant: a tiny compliance around the current impulses keeps the
+   system regular and does not move its solution. Sources: Mehrotra, "On the Implementation of a Primal-Dual Interior
+   Point Method" (1992); Friedlander, Orban, "A Primal-Dual Regularized Interior-Point Method for Convex Quadratic
+   Programs" (2012). */
 #pragma once
 #include "methods/reference.h"
 #include "methods/reference_newton.h"
