@@ -375,7 +375,7 @@ static int struck_rows(const Borders *borders) {
 static void draw_samples(const Borders *borders, const LegendPlace *place, int first) {
     static const char *const holds[BORDER_SIGNS] = {"holds", "holds throughout", "never holds", "rigid boxes"};
     static const char *const agrees[BORDER_SIGNS] = {"as the reference", "throughout", "never", "rigid boxes"};
-    static const char *const both[BORDER_SIGNS] = {"holds, or as reference", "throughout", "never", "rigid boxes"};
+    static const char *const both[BORDER_SIGNS] = {"holds, or agrees", "throughout", "never", "rigid boxes"};
     const int struck = struck_rows(borders);
     const char *const *names = struck == 0 ? holds : struck == borders->table->count ? agrees : both;
     for (int i = 0; i < borders->signs; i++) {
