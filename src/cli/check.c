@@ -55,9 +55,8 @@ static const CommandSpec spec = {
     .inputs = {1, 1, "input"},
     .help =
         "Validate a scene: all keys, boxes that start inside others, the launches of the bomb, the networks that it "
-        "names, and each parameter at both ends. Prints a summary, which names launches that strike no box (of 41 at "
-        "most that it "
-        "tries with the engine), and draws the first frame with the way of the bomb.\n"
+        "names, and each parameter at both ends. Prints a summary, which names launches that strike no box "
+        "(it tries 41 at most, with the engine), and draws the first frame with the way of the bomb.\n"
         "Or judge a stored run of any engine: the verdict that simulate prints, the deepest overlap, drift and energy "
         "gained. Contacts are found again from the poses.\v"
         "Example: twinbox check scenes/stack.yaml -o first.png\n"

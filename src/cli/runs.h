@@ -139,8 +139,8 @@ bool check_run(const CheckRunOptions *options, Error *error);
 
 /* The tables of a study of stability, for the terminal. */
 
-/* Prints the borders of folder/stability.csv and what folder/rest.csv has, a block a study, a line a method, where the tables are,
-   and where the reference did not converge. */
+/* Prints the borders of folder/stability.csv and what folder/rest.csv has, a block a study, a line a method; then where
+   the tables are, and where the reference did not converge. */
 bool stability_print(const char *folder, Error *error);
 
 /* "twinbox stability --plan": pieces, what they take, and how long 10, 1,000 and 100,000 cores need. */

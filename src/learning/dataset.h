@@ -198,13 +198,14 @@ void dataset_pieces_free(DatasetPieces *pieces);
 /* Hashes everything that determines the file. */
 bool dataset_pieces_key(const DatasetPieces *pieces, StudyKey *key, Error *error);
 
-/* The number of rows in the results of a piece, which are its unconverged steps, in DATASET_PIECE_HEAD bytes, and the arrays of
-   rows one after the other. -1 with error set: the results, which are those of the file `path`, are not of these launches. */
+/* The number of rows in the results of a piece: these are the count of its unconverged steps, in DATASET_PIECE_HEAD
+   bytes, and the arrays of rows one after the other. -1 with error set: the results, of the file `path`, are not of
+   these launches. */
 enum { DATASET_PIECE_HEAD = sizeof(int64_t) };
 int64_t dataset_piece_rows(const DatasetPieces *pieces, int64_t piece, const char *results, size_t size,
                            int64_t *unconverged, const char *path, Error *error);
 
-/* Writes the file that dataset_write() writes of dataset_record(), in bounded memory. *rows: in the file. *unconverged: as in
-   Dataset. Without rows, nothing is written: dataset_check_rows() refuses that. */
+/* Writes the file that dataset_write() writes of dataset_record(), in bounded memory. *rows: in the file.
+   *unconverged: as in Dataset. Without rows, nothing is written: dataset_check_rows() refuses that. */
 bool dataset_pieces_write(const DatasetPieces *pieces, const Pieces *done, const char *path, int64_t *rows,
                           int64_t *unconverged, const Progress *progress, Error *error);

@@ -106,7 +106,10 @@ static bool keep(Run *run, const ContactProblem *problem, int frame, Error *erro
                         (phase == PHASE_AFTER ? (frame - run->tracker.touch) % AFTER_STEP : frame % REST_EVERY) == 0;
     if (!wanted || problem->contact_count == 0) return true;
     if (!reference_solve_to(&run->reference, problem, converged, FACTORIZATIONS_MAX, error)) return false;
-    if (!(run->reference.residual <= converged)) return run->problems->unconverged++, true;
+    if (!(run->reference.residual <= converged)) {
+        run->problems->unconverged++;
+        return true;
+    }
     return impact_problems_add(run->problems, problem, run->reference.velocities, phase == PHASE_IMPACT) ||
            error_memory(error, "recording");
 }

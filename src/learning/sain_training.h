@@ -138,8 +138,8 @@ typedef struct RelationLaunches {
     const RelationDriver *driver; /* NULL: the engine and, every second launch, sweeps with momentum */
 } RelationLaunches;
 
-/* Appends to the problems. Omits those whose reference does not converge (to 1e-6 m/s), and counts them. A launch ends 60 frames after its impact, or if its
-   state becomes NaN or infinite. ERROR_INPUT: a scene's bomb has no family of launches. */
+/* Appends to the problems. Omits those whose reference does not converge (to 1e-6 m/s), and counts them. A launch ends
+   60 frames after its impact, or if its state becomes NaN or infinite. ERROR_INPUT: a scene's bomb has no family of launches. */
 bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *problems, const Progress *progress,
                               Error *error);
 

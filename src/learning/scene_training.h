@@ -125,8 +125,8 @@ bool slot_samples_label(SlotSamples *samples, int first, const Progress *progres
    has projections. */
 bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error);
 
-/* Labelled samples as bytes, and how many were left out; without view and inputs, which follow from the network. Whether writing failed is for the stream
-   to tell. */
+/* Labelled samples as bytes, and how many were left out; without view and inputs, which follow from the network. The
+   stream tells whether writing failed. */
 void slot_samples_write(const SlotSamples *samples, FILE *out);
 
 /* Appends what slot_samples_write() wrote. ERROR_INPUT, naming the file `path`, if the bytes are damaged, or the problems do not

@@ -69,8 +69,8 @@ typedef struct Reference {
    contacts drift so slowly that the residual of sweeps hardly shows it. In about 1% of the
    impacts on walls and piles friction allows a second solution, 0.01 to 2.8 m/s from the first. Some steps of piles
    between walls have no solution: position correction pushes boxes into each other, and no impulses are large enough.
-   Their residual stays high. Of the few steps of random structures that do not converge (tests/deep/run structures), most do
-   without position correction; of the others, most have no friction, which is computed as a cone of 1e-12. */
+   Their residual stays high. Of the steps of random structures that do not converge, most do without position
+   correction (tests/deep/run structures). Scenes without friction are hard, as 0 is computed as a cone of 1e-12. */
 #define REFERENCE_TOLERANCE 1e-9
 
 /* Whether the last solve reached it. Without it, nothing is to be scored against the answer. */

@@ -23,9 +23,9 @@ static const double least_shrink = 1e-4;       /* of the target, in a step */
 
 static Vec4 beyond_rounding(Vec4 x) { return x - clamp_between(x, all4(rounding)); }
 
-/* The masses m_n and m_t: a contact's own effective masses, or for all the mass of the heaviest body. A light box between
-   heavy ones passes on impulses that are a million times larger than those that move it. Measured by its own masses, they are so
-   far from the start that the path is lost on the way. */
+/* The masses m_n and m_t: each contact's own effective masses, or the mass of the heaviest body for all contacts. A
+   light box between heavy ones passes on impulses that are many thousand times larger than those that move it. Measured
+   by its own masses, they are so far from the start that the path is lost on the way. */
 static void weigh(Reference *r, bool by_heaviest) {
     double most = 0;
     for (int k = 0; k < r->graph.lu.count; k++)

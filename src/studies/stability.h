@@ -207,9 +207,9 @@ typedef struct Convergence {
    VERDICT_SETTLES. Adds its shifted runs to `convergence`. */
 bool stability_truth(Scene *scene, const VerdictRun *judged, Verdict *truth, Convergence *convergence, Error *error);
 
-/* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is not sound,
-   or falls before it is struck, stays as it is. Of the reference it is what it does itself, so that a study shows the truth: undecided, if a step did
-   not converge. */
+/* The verdict of a study on a run. Of a struck scene: agrees, or too few or too many bodies fall, or undecided; what is
+   not sound, or falls before it is struck, stays as it is. The reference's verdict is what its own run does, so that a
+   study shows the truth, or undecided if a step of it did not converge. */
 Verdict stability_compare(const VerdictReading *reading, Verdict truth, const Method *method);
 
 /* The unit of a parameter of the scene, or "". */
@@ -340,8 +340,8 @@ extern const char stability_struck_words[];
 /* The study of row i is one of a struck scene: it tells where methods agree with the reference. */
 bool border_is_struck(const CsvTable *table, int i);
 
-/* Writes at which values of a study or map the reference did not converge, by unconverged.csv, into text: "at rows 22, 26 (12
-   of 900 steps, residual up to 3e-07 m/s)"; of many values the first. False, and "", if there are none. */
+/* Writes at which values of a study or map the reference did not converge, by unconverged.csv, into text: "at rows 22, 26
+   (12 of 900 steps, residual up to 3e-07 m/s)". Names the first twelve values. False, and "", if there are none. */
 enum { UNCONVERGED_TEXT_SIZE = 512 };
 bool stability_unconverged(const CsvTable *table, const char *study, char text[UNCONVERGED_TEXT_SIZE]);
 
