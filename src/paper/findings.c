@@ -50,12 +50,17 @@ static bool add_gate(const FindingsFile *file, const StudyTables *study) {
 
 static bool add_rates(const FindingsFile *file, const StudyTables *study) {
     int rows = 0, beaten = 0;
+    double unconverged[PAPER_SCENES] = {0}; /* each row of a scene states it again; NAN in an old study */
     for (int i = 0; i < study->rate_count; i++) {
+        unconverged[study->rates[i].scene] = study->rates[i].unconverged;
         const double rate = study->rates[i].share[RATE_NETWORK], constant = study->rates[i].share[RATE_CONSTANT];
         rows += !isnan(rate) && !isnan(constant);
         beaten += rate <= constant;
     }
-    return add_number(file, "rates", rows) && add_number(file, "rates_not_above_constant", beaten);
+    double left_out = 0;
+    for (int scene = 0; scene < PAPER_SCENES; scene++) left_out += unconverged[scene];
+    return add_number(file, "rates", rows) && add_number(file, "rates_not_above_constant", beaten) &&
+           add_number(file, "rates_unconverged", left_out);
 }
 
 /* How many networks of the study differ from the paper's in one factor, and in several. */

@@ -18,6 +18,7 @@
 /* A value beyond these limits is an error in the file. */
 #define ERROR_MOST 1e30
 #define TIME_MOST 1e12 /* us */
+#define STEPS_MOST 1e9
 #define SEED_MOST 1e10 /* --seed is below 2^32 */
 
 /* Enough for every integer that is written. */
@@ -74,6 +75,7 @@ static const CsvColumn rate_columns[] = {
     {"engine1", CSV_OPTIONAL, .offset = offsetof(RateRow, share[RATE_ENGINE1]), .maximum = 1},
     {"engine4", CSV_OPTIONAL, .offset = offsetof(RateRow, share[RATE_ENGINE4]), .maximum = 1},
     {"engine10", CSV_OPTIONAL, .offset = offsetof(RateRow, share[RATE_ENGINE10]), .maximum = 1},
+    CSV_MEMBER(RateRow, unconverged, CSV_OPTIONAL, .maximum = STEPS_MOST, .optional = true),
 };
 
 static const CsvColumn closed_loop_columns[] = {

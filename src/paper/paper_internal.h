@@ -388,6 +388,7 @@ typedef struct RateRow {
     int definition; /* RateDefinition */
     int phase;      /* Phase, or RATE_ALL */
     double share[RATE_COLUMNS];
+    double unconverged; /* sampled steps of the scene that are left out, as the reference does not converge */
 } RateRow;
 
 /* closed_loop.csv: a network in place of the solver (studies/chart.h). */

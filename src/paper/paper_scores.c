@@ -162,6 +162,7 @@ static bool write_rates(const Scores *scores, int network, FILE *lines, Error *e
     const PaperPlan *plan = scores->plan;
     RateRow row = {.network = network < plan->network_count ? plan->networks[network].name : "warm-start",
                    .scene = scores->scene};
+    for (int i = 0; i < scores->launched.count; i++) row.unconverged += scores->launched.states[i].unconverged;
     for (row.definition = 0; row.definition < RATE_DEFINITIONS; row.definition++)
         for (row.phase = 0; row.phase < RATE_PHASES; row.phase++) {
             memcpy(row.share, scores->rates[network].share[row.definition][row.phase], sizeof row.share);

@@ -43,7 +43,7 @@ equal "a network that was trained" "$(stat -c %i quick/networks/baseline.npz)" "
 says "quick/report.html"
 equal "header of table1" "$(head -1 quick/table1.csv)" "network,target,optimizer,iteration,test,train,constant"
 equal "header of rates" "$(head -1 quick/rates.csv)" \
-    "network,scene,definition,phase,rate,constant,engine1,engine4,engine10"
+    "network,scene,definition,phase,rate,constant,engine1,engine4,engine10,unconverged"
 equal "header of closed_loop" "$(head -1 quick/closed_loop.csv)" \
     "network,scene,frames_until_apart,penetration_max,momentum_error,energy_ratio,unconverged,us_step,us_step_engine"
 equal "header of system_scores" "$(head -1 quick/system_scores.csv)" \

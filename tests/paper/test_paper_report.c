@@ -136,6 +136,8 @@ TEST(rates_are_beside_those_of_cheaper_predictors) {
        factor are not shown. */
     expect_text(text, "| absolute | 6 | 2 | 4 | 5 |");
     expect_no_text(text, "11.1%");
+    /* Three of the single box, two of the stack. */
+    expect_text(text, "Steps that the reference does not solve are left out: 5.");
     free(text);
 }
 
