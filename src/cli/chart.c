@@ -151,7 +151,7 @@ static bool chart_pages_write(const SpeedAccuracyOptions *options, const SpeedAc
         return false;
     const bool ok = method_parse(&pages.reference, "reference", error) &&
                     page_set_make(&pages.set, key, progress_bar_begin("pages"), error) &&
-                    chart_html_write(options->folder, error) && page_set_end(&pages.set, error);
+                    chart_html_write(options->folder, &options->look, error) && page_set_end(&pages.set, error);
     progress_bar_end();
     end_scene(&pages);
     contenders_free(&pages.contenders);
@@ -176,6 +176,16 @@ static bool read_launches(const Option *option, const char *text, void *value, E
     return true;
 }
 
+static bool read_size(const Option *option, const char *text, void *value, Error *error) {
+    static const char *const sizes[] = {[CHART_PAGE] = "page", [CHART_COLUMN] = "column", [CHART_SLIDE] = "slide"};
+    for (int i = 0; i < (int)(sizeof sizes / sizeof *sizes); i++)
+        if (strcmp(text, sizes[i]) == 0) {
+            *(ChartSize *)value = (ChartSize)i;
+            return true;
+        }
+    return error_input(error, option->name, "'%s' is not page, column or slide", text);
+}
+
 static const Option option_table[] = {
     {"--output", 'o', "DIR", "Folder for chart.csv and the charts", OPTION_TEXT(Options, study.folder),
      .needed = "-o DIR is needed"},
@@ -194,6 +204,12 @@ static const Option option_table[] = {
     {"--pages", 0, NULL,
      "Also write chart.html, whose points link to pages that play the launch that was worst for them",
      OPTION_FLAG(Options, study.pages)},
+    {"--highlight", 0, "NAME,...", "Methods to draw in colour, beside the engine, interior and the strongest rival",
+     OPTION_TEXT(Options, study.look.highlight)},
+    {"--size", 0, "page|column|slide",
+     "178 x 92 mm, two columns of a paper; 85 x 144 mm, one column; or 160 x 90 mm, 16:9 (default: page)",
+     OPTION_READ(read_size, Options, study.look.size)},
+    {"--words", 0, NULL, "Also write the caption below the picture", OPTION_FLAG(Options, study.look.words)},
     {OPTION_SHARD(Options, shard)},
     {0}};
 
@@ -221,7 +237,9 @@ typedef struct Drawn {
 } Drawn;
 
 /* The chart of scene i of `count`. A signal is noticed between two charts. */
-static bool draw_scene(const char *csv, const Drawn *drawn, const char *folder, int i, int count, Error *error) {
+static bool draw_scene(const char *csv, const Drawn *drawn, const SpeedAccuracyOptions *options, int i, int count,
+                       Error *error) {
+    const char *folder = options->folder;
     if (!progress_report(progress_bar_begin("charts"), i, count))
         return error_interrupted(error, folder, "stopped; chart.csv is finished");
     if (!drawn->timed) {
@@ -229,8 +247,8 @@ static bool draw_scene(const char *csv, const Drawn *drawn, const char *folder, 
                drawn->what);
         return true;
     }
-    if (!chart_plot(csv, drawn->scene, folder, error)) return false;
-    printf("%s%s -> %s/chart-%s.png, .svg, .pdf\n", drawn->scene, drawn->what, folder, drawn->scene);
+    if (!chart_plot(csv, drawn->scene, folder, &options->look, error)) return false;
+    printf("%s%s -> %s/chart-%s.png, .svg, .pdf, .txt\n", drawn->scene, drawn->what, folder, drawn->scene);
     return true;
 }
 
@@ -238,20 +256,20 @@ static bool draw_equal_time(const char *csv, const char *folder, Error *error) {
     EqualTimeFigure figure;
     if (!equal_time_plot(csv, folder, &figure, error)) return false;
     printf("error at equal time -> %s/equal_time.csv, equal_time_methods.csv%s\n", folder,
-           figure.drawn ? ", equal_time.png, .svg, .pdf" : "");
+           figure.drawn ? ", equal_time.png, .svg, .pdf, .txt" : "");
     if (figure.drawn && figure.left_out.used > 0)
         printf("    left out of the figure, as without a ratio: %s\n", figure.left_out.text);
     return true;
 }
 
-static bool draw_scenes(const CsvTable *table, const char *csv, const char *folder, Error *error) {
+static bool draw_scenes(const CsvTable *table, const char *csv, const SpeedAccuracyOptions *options, Error *error) {
     for (int i = 0; i < table->count; i++) {
         int first = 0;
         while (strcmp(chart_row(table, first)->scene, chart_row(table, i)->scene) != 0) first++;
         if (first < i) continue;
         const char *scene = chart_row(table, i)->scene;
         const Drawn drawn = {scene, "", !chart_scene_untimed(table->rows, table->count, scene)};
-        if (!draw_scene(csv, &drawn, folder, i, table->count, error)) return false;
+        if (!draw_scene(csv, &drawn, options, i, table->count, error)) return false;
     }
     return true;
 }
@@ -265,7 +283,8 @@ static bool draw_again(const Options *given, const char *csv, Error *error) {
         options->launches.bomb_x.count > 0)
         return error_input(error, csv, "a finished chart is drawn as it is: give only this file and -o DIR");
     if (!csv_table_read(&table, csv, &chart_layout, error)) return false;
-    const bool drawn = folder_reserve(options->folder, error) && draw_scenes(&table, csv, options->folder, error) &&
+    const bool drawn = chart_highlight_check(options->look.highlight, table.rows, table.count, error) &&
+                       folder_reserve(options->folder, error) && draw_scenes(&table, csv, options, error) &&
                        draw_equal_time(csv, options->folder, error);
     progress_bar_end();
     csv_table_free(&table);
@@ -277,7 +296,7 @@ static bool draw_measured(const SpeedAccuracyOptions *options, const char *csv, 
     char what[64];
     snprintf(what, sizeof what, ": %d methods and settings, %d launches", scene->contenders, scene->launches);
     const Drawn drawn = {scene->name, what, scene->timed};
-    if (!draw_scene(csv, &drawn, options->folder, i, options->scene_count, error)) return false;
+    if (!draw_scene(csv, &drawn, options, i, options->scene_count, error)) return false;
     const char *without = scene->without_network.text;
     if (without[0] != '\0') printf("    left out, as no network is named for them: %s\n", without);
     const SceneSolves *solves = &scene->solves;

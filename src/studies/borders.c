@@ -297,7 +297,7 @@ static void list_left_out(Borders *borders) {
 }
 
 /* mm */
-static double foot_of(const Borders *borders) { return borders->foot.count * WORD_ROW; }
+static double foot_of(const Borders *borders) { return borders->foot.count * NOTE_ROW; }
 
 /* Uses the height of a printed page if that gives rows of a readable height. */
 static void lay_out(Borders *borders) {

@@ -330,6 +330,17 @@ typedef struct SceneSolves {
     int64_t runs_unconverged;           /* steps of the converged runs that did not converge */
 } SceneSolves;
 
+/* How a chart is drawn. */
+
+/* 178 x 92 mm, two columns of a paper; 85 x 144 mm, one column, a panel above the other; 160 x 90 mm, 16:9. */
+typedef enum ChartSize { CHART_PAGE, CHART_COLUMN, CHART_SLIDE } ChartSize;
+
+typedef struct ChartLook {
+    ChartSize size;
+    const char *highlight; /* methods to be drawn in colour, separated by commas; NULL: none beside the usual ones */
+    bool words;            /* the caption below the picture, too, which makes it higher */
+} ChartLook;
+
 /* The speed-accuracy study: every method in every scene, on held-out launches.
 
    Two protocols. Frozen: all methods solve the same steps, sampled from engine runs. Closed: each method runs on its
@@ -348,6 +359,7 @@ typedef struct SpeedAccuracyOptions {
     bool quick;           /* fewer launches, settings, steps and repetitions */
     const char *folder;   /* created if missing */
     bool pages;           /* for draw() */
+    ChartLook look;       /* likewise */
     const PiecesRun *run; /* whole, a shard, or a merge */
     /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result. */
     bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, uint64_t key,
@@ -552,11 +564,23 @@ typedef struct LaunchPage {
 
 extern const CsvLayout launch_page_layout;
 
+/* Charts of speed against accuracy, drawn from chart.csv. */
+
+/* Whether rows of the table have each name of the list, at most as many as there are colours. ERROR_INPUT otherwise. */
+bool chart_highlight_check(const char *highlight, const ChartRow *rows, int count, Error *error);
+
+/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path, and writes what they show as chart-SCENE.txt. x:
+   solver time per step; y: mean velocity error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed
+   loop. At most six methods are in colour, each named at its curve; all others are grey. What no method reaches is shaded
+   (the Pareto front, studies/chart_internal.h); dotted lines are the time and the error of the engine as shipped. The folder
+   must exist. ERROR_INPUT for an invalid table, a scene without marks, or a scene name that is not a file name. Each file appears complete or not at all. */
+bool chart_plot(const char *csv_path, const char *scene, const char *folder, const ChartLook *look, Error *error);
+
 /* chart.html: the charts of a study; their points, and a table of them, link to pages of runs. */
 
 /* Writes folder/chart.html from chart.csv, chart_pages.csv (studies/chart.h) and the charts' .svg files there. Without a
-   script: a picture with links above its points, which a table repeats for the keyboard. */
-bool chart_html_write(const char *folder, Error *error);
+   script: a picture with links above its points, which a table repeats for the keyboard. look: as of the charts. */
+bool chart_html_write(const char *folder, const ChartLook *look, Error *error);
 
 /* The table and the figure of errors at equal time (studies/chart_internal.h). */
 
@@ -566,16 +590,6 @@ typedef struct EqualTimeFigure {
 } EqualTimeFigure;
 
 /* Reads a chart.csv and writes folder/equal_time.csv and equal_time_methods.csv, and the latter as a figure,
-   folder/equal_time.png, .svg and .pdf: a row for each scene, a column for each method, in each cell its error as a ratio to
+   folder/equal_time.png, .svg and .pdf with their caption, .txt: a row for each scene, a column for each method, in each cell its error as a ratio to
    that of its best rival in the same time. Methods and scenes without any ratio are left out, and named there. */
 bool equal_time_plot(const char *chart_csv, const char *folder, EqualTimeFigure *figure, Error *error);
-
-/* Charts of speed against accuracy, drawn from chart.csv. */
-
-/* Draws folder/chart-SCENE.png, .svg and .pdf from the table at csv_path. x: solver time per step; y: mean velocity
-   error; both logarithmic. Two panels: impact frames and the 60 frames after, in closed loop. One mark per setting, one
-   line per method, and the Pareto front (studies/chart_internal.h) as a staircase behind. Below, a line for each word: methods and
-   settings. 174 mm wide, as a paper's page, and 100 mm high or, for many words, more; colours and symbols are distinguishable in grey and with colour blindness. The folder must exist. ERROR_INPUT
-   for an invalid table, a scene without marks, or a scene name that is not a file name. Each file appears complete or
-   not at all. */
-bool chart_plot(const char *csv_path, const char *scene, const char *folder, Error *error);

@@ -34,24 +34,24 @@ void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
     chart_make_plain(out);
 }
 
-static bool is_set(const char *setting, const char *key) {
-    const char *found = strstr(setting, key);
-    return found != NULL && (found == setting || found[-1] == ',') && found[strlen(key)] == '=';
-}
-
-/* What sets a row apart from those with a fixed number of sweeps. */
-static const char *rule_of(const ChartRow *row) {
-    const MethodDescription *method = method_describe(row->method);
-    const bool near = is_set(row->setting, "near") && method != NULL && settings_known(method->settings, "k");
-    return near ? "near" : "";
-}
-
-static void name_row(const ChartRow *row, char key[CHART_KEY_SIZE], char label[CHART_TEXT_SIZE]) {
-    char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
-    strcpy(words, rule_of(row));
-    chart_split_setting(row->setting, numbers, words);
-    snprintf(key, CHART_KEY_SIZE, "%s%s%s", row->method, words[0] != '\0' ? ":" : "", words);
-    chart_plain(label, numbers);
+/* "scene-net:scene-stack" of "scene-net:network=scenes/networks/scene-stack.npz"; of a program its setting `name`. */
+void chart_line_name(const char *key, char name[CHART_TEXT_SIZE]) {
+    char text[CHART_FAMILY_SIZE] = "";
+    const char *given = strncmp(key, "exec:", 5) == 0 ? strstr(key, ",name=") : NULL;
+    const char *network = strstr(key, "network=");
+    if (given != NULL) {
+        given += strlen(",name=");
+        text_add(text, sizeof text, "%.*s", (int)strcspn(given, ","), given);
+    } else if (network != NULL && network > key && (network[-1] == ':' || network[-1] == ',')) {
+        const char *file = network + strlen("network="), *rest = file + strcspn(file, ",");
+        for (const char *at = file; at < rest; at++)
+            if (*at == '/') file = at + 1;
+        size_t length = (size_t)(rest - file);
+        if (length > 4 && strncmp(rest - 4, ".npz", 4) == 0) length -= 4;
+        text_add(text, sizeof text, "%.*s%.*s%s", (int)(network - key), key, (int)length, file, rest);
+    } else
+        text_add(text, sizeof text, "%s", key);
+    chart_plain(name, text);
 }
 
 static int find_line(const Chart *chart, const char *key) {
@@ -60,24 +60,21 @@ static int find_line(const Chart *chart, const char *key) {
     return i;
 }
 
-static bool add_lines(Chart *chart, const CsvTable *table, const char *path, Error *error) {
-    const MethodDescription *methods[CHART_MAX_LINES];
-    PlotStyle styles[CHART_MAX_LINES];
-    char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
+static bool add_lines(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error) {
+    char key[CHART_FAMILY_SIZE];
     for (int i = 0; i < table->count; i++) {
-        name_row(chart_row(table, i), key, label);
+        const ChartRow *row = chart_row(table, i);
+        if (strcmp(row->scene, scene) != 0) continue;
+        chart_row_family(row, key);
         if (find_line(chart, key) < chart->line_count) continue;
         if (chart->line_count == CHART_MAX_LINES)
             return error_input(error, path, "a chart can show at most %d methods", CHART_MAX_LINES);
-        const MethodDescription *method = methods[chart->line_count] = method_describe(chart_row(table, i)->method);
         ChartLine *line = &chart->lines[chart->line_count++];
+        *line = (ChartLine){.method = row->method, .description = method_describe(row->method)};
         strcpy(line->key, key);
-        chart_plain(line->name, key);
-        line->no_push_out = method != NULL && method->no_push_out;
-        line->competes = method == NULL || method->role == METHOD_COMPETES;
+        chart_line_name(key, line->name);
+        line->competes = line->description == NULL || line->description->role == METHOD_COMPETES;
     }
-    plot_method_styles(methods, chart->line_count, styles);
-    for (int i = 0; i < chart->line_count; i++) chart->lines[i].style = styles[i];
     return true;
 }
 
@@ -85,10 +82,6 @@ static bool add_lines(Chart *chart, const CsvTable *table, const char *path, Err
 static int panel_of(const ChartRow *row, const char *scene) {
     if (row->protocol != PROTOCOL_CLOSED || row->phase == PHASE_REST || strcmp(row->scene, scene) != 0) return -1;
     return row->phase == PHASE_IMPACT ? 0 : 1;
-}
-
-static bool can_be_drawn(const ChartRow *row) {
-    return row->us_solver_q1 > 0 && row->us_solver > 0 && row->us_solver_q3 > 0 && !isnan(row->error_mean);
 }
 
 static void widen(Chart *chart, const ChartMark *mark) {
@@ -103,27 +96,93 @@ static bool is_shipped(const ChartRow *row) {
     return method != NULL && method->shipped != NULL && strcmp(method->shipped, row->setting) == 0;
 }
 
-static void add_mark(Chart *chart, const ChartRow *row, bool on_front, int panel) {
-    ChartMark mark = {.us = row->us_solver,
-                      .us_q1 = row->us_solver_q1,
-                      .us_q3 = row->us_solver_q3,
-                      .method = row->method,
-                      .setting = row->setting};
-    char key[CHART_KEY_SIZE];
-    name_row(row, key, mark.label);
-    mark.line = find_line(chart, key);
-    mark.error = fmax(row->error_mean, PARETO_RESOLUTION);
-    mark.floored = row->error_mean < PARETO_RESOLUTION;
-    mark.varies = row->us_varies > 0;
-    mark.on_front = on_front;
-    mark.shipped = is_shipped(row);
-    ChartLine *line = &chart->lines[mark.line];
-    chart->launches = row->launches > chart->launches ? row->launches : chart->launches;
-    if (!can_be_drawn(row)) {
-        line->left_out++;
-        return;
+/* The help of a key says "(default: 0.002)". */
+static bool is_standard(const MethodDescription *method, const char *part) {
+    const size_t key = strcspn(part, "=,");
+    for (const SettingSpec *known = method->settings; known != NULL && known->key != NULL; known++) {
+        const char *standard = strstr(known->summary, "(default: ");
+        if (strlen(known->key) != key || strncmp(known->key, part, key) != 0 || standard == NULL) continue;
+        standard += strlen("(default: ");
+        const size_t length = strcspn(standard, ";,)");
+        return part[key] == '=' && strcspn(part + key + 1, ",") == length &&
+               strncmp(part + key + 1, standard, length) == 0;
     }
-    chart->panels[panel].marks[chart->panels[panel].count++] = mark;
+    return false;
+}
+
+bool chart_mark_is_default(const ChartMark *mark) {
+    const MethodDescription *method = method_describe(mark->method);
+    char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
+    chart_split_setting(mark->setting, numbers, words);
+    for (const char *part = numbers; *part != '\0'; part += strcspn(part, ","), part += *part == ',')
+        if (method == NULL || !is_standard(method, part)) return false;
+    return true;
+}
+
+/* A program has no quartiles: it reports one time a step. */
+static ChartMark make_mark(const Chart *chart, const ChartRow *row) {
+    char key[CHART_FAMILY_SIZE];
+    const bool own_clock = isnan(row->us_solver) && !isnan(row->us_engine);
+    chart_row_family(row, key);
+    return (ChartMark){.line = find_line(chart, key),
+                       .us = own_clock ? row->us_engine : row->us_solver,
+                       .us_q1 = own_clock ? row->us_engine : row->us_solver_q1,
+                       .us_q3 = own_clock ? row->us_engine : row->us_solver_q3,
+                       .error = fmax(row->error_mean, PARETO_RESOLUTION),
+                       .floored = row->error_mean<PARETO_RESOLUTION, .varies = row->us_varies> 0,
+                       .shipped = is_shipped(row),
+                       .method = row->method,
+                       .setting = row->setting};
+}
+
+static bool can_be_drawn(const ChartRow *row, const ChartMark *mark) {
+    return mark->us_q1 > 0 && mark->us > 0 && mark->us_q3 > 0 && !isnan(row->error_mean);
+}
+
+/* Adds a scene's rows in closed loop. Those of a method that lost the scene are marks until the ranks are known. */
+static void add_rows(Chart *chart, const CsvTable *table, const char *scene) {
+    for (int i = 0; i < table->count; i++) {
+        const ChartRow *row = chart_row(table, i);
+        const int p = panel_of(row, scene);
+        if (p < 0) continue;
+        ChartMark mark = make_mark(chart, row);
+        mark.lost = chart_row_lost(table->rows, table->count, row);
+        if (!mark.lost && row->launches > chart->launches) chart->launches = row->launches;
+        if (!can_be_drawn(row, &mark))
+            chart->lines[mark.line].left_out += !mark.lost;
+        else
+            chart->panels[p].marks[chart->panels[p].count++] = mark;
+    }
+}
+
+/* The front is that of all rows that compete, whether they are drawn or not. */
+static bool find_front(Chart *chart, int p) {
+    ChartPanel *panel = &chart->panels[p];
+    CurvePoint *front = chart->front[p] = malloc((size_t)panel->count * sizeof *front + 1);
+    int count = 0;
+    if (front == NULL) return false;
+    for (int i = 0; i < panel->count; i++) {
+        const ChartMark *mark = &panel->marks[i];
+        const ChartLine *line = &chart->lines[mark->line];
+        if (line->competes && !mark->lost && !chart_is_program(line))
+            front[count++] = (CurvePoint){mark->us, mark->error};
+    }
+    chart->front_count[p] = error_curve_front(front, count);
+    for (int i = 0; i < panel->count; i++)
+        for (int k = 0; k < chart->front_count[p]; k++)
+            panel->marks[i].on_front |= panel->marks[i].us == front[k].us && panel->marks[i].error == front[k].error;
+    return true;
+}
+
+/* Those that another setting of the line beats in both. */
+static void find_beaten(ChartPanel *panel) {
+    for (int i = 0; i < panel->count; i++)
+        for (int k = 0; k < panel->count; k++) {
+            const ChartMark *mark = &panel->marks[i], *other = &panel->marks[k];
+            if (mark->line == other->line && !mark->lost && !other->lost && other->us <= mark->us &&
+                other->error <= mark->error && (other->us < mark->us || other->error < mark->error))
+                panel->marks[i].beaten = true;
+        }
 }
 
 static int compare_marks(const void *left, const void *right) {
@@ -133,7 +192,8 @@ static int compare_marks(const void *left, const void *right) {
     return (a->error > b->error) - (a->error < b->error);
 }
 
-static bool is_far(double value, double least, double most) { return value < least / 10 || value > most * 10; }
+/* Ten times as quick or accurate is worth a place; three times as slow or wrong is not. */
+static bool is_far(double value, double least, double most) { return value < least / 10 || value > most * 3; }
 
 static void leave_out(ChartLine *line, const ChartMark *mark) {
     if (line->beyond++ == 0) {
@@ -145,11 +205,20 @@ static void leave_out(ChartLine *line, const ChartMark *mark) {
     line->beyond_error[1] = fmax(line->beyond_error[1], mark->error);
 }
 
-/* A baseline a thousand times faster than all others would push these into a corner. */
+/* Of what is beaten only defaults of coloured lines. */
+static bool is_drawn(ChartLine *line, const ChartMark *mark) {
+    const bool standard = mark->shipped || (line->rank == CHART_COLOURED && chart_mark_is_default(mark));
+    line->lost += mark->lost && !line->asked;
+    return line->rank != CHART_HIDDEN && (!mark->beaten || standard) && (!mark->lost || line->asked);
+}
+
+/* The coloured lines set the axes: a method a thousand times as quick as they are would push them into a corner. */
 static void fit_axes(Chart *chart) {
     for (int p = 0; p < CHART_PANELS; p++)
-        for (int i = 0; i < chart->panels[p].count; i++)
-            if (chart->lines[chart->panels[p].marks[i].line].competes) widen(chart, &chart->panels[p].marks[i]);
+        for (int i = 0; i < chart->panels[p].count; i++) {
+            const ChartMark *mark = &chart->panels[p].marks[i];
+            if (chart->lines[mark->line].rank == CHART_COLOURED && !mark->beaten && !mark->lost) widen(chart, mark);
+        }
     const Chart alone = *chart;
     const bool any = alone.us_most > 0;
     for (int p = 0; p < CHART_PANELS; p++) {
@@ -158,6 +227,7 @@ static void fit_axes(Chart *chart) {
         for (int i = 0; i < panel->count; i++) {
             const ChartMark mark = panel->marks[i];
             ChartLine *line = &chart->lines[mark.line];
+            if (!is_drawn(line, &mark)) continue;
             if (any && (is_far(mark.us, alone.us_least, alone.us_most) ||
                         is_far(mark.error, alone.error_least, alone.error_most))) {
                 leave_out(line, &mark);
@@ -173,78 +243,73 @@ static void fit_axes(Chart *chart) {
     }
 }
 
-/* Adds a scene's closed-loop rows. Rows of a method that lost the scene are only counted. */
-static void add_rows(Chart *chart, const CsvTable *table, const char *scene, ChartRow *rows, bool *on_front) {
-    int count = 0;
-    for (int i = 0; i < table->count; i++) {
-        char key[CHART_KEY_SIZE], label[CHART_TEXT_SIZE];
-        if (panel_of(chart_row(table, i), scene) < 0) continue;
-        name_row(chart_row(table, i), key, label);
-        if (chart_row_lost(table->rows, table->count, chart_row(table, i)))
-            chart->lines[find_line(chart, key)].lost++;
-        else
-            rows[count++] = *chart_row(table, i);
-    }
-    pareto_mark(rows, count, on_front);
-    for (int i = 0; i < count; i++) add_mark(chart, &rows[i], on_front[i], panel_of(&rows[i], scene));
+/* "k,near,more" of "k=2,near=0.1,more=400". */
+static void keys_of(const char *setting, char keys[CHART_SETTING_SIZE]) {
+    keys[0] = '\0';
+    for (const char *part = setting; *part != '\0'; part += strcspn(part, ","), part += *part == ',')
+        text_add(keys, CHART_SETTING_SIZE, "%s%.*s", keys[0] != '\0' ? "," : "", (int)strcspn(part, "=,"), part);
 }
 
-/* Whether all marks of the line have this setting, "k=20". */
-static bool is_common(const Chart *chart, int line, const char *part) {
-    bool common = true;
+static bool has_part(const char *setting, const char *part) {
+    char all[CHART_SETTING_SIZE + 2], wanted[CHART_SETTING_SIZE + 2];
+    snprintf(all, sizeof all, ",%s,", setting);
+    snprintf(wanted, sizeof wanted, ",%s,", part);
+    return strstr(all, wanted) != NULL;
+}
+
+/* Whether all marks of the line with the same keys have this setting, "k=20". */
+static bool is_common(const Chart *chart, const ChartMark *mark, const char *part) {
+    char own[CHART_SETTING_SIZE], keys[CHART_SETTING_SIZE];
+    keys_of(mark->setting, own);
     for (int p = 0; p < CHART_PANELS; p++)
         for (int i = 0; i < chart->panels[p].count; i++) {
-            const ChartMark *mark = &chart->panels[p].marks[i];
-            char setting[CHART_SETTING_SIZE + 2], wanted[CHART_SETTING_SIZE + 2];
-            snprintf(setting, sizeof setting, ",%s,", mark->setting);
-            snprintf(wanted, sizeof wanted, ",%s,", part);
-            common = common && (mark->line != line || strstr(setting, wanted) != NULL);
+            const ChartMark *other = &chart->panels[p].marks[i];
+            if (other->line != mark->line) continue;
+            keys_of(other->setting, keys);
+            if (strcmp(own, keys) == 0 && !has_part(other->setting, part)) return false;
         }
-    return common;
+    return true;
 }
 
-/* Of several settings, names those in which the marks of its line differ. */
-static void shorten_label(Chart *chart, ChartMark *mark) {
-    char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "";
-    char own[2 * CHART_SETTING_SIZE] = "", common[3 * CHART_SETTING_SIZE] = "", *rest;
+/* Of several settings, those in which marks of the line differ. */
+static void label_mark(const Chart *chart, ChartMark *mark) {
+    char numbers[2 * CHART_SETTING_SIZE] = "", words[2 * CHART_SETTING_SIZE] = "", own[2 * CHART_SETTING_SIZE] = "",
+                     *rest;
     chart_split_setting(mark->setting, numbers, words);
+    chart_plain(mark->label, numbers);
     if (strchr(numbers, ',') == NULL) return;
     for (char *part = strtok_r(numbers, ",", &rest); part != NULL; part = strtok_r(NULL, ",", &rest))
-        if (is_common(chart, mark->line, part))
-            text_add(common, sizeof common, "%s%s", common[0] != '\0' ? ", " : "", part);
-        else
-            text_add(own, sizeof own, "%s%s", own[0] != '\0' ? "," : "", part);
-    chart_plain(mark->label, own);
-    chart_plain(chart->lines[mark->line].common, common);
+        if (!is_common(chart, mark, part)) text_add(own, sizeof own, "%s%s", own[0] != '\0' ? "," : "", part);
+    if (own[0] != '\0') chart_plain(mark->label, own);
 }
 
-static bool add_marks(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error) {
-    bool *on_front = malloc((size_t)table->count * sizeof *on_front);
-    ChartRow *rows = malloc((size_t)table->count * sizeof *rows);
-    bool room = on_front != NULL && rows != NULL;
+static bool add_marks(Chart *chart, const CsvTable *table, const char *scene, const char *path, const char *highlight,
+                      Error *error) {
+    bool room = true;
     for (int p = 0; p < CHART_PANELS; p++) {
         chart->panels[p].marks = calloc((size_t)table->count, sizeof(ChartMark));
         room = room && chart->panels[p].marks != NULL;
     }
-    if (room) {
-        add_rows(chart, table, scene, rows, on_front);
-        fit_axes(chart);
-        for (int p = 0; p < CHART_PANELS; p++)
-            qsort(chart->panels[p].marks, (size_t)chart->panels[p].count, sizeof(ChartMark), compare_marks);
-        for (int p = 0; p < CHART_PANELS; p++)
-            for (int i = 0; i < chart->panels[p].count; i++) shorten_label(chart, &chart->panels[p].marks[i]);
-    }
-    free(rows);
-    free(on_front);
-    return room || error_memory(error, path);
+    if (room) add_rows(chart, table, scene);
+    for (int p = 0; room && p < CHART_PANELS; p++) room = find_front(chart, p);
+    if (!room) return error_memory(error, path);
+    for (int p = 0; p < CHART_PANELS; p++) find_beaten(&chart->panels[p]);
+    if (!chart_rank(chart, highlight, path, error)) return false;
+    fit_axes(chart);
+    for (int p = 0; p < CHART_PANELS; p++)
+        qsort(chart->panels[p].marks, (size_t)chart->panels[p].count, sizeof(ChartMark), compare_marks);
+    for (int p = 0; p < CHART_PANELS; p++)
+        for (int i = 0; i < chart->panels[p].count; i++) label_mark(chart, &chart->panels[p].marks[i]);
+    return true;
 }
 
-bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error) {
+bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, const char *highlight,
+                  Error *error) {
     *chart = (Chart){.us_least = INFINITY, .error_least = INFINITY};
     chart_times_note(chart->times, table->rows, table->count);
     chart_make_plain(chart->times);
     bool gathered =
-        add_lines(chart, table, path, error) && add_marks(chart, table, scene, path, error) &&
+        add_lines(chart, table, scene, path, error) && add_marks(chart, table, scene, path, highlight, error) &&
         (chart->panels[0].count + chart->panels[1].count > 0 ||
          error_input(error, path, "no row of the scene '%s' in closed loop has a time and an error", scene));
     if (!gathered) chart_free(chart);
@@ -254,6 +319,8 @@ bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const 
 void chart_free(Chart *chart) {
     for (int p = 0; p < CHART_PANELS; p++) {
         free(chart->panels[p].marks);
+        free(chart->front[p]);
         chart->panels[p] = (ChartPanel){.count = 0};
+        chart->front[p] = NULL;
     }
 }

@@ -51,6 +51,7 @@ typedef struct ChartHtml {
     CsvTable table; /* of LaunchPage */
     const LaunchPage *pages;
     const char *csv; /* path of the chart's table */
+    const ChartLook *look;
     Error *error;
     bool failed;
 } ChartHtml;
@@ -78,10 +79,11 @@ static const ChartRow *find_row(const ChartHtml *html, const LaunchPage *page) {
 }
 
 /* The table is the way for the keyboard and for screen readers. */
-static void put_point(FILE *out, const Chart *chart, int panel, const ChartMark *mark, const LaunchPage *page) {
+static void put_point(FILE *out, const ChartPicture *picture, int panel, const ChartMark *mark,
+                      const LaunchPage *page) {
     double left, top;
     if (page == NULL || page->page[0] == '\0') return;
-    chart_mark_place(chart, panel, mark, &left, &top);
+    chart_mark_place(picture, panel, mark, &left, &top);
     fprintf(out, "<a class=\"point\" tabindex=\"-1\" aria-hidden=\"true\" style=\"left:%.3f%%;top:%.3f%%\" href=\"",
             100 * left, 100 * top);
     html_print(out, "%s\" title=\"%s%s%s", page->page, mark->method, mark->setting[0] != '\0' ? ":" : "",
@@ -89,18 +91,19 @@ static void put_point(FILE *out, const Chart *chart, int panel, const ChartMark 
     fprintf(out, ": %.3g µs, %.3g m/s\"></a>\n", mark->us, mark->error);
 }
 
-static void put_figure(FILE *out, const ChartHtml *html, const Chart *chart, const char *scene) {
+static void put_figure(FILE *out, const ChartHtml *html, const ChartPicture *picture, const char *scene) {
+    const Chart *chart = picture->chart;
     study_page_region(out, "scroll", "Chart of ", scene);
     fputs("<figure>\n<img src=\"chart-", out);
     html_put_address(out, scene);
     fprintf(out, ".svg\" width=\"%.0f\" height=\"%.0f\" alt=\"Velocity error over solver time for each method in ",
-            10 * CHART_WIDTH, 10 * chart_height(chart));
+            10 * picture->width, 10 * picture->height);
     html_put(out, scene);
     fputs("; the table below has the points.\">\n", out);
     for (int p = 0; p < CHART_PANELS; p++)
         for (int i = 0; i < chart->panels[p].count; i++) {
             const ChartMark *mark = &chart->panels[p].marks[i];
-            put_point(out, chart, p, mark, find_page(html, scene, mark->method, mark->setting, (Phase)p));
+            put_point(out, picture, p, mark, find_page(html, scene, mark->method, mark->setting, (Phase)p));
         }
     fputs("</figure>\n</div>\n", out);
 }
@@ -162,19 +165,23 @@ static void put_table(FILE *out, const ChartHtml *html, const char *scene) {
 
 static void put_scene(FILE *out, ChartHtml *html, const ChartRow *first) {
     Chart chart;
+    ChartPicture picture;
     if (chart_scene_untimed(html->chart.rows, html->chart.count, first->scene)) {
         study_page_section(out, first->scene);
         fprintf(out, ", %d launches</h2>\n", first->launches);
         fputs("<p>Without a chart: its times were measured on another processor.</p>\n", out);
-    } else if (chart_gather(&chart, &html->chart, first->scene, html->csv, html->error)) {
-        study_page_section(out, first->scene);
-        fprintf(out, ", %d launches</h2>\n", chart.launches);
-        put_figure(out, html, &chart, first->scene);
+    } else if (chart_gather(&chart, &html->chart, first->scene, html->csv, html->look->highlight, html->error)) {
+        html->failed = !chart_picture_make(&picture, &chart, first->scene, html->look, html->error);
+        if (!html->failed) {
+            study_page_section(out, first->scene);
+            fprintf(out, ", %d launches</h2>\n", chart.launches);
+            put_figure(out, html, &picture, first->scene);
+            chart_picture_free(&picture);
+        }
         chart_free(&chart);
-    } else {
+    } else
         html->failed = true;
-        return;
-    }
+    if (html->failed) return;
     put_table(out, html, first->scene);
     fputs("</section>\n", out);
 }
@@ -201,9 +208,9 @@ static void put_chart(FILE *out, const void *context) {
     house_page_end(out);
 }
 
-bool chart_html_write(const char *folder, Error *error) {
+bool chart_html_write(const char *folder, const ChartLook *look, Error *error) {
     char csv[CSV_PATH_SIZE], path[CSV_PATH_SIZE];
-    ChartHtml html = {.csv = csv, .error = error};
+    ChartHtml html = {.csv = csv, .look = look, .error = error};
     if (!csv_table_path(csv, folder, &chart_layout, error) ||
         !file_path(path, sizeof path, error, "%s/chart.html", folder) ||
         !csv_table_read(&html.chart, csv, &chart_layout, error))

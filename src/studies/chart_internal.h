@@ -215,47 +215,60 @@ enum {
     CHART_MAX_LINES = 32,
     CHART_TEXT_SIZE = 40,
     CHART_PANELS = 2,
-    CHART_KEY_SIZE = CHART_NAME_SIZE + sizeof ":near," + 2 * CHART_SETTING_SIZE
+    CHART_LOUD = 6 /* lines in colour, at most */
 };
 
-/* A method with its non-numeric settings ("engine:warm=off"). Runs with a stopping rule ("engine:near") are a line of
-   their own beside those with a fixed number of sweeps. */
+/* How a line is drawn. */
+typedef enum ChartRank {
+    CHART_GREY,   /* thin and grey, its name in grey */
+    CHART_HIDDEN, /* not: the silenced twin of a grey method, unless it is on the front */
+    CHART_COLOURED
+} ChartRank;
+
+/* A method with its non-numeric settings ("engine:warm=off"). */
 typedef struct ChartLine {
-    char key[CHART_KEY_SIZE];     /* as in the table; identifies the line */
-    char name[CHART_TEXT_SIZE];   /* plain, truncated */
-    char common[CHART_TEXT_SIZE]; /* settings that all its marks have and labels leave out: "k=2, more=400"; plain */
+    char key[CHART_FAMILY_SIZE];          /* as in the table; identifies the line */
+    char name[CHART_TEXT_SIZE];           /* plain, truncated */
+    const char *method;                   /* as in the table, which outlives it */
+    const MethodDescription *description; /* NULL: an unknown method */
+    ChartRank rank;
+    bool asked;                        /* named by the reader */
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
     int varying;                       /* number of marks drawn whose time varies (ChartRow.us_varies) */
     int lost;                          /* number of marks left out because the method lost the scene (chart_gather) */
-    bool no_push_out;                  /* as in the method's description */
     bool competes;                     /* or unknown; baselines and the reference do not */
-    int beyond;                        /* number of marks left out because they are far from all that compete, and */
+    int beyond;                        /* number of marks left out because they are far from the coloured ones, and */
     double beyond_us[2], beyond_error[2]; /* their ranges, from least to most */
-    PlotStyle style;
 } ChartLine;
 
 typedef struct ChartMark {
     int line;
-    double us, us_q1, us_q3; /* solver time per step: median and quartiles, microseconds */
-    double error;            /* mean velocity error, m/s; at least PARETO_RESOLUTION */
-    bool floored;            /* it was less */
-    bool varies;             /* ChartRow.us_varies */
+    double us, us_q1,
+        us_q3;    /* solver time per step: median and quartiles, microseconds; of a program what it reports */
+    double error; /* mean velocity error, m/s; at least PARETO_RESOLUTION */
+    bool floored; /* it was less */
+    bool varies;  /* ChartRow.us_varies */
     bool on_front;
-    bool shipped;                 /* the setting that the method's description calls shipped */
-    char label[CHART_TEXT_SIZE];  /* "k=20"; of several numeric settings those in which its line's marks differ */
+    bool beaten;  /* another setting of its line beats it in both time and error */
+    bool lost;    /* the method lost the scene; only of lines that are asked for */
+    bool shipped; /* the setting that the method's description calls shipped */
+    char
+        label[CHART_TEXT_SIZE]; /* "k=20"; of several numeric settings those in which marks with the same keys differ */
     const char *method, *setting; /* as in the table, which outlives them */
 } ChartMark;
 
 typedef struct ChartPanel {
     int count;
-    ChartMark *marks; /* [count], sorted by line, then by time */
+    ChartMark *marks; /* [count], sorted by line, then by time; marks that are not drawn are not among them */
 } ChartPanel;
 
 typedef struct Chart {
     int line_count, launches;
     int floored; /* number of marks drawn at PARETO_RESOLUTION */
     ChartLine lines[CHART_MAX_LINES];
-    ChartPanel panels[CHART_PANELS];                   /* impact frames and the frames after; closed loop */
+    ChartPanel panels[CHART_PANELS]; /* impact frames and the frames after; closed loop */
+    CurvePoint *front[CHART_PANELS]; /* [front_count] the Pareto front by rising time, of all methods that compete */
+    int front_count[CHART_PANELS];
     double us_least, us_most, error_least, error_most; /* ranges of all marks */
     char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; plain */
 } Chart;
@@ -263,12 +276,35 @@ typedef struct Chart {
 /* Gathers a scene's rows. Lines keep their order in the table. Texts are restricted to
    letters, digits, spaces and -_.,:=+/()*[]; other characters become '?'.
    Left out and counted: rows without time or error, and rows of a method that let the boxes drift half a metre
-   before the bomb came, as they were scored on another scene. Errors below PARETO_RESOLUTION are drawn
-   there. The axes show the methods that compete: marks of baselines and of the reference more than a decade away from
-   them are left out, and counted in their line. False with error set if nothing remains, or for more than
-   CHART_MAX_LINES lines. */
-bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, Error *error);
+   before the bomb came, as they were scored on another scene; of a line that `highlight` names these are marks, too.
+   Errors below PARETO_RESOLUTION are drawn there. The axes show the coloured lines: other marks more than a decade away from
+   them are left out, and counted in their line. highlight: names of lines or methods, separated by commas; NULL: none; others
+   are ignored. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
+bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, const char *highlight,
+                  Error *error);
 void chart_free(Chart *chart);
+
+/* Whether a program of others takes its steps, by its own clock. */
+bool chart_is_program(const ChartLine *line);
+
+/* The word in its setting that switches its learned part off, "net=off"; NULL: it has none. */
+const char *chart_twin_word(const ChartLine *line);
+
+/* Whether each number in its setting is what the key's help calls the default. */
+bool chart_mark_is_default(const ChartMark *mark);
+
+/* Sets the rank of each line, given all its marks. At most CHART_LOUD are coloured: what the reader asks for (`highlight`,
+   programs of others), the engine, interior, the strongest rival that learns nothing, and scene-net; then the silenced twins of
+   these. The strongest rival is the one with most corners in the front of such methods, both panels together. False with error
+   set if out of memory. */
+bool chart_rank(Chart *chart, const char *highlight, const char *path, Error *error);
+
+/* What a picture calls a line: its key, plain and truncated, without the folders of a network; of a program its setting
+   `name`. */
+void chart_line_name(const char *key, char name[CHART_TEXT_SIZE]);
+
+/* Writes what the picture shows and what it leaves out. named[line]: whether the picture had room for its name. */
+void chart_caption(const Chart *chart, const char *title, const bool *named, char *text, size_t size);
 
 /* Replaces characters that names do not have (csv_plain_length), or that the font lacks, by '?'. */
 void chart_make_plain(char *text);
@@ -276,13 +312,66 @@ void chart_make_plain(char *text);
 /* Copies a text, made plain and truncated to fit. */
 void chart_plain(char out[CHART_TEXT_SIZE], const char *text);
 
-/* mm; a chart with many words is higher. */
-#define CHART_WIDTH FIGURE_PAGE_WIDTH
-#define CHART_HEIGHT 100.0
-double chart_height(const Chart *chart);
+/* A panel of a chart in progress. */
+
+#define CHART_NAME_POINTS 8.0
+#define CHART_SMALL_POINTS 6.5
+#define CHART_RING_RADIUS 1.9  /* mm: around the engine as shipped */
+#define CHART_GREY_RADIUS 0.42 /* mm: of grey marks */
+#define CHART_GREY_INK 0x666E78u
+
+typedef struct ChartDrawing {
+    const Chart *chart;
+    const ChartPanel *panel;
+    const PlotPanel *plot;
+    Sketch *sketch;
+    LabelField field; /* its first two segments are the lines through the engine as shipped */
+    int marks;        /* the field's boxes of marks; those of labels follow */
+    bool *named;      /* [line] */
+} ChartDrawing;
+
+static inline const ChartLine *chart_line_of(const ChartDrawing *drawing, const ChartMark *mark) {
+    return &drawing->chart->lines[mark->line];
+}
+
+static inline bool chart_is_coloured(const ChartDrawing *drawing, const ChartMark *mark) {
+    return chart_line_of(drawing, mark)->rank == CHART_COLOURED;
+}
+
+static inline Point chart_place(const ChartDrawing *drawing, const ChartMark *mark) {
+    return plot_place(drawing->plot, mark->us, mark->error);
+}
+
+PlotStyle chart_line_style(const ChartLine *line);
+
+/* The setting as shipped of the method that has one; NULL: not in the panel. */
+const ChartMark *chart_find_shipped(const ChartPanel *panel);
+
+/* Begins the field with the lines through the engine as shipped. */
+void chart_find_cross(ChartDrawing *drawing);
+
+/* Draws the names of all lines for which there is room beside marks and curves, settings of coloured ones, and the lines
+   through the engine as shipped. */
+void chart_draw_names(ChartDrawing *drawing, int panel);
+
+/* A drawn chart. */
+typedef struct ChartPicture {
+    const Chart *chart;
+    ChartSize size;
+    double width, height; /* mm */
+    PlotPanel panels[CHART_PANELS];
+    bool named[CHART_MAX_LINES]; /* in a panel */
+    Sketch sketch;
+    char caption[PLOT_CAPTION_SIZE];
+} ChartPicture;
+
+/* Free with chart_picture_free(). The chart must outlive it. False with error set if out of memory. */
+bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *scene, const ChartLook *look,
+                        Error *error);
+void chart_picture_free(ChartPicture *picture);
 
 /* Where a mark is drawn: shares of the page's width and height, from its upper left corner. */
-void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top);
+void chart_mark_place(const ChartPicture *picture, int panel, const ChartMark *mark, double *left, double *top);
 
 extern const char *const chart_panel_titles[CHART_PANELS];
 
@@ -303,14 +392,6 @@ void words_add_settings(WordList *words, const char *name, const char *setting);
 
 /* Ends a caption of `size` bytes with all of them, as far as there is room, and a line end. */
 void words_join(const WordList *words, char *caption, size_t size);
-
-/* mm, points */
-#define WORD_ROW 3.4
-#define WORD_POINTS 6.5
-
-/* Draws them in two columns, from `left` to the edge of the page. */
-double words_height(const WordList *words);
-void words_draw(const WordList *words, Sketch *sketch, double left, double bottom);
 
 /* The parts of pages of studies. */
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Charts of speed against accuracy: legend, labels of marks, lines and the Pareto front. */
+/* Charts of speed against accuracy: few curves in colour, each named where it ends, all others grey; what no method reaches is
+   shaded. */
 #include "base/base.h"
 #include "base/file.h"
 #include "figures/sketch.h"
@@ -14,435 +15,259 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The layout of a chart, in mm from the page's lower left corner: two panels side by side and a legend below. */
+/* The layout of a chart, in mm from the page's lower left corner. */
 
-#define LEFT_MARGIN 16.5
+#define LEFT_MARGIN 15.0
 #define RIGHT_MARGIN 3.5 /* half of "1000" below an axis that ends there */
-#define FOOT_ROW WORD_ROW
-#define FOOT_GAP 1.2
-#define LEAST_PANEL 56.0 /* height */
+#define TOP_MARGIN 10.5
+#define BOTTOM_MARGIN 9.0
 
-#define LABEL_POINTS 6.5
-#define RING_RADIUS 2.2 /* mm: around a setting as shipped */
+#define AXIS_POINTS 7.5
 
-enum { CHART_NOTES = 7 };
+#define GREY_LINE 0xB9BFC7u
+#define SHADE 0xEEF1F5u
+#define PARAGRAPH_ROW 3.1 /* mm */
 
-typedef struct ChartLayout {
-    const Chart *chart;
-    double height; /* mm, of the page */
-    PlotPanel panels[CHART_PANELS];
-    int columns, rows;                         /* of the legend */
-    double legend_top;                         /* mm, middle of the first row */
-    WordList words;                            /* below the legend */
-    int foot_rows;                             /* notes below the words, from the bottom */
-    char notes[CHART_NOTES][SKETCH_TEXT_SIZE]; /* one line each */
-} ChartLayout;
+static const struct {
+    double width, height, gap, row_gap;
+    int columns;
+} pages[] = {
+    [CHART_PAGE] = {178, 92, 8, 0, 2}, [CHART_COLUMN] = {85, 144, 0, 15, 1}, [CHART_SLIDE] = {160, 90, 8, 0, 2}};
 
-/* The legend and its notes. */
+const char *const chart_panel_titles[CHART_PANELS] = {"At the impact", "In the 60 frames after it"};
 
-static const char front_name[] = "Pareto front of solvers";
-
-static bool is_drawn(const ChartLine *line) { return line->marks[0] + line->marks[1] > 0; }
-
-/* Lists the lines with a nonzero counter (at `offset` in ChartLine), as far as there is room. */
-static void write_counts(char note[SKETCH_TEXT_SIZE], const Chart *chart, const char *why, size_t offset) {
-    enum { ROOM = 52 };
-    const char *separator = why;
-    size_t length = 0;
-    for (int i = 0; i < chart->line_count; i++) {
-        const ChartLine *line = &chart->lines[i];
-        int count;
-        memcpy(&count, (const char *)line + offset, sizeof count);
-        if (count == 0) continue;
-        length += strlen(line->name) + 6;
-        if (length > ROOM) {
-            text_add(note, SKETCH_TEXT_SIZE, " and others. ");
-            return;
-        }
-        text_add(note, SKETCH_TEXT_SIZE, "%s%s (%d)", separator, line->name, count);
-        separator = ", ";
-    }
-    if (separator != why) text_add(note, SKETCH_TEXT_SIZE, ". ");
-}
-
-/* "0.14 to 0.28 m/s"; one number if both are equal. */
-static void write_range(char note[SKETCH_TEXT_SIZE], const double range[2], const char *unit) {
-    text_add(note, SKETCH_TEXT_SIZE, range[0] < 100 ? "%.2g" : "%.0f", range[0]);
-    if (range[1] > range[0]) text_add(note, SKETCH_TEXT_SIZE, range[1] < 100 ? " to %.2g" : " to %.0f", range[1]);
-    text_add(note, SKETCH_TEXT_SIZE, " %s", unit);
-}
-
-static void write_times(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
-    text_add(note, SKETCH_TEXT_SIZE, "%s", chart->times);
-}
-
-static void write_varying(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
-    write_counts(note, chart, "Times here that vary: ", offsetof(ChartLine, varying));
-}
-
-static void write_beyond(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
-    const char *separator = "Beyond the axes: ";
-    for (int i = 0; i < chart->line_count; i++) {
-        const ChartLine *line = &chart->lines[i];
-        if (line->beyond == 0) continue;
-        text_add(note, SKETCH_TEXT_SIZE, "%s%s (", separator, line->name);
-        write_range(note, line->beyond_us, "µs,");
-        text_add(note, SKETCH_TEXT_SIZE, " ");
-        if (line->beyond_error[1] <= PARETO_RESOLUTION) text_add(note, SKETCH_TEXT_SIZE, "below ");
-        write_range(note, line->beyond_error, "m/s)");
-        separator = ", ";
-    }
-}
-
-static void write_no_push_out(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
-    const char *separator = "";
-    for (int i = 0; i < chart->line_count; i++) {
-        if (!chart->lines[i].no_push_out || !is_drawn(&chart->lines[i])) continue;
-        text_add(note, SKETCH_TEXT_SIZE, "%s%s", separator, chart->lines[i].name);
-        separator = ", ";
-    }
-    if (separator[0] != '\0')
-        text_add(note, SKETCH_TEXT_SIZE,
-                 ": error against the solution without the velocity that pushes overlapping boxes apart.");
-}
-
-static void write_all_counts(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
-    write_counts(note, chart, "Settings left out, as unstable before the impact: ", offsetof(ChartLine, lost));
-    write_counts(note, chart, "Without time or error: ", offsetof(ChartLine, left_out));
-    if (chart->floored > 0) text_add(note, SKETCH_TEXT_SIZE, "Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
-}
-
-static void write_error(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
-    (void)chart;
-    strcpy(note,
-           "Velocity error: difference from the converged solution of the same step, RMS over the boxes; mean over "
-           "all launches.");
-}
-
-static void write_phases(char note[SKETCH_TEXT_SIZE], const Chart *chart) {
-    (void)chart;
-    strcpy(note,
-           "Impact frames: the first after the bomb touches a box. Pareto front: solvers that no other solver beats "
-           "in both time and error.");
-}
-
-/* From the bottom; those with nothing to say have no row. */
-static void write_notes(ChartLayout *layout) {
-    static void (*const writers[CHART_NOTES])(char[SKETCH_TEXT_SIZE], const Chart *) = {
-        write_all_counts, write_no_push_out, write_beyond, write_varying, write_times, write_phases, write_error};
-    for (int i = 0; i < CHART_NOTES; i++) {
-        char *note = layout->notes[layout->foot_rows];
-        note[0] = '\0';
-        writers[i](note, layout->chart);
-        text_fit(note, SKETCH_TEXT_SIZE, WORD_POINTS, CHART_WIDTH - LEFT_MARGIN - 1);
-        layout->foot_rows += note[0] != '\0';
-    }
-}
-
-/* Methods, then what their labels leave out, then keys of settings. */
-static void gather_words(WordList *words, const Chart *chart) {
-    for (int what = 0; what < 3; what++)
-        for (int p = 0; p < CHART_PANELS; p++)
-            for (int i = 0; i < chart->panels[p].count; i++) {
-                const ChartMark *mark = &chart->panels[p].marks[i];
-                const ChartLine *line = &chart->lines[mark->line];
-                if (what == 0) words_add_method(words, mark->method);
-                if (what == 1 && line->common[0] != '\0') words_add(words, line->name, line->common);
-                if (what == 2) words_add_settings(words, mark->method, mark->setting);
-            }
-}
-
-/* Computes columns and rows of the legend, and the notes below it. */
-static void lay_out_legend(ChartLayout *layout) {
-    double longest = type_width(front_name, LEGEND_POINTS);
-    int entries = 1;
-    for (int i = 0; i < layout->chart->line_count; i++) {
-        const ChartLine *line = &layout->chart->lines[i];
-        if (!is_drawn(line)) continue;
-        longest = fmax(longest, type_width(line->name, LEGEND_POINTS));
-        entries++;
-    }
-    const double room = CHART_WIDTH - LEFT_MARGIN;
-    layout->columns = (int)(room / (LEGEND_SAMPLE + LEGEND_GAP + longest + 1));
-    if (layout->columns < 1) layout->columns = 1;
-    layout->rows = (entries + layout->columns - 1) / layout->columns;
-    /* The fewest columns for this number of rows: the legend fills its width. */
-    layout->columns = (entries + layout->rows - 1) / layout->rows;
-    gather_words(&layout->words, layout->chart);
-    write_notes(layout);
-}
-
-static void draw_legend(const ChartLayout *layout, Sketch *sketch) {
-    PlotLook looks[CHART_MAX_LINES + 1];
-    int count = 0;
-    for (int i = 0; i < layout->chart->line_count; i++) {
-        const ChartLine *line = &layout->chart->lines[i];
-        if (!is_drawn(line)) continue;
-        const bool joined = line->marks[0] > 1 || line->marks[1] > 1;
-        looks[count++] = (PlotLook){.name = line->name, .style = line->style, .line = joined ? 1.6 : 0, .marks = true};
-    }
-    looks[count++] = (PlotLook){.name = front_name, .style = {.colour = PARETO_COLOUR}, .line = 6};
-    plot_legend(sketch, looks, count, layout->columns, LEFT_MARGIN, layout->legend_top);
-    words_draw(&layout->words, sketch, LEFT_MARGIN, FOOT_ROW * layout->foot_rows + FOOT_GAP);
-    for (int i = 0; i < layout->foot_rows; i++)
-        plot_text(sketch, (Point){LEFT_MARGIN, FOOT_ROW * (i + 0.5)}, TEXT_LEFT, WORD_POINTS, layout->notes[i]);
-}
-
-/* Labels of marks. */
-
-static const double label_height = LABEL_POINTS * MM_PER_POINT * 0.9;
-
-typedef struct Labels {
-    const Chart *chart;
-    const ChartPanel *panel;
-    const PlotPanel *plot;
-    LabelField field;
-    Sketch *sketch;
-} Labels;
-
-/* The corners of the Pareto front: marks on the front by time, each with less error than all faster ones. Returns
-   their number and fills order[panel->count] with their indices. */
-static int chart_pareto_corners(const ChartPanel *panel, int *order) {
-    int count = 0;
-    for (int i = 0; i < panel->count; i++)
-        if (panel->marks[i].on_front) order[count++] = i;
-    /* Insertion sort: a front is short, and its lines are sorted already. */
-    for (int i = 1; i < count; i++)
-        for (int k = i; k > 0 && panel->marks[order[k]].us < panel->marks[order[k - 1]].us; k--) {
-            int swap = order[k];
-            order[k] = order[k - 1];
-            order[k - 1] = swap;
-        }
-    int corners = 0;
-    for (int i = 0; i < count; i++)
-        if (corners == 0 || panel->marks[order[i]].error < panel->marks[order[corners - 1]].error)
-            order[corners++] = order[i];
-    return corners;
-}
-
-static Point mark_at(const Labels *labels, int i) {
-    return plot_place(labels->plot, labels->panel->marks[i].us, labels->panel->marks[i].error);
-}
-
-static void add_obstacles(Labels *labels) {
-    const ChartMark *marks = labels->panel->marks;
-    for (int i = 0; i < labels->panel->count; i++) {
-        const Point at = mark_at(labels, i), before = mark_at(labels, i > 0 ? i - 1 : i);
-        const double radius = marks[i].shipped ? RING_RADIUS : MARK_RADIUS;
-        label_add_box(&labels->field, (PageBox){at.x - radius, at.y - radius, at.x + radius, at.y + radius});
-        label_add_segment(&labels->field, (Segment){plot_axis_place(&labels->plot->x, marks[i].us_q1), at.y,
-                                                    plot_axis_place(&labels->plot->x, marks[i].us_q3), at.y});
-        if (i > 0 && marks[i - 1].line == marks[i].line)
-            label_add_segment(&labels->field, (Segment){before.x, before.y, at.x, at.y});
-    }
-}
-
-/* The front is drawn behind everything, but labels on it are hard to read. */
-static bool add_front(Labels *labels) {
-    int *order = malloc((size_t)labels->panel->count * sizeof *order + 1);
-    if (order == NULL) return false;
-    int corners = chart_pareto_corners(labels->panel, order);
-    for (int i = 0; i < corners; i++) {
-        const Point at = mark_at(labels, order[i]);
-        const double above = i > 0 ? mark_at(labels, order[i - 1]).y : labels->plot->y.to;
-        const double right = i + 1 < corners ? mark_at(labels, order[i + 1]).x : labels->plot->x.to;
-        label_add_segment(&labels->field, (Segment){at.x, above, at.x, at.y});
-        label_add_segment(&labels->field, (Segment){at.x, at.y, right, at.y});
-    }
-    free(order);
-    return true;
-}
-
-/* A thin line from a mark's ring to its label, if they are apart. */
-static void draw_leader(Sketch *sketch, Point at, const PageBox *box) {
-    const Point near = {fmin(fmax(at.x, box->left), box->right), fmin(fmax(at.y, box->bottom), box->top)};
-    const double distance = hypot(near.x - at.x, near.y - at.y), share = RING_RADIUS / distance;
-    if (distance < RING_RADIUS + 1) return;
-    const Pen pen = pen_line(0x000000, 0.8, NULL);
-    sketch_line(sketch, (Point){at.x + share * (near.x - at.x), at.y + share * (near.y - at.y)}, near, &pen);
-}
-
-static void draw_label(Labels *labels, int i, const char *text, bool must) {
-    PageBox box;
-    const ChartMark *mark = &labels->panel->marks[i];
-    const Point at = mark_at(labels, i);
-    const double width = type_width(text, LABEL_POINTS);
-    const double distance = (mark->shipped ? RING_RADIUS : MARK_RADIUS) + 0.4;
-    if (!label_place(&labels->field, at.x, at.y, distance, width, label_height, must, &box)) return;
-    if (must) draw_leader(labels->sketch, at, &box);
-    const TextStyle style = {LABEL_POINTS, TEXT_CENTER, labels->chart->lines[mark->line].style.ink, 0, false};
-    sketch_text(labels->sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2}, &style, "%s", text);
-}
-
-static bool ends_line(const ChartPanel *panel, int i) {
-    const ChartMark *marks = panel->marks;
-    return i == 0 || i + 1 == panel->count || marks[i - 1].line != marks[i].line || marks[i + 1].line != marks[i].line;
-}
-
-/* Settings as shipped must be labelled; then marks on the front come first. */
-static void draw_labels(Labels *labels) {
-    const ChartPanel *panel = labels->panel;
-    for (int i = 0; i < panel->count; i++)
-        if (panel->marks[i].shipped) {
-            char text[CHART_TEXT_SIZE + 16];
-            snprintf(text, sizeof text, "%s as shipped", labels->chart->lines[panel->marks[i].line].name);
-            draw_label(labels, i, text, true);
-        }
-    for (int front = 1; front >= 0; front--)
-        for (int i = 0; i < panel->count; i++) {
-            const ChartMark *mark = &panel->marks[i];
-            if (mark->on_front != (front == 1) || mark->shipped || !ends_line(panel, i)) continue;
-            const char *text = mark->label[0] != '\0' ? mark->label : labels->chart->lines[mark->line].name;
-            draw_label(labels, i, text, false);
-        }
-}
-
-/* Draws the labels of a panel's marks: at both ends of each line, where there is room. False if out of memory. */
-static bool draw_panel_labels(const ChartLayout *layout, int panel, Sketch *sketch) {
-    const PlotPanel *plot = &layout->panels[panel];
-    const PageBox frame = {plot->x.from + 0.5, plot->y.from + 0.5, plot->x.to - 0.5, plot->y.to - 0.5};
-    Labels *labels = calloc(1, sizeof *labels);
-    if (labels == NULL) return false;
-    *labels = (Labels){layout->chart, &layout->chart->panels[panel], plot, {.frame = frame}, sketch};
-    add_obstacles(labels);
-    bool whole = add_front(labels);
-    if (whole) draw_labels(labels);
-    free(labels);
-    return whole;
-}
-
-/* mm */
-static const double gap = 8, top_margin = 5.5, axis_room = 9;
-
-const char *const chart_panel_titles[CHART_PANELS] = {"Impact frames", "The 60 frames after"};
-
-static ChartLayout chart_lay_out(const Chart *chart) {
-    ChartLayout layout = {.chart = chart};
-    lay_out_legend(&layout);
-    layout.legend_top =
-        FOOT_ROW * layout.foot_rows + words_height(&layout.words) + 2 * FOOT_GAP + LEGEND_ROW * (layout.rows - 0.5);
-    const double below = layout.legend_top + LEGEND_ROW / 2 + axis_room;
-    layout.height = fmax(CHART_HEIGHT, below + LEAST_PANEL + top_margin);
-    const PlotGrid grid = {.width = CHART_WIDTH,
-                           .height = layout.height,
+/* words: mm that the caption takes below. */
+static void lay_out(ChartPicture *picture, double words) {
+    const ChartSize size = picture->size;
+    const Chart *chart = picture->chart;
+    picture->width = pages[size].width;
+    picture->height = pages[size].height + words;
+    const PlotGrid grid = {.width = picture->width,
+                           .height = picture->height,
                            .left = LEFT_MARGIN,
                            .right = RIGHT_MARGIN,
-                           .bottom = below,
-                           .top = top_margin,
-                           .columns = CHART_PANELS,
-                           .rows = 1,
-                           .gap = gap};
+                           .bottom = BOTTOM_MARGIN + words,
+                           .top = TOP_MARGIN,
+                           .columns = pages[size].columns,
+                           .rows = CHART_PANELS / pages[size].columns,
+                           .gap = pages[size].gap,
+                           .row_gap = pages[size].row_gap};
     for (int p = 0; p < CHART_PANELS; p++) {
-        layout.panels[p] = (PlotPanel){
-            .box = plot_grid_box(&grid, p),
-            .title = chart_panel_titles[p],
-            .x = plot_log_axis(chart->us_least, chart->us_most, "Solver time per step (µs)"),
-            .y = plot_log_axis(chart->error_least, chart->error_most, p == 0 ? "Mean velocity error (m/s)" : NULL)};
-        plot_panel_place(&layout.panels[p]);
+        const char *error_axis = p == 0 || pages[size].columns == 1 ? "Mean velocity error (m/s)" : NULL;
+        picture->panels[p] =
+            (PlotPanel){.box = plot_grid_box(&grid, p),
+                        .title = chart_panel_titles[p],
+                        .x = plot_log_axis(chart->us_least, chart->us_most, "Solver time per step (µs)"),
+                        .y = plot_log_axis(chart->error_least, chart->error_most, error_axis),
+                        .points = AXIS_POINTS};
+        plot_panel_place(&picture->panels[p]);
     }
-    return layout;
 }
 
-void chart_mark_place(const Chart *chart, int panel, const ChartMark *mark, double *left, double *top) {
-    const ChartLayout layout = chart_lay_out(chart);
-    const Point at = plot_place(&layout.panels[panel], mark->us, mark->error);
-    *left = at.x / CHART_WIDTH;
-    *top = 1 - at.y / layout.height;
+/* A silenced twin has its method's colour, dashed and open; a program of others is open, too. */
+PlotStyle chart_line_style(const ChartLine *line) {
+    const MethodDescription *method = line->description;
+    PlotStyle style = {.symbol = METHOD_CIRCLE, .colour = GREY_LINE, .ink = CHART_GREY_INK};
+    if (line->rank != CHART_COLOURED) return style;
+    plot_method_styles(&method, 1, &style);
+    const bool twin = chart_twin_word(line) != NULL;
+    style.symbol = METHOD_CIRCLE;
+    style.open = twin || chart_is_program(line);
+    style.dashes = twin ? "(5,2.5)" : NULL;
+    return style;
 }
 
-double chart_height(const Chart *chart) { return chart_lay_out(chart).height; }
+/* Shade, curves and marks. */
 
-/* The front as a staircase, from the top of the panel to its right edge. */
-static bool draw_front(const ChartPanel *panel, const PlotPanel *plot, Sketch *sketch) {
-    const PlotLook look = {.style = {.colour = PARETO_COLOUR}, .line = 6};
-    int *order = malloc((size_t)panel->count * sizeof *order + 1), count = 0;
-    Point *steps = malloc((2 * (size_t)panel->count + 1) * sizeof *steps);
-    if (order != NULL && steps != NULL) {
-        const int corners = chart_pareto_corners(panel, order);
-        for (int i = 0; i < corners; i++) {
-            const ChartMark *mark = &panel->marks[order[i]];
-            const Point at = plot_place(plot, mark->us, mark->error);
-            steps[count] = (Point){at.x, i == 0 ? plot->y.to : steps[count - 1].y};
-            steps[count + 1] = at;
-            count += 2;
-        }
-        if (count > 0) steps[count] = (Point){plot->x.to, steps[count - 1].y};
-        plot_line(sketch, steps, count > 0 ? count + 1 : 0, &look);
+/* The corners of the front, from the upper edge of the panel to its right one. Returns their number. */
+static int front_corners(const ChartDrawing *drawing, int panel, Point *corners) {
+    const CurvePoint *front = drawing->chart->front[panel];
+    const PlotBox *box = &drawing->plot->box;
+    const double right = box->left + box->width, top = box->bottom + box->height;
+    int count = 0;
+    double y = top;
+    for (int i = 0; i < drawing->chart->front_count[panel]; i++) {
+        const Point at = plot_place(drawing->plot, front[i].us, front[i].error);
+        const double x = fmin(fmax(at.x, box->left), right);
+        corners[count++] = (Point){x, y};
+        y = fmin(fmax(at.y, box->bottom), top);
+        corners[count++] = (Point){x, y};
     }
-    const bool whole = order != NULL && steps != NULL;
-    free(order);
-    free(steps);
-    return whole;
+    if (count > 0) corners[count++] = (Point){right, y};
+    return count;
 }
 
-/* The bar of a mark's quartiles; a bar shorter than its mark would only blur it. */
-static void draw_quartiles(const ChartMark *mark, const PlotPanel *plot, Sketch *sketch, const PlotLook *look) {
-    const Point ends[] = {plot_place(plot, mark->us_q1, mark->error), plot_place(plot, mark->us_q3, mark->error)};
-    const Point at = plot_place(plot, mark->us, mark->error);
-    if (ends[1].x - at.x > MARK_RADIUS || at.x - ends[0].x > MARK_RADIUS) plot_line(sketch, ends, 2, look);
-}
-
-/* Marks of a line follow each other; all lines are below all marks. */
-static bool draw_lines(const Chart *chart, const ChartPanel *panel, const PlotPanel *plot, Sketch *sketch) {
-    Point *points = malloc((size_t)panel->count * sizeof *points + 1);
-    if (points == NULL) return false;
-    for (int i = 0; i < panel->count; i++) points[i] = plot_place(plot, panel->marks[i].us, panel->marks[i].error);
-    for (int marks = 0; marks <= 1; marks++)
-        for (int i = 0, end; i < panel->count; i = end) {
-            const PlotStyle style = chart->lines[panel->marks[i].line].style;
-            const PlotLook line = {.style = style, .line = 1.6};
-            PlotLook bar = line;
-            bar.style.dashes = NULL;
-            for (end = i; end < panel->count && panel->marks[end].line == panel->marks[i].line;) end++;
-            if (marks)
-                plot_marks(sketch, points + i, end - i, &style);
-            else
-                plot_line(sketch, points + i, end - i, &line);
-            for (int k = i; !marks && k < end; k++) draw_quartiles(&panel->marks[k], plot, sketch, &bar);
-        }
-    free(points);
+static bool draw_shade(const ChartDrawing *drawing, int panel) {
+    const PlotBox *box = &drawing->plot->box;
+    Point *corners = malloc((2 * (size_t)drawing->chart->front_count[panel] + 4) * sizeof *corners);
+    if (corners == NULL) return false;
+    int count = front_corners(drawing, panel, corners);
+    if (count > 0) {
+        corners[count++] = (Point){box->left + box->width, box->bottom};
+        corners[count++] = (Point){box->left, box->bottom};
+        corners[count++] = (Point){box->left, box->bottom + box->height};
+        sketch_shape(drawing->sketch, corners, count, &(Pen){SHADE, 1, NO_COLOUR, 0, NULL});
+    }
+    free(corners);
     return true;
 }
 
-/* A ring around settings as shipped. */
-static void draw_rings(const ChartPanel *panel, const PlotPanel *plot, Sketch *sketch) {
-    const PlotStyle ring = {.symbol = METHOD_CIRCLE, .open = true, .colour = 0x000000};
-    for (int i = 0; i < panel->count; i++) {
-        const ChartMark *mark = &panel->marks[i];
-        if (mark->shipped) plot_mark(sketch, plot_place(plot, mark->us, mark->error), &ring, RING_RADIUS, 2.4);
+const ChartMark *chart_find_shipped(const ChartPanel *panel) {
+    for (int i = 0; i < panel->count; i++)
+        if (panel->marks[i].shipped) return &panel->marks[i];
+    return NULL;
+}
+
+/* The quartiles of a coloured mark's time; a bar shorter than its mark would only blur it. */
+static void draw_quartiles(ChartDrawing *drawing, const ChartMark *mark) {
+    const Point at = chart_place(drawing, mark);
+    const double left = plot_axis_place(&drawing->plot->x, mark->us_q1),
+                 right = plot_axis_place(&drawing->plot->x, mark->us_q3);
+    if (right - at.x <= MARK_RADIUS && at.x - left <= MARK_RADIUS) return;
+    const Pen pen = pen_line(chart_line_style(chart_line_of(drawing, mark)).colour, 1, NULL);
+    sketch_line(drawing->sketch, (Point){left, at.y}, (Point){right, at.y}, &pen);
+    label_add_segment(&drawing->field, (Segment){left, at.y, right, at.y});
+}
+
+/* Marks of a line follow each other. One that is lost or beaten is joined to none. */
+static void draw_curve(ChartDrawing *drawing, int first, int end) {
+    const ChartMark *marks = drawing->panel->marks;
+    const bool coloured = chart_is_coloured(drawing, &marks[first]);
+    const PlotStyle style = chart_line_style(chart_line_of(drawing, &marks[first]));
+    const Pen pen = pen_line(style.colour, coloured ? 2.4 : 0.9, style.dashes);
+    const ChartMark *before = NULL;
+    for (int i = first; i < end; i++) {
+        if (marks[i].lost || marks[i].beaten) continue;
+        const Point to = chart_place(drawing, &marks[i]), from = before != NULL ? chart_place(drawing, before) : to;
+        before = &marks[i];
+        sketch_line(drawing->sketch, from, to, &pen);
+        label_add_segment(&drawing->field, (Segment){from.x, from.y, to.x, to.y});
+    }
+    for (int i = first; coloured && i < end; i++) draw_quartiles(drawing, &marks[i]);
+}
+
+static void draw_mark(ChartDrawing *drawing, const ChartMark *mark) {
+    PlotStyle style = chart_line_style(chart_line_of(drawing, mark));
+    const Point at = chart_place(drawing, mark);
+    const bool coloured = chart_is_coloured(drawing, mark);
+    const double radius = mark->shipped ? CHART_RING_RADIUS : coloured ? MARK_RADIUS : CHART_GREY_RADIUS;
+    if (mark->lost) style.symbol = PLOT_CROSS;
+    if (coloured)
+        plot_marks(drawing->sketch, &at, 1, &style);
+    else
+        plot_mark(drawing->sketch, at, &style, CHART_GREY_RADIUS, 0);
+    if (mark->shipped)
+        plot_mark(drawing->sketch, at, &(PlotStyle){.symbol = METHOD_CIRCLE, .open = true, .colour = ACCENT},
+                  CHART_RING_RADIUS, 2);
+    label_add_box(&drawing->field, (PageBox){at.x - radius, at.y - radius, at.x + radius, at.y + radius});
+}
+
+/* Grey below colour, curves below marks. */
+static void draw_curves(ChartDrawing *drawing) {
+    const ChartMark *marks = drawing->panel->marks;
+    for (int coloured = 0; coloured <= 1; coloured++) {
+        for (int i = 0, end; i < drawing->panel->count; i = end) {
+            for (end = i; end < drawing->panel->count && marks[end].line == marks[i].line;) end++;
+            if (chart_is_coloured(drawing, &marks[i]) == (coloured == 1)) draw_curve(drawing, i, end);
+        }
+        for (int i = 0; i < drawing->panel->count; i++)
+            if (chart_is_coloured(drawing, &marks[i]) == (coloured == 1)) draw_mark(drawing, &marks[i]);
     }
 }
 
-/* From bottom to top: front, lines, bars, marks, ring. */
-static bool draw_chart(const ChartLayout *layout, const char *title, Sketch *sketch) {
-    bool whole = true;
-    for (int p = 0; p < CHART_PANELS; p++) {
-        const ChartPanel *panel = &layout->chart->panels[p];
-        const PlotPanel *plot = &layout->panels[p];
-        whole = draw_front(panel, plot, sketch) && draw_lines(layout->chart, panel, plot, sketch) && whole;
-        draw_rings(panel, plot, sketch);
-        plot_panel_draw(sketch, plot);
-        whole = draw_panel_labels(layout, p, sketch) && whole;
+/* False if out of memory. */
+static bool draw_panel(ChartPicture *picture, int panel) {
+    const PlotPanel *plot = &picture->panels[panel];
+    ChartDrawing *drawing = calloc(1, sizeof *drawing);
+    if (drawing == NULL) return false;
+    *drawing =
+        (ChartDrawing){.chart = picture->chart,
+                       .panel = &picture->chart->panels[panel],
+                       .plot = plot,
+                       .sketch = &picture->sketch,
+                       .field = {.frame = {plot->x.from + 0.5, plot->y.from + 0.5, plot->x.to - 0.5, plot->y.to - 0.5}},
+                       .named = picture->named};
+    const bool whole = draw_shade(drawing, panel);
+    if (whole) {
+        chart_find_cross(drawing);
+        draw_curves(drawing);
+        chart_draw_names(drawing, panel);
+        plot_panel_draw(&picture->sketch, plot);
     }
-    const TextStyle style = {7.5, TEXT_RIGHT, 0x505050, 0, false};
-    sketch_text(sketch, (Point){layout->panels[CHART_PANELS - 1].x.to, layout->height - top_margin + 2.5}, &style, "%s",
-                title);
-    draw_legend(layout, sketch);
+    free(drawing);
     return whole;
 }
 
-static bool draw(const Chart *chart, const char *scene, const char *stem, Error *error) {
+/* A paragraph below the picture. Draws nothing without a sketch. Returns its height. */
+static double draw_paragraph(Sketch *sketch, const char *text, double left, double width, double top) {
+    char row[SKETCH_TEXT_SIZE] = "";
+    double y = top - PARAGRAPH_ROW / 2;
+    for (const char *word = text; *word != '\0';) {
+        char longer[SKETCH_TEXT_SIZE];
+        const size_t length = strcspn(word, " \n");
+        snprintf(longer, sizeof longer, "%s%s%.*s", row, row[0] != '\0' ? " " : "", (int)length, word);
+        if (row[0] != '\0' && type_width(longer, CHART_SMALL_POINTS) > width) {
+            if (sketch != NULL) plot_text(sketch, (Point){left, y}, TEXT_LEFT, CHART_SMALL_POINTS, row);
+            y -= PARAGRAPH_ROW;
+            row[0] = '\0';
+            continue;
+        }
+        strcpy(row, longer);
+        word += length + strspn(word + length, " \n");
+    }
+    if (sketch != NULL) plot_text(sketch, (Point){left, y}, TEXT_LEFT, CHART_SMALL_POINTS, row);
+    return top - y + PARAGRAPH_ROW / 2;
+}
+
+/* Everything but the caption's words below. */
+static bool draw_panels(ChartPicture *picture, const char *title, double words) {
+    bool whole = true;
+    lay_out(picture, words);
+    sketch_begin(&picture->sketch, picture->width, picture->height);
+    for (int p = 0; whole && p < CHART_PANELS; p++) whole = draw_panel(picture, p);
+    const TextStyle style = {AXIS_POINTS, TEXT_LEFT, CHART_GREY_INK, 0, false};
+    sketch_text(&picture->sketch, (Point){LEFT_MARGIN, picture->height - 3}, &style, "%s", title);
+    return whole;
+}
+
+/* Names that find no place are known when the panels are drawn, and the height of the caption after that. */
+static bool draw_words(ChartPicture *picture, const char *title) {
+    const double width = picture->width - LEFT_MARGIN - RIGHT_MARGIN, gap = 2;
+    const double words = gap + draw_paragraph(NULL, picture->caption, 0, width, 0);
+    sketch_free(&picture->sketch);
+    if (!draw_panels(picture, title, words)) return false;
+    draw_paragraph(&picture->sketch, picture->caption, LEFT_MARGIN, width, words - gap);
+    return true;
+}
+
+bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *scene, const ChartLook *look,
+                        Error *error) {
     char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE];
-    const ChartLayout layout = chart_lay_out(chart);
-    Sketch sketch;
+    *picture = (ChartPicture){.chart = chart, .size = look->size};
     chart_plain(name, scene);
     snprintf(title, sizeof title, "%s, %d launches", name, chart->launches);
-    sketch_begin(&sketch, CHART_WIDTH, layout.height);
-    snprintf(sketch.title, sizeof sketch.title, "Speed and accuracy: %s", title);
-    const bool drawn = (draw_chart(&layout, title, &sketch) || error_memory(error, stem)) &&
-                       sketch_draw(&sketch, stem, SKETCH_PDF, error);
-    sketch_free(&sketch);
-    return drawn;
+    bool whole = draw_panels(picture, title, 0);
+    chart_caption(chart, title, picture->named, picture->caption, sizeof picture->caption);
+    if (whole && look->words) whole = draw_words(picture, title);
+    snprintf(picture->sketch.title, sizeof picture->sketch.title, "Speed and accuracy: %s", title);
+    if (whole) return true;
+    chart_picture_free(picture);
+    return error_memory(error, scene);
+}
+
+void chart_picture_free(ChartPicture *picture) { sketch_free(&picture->sketch); }
+
+void chart_mark_place(const ChartPicture *picture, int panel, const ChartMark *mark, double *left, double *top) {
+    const Point at = plot_place(&picture->panels[panel], mark->us, mark->error);
+    *left = at.x / picture->width;
+    *top = 1 - at.y / picture->height;
+}
+
+static bool write_picture(const ChartPicture *picture, const char *stem, Error *error) {
+    char caption[PATH_MAX];
+    return sketch_draw(&picture->sketch, stem, SKETCH_PDF, error) &&
+           file_path(caption, sizeof caption, error, "%s.txt", stem) &&
+           file_write(caption, picture->caption, strlen(picture->caption), error);
 }
 
 /* A table from another source must not make us write outside the folder. */
@@ -451,16 +276,21 @@ static bool check_name(const char *csv_path, const char *scene, Error *error) {
            error_input(error, csv_path, "'%s' is not a valid scene name", scene);
 }
 
-bool chart_plot(const char *csv_path, const char *scene, const char *folder, Error *error) {
+bool chart_plot(const char *csv_path, const char *scene, const char *folder, const ChartLook *look, Error *error) {
     char stem[PATH_MAX];
     if (!check_name(csv_path, scene, error)) return false;
     if (!file_path(stem, sizeof stem, error, "%s/chart-%s", folder, scene)) return false;
     CsvTable table;
     if (!csv_table_read(&table, csv_path, &chart_layout, error)) return false;
     Chart chart;
-    bool drawn = chart_gather(&chart, &table, scene, csv_path, error);
+    ChartPicture picture;
+    bool drawn = chart_gather(&chart, &table, scene, csv_path, look->highlight, error);
     if (drawn) {
-        drawn = draw(&chart, scene, stem, error);
+        drawn = chart_picture_make(&picture, &chart, scene, look, error);
+        if (drawn) {
+            drawn = write_picture(&picture, stem, error);
+            chart_picture_free(&picture);
+        }
         chart_free(&chart);
     }
     csv_table_free(&table);

@@ -60,11 +60,9 @@ static int find_twin(const RivalCurves *curves, int family) {
     return -1;
 }
 
-/* A setting of a learned method that is some family's twin. */
-static bool is_silenced(const RivalCurves *curves, int family) {
-    for (int i = 0; twin_of(curves, family) != NULL && i < curves->family_count; i++)
-        if (find_twin(curves, i) == family) return true;
-    return false;
+/* The learned method itself, not one of its variants. */
+static bool is_whole(const RivalCurves *curves, int family) {
+    return strcmp(curves->families[family].name, curves->families[family].method) == 0;
 }
 
 /* Of a method, or of any (-1), in a scene, or in any (NULL). */
@@ -87,14 +85,14 @@ static void add(Columns *columns, EqualTimeGrid *grid, const EqualTime *table, i
     }
 }
 
-/* Learned methods stand beside their silenced twins. */
+/* Learned methods stand beside their silenced twins; other variants of them are in the tables only. */
 static void order_columns(Columns *columns, EqualTimeGrid *grid, const EqualTime *table) {
     const RivalCurves *curves = &table->curves;
     for (int i = 0; i < curves->family_count; i++)
         if (twin_of(curves, i) == NULL) add(columns, grid, table, i, false);
     for (int i = 0; i < curves->family_count; i++) {
         const int twin = find_twin(curves, i);
-        if (twin_of(curves, i) == NULL || is_silenced(curves, i)) continue;
+        if (twin_of(curves, i) == NULL || !is_whole(curves, i)) continue;
         add(columns, grid, table, i, false);
         if (twin >= 0) add(columns, grid, table, twin, has_ratio(table, i, NULL));
     }
@@ -150,51 +148,62 @@ static bool equal_time_grid(EqualTimeGrid *grid, const EqualTime *table, const c
 }
 
 /* mm */
-static const double cell_height = 6.2, cell_least = 9.5, cell_most = 13, gap = 1.2, foot = 19.5, note_height = 3.5,
-                    bar_height = 2.6, bar_width = 62, note_width = 76;
-static const double degrees = 40, name_points = 8;
+static const double cell_height = 6.2, cell_least = 9.5, gap = 1.2, foot = 19.5, bar_height = 2.6, bar_width = 62,
+                    note_width = 76, name_row = 3.1;
+static const double scene_points = 8, method_points = 7;
 static const double strongest = 1000; /* ratio, and its inverse, with the full colour */
+
+enum { NAME_ROWS = 4 };
+
+/* The name of a method in rows, broken behind "-" and before ":": "scene-", "net", "net=off". */
+typedef struct BrokenName {
+    int count;
+    char rows[NAME_ROWS][CHART_TEXT_SIZE];
+    double width; /* mm */
+} BrokenName;
+
+static BrokenName break_name(const char *name) {
+    BrokenName broken = {0};
+    while (*name != '\0' && broken.count < NAME_ROWS) {
+        size_t length = broken.count == NAME_ROWS - 1 ? strlen(name) : strcspn(name, "-:");
+        length += name[length] == '-';
+        char *row = broken.rows[broken.count++];
+        snprintf(row, CHART_TEXT_SIZE, "%.*s", (int)length, name);
+        broken.width = fmax(broken.width, type_width(row, method_points));
+        name += length + (name[length] == ':');
+    }
+    return broken;
+}
 
 typedef struct EqualTimePlotLayout {
     const EqualTimeGrid *grid;
     Sketch *sketch;
-    double width, height;   /* mm: of the page */
-    double left, top, cell; /* mm: left of the first cell, top of the first row, width of a cell */
-    double foot, notes;     /* mm: height of all below the rows, and of the notes at the end */
+    double width, height;               /* mm: of the page */
+    double left, top;                   /* mm: left of the first cell, top of the first row */
+    double columns[EQUAL_TIME_COLUMNS]; /* mm: left edges */
+    double cells[EQUAL_TIME_COLUMNS];   /* mm: widths */
 } EqualTimePlotLayout;
 
-static double longest(const char (*names)[CHART_TEXT_SIZE], int count) {
+static double longest_scene(const EqualTimeGrid *grid) {
     double most = 0;
-    for (int i = 0; i < count; i++) most = fmax(most, type_width(names[i], name_points));
+    for (int i = 0; i < grid->rows; i++) most = fmax(most, type_width(grid->scenes[i], scene_points));
     return most;
 }
 
-static int gaps_before(const EqualTimeGrid *grid, int column) {
-    int gaps = 0;
-    for (int i = 1; i <= column; i++) gaps += !grid->joined[i];
-    return gaps;
-}
-
-static double column_x(const EqualTimePlotLayout *layout, int column) {
-    return layout->left + column * layout->cell + gap * gaps_before(layout->grid, column);
-}
-
 static EqualTimePlotLayout lay_out(const EqualTimeGrid *grid) {
-    EqualTimePlotLayout layout = {.grid = grid, .left = longest(grid->scenes, grid->rows) + 4};
-    const double gaps = gap * gaps_before(grid, grid->columns - 1);
-    const double turned = degrees * acos(-1) / 180;
-    double right = 3;
+    EqualTimePlotLayout layout = {
+        .grid = grid, .left = longest_scene(grid) + 4, .top = foot + grid->rows * cell_height};
+    double right = layout.left - gap;
+    int rows = 1;
     for (int i = 0; i < grid->columns; i++) {
-        const double past = type_width(grid->methods[i], name_points) * cos(turned) + 2;
-        right = fmax(right, past - (grid->columns - i - 0.5) * cell_least);
+        const BrokenName name = break_name(grid->methods[i]);
+        layout.columns[i] = right + (grid->joined[i] ? 0 : gap);
+        layout.cells[i] = fmax(cell_least, name.width + 1.2);
+        right = layout.columns[i] + layout.cells[i];
+        if (name.count > rows) rows = name.count;
     }
-    const double room = (FIGURE_PAGE_WIDTH - layout.left - right - gaps) / grid->columns;
-    layout.cell = fmin(fmax(room, cell_least), cell_most);
-    layout.width = fmax(layout.left + grid->columns * layout.cell + gaps + right, layout.left + bar_width + note_width);
-    layout.notes = (grid->times[0] != '\0' ? note_height : 0) + (grid->left_out.used > 0 ? note_height : 0);
-    layout.foot = foot + words_height(&grid->words) + layout.notes;
-    layout.top = layout.foot + grid->rows * cell_height;
-    layout.height = layout.top + longest(grid->methods, grid->columns) * sin(turned) + 5;
+    layout.width = fmax(right + 1, layout.left + bar_width + note_width);
+    layout.height = layout.top + rows * name_row + 3;
     return layout;
 }
 
@@ -261,13 +270,13 @@ static void draw_ratio(Sketch *sketch, Point at, const TextStyle *style, double 
 
 static void draw_cell(const EqualTimePlotLayout *layout, int row, int column) {
     const EqualTimeCell *cell = &layout->grid->cells[row][column];
-    const double x = column_x(layout, column), y = layout->top - (row + 1) * cell_height, edge = 0.25;
+    const double x = layout->columns[column], y = layout->top - (row + 1) * cell_height, edge = 0.25;
     if (!cell->ran) return;
     const bool none = isnan(cell->ratio);
     const uint32_t colour = none ? 0xD8D8D8 : cell->below ? 0xFFFFFF : colour_of(cell->ratio);
-    draw_box(layout->sketch, (PlotBox){x + edge, y + edge, layout->cell - 2 * edge, cell_height - 2 * edge}, colour,
-             !none && cell->below ? 0xB0B0B0 : NO_COLOUR);
-    const Point middle = {x + layout->cell / 2, y + cell_height / 2};
+    draw_box(layout->sketch, (PlotBox){x + edge, y + edge, layout->cells[column] - 2 * edge, cell_height - 2 * edge},
+             colour, !none && cell->below ? 0xB0B0B0 : NO_COLOUR);
+    const Point middle = {x + layout->cells[column] / 2, y + cell_height / 2};
     const TextStyle style = {7.5, TEXT_CENTER, ink_on(colour), 0, false};
     if (none)
         sketch_text(layout->sketch, middle, &style, "–");
@@ -278,13 +287,16 @@ static void draw_cell(const EqualTimePlotLayout *layout, int row, int column) {
 static void draw_names(const EqualTimePlotLayout *layout) {
     const EqualTimeGrid *grid = layout->grid;
     for (int i = 0; i < grid->columns; i++) {
-        const double middle = column_x(layout, i) + layout->cell / 2;
-        sketch_text(layout->sketch, (Point){middle - 1, layout->top + 1.5},
-                    &(TextStyle){name_points, TEXT_LEFT, INK, degrees, false}, "%s", grid->methods[i]);
+        const BrokenName name = break_name(grid->methods[i]);
+        for (int row = 0; row < name.count; row++)
+            plot_text(
+                layout->sketch,
+                (Point){layout->columns[i] + layout->cells[i] / 2, layout->top + name_row * (name.count - row - 0.3)},
+                TEXT_CENTER, method_points, name.rows[row]);
     }
     for (int i = 0; i < grid->rows; i++)
         plot_text(layout->sketch, (Point){layout->left - 2, layout->top - (i + 0.5) * cell_height}, TEXT_RIGHT,
-                  name_points, grid->scenes[i]);
+                  scene_points, grid->scenes[i]);
 }
 
 /* The scale of colours, as a bar of steps. */
@@ -292,7 +304,7 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
     static const double marks[] = {1.0 / 1000, 1.0 / 30, 1, 30, 1000};
     enum { STEPS = 61 };
     Sketch *sketch = layout->sketch;
-    const double bottom = layout->foot - 7.2, right = layout->left + bar_width + 6;
+    const double bottom = foot - 7.2, right = layout->left + bar_width + 6;
     char text[24], note[CHART_TEXT_SIZE + 64];
     for (int i = 0; i < STEPS; i++)
         draw_box(sketch, (PlotBox){layout->left + bar_width * i / STEPS, bottom, bar_width / STEPS + 0.05, bar_height},
@@ -310,18 +322,20 @@ static void draw_scale(const EqualTimePlotLayout *layout) {
     plot_text(sketch, (Point){right, bottom - 5.5}, TEXT_LEFT, 8, "– slower, or unstable before the impact");
     snprintf(note, sizeof note, "white: both below %g m/s", PARETO_RESOLUTION);
     plot_text(sketch, (Point){right, bottom - 9}, TEXT_LEFT, 8, note);
-    words_draw(&layout->grid->words, sketch, layout->left, layout->notes + 0.5);
 }
 
-static void draw_notes(const EqualTimePlotLayout *layout) {
-    const EqualTimeGrid *grid = layout->grid;
-    char note[sizeof grid->left_out.text + 64];
-    plot_text(layout->sketch, (Point){layout->left, note_height / 2}, TEXT_LEFT, WORD_POINTS, grid->times);
-    if (grid->left_out.used == 0) return;
-    snprintf(note, sizeof note, "Left out, as without a ratio: %s", grid->left_out.text);
-    chart_make_plain(note);
-    text_fit(note, sizeof note, WORD_POINTS, layout->width - layout->left - 1);
-    plot_text(layout->sketch, (Point){layout->left, layout->notes - note_height / 2}, TEXT_LEFT, WORD_POINTS, note);
+static bool write_caption(const EqualTimeGrid *grid, const char *stem, Error *error) {
+    char path[PATH_MAX], caption[PLOT_CAPTION_SIZE] = "";
+    text_add(caption, sizeof caption,
+             "Mean error at the impact in the time of momentum:%s, over that of the best rival in the same time. "
+             "Dashes: slower "
+             "than that, or unstable before the impact. White: both errors are below %g m/s.",
+             grid->time, PARETO_RESOLUTION);
+    if (grid->left_out.used > 0)
+        text_add(caption, sizeof caption, " Left out, as without a ratio: %s.", grid->left_out.text);
+    if (grid->times[0] != '\0') text_add(caption, sizeof caption, " %s", grid->times);
+    words_join(&grid->words, caption, sizeof caption);
+    return file_path(path, sizeof path, error, "%s.txt", stem) && file_write(path, caption, strlen(caption), error);
 }
 
 static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
@@ -336,8 +350,7 @@ static bool draw(const EqualTimeGrid *grid, const char *folder, Error *error) {
         for (int column = 0; column < grid->columns; column++) draw_cell(&layout, row, column);
     draw_names(&layout);
     draw_scale(&layout);
-    draw_notes(&layout);
-    const bool drawn = sketch_draw(&sketch, stem, SKETCH_PDF, error);
+    const bool drawn = sketch_draw(&sketch, stem, SKETCH_PDF, error) && write_caption(grid, stem, error);
     sketch_free(&sketch);
     return drawn;
 }

@@ -27,7 +27,10 @@ void left_out_add(LeftOut *left_out, const char *why, const char *method, const 
 /* and then where the reference did not converge. */
 void left_out_add_unconverged(LeftOut *left_out, const CsvTable *unconverged, const char *study);
 
-/* From `left` to the edge of the page; a line is WORD_ROW high. */
+#define NOTE_ROW 3.4 /* mm */
+#define NOTE_POINTS 6.5
+
+/* From `left` to the edge of the page; a line is NOTE_ROW high. */
 void left_out_draw(const LeftOut *left_out, PlotPage *page, double left);
 
 /* The borders figure: how far each method holds in each study. */

@@ -292,8 +292,8 @@ void left_out_draw(const LeftOut *left_out, PlotPage *page, double left) {
         char line[LEFT_OUT_SIZE];
         snprintf(line, sizeof line, "%s.", left_out->lines[i]);
         text_add(page->caption, sizeof page->caption, " %s", line);
-        text_fit(line, sizeof line, WORD_POINTS, page->sketch.width - left - 1);
-        plot_text(&page->sketch, (Point){left, WORD_ROW * (left_out->count - i - 0.5)}, TEXT_LEFT, WORD_POINTS, line);
+        text_fit(line, sizeof line, NOTE_POINTS, page->sketch.width - left - 1);
+        plot_text(&page->sketch, (Point){left, NOTE_ROW * (left_out->count - i - 0.5)}, TEXT_LEFT, NOTE_POINTS, line);
     }
 }
 
@@ -479,7 +479,7 @@ static void write_map(MapPanels *map, const CsvTable *unconverged, PlotPage *pag
     leave_out(map, &left_out);
     const int reasons = left_out.count;
     left_out_add_unconverged(&left_out, unconverged, map->first->map);
-    const Layout layout = lay_out(map, left_out.count * WORD_ROW, &page->sketch);
+    const Layout layout = lay_out(map, left_out.count * NOTE_ROW, &page->sketch);
     sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
     draw_legend(&layout);

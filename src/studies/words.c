@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The words of a figure, explained in its caption: names of methods and keys of their settings. */
 #include "base/base.h"
-#include "figures/sketch.h"
 #include "methods/methods.h"
-#include "pixels/type.h"
 #include "studies/chart_internal.h"
 
 #include <string.h>
@@ -42,20 +40,4 @@ void words_add_settings(WordList *words, const char *name, const char *setting) 
 void words_join(const WordList *words, char *caption, size_t size) {
     for (int i = 0; i < words->count; i++) text_add(caption, size, "%s%s", i == 0 ? " " : "; ", words->items[i]);
     text_add(caption, size, words->count > 0 ? ".\n" : "\n");
-}
-
-static int rows_of(const WordList *words) { return (words->count + 1) / 2; }
-
-double words_height(const WordList *words) { return rows_of(words) * WORD_ROW; }
-
-void words_draw(const WordList *words, Sketch *sketch, double left, double bottom) {
-    const double width = (sketch->width - left) / 2;
-    const int rows = rows_of(words);
-    for (int i = 0; i < words->count; i++) {
-        char text[WORD_SIZE];
-        strcpy(text, words->items[i]);
-        text_fit(text, sizeof text, WORD_POINTS, width - 1.5);
-        plot_text(sketch, (Point){left + width * (i / rows), bottom + WORD_ROW * (rows - i % rows - 0.5)}, TEXT_LEFT,
-                  WORD_POINTS, text);
-    }
 }

@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The caption of a chart: what its axes, curves and lines are, what was left out, and what its words mean. */
+#include "base/base.h"
+#include "methods/methods.h"
+#include "studies/chart.h"
+#include "studies/chart_internal.h"
+
+#include <stddef.h>
+#include <string.h>
+
+typedef struct Caption {
+    const Chart *chart;
+    char *text;
+    size_t size;
+} Caption;
+
+static bool is_drawn(const ChartLine *line) { return line->marks[0] + line->marks[1] > 0; }
+
+/* The lines with a nonzero counter (at `offset` in ChartLine). */
+static void add_counts(const Caption *caption, const char *why, size_t offset) {
+    const char *separator = why;
+    for (int i = 0; i < caption->chart->line_count; i++) {
+        const ChartLine *line = &caption->chart->lines[i];
+        int count;
+        memcpy(&count, (const char *)line + offset, sizeof count);
+        if (count == 0) continue;
+        text_add(caption->text, caption->size, "%s%s (%d)", separator, line->name, count);
+        separator = ", ";
+    }
+    if (separator != why) text_add(caption->text, caption->size, ".");
+}
+
+/* "0.14 to 0.28 m/s"; one number if both are equal. */
+static void add_range(const Caption *caption, const double range[2], const char *unit) {
+    text_add(caption->text, caption->size, range[0] < 100 ? "%.2g" : "%.0f", range[0]);
+    if (range[1] > range[0]) text_add(caption->text, caption->size, range[1] < 100 ? " to %.2g" : " to %.0f", range[1]);
+    text_add(caption->text, caption->size, " %s", unit);
+}
+
+static void add_beyond(const Caption *caption) {
+    const char *separator = " Beyond the axes: ";
+    for (int i = 0; i < caption->chart->line_count; i++) {
+        const ChartLine *line = &caption->chart->lines[i];
+        if (line->beyond == 0) continue;
+        text_add(caption->text, caption->size, "%s%s (", separator, line->name);
+        add_range(caption, line->beyond_us, "µs,");
+        text_add(caption->text, caption->size, " ");
+        if (line->beyond_error[1] <= PARETO_RESOLUTION) text_add(caption->text, caption->size, "below ");
+        add_range(caption, line->beyond_error, "m/s)");
+        separator = ", ";
+    }
+    if (separator[0] == ',') text_add(caption->text, caption->size, ".");
+}
+
+/* Names of the drawn lines for which `is` holds, and what is said of them. */
+static void add_names(const Caption *caption, bool (*is)(const ChartLine *), const char *said) {
+    const char *separator = " ";
+    for (int i = 0; i < caption->chart->line_count; i++) {
+        if (!is(&caption->chart->lines[i]) || !is_drawn(&caption->chart->lines[i])) continue;
+        text_add(caption->text, caption->size, "%s%s", separator, caption->chart->lines[i].name);
+        separator = ", ";
+    }
+    if (separator[0] == ',') text_add(caption->text, caption->size, ": %s", said);
+}
+
+static bool is_without_push_out(const ChartLine *line) {
+    return line->description != NULL && line->description->no_push_out;
+}
+
+static bool has_coloured_twin(const Chart *chart) {
+    for (int i = 0; i < chart->line_count; i++)
+        if (chart->lines[i].rank == CHART_COLOURED && chart_twin_word(&chart->lines[i]) != NULL &&
+            is_drawn(&chart->lines[i]))
+            return true;
+    return false;
+}
+
+static bool is_hidden(const Chart *chart) {
+    for (int i = 0; i < chart->line_count; i++)
+        if (chart->lines[i].rank == CHART_HIDDEN) return true;
+    return false;
+}
+
+static const ChartLine *find_shipped(const Chart *chart) {
+    for (int p = 0; p < CHART_PANELS; p++)
+        for (int i = 0; i < chart->panels[p].count; i++)
+            if (chart->panels[p].marks[i].shipped) return &chart->lines[chart->panels[p].marks[i].line];
+    return NULL;
+}
+
+static bool is_lost_drawn(const Chart *chart) {
+    for (int p = 0; p < CHART_PANELS; p++)
+        for (int i = 0; i < chart->panels[p].count; i++)
+            if (chart->panels[p].marks[i].lost) return true;
+    return false;
+}
+
+static void add_curves(const Caption *caption) {
+    const Chart *chart = caption->chart;
+    const ChartLine *shipped = find_shipped(chart);
+    text_add(caption->text, caption->size,
+             " A curve joins settings of a method; settings that another of its settings beats in both time and error "
+             "are left "
+             "out, as in the table chart.csv they are not. Shaded: what no method reaches. Bars: quartiles of the time "
+             "over repetitions of the same steps, of the coloured methods.");
+    if (shipped != NULL)
+        text_add(caption->text, caption->size,
+                 " Dotted: time and error of %s as shipped, with which the others are compared.", shipped->name);
+    add_names(caption, chart_is_program, "a program of others, by its own clock, whose errors have the same measure.");
+    if (is_lost_drawn(chart))
+        text_add(caption->text, caption->size, " Crosses: the method lost the scene before the impact.");
+    if (has_coloured_twin(chart))
+        text_add(caption->text, caption->size, " Dashed, open: the method with its learned part switched off.");
+    if (is_hidden(chart))
+        text_add(caption->text, caption->size, " Switched-off variants of grey methods are in the table only.");
+}
+
+static void add_unnamed(const Caption *caption, const bool *named) {
+    const char *separator = " Without room for a name: ";
+    for (int i = 0; i < caption->chart->line_count; i++) {
+        if (named[i] || !is_drawn(&caption->chart->lines[i])) continue;
+        text_add(caption->text, caption->size, "%s%s", separator, caption->chart->lines[i].name);
+        separator = ", ";
+    }
+    if (separator[0] == ',') text_add(caption->text, caption->size, ".");
+}
+
+static void add_left_out(const Caption *caption, const bool *named) {
+    add_beyond(caption);
+    add_unnamed(caption, named);
+    add_counts(caption, " Unstable before the impact, and left out: ", offsetof(ChartLine, lost));
+    add_counts(caption, " Without time or error: ", offsetof(ChartLine, left_out));
+    add_counts(caption, " Times here that vary: ", offsetof(ChartLine, varying));
+    if (caption->chart->floored > 0)
+        text_add(caption->text, caption->size, " Errors below %g m/s are drawn there.", PARETO_RESOLUTION);
+}
+
+/* Methods, then keys of settings. */
+static void gather_words(WordList *words, const Chart *chart) {
+    for (int settings = 0; settings < 2; settings++)
+        for (int p = 0; p < CHART_PANELS; p++)
+            for (int i = 0; i < chart->panels[p].count; i++) {
+                const ChartMark *mark = &chart->panels[p].marks[i];
+                if (settings == 0)
+                    words_add_method(words, mark->method);
+                else if (chart->lines[mark->line].rank == CHART_COLOURED)
+                    words_add_settings(words, mark->method, mark->setting);
+            }
+}
+
+void chart_caption(const Chart *chart, const char *title, const bool *named, char *text, size_t size) {
+    const Caption caption = {chart, text, size};
+    WordList words = {0};
+    snprintf(
+        text, size,
+        "Speed against accuracy: %s. At the impact: the first frames after the bomb touches a box. Velocity error: "
+        "difference from the converged solution of the same step, RMS over the boxes; mean over all launches.",
+        title);
+    add_curves(&caption);
+    add_names(&caption, is_without_push_out,
+              "error against the solution without the velocity that pushes overlapping boxes apart.");
+    add_left_out(&caption, named);
+    if (chart->times[0] != '\0') text_add(text, size, " %s", chart->times);
+    gather_words(&words, chart);
+    words_join(&words, text, size);
+}

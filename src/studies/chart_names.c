@@ -1,0 +1,267 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Names of the curves in a chart, where there is room beside them, and the lines through the engine as shipped, which they
+   interrupt. */
+#include "figures/sketch.h"
+#include "pixels/type.h"
+#include "studies/chart.h"
+#include "studies/chart_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { LABEL_ROWS = 4, CROSS = 2 };
+
+typedef struct Label {
+    char rows[LABEL_ROWS][CHART_TEXT_SIZE + 40];
+    int count;
+    double points[LABEL_ROWS];
+    uint32_t ink;
+} Label;
+
+static double row_height(double points) { return 1.2 * points * MM_PER_POINT; }
+
+static void label_row(Label *label, double points, const char *text) {
+    if (label->count == LABEL_ROWS || text[0] == '\0') return;
+    snprintf(label->rows[label->count], sizeof label->rows[0], "%s", text);
+    label->points[label->count++] = points;
+}
+
+static void draw_label(const ChartDrawing *drawing, const Label *label, const PageBox *box, bool right) {
+    double y = box->top;
+    for (int i = 0; i < label->count; i++) {
+        const TextStyle style = {label->points[i], right ? TEXT_RIGHT : TEXT_LEFT, label->ink, 0, false};
+        y -= row_height(label->points[i]) / 2;
+        sketch_text(drawing->sketch, (Point){right ? box->right : box->left, y}, &style, "%s", label->rows[i]);
+        y -= row_height(label->points[i]) / 2;
+    }
+}
+
+/* At the mark, or led to it by a thin line at most so long; across a line of the cross only if there is no other place. */
+static bool place_label(ChartDrawing *drawing, const ChartMark *mark, const Label *label, double farthest) {
+    const Point at = chart_place(drawing, mark);
+    LabelWish wish = {.x = at.x,
+                      .y = at.y,
+                      .clear = mark->shipped                      ? CHART_RING_RADIUS
+                               : chart_is_coloured(drawing, mark) ? MARK_RADIUS
+                                                                  : CHART_GREY_RADIUS,
+                      .farthest = farthest};
+    for (int i = 0; i < label->count; i++) {
+        wish.width = fmax(wish.width, type_width(label->rows[i], label->points[i]));
+        wish.height += row_height(label->points[i]);
+    }
+    PageBox box;
+    Segment leader;
+    bool led;
+    if (!label_place_led(&drawing->field, &wish, &box, &leader, &led)) {
+        Segment cross[CROSS];
+        memcpy(cross, drawing->field.segments, sizeof cross);
+        memset(drawing->field.segments, 0, sizeof cross);
+        const bool placed = label_place_led(&drawing->field, &wish, &box, &leader, &led);
+        memcpy(drawing->field.segments, cross, sizeof cross);
+        if (!placed) return false;
+    }
+    if (led) {
+        const Pen pen = pen_line(label->ink, 0.6, NULL);
+        sketch_line(drawing->sketch, (Point){leader.x0, leader.y0}, (Point){leader.x1, leader.y1}, &pen);
+    }
+    draw_label(drawing, label, &box, (box.left + box.right) / 2 < at.x);
+    return true;
+}
+
+/* "3.8 × the time", "1/980 of the error". */
+static void write_factor(char *text, size_t size, double factor, const char *of) {
+    const double times = factor < 1 ? 1 / factor : factor;
+    char number[24];
+    const double unit = pow(10, floor(log10(times)) - 1); /* two digits */
+    snprintf(number, sizeof number, times < 9.95 ? "%.1f" : "%.0f", unit * round(times / unit));
+    if (factor < 1)
+        snprintf(text, size, "1/%s of the %s", number, of);
+    else
+        snprintf(text, size, "%s × the %s", number, of);
+}
+
+/* The mark that stands for a line: its setting as shipped or by default, else the most accurate one. */
+static const ChartMark *find_chief(const ChartDrawing *drawing, int line) {
+    const ChartMark *chief = NULL;
+    for (int i = 0; i < drawing->panel->count; i++) {
+        const ChartMark *mark = &drawing->panel->marks[i];
+        if (mark->line != line || mark->lost) continue;
+        if (mark->shipped || chart_mark_is_default(mark)) return mark;
+        if (chief == NULL || mark->error < chief->error) chief = mark;
+    }
+    return chief;
+}
+
+/* At the chief mark of a line or, if there is no room, at another one, the most accurate first. */
+static bool place_on_line(ChartDrawing *drawing, const ChartMark *chief, const Label *label, double farthest) {
+    bool placed = place_label(drawing, chief, label, farthest);
+    for (int i = drawing->panel->count - 1; !placed && i >= 0; i--) {
+        const ChartMark *mark = &drawing->panel->marks[i];
+        placed = mark != chief && mark->line == chief->line && place_label(drawing, mark, label, farthest);
+    }
+    drawing->named[chief->line] |= placed;
+    return placed;
+}
+
+/* A silenced twin stands beside its method, in its colour: "net=off". */
+static const char *name_of(const ChartLine *line) {
+    const char *word = chart_twin_word(line);
+    return word != NULL ? word : line->name;
+}
+
+/* The name of a coloured line, and how its chief setting stands to the engine as shipped. */
+static void name_coloured(ChartDrawing *drawing, int index) {
+    const ChartLine *line = &drawing->chart->lines[index];
+    const ChartMark *chief = find_chief(drawing, index), *shipped = chart_find_shipped(drawing->panel);
+    Label label = {.ink = chart_line_style(line).ink};
+    if (chief == NULL) return;
+    label_row(&label, CHART_NAME_POINTS, name_of(line));
+    Label whole = label;
+    if (chief != shipped) label_row(&whole, CHART_SMALL_POINTS, chief->label);
+    if (shipped != NULL && chief->line != shipped->line && !chart_is_program(line)) {
+        char text[48];
+        write_factor(text, sizeof text, chief->us / shipped->us, "time,");
+        label_row(&whole, CHART_SMALL_POINTS, text);
+        write_factor(text, sizeof text, chief->error / shipped->error, "error");
+        label_row(&whole, CHART_SMALL_POINTS, text);
+    }
+    for (double far = 3; far <= 12; far *= 2)
+        if (place_on_line(drawing, chief, &whole, far)) return;
+    for (double far = 3; far <= 12; far *= 2)
+        if (place_on_line(drawing, chief, &label, far)) return;
+}
+
+static int next_coloured(const ChartDrawing *drawing, const bool *named) {
+    int next = -1;
+    double least = INFINITY;
+    for (int i = 0; i < drawing->chart->line_count; i++) {
+        if (drawing->chart->lines[i].rank != CHART_COLOURED || named[i]) continue;
+        const ChartMark *chief = find_chief(drawing, i);
+        const double error = chief != NULL ? chief->error : HUGE_VAL;
+        if (next < 0 || error < least) next = i, least = error;
+    }
+    return next;
+}
+
+/* The most accurate first: below them is room. */
+static void name_all_coloured(ChartDrawing *drawing) {
+    bool named[CHART_MAX_LINES] = {false};
+    for (int line; (line = next_coloured(drawing, named)) >= 0; named[line] = true) name_coloured(drawing, line);
+}
+
+/* The ends of a grey line: the last mark is the most accurate one. */
+static void name_grey(ChartDrawing *drawing, int index) {
+    const ChartLine *line = &drawing->chart->lines[index];
+    Label label = {.ink = CHART_GREY_INK};
+    const ChartMark *first = NULL, *last = NULL;
+    for (int i = 0; i < drawing->panel->count; i++)
+        if (drawing->panel->marks[i].line == index) {
+            last = &drawing->panel->marks[i];
+            if (first == NULL) first = last;
+        }
+    if (last == NULL) return;
+    label_row(&label, CHART_SMALL_POINTS, line->name);
+    bool placed = false;
+    for (double far = 2; !placed && far <= 9; far += 3.5)
+        placed = place_label(drawing, last, &label, far) || place_label(drawing, first, &label, far);
+    drawing->named[index] |= placed;
+}
+
+/* The quickest and the most accurate setting of a coloured line; its name speaks of the chief one. */
+static void name_settings(ChartDrawing *drawing, int index) {
+    const ChartPanel *panel = drawing->panel;
+    const ChartMark *chief = find_chief(drawing, index);
+    for (int i = 0; i < panel->count; i++) {
+        const ChartMark *mark = &panel->marks[i];
+        const bool first = i == 0 || panel->marks[i - 1].line != index;
+        const bool last = i + 1 == panel->count || panel->marks[i + 1].line != index;
+        if (mark->line != index || !(first || last) || mark == chief || mark->shipped) continue;
+        Label label = {.ink = chart_line_style(&drawing->chart->lines[index]).ink};
+        label_row(&label, CHART_SMALL_POINTS, mark->label);
+        place_label(drawing, mark, &label, 1.8);
+    }
+}
+
+static void draw_names(ChartDrawing *drawing) {
+    const Chart *chart = drawing->chart;
+    const ChartMark *shipped = chart_find_shipped(drawing->panel);
+    if (shipped != NULL) {
+        Label label = {.ink = ACCENT};
+        char text[CHART_TEXT_SIZE + 16];
+        snprintf(text, sizeof text, "%s as shipped", chart_line_of(drawing, shipped)->name);
+        label_row(&label, CHART_SMALL_POINTS, text);
+        place_label(drawing, shipped, &label, 8);
+    }
+    name_all_coloured(drawing);
+    for (int i = 0; i < chart->line_count; i++)
+        if (chart->lines[i].rank == CHART_COLOURED) name_settings(drawing, i);
+    for (int i = 0; i < chart->line_count; i++)
+        if (chart->lines[i].rank == CHART_GREY) name_grey(drawing, i);
+}
+
+/* Time and error of the engine as shipped, across the panel. */
+void chart_find_cross(ChartDrawing *drawing) {
+    const ChartMark *shipped = chart_find_shipped(drawing->panel);
+    const PlotBox *box = &drawing->plot->box;
+    Segment cross[CROSS] = {0};
+    if (shipped != NULL) {
+        const Point at = chart_place(drawing, shipped);
+        cross[0] = (Segment){at.x, box->bottom, at.x, box->bottom + box->height};
+        cross[1] = (Segment){box->left, at.y, box->left + box->width, at.y};
+    }
+    for (int i = 0; i < CROSS; i++) label_add_segment(&drawing->field, cross[i]);
+}
+
+/* The next place from `from` on along a line of the cross where a label begins, and where that ends. */
+static double next_label(const ChartDrawing *drawing, const Segment *line, double from, double *end) {
+    const bool upright = line->x0 == line->x1;
+    const double to = upright ? line->y1 : line->x1;
+    double begin = *end = to;
+    for (int i = drawing->marks; i < drawing->field.box_count; i++) {
+        const PageBox *box = &drawing->field.boxes[i];
+        const double low = upright ? box->bottom : box->left, high = upright ? box->top : box->right;
+        const bool across =
+            upright ? box->left < line->x0 && line->x0 < box->right : box->bottom < line->y0 && line->y0 < box->top;
+        if (across && high > from && low < begin) begin = low, *end = high;
+    }
+    return fmax(begin, from);
+}
+
+/* Interrupted by labels. */
+static void draw_cross(const ChartDrawing *drawing) {
+    const ChartMark *shipped = chart_find_shipped(drawing->panel);
+    if (shipped == NULL) return;
+    const Pen pen = pen_line(chart_line_style(chart_line_of(drawing, shipped)).colour, 0.7, "(1.2,2.4)");
+    for (int i = 0; i < CROSS; i++) {
+        const Segment *line = &drawing->field.segments[i];
+        const bool upright = line->x0 == line->x1;
+        for (double from = upright ? line->y0 : line->x0, to, end; from < (upright ? line->y1 : line->x1); from = end) {
+            to = next_label(drawing, line, from, &end);
+            if (to > from)
+                sketch_line(drawing->sketch, upright ? (Point){line->x0, from} : (Point){from, line->y0},
+                            upright ? (Point){line->x0, to} : (Point){to, line->y0}, &pen);
+        }
+    }
+}
+
+/* In the lower left corner, where the shade is widest, if it has room there. */
+static void name_shade(ChartDrawing *drawing, int panel) {
+    static const char text[] = "no method gets here";
+    const PlotBox *box = &drawing->plot->box;
+    const double width = type_width(text, CHART_SMALL_POINTS), height = row_height(CHART_SMALL_POINTS);
+    if (drawing->chart->front_count[panel] == 0) return;
+    LabelWish wish = {.x = box->left + 2, .y = box->bottom + 1.5, .farthest = 3, .width = width, .height = height};
+    Label label = {.ink = CHART_GREY_INK};
+    PageBox at;
+    Segment leader;
+    bool led;
+    label_row(&label, CHART_SMALL_POINTS, text);
+    if (label_place_led(&drawing->field, &wish, &at, &leader, &led)) draw_label(drawing, &label, &at, false);
+}
+
+void chart_draw_names(ChartDrawing *drawing, int panel) {
+    drawing->marks = drawing->field.box_count;
+    draw_names(drawing);
+    name_shade(drawing, panel);
+    draw_cross(drawing);
+}
