@@ -327,6 +327,22 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
     return true;
 }
 
+/* Before the work: a name that no method of the study has. */
+static bool check_highlight(const SpeedAccuracyOptions *options, Error *error) {
+    ContenderList contenders;
+    if (options->look.highlight == NULL) return true;
+    if (!contenders_parse(&contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
+        return false;
+    ChartRow *rows = calloc((size_t)contenders.count + 1, sizeof *rows);
+    for (int i = 0; rows != NULL && i < contenders.count; i++)
+        rows[i] = (ChartRow){.method = contenders.items[i].name, .setting = contenders.items[i].setting};
+    const bool ok = (rows != NULL || error_memory(error, "--highlight")) &&
+                    chart_highlight_check(options->look.highlight, rows, contenders.count, error);
+    free(rows);
+    contenders_free(&contenders);
+    return ok;
+}
+
 static bool study(const SpeedAccuracyOptions *options, Error *error) {
     Pieces pieces = {0};
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
@@ -352,6 +368,6 @@ bool command_chart(int argc, char **argv, Error *error) {
         const char *path = options.scenes[i];
         if (!type_check(path + file_folder_length(path), path, error)) return false;
     }
-    return shard_option_take(&run, options.shard, argc, argv, error) &&
+    return shard_option_take(&run, options.shard, argc, argv, error) && check_highlight(&options.study, error) &&
            output_check_folder(options.study.folder, error) && study(&options.study, error);
 }

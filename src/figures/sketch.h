@@ -207,7 +207,6 @@ double round_down(double most);
 /* Styles of lines and marks, all distinguishable in grey. */
 
 #define PLOT_GREY 0x606060u
-#define PARETO_COLOUR 0xC8C8C8u
 
 /* Continues MethodSymbol. */
 enum { PLOT_PLUS = METHOD_SYMBOLS, PLOT_CROSS, PLOT_STAR, PLOT_UPRIGHT, PLOT_LEVEL, PLOT_SYMBOLS };

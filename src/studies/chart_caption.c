@@ -98,14 +98,14 @@ static bool is_lost_drawn(const Chart *chart) {
 static void add_curves(const Caption *caption) {
     const Chart *chart = caption->chart;
     const ChartLine *shipped = find_shipped(chart);
-    text_add(caption->text, caption->size,
-             " A curve joins settings of a method; settings that another of its settings beats in both time and error "
-             "are left "
-             "out, as in the table chart.csv they are not. Shaded: what no method reaches. Bars: quartiles of the time "
-             "over repetitions of the same steps, of the coloured methods.");
+    text_add(
+        caption->text, caption->size,
+        " A curve joins the settings of a method that no other of its settings beats in both time and error; chart.csv "
+        "has all. Shaded: what no method reaches. Bars: quartiles of the time over repetitions of the same steps.");
     if (shipped != NULL)
         text_add(caption->text, caption->size,
-                 " Dotted: time and error of %s as shipped, with which the others are compared.", shipped->name);
+                 " Ring and dotted lines: %s as shipped, with whose time and error the others are compared.",
+                 shipped->name);
     add_names(caption, chart_is_program, "a program of others, by its own clock, whose errors have the same measure.");
     if (is_lost_drawn(chart))
         text_add(caption->text, caption->size, " Crosses: the method lost the scene before the impact.");

@@ -93,12 +93,14 @@ static const ChartMark *find_chief(const ChartDrawing *drawing, int line) {
 }
 
 /* At the chief mark of a line or, if there is no room, at another one, the most accurate first. */
-static bool place_on_line(ChartDrawing *drawing, const ChartMark *chief, const Label *label, double farthest) {
+static bool place_on_line(ChartDrawing *drawing, const ChartMark *chief, const Label *label) {
+    const double farthest = 12;
     bool placed = place_label(drawing, chief, label, farthest);
-    for (int i = drawing->panel->count - 1; !placed && i >= 0; i--) {
-        const ChartMark *mark = &drawing->panel->marks[i];
-        placed = mark != chief && mark->line == chief->line && place_label(drawing, mark, label, farthest);
-    }
+    for (double far = 3; !placed && far <= farthest; far *= 2)
+        for (int i = drawing->panel->count - 1; !placed && i >= 0; i--) {
+            const ChartMark *mark = &drawing->panel->marks[i];
+            placed = mark != chief && mark->line == chief->line && place_label(drawing, mark, label, far);
+        }
     drawing->named[chief->line] |= placed;
     return placed;
 }
@@ -125,10 +127,7 @@ static void name_coloured(ChartDrawing *drawing, int index) {
         write_factor(text, sizeof text, chief->error / shipped->error, "error");
         label_row(&whole, CHART_SMALL_POINTS, text);
     }
-    for (double far = 3; far <= 12; far *= 2)
-        if (place_on_line(drawing, chief, &whole, far)) return;
-    for (double far = 3; far <= 12; far *= 2)
-        if (place_on_line(drawing, chief, &label, far)) return;
+    if (!place_on_line(drawing, chief, &whole)) place_on_line(drawing, chief, &label);
 }
 
 static int next_coloured(const ChartDrawing *drawing, const bool *named) {
@@ -190,7 +189,7 @@ static void draw_names(ChartDrawing *drawing) {
         char text[CHART_TEXT_SIZE + 16];
         snprintf(text, sizeof text, "%s as shipped", chart_line_of(drawing, shipped)->name);
         label_row(&label, CHART_SMALL_POINTS, text);
-        place_label(drawing, shipped, &label, 8);
+        place_label(drawing, shipped, &label, 20);
     }
     name_all_coloured(drawing);
     for (int i = 0; i < chart->line_count; i++)

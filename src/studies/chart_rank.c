@@ -37,18 +37,18 @@ static int find(const Chart *chart, const char *method) {
     return -1;
 }
 
-/* A name is that of a line, as in the table or as in the picture, or of a method with all its lines. */
+/* As in the table or as in the picture. */
 static bool is_named(const ChartLine *line, const char *name) {
-    return strcmp(line->key, name) == 0 || strcmp(line->name, name) == 0 || strcmp(line->method, name) == 0;
+    return strcmp(line->key, name) == 0 || strcmp(line->name, name) == 0;
 }
 
-/* Whether the list, names separated by commas, has the line. */
-static bool is_listed(const ChartLine *line, const char *highlight) {
+/* Whether the list, names separated by commas, has line i; a method alone stands for its first line. */
+static bool is_listed(const Chart *chart, int i, const char *highlight) {
     char name[CHART_FAMILY_SIZE];
     for (const char *next = highlight; next != NULL && *next != '\0';) {
         const size_t length = strcspn(next, ",");
         snprintf(name, sizeof name, "%.*s", (int)length, next);
-        if (is_named(line, name)) return true;
+        if (is_named(&chart->lines[i], name) || find(chart, name) == i) return true;
         next += length + (next[length] == ',');
     }
     return false;
@@ -56,7 +56,7 @@ static bool is_listed(const ChartLine *line, const char *highlight) {
 
 static void ask(Chart *chart, const char *highlight) {
     for (int i = 0; i < chart->line_count; i++) {
-        chart->lines[i].asked = is_listed(&chart->lines[i], highlight);
+        chart->lines[i].asked = is_listed(chart, i, highlight);
         if (chart->lines[i].asked) colour(chart, i);
     }
 }
@@ -67,7 +67,7 @@ static bool check_row(const ChartRow *row, const char *name, NameList *known) {
     chart_row_family(row, line.key);
     chart_line_name(line.key, line.name);
     name_list_add(known, line.name);
-    return is_named(&line, name);
+    return is_named(&line, name) || strcmp(line.method, name) == 0;
 }
 
 bool chart_highlight_check(const char *highlight, const ChartRow *rows, int count, Error *error) {

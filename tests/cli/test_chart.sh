@@ -14,8 +14,8 @@ says "not scored, as the reference does not converge: 0 of 55 frozen steps"
 for file in chart-single.png chart-stack.png chart-stack.svg chart-stack.pdf; do
     [ -s "quick/$file" ] || fail "no $file"
 done
-equal "files" "$(ls quick | wc -l)" 12
-says "error at equal time -> quick/equal_time.csv, equal_time_methods.csv, equal_time.png, .svg, .pdf"
+equal "files" "$(ls quick | wc -l)" 15
+says "error at equal time -> quick/equal_time.csv, equal_time_methods.csv, equal_time.png, .svg, .pdf, .txt"
 without_times quick/chart.csv >figures.csv
 diff "$sources/golden/chart_quick.csv" figures.csv >difference || fail "other numbers: $(head -5 difference)"
 /usr/bin/python3 - <<'PYTHON' || fail "times are not in order"
@@ -94,6 +94,14 @@ cp piece "$1"
 run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
 without_times part/chart.csv | cmp -s - figures.csv || fail "a continued chart has other numbers"
 equal "what is left of the pieces" "$(ls part | grep -c parts)" 0
+
+# A name that the study does not have is refused before the work; a slide is drawn of an earlier chart.
+run 2 chart "$scenes/single.yaml" -o never --quick --methods engine:k=10 --highlight avdb
+complains "--highlight: error: 'avdb' is not a method of this chart"
+[ -e never ] && fail "a folder of a refused chart"
+run 0 chart quick/chart.csv -o slide --size slide --words --highlight nncg
+run 2 chart quick/chart.csv -o slide --size poster
+complains "--size: error: 'poster' is not page, column or slide"
 
 # Own launches.
 printf 'x,spin\n1.02,5\n-2.02,-5\n0.3,0\n' >launches.csv

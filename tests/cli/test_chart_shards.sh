@@ -56,12 +56,12 @@ with open("first.csv", "w") as file:
                         for key, value in row.items()})
 PYTHON
 run 0 chart first.csv -o first
-says "single -> first/chart-single.png, .svg, .pdf"
+says "single -> first/chart-single.png, .svg, .pdf, .txt"
 says "stack: no chart, as its times were measured on another processor than the first"
 [ -e first/chart-stack.png ] && fail "a chart without times"
 for figure in chart-single equal_time; do
-    grep -qF "Times measured on $cpu. Those of other processors are left out." first/$figure.svg ||
-        fail "$figure.svg does not say whose times are left out"
+    grep -qF "Times measured on $cpu. Those of other processors are left out." first/$figure.txt ||
+        fail "$figure.txt does not say whose times are left out"
 done
 
 # Shards that are killed again and again go on; nothing that is done is done again.

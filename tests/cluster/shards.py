@@ -11,7 +11,7 @@ SCHEDULERS = ("SLURM_", "PMI_", "OMPI_")
 # In chart.csv these columns have times and counts of a processor. From times follow the tables of errors at equal time,
 # and what is drawn.
 TIMED_COLUMNS = ("us_", "instructions", "cpu")
-TIMED_FILES = ["equal_time*", "chart-*.png", "chart-*.svg", "chart-*.pdf", "chart.html"]
+TIMED_FILES = ["equal_time*", "chart-*.png", "chart-*.svg", "chart-*.pdf", "chart-*.txt", "chart.html"]
 
 
 class Failure(Exception):

@@ -101,7 +101,7 @@ run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o two --quick --methods 
 LD_PRELOAD=$(dirname "$twinbox")/tests/libfault_shim.so ASAN_OPTIONS=verify_asan_link_order=0 TWINBOX_FAULT=rename:1:term \
     TWINBOX_FAULT_COUNTS=$PWD/counts run 130 chart two/chart.csv -o drawn
 complains "stopped; chart.csv is finished"
-equal "charts" "$(ls -A drawn | tr '\n' ' ')" "chart-single.pdf chart-single.png chart-single.svg "
+equal "charts" "$(ls -A drawn | tr '\n' ' ')" "chart-single.pdf chart-single.png chart-single.svg chart-single.txt "
 run 0 chart two/chart.csv -o whole
 run 0 chart two/chart.csv -o drawn
 diff -r whole drawn >out || fail "the charts differ after an interrupt: $(cat out)"

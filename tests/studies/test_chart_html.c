@@ -37,7 +37,7 @@ static char *write_page(const ChartRow *rows, int count) {
     Error error = {0};
     assert_ok(csv_table_write(temporary_path("chart.csv"), &chart_layout, rows, count, &error), error);
     assert_ok(csv_table_write(temporary_path("chart_pages.csv"), &launch_page_layout, NULL, 0, &error), error);
-    assert_ok(chart_html_write(temporary_folder, &error), error);
+    assert_ok(chart_html_write(temporary_folder, &(ChartLook){0}, &error), error);
     return text_of(temporary_path("chart.html"));
 }
 
@@ -70,7 +70,7 @@ TEST(times_that_vary_are_named) {
     rows[1].us_varies = 1;
     assert_ok(csv_table_write(temporary_path("chart.csv"), &chart_layout, rows, 2, &error), error);
     assert_ok(csv_table_write(temporary_path("chart_pages.csv"), &launch_page_layout, pages, 2, &error), error);
-    assert_ok(chart_html_write(temporary_folder, &error), error);
+    assert_ok(chart_html_write(temporary_folder, &(ChartLook){0}, &error), error);
     char *text = text_of(temporary_path("chart.html"));
     assert_non_null(strstr(text, "Times measured on AMD. 1 of 2 vary more than the others, also when measured again."));
     assert_non_null(strstr(text, "<th scope=\"row\">engine</th><td>k=10</td><td class=\"number\">5</td>"));

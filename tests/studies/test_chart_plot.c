@@ -14,6 +14,8 @@
 
 #define SAMPLE SOURCE_DIR "/tests/studies/chart.csv"
 
+static const ChartLook page = {.size = CHART_PAGE};
+
 static const char *drawn_file(const char *scene, const char *ending) {
     char name[128];
     snprintf(name, sizeof name, "chart-%s.%s", scene, ending);
@@ -29,12 +31,12 @@ static char *read_drawn(const char *scene, const char *ending, size_t *size) {
     return read_whole(drawn_file(scene, ending), size);
 }
 
-TEST(three_files_are_drawn) {
-    assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
+TEST(a_picture_and_its_caption_are_written) {
+    assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &page, &error), error);
     size_t size;
     char *png = read_drawn("pyramid_settled", "png", &size);
-    /* 174 mm at 300 dots per inch: 2055; and 115 mm, which the words below need: 1357. */
-    assert_memory_equal(png, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x08\x07\0\0\x05\x4d", 24);
+    /* 178 mm at 300 dots per inch: 2102; and 92 mm: 1087. */
+    assert_memory_equal(png, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x08\x36\0\0\x04\x3f", 24);
     assert_true(size > 50000);
     free(png);
     char *pdf = read_drawn("pyramid_settled", "pdf", &size);
@@ -43,19 +45,43 @@ TEST(three_files_are_drawn) {
     free(pdf);
     expect_first_line("pdfinfo", drawn_file("pyramid_settled", "pdf"),
                       "Title:           Speed and accuracy: pyramid_settled, 40 launches");
-    run_python(
-        "import sys, xml.etree.ElementTree as tree\n"
-        "root = tree.parse(sys.argv[1]).getroot()\n"
-        "assert root.tag == '{http://www.w3.org/2000/svg}svg', root.tag\n"
-        "assert root[0].text == 'Speed and accuracy: pyramid_settled, 40 launches', root[0].text\n"
-        "assert 'font/otf' in root[1].text and 'Arial' in root.get('font-family')\n"
-        "texts = ' | '.join(t for e in root.iter('{http://www.w3.org/2000/svg}text') for t in e.itertext())\n"
-        "for wanted in ('Impact frames', 'The 60 frames after', 'engine as shipped', 'engine:warm=off',\n"
-        "               'momentum-schedule', 'playback', 'pair-net', 'Pareto front of solvers', 'k=100', 'm/s',\n"
-        "               'pyramid_settled, 40 launches', 'Beyond the axes: reference (2232 to 2400 µs, below 0.0001 "
-        "m/s)'):\n"
-        "    assert wanted in texts, (wanted, texts)\n",
-        drawn_file("pyramid_settled", "svg"));
+    run_python("import sys, xml.etree.ElementTree as tree\n"
+               "root = tree.parse(sys.argv[1]).getroot()\n"
+               "assert root.tag == '{http://www.w3.org/2000/svg}svg', root.tag\n"
+               "assert root[0].text == 'Speed and accuracy: pyramid_settled, 40 launches', root[0].text\n"
+               "assert 'font/otf' in root[1].text and 'Arial' in root.get('font-family')\n"
+               "texts = [t for e in root.iter('{http://www.w3.org/2000/svg}text') for t in e.itertext()]\n"
+               "for wanted in ('At the impact', 'In the 60 frames after it', 'engine', 'engine:warm=off', 'momentum',\n"
+               "               'momentum-schedule', 'playback', 'pair-net', 'no method gets here', 'k=100',\n"
+               "               'pyramid_settled, 40 launches'):\n"
+               "    assert wanted in texts, (wanted, texts)\n",
+               drawn_file("pyramid_settled", "svg"));
+    char *caption = read_drawn("pyramid_settled", "txt", &size);
+    assert_non_null(strstr(caption, " Beyond the axes: reference (2232 to 2400 µs, below 0.0001 m/s)."));
+    assert_non_null(strstr(caption, "Ring and dotted lines: engine as shipped"));
+    free(caption);
+}
+
+/* The picture's size in pixels, from the head of its file. */
+static void expect_size(const ChartLook *look, int width, int height) {
+    Error error = {0};
+    size_t size;
+    assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), look, &error), error);
+    unsigned char *png = (unsigned char *)read_drawn("pyramid_settled", "png", &size);
+    assert_int_equal(png[18] << 8 | png[19], width);
+    if (height > 0) assert_int_equal(png[22] << 8 | png[23], height);
+    if (height < 0) assert_true((png[22] << 8 | png[23]) > -height);
+    free(png);
+}
+
+TEST(sizes_are_those_of_a_column_and_a_slide) {
+    expect_size(&(ChartLook){.size = CHART_COLUMN}, 1004, 1701);
+    expect_size(&(ChartLook){.size = CHART_SLIDE}, 1890, 1063);
+    expect_size(&(ChartLook){.words = true}, 2102, -1200);
+    size_t size;
+    char *svg = read_drawn("pyramid_settled", "svg", &size);
+    assert_non_null(strstr(svg, "Velocity error:"));
+    free(svg);
 }
 
 TEST(the_same_table_gives_the_same_files) {
@@ -63,7 +89,7 @@ TEST(the_same_table_gives_the_same_files) {
     size_t size[2][3];
     char *data[2][3];
     for (int run = 0; run < 2; run++) {
-        assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &error), error);
+        assert_ok(chart_plot(SAMPLE, "pyramid_settled", folder(), &page, &error), error);
         for (int i = 0; i < 3; i++) data[run][i] = read_drawn("pyramid_settled", endings[i], &size[run][i]);
     }
     for (int i = 0; i < 3; i++) {
@@ -89,7 +115,7 @@ static const char *write_rows(const char *lines) {
 
 static void expect_refused(const char *lines, const char *scene, const char *message) {
     Error error = {0};
-    assert_refused(chart_plot(write_rows(lines), scene, folder(), &error), message);
+    assert_refused(chart_plot(write_rows(lines), scene, folder(), &page, &error), message);
     assert_int_equal(access(drawn_file("single", "png"), F_OK), -1);
 }
 
@@ -112,47 +138,50 @@ TEST(tables_without_a_mark_are_refused) {
 }
 
 TEST(one_mark_and_one_panel_are_enough) {
-    assert_ok(
-        chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &error),
-        error);
+    assert_ok(chart_plot(write_rows("stack,engine,k=10,closed,after,40,5,5,5,,,1,,,,,,,,\n"), "stack", folder(), &page,
+                         &error),
+              error);
     assert_int_equal(access(drawn_file("stack", "png"), F_OK), 0);
 }
 
-TEST(times_that_vary_are_noted) {
+/* The caption of the drawn stack, to be freed. */
+static char *caption_of(const char *path) {
+    Error error = {0};
     size_t size;
+    assert_ok(chart_plot(path, "stack", folder(), &page, &error), error);
+    return read_drawn("stack", "txt", &size);
+}
+
+static void expect_caption(const char *path, const char *wanted, const char *unwanted) {
+    char *caption = caption_of(path);
+    if (strstr(caption, wanted) == NULL) fail_msg("no '%s' in: %s", wanted, caption);
+    if (unwanted != NULL) assert_null(strstr(caption, unwanted));
+    free(caption);
+}
+
+TEST(times_that_vary_are_noted) {
     const char *path = temporary_path("chart.csv");
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     fputs(CHART_HEADER ",cpu,us_engine,us_varies\n"
                        "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,,AMD,,0\n"
-                       "stack,engine,k=20,closed,impact,40,9,5,9,,,1,,,,,,,,,AMD,,1\n",
+                       "stack,engine,k=20,closed,impact,40,9,5,9,,,0.5,,,,,,,,,AMD,,1\n",
           file);
     assert_int_equal(fclose(file), 0);
-    assert_ok(chart_plot(path, "stack", folder(), &error), error);
-    char *noted = read_drawn("stack", "svg", &size);
-    assert_non_null(
-        strstr(noted, "Times measured on AMD. 1 of 2 vary more than the others, also when measured again."));
-    assert_non_null(strstr(noted, "Times here that vary: engine (1)."));
-    free(noted);
+    expect_caption(path, "Times measured on AMD. 1 of 2 vary more than the others, also when measured again.", NULL);
+    expect_caption(path, "Times here that vary: engine (1).", NULL);
 }
 
-/* A note names the methods whose errors have another target. Without such methods the chart has no note. */
+/* The caption names the methods whose errors have another target. */
 TEST(a_target_without_push_out_is_noted) {
     static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,soft-step,substeps=4,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
                                "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n";
-    const char *const end = strchr(rows, '\n') + 1;
     char engine[200];
-    snprintf(engine, sizeof engine, "%.*s", (int)(end - rows), rows);
-    size_t size;
-    assert_ok(chart_plot(write_rows(rows), "stack", folder(), &error), error);
-    char *noted = read_drawn("stack", "svg", &size);
-    assert_non_null(strstr(noted, "soft-step, avbd: error against the solution without the velocity that pushes"));
-    assert_ok(chart_plot(write_rows(engine), "stack", folder(), &error), error);
-    char *silent = read_drawn("stack", "svg", &size);
-    assert_null(strstr(silent, "error against"));
-    free(noted);
-    free(silent);
+    snprintf(engine, sizeof engine, "%.*s", (int)(strchr(rows, '\n') + 1 - rows), rows);
+    expect_caption(write_rows(rows), "soft-step, avbd: error against the solution without the velocity that pushes",
+                   NULL);
+    expect_caption(write_rows(engine), "Velocity error", "error against");
 }
 
 /* The maximum number of methods, with the longest names and settings. */
@@ -162,7 +191,7 @@ TEST(a_full_chart_is_drawn) {
         snprintf(lines + strlen(lines), 200,
                  "full,method-with-quite-a-long-name-to-be-cut-%d,k=%d,closed,impact,9,%d,%d,%d,,,%g,,,,,,,,\n",
                  i % CHART_MAX_LINES, i, 9 + i, 8 + i, 11 + i, 1.0 / (1 + i));
-    assert_ok(chart_plot(write_rows(lines), "full", folder(), &error), error);
+    assert_ok(chart_plot(write_rows(lines), "full", folder(), &page, &error), error);
 }
 
 /* A table may have any texts: what is drawn of them is text. */
@@ -182,13 +211,15 @@ TEST(names_stay_texts) {
     fclose(file);
     const char *path = write_rows(lines);
     free(lines);
-    assert_ok(chart_plot(path, "hostile", folder(), &error), error);
-    run_python("import sys, xml.etree.ElementTree as tree\n"
-               "root = tree.parse(sys.argv[1]).getroot()\n"
-               "kinds = {e.tag.split('}')[1] for e in root.iter()}\n"
-               "assert kinds == {'svg', 'title', 'style', 'rect', 'path', 'text'}, kinds\n"
-               "assert any('s ?d ?n' in (e.text or '') for e in root.iter()), 'no name'\n",
-               drawn_file("hostile", "svg"));
+    assert_ok(chart_plot(path, "hostile", folder(), &page, &error), error);
+    run_python(
+        "import sys, xml.etree.ElementTree as tree\n"
+        "root = tree.parse(sys.argv[1]).getroot()\n"
+        "kinds = {e.tag.split('}')[1] for e in root.iter()}\n"
+        "assert kinds == {'svg', 'title', 'style', 'rect', 'path', 'text'}, kinds\n"
+        "names = [e.text or '' for e in root.iter()] + [open(sys.argv[1][:-3] + 'txt', encoding='utf-8').read()]\n"
+        "assert any('?s ?d ?n' in name for name in names), names\n",
+        drawn_file("hostile", "svg"));
 }
 
 TEST(texts_become_plain) {
@@ -214,7 +245,7 @@ static Chart gather(CsvTable *table, const char *lines) {
     Chart chart;
     const char *path = write_rows(lines);
     assert_ok(csv_table_read(table, path, &chart_layout, &error), error);
-    assert_ok(chart_gather(&chart, table, "stack", path, &error), error);
+    assert_ok(chart_gather(&chart, table, "stack", path, NULL, &error), error);
     return chart;
 }
 
@@ -232,8 +263,8 @@ TEST(marks_are_gathered_by_line_and_time) {
                                  "stack,engine,k=5,closed,after,39,2,2,2,,,1e-9,,,,,,,,\n"
                                  "stack,engine,k=6,closed,after,39,2,2,2,,,1e-4,,,,,,,,\n");
     assert_int_equal(chart.line_count, 2);
-    assert_string_equal(chart.lines[0].name, "engine");
-    assert_string_equal(chart.lines[1].name, "momentum:warm=off");
+    assert_string_equal(chart.lines[0].name, "momentum:warm=off");
+    assert_string_equal(chart.lines[1].name, "engine");
     assert_int_equal(chart.launches, 40);
     assert_int_equal(chart.lines[0].left_out, 0);
     assert_int_equal(chart.floored, 1); /* 1e-9 */
@@ -241,19 +272,17 @@ TEST(marks_are_gathered_by_line_and_time) {
     assert_int_equal(impact->count, 3);
     assert_int_equal(chart.panels[1].count, 2);
     assert_true(chart.panels[1].marks[0].error == 1e-4);
-    assert_string_equal(impact->marks[0].label, "k=5");
-    assert_true(impact->marks[0].on_front && !impact->marks[0].shipped);
-    assert_string_equal(impact->marks[1].label, "k=10");
-    assert_true(!impact->marks[1].on_front && impact->marks[1].shipped);
-    assert_string_equal(impact->marks[2].label, ""); /* alone on its line, which has both settings */
-    assert_string_equal(chart.lines[1].common, "k=7, b=0.5");
-    assert_string_equal(chart.lines[0].common, "");
+    assert_string_equal(impact->marks[0].label, "k=7,b=0.5");
+    assert_string_equal(impact->marks[1].label, "k=5");
+    assert_true(impact->marks[1].on_front && !impact->marks[1].shipped);
+    assert_string_equal(impact->marks[2].label, "k=10");
+    assert_true(!impact->marks[2].on_front && impact->marks[2].shipped && impact->marks[2].beaten);
     assert_true(chart.us_least == 2 && chart.us_most == 6 && chart.error_least == 1e-4 && chart.error_most == 3);
     free_chart(&chart, &table);
 }
 
-/* A baseline a thousand times faster would push the methods that compete into a corner. */
-TEST(the_axes_show_what_competes) {
+/* A baseline a thousand times faster would push the coloured curves into a corner. */
+TEST(the_axes_show_the_coloured_curves) {
     CsvTable table;
     Chart chart = gather(&table, "stack,engine,k=5,closed,impact,40,20,19,21,,,1,,,,,,,,\n"
                                  "stack,engine,k=100,closed,impact,40,200,190,210,,,0.1,,,,,,,,\n"
@@ -271,12 +300,9 @@ TEST(the_axes_show_what_competes) {
     assert_true(playback->beyond_us[0] == 0.2 && playback->beyond_us[1] == 0.4);
     assert_true(playback->beyond_error[0] == 0.01 && playback->beyond_error[1] == 0.05);
     free_chart(&chart, &table);
-    assert_ok(chart_plot(temporary_path("rows.csv"), "stack", folder(), &error), error);
-    size_t size;
-    char *svg = read_drawn("stack", "svg", &size);
-    assert_non_null(strstr(svg, "Beyond the axes: playback (0.2 to 0.4 µs, 0.01 to 0.05 m/s), "
-                                "reference (400 µs, below 0.0001 m/s)"));
-    free(svg);
+    expect_caption(temporary_path("rows.csv"),
+                   "Beyond the axes: playback (0.2 to 0.4 µs, 0.01 to 0.05 m/s), reference (400 µs, below 0.0001 m/s).",
+                   NULL);
 }
 
 /* Methods keep their colour, whichever others are in the chart; all lines differ. */
@@ -297,96 +323,170 @@ TEST(a_method_has_one_style_in_all_charts) {
                         other[i].colour != other[k].colour);
 }
 
-/* One mark by the stopping rule between two of a fixed number of sweeps would bend their line. */
-TEST(runs_with_a_stopping_rule_are_a_line_of_their_own) {
+/* A curve has the settings that no other setting of the method beats. */
+TEST(what_is_beaten_is_left_out) {
     CsvTable table;
     Chart chart = gather(&table, "stack,momentum,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
                                  "stack,momentum,near=0.5,closed,impact,40,3,3,3,,,1,,,,,,,,\n"
-                                 "stack,momentum,\"k=5,near=0.1\",closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
                                  "stack,momentum,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
-                                 "stack,scene-net,,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
-                                 "stack,scene-net,near=3,closed,impact,40,4,4,4,,,2,,,,,,,,\n"
-                                 "stack,momentum,\"near=0.5,more=96\",closed,impact,40,6,6,6,,,1,,,,,,,,\n"
-                                 "stack,scene-net,more=96,closed,impact,40,6,6,6,,,1,,,,,,,,\n");
-    assert_int_equal(chart.line_count, 3);
-    assert_string_equal(chart.lines[0].name, "momentum");
-    assert_string_equal(chart.lines[1].name, "momentum:near");
-    assert_string_equal(chart.lines[2].name, "scene-net");
-    assert_int_equal(chart.lines[0].marks[0], 2);
-    for (int i = 1; i < 3; i++) assert_int_equal(chart.lines[i].marks[0], 3);
-    assert_string_equal(chart.panels[0].marks[3].label, "k=5,near=0.1");
-    assert_string_equal(chart.lines[1].common, "");
+                                 "stack,engine,k=5,closed,impact,40,2,2,2,,,2,,,,,,,,\n"
+                                 "stack,engine,k=10,closed,impact,40,4,4,4,,,3,,,,,,,,\n");
+    assert_int_equal(chart.line_count, 2);
+    assert_int_equal(chart.lines[0].marks[0], 2); /* k=20 is slower and less accurate than near=0.5 */
+    assert_string_equal(chart.panels[0].marks[1].label, "near=0.5");
+    assert_int_equal(chart.lines[1].marks[0], 2); /* the engine as shipped stays */
+    assert_true(chart.panels[0].marks[3].beaten && chart.panels[0].marks[3].shipped);
     free_chart(&chart, &table);
 }
 
-/* Settings that all marks of a line have stand below the chart, once. */
+/* Settings that all marks with the same keys have are not in their labels. */
 TEST(labels_name_what_differs) {
     CsvTable table;
     Chart chart = gather(&table, "stack,momentum,\"k=2,near=0.5,more=400\",closed,impact,40,2,2,2,,,3,,,,,,,,\n"
                                  "stack,momentum,\"k=2,near=0.1,more=400\",closed,impact,40,3,3,3,,,1,,,,,,,,\n"
+                                 "stack,momentum,k=100,closed,impact,40,4,4,4,,,0.5,,,,,,,,\n"
                                  "stack,momentum,\"k=2,near=0.02,more=400\",closed,after,40,4,4,4,,,0.5,,,,,,,,\n"
-                                 "stack,engine,k=10,closed,impact,40,2,2,2,,,3,,,,,,,,\n"
-                                 "stack,engine,k=100,closed,impact,40,5,5,5,,,2,,,,,,,,\n"
-                                 "stack,nncg,k=20,closed,impact,40,5,5,5,,,2,,,,,,,,\n");
-    static const char *const labels[] = {"near=0.5", "near=0.1", "k=10", "k=100", "k=20"};
-    for (int i = 0; i < 5; i++) assert_string_equal(chart.panels[0].marks[i].label, labels[i]);
+                                 "stack,nncg,\"k=20,more=9\",closed,impact,40,5,5,5,,,2,,,,,,,,\n");
+    static const char *const labels[] = {"near=0.5", "near=0.1", "k=100", "k=20,more=9"};
+    for (int i = 0; i < 4; i++) assert_string_equal(chart.panels[0].marks[i].label, labels[i]);
     assert_string_equal(chart.panels[1].marks[0].label, "near=0.02");
-    assert_string_equal(chart.lines[0].common, "k=2, more=400");
     free_chart(&chart, &table);
+}
+
+/* Which lines are in colour. */
+
+static const char many_methods[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                                   "stack,nncg,k=10,closed,impact,40,4,4,4,,,2,,,,,,,,\n"
+                                   "stack,avbd,k=10,closed,impact,40,5,5,5,,,0.9,,,,,,,,\n"
+                                   "stack,avbd,k=20,closed,impact,40,8,8,8,,,0.5,,,,,,,,\n"
+                                   "stack,scene-net,,closed,impact,40,5,5,5,,,0.1,,,,,,,,\n"
+                                   "stack,scene-net,net=off,closed,impact,40,5,5,5,,,0.2,,,,,,,,\n"
+                                   "stack,sain,,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                                   "stack,sain,net=off,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                                   "stack,interior,near=0.002,closed,impact,40,5,5,5,,,0.01,,,,,,,,\n";
+
+static void expect_ranks(const char *rows, const char *highlight, const int *ranks, int count) {
+    Error error = {0};
+    CsvTable table;
+    Chart chart;
+    const char *path = write_rows(rows);
+    assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
+    assert_ok(chart_gather(&chart, &table, "stack", path, highlight, &error), error);
+    assert_int_equal(chart.line_count, count);
+    for (int i = 0; i < count; i++)
+        if ((int)chart.lines[i].rank != ranks[i])
+            fail_msg("%s: rank %d", chart.lines[i].name, (int)chart.lines[i].rank);
+    free_chart(&chart, &table);
+}
+
+TEST(six_lines_at_most_are_in_colour) {
+    enum { G = CHART_GREY, H = CHART_HIDDEN, C = CHART_COLOURED };
+    /* The engine, avbd (two corners of the front of those that learn nothing, nncg has one), scene-net and its twin, interior. */
+    expect_ranks(many_methods, NULL, (const int[]){C, G, C, C, C, G, H, C}, 8);
+    /* sain is asked for: there is no room for both twins. */
+    expect_ranks(many_methods, "sain", (const int[]){C, G, C, C, C, C, H, C}, 8);
+    expect_ranks(many_methods, "nncg,sain:net=off", (const int[]){C, C, C, C, H, G, C, C}, 8);
+    /* A network that is named by its file is the scene's own, too. */
+    expect_ranks("stack,scene-net,network=a/b.npz,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                 "stack,scene-net,\"network=a/b.npz,net=off\",closed,impact,40,5,5,5,,,2,,,,,,,,\n",
+                 NULL, (const int[]){C, C}, 2);
+}
+
+TEST(a_name_that_no_row_has_is_refused) {
+    CsvTable table;
+    assert_ok(csv_table_read(&table, write_rows(many_methods), &chart_layout, &error), error);
+    assert_ok(chart_highlight_check("nncg,sain:net=off", table.rows, table.count, &error), error);
+    assert_ok(chart_highlight_check(NULL, table.rows, table.count, &error), error);
+    assert_refused(chart_highlight_check("nncg,avdb", table.rows, table.count, &error),
+                   "--highlight: error: 'avdb' is not a method of this chart; did you mean 'avbd'?");
+    assert_refused(
+        chart_highlight_check("engine,nncg,avbd,scene-net,sain,interior,engine", table.rows, table.count, &error),
+        "--highlight: error: a chart has at most 6 methods in colour (got 7)");
+    csv_table_free(&table);
+}
+
+/* What lost the scene is drawn if it is asked for. */
+TEST(lost_methods_are_shown_on_request) {
+    static const char rows[] = "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                               "stack,pair-net,,closed,impact,40,6,6,6,,,2,,,,,,,,\n"
+                               "stack,pair-net,,closed,rest,40,6,6,6,,,2,,,,,,0.6,,\n";
+    const ChartLook asked = {.highlight = "pair-net"};
     size_t size;
-    assert_ok(chart_plot(temporary_path("rows.csv"), "stack", folder(), &error), error);
-    char *svg = read_drawn("stack", "svg", &size);
-    assert_non_null(strstr(svg, "momentum:near: k=2, more=400"));
-    assert_null(strstr(svg, "near=0.5,more"));
-    free(svg);
+    expect_caption(write_rows(rows), "Unstable before the impact, and left out: pair-net (1).", "Crosses");
+    assert_ok(chart_plot(write_rows(rows), "stack", folder(), &asked, &error), error);
+    char *caption = read_drawn("stack", "txt", &size);
+    assert_non_null(strstr(caption, "Crosses: the method lost the scene before the impact."));
+    assert_null(strstr(caption, "left out: pair-net"));
+    free(caption);
+}
+
+/* A program reports one time; its curve is in colour and no part of the front. */
+TEST(programs_are_drawn_with_their_own_time) {
+    CsvTable table;
+    const char *path = temporary_path("chart.csv");
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fputs(CHART_HEADER ",cpu,us_engine\n"
+                       "stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,,AMD,\n"
+                       "stack,exec,\"program=node a.mjs,name=Rapier\",closed,impact,40,,,,,,0.5,,,,,,,,,,2.5\n"
+                       "stack,exec,program=silent,closed,impact,40,,,,,,0.5,,,,,,,,,,\n"
+                       "stack,exec,program=zero,closed,impact,40,,,,,,0.5,,,,,,,,,,0\n",
+          file);
+    assert_int_equal(fclose(file), 0);
+    assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, NULL, &error), error);
+    assert_int_equal(chart.panels[0].count, 2);
+    assert_true(chart.panels[0].marks[1].us == 2.5);
+    assert_string_equal(chart.lines[1].name, "Rapier");
+    assert_int_equal(chart.lines[1].rank, CHART_COLOURED);
+    assert_int_equal(chart.front_count[0], 1);
+    assert_true(chart.front[0][0].us == 5);
+    assert_int_equal(chart.lines[2].left_out + chart.lines[3].left_out, 2);
+    free_chart(&chart, &table);
+    expect_caption(path, " Rapier: a program of others, by its own clock", NULL);
+    expect_caption(path, "Without time or error: exec:program=silent (1), exec:program=zero (1).", NULL);
 }
 
 /* Methods and settings that are drawn, each once, and no others. */
 TEST(a_chart_explains_its_words) {
-    static const char *const explained[] = {
-        ">engine: physics engine, sequential impulses<",
-        ">k: sweeps over all contacts per step<",
-        ">nncg: conjugate gradients over sweeps<",
-        ">avbd: augmented vertex block descent<",
-        ">momentum: sequential impulses with momentum<",
-        ">near: sweeps go on while contacts miss their velocity by this, m/s<",
-        ">more: sweeps that near may add<",
-        ">net=off: without its learned part<",
-        ">components: principal components, at most as many as the scene has<",
-        ">Velocity error: difference from the converged solution of the same step, RMS over the boxes",
-        ">Impact frames: the first after the bomb touches a box. Pareto front: solvers that no other solver beats"};
-    size_t size;
-    assert_ok(chart_plot(write_rows("stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
-                                    "stack,nncg,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
-                                    "stack,avbd,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
-                                    "stack,momentum,\"k=2,near=0.1,more=9\",closed,impact,40,5,5,5,,,1,,,,,,,,\n"
-                                    "stack,scene-net,net=off,closed,after,40,5,5,5,,,1,,,,,,,,\n"
-                                    "stack,subspace,components=8,closed,after,40,5,5,5,,,1,,,,,,,,\n"
-                                    "stack,soft-step,substeps=4,closed,after,40,,,,,,1,,,,,,,,\n"
-                                    "stack,unknown,\",,q=1,net\",closed,after,40,5,5,5,,,1,,,,,,,,\n"),
-                         "stack", folder(), &error),
-              error);
-    char *svg = read_drawn("stack", "svg", &size);
+    static const char *const explained[] = {" engine: physics engine, sequential impulses",
+                                            " k: sweeps over all contacts per step",
+                                            " avbd: augmented vertex block descent",
+                                            " near: residual at which iterations stop, m/s",
+                                            " net=off: without its learned part",
+                                            " Velocity error: difference from the converged solution of the same step"};
+    char *caption = caption_of(write_rows(many_methods));
     for (size_t i = 0; i < sizeof explained / sizeof *explained; i++) {
-        const char *found = strstr(svg, explained[i]);
-        if (found == NULL) fail_msg("no '%s'", explained[i]);
+        const char *found = strstr(caption, explained[i]);
+        if (found == NULL) fail_msg("no '%s' in: %s", explained[i], caption);
         assert_null(strstr(found + 1, explained[i]));
     }
-    assert_null(strstr(svg, "substeps:"));
-    free(svg);
+    assert_null(strstr(caption, "substeps:"));
+    free(caption);
 }
 
 /* Links of chart.html have their places by the height that the words give. */
 TEST(marks_stay_on_the_page_of_a_high_chart) {
     CsvTable table;
     Chart chart;
-    double left, top;
     assert_ok(csv_table_read(&table, SAMPLE, &chart_layout, &error), error);
-    assert_ok(chart_gather(&chart, &table, "pyramid_settled", SAMPLE, &error), error);
-    assert_true(chart_height(&chart) > CHART_HEIGHT);
-    chart_mark_place(&chart, 0, &(ChartMark){.us = chart.us_least, .error = chart.error_least}, &left, &top);
-    /* The panel is 56 mm high and 5.5 mm below the upper edge; the axis ends somewhat below the least error. */
-    assert_in_range((int)(top * chart_height(&chart)), 54, 61);
+    assert_ok(chart_gather(&chart, &table, "pyramid_settled", SAMPLE, NULL, &error), error);
+    double tops[2], heights[2];
+    for (int words = 0; words < 2; words++) {
+        ChartPicture picture;
+        double left;
+        assert_ok(chart_picture_make(&picture, &chart, "pyramid_settled", &(ChartLook){.words = words == 1}, &error),
+                  error);
+        chart_mark_place(&picture, 0, &(ChartMark){.us = chart.us_least, .error = chart.error_least}, &left,
+                         &tops[words]);
+        heights[words] = picture.height;
+        chart_picture_free(&picture);
+    }
+    /* The same distance from the upper edge, in mm, above the axis, which ends 9 mm above the lower edge. */
+    assert_true(heights[1] > heights[0] + 10);
+    assert_true(fabs(tops[0] * heights[0] - tops[1] * heights[1]) < 1e-9);
+    assert_in_range((int)(tops[0] * heights[0]), 70, 83);
     free_chart(&chart, &table);
 }
 
