@@ -25,6 +25,7 @@ typedef struct Options {
     const char *methods[MAX_METHODS];
     int method_count, frame; /* frame 0: not given */
     float bomb_x;            /* m; NaN: not given */
+    SceneSettings set;
     const char *run_by, *output;
     const char *impulses; /* path of a table of impulses to score, or NULL */
     bool json;
@@ -44,6 +45,7 @@ static const Option option_table[] = {
      OPTION_INT(Options, frame, 1, SCENE_MAX_FRAMES)},
     {"--bomb-x", 0, "X", "Where the bomb is launched, m (default: the scene's x)",
      OPTION_FLOAT(Options, bomb_x, -SCENE_MAX_POSITION, SCENE_MAX_POSITION)},
+    {OPTION_SET(Options, set)},
     {"--run-by", 0, "NAME[:KEY=VALUE,...]", "Method that runs the scene up to this step (default: engine)",
      OPTION_TEXT(Options, run_by)},
     {"--output", 'o', "P.npz", "Write the contact problem; without --method, nothing is solved",
@@ -277,7 +279,7 @@ static bool run_scene(Scene *scene, const Options *options, Error *error) {
 }
 
 static bool solve_step(const Options *options, Error *error) {
-    Scene *scene = scene_read(options->input, error);
+    Scene *scene = scene_read_with(options->input, options->set.items, options->set.count, error);
     const bool ok = scene != NULL && run_scene(scene, options, error);
     scene_destroy(scene);
     return ok;
@@ -294,8 +296,14 @@ static bool check_options(const Options *options, Error *error) {
     const bool step = options->frame > 0;
     if (!step && file_name_ends_with(options->input, ".yaml"))
         return error_input(error, options->input, "--frame N is needed: the step of the scene");
-    if (!step && (options->output != NULL || options->run_by != NULL || !isnan(options->bomb_x)))
-        return error_input(error, options->input, "-o, --run-by and --bomb-x are for a scene, with --frame N");
+    if (file_name_ends_with(options->input, ".hdf5") || file_name_ends_with(options->input, ".h5"))
+        return error_input(
+            error, options->input,
+            "HDF5 is not read: a contact problem is a .npz file, as `twinbox solve SCENE --frame N -o P.npz` "
+            "writes it");
+    if (!step &&
+        (options->output != NULL || options->run_by != NULL || options->set.count > 0 || !isnan(options->bomb_x)))
+        return error_input(error, options->input, "-o, --run-by, --set and --bomb-x are for a scene, with --frame N");
     if (step && file_name_ends_with(options->input, ".npz"))
         return error_input(error, options->input, "--frame is for a scene; a contact problem is of one step");
     if (!is_scored(options) && (options->output == NULL || options->json))

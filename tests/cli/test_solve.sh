@@ -147,6 +147,17 @@ hostile contact_feature 'p["contact_feature"] = p["contact_feature"][1:]'
 hostile version 'p["version"] = numpy.int32(2)'
 hostile bodies 'p["contact_bodies"][0, 1] = 1 << 30'
 
+# What is set changes the step; a set of a stored problem, and a problem of another format, are refused.
+run 0 solve "$scenes/stack.yaml" --frame 41 -m engine --json
+cp out plain
+run 0 solve "$scenes/stack.yaml" --frame 41 -m engine --json --set friction=0
+cmp -s out plain && fail "--set changes nothing"
+run 2 solve impact.npz -m engine --set friction=0
+complains "-o, --run-by, --set and --bomb-x are for a scene, with --frame N"
+: >problem.hdf5
+run 2 solve problem.hdf5 -m engine
+complains "problem.hdf5: error: HDF5 is not read: a contact problem is a .npz file"
+
 # A step without a solution: nothing is scored against its answer.
 wedge=$(dirname "$scenes")/tests/methods/scenes/wedge.yaml
 run 0 solve "$wedge" --frame 50 -m engine
