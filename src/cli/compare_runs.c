@@ -167,6 +167,8 @@ static void print_parting(FILE *out, const RunComparison *c) {
                 c->difference.max_body, c->difference.max_distance);
     else /* a turn by 2 pi, or 0 and -0 */
         fprintf(out, "largest distance: none, every position is the same\n");
+    if (c->difference.max_frame >= 0)
+        fprintf(out, "mean squared difference of positions: %.3g m^2\n", c->difference.rollout_mse);
 }
 
 static void print_rate(FILE *out, const Growth *growth, double dt) {

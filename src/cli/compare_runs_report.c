@@ -152,6 +152,7 @@ void compare_runs_write_json(JsonWriter *json, const void *context) {
     json_put_bool(json, "poses_only", c->difference.poses_only);
     write_parted(json, "first", c, &parting->first);
     write_largest(json, &c->difference);
+    json_put_number(json, "rollout_mse", c->difference.rollout_mse);
     json_put_text(json, "cause", c->same_world ? causes[parting->cause] : NULL);
     json_put_bool(json, "contacts_found_again", c->found_contacts);
     json_begin_array(json, "not_compared", JSON_LINES);

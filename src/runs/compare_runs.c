@@ -20,15 +20,19 @@ static void describe_first(const Trajectory *a, const Trajectory *b, int frame, 
 }
 
 void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDifference *d) {
-    *d = (TrajectoryDifference){.frame = -1, .body = -1, .max_frame = -1, .max_body = -1};
+    *d = (TrajectoryDifference){.frame = -1, .body = -1, .max_frame = -1, .max_body = -1, .rollout_mse = NAN};
     d->poses_only = !trajectory_both_move(a, b);
     if (trajectory_different_worlds(a, b, d->what, sizeof d->what)) return;
     int frames = a->frames < b->frames ? a->frames : b->frames;
+    int64_t count = 0;
+    double squares = 0;
     for (int frame = 0; frame < frames; frame++) {
         for (int body = 0; body < a->bodies; body++) {
+            count += !a->fixed[body] && trajectory_has(a, frame, body) && trajectory_has(b, frame, body);
             if (trajectory_same_state(a, b, frame, body)) continue;
             if (d->frame < 0) describe_first(a, b, frame, body, d);
             double apart = trajectory_state_difference(a, b, frame, body).distance;
+            if (!a->fixed[body]) squares += apart * apart;
             if (!(apart > d->max_distance)) continue;
             d->max_distance = apart;
             d->max_frame = frame;
@@ -38,6 +42,7 @@ void trajectory_compare(const Trajectory *a, const Trajectory *b, TrajectoryDiff
     if (d->frame < 0 && a->frames != b->frames)
         snprintf(d->what, sizeof d->what, "frames: %d and %d", a->frames, b->frames);
     d->equal = d->frame < 0 && d->what[0] == '\0';
+    d->rollout_mse = squares / (2 * (double)count);
 }
 
 double trajectory_distance(const Trajectory *a, const Trajectory *b, int frame) {

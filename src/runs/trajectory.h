@@ -138,6 +138,10 @@ typedef struct TrajectoryDifference {
     double speed;            /* m/s, between the two velocities there; 0 if poses_only */
     int max_frame, max_body; /* where the distance is largest in the frames of both; -1, -1 if nowhere */
     double max_distance;     /* m */
+    /* m^2: squared difference of positions, mean over the frames of both, the dynamic bodies that both have there, and both
+       coordinates, as learned simulators state the error of a rollout (Sanchez-Gonzalez et al. 2020, section 4.4); NaN: no such
+       body */
+    double rollout_mse;
 } TrajectoryDifference;
 
 /* Compares all poses, and velocities if both have them, bit by bit in the frames of both; NaN: the body does not exist. Contacts and names

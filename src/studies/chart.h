@@ -84,6 +84,9 @@ typedef struct RunMeasures {
     double energy[PHASES];      /* J: excess over the converged run at the same frame, mean over the phase */
     double drift; /* m: mean distance of the boxes from the converged run, just before the bomb touches in either run */
     double moved; /* boxes that moved more than 0.5 m in the 5 s after the launch */
+    double
+        rollout_mse; /* m^2: squared distance from the converged run, mean over frames, boxes and both coordinates; NaN if the
+                           state became NaN or infinite before that run did not converge */
 } RunMeasures;
 
 RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene);
@@ -201,6 +204,7 @@ typedef struct ChartRow {
         us_varies; /* 1: us_solver varies more than the times of other rows, also when measured again (StepCost); else 0. NaN: unknown */
     /* J, N s, J: largest violation of a step (methods/criteria.h), mean over the scored steps with impulses. NaN: none has. */
     double signorini, cone, dissipation;
+    double rollout_mse; /* m^2: as in RunMeasures, mean over the launches */
 } ChartRow;
 
 /* The header is exact, but that the last columns, from cpu on, may be missing. Refused: a median time outside its quartiles. */

@@ -94,6 +94,21 @@ static double mean_distance(const RunLog *log, const RunLog *other, const Scene 
     return count > 0 ? sum / count : NAN;
 }
 
+/* Of whole frames 1 .. last. */
+static double mean_square(const RunLog *log, const RunLog *other, const Scene *scene, int last) {
+    double sum = 0;
+    int64_t count = 0;
+    for (int frame = 1; frame <= last; frame++)
+        for (int i = 0; i < log->bodies; i++) {
+            const size_t at = (size_t)frame * (size_t)log->bodies + (size_t)i;
+            const double apart = vec2_distance(log->position[at], other->position[at]);
+            if (scene->bodies[i].fixed) continue;
+            sum += apart * apart;
+            count++;
+        }
+    return count > 0 ? sum / (2 * (double)count) : NAN;
+}
+
 RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene *scene) {
     RunMeasures measures = {.drift = NAN, .moved = run_log_moved(log, scene)};
     int frames[PHASES] = {0}, compared[PHASES] = {0};
@@ -115,6 +130,8 @@ RunMeasures run_measures(const RunLog *log, const RunLog *converged, const Scene
     int rest = converged->touch > 0 ? converged->touch - 1 : last;
     if (log->touch > 0 && log->touch - 1 < rest) rest = log->touch - 1;
     if (rest > 0 && rest <= last && rest <= known) measures.drift = mean_distance(log, converged, scene, rest);
+    const int whole = known < converged->frames ? known : converged->frames;
+    measures.rollout_mse = last >= whole ? mean_square(log, converged, scene, whole) : NAN;
     return measures;
 }
 

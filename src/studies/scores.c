@@ -234,6 +234,7 @@ void scene_row_measures(ChartRow *row, const RunMeasures *measures, int count) {
     if (row->phase != PHASE_REST) return;
     row->drift = over_launches(measures, count, offsetof(RunMeasures, drift), false);
     row->moved = over_launches(measures, count, offsetof(RunMeasures, moved), false);
+    row->rollout_mse = over_launches(measures, count, offsetof(RunMeasures, rollout_mse), false);
 }
 
 ChartRow scene_row(const char *scene, int launches, const Contender *contender, int protocol, int phase) {
@@ -258,7 +259,8 @@ ChartRow scene_row(const char *scene, int launches, const Contender *contender, 
                       .us_varies = NAN,
                       .signorini = NAN,
                       .cone = NAN,
-                      .dissipation = NAN};
+                      .dissipation = NAN,
+                      .rollout_mse = NAN};
 }
 
 void scene_row_cost(ChartRow *row, const StepCost *cost, const char *cpu) {
@@ -403,6 +405,7 @@ static const CsvColumn columns[] = {
     CSV_MEMBER(ChartRow, signorini, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
     CSV_MEMBER(ChartRow, cone, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
     CSV_MEMBER(ChartRow, dissipation, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
+    CSV_MEMBER(ChartRow, rollout_mse, CSV_OPTIONAL, .maximum = INFINITY, .optional = true),
 };
 
 enum { SOLVER_MEDIAN = 6 };

@@ -119,6 +119,7 @@ states("first difference: " + state(result["first"]))
 states("centres more than 0.01 m apart: " + state(result["beyond"]))
 states("cause: the " + result["cause"])
 states("largest distance: frame %d, body %d: %.3g m apart\n" % tuple(result["largest"].values()))
+states("mean squared difference of positions: %.3g m^2\n" % result["rollout_mse"])
 states(contact(result["contacts"]["contact"]))
 assert result["beyond_contacts"]["step"] == result["beyond"]["frame"] > result["contacts"]["step"]
 if result["beyond_contacts"]["contact"]["only_in_run"] is None:

@@ -58,6 +58,8 @@ TEST_WITH(the_first_and_the_largest_are_found, make, destroy) {
     assert_true(d.frame == 2 && d.body == 1);
     assert_true(fabs(d.distance - 5) < 1e-6 && d.angle == 0.5 && d.speed == 10);
     assert_true(d.max_frame == 3 && d.max_body == 2 && d.max_distance == 12);
+    /* Of the box in four frames and the bomb in two. */
+    assert_near(d.rollout_mse, (25 + 144) / 12.0, 1e-5);
 }
 
 /* One bit in any of the six numbers, down to the sign of a zero. */

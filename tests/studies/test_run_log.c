@@ -108,6 +108,8 @@ TEST(differences_are_assigned_to_their_phase) {
     assert_near(measures.penetration[PHASE_AFTER], 0.01, 0);
     assert_near(measures.drift, 0.025, 1e-6);
     assert_near(measures.moved, 1, 0);
+    /* 0.05, 0.6 and 0.4 m, of two boxes in ten frames, and two coordinates. */
+    assert_near(measures.rollout_mse, (0.0025 + 0.36 + 0.16) / 40, 1e-7);
 }
 
 /* One run's bomb touches in step 5, the other's in 7: the drift is that of step 4, whichever came first. */
