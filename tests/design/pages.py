@@ -17,6 +17,9 @@
       ```python quick        is run by Python, without warnings
       ```yaml file=NAME      is written to a file; so is any other language
       ```text output         is the output of the block before: "..." is any text or lines, times are not compared
+
+  README.md is typed in an empty folder instead, with twinbox installed: its marked blocks and every `twinbox ...` in its
+  sentences and tables, but those with a word in capitals and those that its page follows by "(minutes)" or "(hours)".
 """
 import glob
 import os
@@ -196,9 +199,37 @@ def run_blocks(page, folder):
                   f"the output is another:\n{printed}")
 
 
+def typed_lines(page):
+    """(line, command) from top to bottom."""
+    blocks = {block.line: block.text() for block in page.blocks if "quick" in block.marks}
+    inside = {number for block in page.blocks for number in range(block.line, block.line + len(block.lines) + 2)}
+    for number, line in enumerate(page.lines, 1):
+        if number in blocks:
+            yield number, blocks[number]
+        elif number not in inside:
+            for command, behind in re.findall(r"`(twinbox [^`]*)`( \((?:minutes|hours)\))?", line):
+                if not behind and not re.search(r"\b[A-Z]{2,}\b", command):
+                    yield number, command
+
+
+def type_readme():
+    with tempfile.TemporaryDirectory() as folder:
+        program, empty = f"{folder}/prefix/bin/twinbox", f"{folder}/empty"
+        os.mkdir(empty)
+        subprocess.run(["cmake", "--install", os.path.dirname(twinbox), "--prefix", f"{folder}/prefix"], check=True, capture_output=True)
+        environment = {**os.environ, "PATH": f"{os.path.dirname(program)}:{os.environ['PATH']}"}
+        for number, command in typed_lines(pages["README.md"]):
+            done = subprocess.run(["bash", "-ec", command], cwd=empty, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
+                                  text=True)
+            status = 1 if command.startswith("twinbox compare") else 0  # the runs differ
+            check(done.returncode == status, f"README.md:{number}",
+                  f"{command}: exit status {done.returncode}: {(done.stderr + done.stdout)[-800:]}")
+
+
 def check_blocks():
+    type_readme()
     for page in pages.values():
-        if any(block.marks for block in page.blocks):
+        if page.path != "README.md" and any(block.marks for block in page.blocks):
             with tempfile.TemporaryDirectory() as folder:
                 clone = os.path.join(folder, "twinbox")
                 shutil.copytree(root, clone, ignore=lambda _, names: NOT_IN_A_CLONE & set(names))
