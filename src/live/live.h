@@ -32,19 +32,31 @@
 #define LIVE_EXPORT(name)
 #endif
 
-/* The methods that a page can run: the registry of the module. There are two modules: the plain one has no networks, and is a
-   fifth smaller. */
+/* The methods that a page can run: the registry of the module. All but exec, whose programs no browser starts, and playback, which
+   records a hundred launches before each of its own. There are two modules: the plain one has no networks, and is two thirds as
+   large. */
 #define LIVE_PLAIN_METHODS(SOLVER, STEPPING) \
     SOLVER(engine)                           \
     SOLVER(momentum)                         \
+    SOLVER(nncg)                             \
+    STEPPING(substepping)                    \
+    SOLVER(reference)                        \
     STEPPING(soft_step)                      \
-    SOLVER(interior)
+    STEPPING(avbd)                           \
+    SOLVER(interior)                         \
+    SOLVER(closed_form)                      \
+    SOLVER(admm)
 #define LIVE_METHODS(SOLVER, STEPPING)   \
     LIVE_PLAIN_METHODS(SOLVER, STEPPING) \
     SOLVER(pair_net)                     \
     SOLVER(contact_net)                  \
     SOLVER(scene_net)                    \
-    SOLVER(relu_net)
+    SOLVER(constant)                     \
+    SOLVER(relu_net)                     \
+    SOLVER(sain)                         \
+    SOLVER(hybrid)                       \
+    STEPPING(gns)                        \
+    STEPPING(subspace)
 
 /* The functions of the module. */
 

@@ -48,11 +48,13 @@ set(module_sources
     base/base base/hash base/json_write base/npy base/npz base/parse base/path base/stream base/yaml
     engine/box engine/broad_phase engine/contact_problem engine/world
     live/bundle live/describe live/live live/module/npz_bundle live/module/wasi
-    methods/block_lu methods/block_order methods/engine methods/interior methods/interior_point methods/interior_scalar
-    methods/islands methods/method methods/momentum methods/order methods/pair methods/pair_net methods/reference_point
-    methods/reference_scalar methods/scene_net methods/soft_step methods/steppers methods/stopping methods/sweeps
-    methods/sweeps_scalar methods/sweeps_simd128
-    nets/kernels nets/kernels_scalar nets/net_file nets/network nets/slot_network
+    methods/admm methods/admm_scalar methods/avbd methods/block_lu methods/block_order methods/closed_form methods/constant
+    methods/engine methods/gns methods/gns_graph methods/hybrid methods/interior methods/interior_point methods/interior_scalar
+    methods/islands methods/method methods/momentum methods/nncg methods/order methods/pair methods/pair_net methods/reference_point
+    methods/reference_scalar methods/relation_view methods/sain methods/scene_net methods/soft_step methods/steppers methods/stopping
+    methods/subspace methods/substepping methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/tabulation
+    methods/tabulation_file
+    nets/gns_net nets/kernels nets/kernels_scalar nets/net_file nets/network nets/slot_network nets/subspace_net
     runs/contact_finder runs/framing runs/launch_check runs/record runs/simulation runs/trajectory runs/verdict runs/verdict_checks
     runs/verdict_energy runs/verdict_passes
     runs/verdict_words
@@ -60,7 +62,8 @@ set(module_sources
 # Where most of the time is spent; the rest is made small.
 set(module_fast
     engine/box engine/broad_phase engine/contact_problem engine/world methods/block_lu methods/interior
-    methods/interior_point methods/interior_scalar methods/islands methods/momentum methods/order methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/soft_step
+    methods/interior_point methods/interior_scalar methods/islands methods/momentum methods/order methods/soft_step methods/sweeps
+    methods/sweeps_scalar methods/sweeps_simd128
     nets/kernels_scalar)
 
 if(TWINBOX_LIVE)

@@ -14,30 +14,25 @@ bool player_live_pack(Player *player, Error *error) {
            bytes_deflate(&player->bundle, live->bundle, live->bundle_size, error);
 }
 
-static void put_method(JsonWriter *json, const MethodDescription *method, MethodColour colour) {
+/* In the colour of its own: where another panel has it, the page takes one that is left (player/launch.js). */
+static void put_method(JsonWriter *json, const MethodDescription *method) {
     json_begin_object(json, NULL, JSON_LINES);
     json_put_text(json, "name", method->name);
     json_put_number(json, "ems", player_ems(FONT_SEMIBOLD, method->name));
     json_put_text(json, "note", method->caption);
     json_put_number(json, "note_ems", method->caption != NULL ? player_ems(FONT_REGULAR, method->caption) : 0);
-    player_put_colours(json, colour);
+    player_put_colours(json, method->look.colour);
     json_end(json);
 }
 
 void player_live_put(JsonWriter *json, const Player *player) {
     const PlayerLive *live = player->options->live;
-    enum { MOST = 16 };
-    const MethodDescription *methods[MOST] = {NULL};
-    MethodColour colours[MOST];
-    int count = 0;
-    for (const MethodKind *kind = method_kinds; kind->description != NULL && count < MOST; kind++)
-        if (live_has_method(kind->description)) methods[count++] = kind->description;
-    method_colours_assign(methods, count, colours);
     json_begin_object(json, "live", JSON_LINES);
     json_put_text(json, "scene", live->scene);
     json_put_text(json, "set", live->set);
     json_begin_array(json, "methods", JSON_LINES);
-    for (int i = 0; i < count; i++) put_method(json, methods[i], colours[i]);
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
+        if (live_has_method(kind->description)) put_method(json, kind->description);
     json_end(json);
     json_end(json);
 }

@@ -9,6 +9,7 @@ import {load} from './live.mjs';
 
 const [path, plain_path, pack] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), 'live-'));
+const PLAIN = 'engine,momentum,nncg,substepping,reference,soft-step,avbd,interior,closed-form,admm';
 const live = await load(path);
 let failures = 0;
 
@@ -50,7 +51,7 @@ refused(() => begin(stack, 'bomb_speed=-1'), 'bomb_speed must be a number from 0
 refused(() => begin(height, 'height=1e9'), 'height must be from');
 refused(() => begin(height, 'height=2.5'), 'height must be a whole number');
 refused(() => begin(stack, '', 'egnine'), "'egnine' is not a method; did you mean 'engine'?");
-refused(() => begin(stack, '', 'nncg'), "'nncg' is not a method; known: engine, momentum, soft-step, interior, pair-net");
+refused(() => begin(stack, '', 'playback'), "'playback' is not a method; known: engine, momentum, nncg, substepping, reference, soft-step, avbd");
 refused(() => begin(stack, '', 'engine:k=0'), "k: error: must be a whole number from 1 to 1000000 (got '0')");
 refused(() => begin(stack, '', 'interior:near=nan'), 'near');
 refused(() => begin(stack, '', 'x'.repeat(100000)), "a method's text has at most 127 characters");
@@ -60,7 +61,7 @@ refused(() => begin(settled, 'dt=1e-5'), 'out of memory');
 refused(() => live.json('live_describe', stack, 'iterations=0.5'), 'iterations must be a whole number');
 
 const method_names = live.json('live_methods').map(method => method.name);
-expect(method_names.join() === 'engine,momentum,soft-step,interior,pair-net,contact-net,scene-net,relu-net', method_names.join());
+expect(method_names.join() === PLAIN + ',pair-net,contact-net,scene-net,constant,relu-net,sain,hybrid,gns,subspace', method_names.join());
 const {parameters, bomb} = live.json('live_describe', height, 'height=7');
 expect(parameters.find(each => each.name === 'height').value === 7, 'a setting is described');
 expect(bomb === null, 'a scene without a bomb is described');
@@ -107,7 +108,7 @@ expect(live.c.memory.buffer.byteLength === size, 'memory grows from run to run')
 const plain = await load(plain_path);
 const stack_there = plain.open(bundle_of('scenes/stack.yaml', 'engine'));
 expect(plain.run(stack_there, '', 'engine').hash === hash, 'another hash by the plain module');
-expect(plain.json('live_methods').map(method => method.name).join() === 'engine,momentum,soft-step,interior', 'plain methods');
+expect(plain.json('live_methods').map(method => method.name).join() === PLAIN, 'plain methods');
 expect(plain.call('live_begin', stack_there, '', 'pair-net', 0) === 0, 'a network in the plain module');
 rmSync(folder, {recursive: true});
 process.exitCode = failures > 0 ? 1 : 0;

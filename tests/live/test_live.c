@@ -77,9 +77,13 @@ static void check_run(const char *name, const char *settings, const char *method
 }
 
 TEST(runs_are_those_of_simulate) {
-    static const char *const methods[] = {"engine",    "momentum:k=5",
-                                          "soft-step", "soft-step:keep=0.05",
-                                          "interior",  "pair-net:network=" SOURCE_DIR "/scenes/networks/pair-net.npz"};
+    static const char *const methods[] = {"engine",
+                                          "momentum:k=5",
+                                          "soft-step",
+                                          "soft-step:keep=0.05",
+                                          "avbd",
+                                          "interior",
+                                          "pair-net:network=" SOURCE_DIR "/scenes/networks/pair-net.npz"};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
         check_run("stack", "bomb_x=-1.25", methods[i]);
         check_run("families/gate", "", methods[i]);
@@ -132,12 +136,26 @@ TEST(a_bundle_has_no_folder) {
     free(bundle);
 }
 
+TEST(every_method_is_live_but_two) {
+#define LIVE_NAMED(kind) #kind ","
+    static const char plain[] = LIVE_PLAIN_METHODS(LIVE_NAMED, LIVE_NAMED);
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        const MethodDescription *method = kind->description;
+        char named[METHOD_TEXT_SIZE];
+        snprintf(named, sizeof named, "%s,", method->name);
+        for (char *at = named; *at != '\0'; at++) *at = *at == '-' ? '_' : *at;
+        const bool live = !method->external && strcmp(method->name, "playback") != 0;
+        if (live_has_method(method) != live) fail_msg("%s", method->name);
+        if (strstr(plain, named) != NULL && (!live || method->needs_network)) fail_msg("%s is no plain one", named);
+    }
+}
+
 TEST(methods_that_a_page_lacks_are_refused) {
     void *bundle;
     size_t size;
-    const char *const methods[] = {"engine", "nncg"};
+    const char *const methods[] = {"engine", "playback"};
     assert_refused(live_pack(SOURCE_DIR "/scenes/stack.yaml", methods, 2, &bundle, &size, &error),
-                   "nncg: error: a page cannot run this method");
+                   "playback: error: a page cannot run this method");
 }
 
 /* Any bytes: refused, or a scene. The sanitizers see what the module would not. */
