@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Writes the FILES of folder FROM as arrays of TYPE ("char", "unsigned char") into OUTPUT. With PREFIX shader_, shape.vert
 # becomes shader_shape_vert, ended by a 0; beside bytes (unsigned char) stands their number, NAME_size. HEADER declares them.
-# TYPE "script": all FILES are one text PREFIX, several of them in one scope. Beside it stands its SHA-256, PREFIX_sha256, by
-# which the policy of a page allows it.
+# TYPE "script": all FILES are one text PREFIX without their comments, several of them in one scope. Beside it stands its SHA-256,
+# PREFIX_sha256, by which the policy of a page allows it.
 set(text "#include \"${HEADER}\"\n")
 if(TYPE STREQUAL "script")
     set(script "")
     foreach(file ${FILES})
         file(READ "${FROM}/${file}" part)
+        string(REGEX REPLACE "[ ]*/[*][^*]*[*]+([^/*][^*]*[*]+)*/" "" part "${part}")
         string(APPEND script "${part}\n")
     endforeach()
     if(FILES MATCHES ";")
