@@ -58,15 +58,28 @@ static const char *file_of(const char *input) {
     return file_name_ends_with(input, ".npz") ? input + file_folder_length(input) : NULL;
 }
 
+/* "bomb_x=2.5,height=12" */
+static void join_settings(const SceneSettings *set, char *text, size_t size) {
+    text[0] = '\0';
+    for (int i = 0; i < set->count; i++)
+        text_add(text, size, "%s%s=%.17g", i > 0 ? "," : "", set->items[i].name, set->items[i].value);
+}
+
 static bool write_page(const Options *options, const Panels *panels, const PlayerLive *live, Error *error) {
+    char set[SCENE_SETTINGS_MAX * (SCENE_PARAMETER_SIZE + 32)];
     const Trajectory *const *runs = (const Trajectory *const *)panels->runs;
     PlayerOptions page = {.first = options->frames.first,
                           .last = options->frames.last,
                           .every = options->every,
+                          .set = set,
                           .live = live,
                           .describe = draw_panels_defaults(NULL).describe};
     PlayerResult result;
-    for (int i = 0; i < panels->count; i++) page.files[i] = file_of(panels->inputs[i]);
+    for (int i = 0; i < panels->count; i++) {
+        page.files[i] = file_of(panels->inputs[i]);
+        if (page.files[i] == NULL) page.scenes[i] = panels->inputs[i];
+    }
+    join_settings(&options->set, set, sizeof set);
     if (!player_write(runs, panels->count, &page, options->output, &result, error)) return false;
     note_different_scenes(runs, panels->count);
     if (result.left_contacts) note_print("contacts are left out: with them the page would take more than 64 MB");
@@ -114,13 +127,6 @@ static bool add_methods(const Options *options, const char *path, PlayerLive *li
     return ok;
 }
 
-/* "bomb_x=2.5,height=12" */
-static void join_settings(const SceneSettings *set, char *text, size_t size) {
-    text[0] = '\0';
-    for (int i = 0; i < set->count; i++)
-        text_add(text, size, "%s%s=%.17g", i > 0 ? "," : "", set->items[i].name, set->items[i].value);
-}
-
 static bool pack(const char *scene, PlayerLive *live, Error *error) {
     const char *methods[RENDER_PANELS_MAX];
     void *bundle = NULL;
@@ -138,15 +144,13 @@ static bool pack(const char *scene, PlayerLive *live, Error *error) {
 }
 
 static bool write_live(const Options *options, Panels *panels, Error *error) {
-    char set[SCENE_SETTINGS_MAX * (SCENE_PARAMETER_SIZE + 32)];
     const char *scene = find_scene(options, error);
-    PlayerLive live = {.scene = scene, .set = set};
+    PlayerLive live = {0};
     if (scene == NULL) return false;
     if (live_module(false).size == 0)
         return error_input(error, "--live",
                            "this build has no module for live pages; install clang, lld, wasi-libc and "
                            "libclang-rt-dev-wasm32 (tests/setup does), then configure and build afresh");
-    join_settings(&options->set, set, sizeof set);
     const char *runs[RENDER_PANELS_MAX];
     int count = 0;
     const SceneSettings none = {0};

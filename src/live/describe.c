@@ -116,6 +116,7 @@ static void write_scene(JsonWriter *json, const void *context) {
     json_put_number(json, "dt", (double)scene->dt);
     json_put_int(json, "steps", scene->frames);
     json_put_int(json, "iterations", scene->iterations);
+    json_put_hash(json, "scene_hash", scene_hash(scene));
     json_put_int(json, "bodies", scene->body_count + scene_has_launch(scene));
     put_pair(json, "gravity", (double)scene->gravity.x, (double)scene->gravity.y);
     json_begin_object(json, "camera", JSON_ONE_LINE);

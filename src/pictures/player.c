@@ -152,6 +152,7 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     json_put_number(json, "ems", player_ems(FONT_SEMIBOLD, name));
     json_put_number(json, "note_ems", player_ems(FONT_REGULAR, note));
     json_put_text(json, "file", player->options->files[index]);
+    json_put_text(json, "made_of", player->options->scenes[index]);
     json_put_hash(json, "hash",
                   player_run_is_live(player, index) ? trajectory_frame_hash(run, run->frames - 1)
                                                     : trajectory_hash(run));
@@ -250,6 +251,7 @@ static void put_data(FILE *file, const Player *player) {
     json_begin_object(&json, NULL, JSON_LINES);
     json_put_text(&json, "version", TWINBOX_VERSION);
     json_put_text(&json, "title", title);
+    json_put_text(&json, "set", player->options->set != NULL ? player->options->set : "");
     json_put_number(&json, "dt", (double)player_dt(&player->frames, first));
     json_put_int(&json, "every", player->frames.every);
     json_put_int(&json, "first", player->frames.first);
@@ -270,7 +272,7 @@ static void put_data(FILE *file, const Player *player) {
     json_begin_array(&json, "runs", JSON_LINES);
     for (int i = 0; i < player->picture.count; i++) put_run_data(&json, player, i);
     json_end(&json);
-    if (player->options->live != NULL) player_live_put(&json, player);
+    if (player->options->live != NULL) player_live_put(&json);
     json_end(&json);
 }
 

@@ -112,7 +112,7 @@ static inline bool player_run_is_live(const Player *player, int index) {
 
 /* What a page with live runs needs beside them (player_live.c): deflates module and bundle; the key "live" of the data. */
 bool player_live_pack(Player *player, Error *error);
-void player_live_put(JsonWriter *json, const Player *player);
+void player_live_put(JsonWriter *json);
 
 /* The colours of a run's boxes, by theme. */
 void player_put_colours(JsonWriter *json, MethodColour colour);

@@ -25,11 +25,8 @@ static void put_method(JsonWriter *json, const MethodDescription *method) {
     json_end(json);
 }
 
-void player_live_put(JsonWriter *json, const Player *player) {
-    const PlayerLive *live = player->options->live;
+void player_live_put(JsonWriter *json) {
     json_begin_object(json, "live", JSON_LINES);
-    json_put_text(json, "scene", live->scene);
-    json_put_text(json, "set", live->set);
     json_begin_array(json, "methods", JSON_LINES);
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++)
         if (live_has_method(kind->description)) put_method(json, kind->description);

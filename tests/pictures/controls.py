@@ -55,7 +55,10 @@ def check_words(checks, page, loaded):
     with open("drawn/manifest.json") as file:
         manifest = json.load(file)
     shutil.rmtree("drawn")
-    table, summary = (page.run(f"document.getElementById('{part}').innerText") for part in ("runs", "summary"))
+    page.click(*page.middle("#figures"))
+    table, figures = (page.run(f"document.getElementById('{part}').innerText") for part in ("runs", "facts"))
+    page.click(*page.middle("#figures"))
+    checks.equal("the figures are hidden again", page.run("document.getElementById('facts').offsetHeight"), 0)
     for run, method in zip(manifest["runs"], METHODS):
         for word in run["hash"], run["scene_hash"], method:
             checks.true(f"'{word}' in the table of runs", word in table, table)
@@ -63,7 +66,7 @@ def check_words(checks, page, loaded):
     checks.true("no date", not re.search(r"20\d\d-\d\d|GMT|UTC", page.run("document.body.innerText")))
     for i, other in enumerate(loaded[1:], 1):
         for frame in parting(loaded[0], other):
-            checks.true(f"{METHODS[i]} parts at frame {frame}", f"{frame / 60:.3f} s on" in summary, summary)
+            checks.true(f"{METHODS[i]} parts at frame {frame}", f"at {frame / 60:.3f} s" in figures, figures)
 
 
 def check_time(checks, browser):

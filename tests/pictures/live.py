@@ -212,6 +212,7 @@ def check_access(checks, browser):
     with open(os.path.join(checks.sources, "tests/pictures/audit.js")) as file:
         page = open_scene(checks, browser, "stack", *METHODS, before=file.read())
     page.wait(ENDED)
+    page.run("document.querySelectorAll('details').forEach(all => { all.open = true; })")
     for width, height in (1440, 900), (390, 844):
         for dark in False, True:
             what = f"{width} {'dark' if dark else 'light'}"
@@ -249,6 +250,8 @@ def check_keyboard(checks, browser):
     page.press("m")
     page.wait("player.runs[1].live === 'momentum'")
     checks.equal("the focus stays at the method", page.run("document.activeElement.value"), "momentum")
+    tab_to(page, "e.tagName === 'SUMMARY' && e.closest('[role=group]').ariaLabel === 'Panel 2'")
+    page.press("Enter")
     tab_to(page, "e.closest('label')?.textContent === 'k'")
     page.press("7", "Tab")
     check_hashes(checks, page, "stack", ["engine", "momentum:k=7"], "with a method by keys")

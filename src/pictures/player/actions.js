@@ -9,10 +9,10 @@ function say(text) {
 }
 
 /* Where the clipboard is refused, the text is in a field. */
-async function copy(text, what) {
+async function copy(text, what, but = "") {
   try {
     await navigator.clipboard.writeText(text);
-    say(what + " copied");
+    say(`${what} copied${but}`);
   } catch {
     ui.refused.hidden = false;
     ui.copied.value = text;
@@ -20,27 +20,31 @@ async function copy(text, what) {
   }
 }
 
-/* As one word of a shell that is no option. */
-function file_of({file, method}) {
-  const name = (file ?? method.replace(/[/\0]/g, "_") + ".npz").replace(/^-/, "./-");
+/* One word of a shell that is no option. */
+function word(text) {
+  const name = text.replace(/^-/, "./-");
   return /^[\w./:=,+@%-]+$/.test(name) ? name : `'${name.replace(/'/g, "'\\''")}'`;
 }
+const file_of = ({file, method}) => word(file ?? method.replace(/[/\0]/g, "_") + ".npz");
 
-/* The commands that make the live runs. */
-function simulations() {
-  const quote = text => /^[\w./:=,+@%-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`;
-  const set = [...chosen].map(([name, value]) => ` --set ${name}=${value}`).join("");
-  return live_runs().map(run =>
-    `twinbox simulate ${quote(data.live.scene)}${set} --method ${quote(run.live)} -o ${file_of(run)} &&`);
+/* The command that makes a run of a scene; "" for a run that is a file. */
+function simulation(run) {
+  const set = (run.live ? set_text() : data.set).split(",").filter(Boolean).map(part => `--set ${word(part)} `).join("");
+  return run.made_of ? `twinbox simulate ${word(run.made_of)} ${set}--method ${word(run.method)} -o ${file_of(run)} && ` : "";
 }
 
+/* Beside live panels a command of its own makes each run. That leaves out files, which only the page's author has; a run of another
+   launch; and programs of others, as a page must not name what a pasted line starts. */
+const is_left_out = run => data.live && (!run.made_of || run.elsewhere || run.method.startsWith("exec:"));
+
 ui["copy-link"].onclick = () => copy(location.href.split("#")[0] + link_text(), "Link");
-/* Options that compare leave out the runs that cannot be compared. */
+/* Options that compare leave out the runs that cannot be compared, too. */
 ui["copy-command"].onclick = () => {
   const {compare, show} = view, compares = compare !== "split" || show.has("ghosts") || show.has("distance");
   const options = [["frames", number_of(view.frame)], ...shown("camera"), ["theme", theme_name(), "light"]];
-  copy([...simulations(), "twinbox render", ...runs.filter(run => run.compared || !compares).map(file_of), "-o frame",
-    ...words("--", " ", options)].join(" "), "Command");
+  const found = runs.filter(run => !is_left_out(run) && (run.compared || !compares)), left = runs.filter(run => !found.includes(run));
+  copy([...new Set(found.map(simulation)), "twinbox render ", found.map(file_of).join(" "), " -o frame ",
+    words("--", " ", options).join(" ")].join(""), "Command", left.length > 0 ? `, without ${left.map(({name}) => name).join(", ")}` : "");
 };
 ui.copied.onblur = () => { ui.refused.hidden = true; };
 ui.save.onclick = () => {

@@ -82,6 +82,7 @@ function lay_captions(width) {
 
 /* What a panel does not show. */
 function state_of(run) {
+  if (runs[run].elsewhere) return ""; /* which says more (picture.js) */
   const {fixed, frames, bomb} = runs[run], is_unseen = (still, body) =>
     !still && body !== bomb && exists(run, now, body) && !is_inside(here, place(pose(run, now, body)));
   const unseen = fixed.filter(is_unseen).length, end = now >= frames ? ["ended"] : [];

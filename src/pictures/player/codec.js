@@ -19,9 +19,10 @@ function make_states(run, frames, bodies) {
 
 const pairs = numbers => Array.from({length: numbers.length / 2}, (_, i) => [numbers[2 * i], numbers[2 * i + 1]]);
 
-/* A live run (live.js) has a method, and its states are computed. */
+/* A live run (live.js) has a method, and its states are computed. `stored`: the run's number in the page's elements, whatever its
+   panel; checked, wrong: of its frames. */
 const runs = data.runs.map((run, index) => Object.assign(make_states(run, run.frames, run.bodies), {
-  index, size: pairs(new Float32Array(packed("size" + index).buffer)),
+  index, stored: index, checked: 0, wrong: 0, size: pairs(new Float32Array(packed("size" + index).buffer)),
   fixed: Array.from(packed("fixed" + index), Boolean), reached: -1,
   distances: run.live ? new Float32Array(run.frames) : new Float32Array(packed("distances" + index).buffer),
   hashes: run.live ? null : new DataView(packed("hashes" + index).buffer),
@@ -104,7 +105,7 @@ function contact_of(run, [a, b, , x, y, nx, ny, steps, share], center) {
 }
 
 /* Calls decode(run, bytes, first frame, number of frames) for a chunk, once. */
-const load_once = (kind, loads, decode) => (run, chunk) => run[loads][chunk] ??= inflated(`${kind}${run.index}-${chunk}`)
+const load_once = (kind, loads, decode) => (run, chunk) => run[loads][chunk] ??= inflated(`${kind}${run.stored}-${chunk}`)
   .then(bytes => decode(run, bytes, chunk * data.chunk, Math.min(data.chunk, run.frames - chunk * data.chunk)));
 const load_states = load_once("s", "loads", (run, bytes, begin, length) => {
   COMPONENTS.forEach((_, which) => decode_component(run, bytes, which, begin, length));
@@ -114,21 +115,22 @@ const load_lists = load_once("c", "list_loads", decode_contacts);
 
 /* The chunks with a stored frame of a run and the next, between which poses are interpolated. */
 function chunks_of(run, frame) {
-  const of = at => Math.floor(Math.min(Math.max(Math.floor(at), 0), run.frames - 1) / data.chunk);
-  return [of(frame), of(frame + 1)];
+  const own = own_frame(run, frame), of = at => Math.floor(Math.min(Math.max(Math.floor(at), 0), run.frames - 1) / data.chunk);
+  return [of(own), of(own + 1)];
 }
 
 /* Contacts are several times as large as states: those of all runs are decoded where they are drawn or measured only. */
 const lists_wanted = run => run.contacts && !run.live && (view.body >= 0 || shows("contacts") || shows("impulses"));
-const list_place = (run, frame) => Math.min(Math.floor(frame), run.frames - 1);
+const list_place = (run, frame) => Math.min(Math.floor(own_frame(run, frame)), run.frames - 1);
 
-/* Whether all runs have what is shown of a frame; one that has failed shows what it has. */
-const ready = frame => runs.every(run => run.live ? has_failed(run) || run.reached >= min(ceil(frame), run.frames - 1)
+/* Whether a run has what is shown of a frame; one that has failed shows what it has. */
+const has = (run, frame) => run.live ? has_failed(run) || run.reached >= min(ceil(frame), run.frames - 1)
   : chunks_of(run, frame).every(chunk => run.done[chunk]) &&
-    (!lists_wanted(run) || list_place(run, frame) in run.lists));
+    (!lists_wanted(run) || list_place(run, frame) in run.lists);
+const ready = frame => runs.every(run => has(run, frame));
 
 /* Contacts lie relative to bodies: after the states. */
-const load = frame => Promise.all(runs.map(async run => {
+const load = frame => Promise.all(runs.filter(run => !has(run, frame)).map(async run => {
   if (run.live) return arrival();
   const chunks = chunks_of(run, frame);
   await Promise.all(chunks.map(chunk => load_states(run, chunk)));
@@ -136,11 +138,11 @@ const load = frame => Promise.all(runs.map(async run => {
 }));
 
 /* FNV-1a 64 over the bytes of the dynamic bodies that exist, in two halves of 32 bits. */
-function state_hash(index, frame) {
-  const run = runs[index], words = ["x", "y", "angle", "vx", "vy", "omega"].map(name => run.bits[name]);
+function hash_of(run, frame) {
+  const words = ["x", "y", "angle", "vx", "vy", "omega"].map(name => run.bits[name]);
   let [high, low] = HASH_START;
   for (let body = 0, at = frame * run.bodies; body < run.bodies; body++, at++) {
-    if (run.fixed[body] || !exists(index, frame, body)) continue;
+    if (run.fixed[body] || Number.isNaN(run.x[at])) continue;
     for (const word of words)
       for (let shift = 0; shift < 32; shift += 8) {
         low = (low ^ (word[at] >>> shift & 255)) >>> 0;
@@ -153,21 +155,23 @@ function state_hash(index, frame) {
   return high.toString(16).padStart(8, "0") + low.toString(16).padStart(8, "0");
 }
 
-const stored_hash = (index, frame) => runs[index].hashes.getBigUint64(8 * frame, true).toString(16).padStart(16, "0");
+const stored_hash = (run, frame) => run.hashes.getBigUint64(8 * frame, true).toString(16).padStart(16, "0");
 
 /* The check of all states against the hashes of the runs' files, a slice of time after the other. */
 const SLICE = 8; /* ms of script at once */
-const check = {frames: 0, of: runs.reduce((sum, run) => sum + (run.live ? 0 : run.frames), 0), wrong: 0};
 const on_checked = [];
-const checked = () => ({...check});
+const recorded = runs.filter(run => !run.live); /* also those whose panel was removed */
+function checked() {
+  const sum = key => recorded.reduce((sum, run) => sum + run[key], 0);
+  return {frames: sum("checked"), of: sum("frames"), wrong: sum("wrong")};
+}
 
 async function check_all() {
-  for (const run of runs.filter(each => !each.live))
-    for (let chunk = 0, frame = 0; chunk < run.chunks; chunk++) {
+  for (const run of recorded)
+    for (let chunk = 0; chunk < run.chunks; chunk++) {
       await load_states(run, chunk);
-      for (let since = performance.now(); frame < Math.min((chunk + 1) * data.chunk, run.frames); frame++) {
-        check.frames++;
-        if (state_hash(run.index, frame) !== stored_hash(run.index, frame)) check.wrong++;
+      for (let since = performance.now(); run.checked < Math.min((chunk + 1) * data.chunk, run.frames); run.checked++) {
+        if (hash_of(run, run.checked) !== stored_hash(run, run.checked)) run.wrong++;
         if (performance.now() - since < SLICE) continue;
         await new Promise(done => setTimeout(done));
         since = performance.now();

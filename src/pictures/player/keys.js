@@ -48,9 +48,9 @@ onkeydown = event => {
   const key = event.key === " " ? "Space" : locked ? event.key.toLowerCase() : event.key;
   const typed = event.getModifierState("AltGraph"); /* brackets, on some keyboards, with Ctrl and Alt */
   if ((!typed && (event.ctrlKey || event.altKey)) || event.metaKey || ui.help.open) return;
-  if (key !== "Escape" && own("select, #copied, [type=number]")) return;
+  if (key !== "Escape" && own("select, #copied, [type=number], [type=text]")) return;
   if (/^(Arrow|Home|End|Page)/.test(key) && own("[type=range]:not(#scrubber)")) return;
-  if (key === "Space" && own("button, [type=checkbox], [type=radio]")) return;
+  if (key === "Space" && own("button, summary, [type=checkbox], [type=radio]")) return;
   if (/^(Arrow|Home|End)/.test(key) && own("[type=radio], #provenance")) return;
   const found = ACTIONS.find(([keys]) => keys.split(" ").includes(key)), by = target === ui.scrubber && SCRUBBER[key];
   if (!found && !by) return;

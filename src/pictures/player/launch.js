@@ -6,7 +6,15 @@ let held = null, asked = false, chosen_run = null; /* the run that was chosen as
 
 const parameter = name => setup.scene?.parameters.find(each => each.name === name);
 const value_of = name => chosen.get(name) ?? parameter(name)?.value;
-const rounded = ({whole}, value) => whole ? round(value) : six_digits(value);
+const label_of = name => name === "dt" ? "time step" : name.replaceAll("_", " ");
+const setting_text = ({name}, value) => name === "dt" ? fraction(value) : String(six_digits(value));
+/* "1/60" or a number. */
+const number_in = text => text.split("/").map(Number).reduce((over, under) => over / under);
+
+/* A step of 1/60 s is exactly that, not its six digits. */
+function rounded({name, whole}, value) {
+  return whole ? round(value) : name === "dt" ? number_in(fraction(value)) : six_digits(value);
+}
 
 /* Out of its range, a setting of the scene takes the end. */
 function choose(name, value) {
@@ -20,15 +28,20 @@ function choose(name, value) {
 }
 
 function show_settings() {
-  for (const [name, both] of inputs) for (const input of both) input.value = six_digits(value_of(name));
+  for (const [name, [range, number]] of inputs) {
+    range.value = value_of(name);
+    number.value = setting_text(parameter(name), value_of(name));
+  }
 }
 
 function setting_row(each) {
-  const {name, unit, from, to, whole} = each, label = name.replace("_", " "), step = whole ? 1 : "any";
+  const {name, unit, from, to, whole} = each, label = label_of(name), step = whole ? 1 : "any", is_time = name === "dt";
   const range = make("input", {type: "range", min: from, max: to, step, "aria-label": label,
-    oninput: () => choose(name, Number(range.value))});
-  const number = make("input", {type: "number", min: from, max: to, step, "aria-label": `${label}${unit ? ", " + unit : ""}`,
-    onchange: () => choose(name, Number(number.value))});
+    oninput: () => choose(name, is_time ? 1 / round(1 / range.value) : Number(range.value))});
+  const number = make("input", {type: is_time ? "text" : "number", min: from, max: to, step, onchange: () => {
+    choose(name, number_in(number.value));
+    show_settings(); /* what is no number is not kept */
+  }, "aria-label": `${label}${unit ? ", " + unit : ""}`});
   inputs.set(name, [range, number]);
   return make("tr", make("th", label), make("td", range), make("td", number), make("td", unit ?? ""));
 }
@@ -71,38 +84,63 @@ function method_row(run) {
       set_method(run, method_text(name, [...given]));
     };
     const input = type === "bool" ? make("select", {onchange: change_it},
-      ["", "on", "off"].map(value => new Option(value || "usual", value, false, given.get(key) === value)))
-      : make("input", {type: "number", min: from, max: to, step: type === "int" ? 1 : "any", placeholder: "usual",
+      ["", "on", "off"].map(value => new Option(value || "default", value, false, given.get(key) === value)))
+      : make("input", {type: "number", min: from, max: to, step: type === "int" ? 1 : "any", placeholder: "default",
         value: given.get(key) ?? "", onchange: change_it});
     return make("label", {title: summary}, key, input);
   });
-  const remove = make("button", {"aria-label": `Remove ${run.live}`, onclick: () => remove_panel(run)}, "Remove");
-  remove.disabled = live_runs().length < 2;
-  const group = {class: "bar", role: "group", "aria-label": `Panel ${run.index + 1}`};
-  return make("div", group, swatch(run.index), select, controls, remove);
+  const all = make("details", {ontoggle: () => { run.opened = all.open; }}, make("summary", "Settings"), controls);
+  all.hidden = controls.length === 0;
+  all.open = run.opened ?? given.size > 0;
+  return panel_row(run, select, remove_button(run, live_runs().length > 1), all);
+}
+
+const panel_row = (run, ...parts) => make("div", {class: "bar", role: "group", "aria-label": `Panel ${run.index + 1}`},
+  shape(SQUARE, run.index), parts);
+
+function remove_button(run, can_go) {
+  const button = make("button", {"aria-label": `Remove ${run.name}`, onclick: () => remove_panel(run)}, "Remove");
+  button.disabled = !can_go;
+  return button;
+}
+
+/* A recorded run can come back. */
+function recorded_row(run) {
+  if (runs.includes(run)) return panel_row(run, make("span", names[run.index]), remove_button(run, runs.length > 1));
+  const add = make("button", {"aria-label": `Add ${run.name}`, onclick: () => put_back(run)}, "Add");
+  add.disabled = runs.length >= METHODS_MAX;
+  return make("div", {class: "bar off", role: "group", "aria-label": run.name}, make("span", cut(run.name)), add);
 }
 
 /* The focus stays where it was, or at what has taken its place. */
 function list_methods() {
   const controls = () => [...ui.methods.querySelectorAll("select, input, button")];
   const at = controls().indexOf(document.activeElement);
-  ui.methods.replaceChildren(...live_runs().map(method_row));
+  ui.methods.replaceChildren(...runs.map(run => run.live ? method_row(run) : recorded_row(run)),
+    ...recorded.filter(run => !runs.includes(run)).map(recorded_row));
   ui.add.disabled = runs.length >= METHODS_MAX;
   if (at >= 0) (controls()[at]?.disabled === false ? controls()[at] : ui.add).focus();
 }
 
 function remove_panel(run) {
-  run.worker.terminate();
+  run.worker?.terminate();
   runs.splice(runs.indexOf(run), 1);
   Object.assign(view, {body: -1, run: 0});
   take_stock();
   list_methods();
 }
 
+function put_back(run) {
+  runs.push(run);
+  take_stock();
+  list_methods();
+}
+
 function add_panel(text = "engine") {
+  const like = live_runs()[0] ?? runs[0];
   const run = Object.assign(make_states({}, 1, 0), {index: runs.length, live: text, size: [], fixed: [], bomb: -1, reached: -1,
-    distances: new Float32Array(1), velocities: true, contacts: true, compared: false, why: "", scene: runs[0].scene,
-    iterations: runs[0].iterations, dt: runs[0].dt, steps: runs[0].steps, scene_hash: "", verdict: null,
+    distances: new Float32Array(1), velocities: true, contacts: true, compared: false, why: "", scene: like.scene,
+    made_of: like.made_of, iterations: like.iterations, dt: like.dt, steps: like.steps, scene_hash: "", verdict: null,
     colours: colours_for(null, text)});
   describe_run(run);
   runs.push(run);
@@ -177,7 +215,7 @@ function ask(on) {
 
 function answer(panel) {
   const run = planned.panels[panel]?.run;
-  if (run === undefined) return;
+  if (run === undefined || runs[run].elsewhere) return;
   ask(false);
   ui.predict.checked = false;
   chosen_run = runs[run];

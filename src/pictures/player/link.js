@@ -35,7 +35,8 @@ function link_text() {
 /* The launch of a live page, where it is not the first one. */
 const live_words = () => !data.live ? [] : [["set", encodeURIComponent(set_text()), encodeURIComponent(first_set)],
   ["methods", live_runs().map(run => encodeURIComponent(run.live)).join(";"),
-    first_runs.filter(each => each.live).map(each => encodeURIComponent(each.live)).join(";")]];
+    first_runs.filter(each => each.live).map(each => encodeURIComponent(each.live)).join(";")],
+  ["without", recorded.filter(run => !runs.includes(run)).map(run => run.stored).join(), ""]];
 
 /* What is absent or malformed has its default. */
 onhashchange = () => {
@@ -68,6 +69,12 @@ function follow_link(fragment) {
     if (!run) add_panel(text);
     else if (run.live !== text) change_method(run, text);
   });
+  const without = (link.get("without") ?? "").split(",");
+  for (const run of recorded) {
+    const is_there = runs.includes(run), wanted = !without.includes(String(run.stored));
+    if (is_there && !wanted && runs.length > 1) remove_panel(run);
+    if (wanted && !is_there && runs.length < METHODS_MAX) put_back(run);
+  }
   show_settings();
 }
 

@@ -3,7 +3,8 @@
 const LARGE = 4e5, PATIENCE = 150, WORDS = 9; /* states of a run without contacts; ms; 32-bit words of a contact */
 const chosen = new Map(); /* settings of the scene, by name */
 let first_set = ""; /* those that the page begins with, as set_text() */
-const first_runs = data.runs.map(({live, hash}) => ({live, hash}));
+const first_runs = data.runs.map(({live, hash, scene_hash}) => ({live, hash, scene_hash}));
+const first_scene = first_runs.find(({live}) => live)?.scene_hash;
 const setup = {scene: null, methods: [], url: ""};
 let launched = 0, swapped = 0, arrivals = null, announce = null;
 
@@ -91,10 +92,17 @@ function impact_of({bomb, fixed, lists, reached}) {
   return -1;
 }
 
+/* The last frame of a run whose states are there. */
+function known(run) {
+  if (run.live) return run.reached;
+  const chunk = run.done.findIndex(done => !done);
+  return min(chunk < 0 ? run.done.length * data.chunk : chunk * data.chunk, run.frames) - 1;
+}
+
 /* Where a run parts from the first one, as far as both are known. */
 function compare_run(run) {
-  const end = min(run.reached, runs[0].live ? runs[0].reached : runs[0].frames - 1);
-  run.differs = run.apart = null;
+  const end = min(known(run), known(runs[0]));
+  run.distances.fill(NaN);
   for (let frame = 0; frame <= end; frame++) {
     let most = NaN;
     for (let body = 0, at = frame * run.bodies; body < run.bodies; body++, at++) {
@@ -107,6 +115,20 @@ function compare_run(run) {
   }
 }
 
+/* The launch that a run shows, by the hash of its scene. A run of another program has none: it is one of the first launch. */
+const launch_of = run => run.scene_hash || first_scene;
+const is_elsewhere = run => !run.live && (run.why !== "" || launch_of(run) !== (live_runs()[0] ?? run).scene_hash);
+
+/* Which launch a recorded run shows. */
+function launch_words(run) {
+  const first = new Map(first_set.split(",").filter(Boolean).map(part => part.split("=")));
+  const then = name => Number(first.get(name) ?? parameter(name)?.value);
+  const other = [...new Set([...first.keys(), ...chosen.keys()])].filter(name => parameter(name) && then(name) !== value_of(name));
+  if (run.why) return run.why;
+  if (launch_of(run) !== first_scene || other.length === 0) return "its settings are not those of the page";
+  return other.map(name => `${label_of(name)} ${setting_text(parameter(name), then(name))} ${parameter(name).unit ?? ""}`.trim()).join(", ");
+}
+
 /* The view is what `render` shows of this launch, when the launch rests: a view that moves along would hide what a drag changes. A
    recorded run of another scene keeps that of the beginning. */
 let framing_due = 0;
@@ -114,16 +136,18 @@ function frame_launch() {
   clearTimeout(framing_due);
   framing_due = setTimeout(() => {
     const {framing} = live_runs()[0] ?? {};
-    if (held || !framing || runs.some(run => !run.live && !run.first)) return;
+    if (held || !framing || runs.some(run => !run.live && run.why)) return;
     Object.assign(data.framing, framing);
     planned_for = "";
     again();
   }, PATIENCE);
 }
 
+/* Width of a name, ems. */
+const weigh = text => text_width({css: "600 100px Inter, system-ui, sans-serif"}, text) / 100;
+
 function describe_run(run) {
   const method = data.live.methods.find(({name}) => name === run.live.split(":")[0]);
-  const weigh = text => text_width({css: "600 100px Inter, system-ui, sans-serif"}, text) / 100;
   Object.assign(run, {method: run.live, name: run.live, ems: run.live === method?.name ? method.ems : weigh(run.live),
     note: method?.note ?? "", note_ems: method?.note_ems ?? 0, file: null});
 }
@@ -142,18 +166,22 @@ function show_arrived() {
 
 /* What the page says of the runs that it has now. */
 function take_stock() {
-  runs.forEach((run, index) => Object.assign(run, {index}));
+  runs.forEach((run, index) => Object.assign(run, {index, elsewhere: is_elsewhere(run) ? launch_words(run) : ""}));
   for (const run of runs)
-    run.compared = run.live && runs[0].live ? run.bodies === runs[0].bodies : run === runs[0] || (run.first && set_text() === first_set);
-  if (runs[0].live && runs[0].dt !== data.dt) { /* the moment stays */
-    view.frame = round(view.frame * data.dt / runs[0].dt);
-    data.dt = runs[0].dt;
+    run.compared = run === runs[0] || (run.bodies === runs[0].bodies && !run.why && !runs[0].why &&
+      ((run.live && runs[0].live) || launch_of(run) === launch_of(runs[0])));
+  const {dt} = live_runs()[0] ?? data;
+  if (dt !== data.dt) { /* the moment stays */
+    view.frame = round(view.frame * data.dt / dt);
+    data.dt = dt;
   }
-  data.frames = data.total = max(...runs.map(run => run.frames));
+  for (const run of recorded) run.pace = data.dt / stored_dt;
+  data.frames = data.total = max(...runs.map(frames_of));
   frame_launch();
   data.scales.largest = 0;
+  for (const run of runs) run.differs = run.apart = null;
   for (const run of runs.filter(each => each.compared && each !== runs[0])) {
-    if (run.live) compare_run(run);
+    compare_run(run);
     data.scales.largest = run.distances.reduce((most, metres) => metres > most ? metres : most, data.scales.largest);
   }
   data.impact = live_runs().map(impact_of).find(frame => frame >= 0) ?? -1;
@@ -208,14 +236,15 @@ function cannot_step(error) {
 
 function begin_live() {
   if (!data.live) return;
-  runs.forEach(run => { run.first = !run.live && run.compared; });
-  read_set(data.live.set);
+  for (const run of recorded) Object.assign(run, {name: run.name + " (recorded)", ems: weigh(run.name + " (recorded)")});
+  on_checked.push(take_stock);
+  read_set(data.set);
   first_set = set_text();
   setup.url = URL.createObjectURL(new Blob([`(${panel_worker})()`], {type: "text/javascript"}));
   try { live_runs().forEach(open_worker); } catch (error) { cannot_step(error); }
 }
 
-/* The hash of each run beside that of the C program, where it made the same run. */
+/* The hash of each run beside that of the C program, where it made the same run; the check of the recorded ones. */
 function show_proof() {
   if (!data.live) return;
   const marks = live_runs().map(run => {
@@ -225,5 +254,6 @@ function show_proof() {
     return make("p", {class: wanted && wanted !== run.hash ? "wrong" : ""}, `${names[run.index]}: hash `,
       make("code", run.hash), mark);
   });
+  if (recorded.length > 0) marks.push(make("p", {class: checked().wrong > 0 ? "wrong" : ""}, check_text()));
   ui.check.replaceChildren(...marks);
 }

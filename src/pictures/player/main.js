@@ -18,7 +18,7 @@ function show_look() {
 
 /* The header takes what its texts need; the rest of the window is the player's. */
 function draw_stage(decoded) {
-  style.setProperty("--head", ui.player.offsetTop + "px");
+  style.setProperty("--head", ui.player.parentNode.offsetTop + "px");
   const {clientWidth: width, clientHeight: height} = stage, scale = devicePixelRatio, context = stage.getContext("2d");
   const wanted = [width, height, scale, view.compare, ...view.show].join();
   if (wanted !== planned_for) {
@@ -70,6 +70,6 @@ apply_theme();
 onhashchange();
 load(view.frame).then(check_all).catch(undecoded);
 window.player = {
-  view, change, plan, camera, corners, body_at, to_pixel, state_hash, load, ready, checked, runs, data, draw, choose, set_text,
+  view, change, plan, camera, corners, body_at, to_pixel, state_hash: (index, frame) => hash_of(runs[index], frame), load, ready, checked, runs, data, draw, choose, set_text,
   setup, add_panel, set_method, launched: () => launched,
 };

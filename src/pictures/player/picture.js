@@ -7,6 +7,22 @@ function bar(x, y, width, height, colour) {
   pen.fillRect(snap(x), snap(y), size(width), size(height));
 }
 
+/* A recorded run of another launch: grey, and what it shows. */
+function draw_elsewhere({why, elsewhere}) {
+  const {left, top, width, height} = here, {title, method} = lay, gap = title.em >> 1;
+  pen.globalCompositeOperation = "saturation";
+  bar(left, top, width, height, "#808080");
+  pen.globalCompositeOperation = "source-over";
+  bar(left, top, width, height, `color-mix(in srgb, ${look.panel} 60%, transparent)`);
+  const texts = [why ? "Another scene" : "Another launch", ...elsewhere.split(", ")];
+  texts.forEach((text, line) => {
+    const font = line === 0 ? title : method, baseline = top + gap + title.em + line * lay.line;
+    const short = fitting(font, text, width - 2 * gap);
+    bar(left + gap - 2, baseline - title.em, text_width(font, short) + 4, lay.line, look.panel);
+    write(font, short, left + gap, baseline, look.ink);
+  });
+}
+
 function draw_panel(columns, rows) {
   const {run, outlines, left, top, width, height} = here, all = lay.overlay ? [run, ...outlines] : [run];
   pen.save();
@@ -22,6 +38,7 @@ function draw_panel(columns, rows) {
   draw_pointer(run);
   all.forEach(draw_marks);
   draw_pinned();
+  if (runs[run].elsewhere) draw_elsewhere(runs[run]);
   pen.restore();
   draw_axes(columns, here.first ? rows : []);
   all.forEach(draw_caption);

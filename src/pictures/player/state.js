@@ -16,6 +16,11 @@ let scheduled = 0, stale = false, themed = "";
 
 const tell = (node, text) => { if (node.textContent !== text) node.textContent = text; };
 const six_digits = value => Number(value.toPrecision(6));
+/* A time step as people say it: "1/60". */
+function fraction(value) {
+  const parts = round(1 / value);
+  return parts > 1 && abs(parts * value - 1) < 1e-5 ? "1/" + parts : String(six_digits(value));
+}
 
 /* An element of its attributes, handlers of events and children. */
 function make(name, ...parts) {
@@ -37,7 +42,7 @@ function cut(text, most = 40) {
 }
 
 function count_runs() {
-  last = max(...runs.map(run => run.frames)) - 1;
+  last = max(...runs.map(frames_of)) - 1;
   most_bodies = max(...runs.map(run => run.bodies));
   others = [...runs.keys()].filter(run => run > 0 && runs[run].compared);
   names = runs.map(({name}, i) => { /* of the same name they are numbered */

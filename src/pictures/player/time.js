@@ -68,8 +68,9 @@ function list_moments() {
   moments.length = 0;
   add_event(CIRCLE, runs.length, {frame: data.impact}, "impact");
   runs.forEach((each, run) => {
-    const {differs, apart, verdict} = each;
+    const {differs, apart, verdict, elsewhere} = each;
     each.ended = verdict?.text ?? "";
+    if (elsewhere) return;
     add_event(DIAMOND, run, differs, names[run] + " differs from here on");
     add_event(TRIANGLE, run, apart, names[run] + " is 1 mm away");
     add_event(SQUARE, run, verdict, names[run] + " " + short_verdict(run));

@@ -1,6 +1,8 @@
 /* Where bodies are. A run is named by its index; a frame may lie between two stored ones, and beyond the end of a run it is
    the last. */
-const stored_frame = (run, frame) => Math.min(Math.floor(frame), runs[run].frames - 1);
+const own_frame = ({pace}, frame) => frame * (pace ?? 1); /* of a recorded run beside live ones of other steps (live.js) */
+const frames_of = run => ceil((run.frames - 1) / (run.pace ?? 1)) + 1;
+const stored_frame = (run, frame) => Math.min(Math.floor(own_frame(runs[run], frame)), runs[run].frames - 1);
 const place_of = (run, frame, body) => stored_frame(run, frame) * runs[run].bodies + body;
 
 const exists = (run, frame, body) =>
@@ -9,7 +11,7 @@ const exists = (run, frame, body) =>
 /* Linear, as the engine moves bodies; angles do not wrap. A body that disappears keeps its last pose. */
 function pose(run, frame, body) {
   const {x, y, angle, bodies, frames} = runs[run], at = place_of(run, frame, body), next = at + bodies;
-  const part = frame < frames - 1 ? frame - Math.floor(frame) : 0;
+  const own = own_frame(runs[run], frame), part = own < frames - 1 ? own - Math.floor(own) : 0;
   if (part === 0 || Number.isNaN(x[next])) return {x: x[at], y: y[at], angle: angle[at]};
   return {x: x[at] + part * (x[next] - x[at]), y: y[at] + part * (y[next] - y[at]),
     angle: angle[at] + part * (angle[next] - angle[at])};
