@@ -84,7 +84,7 @@ LIVE_EXPORT(live_open) LiveScene *live_open(void *bundle, int size);
 LIVE_EXPORT(live_close) void live_close(LiveScene *scene);
 
 /* The scene with these settings ("name=value,name=value", as --set takes them; empty: none) as JSON: name, dt, steps, iterations,
-   bodies (with the bomb), gravity [x, y], camera {center, size} (size [0, 0]: fitted to the run), bomb (or null) with frame,
+   scene_hash (of Trajectory), bodies (with the bomb), gravity [x, y], camera {center, size} (size [0, 0]: fitted to the run), bomb (or null) with frame,
    x, y, mass, speed, velocity [x, y], size [x, y] and reach [from, to] of x; parameters, an array of
    {name, unit, value, from, to, whole, common}. common: every scene has it; from and to are then no bounds, only a sensible
    range. NULL: a setting is refused. */
