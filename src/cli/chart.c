@@ -293,8 +293,10 @@ static bool draw_again(const Options *given, const char *csv, Error *error) {
 
 static bool draw_measured(const SpeedAccuracyOptions *options, const char *csv, const SpeedAccuracyScene *scene, int i,
                           Error *error) {
-    char what[64];
+    char what[96];
     snprintf(what, sizeof what, ": %d methods and settings, %d launches", scene->contenders, scene->launches);
+    if (scene->striking < scene->launches)
+        text_add(what, sizeof what, " of which %d strike%s a box", scene->striking, scene->striking == 1 ? "s" : "");
     const Drawn drawn = {scene->name, what, scene->timed};
     if (!draw_scene(csv, &drawn, options, i, options->scene_count, error)) return false;
     const char *without = scene->without_network.text;
@@ -343,6 +345,14 @@ static bool check_highlight(const SpeedAccuracyOptions *options, Error *error) {
     return ok;
 }
 
+/* Before the work, so that the family can be changed first. */
+static void note_misses(const SpeedAccuracyScene *scene) {
+    const int missed = scene->launches - scene->striking;
+    if (missed > 0)
+        note_print("%s: %d of %d launches strike%s no box; the impact is scored and timed on the others", scene->name,
+                   missed, scene->launches, missed == 1 ? "s" : "");
+}
+
 static bool study(const SpeedAccuracyOptions *options, Error *error) {
     Pieces pieces = {0};
     SpeedAccuracyScene scenes[STUDY_MAX_SCENES];
@@ -356,6 +366,7 @@ bool command_chart(int argc, char **argv, Error *error) {
     Options options = {0};
     PiecesRun run;
     options.study.scenes = options.scenes;
+    options.study.begin = note_misses;
     options.study.draw = draw;
     options.study.run = &run;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;

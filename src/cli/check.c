@@ -108,27 +108,29 @@ static void print_fit(FILE *out, const Scene *scene) {
             fit.side, 100 * fit.slop, (double)CONTACT_SLOP, 100 * fit.step);
 }
 
-/* ", x = -5 to 1 m": where launches miss, if they differ in x. */
+/* "launches from x = -4.9 to -1.25 and from 1.25 to 4.9 m": where they miss, if they differ in x. */
 static void describe_misses(const Scene *scene, const LaunchMisses *misses, char *text, size_t size) {
-    if (!scene_span_varies(&scene->bomb.x) || misses->span_count == 0) return;
-    for (int i = 0; i < misses->span_count; i++) {
+    snprintf(text, size, "launches");
+    for (int i = 0; scene_span_varies(&scene->bomb.x) && i < misses->span_count; i++) {
         const OverlapSpan *span = &misses->spans[i];
-        text_add(text, size, "%s%.3g", i == 0 ? ", x = " : ", ", span->from);
-        if (span->from < span->to) text_add(text, size, " to %.3g", span->to);
+        const bool alone = span->from == span->to;
+        text_add(text, size, "%s %s %s%.3g", i == 0 ? "" : " and", alone ? "at" : "from", i == 0 ? "x = " : "",
+                 span->from);
+        if (!alone) text_add(text, size, " to %.3g", span->to);
+        if (i + 1 == misses->span_count) text_add(text, size, " m");
     }
-    text_add(text, size, " m");
 }
 
 static void print_misses(FILE *out, const Scene *scene, const LaunchMisses *misses) {
-    char where[400] = "";
-    describe_misses(scene, misses, where, sizeof where);
+    char which[400];
+    describe_misses(scene, misses, which, sizeof which);
     if (misses->tried == 0)
         fprintf(out, "    misses: not looked for, as the scene is large\n");
     else if (misses->missed > 0 && misses->tried == 1)
         fprintf(out, "    misses: the bomb strikes no box\n");
     else if (misses->missed > 0)
-        fprintf(out, "    misses: the bomb strikes no box in %d of %d launches tried%s\n", misses->missed,
-                misses->tried, where);
+        fprintf(out, "    misses: %s strike no box (%d of %d tried)%s\n", which, misses->missed, misses->tried,
+                misses->missed == misses->tried ? "; chart and train refuse such a scene" : "");
 }
 
 /* ", x from -5 to 5 m": behind the family so far. */

@@ -345,7 +345,7 @@ static bool train_on_scene(TrainRequest *request, Error *error) {
     if (!request->kind->reads_scene) return request->kind->train(request, error);
     Scene *scene = scene_read(request->input, error);
     request->scene = scene;
-    const bool ok = scene != NULL && request->kind->train(request, error);
+    const bool ok = scene != NULL && scene_check_strike(scene, error) && request->kind->train(request, error);
     scene_destroy(scene);
     return ok;
 }

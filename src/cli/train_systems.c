@@ -49,7 +49,7 @@ static void sain_print_score(void *context, const RelationScore *score) {
     fflush(stdout);
 }
 
-/* Reads the scene of the command line, if there is one, and those of a list; *count grows with them, also in a failure. */
+/* Reads the scene of the command line, if there is one, and those of a list, each with an impact; *count grows with them, also in a failure. */
 static bool read_scenes(const char *first, const char *more, const char *option, Scene **scenes, int most, int *count,
                         Error *error) {
     char list[LIST_SIZE], *rest = list;
@@ -61,6 +61,7 @@ static bool read_scenes(const char *first, const char *more, const char *option,
         scenes[*count] = scene_read(installed_path(path), error);
         if (scenes[*count] == NULL) return false;
         ++*count;
+        if (!scene_check_strike(scenes[*count - 1], error)) return false;
     }
     return *count > 0 || error_input(error, option, "no scene is given");
 }

@@ -198,6 +198,38 @@ bool launch_find_touch(const Scene *launched, const char *method_text, int *touc
     return false;
 }
 
+bool launches_refuse_misses(const Scene *scene, const Launch *launches, int count, Error *error) {
+    char where[64] = "";
+    double from = INFINITY, to = -INFINITY;
+    for (int i = 0; i < count; i++) {
+        from = fmin(from, (double)launches[i].x);
+        to = fmax(to, (double)launches[i].x);
+    }
+    snprintf(where, sizeof where, from < to ? "x = %.3g to %.3g m" : "x = %.3g m", from, to);
+    if (count == 1)
+        return error_input(error, scene->name, "the bomb strikes no box (%s): there is no impact to study", where);
+    return error_input(
+        error, scene->name,
+        "the bomb strikes no box in any of %d launches (%s): there is no impact to study; the picture of "
+        "'twinbox check' has its path",
+        count, where);
+}
+
+bool scene_check_strike(const Scene *scene, Error *error) {
+    Launch launches[LAUNCH_GRID];
+    const int count = launch_has_family(scene) ? LAUNCH_GRID : 1;
+    launches[0] = launch_of(scene);
+    if (!scene->bomb.present) return true;
+    if (count > 1 && !launches_for_training(scene, count, launches, error)) return false;
+    for (int i = 0; i < count; i++) {
+        const Scene launched = launch_scene(scene, &launches[i]);
+        int touch;
+        if (!launch_find_touch(&launched, "engine", &touch, error)) return false;
+        if (touch > 0) return true;
+    }
+    return launches_refuse_misses(scene, launches, count, error);
+}
+
 /* Bodies times steps that all tries together may take: some seconds. */
 static const double most_states = 1e6;
 

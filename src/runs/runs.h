@@ -154,6 +154,13 @@ bool launch_is_free(const Scene *scene, const World *world);
    or if the method fails before (MethodFailure). */
 bool launch_find_touch(const Scene *launched, const char *method, int *touch, Error *error);
 
+/* Checks that the bomb strikes a box that can move, by the engine, in one launch at least of those for training: what learns
+   from impacts needs one. A scene without a bomb passes. */
+bool scene_check_strike(const Scene *scene, Error *error);
+
+/* The ERROR_INPUT of launches that all miss. */
+bool launches_refuse_misses(const Scene *scene, const Launch *launches, int count, Error *error);
+
 /* Launches of the scene's family, spread evenly, that touch no box that can move, by the engine. */
 
 enum { LAUNCH_TRIES = 41 };

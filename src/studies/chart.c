@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/machine.h"
 #include "runs/pieces.h"
+#include "runs/runs.h"
 #include "scenes/scenes.h"
 #include "studies/chart_internal.h"
 
@@ -42,6 +43,24 @@ static bool choose_contenders(SceneStudy *study, const ContenderList *contenders
     return stepper_pool_begin(&study->steppers, study->contender_count, error);
 }
 
+static bool try_launch(void *context, int i, Error *error) {
+    SceneStudy *study = context;
+    const Scene launched = scene_study_launch(study, i);
+    return launch_find_touch(&launched, "engine", &study->striking[i], error);
+}
+
+/* Finds the launches that strike a box: only these have times of an impact. */
+static bool find_striking(SceneStudy *study, Error *error) {
+    const ParallelWork tries = {try_launch, study};
+    study->striking = calloc((size_t)study->launch_count, sizeof *study->striking);
+    if (study->striking == NULL) return error_memory(error, "study");
+    if (!parallel_for(&tries, study->launch_count, study->scene->name, NULL, error)) return false;
+    for (int i = 0; i < study->launch_count; i++)
+        if (study->striking[i] > 0) study->striking[study->striking_count++] = i;
+    return study->striking_count > 0 ||
+           launches_refuse_misses(study->scene, study->launches, study->launch_count, error);
+}
+
 bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
                        const LaunchChoice *launches, const StudySize *size, Error *error) {
     *study = (SceneStudy){.scene = scene_read(path, error)};
@@ -51,7 +70,7 @@ bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList 
     ok = ok && choose_contenders(study, contenders, error);
     if (ok)
         study->launches = launch_choice_make(launches, study->scene, study->size.launches, &study->launch_count, error);
-    if (study->launches != NULL) return true;
+    if (study->launches != NULL && find_striking(study, error)) return true;
     scene_study_end(study);
     return false;
 }
@@ -59,6 +78,7 @@ bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList 
 void scene_study_end(SceneStudy *study) {
     stepper_pool_end(&study->steppers);
     free(study->launches);
+    free(study->striking);
     free(study->contenders);
     scene_destroy(study->scene);
     *study = (SceneStudy){0};
@@ -66,6 +86,11 @@ void scene_study_end(SceneStudy *study) {
 
 Scene scene_study_launch(const SceneStudy *study, int launch) {
     return launch_scene(study->scene, &study->launches[launch]);
+}
+
+int scene_study_timed(const SceneStudy *study) {
+    const int most = study->size.timed_launches;
+    return most < study->striking_count ? most : study->striking_count;
 }
 
 /* The speed-accuracy study in pieces (runs/pieces.h): the launches of a scene, then the times of its methods; scene after
@@ -149,8 +174,7 @@ static bool work(void *context, int64_t piece, FILE *results, const Progress *pr
 static void weigh(ChartScene *scene) {
     const SceneStudy *study = &scene->study;
     const double steps = (double)study->scene->frames * (study->scene->body_count + 1);
-    const int timed =
-        study->size.timed_launches < study->launch_count ? study->size.timed_launches : study->launch_count;
+    const int timed = scene_study_timed(study);
     scene->launch_weight = steps * (converged_seconds + scored_seconds * study->contender_count);
     scene->times_weight =
         steps * timed * (converged_seconds + timed_seconds * study->contender_count * (study->size.repetitions + 1));
@@ -368,9 +392,17 @@ static bool find_key(const SpeedAccuracyOptions *options, const ContenderList *c
 static SpeedAccuracyScene summarise(const Run *run, const SceneStudy *study) {
     SpeedAccuracyScene summary = {.contenders = study->contender_count,
                                   .launches = study->launch_count,
+                                  .striking = study->striking_count,
                                   .without_network = contenders_without_network(&run->contenders, study->scene)};
     snprintf(summary.name, sizeof summary.name, "%s", study->scene->name);
     return summary;
+}
+
+static void tell(const Run *run) {
+    for (int i = 0; run->options->begin != NULL && i < run->plan.count; i++) {
+        const SpeedAccuracyScene summary = summarise(run, &run->plan.scenes[i].study);
+        run->options->begin(&summary);
+    }
 }
 
 static bool assemble(Run *run, const Pieces *pieces, Error *error) {
@@ -407,11 +439,12 @@ bool speed_accuracy_run(const SpeedAccuracyOptions *options, Pieces *pieces, con
     StudyKey key = {0};
     if (!contenders_parse(&run.contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
         return false;
-    const bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders,
-                                    &options->launches, speed_accuracy_size(options->quick), error) &&
-                    find_key(options, &run.contenders, &key, error) &&
-                    study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
-                    (pieces->mode == PIECES_SHARD || finish(&run, pieces, error));
+    bool ok = chart_plan_make(&run.plan, options->scenes, options->scene_count, &run.contenders, &options->launches,
+                              speed_accuracy_size(options->quick), error);
+    if (ok) tell(&run);
+    ok = ok && find_key(options, &run.contenders, &key, error) &&
+         study_do(pieces, options->folder, &key, options->run, &run.plan.plan, progress, error) &&
+         (pieces->mode == PIECES_SHARD || finish(&run, pieces, error));
     pieces->plan = NULL;
     chart_plan_free(&run.plan);
     study_key_free(&key);

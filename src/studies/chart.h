@@ -298,19 +298,25 @@ typedef struct SceneStudy {
     Scene *scene;
     int launch_count, contender_count;
     Launch *launches;             /* [launch_count] */
+    int striking_count;           /* of the launches: those that strike a box, by the engine; at least 1 */
+    int *striking;                /* [striking_count] their places, rising */
     const Contender **contenders; /* [contender_count] available for this scene */
     StepperPool steppers;         /* of the contenders */
     bool no_push_out;             /* one of them is scored against converged velocities without push-out */
     StudySize size;
 } SceneStudy;
 
-/* Reads the scene and its launches. `size` is for scenes of up to 110 bodies; larger ones have fewer launches. */
+/* Reads the scene and its launches. `size` is for scenes of up to 110 bodies; larger ones have fewer launches. ERROR_INPUT
+   also if no launch strikes a box. */
 bool scene_study_begin(SceneStudy *study, const char *path, const ContenderList *contenders,
                        const LaunchChoice *launches, const StudySize *size, Error *error);
 void scene_study_end(SceneStudy *study);
 
 /* The scene with a launch of the study, as launch_scene(). */
 Scene scene_study_launch(const SceneStudy *study, int launch);
+
+/* The number of launches whose times are measured, spread evenly over those that strike. */
+int scene_study_timed(const SceneStudy *study);
 
 /* The launch that was worst for a method in a chart: what a page shows of a point. */
 
@@ -365,6 +371,8 @@ typedef struct SpeedAccuracyOptions {
     bool pages;           /* for draw() */
     ChartLook look;       /* likewise */
     const PiecesRun *run; /* whole, a shard, or a merge */
+    /* Is told of each scene before the work; NULL: nothing is. */
+    void (*begin)(const SpeedAccuracyScene *scene);
     /* Draws folder/chart.csv; scenes[scene_count]. The key is of what determines the result. */
     bool (*draw)(const struct SpeedAccuracyOptions *study, const SpeedAccuracyScene *scenes, uint64_t key,
                  Error *error);
@@ -372,7 +380,7 @@ typedef struct SpeedAccuracyOptions {
 
 struct SpeedAccuracyScene {
     char name[CHART_NAME_SIZE];
-    int contenders, launches;
+    int contenders, launches, striking; /* striking: launches that strike a box */
     NameList without_network; /* methods left out, since neither their settings nor the scene name a network */
     SceneSolves solves;
     bool timed; /* not if a merge leaves out its times */

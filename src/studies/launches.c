@@ -311,7 +311,8 @@ static bool prepare_launch(void *context, int i, Error *error) {
     Timed *timed = &times->timed[i];
     const SceneStudy *study = times->study;
     Scene *launched = &times->launches[i];
-    *launched = scene_study_launch(study, (2 * i + 1) * study->launch_count / (2 * times->count)); /* spread evenly */
+    const int spread = (2 * i + 1) * study->striking_count / (2 * times->count);
+    *launched = scene_study_launch(study, study->striking[spread]);
     return launch_find_touch(launched, "reference", &timed->touch, error) &&
            snapshots_add(&timed->snapshots, launched, &study->size.frozen, error);
 }
@@ -342,9 +343,8 @@ static int last_frame(const SceneTimes *times) {
 }
 
 static bool scene_times_begin(SceneTimes *times, const SceneStudy *study, Error *error) {
-    const int most = study->size.timed_launches;
     const size_t contenders = (size_t)study->contender_count + 1;
-    *times = (SceneTimes){.study = study, .count = most < study->launch_count ? most : study->launch_count};
+    *times = (SceneTimes){.study = study, .count = scene_study_timed(study)};
     times->timed = calloc((size_t)times->count, sizeof *times->timed);
     times->launches = calloc((size_t)times->count, sizeof *times->launches);
     bool ok = times->timed != NULL && times->launches != NULL;

@@ -58,9 +58,30 @@ complains "--json: error: cannot be combined with a picture on standard output"
 # A bomb that falls straight down from x beyond 1 m strikes no box of the tower.
 scene "bomb: {x: {from: -5, to: 5, value: 4}, y: 25, size: [1, 1], mass: 20, frame: 30, velocity: [0, -20]}" "$height"
 run 0 check tower.yaml -o misses.png
-says "    misses: the bomb strikes no box in 32 of 41 launches tried, x = -4.9 to -1.25, 1.25 to 4.9 m"
+says "    misses: launches from x = -4.9 to -1.25 and from 1.25 to 4.9 m strike no box (32 of 41 tried)"
 run 0 check tower.yaml -o misses.png --json
 says '"misses": {"tried": 41, "missed": 32, "x": [[-4.9'
+# What needs an impact goes on with the launches that strike, and refuses a scene without one.
+run 0 chart tower.yaml --quick --methods engine:k=10 -o chart
+complains "twinbox: note: tower: 4 of 5 launches strike no box; the impact is scored and timed on the others"
+says "tower: 1 methods and settings, 5 launches of which 1 strikes a box"
+equal "times of the impact" "$(awk -F, '$4 == "closed" && $5 == "impact" && $7 > 0' chart/chart.csv | wc -l)" 1
+sed 's/{from: -5, to: 5, value: 4}/{from: 6, to: 9, value: 8}/' tower.yaml >beside.yaml
+run 0 check beside.yaml -o misses.png
+says "    misses: launches from x = 6.03 to 8.97 m strike no box (41 of 41 tried); chart and train refuse such a scene"
+refuse() {
+    rm -rf refused*
+    run 2 "$@"
+    complains "beside: error: the bomb strikes no box in any of "
+    equal "files of a scene that is refused" "$(ls -A | grep -c '^refused')" 0
+}
+refuse chart beside.yaml -o refused
+refuse chart beside.yaml --shard 1/2 -o refused
+refuse train --kind scene-net beside.yaml -o refused.npz --launches 40
+refuse train --kind hybrid beside.yaml -o refused.npz --launches 40
+refuse train --kind sain beside.yaml -o refused.npz
+refuse train --kind subspace beside.yaml -o refused.npz --launches 40
+refuse train --kind gns --scenes beside.yaml -o refused.npz
 scene "bomb: {x: 4, y: 25, size: [1, 1], mass: 20, frame: 30}" "$height"
 run 0 check tower.yaml -o misses.png
 says "    misses: the bomb strikes no box"

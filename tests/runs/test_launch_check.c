@@ -132,7 +132,10 @@ TEST(launches_that_strike_nothing_are_found) {
     launched.frames = 60 + 30; /* the run ends before */
     assert_ok(launch_find_touch(&launched, "engine", &touch, &error), error);
     assert_int_equal(touch, 0);
+    assert_ok(scene_check_strike(scene, &error), error);
     scene->bomb.x.from = scene->bomb.x.to = 3; /* one launch */
+    assert_refused(scene_check_strike(scene, &error), "the bomb strikes no box (x = 3 m): there is no impact to study");
+    error = (Error){0};
     assert_ok(launches_find_misses(scene, &misses, &error), error);
     assert_true(misses.tried == 1 && misses.missed == 1);
     scene->frames = SCENE_MAX_FRAMES; /* would take long */
