@@ -25,11 +25,10 @@ static const char *const metadata_kinds[] = {"report", "strict", NULL};
 
 static const Option option_table[] = {
     {"--tolerance", 0, "MAX",
-     "Pictures: ignore pixels in which no channel differs by more than MAX (0 to 255). Runs: pass them where the "
-     "centres "
-     "of a body are at most MAX metres apart; MAX,RAD limits its rotation, too (default: 0, every bit of pose and "
-     "velocity "
-     "counts)",
+     "Pictures: ignore pixels in which no channel differs by more than MAX (0 to 255). Runs, two or those of two "
+     "folders: pass them where the centres of a body are at most MAX metres apart; MAX,RAD also limits its rotation "
+     "(default: 0, every bit of pose and velocity counts). In folders of pictures and runs, a whole number is for the "
+     "pictures, any other limit for the runs",
      OPTION_TEXT(CompareOptions, limit)},
     {"--watch", 0, NULL,
      "Compare again whenever a file changes, until Ctrl-C; the exit status is that of the last comparison",
@@ -181,11 +180,17 @@ static bool read_distance(CompareOptions *options, Error *error) {
     return true;
 }
 
+static bool refuse_pixels(const CompareOptions *options, Error *error) {
+    return error_input(error, "--tolerance", "'%.64s' is not a whole number from 0 to 255%s", options->limit,
+                       file_name_ends_with(options->paths[0], ".png") ? "" : ", and there are no runs to limit");
+}
+
+/* Folders may have pictures, runs or both. */
 static bool read_tolerance(CompareOptions *options, Error *error) {
     int64_t difference;
     if (options->limit == NULL) return true;
-    if (!parse_int(options->limit, 0, 255, &difference))
-        return error_input(error, "--tolerance", "'%.64s' is not a whole number from 0 to 255", options->limit);
+    const bool poses = read_distance(options, &(Error){0}) && !file_name_ends_with(options->paths[0], ".png");
+    if (!parse_int(options->limit, 0, 255, &difference)) return poses || refuse_pixels(options, error);
     options->tolerance.given |= LIMIT_TOLERANCE;
     options->tolerance.tolerance = (int)difference;
     return true;
@@ -254,6 +259,7 @@ static bool annotate(const CompareOptions *options, const Regression *regression
 
 static bool compare_pictures(const CompareOptions *options, Error *error) {
     const RegressionOptions compared = {.tolerance = options->tolerance,
+                                        .poses = options->poses,
                                         .rules = options->rules,
                                         .mask = &options->mask,
                                         .max_pixels = options->max_pixels,
@@ -264,9 +270,13 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
                              progress_bar_begin("comparing"), error);
     progress_bar_end();
     if (!ok) return false;
+    if (regression.options.poses.given && regression.run_count == 0) {
+        regression_free(&regression);
+        return refuse_pixels(options, error);
+    }
     note_verbose("%d frame%s matched, %d %s; limits of the command line: %s; %.3f s", regression.count,
                  plural(regression.count), regression.run_count,
-                 regression.run_count == 1 ? "trajectory" : "trajectories", tolerance_words(&options->tolerance).text,
+                 regression.run_count == 1 ? "trajectory" : "trajectories", regression_limits(&regression).text,
                  regression.seconds);
     ok = (options->json || print(options, &regression, error)) && regression_passed(&regression);
     if (error->kind == ERROR_NONE && options->report != NULL && !report(&regression, options, error)) ok = false;

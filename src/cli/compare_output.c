@@ -125,9 +125,11 @@ static bool print_difference(const Regression *regression, Error *error) {
 bool compare_print(const Regression *regression, Error *error) {
     int within = regression->by_verdict[PIXELS_WITHIN], runs = regression->run_count;
     if (!regression_passed(regression)) return print_difference(regression, error);
-    printf("%s: %d frame%s", within > 0 ? "passed" : "equal", regression->count, plural(regression->count));
+    printf("%s: %d frame%s", within + regression->run_within > 0 ? "passed" : "equal", regression->count,
+           plural(regression->count));
     if (within > 0) printf(", %d of them not equal, but within tolerance", within);
     if (runs > 0) printf(", %d %s", runs, runs == 1 ? "trajectory" : "trajectories");
+    if (regression->run_within > 0) printf(", %d of them not equal, but within tolerance", regression->run_within);
     printf("\n");
     return true;
 }

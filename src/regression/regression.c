@@ -386,7 +386,8 @@ static void count(Regression *regression) {
     for (int i = 0; i < regression->count; i++) count_frame(regression, i);
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *runs = regression->runs;
-        if (runs[i].difference.equal) continue;
+        regression->run_within += runs[i].within;
+        if (!run_failed(&runs[i])) continue;
         regression->run_failed++;
         int first = regression->first_run;
         if (first < 0 || (unsigned)runs[i].difference.frame < (unsigned)runs[first].difference.frame)
@@ -448,15 +449,16 @@ static bool refuse_same(const Regression *regression, const char *expected, cons
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error) {
     *regression = (Regression){.options = *options};
+    PoseTolerance *poses = &regression->options.poses;
     const double begun = clock_seconds();
     const ParallelWork work = {compare_frame, regression};
     bool ok = (regression->sequences[EXPECTED] = image_sequence_open(expected, !options->flat, error)) != NULL &&
               (regression->sequences[ACTUAL] = image_sequence_open(actual, !options->flat, error)) != NULL &&
-              refuse_same(regression, expected, actual, error) && pair_frames(regression, error) &&
-              regression_find_runs(regression, error) && refuse_empty(regression, error) &&
-              regression_read_rules(regression, error) &&
-              parallel_for(&work, regression->count, actual, progress, error) &&
-              report_read_errors(regression, error) && judge_sequences(regression, error);
+              refuse_same(regression, expected, actual, error) && pair_frames(regression, error);
+    poses->given = poses->given && (regression->count == 0 || (options->tolerance.given & LIMIT_TOLERANCE) == 0);
+    ok = ok && regression_find_runs(regression, error) && refuse_empty(regression, error) &&
+         regression_read_rules(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
+         report_read_errors(regression, error) && judge_sequences(regression, error);
     if (ok) count(regression);
     ok = ok && regression_measure_first(regression, error) && regression_find_causes(regression, error);
     regression->seconds = clock_seconds() - begun;

@@ -111,6 +111,7 @@ bool rules_mark_regions(const Rules *rules, const char *name, const Image *expec
 
 typedef struct RegressionOptions {
     Tolerance tolerance;  /* replaces what the rules give */
+    PoseTolerance poses;  /* of runs; beside pictures only if `tolerance` is not given: one option states either */
     const char *rules;    /* a file; NULL: RULES_NAME in the expected folder, if it is there */
     const Mask *mask;     /* for all frames, beside the masks of the rules; or NULL */
     int64_t max_pixels;   /* of a picture; larger ones are refused before decompression */
@@ -181,6 +182,8 @@ typedef struct RegressionRun {
     char *name;
     RegressionFile files[SIDES];
     TrajectoryDifference difference;
+    bool within;       /* the poses are within the tolerance in all frames, of which both runs have equally many */
+    PartedBody beyond; /* where they first are not; frame -1: nowhere, or there is no tolerance */
     char scene[TRAJECTORY_NAME_SIZE];
     int frames;    /* of the longer one; 0 if equal */
     bool *differs; /* [frames] */
@@ -200,7 +203,8 @@ typedef struct Regression {
     int renderer, physics, unknown;           /* frames by cause of the difference */
     int view, elsewhere;                      /* the same: the camera differs; the run does, but not in this frame */
     int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
-    int run_failed, first_run;                /* trajectories that differ, and the one that differs first (-1: none) */
+    int run_failed, first_run;                /* trajectories that fail, and the one that differs first (-1: none) */
+    int run_within;                           /* trajectories that are not equal, but within the tolerance */
     Shown shown;
     int cause_count, causes_left_out; /* more than CAUSES_MAX */
     RegressionCause *causes;          /* different cameras first, then by first frame */
@@ -221,6 +225,8 @@ void regression_free(Regression *regression);
 
 bool regression_passed(const Regression *regression);
 bool frame_failed(const RegressionFrame *frame);
+bool run_failed(const RegressionRun *run);
+const char *run_verdict(const RegressionRun *run);    /* "equal", "within tolerance" or "physics changed" */
 const char *frame_name(const RegressionFrame *frame); /* of `base` */
 double frame_severity(const RegressionFrame *frame); /* differing pixels; infinite where sizes differ or a file lacks */
 
@@ -243,6 +249,9 @@ RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: bo
 /* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, one line each. */
 RegressionText regression_verdict(const Regression *regression);
 RegressionText regression_begin(const Regression *regression);
+
+/* The limits of the command line. */
+RegressionText regression_limits(const Regression *regression);
 
 /* What was left out, or let pass although it is not equal: a line each; empty if there is nothing. */
 RegressionText regression_notes(const Regression *regression);

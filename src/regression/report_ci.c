@@ -47,8 +47,8 @@ static RegressionCase regression_case(const Regression *regression, int i) {
     const RegressionRun *run = &regression->runs[i - regression->count];
     RegressionCase made = {.kind = "trajectories",
                            .name = run->name,
-                           .verdict = run->difference.equal ? "equal" : "physics changed",
-                           .failed = !run->difference.equal,
+                           .verdict = run_verdict(run),
+                           .failed = run_failed(run),
                            .words = run_words(run),
                            .seconds = run->seconds};
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
@@ -478,8 +478,8 @@ static void write_frame(JsonWriter *json, const RegressionFrame *frame) {
 static void write_run(JsonWriter *json, const RegressionRun *run) {
     json_begin_object(json, NULL, JSON_ONE_LINE);
     json_put_text(json, "name", run->name);
-    json_put_text(json, "verdict", run->difference.equal ? "equal" : "physics changed");
-    json_put_bool(json, "failed", !run->difference.equal);
+    json_put_text(json, "verdict", run_verdict(run));
+    json_put_bool(json, "failed", run_failed(run));
     json_put_bool(json, "shown", true);
     json_put_text(json, "words", run_words(run).text);
     write_file(json, "expected", run->name, &run->files[EXPECTED]);
@@ -488,7 +488,7 @@ static void write_run(JsonWriter *json, const RegressionRun *run) {
 }
 
 static void write_limits(JsonWriter *json, const Regression *regression) {
-    json_put_text(json, "tolerance", tolerance_words(&regression->options.tolerance).text);
+    json_put_text(json, "tolerance", regression_limits(regression).text);
     json_put_text(json, "rules", regression->rules == NULL ? NULL : rules_path(regression->rules));
 }
 
@@ -500,6 +500,7 @@ static void write_counts(JsonWriter *json, const Regression *regression) {
     json_put_int(json, "frames", regression->count);
     for (int i = 0; i <= PIXELS_EXTRA; i++) json_put_int(json, keys[i], regression->by_verdict[i]);
     json_put_int(json, "trajectories", regression->run_count);
+    json_put_int(json, "trajectories_within_tolerance", regression->run_within);
     json_put_int(json, "trajectories_different", regression->run_failed);
     json_end(json);
 }

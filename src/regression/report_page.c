@@ -88,6 +88,8 @@ static void write_counts(FILE *file, const Regression *regression) {
     write_count(file, by[PIXELS_EQUAL], "good", "equal pixels");
     write_count(file, regression->run_failed, "bad",
                 regression->run_failed == 1 ? "trajectory differs" : "trajectories differ");
+    write_count(file, regression->run_within, "odd",
+                regression->run_within == 1 ? "trajectory within tolerance" : "trajectories within tolerance");
     fputs("</ul>\n", file);
 }
 
@@ -112,7 +114,7 @@ static void write_description(FILE *file, const Regression *regression) {
     fputs(", actual ", file);
     write_code(file, regression->sequences[ACTUAL]->folder);
     fprintf(file, ": %d %s, ", regression->count, regression->count == 1 ? "frame" : "frames");
-    fprintf(file, "tolerance: %s", tolerance_words(&options->tolerance).text);
+    fprintf(file, "tolerance: %s", regression_limits(regression).text);
     if (regression->rules != NULL) {
         fputs(", rules of ", file);
         write_code(file, rules_path(regression->rules));
@@ -192,9 +194,11 @@ static void write_runs(FILE *file, const Report *report) {
         const RegressionRun *run = &regression->runs[i];
         fputs("<tr><td>", file);
         html_put(file, run->name);
-        fputs(run->difference.equal ? "</td><td class=\"good\">equal</td><td>"
-                                    : "</td><td class=\"bad\">physics changed</td><td>",
-              file);
+        fprintf(file, "</td><td class=\"%s\">%s</td><td>",
+                run_failed(run) ? "bad"
+                : run->within   ? "odd"
+                                : "good",
+                run_verdict(run));
         html_put(file, run_words(run).text);
         fputs("</td><td>", file);
         write_run_link(file, report, i);

@@ -43,7 +43,7 @@ static bool add_run(Regression *regression, const char *name, Error *error) {
     }
     char *copy = strdup(name);
     if (copy == NULL) return error_memory(error, name);
-    regression->runs[regression->run_count++] = (RegressionRun){.name = copy};
+    regression->runs[regression->run_count++] = (RegressionRun){.name = copy, .beyond = {.frame = -1}};
     return true;
 }
 
@@ -74,7 +74,20 @@ static bool mark_frames(RegressionRun *run, const Trajectory *a, const Trajector
     return true;
 }
 
-static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], bool *foreign, Error *error) {
+/* Runs that differ, but whose poses are near enough, pass. */
+static bool find_beyond(RegressionRun *run, const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
+                        Error *error) {
+    TrajectoryParting parting;
+    char what[sizeof run->difference.what];
+    if (trajectory_different_worlds(a, b, what, sizeof what)) return true;
+    if (!trajectory_part(a, b, tolerance, &parting, error)) return false;
+    run->beyond = parting.beyond;
+    run->within = parting.beyond.frame < 0 && a->frames == b->frames;
+    return true;
+}
+
+static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], const PoseTolerance *tolerance, bool *foreign,
+                        Error *error) {
     Error failures[SIDES] = {{0}, {0}};
     Trajectory *sides[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
@@ -86,7 +99,9 @@ static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], bool *f
     if (ok) {
         trajectory_compare(sides[EXPECTED], sides[ACTUAL], &run->difference);
         memcpy(run->scene, sides[EXPECTED]->scene, sizeof run->scene);
-        ok = run->difference.equal || mark_frames(run, sides[EXPECTED], sides[ACTUAL], error);
+        ok = run->difference.equal ||
+             (mark_frames(run, sides[EXPECTED], sides[ACTUAL], error) &&
+              (!tolerance->given || find_beyond(run, sides[EXPECTED], sides[ACTUAL], tolerance, error)));
     } else if (!*foreign && !system)
         *error = failures[sides[EXPECTED] == NULL ? EXPECTED : ACTUAL];
     for (RegressionSide side = EXPECTED; side < SIDES; side++) trajectory_destroy(sides[side]);
@@ -118,7 +133,8 @@ static bool judge_run(const Regression *regression, RegressionRun *run, bool *fo
     }
     const RegressionFile *a = &run->files[EXPECTED], *b = &run->files[ACTUAL];
     bool same = a->hash == b->hash && a->size == b->size;
-    return same ? read_run(run, paths[EXPECTED], foreign, error) : compare_run(run, paths, foreign, error);
+    return same ? read_run(run, paths[EXPECTED], foreign, error)
+                : compare_run(run, paths, &regression->options.poses, foreign, error);
 }
 
 bool regression_find_runs(Regression *regression, Error *error) {

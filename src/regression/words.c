@@ -136,6 +136,12 @@ ChangeText region_words(const FrameChanges *changes, int region) {
     return text;
 }
 
+bool run_failed(const RegressionRun *run) { return !run->difference.equal && !run->within; }
+
+const char *run_verdict(const RegressionRun *run) {
+    return run->difference.equal ? "equal" : run->within ? "within tolerance" : "physics changed";
+}
+
 bool regression_passed(const Regression *regression) { return regression->failed == 0 && regression->run_failed == 0; }
 
 const char *frame_name(const RegressionFrame *frame) { return frame->base->name; }
@@ -242,6 +248,9 @@ RegressionText run_words(const RegressionRun *run) {
         return words;
     }
     if (d->what[0] != '\0') ADD(&words, "", "%s", d->what);
+    if (run->beyond.frame >= 0)
+        ADD(&words, "; ", "beyond the tolerance from frame %d, body %d: %g m apart, %g rad", run->beyond.frame,
+            run->beyond.body, run->beyond.by.distance, run->beyond.by.angle);
     if (d->frame >= 0)
         ADD(&words, "; ", "from frame %d, body %d: %g m apart, %g rad, %g m/s", d->frame, d->body, d->distance,
             d->angle, d->speed);
@@ -293,6 +302,16 @@ RegressionText regression_begin(const Regression *regression) {
 #else
 #define UNREAD "without a trajectory"
 #endif
+
+RegressionText regression_limits(const Regression *regression) {
+    const PoseTolerance *poses = &regression->options.poses;
+    RegressionText words = {""};
+    ADD(&words, "", "%s", tolerance_words(&regression->options.tolerance).text);
+    if (poses->given && regression->count == 0) words.text[0] = '\0';
+    if (poses->given) ADD(&words, "; ", "trajectories: at most %g m", poses->distance);
+    if (poses->given && isfinite(poses->angle)) ADD(&words, " ", "and %g rad", poses->angle);
+    return words;
+}
 
 RegressionText regression_notes(const Regression *regression) {
     RegressionText notes = {""};

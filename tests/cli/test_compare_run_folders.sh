@@ -1,0 +1,54 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# twinbox compare on folders of runs: with the tolerance of two runs, in metres and radians.
+. "$(dirname "$0")/checks.sh"
+
+# A box that stands, and the same run with each pose of a frame moved by 3 mm and turned by 0.02 rad.
+mkdir expected actual
+run 0 simulate "$scenes/single.yaml" --frames 20 --no-bomb -o expected/same.npz
+cp expected/same.npz actual
+run 0 export expected/same.npz -o poses.csv
+run 0 import poses.csv -o expected/box.npz
+awk -F, -v OFS=, '/^[0-9]+,1,/ && $1 == 12 { $3 += 0.003; $5 += 0.02 } { print }' poses.csv >moved.csv
+grep -q '^frame,body,x,y,angle' poses.csv || fail "other columns: $(grep -m1 body poses.csv)"
+! cmp -s poses.csv moved.csv || fail "no pose is moved"
+run 0 import moved.csv -o actual/box.npz
+
+compare() { run "$1" compare expected actual "${@:2}"; }
+compare 1
+says "1 of 2 trajectories differs"
+compare 1 --tolerance 0.0029
+says "physics changed first in box.npz: beyond the tolerance from frame 12, body 1: 0.003"
+compare 0 --tolerance 0.0031
+says "passed: 0 frames, 2 trajectories, 1 of them not equal, but within tolerance"
+compare 1 --tolerance 0.0031,0.019
+says "beyond the tolerance from frame 12, body 1"
+compare 0 --tolerance 0.0031,0.021 --report report
+grep -q '"tolerance": "trajectories: at most 0.0031 m and 0.021 rad"' report/results.json || fail "no limit in the report"
+grep -q '"trajectories_within_tolerance": 1, "trajectories_different": 0' report/results.json || fail "no counts"
+grep -q '"name": "box.npz", "verdict": "within tolerance", "failed": false' report/results.json || fail "no verdict"
+grep -q '<td class="odd">within tolerance</td>' report/report.html || fail "no verdict on the page"
+# The two files alone give the same.
+run 0 compare expected/box.npz actual/box.npz --tolerance 0.0031,0.021
+run 1 compare expected/box.npz actual/box.npz --tolerance 0.0031,0.019
+
+# A whole number is metres where there are no pictures, and channels of pixels where there are.
+compare 0 --tolerance 1
+run 0 render expected/same.npz -o frames --size 64x64 --frames 0
+cp frames/frame_000000.png expected
+cp frames/frame_000000.png actual
+compare 1 --tolerance 1
+says "1 of 2 trajectories differs"
+compare 0 --tolerance 0.0031
+says "passed: 1 frame, 2 trajectories, 1 of them not equal, but within tolerance"
+
+# Runs of other lengths or worlds are not near. A limit that limits nothing is refused.
+run 0 simulate "$scenes/single.yaml" --frames 19 --no-bomb -o actual/same.npz
+compare 1 --tolerance 100.5
+rm expected/*.npz
+run 2 compare expected actual --tolerance 0.5
+complains "--tolerance: error: '0.5' is not a whole number from 0 to 255, and there are no runs to limit"
+run 2 compare expected/frame_000000.png actual/frame_000000.png --tolerance 0.5
+complains "--tolerance: error: '0.5' is not a whole number from 0 to 255"
+compare 0 --tolerance 3
+finish
