@@ -156,12 +156,20 @@ void note_end(void) {
 /* The handler and threads of parallel work use both: only lock-free atomics are defined there. */
 static atomic_bool requested;
 static atomic_int held;
-_Static_assert(ATOMIC_BOOL_LOCK_FREE == 2 && ATOMIC_INT_LOCK_FREE == 2, "a signal handler may wait for a lock");
+static atomic_llong requested_at; /* ms */
+_Static_assert(ATOMIC_BOOL_LOCK_FREE == 2 && ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_LLONG_LOCK_FREE == 2,
+               "a signal handler may wait for a lock");
+
+/* timeout(1) and schedulers send a signal to the process and then to its group: that is one request. */
+enum { SAME_REQUEST = 1000 /* ms */ };
 
 static void on_signal(int signal_number) {
     static const char text[] = "twinbox: error: interrupted\n";
     (void)signal_number;
-    if (!atomic_exchange(&requested, true) && atomic_load(&held) > 0) return;
+    const long long now = (long long)(1000 * clock_seconds()); /* by a call that handlers may make */
+    const bool first = !atomic_exchange(&requested, true);
+    if (first) atomic_store(&requested_at, now);
+    if (atomic_load(&held) > 0 && (first || now - atomic_load(&requested_at) < SAME_REQUEST)) return;
     const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
     (void)ignored;
     _exit(ERROR_INTERRUPTED);
@@ -184,7 +192,7 @@ void interrupt_forget(void) { atomic_store(&requested, false); }
 
 /* s; share of the time so far */
 static const double least_window = 4, window_share = 1.0 / 3, first_spacing = 0.05;
-static const double least_time = 2, least_part = 0.02, patience = 20, agreement = 2;
+static const double least_time = 2, least_part = 0.02, patience = 20, least_ever = 0.002, agreement = 2;
 
 void time_left_begin(TimeLeft *left) {
     *left = (TimeLeft){.count = 1, .spacing = first_spacing}; /* the first sample: nothing done at 0 s */
@@ -217,7 +225,7 @@ static double part_at(const TimeLeft *left, const struct TimeLeftSample *now, do
 }
 
 bool time_left_estimate(const TimeLeft *left, double time, double part, double *seconds) {
-    if (time < least_time || (part < least_part && time < patience)) return false;
+    if (time < least_time || part < (time < patience ? least_part : least_ever)) return false;
     double window = time * window_share > least_window ? time * window_share : least_window;
     if (window > time) window = time;
     const struct TimeLeftSample now = {time, part};

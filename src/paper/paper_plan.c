@@ -40,15 +40,16 @@ static void choose_networks(PaperPlan *plan) {
     }
 }
 
-/* About the seconds on two cores for 2000 iterations. */
+/* About the seconds on two cores: for 2000 iterations; and for recording and scoring. */
 static double training_weight(const PaperNetwork *network) {
+    const double around = 0.1;
     static const double of_data[PAPER_DATA] = {
         [DATA_SWEPT] = 2, [DATA_RANDOM] = 2, [DATA_MIXED] = 2, [DATA_FINE] = 8, [DATA_FINEST] = 10, [DATA_PAPER] = 16};
     double weight = of_data[network->data];
     if (strcmp(network->optimizer, "lm") == 0) weight *= 35;
     if (strcmp(network->optimizer, "bfgs") == 0) weight *= 3;
     if (pair_views[network->view].by_contact) weight *= network->target == TARGET_POINTS ? 8 : 4;
-    return weight * network->iterations / 2000;
+    return around + weight * network->iterations / 2000;
 }
 
 static bool add_trainings(PaperPlan *plan, Error *error) {
@@ -62,10 +63,18 @@ static bool add_trainings(PaperPlan *plan, Error *error) {
     return true;
 }
 
+/* The same of all networks: 2 s, or 10 s on a large scene, in the whole study. */
+static double rating_weight(const PaperPlan *plan, int scene, bool closed) {
+    const PaperSize *size = plan->size, *whole = &paper_whole_size;
+    const double launches = closed ? (double)size->closed_launches / whole->closed_launches
+                                   : (double)size->rate_launches / whole->rate_launches;
+    return (scene < PAPER_TRAINING_SCENES ? 2 : 10) * launches * plan->network_count / paper_network_count;
+}
+
 static bool add_scoring(PaperPlan *plan, int scene, bool closed, Error *error) {
     PaperPart *part =
-        add_part(plan, scene < PAPER_TRAINING_SCENES ? 2 : 10, closed ? paper_closed_loop_write : paper_rates_write,
-                 error, "%s-%s", closed ? "closed-loop" : "rates", paper_scene_names[scene]);
+        add_part(plan, rating_weight(plan, scene, closed), closed ? paper_closed_loop_write : paper_rates_write, error,
+                 "%s-%s", closed ? "closed-loop" : "rates", paper_scene_names[scene]);
     if (part == NULL) return false;
     part->timed = closed;
     part->needs_networks = true;
@@ -80,8 +89,9 @@ static bool add_scorings(PaperPlan *plan, Error *error) {
 }
 
 static bool add_law_set(PaperPlan *plan, const char *laws, double weight, Error *error) {
+    const double seconds = 2.0 * plan->size->law_iterations / paper_whole_size.law_iterations;
     for (int seed = 0; seed < (laws == NULL ? 1 : plan->size->seeds); seed++) {
-        PaperPart *part = add_part(plan, laws == NULL ? 0.1 : 2, paper_laws_write, error, "laws-%s-%g-%d",
+        PaperPart *part = add_part(plan, laws == NULL ? 0.1 : seconds, paper_laws_write, error, "laws-%s-%g-%d",
                                    laws == NULL ? "engine" : laws, weight, seed);
         if (part == NULL) return false;
         part->laws = (LawStudy){laws, weight, plan->options->seed + (uint64_t)seed, plan->size->law_iterations};
@@ -98,8 +108,9 @@ static bool add_laws(PaperPlan *plan, Error *error) {
 }
 
 static bool add_transfer(PaperPlan *plan, bool transfer, int seed, int launches, Error *error) {
-    PaperPart *part = add_part(plan, launches + 2 * transfer, paper_transfer_write, error, "transfer-%d-%d-%d",
-                               transfer, seed, launches);
+    const double share = (double)plan->size->transfer_iterations / paper_whole_size.transfer_iterations;
+    PaperPart *part = add_part(plan, share * (launches + 2 * transfer), paper_transfer_write, error,
+                               "transfer-%d-%d-%d", transfer, seed, launches);
     if (part == NULL) return false;
     part->transfer =
         (TransferStudy){transfer, plan->options->seed + (uint64_t)seed, launches, plan->size->transfer_iterations};

@@ -48,11 +48,13 @@ TEST(steady_work_is_estimated_exactly) {
 }
 
 TEST(nothing_is_estimated_at_the_beginning) {
-    const Work quick = {0.1, 1e9, 1}, slow = {1e-4, 1e9, 1};
+    const Work quick = {0.1, 1e9, 1}, slow = {1e-4, 1e9, 1}, slower = {1e-5, 1e9, 1};
     assert_true(none(estimate_at(&quick, 1.9)));
     assert_false(none(estimate_at(&quick, 2)));
     assert_true(none(estimate_at(&slow, 19)));
     assert_near(estimate_at(&slow, 21), 1e4 - 21, 1);
+    assert_true(none(estimate_at(&slower, 199)));
+    assert_near(estimate_at(&slower, 201), 1e5 - 201, 10);
 }
 
 /* Ten seconds of which the first two bring half a per cent: the mean rate would give 6 min 37 s. */

@@ -82,6 +82,29 @@ folder=paper working TERM paper -o paper --scenes "$scenes"
 folder=study working INT stability -o study --scenes "$scenes"
 folder=chart working TERM chart "$scenes/pyramid.yaml" -o chart
 equal "tables of interrupted studies" "$(find study chart paper -name '*.csv')" ""
+# Once for the process and once for its group, as timeout(1) and schedulers send it, is one signal: what would be kept is.
+run 0 dataset "$scenes/single.yaml" --bomb-x=-2:2:1 -o pairs.npz
+start train pairs.npz -o kept.npz --iterations 1000000
+until grep -qs '^ *0 ' out || ! kill -0 $running; do sleep 0.01; done
+kill -TERM $running
+sleep 0.05 # a signal that waits for the first one to be handled would be lost
+kill -TERM $running
+interrupted "train, signalled twice"
+grep -q "^stopped early; .* -> kept.npz" out || fail "a training that was signalled twice: $(cat out err)"
+[ -s kept.npz ] || fail "a training that was signalled twice is lost"
+
+# Processes that draw leave a signal to the one that started them.
+setsid "$twinbox" render a.npz -o group --size 640x640 --slow 16 --hold 20 --jobs 2 >out 2>err &
+running=$!
+until [ -e group/frame_000001.png ] || ! kill -0 $running; do sleep 0.01; done 2>/dev/null
+kill -TERM -- -$running
+sleep 0.05
+kill -TERM -- -$running 2>/dev/null
+interrupted "render, whose group is signalled"
+complains "render: error: stopped"
+equal "files that are not whole" "$(ls -A group | grep -cv '^frame_[0-9]*.png$\|^single-engine.npz$\|^manifest.json.part$')" 0
+rm -rf group kept.npz pairs.npz
+
 # A training that was stopped early is stored, once it has reported.
 rm -f new.npz
 # So are the finished pieces of a dataset, if it had any.

@@ -3,6 +3,7 @@
 #include "testing.h"
 
 #include "paper/paper.h"
+#include "paper/paper_internal.h"
 
 TEST(one_factor_is_varied_at_a_time) {
     const PaperNetwork baseline = paper_network(0);
@@ -49,6 +50,32 @@ TEST(networks_that_differ_in_several_things_are_counted) {
     assert_int_equal(counts[0], 1);
     assert_int_equal(counts[1], 28);
     assert_int_equal(counts[2], sizeof several / sizeof *several);
+}
+
+/* The sum, and the share of trainings. */
+static double weigh(bool quick, double *trainings) {
+    const PaperOptions options = {.scenes = SOURCE_DIR "/scenes", .folder = temporary_path("paper"), .quick = quick};
+    Error error = {0};
+    PaperPlan plan;
+    double sum = 0;
+    assert_ok(paper_plan_make(&plan, &options, &error), error);
+    *trainings = 0;
+    for (size_t i = 0; i < plan.count; i++) {
+        sum += plan.parts[i].weight;
+        if (i < (size_t)plan.network_count) *trainings += plan.parts[i].weight;
+    }
+    paper_plan_free(&plan);
+    *trainings /= sum;
+    return sum;
+}
+
+/* The time left follows from the weights, which are about seconds: those of the help, under a minute and some twenty minutes.
+   In the quick study, trainings took 12 of 30 s, measured as processor time. */
+TEST(weights_are_the_seconds_of_the_help) {
+    double trainings;
+    assert_in_range((int)weigh(true, &trainings), 20, 60);
+    assert_true(trainings > 0.2 && trainings < 0.5);
+    assert_in_range((int)weigh(false, &trainings), 900, 1500);
 }
 
 TEST(names_are_file_names_and_differ) {
