@@ -102,7 +102,7 @@ bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Err
 
 /* The end of a message on an unknown name: "did you mean 'height'?", "known: height, rate" or "known: none". */
 typedef struct ParametersHint {
-    char text[SCENE_MAX_PARAMETERS * (SCENE_PARAMETER_SIZE + 2) + 16];
+    char text[SCENE_MAX_PARAMETERS * (SCENE_PARAMETER_SIZE + 2) + 96]; /* and of what every scene has */
 } ParametersHint;
 ParametersHint parameters_hint(const Parameters *parameters, const char *name);
 

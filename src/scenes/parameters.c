@@ -369,12 +369,35 @@ const SceneParameter *scene_parameter(const Scene *scene, const char *name) {
     return NULL;
 }
 
+/* settable: the name is of a setting, which may also be one that every scene has. */
+static ParametersHint make_hint(const Parameters *parameters, const char *name, bool settable) {
+    ParametersHint hint;
+    NameList known = {0};
+    const char *names[SCENE_MAX_PARAMETERS + COMMON];
+    int count = 0;
+    for (int i = 0; i < parameters->count; i++) names[count++] = parameters->items[i].name;
+    for (int i = 0; settable && i < COMMON; i++) names[count++] = common[i].name;
+    const char *nearest = nearest_word(name, names, count);
+    if (nearest != NULL) {
+        snprintf(hint.text, sizeof hint.text, "did you mean '%s'?", nearest);
+        return hint;
+    }
+    for (int i = 0; i < count; i++) name_list_add(&known, names[i]);
+    snprintf(hint.text, sizeof hint.text, "known: %.*s", (int)sizeof hint.text - 8,
+             known.used > 0 ? known.text : "none");
+    return hint;
+}
+
+ParametersHint parameters_hint(const Parameters *parameters, const char *name) {
+    return make_hint(parameters, name, false);
+}
+
 static bool set(Parameters *parameters, const char *path, const SceneSetting *setting, Error *error) {
     SceneParameter *parameter = find(parameters, setting->name, strlen(setting->name));
     if (parameter == NULL && find_common(setting->name) < COMMON) return true;
     if (parameter == NULL)
         return error_input(error, path, "'%s' is not a parameter; %s", setting->name,
-                           parameters_hint(parameters, setting->name).text);
+                           make_hint(parameters, setting->name, true).text);
     if (!(setting->value >= parameter->from && setting->value <= parameter->to))
         return error_input(error, path, "%s must be from %.9g to %.9g%s%s (set to %.9g)", parameter->name,
                            parameter->from, parameter->to, parameter->unit[0] != '\0' ? " " : "", parameter->unit,
@@ -413,20 +436,4 @@ bool parameters_all_used(const Parameters *parameters, const YamlTree *tree, Err
             return yaml_error(tree, parameters->nodes[i], error, "no number of the scene uses the parameter '$%s'",
                               parameters->items[i].name);
     return true;
-}
-
-ParametersHint parameters_hint(const Parameters *parameters, const char *name) {
-    ParametersHint hint;
-    NameList known = {0};
-    const char *names[SCENE_MAX_PARAMETERS];
-    for (int i = 0; i < parameters->count; i++) names[i] = parameters->items[i].name;
-    const char *nearest = nearest_word(name, names, parameters->count);
-    if (nearest != NULL) {
-        snprintf(hint.text, sizeof hint.text, "did you mean '%s'?", nearest);
-        return hint;
-    }
-    for (int i = 0; i < parameters->count; i++) name_list_add(&known, names[i]);
-    snprintf(hint.text, sizeof hint.text, "known: %.*s", (int)sizeof hint.text - 8,
-             known.used > 0 ? known.text : "none");
-    return hint;
 }

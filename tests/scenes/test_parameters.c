@@ -213,6 +213,8 @@ TEST(what_no_scene_can_have_is_refused) {
         assert_refused(read_with(table[i].text, &table[i].setting, 1, &error), table[i].message);
 }
 
+#define EVERY "iterations, dt, friction, bomb_x, bomb_y, bomb_mass, bomb_speed" /* scene has these */
+
 TEST(bad_settings_are_refused) {
     static const struct {
         SceneSetting settings[2];
@@ -226,8 +228,9 @@ TEST(bad_settings_are_refused) {
         {{{"height", 2.5}}, 1, " error: height must be a whole number (set to 2.5)"},
         {{{"height", 3}, {"height", 3}}, 2, " error: the parameter 'height' is set twice"},
         {{{"hight", 3}}, 1, " error: 'hight' is not a parameter; did you mean 'height'?"},
-        {{{"speed", 3}}, 1, " error: 'speed' is not a parameter; known: height, ratio"},
-        {{{"", 3}}, 1, " error: '' is not a parameter; known: height, ratio"},
+        {{{"speed", 3}}, 1, " error: 'speed' is not a parameter; known: height, ratio, " EVERY},
+        {{{"", 3}}, 1, " error: '' is not a parameter; known: height, ratio, " EVERY},
+        {{{"friktion", 3}}, 1, " error: 'friktion' is not a parameter; did you mean 'friction'?"},
     };
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         error = (Error){0};
@@ -237,7 +240,7 @@ TEST(bad_settings_are_refused) {
     }
     error = (Error){0};
     assert_null(read_with(BASE GROUND, &(SceneSetting){"height", 3}, 1, &error));
-    assert_string_equal(behind_path(&error), " error: 'height' is not a parameter; known: none");
+    assert_string_equal(behind_path(&error), " error: 'height' is not a parameter; known: " EVERY);
     /* A value in its bounds may still be none for the number that is made of it. */
     assert_refused(read_with(SCENE("$height*$ratio"), &(SceneSetting){"ratio", -0.25}, 1, &error),
                    "mass must be greater than 0 (got -2.5 kg, from $height*$ratio with height = 10 boxes, "
