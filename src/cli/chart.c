@@ -228,7 +228,7 @@ static const CommandSpec spec = {
         "to the end of what the chart measures, and at most 256 MB of pages.\v"
         "Example: twinbox chart scenes/stack.yaml scenes/pyramid_settled.yaml -o out/chart\n"
         "         twinbox chart scenes/stack.yaml -o out/few --methods engine,momentum:k=20 --quick\n"
-        "         twinbox chart out/chart/chart.csv -o out/drawn"};
+        "         twinbox chart out/few/chart.csv -o out/drawn"};
 
 /* A scene and what its line says. */
 typedef struct Drawn {

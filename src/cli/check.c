@@ -17,7 +17,7 @@
 
 enum { WIDTH = 1280, HEIGHT = 720 };
 
-/* s after the bomb is added in which it has struck: the picture shows its way. */
+/* s after the bomb is added in which it has struck: the picture shows its path. */
 static const double way = 3;
 
 typedef struct Options {
@@ -56,10 +56,11 @@ static const CommandSpec spec = {
     .help =
         "Validate a scene: all keys, boxes that start inside others, the launches of the bomb, the networks that it "
         "names, and each parameter at both ends. Prints a summary, which names launches that strike no box "
-        "(it tries 41 at most, with the engine), and draws the first frame with the way of the bomb.\n"
+        "(it tries 41 at most, with the engine), and draws the first frame with the path of the bomb.\n"
         "Or judge a stored run of any engine: the verdict that simulate prints, the deepest overlap, drift and energy "
-        "gained. Contacts are found again from the poses.\v"
+        "gained. Contacts are recomputed from the poses.\v"
         "Example: twinbox check scenes/stack.yaml -o first.png\n"
+        "         twinbox simulate scenes/stack.yaml -o engine.npz\n"
         "         twinbox check engine.npz --scene scenes/stack.yaml --verdict sound"};
 
 static void print_bodies(FILE *out, const Scene *scene) {

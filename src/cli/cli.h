@@ -123,8 +123,8 @@ void time_left_begin(TimeLeft *left);
 void time_left_add(TimeLeft *left, double time, double part);
 
 /* The seconds that are left at the rate of the last third of the time, at least 4 s. False if that means little: in the
-   first 2 s, with less than 2% done in the first 20 s, or while the rates of both halves of that time differ by more
-   than a factor of 2. */
+   first 2 s, with less than 2% done in the first 20 s, or 0.2% later, or while the rates of both halves of that time
+   differ by more than a factor of 2. */
 bool time_left_estimate(const TimeLeft *left, double time, double part, double *seconds);
 
 /* "8 s", "6 min 40 s" or "2 h 10 min": no digits that an estimate does not have. */
@@ -137,7 +137,8 @@ void time_left_text(double seconds, char text[TIME_LEFT_TEXT_SIZE]);
 /* Handles both signals from here on, also where the shell has a background process ignore them. */
 void interrupt_handle(void);
 
-/* While held, the first signal only requests a stop, and the second ends the program. The calls nest. */
+/* While held, the first signal only requests a stop, and a second one, a second later or more, ends the program. The calls
+   nest. */
 void interrupt_hold(void);
 void interrupt_release(void);
 
@@ -162,7 +163,10 @@ bool output_check_npz(const char *path, const char *kind, Error *error);
 /* The output is, or becomes, a file of that name: not standard output, a device or a pipe. Its pieces can be kept beside it. */
 bool output_is_file(const char *path);
 
-/* A folder exists and takes new files, or can be made with its parents. */
+/* ERROR_INPUT for a folder with the name of a file, such as "chart.png", which is a mistake. */
+bool output_check_folder_name(const char *path, Error *error);
+
+/* A folder exists and takes new files, or can be made with its parents; and its name. */
 bool output_check_folder(const char *path, Error *error);
 
 /* Results as JSON (--json): one object on standard output and nothing else there. Its first key is "format": the name of
@@ -234,7 +238,7 @@ const char *installed_path(const char *path);
 typedef void InstalledScene(const char *scene, void *context);
 void installed_scenes(InstalledScene *found, void *context);
 
-/* The runs in a picture: read from .npz, or simulated from a scene with the engine and with pair-net. */
+/* The runs in a picture: read from .npz, or simulated from a scene, with the engine and with pair-net unless methods are given. */
 
 typedef struct Panels {
     int count;
@@ -249,8 +253,25 @@ typedef struct Panels {
               OPTION_PATHS(T, inputs, input_count)},                 \
     .inputs = {1, RENDER_PANELS_MAX, "panel"}
 
-/* Settings need exactly one scene among the inputs. After an error, panels_free frees what was loaded before it. */
-bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SceneSettings *set, Error *error);
+/* The option --method of commands that show runs: by what the scenes among the inputs are simulated. */
+typedef struct PanelMethods {
+    const char *texts[RENDER_PANELS_MAX];
+    int count; /* 0: the command's default */
+} PanelMethods;
+
+#define OPTION_METHODS(T, member, defaults)                                                          \
+    "--method", 'm', "NAME[:KEY=VALUE,...]",                                                         \
+        "Simulate the scene by this method, for a panel of its own (may be repeated; " defaults ")", \
+        OPTION_TEXTS(T, member.texts, member.count)
+
+/* Settings need exactly one scene among the inputs, methods one at least. After an error, panels_free frees what was loaded
+   before it. */
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SceneSettings *set,
+                 const PanelMethods *methods, Error *error);
+
+/* Adds a run of the scene file by each of the methods. */
+bool panels_add_scene(Panels *panels, const char *input, const SceneSettings *set, const PanelMethods *methods,
+                      Error *error);
 void panels_free(Panels *panels);
 
 /* Simulates a scene with a method, with a progress bar, and adds the run. Errors name `input`. */

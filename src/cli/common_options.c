@@ -104,7 +104,7 @@ void shard_option_print(const Pieces *pieces, const char *output) {
     if (pieces->waiting > 0)
         printf("    %" PRId64 " more need pieces of other shards: run this shard again when those are done\n",
                pieces->waiting);
-    printf("    when all shards are done: twinbox merge %s\n", output);
+    printf("    this is one part of %d; when all shards are done: twinbox merge %s\n", pieces->shard.count, output);
 }
 
 bool render_key(StudyKey *key, const Panels *panels, const DrawVideos *videos, const char *costs, Error *error) {
@@ -191,9 +191,20 @@ bool output_check_npz(const char *path, const char *kind, Error *error) {
                        found, kind != NULL ? kind : "run");
 }
 
+bool output_check_folder_name(const char *path, Error *error) {
+    static const char *const endings[] = {".png", ".svg",  ".pdf", ".html", ".csv",  ".json",
+                                          ".npz", ".yaml", ".md",  ".mp4",  ".webm", ".gif"};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (file_name_ends_with(path, endings[i]))
+            return error_input(error, path, "is the name of a file; expected that of a folder, such as %.*s",
+                               (int)(strlen(path) - strlen(endings[i])), path);
+    return true;
+}
+
 bool output_check_folder(const char *path, Error *error) {
     struct stat status;
     char folder[PATH_MAX];
+    if (!output_check_folder_name(path, error)) return false;
     if (!file_path(folder, sizeof folder - 1, error, "%s", path)) return false;
     size_t length = strlen(folder);
     while (length > 0 && stat(folder, &status) != 0) {

@@ -100,8 +100,12 @@ static const CommandSpec spec = {
         "Pictures are equal if every decoded pixel is. Frames are matched by name, or by the stem and the number of "
         "their names. Runs that are in both folders, and the states named in twinbox's own pictures, tell whether the "
         "physics or the renderer changed.\v"
-        "Example: twinbox compare golden/frames out/golden/frames --report out/report\n"
-        "         twinbox compare engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv"};
+        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+        "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
+        "         twinbox compare engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv\n"
+        "         twinbox render engine.npz -o expected --frames 30:40\n"
+        "         twinbox render momentum.npz -o actual --frames 30:40\n"
+        "         twinbox compare expected actual --report out/report"};
 
 /* "X,Y,W,H"; false for anything else. */
 static bool parse_rectangle(const char *text, int numbers[4]) {
@@ -212,6 +216,7 @@ static bool check_pictures(CompareOptions *options, Error *error) {
 static bool check_inputs(CompareOptions *options, Error *error) {
     const char *const *paths = options->paths;
     const bool first = is_trajectory(paths[0]), second = is_trajectory(paths[1]);
+    if (options->report != NULL && !output_check_folder_name(options->report, error)) return false;
     if (first != second)
         return error_input(error, paths[first ? 1 : 0], "is not a trajectory (.npz), but %s is", paths[first ? 0 : 1]);
     return first ? check_runs(options, error) : check_pictures(options, error);

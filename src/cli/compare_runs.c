@@ -241,7 +241,7 @@ static void print(FILE *out, const RunComparison *c) {
         fprintf(out, "%s\n", c->difference.what);
         return;
     }
-    if (c->found_contacts) fprintf(out, "contacts are found again between the poses: a run has none\n");
+    if (c->found_contacts) fprintf(out, "a run has no contacts: those of both are recomputed from the poses\n");
     print_parting(out, c);
     print_others(out, c);
     if (c->parting.first.frame < 0) return;

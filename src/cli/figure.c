@@ -57,17 +57,19 @@ static const Option option_table[] = {
     {"--outlines", 0, NULL, "SVG: text as outlines, for programs that ignore embedded fonts",
      OPTION_FLAG(Options, outlines)},
     {0}};
-enum { HELP_SIZE = 4096, KINDS_MAX = 31 };
+enum { HELP_SIZE = 5120, KINDS_MAX = 31 };
 
 /* All kinds, each with an example. */
 static void write_help(char help[HELP_SIZE]) {
+    static const char runs[] = "\vExample: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+                               "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz";
     const FigureKind *const *kinds = figure_kinds();
     snprintf(help, HELP_SIZE,
              "Draw a figure for a paper from stored runs (.npz). In SVG and PDF, scenes are pixels, text and lines "
              "are vectors. The same runs give the same bytes.\n");
     for (int i = 0; kinds[i] != NULL; i++) text_add(help, HELP_SIZE, "\n  %-13s %s", kinds[i]->name, kinds[i]->summary);
     for (int i = 0; kinds[i] != NULL; i++)
-        text_add(help, HELP_SIZE, "%s twinbox figure %s", i == 0 ? "\vExample:" : "\n        ", kinds[i]->example);
+        text_add(help, HELP_SIZE, "%s\n         twinbox figure %s", i == 0 ? runs : "", kinds[i]->example);
     text_add(help, HELP_SIZE, "\n");
 }
 

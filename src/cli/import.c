@@ -42,7 +42,9 @@ static const CommandSpec spec = {
         "  0,1,0,0.51,0\n\n"
         "The other comments are scene, method, bomb and camera. What the file does not state is assumed, and "
         "printed.\v"
-        "Example: twinbox import box2d.csv --sizes sizes.csv --dt 1/60 -o box2d.npz\n"
+        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+        "         twinbox export engine.npz -o engine.csv\n"
+        "         twinbox import engine.csv --dt 1/60 -o again.npz\n"
         "         ./box2d scenes/stack.yaml | twinbox import - -o box2d.npz"};
 
 /* A run of bodies that come and go as twinbox's do not is imported without a verdict. */

@@ -15,8 +15,9 @@
 #include <stdlib.h>
 
 typedef struct Options {
-    const char *inputs[RENDER_PANELS_MAX], *methods[RENDER_PANELS_MAX], *output;
-    int input_count, method_count, every;
+    const char *inputs[RENDER_PANELS_MAX], *output;
+    int input_count, every;
+    PanelMethods methods;
     bool live;
     FrameRange frames;
     SceneSettings set;
@@ -28,17 +29,14 @@ static const Option option_table[] = {
     {"--every", 0, "N", "Keep every N-th frame only", OPTION_INT(Options, every, 1, INT_MAX)},
     {"--frames", 0, "A:B", "Keep only these frames of the runs (default: all)",
      OPTION_READ(frames_option_read, Options, frames)},
+    {OPTION_METHODS(Options, methods,
+                    "default: engine, and pair-net if the scene names one; with --live: engine and interior")},
+    {OPTION_SET(Options, set)},
     {.help = "Live pages:"},
     {"--live", 0, NULL,
      "The page steps the scene itself: its readers drag the bomb and change settings and methods, and get the bits of "
      "twinbox simulate",
      OPTION_FLAG(Options, live)},
-    {"--method", 'm', "NAME",
-     "With --live: a panel by this method (may be repeated; default: engine and interior). One that a page cannot run "
-     "is "
-     "recorded",
-     OPTION_TEXTS(Options, methods, method_count)},
-    {OPTION_SET(Options, set)},
     {0}};
 
 static const CommandSpec spec = {
@@ -48,9 +46,10 @@ static const CommandSpec spec = {
         "Write one HTML file that plays runs side by side in any browser, without a network or other files. Its "
         "readers "
         "can stop, zoom, measure bodies, and link to a moment. A run is a stored trajectory (.npz). A scene (.yaml) is "
-        "simulated with the engine and with the pair-net that it names. A page takes at most 64 MB: contacts are left "
+        "simulated first. With --live, a method that a page cannot run is recorded. A page takes at most 64 MB: "
+        "contacts are left "
         "out if it would take more.\v"
-        "Example: twinbox page engine.npz net.npz -o stack.html\n"
+        "Example: twinbox page scenes/stack.yaml -o stack.html\n"
         "         twinbox page --live scenes/stack.yaml --method engine --method interior -o live.html"};
 
 /* The file's name without its folder, which differs between machines; NULL for a run that is simulated here. */
@@ -110,21 +109,15 @@ static bool can_be_live(const char *text) {
 
 /* Simulates the scene by each method here, too: the page compares its own hashes with these. */
 static bool add_methods(const Options *options, const char *path, PlayerLive *live, Panels *panels, Error *error) {
-    static const char *const usual[] = {"engine", "interior"};
-    const int count = options->method_count > 0 ? options->method_count : 2;
-    const char *const *methods = options->method_count > 0 ? options->methods : usual;
-    Scene *scene = scene_read_with(path, options->set.items, options->set.count, error);
-    bool ok = scene != NULL;
-    for (int i = 0; ok && i < count; i++) {
-        ok = panels_add_run(panels, scene, methods[i], path, error);
-        if (!ok) break;
-        if (can_be_live(methods[i]))
-            live->methods[panels->count - 1] = panels->runs[panels->count - 1]->method;
+    static const PanelMethods usual = {{"engine", "interior"}, 2};
+    const PanelMethods *methods = options->methods.count > 0 ? &options->methods : &usual;
+    if (!panels_add_scene(panels, path, &options->set, methods, error)) return false;
+    for (int i = 0; i < methods->count; i++)
+        if (can_be_live(methods->texts[i]))
+            live->methods[i] = panels->runs[i]->method;
         else
-            note_print("%s is recorded: a page cannot run it", methods[i]);
-    }
-    scene_destroy(scene);
-    return ok;
+            note_print("%s is recorded: a page cannot run it", methods->texts[i]);
+    return true;
 }
 
 static bool pack(const char *scene, PlayerLive *live, Error *error) {
@@ -154,18 +147,18 @@ static bool write_live(const Options *options, Panels *panels, Error *error) {
     const char *runs[RENDER_PANELS_MAX];
     int count = 0;
     const SceneSettings none = {0};
+    const PanelMethods stored = {.count = 0};
     for (int i = 0; i < options->input_count; i++)
         if (options->inputs[i] != scene) runs[count++] = options->inputs[i];
     const bool ok = add_methods(options, scene, &live, panels, error) &&
-                    panels_load(panels, runs, count, &none, error) && pack(scene, &live, error) &&
+                    panels_load(panels, runs, count, &none, &stored, error) && pack(scene, &live, error) &&
                     write_page(options, panels, &live, error);
     free((void *)live.bundle);
     return ok;
 }
 
 static bool write_recorded(const Options *options, Panels *panels, Error *error) {
-    if (options->method_count > 0) return error_input(error, "--method", "needs --live; or simulate the runs first");
-    return panels_load(panels, options->inputs, options->input_count, &options->set, error) &&
+    return panels_load(panels, options->inputs, options->input_count, &options->set, &options->methods, error) &&
            write_page(options, panels, NULL, error);
 }
 

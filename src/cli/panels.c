@@ -239,35 +239,37 @@ bool panels_add_watched(Panels *panels, const Scene *scene, const char *method_n
 
 /* Why a scene has one panel, and the commands that give it a second one. */
 static void note_engine_only(const char *input, const Scene *scene) {
-    char method[2 * SCENE_NAME_SIZE] = "scene-net:network=net.npz", train[1024] = "";
-    const char *lacks = "no network";
-    if (scene->network_count > 0) {
-        lacks = "no pair-net";
-        snprintf(method, sizeof method, "%s", scene->networks[0].method);
-    } else if (scene->bomb.present && scene_span_varies(&scene->bomb.x)) {
-        snprintf(train, sizeof train, "    twinbox train --kind scene-net %s -o net.npz\n", input);
-    } else {
+    const bool trained = scene->network_count > 0;
+    char train[1024] = "";
+    if (!trained && !(scene->bomb.present && scene_span_varies(&scene->bomb.x))) {
         note_print(
             "%s names no network, so only the engine is drawn; to train one for it, give it a bomb with a family of "
             "launches, x: {from: A, to: B}",
             input);
         return;
     }
-    note_print("%s names %s, so only the engine is drawn. To %sdraw a network beside it:\n%s"
-               "    twinbox simulate %s -o engine.npz\n"
-               "    twinbox simulate %s --method %s -o network.npz\n"
-               "    twinbox render engine.npz network.npz -o DIR",
-               input, lacks, train[0] != '\0' ? "train and " : "", train, input, input, method);
+    if (!trained) snprintf(train, sizeof train, "    twinbox train --kind scene-net %s -o net.npz\n", input);
+    note_print("%s names no %s, so only the engine is drawn. To %sdraw a network beside it:\n%s"
+               "    twinbox render %s --method engine --method %s -o DIR",
+               input, trained ? "pair-net" : "network", trained ? "" : "train and ", train, input,
+               trained ? scene->networks[0].method : "scene-net:network=net.npz");
 }
 
-static bool add_scene(Panels *panels, const char *input, const SceneSettings *set, Error *error) {
+static bool add_runs(Panels *panels, const Scene *scene, const char *input, const PanelMethods *methods, Error *error) {
+    static const PanelMethods both = {{"engine", "pair-net"}, 2}, engine = {{"engine"}, 1};
+    const bool chosen = methods->count > 0, network = scene_network(scene, "pair-net") != NULL;
+    if (!chosen) methods = network ? &both : &engine;
+    for (int i = 0; i < methods->count; i++)
+        if (!panels_add_run(panels, scene, methods->texts[i], input, error)) return false;
+    if (!chosen && !network) note_engine_only(input, scene);
+    return true;
+}
+
+bool panels_add_scene(Panels *panels, const char *input, const SceneSettings *set, const PanelMethods *methods,
+                      Error *error) {
     Scene *scene = scene_read_with(input, set->items, set->count, error);
-    bool ok =
-        scene != NULL && type_check(scene->name, input, error) && panels_add_run(panels, scene, "engine", input, error);
-    if (ok && scene_network(scene, "pair-net") != NULL)
-        ok = panels_add_run(panels, scene, "pair-net", input, error);
-    else if (ok)
-        note_engine_only(input, scene);
+    const bool ok =
+        scene != NULL && type_check(scene->name, input, error) && add_runs(panels, scene, input, methods, error);
     scene_destroy(scene);
     return ok;
 }
@@ -278,13 +280,16 @@ static bool is_stored(const char *input) {
     return ending != NULL && strcmp(ending, ".npz") == 0;
 }
 
-bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SceneSettings *set, Error *error) {
+bool panels_load(Panels *panels, const char *const *inputs, int input_count, const SceneSettings *set,
+                 const PanelMethods *methods, Error *error) {
     int scenes = 0;
     for (int i = 0; i < input_count; i++) scenes += !is_stored(inputs[i]);
     if (set->count > 0 && scenes != 1) return error_input(error, "--set", "needs exactly one scene (got %d)", scenes);
+    if (methods->count > 0 && scenes == 0)
+        return error_input(error, "--method", "needs a scene; a run (.npz) is shown as it was simulated");
     for (int i = 0; i < input_count; i++) {
         bool ok = is_stored(inputs[i]) ? add(panels, trajectory_read(inputs[i], error), inputs[i], error)
-                                       : add_scene(panels, inputs[i], set, error);
+                                       : panels_add_scene(panels, inputs[i], set, methods, error);
         if (!ok) return false;
     }
     return true;

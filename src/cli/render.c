@@ -19,6 +19,7 @@ typedef struct Options {
     FrameRange frames;
     DrawVideos videos;
     SceneSettings set;
+    PanelMethods methods;
     const char *costs;     /* FILE.csv, or NULL */
     const char *view_from; /* RUN.npz, or NULL */
     const char *shard;     /* or NULL */
@@ -59,6 +60,7 @@ static const Option option_table[] = {
     {"--context", 0, "osmesa|egl", "OpenGL without a display (default: the first that works); the frames are the same",
      OPTION_READ(read_context, Options, render.context)},
     {OPTION_SHARD(Options, shard)},
+    {OPTION_METHODS(Options, methods, "default: engine, and pair-net if the scene names one")},
     {OPTION_SET(Options, set)},
     {.help = "Look:"},
     {"--compare", 0, "KIND",
@@ -89,8 +91,9 @@ static const CommandSpec spec = {
     PANELS_INPUTS(Options),
     .help =
         "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz). A scene (.yaml) "
-        "is simulated with the engine and with the pair-net that it names.\v"
-        "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4"};
+        "is simulated first, by default with the engine and with the pair-net that it names.\v"
+        "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n"
+        "         twinbox render scenes/stack.yaml --method engine --method interior -o out/both"};
 
 /* "1920x1080" */
 static bool read_size(const Option *option, const char *text, void *value, Error *error) {
@@ -200,6 +203,15 @@ static bool render_panels(Options *options, const Panels *panels, Error *error) 
     return ok;
 }
 
+/* The name of a film after -o would become a folder of frames. */
+static bool check_directory(const char *path, Error *error) {
+    const char *ending = strrchr(path, '.');
+    if (video_check_format(path, 2, 2, &(Error){0}))
+        return error_input(error, path, "-o names the folder of the frames; for a film: -o %.*s --video %s",
+                           (int)(ending - path), path, path);
+    return output_check_folder_name(path, error);
+}
+
 /* How the command is to run. The merge reads the inputs of shards once more. */
 static bool choose_mode(Options *options, int argc, char **argv, Error *error) {
     if (!shard_option_take(&options->run, options->shard, argc, argv, error) ||
@@ -222,7 +234,9 @@ static bool check_texts(const Options *options, Error *error) {
 bool command_render(int argc, char **argv, Error *error) {
     Options options = {.render = draw_panels_defaults(NULL), .frames = {0, -1}};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (!check_texts(&options, error) || !choose_mode(&options, argc, argv, error)) return false;
+    if (!check_directory(options.render.directory, error) || !check_texts(&options, error) ||
+        !choose_mode(&options, argc, argv, error))
+        return false;
     options.render.first = options.frames.first;
     options.render.last = options.frames.last;
     options.render.title_card = options.render.title != NULL;
@@ -235,7 +249,7 @@ bool command_render(int argc, char **argv, Error *error) {
     ok = ok &&
          draw_videos_check(&options.videos, options.render.width, options.render.height, options.mode == PIECES_SHARD,
                            error) &&
-         panels_load(&panels, options.inputs, options.input_count, &options.set, error) &&
+         panels_load(&panels, options.inputs, options.input_count, &options.set, &options.methods, error) &&
          render_panels(&options, &panels, error);
     panels_free(&panels);
     trajectory_destroy(view_from);

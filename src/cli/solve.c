@@ -35,9 +35,8 @@ static const Option option_table[] = {
     {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method to score (may be repeated)",
      OPTION_TEXTS(Options, methods, method_count)},
     {"--impulses", 0, "FILE.csv",
-     "Score these impulses, too, N s over the step: a table with the columns contact (its index in P.npz, from 0), "
-     "normal, "
-     "tangent; contacts that it leaves out have none",
+     "Also score these impulses, in N s over the step: a table with the columns contact (its index in P.npz, from 0), "
+     "normal and tangent; contacts that it omits have none",
      OPTION_TEXT(Options, impulses)},
     {OPTION_JSON(Options, json)},
     {.help = "Of a scene:"},

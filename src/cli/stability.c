@@ -160,7 +160,7 @@ static const Option option_table[] = {
     {"--vary", 0, "NAME[=FROM:TO[:STEP]]",
      "Vary a parameter of SCENE, by default between its bounds, or what every scene has: iterations, dt, friction, "
      "bomb_x, bomb_y, "
-     "bomb_mass, bomb_speed; with STEP at every such value, up to 128; two of them give their map, too",
+     "bomb_mass, bomb_speed; with STEP at every such value, up to 128; two of them also give their map",
      OPTION_TEXTS(Options, vary, vary_count)},
     {"--study", 0, "NAME", "Only this study or map (may be repeated; default: all)",
      OPTION_TEXTS(Options, study.names, study.name_count), .names = study_names},
@@ -195,7 +195,8 @@ static const CommandSpec spec = {
         "a page, which shows at most nine seconds of the run beside the first method that holds there; all pages "
         "together take at most 256 MB.\v"
         "Example: twinbox stability -o out/stability\n"
-        "         twinbox stability wall.yaml --vary rows --vary mass=1:100 -o out/wall\n"
+        "         twinbox new wall.yaml --like wall\n"
+        "         twinbox stability wall.yaml --vary pairs --vary bomb_mass=1:100 -o out/wall\n"
         "         twinbox stability scenes/stack.yaml --vary iterations --quick -o out/stack-borders\n"
         "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height"};
 

@@ -218,7 +218,7 @@ bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line
         if (!take_comment(head, path, *line, comment, error)) return false;
     }
     if (sizes != NULL && head->count > 0)
-        return error_input(error, sizes, "the comments of %s have sizes, too; give only one of the two", path);
+        return error_input(error, sizes, "the comments of %s also have sizes; give one of the two", path);
     return (sizes == NULL || read_sizes(head, sizes, error)) && sort_bodies(head, path, error);
 }
 

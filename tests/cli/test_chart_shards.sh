@@ -21,8 +21,10 @@ same_as_whole() {
 # Three shards; before the last one, a merge names what is missing and writes nothing.
 run 0 chart $few -o three --shard 2/3
 says "shard 2 of 3: 4 pieces, 0 of them done before -> three/shards"
-says "when all shards are done: twinbox merge three"
-run 0 chart $few -o three --shard 1/3
+says "    this is one part of 3; when all shards are done: twinbox merge three"
+SLURM_PROCID=0 SLURM_NTASKS=3 run 0 chart $few -o three
+complains "twinbox: note: shard 1 of 3, by SLURM_PROCID=0, SLURM_NTASKS=3; --shard 1/1 does all"
+says "    this is one part of 3; when all shards are done: twinbox merge three"
 run 1 merge three
 equal "what sbatch needs" "$(cat out)" --array=3
 complains "4 of 12 pieces are missing: "

@@ -29,20 +29,6 @@ for name in $names; do
     complains "needed"
 done
 
-# Examples work in this order in a folder with the scenes. (Those of other commands take longer.)
-ln -s "$scenes" scenes
-for name in new simulate check methods solve compare figure; do
-    ARGP_HELP_FMT=rmargin=400 "$twinbox" "$name" --help | sed -n 's/^\(Example:\|        \) twinbox //p' >examples
-    [ -s examples ] || fail "the help of $name has no example"
-    while read -r arguments; do
-        case $arguments in
-        compare*/frames*) ;; # many pictures
-        compare*) run 1 $arguments ;;
-        *) run 0 $arguments ;;
-        esac
-    done <examples
-done
-
 # Help that nobody can read is no success.
 for words in --help --version "help compare" "compare --help" "compare --usage" methods; do
     checks=$((checks + 1))
@@ -86,9 +72,9 @@ run 0 simulate --help
 cmp -s by_help out || fail "help simulate differs from simulate --help"
 run 2 help simulat
 complains "did you mean 'simulate'?"
-run 2 simulate scenes/stack.yaml --method interor
+run 2 simulate "$scenes/stack.yaml" --method interor
 complains "method: error: 'interor' is not a method; did you mean 'interior'?"
-run 2 simulate scenes/stack.yaml --method interior:naer=1
+run 2 simulate "$scenes/stack.yaml" --method interior:naer=1
 complains "'naer' is not a setting; did you mean 'near'?"
 
 run 0 methods

@@ -14,7 +14,7 @@ equal "panels" "$(ls frames/*.npz | wc -l)" 1
 
 # The commands of the note work in this order (with a small network, to be quick).
 sed -n 's/^    twinbox //p' err >commands
-equal "commands" "$(wc -l <commands)" 4
+equal "commands" "$(wc -l <commands)" 2
 while read -r arguments; do
     case $arguments in
     train*) arguments="$arguments --launches 10 --rounds 1 --iterations 2 --width 16" ;;
@@ -29,7 +29,7 @@ cp wall.yaml sain.yaml
 echo "networks: {sain: $scenes/networks/sain.npz}" >>sain.yaml
 draw sain.yaml
 complains "sain.yaml names no pair-net, so only the engine is drawn. To draw a network beside it:"
-complains "    twinbox simulate sain.yaml --method sain -o network.npz"
+complains "    twinbox render sain.yaml --method engine --method sain -o DIR"
 sed '/^bomb:/,/^$/d; s/^  bomb_mass.*//' wall.yaml >bare.yaml
 draw bare.yaml
 complains "bare.yaml names no network, so only the engine is drawn; to train one for it, give it a bomb with a family"
