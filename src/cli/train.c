@@ -375,7 +375,8 @@ bool command_train(int argc, char **argv, Error *error) {
         .options = options.rows,
         .input = {.value = texts.usage, .needed = "a dataset (or scene) is needed", OPTION_PATH(Options, input)},
         .inputs = {0, 1, "file"},
-        .help = "Train the network of a method, or its learned factors. Ctrl-C stops and keeps the best found so far.\v"
+        .help = "Train the network of a method, or its learned factors. Ctrl-C and SIGTERM stop it and keep the best "
+                "found so far.\v"
                 "Example: twinbox dataset scenes/single.yaml --bomb-x=-4:4:1 -o pairs.npz\n"
                 "         twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100\n"
                 "         twinbox train --kind scene-net scenes/stack.yaml -o scene-net.npz"};

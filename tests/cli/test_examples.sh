@@ -17,12 +17,14 @@ paste() {
     status=$?
 }
 
-long() { [[ $1 =~ ^twinbox\ (paper|dataset|stability|train|chart) && ! $1 =~ --quick|--bomb-x ]]; }
+long() {
+    [[ $1 =~ ^twinbox\ (paper|dataset|stability|train|chart|render) ]] || return
+    ! [[ $1 =~ ^twinbox\ chart.*--quick|--bomb-x|--frames ]]
+}
 
 # What a pasted line ends with.
 expected() {
     case $1 in
-    *" --method momentum"*\ -o\ actual*) echo 0 ;;
     "twinbox compare"*) echo 1 ;; # the examples differ
     "twinbox merge"*) echo "1 2" ;; # of shards that were stopped
     *) if long "$1"; then echo "0 130"; else echo 0; fi ;;

@@ -84,7 +84,7 @@ folder=chart working TERM chart "$scenes/pyramid.yaml" -o chart
 equal "tables of interrupted studies" "$(find study chart paper -name '*.csv')" ""
 # Once for the process and once for its group, as timeout(1) and schedulers send it, is one signal: what would be kept is.
 run 0 dataset "$scenes/single.yaml" --bomb-x=-2:2:1 -o pairs.npz
-start train pairs.npz -o kept.npz --iterations 1000000
+start train pairs.npz -o kept.npz --iterations 1000000 --optimizer lm --layers 10-60-2 # steps of half a second
 until grep -qs '^ *0 ' out || ! kill -0 $running; do sleep 0.01; done
 kill -TERM $running
 sleep 0.05 # a signal that waits for the first one to be handled would be lost
