@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The article in Chromium: article.py SITE. Nothing is off-screen (on a phone tables and charts scroll), a page in place of a still has panels that are at least as large, and
-what the page answers to a prediction is what the text says."""
+"""The article in Chromium: article.py SITE. Nothing is off-screen (on a phone tables and charts scroll). Where a page takes the place of
+a still, panels do not shrink. What the page answers to a prediction is what the text says."""
 import os
 import re
 import sys
