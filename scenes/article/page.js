@@ -7,11 +7,12 @@ for (const figure of document.querySelectorAll(".live")) {
   button.textContent = "Try it here";
   button.onclick = () => {
     const frame = document.createElement("iframe");
-    frame.src = figure.dataset.page;
+    frame.src = still.href.replace("#", "#stage&"); /* controls on demand */
     frame.title = figure.dataset.title;
     still.style.display = "none"; /* printed instead */
     still.after(frame);
     button.remove();
+    frame.scrollIntoView({block: "nearest"});
     frame.focus();
   };
   still.after(button);

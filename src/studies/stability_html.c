@@ -111,7 +111,8 @@ static void put_map(FILE *out, const StabilityHtml *html) {
     fputs("</div>\n</section>\n", out);
 }
 
-/* Borders: a row for each study, a column for each method. */
+/* Borders: for each study those of all methods, in a grid with as many columns as the window has room for. A table with a column for
+   each of a dozen engines would hide most of them. */
 
 static const MapPage *find_border_page(const StabilityHtml *html, const BorderRow *row) {
     for (int i = 0; i < html->table.count; i++) {
@@ -128,7 +129,7 @@ static void put_side(FILE *out, double value) { fprintf(out, isnan(value) ? " â€
 static void put_border(FILE *out, const StabilityHtml *html, const BorderRow *row) {
     const MapPage *page = find_border_page(html, row);
     const bool linked = page != NULL && page->page[0] != '\0';
-    fputs("<span class=\"border\"><b", out);
+    fputs("<dd><b", out);
     put_look(out, row->verdict);
     fprintf(out, " title=\"%s\">", verdict_looks[row->verdict].name);
     if (linked) put_link(out, page, row->verdict);
@@ -138,7 +139,7 @@ static void put_border(FILE *out, const StabilityHtml *html, const BorderRow *ro
         fputs(" |", out);
         put_side(out, row->fails_at);
     }
-    fputs("</span>", out);
+    fputs("</dd>", out);
 }
 
 /* The row of the table at which method number m begins, by where methods appear first; -1: there are no more. */
@@ -151,23 +152,33 @@ static int find_border_method(const CsvTable *borders, int m) {
     return -1;
 }
 
+/* The borders of the method of row `at` in the study whose first row is `first`, if it has any. */
+static void put_method_borders(FILE *out, const StabilityHtml *html, int first, int at) {
+    const CsvTable *borders = &html->borders;
+    const BorderRow *study = border_row(borders, first), *of = border_row(borders, at);
+    char method[STABILITY_TEXT_SIZE];
+    stability_method_name(method, of->method, of->setting);
+    bool named = false;
+    for (int i = first; i < borders->count && border_same_study(border_row(borders, i), study); i++) {
+        if (!border_same_method(border_row(borders, i), of)) continue;
+        if (!named) html_print(out, "<div><dt>%s</dt>", method);
+        named = true;
+        put_border(out, html, border_row(borders, i));
+    }
+    if (named) fputs("</div>\n", out);
+}
+
 /* The study whose first row is `first`. */
 static void put_study(FILE *out, const StabilityHtml *html, int first) {
-    const CsvTable *borders = &html->borders;
-    const BorderRow *study = border_row(borders, first);
+    const BorderRow *study = border_row(&html->borders, first);
     const StabilityStudy *known = stability_study_find(study->study);
     char axis[STABILITY_TEXT_SIZE];
     stability_axis_text(axis, study->parameter, study->unit);
-    html_print(out, "<tr><th scope=\"row\">%s<br><span class=\"soft\">%s</span></th>",
+    html_print(out, "<h3>%s <span class=\"soft\">%s</span></h3>\n<dl class=\"borders\">\n",
                known != NULL ? known->title : study->study, axis);
-    for (int m = 0, at; (at = find_border_method(borders, m)) >= 0; m++) {
-        fputs("<td>", out);
-        for (int i = first; i < borders->count && border_same_study(border_row(borders, i), study); i++)
-            if (border_same_method(border_row(borders, i), border_row(borders, at)))
-                put_border(out, html, border_row(borders, i));
-        fputs("</td>", out);
-    }
-    fputs("</tr>\n", out);
+    for (int m = 0, at; (at = find_border_method(&html->borders, m)) >= 0; m++)
+        put_method_borders(out, html, first, at);
+    fputs("</dl>\n", out);
 }
 
 /* What other programs say that they are. */
@@ -199,17 +210,8 @@ static void put_borders(FILE *out, const StabilityHtml *html) {
     for (int i = 0; i < borders->count; i++)
         if (i == 0 || !border_same_study(border_row(borders, i), border_row(borders, i - 1)))
             put_unconverged(out, html, border_row(borders, i)->study);
-    study_page_region(out, "borders scroll", "Borders", "");
-    fputs("<table>\n<thead><tr><th scope=\"col\">Study</th>", out);
-    for (int m = 0, at; (at = find_border_method(borders, m)) >= 0; m++) {
-        char method[STABILITY_TEXT_SIZE];
-        stability_method_name(method, border_row(borders, at)->method, border_row(borders, at)->setting);
-        html_print(out, "<th scope=\"col\">%s</th>", method);
-    }
-    fputs("</tr></thead>\n<tbody>\n", out);
     for (int i = 0; i < borders->count; i++)
         if (i == 0 || !border_same_study(border_row(borders, i), border_row(borders, i - 1))) put_study(out, html, i);
-    fputs("</tbody>\n</table>\n</div>\n", out);
     put_engines(out, html);
     fputs("</section>\n", out);
 }

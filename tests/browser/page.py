@@ -112,6 +112,12 @@ class Page:
         with open(path, "wb") as file:
             file.write(base64.b64decode(data))
 
+    def beyond(self):
+        """The elements that end to the right of the window, also those that can be scrolled into it."""
+        return self.run("""[...document.querySelectorAll('body *')]
+            .filter(each => each.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
+            .map(each => `${each.tagName} ${each.className} ${each.textContent.slice(0, 40)}`)""")
+
     # Scripts
 
     def run(self, script, *values):

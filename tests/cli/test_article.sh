@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The article: its numbers are those of tables that this test plants; what is missing ends its making; links lead somewhere.
+# The article: its numbers are those of tables that this test plants; what is missing ends its making; links lead somewhere; commands
+# make what they stand under.
 . "$(dirname "$0")/checks.sh"
 export PYTHONDONTWRITEBYTECODE=1
 make=$sources/scenes/article/make
@@ -33,7 +34,7 @@ for line in open(f"{sys.argv[1]}/numbers.txt"):
             value += 1.37
             known[column] = f"{value:.6g}"
         wanted.setdefault(name, []).append(known.get(column, "rows"))
-league = {"study": "stack_height", "method": "exec", "setting": "toy,name=Toy", "holds_at": "3", "fails_at": "4", "verdict": "falls"}
+league = {"study": "stack_height", "method": "exec", "setting": "toy,name=Toy", "holds_at": "3", "fails_at": "4", "verdict": "sinks"}
 tables["league/stability.csv"] = [{"verdict": "falls", "fails_at": "", "holds_at": ""} | row
                                   for row in tables["league/stability.csv"] + [league]]
 tables["league/engines.csv"] = [{"method": "exec", "setting": "toy,name=Toy", "engine": "Toy", "version": "1.0"}]
@@ -78,7 +79,7 @@ for name, values in json.load(open("wanted.json")).items():
     number = float(values[0]) / (float(values[1]) if len(values) == 2 else 1)
     close = [text for text in shown if re.fullmatch(r"[\d.,]+", text) and abs(float(text.replace(",", "")) / number - 1) < 0.06]
     assert close, (name, values, shown)
-assert "Toy 1.0" in page and ">3 | 4 falls</a>" in page
+assert "Toy 1.0" in page and ">3 | 4</a><br><span class=\"soft\">sinks</span>" in page
 # What fell in each live figure, in the words of simulate; where the reader predicts, only how many.
 words = open("words").read().strip().removeprefix("verdict: ")
 assert f'<span class="verdict">engine:k=500 {words}</span>' in page, words
@@ -96,7 +97,7 @@ class Links(html.parser.HTMLParser):
     def handle_starttag(self, tag, attributes):
         got = dict(attributes)
         self.ids.add(got.get("id"))
-        self.targets += [got[key] for key in ("href", "src", "data-page") if key in got]
+        self.targets += [got[key] for key in ("href", "src") if key in got]
         if tag == "img":
             assert len(got["alt"]) > 20 and int(got["width"]) > 100 and int(got["height"]) > 50, got
         if tag in ("h1", "h2"):
@@ -135,7 +136,61 @@ complains "article.md: no number sweeps_11 in numbers.txt"
 sed 's/{sweeps_10}/3/' article.md >typed.md
 "$make" other "$twinbox" --text typed.md --studies site.studies >made 2>err && fail "a typed number is accepted"
 complains "numbers.txt: sweeps_10: not used in article.md"
-rm site.studies/paper/figures/factors.svg
+mv site.studies/paper/figures/factors.svg kept.svg
 "$make" other "$twinbox" --text article.md --studies site.studies >made 2>err && fail "a missing picture is accepted"
 complains "paper/figures/factors.svg is missing"
+! brief || finish
+
+if command -v chromium >/dev/null; then
+    PYTHONPATH=$sources/tests/browser /usr/bin/python3 "$sources/tests/cli/article.py" site || fail "the article in Chromium"
+else
+    echo "skipped: the article in Chromium, which tests/setup --all installs"
+fi
+
+# The command under each live figure makes its page. Those of the studies make, in a short form, the files that the article takes from
+# them; of the paper and the league, which take long in any form, one piece shows that the command is valid.
+mkdir -p typed/bin typed/league
+ln -s "$twinbox" typed/bin/twinbox
+ln -s "$scenes" typed/scenes
+touch typed/league/large.csv
+printf '#!/bin/sh\nexec twinbox "$@" --shard 1/1000000\n' >typed/bin/piece
+chmod +x typed/bin/piece
+PYTHONPATH=$sources/tests/cli /usr/bin/python3 - "$sources/scenes/article" <<'PYTHON' || fail "the commands"
+import html
+import os
+import re
+import subprocess
+import sys
+
+import pages
+
+page = open("site/index.html", encoding="utf-8").read()
+PATH = f"{os.getcwd()}/typed/bin:{os.environ['PATH']}"
+
+
+def enter(command, **variables):
+    subprocess.run(html.unescape(command), shell=True, cwd="typed", check=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                   env={**os.environ, "PATH": PATH, **variables})
+
+
+figures = [line.split("|")[2].split() for line in open("article.md", encoding="utf-8") if line.startswith("[[live")]
+made = re.findall(r'<a href="([\w-]+\.html)#[^"]*">Open on its own page</a>, made by <code>([^<]+)</code>', page)
+assert len(made) == page.count('class="live"') == len(figures) > 6, made
+for (name, command), methods in zip(made, figures):
+    enter(command)
+    assert [run["live"] for run in pages.data(f"typed/{name}")["runs"]] == methods, (command, methods)
+    assert open(f"typed/{name}", "rb").read() == open(f"site/{name}", "rb").read(), command
+
+studies = dict(re.findall(r'<li id="(\w+)"><code>([^<]+)</code></li>', page))
+taken = re.findall(r"\[\[figure (\w+)/(\S+) \|", open(f"{sys.argv[1]}/article.md", encoding="utf-8").read())
+taken += re.findall(r"[=/] (\w+)/(\w+\.csv) ", open(f"{sys.argv[1]}/numbers.txt", encoding="utf-8").read())
+assert {study for study, _ in taken} == studies.keys(), (taken, studies)
+short = {"chart": " --quick --launches 1", "height": " --quick", "paper": " --quick --shard 1/1000000", "chaos": "", "league": ""}
+for study, command in studies.items():
+    enter(command + short[study], TWINBOX="piece" if study == "league" else "twinbox")
+    pieces = os.path.exists(f"typed/{study}/shards")
+    assert pieces == (study in ("paper", "league")), study
+    missing = [file for where, file in taken if where == study and not os.path.exists(f"typed/{study}/{file}")]
+    assert pieces or not missing, (command, missing)
+PYTHON
 finish

@@ -66,7 +66,9 @@ for row in borders:
                    and float(b["holds_at"]) >= float(row["fails_at"])), None)
     assert [run["method"] for run in shown["runs"]] == ([holder] if holder else []) + [row["method"]], (row, holder)
 html = open("maps/stability.html").read()
-assert "Box on a slope" in html and html.count('class="border"') == len(borders), html.count('class="border"')
+assert "Box on a slope" in html and html.count("<dd>") == len(borders), html.count("<dd>")
+names = {row["method"] for row in borders}
+assert all(html.count(f"<dt>{name}</dt>") == len({row["study"] for row in borders if row["method"] == name}) for name in names), names
 PYTHON
 checks=$((checks + 1))
 
@@ -100,6 +102,23 @@ for row in listed:
 assert any(float(row["y"] or 0) > 100 or float(row["x"]) > 100 for row in listed), listed
 PYTHON
 checks=$((checks + 1))
+
+# However many methods there are, none is beyond the window.
+many=$(printf 'engine:k=%d,' {1..13})
+run 0 stability --scenes "$scenes" -o many --pages --study friction_ramp --methods "${many%,}"
+equal "methods" "$(grep -o '<dt>engine:k=[0-9]*</dt>' many/stability.html | wc -l)" 13
+if command -v chromium >/dev/null; then
+    PYTHONPATH=$sources/tests/browser /usr/bin/python3 - <<'PYTHON' || fail "methods are beyond the window"
+from chromium import Chromium
+
+with Chromium() as browser:
+    for width in 1440, 390:
+        beyond = browser.open("many/stability.html", width=width).beyond()
+        assert not beyond, (width, beyond)
+PYTHON
+else
+    echo "skipped: the window of stability.html; tests/setup --all installs chromium"
+fi
 
 run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o plain
 [ -e plain/stability.html ] && fail "pages that nobody asked for"
