@@ -124,11 +124,9 @@ Camera camera_at(const Camera *path, int frames, Moment moment, int width, int h
     return camera_of(&between, width, height);
 }
 
-static const double WHOLE_SCALE = 12.0; /* from here on a whole number of pixels a metre costs little room */
-
 static double nice_scale(double scale) {
     if (scale >= WHOLE_SCALE) return floor(scale);
-    return scale >= 1 ? floor(scale * 64) / 64 : scale;
+    return scale >= 1 ? floor(scale * SCALE_PARTS) / SCALE_PARTS : scale;
 }
 
 static Camera look_at(double x, double y, double scale, int width, int height) {

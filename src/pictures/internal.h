@@ -3,6 +3,7 @@
 #pragma once
 #include "base/base.h"
 #include "pictures/picture.h"
+#include "pictures/style.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"
 #include "runs/trajectory.h"

@@ -12,12 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* An unusual grid must make the scene at least this much larger: one in which names are whole, one in which they are not. */
-static const double GAIN = 1.05, GAIN_WITH_CUT_NAMES = 1.5;
-/* Of a panel's width and height: what the scene covers at least, or the panel shrinks until it covers the third share. */
-static const double LEAST_SHARE_X = 0.2, LEAST_SHARE_Y = 0.4, FULL_SHARE = 0.65;
-static const double LEAST_WIDTH = 22, LEAST_HEIGHT = 5; /* ems of the captions, of a panel that shrinks */
-
 static int panels_of(LookCompare compare, int count) {
     return compare == LOOK_OVERLAY ? 1 : compare == LOOK_DIFFERENCE ? count - 1 : count;
 }
@@ -79,8 +73,9 @@ static void shrink_panels(Picture *picture, const CameraFrame *frame) {
                  em = layout->title.glyphs != NULL ? layout->title.pixels : layout->left;
     if (picture->look.camera != LOOK_FIT) return;
     const bool keep_width = picture->look.compare == LOOK_OVERLAY;
-    const int narrow = keep_width ? width : shrink(width, scale * (double)size.x, LEAST_SHARE_X, LEAST_WIDTH * em);
-    const int low = shrink(height, scale * (double)size.y, LEAST_SHARE_Y, LEAST_HEIGHT * em);
+    const int narrow =
+        keep_width ? width : shrink(width, scale * (double)size.x, LEAST_SHARE_X, LEAST_PANEL_WIDTH * em);
+    const int low = shrink(height, scale * (double)size.y, LEAST_SHARE_Y, LEAST_PANEL_HEIGHT * em);
     if (narrow < width || low < height) layout_shrink_panels(layout, picture->panel_count, narrow, low);
 }
 
@@ -101,11 +96,6 @@ void panels_arrange(Picture *picture, int width, int height, int legend) {
     picture->grid_scale = picture->camera.scale;
 }
 
-static const double MIN_SPACING = 0.010;  /* between thin lines / the panel's height */
-static const double MIN_PIXELS = 6;       /* the same, in pixels */
-static const double MAX_SPACING = 0.6;    /* between strong lines / the panel's height */
-static const double NUMBER_SPACING = 2.5; /* ems between two lines that both have a number */
-enum { MIN_TICS = 3 };
 #define MINUS "\xE2\x88\x92"
 
 /* Thin lines every `step` metres; every `strong`-th line is strong and labelled. */
@@ -288,15 +278,7 @@ static void grid_draw_axes(const Picture *picture, int panel, Drawing *drawing) 
     if (panel % picture->layout.columns == 0) draw_left_axis(picture, &picture->layout.panels[panel], drawing);
 }
 
-/* In units of a panel's shorter side. */
-static const double MAX_ARROW = 0.28;
-static const double FASTEST_ARROW = 0.20; /* the arrow of the first run's fastest body */
-static const double COMMON_ARROW = 0.10;  /* the arrow of the 90th percentile of impulses */
-static const double LEGEND_ARROW = 0.07;  /* an arrow in the legend, at most */
-/* The same in boxes; the smaller counts. */
-static const double MAX_ARROW_BOXES = 4, FASTEST_ARROW_BOXES = 3, COMMON_ARROW_BOXES = 1.2, LEGEND_ARROW_BOXES = 3.5;
 static const double MAX_SPEED = 1e4; /* m/s; faster bodies, of an exploding run, do not count */
-enum { MAX_DECADE = 1 };             /* 10 m, the end of the colour scale */
 
 static double fastest(const Trajectory *run) {
     double square = 0;
@@ -372,7 +354,7 @@ bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, 
     choose(&scales->velocity, &scales->legend_velocity, measures.speed,
            fmin(FASTEST_ARROW * side, FASTEST_ARROW_BOXES * box), legend);
     double power = 1;
-    for (scales->last_decade = 0; power < largest_distance && scales->last_decade < MAX_DECADE; power *= 10)
+    for (scales->last_decade = 0; power < largest_distance && scales->last_decade < SCALE_LAST_DECADE; power *= 10)
         scales->last_decade++;
     scales->exceeded = power < largest_distance;
     return true;

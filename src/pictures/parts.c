@@ -7,20 +7,6 @@
 #include "pixels/png.h"
 #include "runs/trajectory.h"
 
-/* In units of a box's shorter side; the values are chosen by eye. */
-static const double CORNER = 0.11, OUTLINE = 0.045, BAND = 0.13, TARGET = 0.30;
-static const double MIN_OUTLINE = 1.0;       /* pixels */
-static const double MIN_OUTLINED_SIDE = 5.0; /* pixels; a smaller box has no outline */
-static const double MAX_CORNER = 0.009;      /* relative to shorter side of the panel */
-static const double MAX_OUTLINE = 0.0026;
-static const double GHOST_OUTLINE =
-    0.0034; /* thickness of an outline drawn without its box / shorter side of the panel */
-static const double MIN_GHOST_OUTLINE = 1.6; /* pixels */
-static const double NESTED_TOTAL = 1.2;      /* overlay: the first outline is at most this many thicknesses thicker than
-                                           the last */
-static const double NESTED_STEP = 0.7;       /* from one outline to the next, at most */
-static const double FADE = 0.55;             /* share of the panel's colour in boxes behind outlines */
-
 /* A box of the given width and height in pixels, not rotated, at (0, 0). */
 static Shape styled_box(const Picture *picture, double width, double height, const BodyColors *colors) {
     Rect panel = picture->layout.panels[0];
@@ -51,11 +37,12 @@ static void draw_part(Shape part, const Shape *whole, double up, const Rect *cli
 
 /* A dot in a ring, and a bar from the ring towards the local top. */
 static void draw_target(const Shape *bomb, double radius, uint32_t light, const Rect *clip, Drawing *drawing) {
-    Shape bar = {.half_width = radius / 7, .half_height = 0.3 * radius, .fill = light};
-    Shape ring = {.half_width = radius, .half_height = radius, .radius = radius, .outline = radius / 3};
-    Shape dot = {.half_width = radius / 3, .half_height = radius / 3, .radius = radius / 3, .fill = light};
+    const double third = radius / TARGET_THIRD;
+    Shape bar = {.half_width = radius / TARGET_BAR, .half_height = TARGET_BAR_HEIGHT * radius, .fill = light};
+    Shape ring = {.half_width = radius, .half_height = radius, .radius = radius, .outline = third};
+    Shape dot = {.half_width = third, .half_height = third, .radius = third, .fill = light};
     ring.fill = bomb->fill, ring.line = light;
-    draw_part(bar, bomb, 1.2 * radius, clip, drawing);
+    draw_part(bar, bomb, TARGET_BAR_RISE * radius, clip, drawing);
     draw_part(ring, bomb, 0, clip, drawing);
     draw_part(dot, bomb, 0, clip, drawing);
 }
@@ -70,8 +57,8 @@ static BodyColors distance_colors(const Picture *picture, int run, Moment moment
     if (ended || isnan(distance)) return (BodyColors){theme->ground, line, theme->ground_line};
     double share = scales_share(&picture->scales, distance);
     uint32_t fill = theme_ramp(theme, share), white = 0xFFFFFF;
-    bool is_light = (fill >> 8 & 255) > 140; /* green dominates luminance */
-    return (BodyColors){fill, line, is_light ? theme_mix(fill, 0, 0.6) : theme_mix(fill, white, 0.7)};
+    bool is_light = (int)(fill >> 8 & 255) > LIGHT_GREEN;
+    return (BodyColors){fill, line, is_light ? theme_mix(fill, 0, BAND_DARKER) : theme_mix(fill, white, BAND_LIGHTER)};
 }
 
 static BodyColors colors_of(const Picture *picture, int run, Moment moment, int body) {
@@ -148,30 +135,19 @@ int body_draw_swatch(const Picture *picture, int run, bool hollow, int left, int
     shape.y = baseline - side / 2.0;
     shape.hollow = hollow;
     if (hollow)
-        shape.line = run == 0 ? picture_ghost_color(picture, 0) : colors->fill, shape.outline = fmax(2, side / 8.0);
+        shape.line = run == 0 ? picture_ghost_color(picture, 0) : colors->fill,
+        shape.outline = fmax(MIN_SWATCH_OUTLINE, side / SWATCH_OUTLINE);
     drawing_add_shape(drawing, &shape, &(Rect){left, baseline - side, left + side, baseline});
     return left + side;
 }
-
-static const double DOT = 0.0052, LINE = 0.0034; /* relative to shorter side of the panel */
-static const double MIN_DOT = 2.2,
-                    MIN_LINE = 1.4; /* pixels; smaller where boxes are so small that these would cover them */
-static const double DOT_BOX = 0.13, LINE_BOX = 0.085; /* relative to the median box, at most */
-static const double FINEST = 0.6;                     /* pixels; the smallest dot and the thinnest line */
-static const double TRAIL_DURATION = 2.0;             /* s, duration of a trail */
-static const double MIN_TRAIL = 0.5;                  /* m; a body that moved less in this time has no trail */
-static const double OLDEST_OPACITY = 0.15;            /* opacity of a trail's oldest end */
-static const double MIN_SPEED = 0.05; /* m/s; slower bodies have no arrow, or every resting body would show one */
-static const double TOLERANCE = 0.4;  /* pixels; largest deviation of a segment from the trail */
-enum { TRAIL_FRAMES_MAX = 600, TRAIL_EVERY = 2, SEGMENT_FRAMES = 8 };
 
 static double mark_size(const Picture *picture, double share, double least, double box_share) {
     return fmax(fmin(fmax(share * panel_side(picture), least), box_share * picture->scales.box), FINEST);
 }
 
-double marks_dot_radius(const Picture *picture) { return mark_size(picture, DOT, MIN_DOT, DOT_BOX); }
+double marks_dot_radius(const Picture *picture) { return mark_size(picture, MARK_DOT, MIN_DOT, DOT_BOX); }
 
-double marks_line_thickness(const Picture *picture) { return mark_size(picture, LINE, MIN_LINE, LINE_BOX); }
+double marks_line_thickness(const Picture *picture) { return mark_size(picture, MARK_LINE, MIN_LINE, LINE_BOX); }
 
 ArrowStyle marks_arrow_style(const Picture *picture, uint32_t color) {
     return (ArrowStyle){marks_line_thickness(picture), color, picture->theme->panel};
@@ -233,7 +209,7 @@ static void draw_trail(const Picture *picture, int panel, int run, Moment moment
     if (!moved_far(trajectory, moment, body, first)) return;
     uint32_t color = body == trajectory->bomb ? theme->bomb.fill : picture_body_colors(picture, run)->fill;
     for (int frame = first, end; frame <= moment.frame; frame = end) {
-        end = segment_end(trajectory, moment, body, frame, TOLERANCE / picture->camera.scale);
+        end = segment_end(trajectory, moment, body, frame, TRAIL_TOLERANCE / picture->camera.scale);
         Pose a = trail_pose(trajectory, moment, body, frame), b = trail_pose(trajectory, moment, body, end);
         double age = fmin(1, (moment.frame + moment_fraction(moment) - frame) / length);
         Point from = panel_point(picture, panel, a.x, a.y), to = panel_point(picture, panel, b.x, b.y);
@@ -305,10 +281,6 @@ static void draw_contacts(const Picture *picture, int panel, int run, Moment mom
     }
 }
 
-static const double POINTER = 0.055,
-                    POINTER_LINE = 0.0075; /* relative to shorter side of the panel: length, thickness */
-static const double MIN_POINTER = 14, MIN_POINTER_LINE = 2; /* pixels */
-
 /* At the edge of a panel, an arrow in the bomb's colour to a bomb that is outside. */
 static void draw_pointer(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
     const Trajectory *run = picture->runs[picture_run(picture, panel)];
@@ -318,8 +290,7 @@ static void draw_pointer(const Picture *picture, int panel, Moment moment, Drawi
     const Point at = panel_point(picture, panel, pose.x, pose.y);
     const Vec2 size = run->size[run->bomb];
     const double reach = 0.5 * picture->camera.scale * (double)fminf(size.x, size.y);
-    const double line = fmax(POINTER_LINE * panel_side(picture), MIN_POINTER_LINE),
-                 inset = 3 * line; /* half its head */
+    const double line = fmax(POINTER_LINE * panel_side(picture), MIN_POINTER_LINE), inset = POINTER_INSET * line;
     const Point edge = {fmin(fmax(at.x, rect->left + inset), rect->right - inset),
                         fmin(fmax(at.y, rect->top + inset), rect->bottom - inset)};
     const double x = at.x - edge.x, y = at.y - edge.y, away = sqrt(x * x + y * y);

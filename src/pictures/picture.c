@@ -14,21 +14,20 @@
 
 /* All sizes are relative to this, so that pictures of all resolutions look alike. For portrait pictures it follows
    the width, or the header would not fit. */
-static double base_unit(int width, int height) { return fmin(height, 0.75 * width); }
+static double base_unit(int width, int height) { return fmin(height, UNIT_WIDTH * width); }
 
 /* In smaller pictures even the smallest font would be too large. */
 static const double MIN_TEXT_UNIT = 300;
 static const double MIN_FONT = 10;          /* per em */
-static const double MIN_MARGIN = 4;         /* pixels */
 static const double TIMELINE_HEIGHT = 0.16; /* height of the curves / base unit */
 
 static void pick_fonts(Layout *layout, double unit) {
     if (unit < MIN_TEXT_UNIT) return;
-    layout->scene = font_pick(FONT_SEMIBOLD, fmax(0.0300 * unit, MIN_FONT));
-    layout->status = font_pick(FONT_REGULAR, fmax(0.0225 * unit, MIN_FONT));
-    layout->title = font_pick(FONT_SEMIBOLD, fmax(0.0225 * unit, MIN_FONT));
-    layout->method = font_pick(FONT_REGULAR, fmax(0.0205 * unit, MIN_FONT));
-    layout->axis = font_pick(FONT_REGULAR, fmax(0.0170 * unit, MIN_FONT));
+    layout->scene = font_pick(FONT_SEMIBOLD, fmax(SCENE_FONT * unit, MIN_FONT));
+    layout->status = font_pick(FONT_REGULAR, fmax(STATUS_FONT * unit, MIN_FONT));
+    layout->title = font_pick(FONT_SEMIBOLD, fmax(TITLE_FONT * unit, MIN_FONT));
+    layout->method = font_pick(FONT_REGULAR, fmax(METHOD_FONT * unit, MIN_FONT));
+    layout->axis = font_pick(FONT_REGULAR, fmax(AXIS_FONT * unit, MIN_FONT));
 }
 
 static int pixels(double value) { return (int)rint(value); }
@@ -74,9 +73,9 @@ static Rect place_rows(Layout *layout, Rect area, double unit, LayoutRows rows, 
     }
     if (rows.legend > 0 && text) {
         layout->legend_rows = rows.legend;
-        layout->legend_pitch = pixels(0.035 * unit);
-        layout->legend_baseline = bottom - pixels(0.012 * unit) - (rows.legend - 1) * layout->legend_pitch;
-        bottom -= pixels(0.046 * unit) + (rows.legend - 1) * layout->legend_pitch;
+        layout->legend_pitch = pixels(LEGEND_PITCH * unit);
+        layout->legend_baseline = bottom - pixels(LEGEND_DROP * unit) - (rows.legend - 1) * layout->legend_pitch;
+        bottom -= pixels(LEGEND_ROW * unit) + (rows.legend - 1) * layout->legend_pitch;
     }
     area.bottom = bottom - axis;
     return area;
@@ -86,27 +85,27 @@ Layout layout_make(int width, int height, int panels, int columns, LayoutRows ro
     Layout layout = {.width = width, .height = height};
     double unit = base_unit(width, height);
     bool text = unit >= MIN_TEXT_UNIT;
-    int margin = pixels(fmax(0.030 * unit, MIN_MARGIN));
+    int margin = pixels(fmax(PAGE_MARGIN * unit, MIN_MARGIN));
     pick_fonts(&layout, unit);
     layout.columns = columns;
     layout.rows = (panels + columns - 1) / columns;
     layout.left = margin;
     layout.right = width - margin;
-    layout.header_baseline = margin + pixels(0.026 * unit);
-    layout.title_rise = pixels(0.016 * unit);
-    layout.axis_drop = pixels(0.0275 * unit);
-    layout.tick = text ? pixels(0.006 * unit) : 0;
+    layout.header_baseline = margin + pixels(HEADER_RISE * unit);
+    layout.title_rise = pixels(TITLE_RISE * unit);
+    layout.axis_drop = pixels(AXIS_DROP * unit);
+    layout.tick = text ? pixels(AXIS_TICK * unit) : 0;
     layout.hairline = unit < 1500 ? 1 : pixels(unit / 1080);
     int gutter = text ? font_width(&layout.axis, "-50") + 2 * layout.tick : 0;
     layout.caption_lines = rows.caption;
-    layout.caption_pitch = text ? pixels(fmax(0.030 * unit, 1.2 * layout.title.pixels)) : 0;
-    int title = text ? pixels(0.058 * unit) : 0, captions = title + (rows.caption - 1) * layout.caption_pitch,
-        axis = text ? pixels(0.038 * unit) : 0;
+    layout.caption_pitch = text ? pixels(fmax(CAPTION_PITCH * unit, CAPTION_PITCH_EMS * layout.title.pixels)) : 0;
+    int title = text ? pixels(TITLE_ROW * unit) : 0, captions = title + (rows.caption - 1) * layout.caption_pitch,
+        axis = text ? pixels(AXIS_ROW * unit) : 0;
     layout.header_lines = rows.title;
     layout.header_pitch = pixels(0.036 * unit);
     int last_line = layout.header_baseline + (rows.title - 1) * layout.header_pitch;
-    int header = text ? last_line + pixels(0.006 * unit) : margin;
-    Rect area = {margin + gutter, header + captions, width - margin, height - pixels(0.016 * unit) - axis};
+    int header = text ? last_line + pixels(HEADER_GAP * unit) : margin;
+    Rect area = {margin + gutter, header + captions, width - margin, height - pixels(PAGE_FOOT * unit) - axis};
     if (!text) area.bottom = height - margin;
     layout.area = place_rows(&layout, area, unit, rows, title, axis);
     layout.gap = margin;

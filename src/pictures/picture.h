@@ -108,6 +108,10 @@ uint32_t theme_mix(uint32_t from, uint32_t to, double share);
    that it is readable in grey and with all common kinds of colour blindness. */
 uint32_t theme_ramp(const Theme *theme, double share);
 
+/* The colours between which it mixes, at equal distances. */
+enum { THEME_STOPS = 11 };
+extern const uint32_t theme_stops[THEME_STOPS];
+
 /* The key frames of a comparison: impact and first divergence. */
 
 /* m; smaller distances are invisible in a picture */
@@ -243,8 +247,6 @@ typedef struct ScaleMeasures {
 
 /* False with error set if out of memory. */
 bool scales_measure(const Trajectory *run, ScaleMeasures *measures, Error *error);
-
-enum { SCALE_FIRST_DECADE = -3 }; /* the colour scale begins at 1 mm */
 
 /* From the first run; `scale` in pixels per metre, `largest_distance` in m. Arrows are in proportion to the panel, but to
    its boxes where these are small, or they would cover them. False with error set if out of memory. */

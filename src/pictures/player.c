@@ -84,8 +84,7 @@ static bool find_all_marks(Player *player, Error *error) {
 }
 
 enum {
-    RAMP = 11, /* colours of the scale of distances */
-    EM = 40    /* pixels: large, as widths are whole pixels */
+    EM = 40 /* pixels: large, as widths are whole pixels */
 };
 
 static void put_color(JsonWriter *json, const char *key, uint32_t color) {
@@ -118,8 +117,12 @@ static void put_theme(JsonWriter *json, const char *key, const Theme *theme) {
     put_color(json, "event", theme->event);
     put_body_colors(json, "bomb", &theme->bomb);
     json_put_bool(json, "ghost_is_band", theme->ghost_is_band);
-    json_begin_array(json, "ramp", JSON_ONE_LINE);
-    for (int i = 0; i < RAMP; i++) put_color(json, NULL, theme_ramp(theme, i / (RAMP - 1.0)));
+    json_begin_object(json, "ramp", JSON_LINES);
+    json_begin_array(json, "stops", JSON_ONE_LINE);
+    for (int i = 0; i < THEME_STOPS; i++) put_color(json, NULL, theme_stops[i]);
+    json_end(json);
+    json_put_number(json, "near", theme->ramp_near);
+    json_put_number(json, "far", theme->ramp_far);
     json_end(json);
     json_end(json);
 }
@@ -261,6 +264,8 @@ static void put_data(FILE *file, const Player *player) {
     json_put_int(&json, "impact", player_stored(&player->frames, first_impact(&player->picture)));
     json_put_number(&json, "distance_ems", player_ems(FONT_REGULAR, "0.00 m"));
     json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out"));
+    json_put_number(&json, "visible", EVENTS_VISIBLE_DISTANCE);
+    json_put_number(&json, "ground", FRAMING_GROUND);
     put_left_out(&json, player);
     const CameraFrame framing = camera_frame(player->picture.runs, player->picture.count);
     camera_frame_put(&json, "framing", &framing);

@@ -132,18 +132,17 @@ uint32_t theme_mix(uint32_t from, uint32_t to, double share) {
     return mix_channel(from, to, 16, share) | mix_channel(from, to, 8, share) | mix_channel(from, to, 0, share);
 }
 
+/* Oklab: hue 104 to 295 degrees, chroma 0.135 or the most that sRGB can show, lightness fitted to CIE L*. */
+const uint32_t theme_stops[THEME_STOPS] = {0xFEF483, 0xC6E57E, 0x8AD482, 0x46C18C, 0x02A995, 0x0B8F95,
+                                           0x08778E, 0x005E89, 0x04438D, 0x272879, 0x2E085E};
+
 uint32_t theme_ramp(const Theme *theme, double share) {
-    /* Oklab: hue 104 to 295 degrees, chroma 0.135 or the most that sRGB can show, lightness fitted to CIE L*. */
-    static const uint32_t stops[] = {0xFEF483, 0xC6E57E, 0x8AD482, 0x46C18C, 0x02A995, 0x0B8F95,
-                                     0x08778E, 0x005E89, 0x04438D, 0x272879, 0x2E085E};
-    enum { LAST = sizeof stops / sizeof stops[0] - 1 };
+    enum { LAST = THEME_STOPS - 1 };
     double at = LAST * (theme->ramp_near + (theme->ramp_far - theme->ramp_near) * fmin(fmax(share, 0), 1));
     int below = at < LAST - 1 ? (int)at : LAST - 1;
-    return theme_mix(stops[below], stops[below + 1], at - below);
+    return theme_mix(theme_stops[below], theme_stops[below + 1], at - below);
 }
 
-static const double DECADE = 3;              /* ems, width of a decade on the colour scale */
-static const double DOT = 0.18, LINE = 0.11; /* ems: samples are at least this large, or they could not be made out */
 /* Position of the next entry. */
 typedef struct Row {
     const Picture *picture;
@@ -174,7 +173,7 @@ static void add_outline(Row *row) {
 
 /* One rectangle per pixel column. */
 static void add_decade(Row *row, int decade, int decades) {
-    int width = (int)rint(DECADE * row->font->pixels), top = row->baseline - row->font->pixels * 3 / 4;
+    int width = (int)rint(LEGEND_DECADE * row->font->pixels), top = row->baseline - row->font->pixels * 3 / 4;
     for (int x = 0; x < width; x++)
         drawing_add_rect(row->drawing, (Rect){row->x + x, top, row->x + x + 1, row->baseline},
                          theme_ramp(row->picture->theme, (decade + (x + 0.5) / width) / decades));
@@ -185,7 +184,7 @@ static void add_decade(Row *row, int decade, int decades) {
 static void add_colors(Row *row) {
     int decades = row->picture->scales.last_decade - SCALE_FIRST_DECADE;
     add_text(row, "distance  0.001 ");
-    double power = 1e-3;
+    double power = pow(10, SCALE_FIRST_DECADE);
     for (int i = 0; i < decades; i++) {
         char text[32];
         power *= 10;
@@ -199,14 +198,17 @@ static void add_colors(Row *row) {
 
 static void add_trail(Row *row) {
     const Picture *picture = row->picture;
+    char text[64];
     int width = row->font->pixels * 2;
-    for (int i = 0; i < 8; i++) {
-        Point from = {row->x + width * i / 8.0, row->middle}, to = {row->x + width * (i + 1) / 8.0, row->middle};
+    const double parts = LEGEND_TRAIL_PARTS;
+    for (int i = 0; i < LEGEND_TRAIL_PARTS; i++) {
+        Point from = {row->x + width * i / parts, row->middle}, to = {row->x + width * (i + 1) / parts, row->middle};
         stroke_line(row->drawing, from, to, marks_line_thickness(picture),
-                    theme_mix(picture->theme->page, picture->theme->ink_soft, (i + 2) / 9.0), &row->clip);
+                    theme_mix(picture->theme->page, picture->theme->ink_soft, (i + 2) / (parts + 1)), &row->clip);
     }
     row->x += width + row->font->pixels / 2;
-    add_text(row, "path of the last 2 s");
+    snprintf(text, sizeof text, "path of the last %g s", TRAIL_DURATION);
+    add_text(row, text);
     end_entry(row);
 }
 
@@ -224,7 +226,7 @@ static void add_approach(Row *row) {
 }
 
 static void add_dot(Row *row) {
-    double radius = fmax(marks_dot_radius(row->picture), DOT * row->font->pixels);
+    double radius = fmax(marks_dot_radius(row->picture), LEGEND_DOT * row->font->pixels);
     stroke_dot(row->drawing, (Point){row->x + radius, row->middle}, radius, row->picture->theme->panel,
                row->picture->theme->impulse, &row->clip);
     row->x += (int)ceil(2 * radius) + row->font->pixels / 2;
@@ -235,7 +237,7 @@ static void add_dot(Row *row) {
 static void add_arrow(Row *row, double pixels, uint32_t color, double value, const char *unit) {
     ArrowStyle style = marks_arrow_style(row->picture, color);
     char text[64];
-    style.thickness = fmax(style.thickness, LINE * row->font->pixels);
+    style.thickness = fmax(style.thickness, LEGEND_LINE * row->font->pixels);
     style.halo = row->picture->theme->page;
     stroke_arrow(row->drawing, (Point){row->x + 1, row->middle}, (Point){row->x + 1 + pixels, row->middle}, false,
                  &style, &row->clip);
@@ -266,7 +268,7 @@ static void begin_row(Row *row) {
     const Layout *layout = &row->picture->layout;
     row->x = layout->area.left;
     row->baseline = layout->legend_baseline + row->rows * layout->legend_pitch;
-    row->middle = row->baseline - row->font->pixels * 0.36;
+    row->middle = row->baseline - row->font->pixels * LEGEND_MIDDLE;
     row->rows++;
 }
 

@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"
+#include "pixels/strokes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +13,6 @@
 static const double FIXED = 65536.0;        /* shader units per pixel */
 static const double SNAP = 256.0;           /* positions and sizes are multiples of 1/256 pixel */
 static const double MAX_HALF_SIZE = 8192.0; /* pixels; larger boxes are reduced, or the shader's integers overflow */
-static const double MAX_COORDINATE = 1e9;   /* pixels; no visible body is farther away */
 
 void drawing_clear(Drawing *drawing) {
     drawing->rect_count = drawing->shape_count = drawing->glyph_count = drawing->static_shapes = 0;
@@ -168,15 +168,6 @@ void drawing_add_rows(Drawing *drawing, const Drawing *from, int top, int bottom
     for (size_t i = 0; i < from->glyph_count; i++) add_glyph_rows(drawing, &from->glyphs[i], top, bottom);
 }
 
-static const double HEAD = 4.2;      /* length of an arrow's head / thickness */
-static const double MIN_HEAD = 3;    /* the same for short arrows */
-static const double MIN_LENGTH = 2;  /* of an arrow / thickness */
-static const double HALO = 1.0;      /* pixels on each side; at least a third of the thickness */
-static const double NO_HALO = 1.0;   /* pixels; lines up to this thickness have no halo, which would be all to see */
-static const double HALO_RISE = 2.5; /* of the halo, pixels per pixel of thickness from there */
-static const double HEAD_SPACING = 0.85; /* between two heads / their length */
-static const double HEAD_SINE = 0.5;     /* of half the angle between the head's sides, 30 degrees */
-static const double HEAD_COSINE = 0.8660254037844386;
 static const double TILE = 16;        /* pixels, side of a tile of a slanted line */
 static const double MAX_TILED = 8000; /* pixels; longer shapes are reduced per tile, and their tiles would not
                                              match */
@@ -266,7 +257,7 @@ static double halo_width(double thickness) {
 void stroke_arrow(Drawing *drawing, Point from, Point to, bool truncated, const ArrowStyle *style, const Rect *clip) {
     double dx = to.x - from.x, dy = to.y - from.y, length = sqrt(dx * dx + dy * dy), t = style->thickness;
     if (!(length >= MIN_LENGTH * t) || !isfinite(length)) return; /* nothing but head */
-    double head = fmin(HEAD * t, fmax(MIN_HEAD * t, 0.6 * length));
+    double head = fmin(HEAD * t, fmax(MIN_HEAD * t, HEAD_SHARE * length));
     if (halo_width(t) > 0) draw_arrow(drawing, from, to, head, truncated, t + 2 * halo_width(t), style->halo, clip);
     draw_arrow(drawing, from, to, head, truncated, t, style->color, clip);
 }

@@ -1,15 +1,18 @@
-/* Boxes, filled or as outlines: src/pictures/parts.c. */
+/* Boxes, filled or as outlines: src/pictures/parts.c. Its numbers in capitals are those of src/pictures/style.h. */
 
-const CORNER = 0.11, OUTLINE = 0.045, BAND = 0.13, TARGET = 0.3; /* of a box's shorter side */
-const FADE = 0.55;      /* share of the panel's colour in boxes behind outlines */
-const OFF_SCREEN = 1e9; /* pixels; no visible body is farther away */
+/* Of colours "#rrggbb", in whole numbers as in C. */
+const channels = colour => [1, 3, 5].map(at => parseInt(colour.slice(at, at + 2), 16));
 
-const mix = (from, to, share) => `color-mix(in srgb, ${to} ${100 * share}%, ${from})`;
+function mix(from, to, share) {
+  const a = channels(from), b = channels(to);
+  return "#" + a.map((low, i) => rint(low + (b[i] - low) * share).toString(16).padStart(2, "0")).join("");
+}
 
 /* A colour of the scale of distances. */
 function ramp(share) {
-  const at = 10 * share, below = min(floor(at), 9);
-  return mix(look.ramp[below], look.ramp[below + 1], at - below);
+  const {stops, near, far} = look.ramp, end = stops.length - 1, at = end * (near + (far - near) * share);
+  const below = min(floor(at), end - 1);
+  return mix(stops[below], stops[below + 1], at - below);
 }
 
 const run_colours = run => runs[run].colours[theme_name()];
@@ -23,8 +26,8 @@ function body_colours(run, body) {
   if (by_distance(run)) {
     const share = distance_share(distance(run, now, body)), {line} = run_colours(run);
     if (isNaN(share)) return {fill: look.ground, line, band: look.ground_line};
-    const fill = ramp(share), light = share < 0.46 === (theme_name() === "light"); /* on a dark page, the far are light */
-    return {fill, line, band: light ? mix(fill, "#000", 0.6) : mix(fill, "#fff", 0.7)};
+    const fill = ramp(share), light = channels(fill)[1] > LIGHT_GREEN;
+    return {fill, line, band: light ? mix(fill, "#000000", BAND_DARKER) : mix(fill, "#ffffff", BAND_LIGHTER)};
   }
   if (!lay.overlay || here.outlines.length === 0) return own;
   return {fill: mix(own.fill, look.panel, FADE), line: own.line, band: mix(own.band, look.panel, FADE)};
@@ -36,16 +39,19 @@ const place = ({x, y}) => ({x: here.left + eye.left + eye.scale * x, y: here.top
 function with_body(run, body, use) {
   const at = pose(run, now, body), {x, y} = place(at), [w, h] = runs[run].size[body];
   const c = cos(at.angle) * base.a, s = sin(at.angle) * base.a;
-  if (!(hypot(x, y) < OFF_SCREEN)) return;
+  if (!(hypot(x, y) < MAX_COORDINATE)) return;
   pen.setTransform(c, -s, s, c, base.a * x + base.e, base.d * y + base.f);
   use(eye.scale * w, eye.scale * h);
   pen.setTransform(base);
 }
 
-const radius_of = (w, h) => min(CORNER * min(w, h), 0.009 * lay.side);
+const radius_of = (w, h) => min(CORNER * min(w, h), MAX_CORNER * lay.side);
+
+const outline_of = side => side < MIN_OUTLINED_SIDE ? 0
+  : min(max(OUTLINE * side, MIN_OUTLINE), max(MAX_OUTLINE * lay.side, MIN_OUTLINE));
 
 function fill_box(w, h, colours, radius, banded) {
-  const side = min(w, h), line = side < 5 ? 0 : max(min(OUTLINE * side, 0.0026 * lay.side), 1);
+  const side = min(w, h), line = outline_of(side);
   const paint = (colour, inset, height) => {
     const r = max(0, radius - inset), at = [inset - w / 2, inset - h / 2, w - 2 * inset, height];
     pen.fillStyle = colour;
@@ -77,8 +83,10 @@ function draw_bodies(still) {
     fill_box(w, h, colours, still ? 0 : radius_of(w, h), !still && body !== bomb);
     if (body !== bomb) return;
     pen.fillStyle = colours.band; /* a dot in a ring, and a bar from the ring towards the local top */
-    pen.fillRect(-r / 7, -1.5 * r, 2 * r / 7, 0.6 * r);
-    ["band", "fill", "band"].forEach((part, i) => draw_discs((3 - i) / 3 * r, colours[part], [{x: 0, y: 0}]));
+    const half = TARGET_BAR_HEIGHT * r;
+    pen.fillRect(-r / TARGET_BAR, -TARGET_BAR_RISE * r - half, 2 * r / TARGET_BAR, 2 * half);
+    [r, r - r / TARGET_THIRD, r / TARGET_THIRD].forEach((radius, i) =>
+      draw_discs(radius, colours[["band", "fill", "band"][i]], [{x: 0, y: 0}]));
   });
   for (let body = 0; body < bodies; body++) if (fixed[body] === still && body !== bomb) draw(body);
   if (!still && bomb >= 0) draw(bomb);
@@ -88,7 +96,7 @@ function draw_bodies(still) {
    colour; the others have the colour of their run. */
 function draw_outlines(run) {
   const {bodies, bomb, fixed} = runs[run], above = lay.overlay ? runs.length - 1 - run : 0;
-  const thickness = max(0.0034 * lay.side, 1.6) * (1 + above * min(0.7, 1.2 / runs.length));
+  const thickness = max(GHOST_OUTLINE * lay.side, MIN_GHOST_OUTLINE) * (1 + above * min(NESTED_STEP, NESTED_TOTAL / runs.length));
   for (let body = 0; body < bodies; body++)
     if (!fixed[body]) with_body(run, body, (w, h) => stroke_box(w, h, min(thickness, w / 2, h / 2),
       by_distance(run) ? body_colours(run, body).fill
@@ -106,7 +114,7 @@ function draw_pinned() {
 /* A small box in the run's colours on the baseline of text. */
 function draw_swatch(run, hollow, left, baseline, side) {
   pen.translate(left + side / 2, baseline - side / 2);
-  if (hollow) stroke_box(side, side, max(2, side / 8), outline_colour(run));
+  if (hollow) stroke_box(side, side, max(MIN_SWATCH_OUTLINE, side / SWATCH_OUTLINE), outline_colour(run));
   else fill_box(side, side, run_colours(run), radius_of(side, side), true);
   pen.setTransform(base);
 }

@@ -3,7 +3,7 @@
 
 /* Whole pixels a metre keep grid lines crisp. */
 function look_at(x, y, w, h, {width, height}) {
-  const most = min(width / w, height / h), parts = most >= 12 ? 1 : 64;
+  const most = min(width / w, height / h), parts = most >= WHOLE_SCALE ? 1 : SCALE_PARTS;
   const scale = most >= 1 ? floor(most * parts) / parts : most;
   return {scale, left: rint(width / 2 - scale * x), top: rint(height / 2 + scale * y)};
 }
@@ -16,7 +16,7 @@ function fit_camera(grid) {
   const centred = look_at(left + w / 2, bottom + h / 2, w, h, grid), {scale} = centred;
   const half = grid.width / scale / 2, reach = max(half, (room_right - room_left) / 2);
   const falls = min(max(middle, room_right - reach), room_left + reach), x = min(max(falls, right - half), left + half);
-  const whole = grid.height / scale, below = min((whole - h) / 2, 0.05 * whole);
+  const whole = grid.height / scale, below = min((whole - h) / 2, data.ground * whole);
   return set ? centred : look_at(x, bottom - below + whole / 2, w, h, grid);
 }
 

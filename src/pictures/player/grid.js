@@ -9,13 +9,13 @@ function grid_lines(origin, length, sign, room) {
   const {axis, grid: {height}} = lay, lines = [];
   const step = n => cycle([0.1, 0.2, 0.5], n), strong = n => [5, 5, 2][n % 3];
   let n = 3, k = 0;
-  while (n < 60 && step(n) * eye.scale < max(0.01 * height, 6)) n++;
-  while (n <= 3 && n > 0 && step(n) * strong(n) * eye.scale > 0.6 * height) n--;
+  while (n < 60 && step(n) * eye.scale < max(MIN_SPACING * height, MIN_PIXELS)) n++;
+  while (n <= 3 && n > 0 && step(n) * strong(n) * eye.scale > MAX_SPACING * height) n--;
   const spacing = step(n) * eye.scale, low = sign > 0 ? -origin : origin - length + 1;
   for (let i = ceil(low / spacing); i * spacing <= low + length - 1; i++)
     lines.push({at: rint(origin + sign * i * spacing), i, strong: i % strong(n) === 0,
       text: String(Number((i * step(n)).toPrecision(6))).replace("-", "\u2212")});
-  const few = lines.filter(line => line.strong), tick = few.length < 3 && spacing > 2.5 * axis.em ? 1 : strong(n);
+  const few = lines.filter(line => line.strong), tick = few.length < MIN_TICS && spacing > NUMBER_SPACING * axis.em ? 1 : strong(n);
   room ??= max(0, ...few.map(line => text_width(axis, line.text))) + (axis.em >> 1);
   while (k < 30 && cycle([1, 2, 5], k) * tick * spacing < room) k++;
   const number = cycle([1, 2, 5], k) * tick;

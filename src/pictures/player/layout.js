@@ -28,22 +28,22 @@ function fitting(font, text, room) {
 }
 
 function measures(width, height, legend_rows, lines) {
-  const unit = min(height, 0.75 * width), of = share => rint(share * max(unit, LEAST));
+  const unit = min(height, UNIT_WIDTH * width), of = share => rint(share * max(unit, LEAST));
   const font = (weight, share) => { /* the sizes that `render` has: 12, 13 .. 16, 18 .. 32, 36 .. */
     const size = max(share * unit, 12), step = size < 17 ? 1 : size < 34 ? 2 : 4, em = floor(size / step) * step;
     return {em, css: `${weight} ${em}px Inter, system-ui, sans-serif`};
   };
-  const margin = max(rint(0.03 * unit), 4), header = margin + of(0.026), end = height - rint(0.016 * unit);
-  const title = font(600, 0.0225), line = max(of(0.03), rint(1.2 * title.em));
-  const title_row = of(0.058) + (lines - 1) * line, axis_row = of(0.038), tick = of(0.006), axis = font(400, 0.017);
-  const pitch = of(0.035), more = (legend_rows - 1) * pitch;
+  const margin = rint(max(PAGE_MARGIN * unit, MIN_MARGIN)), header = margin + of(HEADER_RISE), end = height - rint(PAGE_FOOT * unit);
+  const title = font(600, TITLE_FONT), line = max(of(CAPTION_PITCH), rint(CAPTION_PITCH_EMS * title.em));
+  const title_row = of(TITLE_ROW) + (lines - 1) * line, axis_row = of(AXIS_ROW), tick = of(AXIS_TICK), axis = font(400, AXIS_FONT);
+  const pitch = of(LEGEND_PITCH), more = (legend_rows - 1) * pitch;
   return {
-    width, height, margin, header, axis, tick, pitch, rise: of(0.016), line, drop: of(0.0275),
+    width, height, margin, header, axis, tick, pitch, rise: of(TITLE_RISE), line, drop: of(AXIS_DROP),
     row_gap: title_row + axis_row,
     overlay: view.compare === "overlay", difference: view.compare === "difference",
-    scene: font(600, 0.03), status: font(400, 0.0225), title, method: font(400, 0.0205),
-    left: margin + ceil(NUMBER_EMS * axis.em) + 2 * tick, right: width - margin, top: header + of(0.006) + title_row,
-    bottom: end - axis_row - (legend_rows > 0 ? of(0.046) + more : 0), legend: end - of(0.012) - more,
+    scene: font(600, SCENE_FONT), status: font(400, STATUS_FONT), title, method: font(400, METHOD_FONT),
+    left: margin + ceil(NUMBER_EMS * axis.em) + 2 * tick, right: width - margin, top: header + of(HEADER_GAP) + title_row,
+    bottom: end - axis_row - (legend_rows > 0 ? of(LEGEND_ROW) + more : 0), legend: end - of(LEGEND_DROP) - more,
   };
 }
 
@@ -70,7 +70,7 @@ function choose_grid(count) {
   const wide = max(...runs.map((_, run) => caption_width(run)));
   let best = usual, most = scale_in(usual);
   for (let columns = 1; columns <= count; columns++) {
-    const grid = grid_of(count, columns), worth = scale_in(grid) / (grid.width >= wide ? 1.05 : 1.5);
+    const grid = grid_of(count, columns), worth = scale_in(grid) / (grid.width >= wide ? GAIN : GAIN_WITH_CUT_NAMES);
     if (grid.rows * columns - count <= (count > 3) && worth > most) [most, best] = [worth, grid];
   }
   return best;
@@ -80,9 +80,9 @@ function choose_grid(count) {
 function shrink(grid, needs) {
   const {left, top, columns, rows} = grid, {scale} = fit_camera(grid), {em} = lay.title;
   const side = (whole, needed, share, ems) =>
-    needed >= share * whole ? whole : min(whole, ceil(max(needed / 0.65, ems * em)));
-  const width = lay.overlay ? grid.width : side(grid.width, scale * needs.x, 0.2, 22);
-  const height = side(grid.height, scale * needs.y, 0.4, 5);
+    needed >= share * whole ? whole : min(whole, ceil(max(needed / FULL_SHARE, ems * em)));
+  const width = lay.overlay ? grid.width : side(grid.width, scale * needs.x, LEAST_SHARE_X, LEAST_PANEL_WIDTH);
+  const height = side(grid.height, scale * needs.y, LEAST_SHARE_Y, LEAST_PANEL_HEIGHT);
   return {columns, rows, width, height, left: left + trunc(columns * (grid.width - width) / 2),
     top: top + trunc(rows * (grid.height - height) / 2)};
 }

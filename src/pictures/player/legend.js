@@ -3,17 +3,17 @@
 
 function entries() {
   const {overlay, difference, axis} = lay, {em} = axis, {line, decades, exceeded} = sizes, square = swatch_side(axis);
-  const found = [], dot = max(sizes.dot, 0.18 * em);
+  const found = [], dot = max(sizes.dot, LEGEND_DOT * em);
   const add = (width, draw, text) => found.push([{width: ceil(width), draw}, {width: em >> 1}, text]);
   const arrow = (what, unit) => {
     const {legend, per} = sizes[what], width = legend * per;
-    add(width, (x, y) => draw_arrow({x: x + 1, y}, {x: x + 1 + width, y}, false, max(line, 0.11 * em), look[what],
+    add(width, (x, y) => draw_arrow({x: x + 1, y}, {x: x + 1 + width, y}, false, max(line, LEGEND_LINE * em), look[what],
       look.page), `${legend} ${unit}`);
   };
   if (difference || (shows("ghosts") && !overlay))
     add(square, (x, y, baseline) => draw_swatch(0, true, x, baseline, square), names[0]);
   if (difference || shows("distance")) { /* a number stands between the colours of its two decades */
-    const scale = ["distance  0.001 "], width = min(3 * em, lay.width >> 4);
+    const scale = ["distance  0.001 "], width = min(LEGEND_DECADE * em, lay.width >> 4);
     for (let i = 0; i < decades; i++)
       scale.push({width, draw: (x, y, baseline) => {
         for (let k = 0; k < width; k++) {
@@ -24,8 +24,12 @@ function entries() {
     found.push(scale);
   }
   if (shows("trails"))
-    add(2 * em, (x, y) => draw_lines(line, look.ink_soft, [[{x, y}, {x: x + 2 * em, y}]]),
-      `path of the last ${TRAIL} s`);
+    add(2 * em, (x, y) => {
+      for (let i = 0, n = LEGEND_TRAIL_PARTS; i < n; i++)
+        draw_lines(line, mix(look.page, look.ink_soft, (i + 2) / (n + 1)),
+          [[{x: x + 2 * em * i / n, y}, {x: x + 2 * em * (i + 1) / n, y}]]);
+    },
+      `path of the last ${TRAIL_DURATION} s`);
   if (shows("contacts")) add(2 * dot, (x, y) => draw_dots(dot, [{x: x + dot, y}]), "contact");
   if (shows("impulses")) arrow("impulse", "N s");
   if (shows("velocities")) arrow("velocity", "m/s");
@@ -43,7 +47,7 @@ function place_entries(drawing) {
     for (const part of entry) {
       const baseline = legend + (rows - 1) * pitch;
       if (drawing && !part.width) write(axis, part, x, baseline);
-      else if (drawing) part.draw?.(x, baseline - axis.em * 0.36, baseline);
+      else if (drawing) part.draw?.(x, baseline - axis.em * LEGEND_MIDDLE, baseline);
       x += width(part);
     }
     x += 2 * axis.em;

@@ -108,7 +108,7 @@ function compare_run(run) {
     for (let body = 0, at = frame * run.bodies; body < run.bodies; body++, at++) {
       const metres = distance(run.index, frame, body);
       if (!(metres <= most) && !Number.isNaN(metres)) most = metres;
-      if (metres > 1e-3) run.apart ??= {frame, body};
+      if (metres > data.visible) run.apart ??= {frame, body};
       if (!run.differs && COMPONENTS.some(name => run.bits[name][at] !== runs[0].bits[name][at])) run.differs = {frame, body};
     }
     run.distances[frame] = most;

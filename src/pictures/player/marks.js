@@ -1,34 +1,38 @@
 /* Trails below the bodies, contacts and arrows above: src/pictures/parts.c, panel.c and src/pixels/drawing.c. */
 
-const TRAIL = 2.0, MIN_TRAIL = 0.5; /* s; m: a body that moved less has none */
-const TRAIL_EVERY = 2, TRAIL_POINTS = 4, MOST_TRAIL = 600; /* frames between points; points of a segment; frames */
-const OLDEST = 0.15;    /* opacity of a trail's oldest end */
-const MIN_SPEED = 0.05; /* m/s: slower bodies have no arrow */
-
 /* The largest 1, 2 or 5 times a power of ten that is at most `most`. */
 function round_number(most) {
   const power = 10 ** floor(log10(most) + 1e-9), digit = [5, 2, 1].find(each => each * power <= most) ?? 1;
   return Number((digit * power).toPrecision(1));
 }
 
+/* Of the scale of distances, from 1 mm to 1 m or, if some are larger, on. */
+function decades_to(largest) {
+  let end = 0;
+  while (10 ** end < largest && end < SCALE_LAST_DECADE) end++;
+  return end - SCALE_FIRST_DECADE;
+}
+
 /* Pixels of marks, and per unit of arrows. They are in proportion to the panel, but to its boxes where these are small, or they
    would cover them. */
 function mark_sizes(scale) {
-  const {impulse, speed, largest} = data.scales, box = scale * data.scales.box, decades = largest > 1 ? 4 : 3;
-  const size = (share, least, boxes) => max(min(max(share * lay.side, least), boxes * box), 0.6);
+  const {impulse, speed, largest} = data.scales, box = scale * data.scales.box, decades = decades_to(largest);
+  const size = (share, least, boxes) => max(min(max(share * lay.side, least), boxes * box), FINEST);
   const arrow = (share, boxes) => min(share * lay.side, boxes * box);
   const unit = (value, pixels) => {
     const per = value > 1e-9 ? pixels / value : pixels;
-    return {per, legend: round_number(arrow(0.07, 3.5) / per)};
+    return {per, legend: round_number(arrow(LEGEND_ARROW, LEGEND_ARROW_BOXES) / per)};
   };
   return {
-    impulse: unit(impulse, arrow(0.1, 1.2)), velocity: unit(speed, arrow(0.2, 3)), longest: arrow(0.28, 4),
-    dot: size(0.0052, 2.2, 0.13), line: size(0.0034, 1.4, 0.085), decades, exceeded: largest > 10 ** (decades - 3),
+    impulse: unit(impulse, arrow(COMMON_ARROW, COMMON_ARROW_BOXES)),
+    velocity: unit(speed, arrow(FASTEST_ARROW, FASTEST_ARROW_BOXES)), longest: arrow(MAX_ARROW, MAX_ARROW_BOXES),
+    dot: size(MARK_DOT, MIN_DOT, DOT_BOX), line: size(MARK_LINE, MIN_LINE, LINE_BOX), decades,
+    exceeded: largest > 10 ** (decades + SCALE_FIRST_DECADE),
   };
 }
 
 /* Position of a distance on the colour scale, from 1 mm. */
-const distance_share = metres => max(0, min(1, (log10(metres) + 3) / sizes.decades));
+const distance_share = metres => max(0, min(1, (log10(metres) - SCALE_FIRST_DECADE) / sizes.decades));
 
 function draw_lines(thickness, colour, all) {
   pen.lineWidth = thickness;
@@ -54,19 +58,35 @@ function draw_dots(radius, points) {
   draw_discs(max(0, radius - max(1, radius / 3)), look.panel, points);
 }
 
+/* Where a segment of a trail that begins at a frame ends: `at` tells where the body is. Fewer segments are faster to draw. */
+function segment_end(at, first, last) {
+  let end = first + TRAIL_EVERY;
+  for (; end < last && end + TRAIL_EVERY <= first + SEGMENT_FRAMES; end += TRAIL_EVERY) {
+    const a = at(first), b = at(end + TRAIL_EVERY), length = hypot(b.x - a.x, b.y - a.y);
+    for (let frame = first + TRAIL_EVERY; frame < end + TRAIL_EVERY; frame += TRAIL_EVERY) {
+      const p = at(frame), off = abs((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x));
+      if (!((length > 0 ? off / length : hypot(a.x - p.x, a.y - p.y)) < TRAIL_TOLERANCE / eye.scale)) return end;
+    }
+  }
+  return end;
+}
+
 /* Segments of equal age have one colour, so they are drawn at once. */
 function draw_trails(run) {
-  const {frames, bomb, bodies, fixed, x, y} = runs[run], last = min(now, frames - 1), groups = {};
-  const length = min(rint(TRAIL / data.dt), MOST_TRAIL), start = max(0, floor(last) - length);
+  const {frames, bomb, bodies, fixed, x, y} = runs[run], here_now = min(now, frames - 1), last = floor(here_now), groups = {};
+  const length = min(rint(TRAIL_DURATION / data.dt), TRAIL_FRAMES_MAX), oldest = max(0, last - length);
   for (let body = 0; body < bodies; body++) {
-    const end = pose(run, last, body), path = [], colour = body === bomb ? look.bomb.fill : run_colours(run).fill;
-    for (let frame = start + start % TRAIL_EVERY; frame < last && !fixed[body]; frame += TRAIL_EVERY)
-      path.push({x: x[frame * bodies + body], y: y[frame * bodies + body], age: min(1, (last - frame) / length)});
-    if (!path.some(point => hypot(point.x - end.x, point.y - end.y) > MIN_TRAIL)) continue;
-    const points = [...path, end].map(place);
-    for (let i = 0; i < path.length; i += TRAIL_POINTS) {
-      const shade = mix(look.panel, colour, 1 - (1 - OLDEST) * path[i].age);
-      (groups[shade] ??= []).push(points.slice(i, i + TRAIL_POINTS + 1));
+    if (fixed[body] || !exists(run, last, body)) continue;
+    const end = pose(run, here_now, body), colour = body === bomb ? look.bomb.fill : run_colours(run).fill;
+    const at = frame => frame >= last ? end : {x: x[frame * bodies + body], y: y[frame * bodies + body]};
+    let first = oldest + oldest % TRAIL_EVERY, far = false;
+    while (first < last && isNaN(at(first).x)) first += TRAIL_EVERY;
+    for (let frame = first; frame < last && !far; frame += TRAIL_EVERY)
+      far = hypot(at(frame).x - end.x, at(frame).y - end.y) > MIN_TRAIL;
+    for (let frame = first, next; far && frame <= last; frame = next) {
+      next = segment_end(at, frame, last);
+      const age = min(1, (here_now - frame) / length);
+      (groups[mix(look.panel, colour, 1 - (1 - OLDEST_OPACITY) * age)] ??= []).push([at(frame), at(next)].map(place));
     }
   }
   for (const shade in groups) draw_lines(sizes.line, shade, groups[shade]);
@@ -74,13 +94,13 @@ function draw_trails(run) {
 
 /* With an open head, two if it is cut; the halo separates it from what is below. */
 function draw_arrow(from, to, cut, t, colour, halo) {
-  const length = hypot(to.x - from.x, to.y - from.y), head = min(4.2 * t, max(3 * t, 0.6 * length)) / length;
-  if (!(length >= 2 * t && length < 1e9)) return;
+  const length = hypot(to.x - from.x, to.y - from.y), head = min(HEAD * t, max(MIN_HEAD * t, HEAD_SHARE * length)) / length;
+  if (!(length >= MIN_LENGTH * t && length < MAX_COORDINATE)) return;
   const c = (to.x - from.x) * head, s = (to.y - from.y) * head, lines = [[from, to]];
-  const side = (back, turn) => ({x: to.x - back * c - turn * s, y: to.y - back * s + turn * c}), along = 0.75 ** 0.5;
-  for (const back of cut ? [0, 0.85] : [0])
-    lines.push([side(back + along, 0.5), side(back, 0), side(back + along, -0.5)]);
-  const width = max(min(1, 2.5 * (t - 1)), t > 3 ? t / 3 : 0);
+  const side = (back, turn) => ({x: to.x - back * c - turn * s, y: to.y - back * s + turn * c});
+  for (const back of cut ? [0, HEAD_SPACING] : [0])
+    lines.push([side(back + HEAD_COSINE, HEAD_SINE), side(back, 0), side(back + HEAD_COSINE, -HEAD_SINE)]);
+  const width = max(min(HALO, HALO_RISE * (t - NO_HALO)), t > 3 * HALO ? t / 3 : 0);
   if (width > 0) draw_lines(t + 2 * width, halo, lines);
   draw_lines(t, colour, lines);
 }
@@ -97,10 +117,10 @@ function draw_pointer(run) {
   runs[run].arrow = null;
   if (bomb < 0 || !exists(run, now, bomb)) return;
   const at = place(pose(run, now, bomb)), {left, top, width, height} = here;
-  const line = max(0.0075 * lay.side, 2), inset = 3 * line, inside = (at, low, side) =>
+  const line = max(POINTER_LINE * lay.side, MIN_POINTER_LINE), inset = POINTER_INSET * line, inside = (at, low, side) =>
     min(max(at, low + inset), low + side - inset);
   const edge = {x: inside(at.x, left, width), y: inside(at.y, top, height)};
-  const x = at.x - edge.x, y = at.y - edge.y, away = hypot(x, y), tail = max(0.055 * lay.side, 14) / away;
+  const x = at.x - edge.x, y = at.y - edge.y, away = hypot(x, y), tail = max(POINTER * lay.side, MIN_POINTER) / away;
   if (!(away > eye.scale * min(...size[bomb]) / 2 + inset)) return;
   draw_arrow({x: edge.x - tail * x, y: edge.y - tail * y}, edge, false, line, look.bomb.fill, look.panel);
   runs[run].arrow = edge;

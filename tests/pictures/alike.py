@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page's canvas beside render's frame of the same moment. Two rasterisers smooth an edge in two ways, so a pixel counts where
+no edge is near: where all of render's pixels within REACH have its colour. There the page must have this colour, within 1 of 255:
+a browser has 255 shades of an edge, the shader 51, so that an edge can reach a pixel in one of them only. What is near an edge is
+held to a mean (pictures.difference)."""
+import json
+import os
+
+import numpy
+
+import pictures
+from checks import Checks
+from chromium import Chromium
+
+SIZE = 1280, 720
+REACH = 2             # pixels
+MOST_INSIDE = 1       # of 255
+LEAST_INTERIOR = 0.5  # of a panel's pixels
+MOST_OF_PANEL = 1.5   # of 255, the mean difference of a panel
+RUNS = "golden/trajectories/{}-engine.npz", "golden/trajectories/{}-pair-net.npz"
+ALL = "ghosts,distance,trails,contacts,impulses,velocities"
+# scene, frame, compare, show, theme, view
+CASES = [
+    ("stack", 40, "split", "", "light", ""),
+    ("stack", 40, "split", "", "dark", ""),
+    ("stack", 40, "split", "ghosts", "light", ""),
+    ("stack", 40, "split", "trails", "light", ""),
+    ("stack", 40, "split", ALL, "dark", ""),
+    ("stack", 70, "overlay", "", "light", ""),
+    ("stack", 70, "overlay", "trails", "dark", "0,2,6,5"),
+    ("stack", 30, "difference", "", "light", "0,3,4,3"),
+    ("pyramid", 60, "difference", "velocities", "dark", ""),
+    ("pyramid", 60, "split", "contacts,impulses", "light", "0,1.5,6,4"),
+    ("pyramid_settled", 200, "split", "distance", "light", ""),
+    ("pyramid_settled", 180, "split", "distance", "dark", "0,3,12,8"),
+]
+
+
+def interior(picture):
+    """Pixels whose neighbours within REACH have their colour: rows of equal pixels that are equal to the rows beside them."""
+    red, green, blue = (picture[..., i].astype("uint32") for i in range(3))
+    colours, (height, width) = red << 16 | green << 8 | blue, picture.shape[:2]
+    inner, rows = slice(REACH, width - REACH), range(-REACH, REACH + 1)
+    level = numpy.logical_and.reduce([colours[:, REACH + x:width - REACH + x] == colours[:, inner] for x in rows if x != 0])
+    flat = numpy.zeros((height, width), bool)
+    of = [slice(REACH + y, height - REACH + y) for y in rows]
+    flat[REACH:height - REACH, inner] = numpy.logical_and.reduce(
+        [level[each] & (colours[each, inner] == colours[of[REACH], inner]) for each in of])
+    return flat
+
+
+def differ_inside(wanted, found, flat):
+    return flat & (abs(wanted - found) > MOST_INSIDE).any(axis=2)
+
+
+def describe(rendered, drawn, wrong):
+    """The pixel in the middle of what is wrong, with its colours."""
+    places = numpy.argwhere(wrong)
+    y, x = places[len(places) // 2]
+    colours = ["#" + "".join(f"{int(part):02x}" for part in picture[y, x]) for picture in (rendered, drawn)]
+    return f"{len(places)} pixels, one at ({x}, {y}): {colours[1]}, not {colours[0]}"
+
+
+def compare(checks, what, rendered, drawn, panels):
+    """Panel by panel. The colours that were found inside."""
+    colours = set()
+    for i, (x, y, width, height) in enumerate(panels):
+        wanted, found = (picture[y:y + height, x:x + width] for picture in (rendered, drawn))
+        flat = interior(wanted)
+        wrong = differ_inside(wanted, found, flat)
+        checks.true(f"{what}, panel {i}: interior pixels", flat.mean() > LEAST_INTERIOR, flat.mean())
+        checks.true(f"{what}, panel {i}: pixels inside that differ", not wrong.any(),
+                    wrong.any() and describe(wanted, found, wrong))
+        checks.near(f"{what}, panel {i}: mean difference", pictures.difference(wanted, found, 0, 0, width, height), 0,
+                    MOST_OF_PANEL)
+        colours |= set(map(tuple, wanted[flat].astype(int)))
+    return colours
+
+
+def options_of(compare_by, show, theme, view, camera):
+    given = ("compare", compare_by), ("show", show), ("theme", theme), (camera, view)
+    return [(key, value) for key, value in given if value]
+
+
+def check(checks, browser, files, frame, compare_by, show, theme, view, size=SIZE):
+    """One moment in both. Returns what was compared, and the page."""
+    what = f"{os.path.basename(files[0])} frame {frame} {compare_by} {show} {theme} {view}"
+    render = [word for key, value in options_of(compare_by, show, theme, view, "camera") for word in ("--" + key, value)]
+    checks.twinbox("render", *files, "-o", "drawn", "--size", "x".join(map(str, size)), "--frames", frame, *render)
+    with open("drawn/manifest.json") as file:
+        panels = [panel["rectangle"] for panel in json.load(file)["view"]["panels"]]
+    fragment = "&".join(f"{key}={value}" for key, value in options_of(compare_by, show, theme, view, "view"))
+    page = browser.open("page.html", fragment, width=size[0], height=size[1])
+    rendered, drawn = pictures.read(f"drawn/frame_{frame:06d}.png"), pictures.draw(page, *size, frame)
+    colours = compare(checks, what, rendered, drawn, panels)
+    checks.quiet(what, page)
+    page.close()
+    return rendered, drawn, panels, colours
+
+
+COLUMNS, ROWS = 20, 12  # of boxes so large that bands have an inside
+
+
+def write_scale():
+    """Two runs of boxes on a grid; in the first each is 1 mm to 12 m higher: all colours of the scale, of boxes and bands."""
+    at = numpy.stack(numpy.meshgrid(numpy.arange(COLUMNS), numpy.arange(ROWS)), axis=2).reshape(-1, 2) * 1.25
+    up = numpy.stack([numpy.zeros(len(at)), numpy.geomspace(1e-3, 12, len(at))], axis=1)
+    for name, places in ("first", at + up), ("second", at):
+        run = numpy.repeat(places[None].astype("float32"), 2, axis=0)
+        numpy.savez(f"{name}.npz", position=run, angle=numpy.zeros(run.shape[:2], "float32"), dt=numpy.float32(1 / 60),
+                    size=numpy.ones((len(at), 2), "float32"), fixed=numpy.zeros(len(at), "uint8"))
+    return ["first.npz", "second.npz"]
+
+
+def check_scale(checks, browser):
+    files = write_scale()
+    checks.twinbox("page", *files, "-o", "page.html")
+    for theme in "light", "dark":
+        *_, colours = check(checks, browser, files, 1, "split", "distance", theme, "11.875,6.875,26,16", (2560, 1440))
+        checks.true(f"colours of the scale, {theme}", len(colours) > COLUMNS * ROWS, len(colours))
+
+
+def check_sight(checks, rendered, drawn, panels):
+    """Pictures that are not alike: a box's band that is three pixels lower, by moving a row of pixels of the whole panel."""
+    x, y, width, height = panels[0]
+    moved = drawn.copy()
+    moved[y + 3:y + height, x:x + width] = drawn[y:y + height - 3, x:x + width]
+    wanted, found = (picture[y:y + height, x:x + width] for picture in (rendered, moved))
+    checks.true("a panel that is three pixels lower is seen", differ_inside(wanted, found, interior(wanted)).any())
+
+
+def main():
+    with Checks() as checks, Chromium("!!window.player?.data") as browser:
+        os.symlink(f"{checks.sources}/golden", "golden")
+        made = None
+        for scene, *case in sorted(CASES):
+            files = [file.format(scene) for file in RUNS]
+            if scene != made:
+                checks.twinbox("page", *files, "-o", "page.html")
+            made = scene
+            rendered, drawn, panels, _ = check(checks, browser, files, *case)
+        check_sight(checks, rendered, drawn, panels)
+        check_scale(checks, browser)
+
+
+main()
