@@ -15,8 +15,8 @@
 #include <stdlib.h>
 
 typedef struct Options {
-    const char *inputs[RENDER_PANELS_MAX], *output;
-    int input_count, every;
+    const char *inputs[RENDER_PANELS_MAX], *captions[RENDER_PANELS_MAX], *output, *title;
+    int input_count, caption_count, every;
     PanelMethods methods;
     bool live;
     FrameRange frames;
@@ -29,6 +29,10 @@ static const Option option_table[] = {
     {"--every", 0, "N", "Keep every N-th frame only", OPTION_INT(Options, every, 1, INT_MAX)},
     {"--frames", 0, "A:B", "Keep only these frames of the runs (default: all)",
      OPTION_READ(frames_option_read, Options, frames)},
+    {"--title", 0, "TEXT", "Title of the page (default: the scene's name)", OPTION_TEXT(Options, title)},
+    {"--caption", 0, "TEXT",
+     "Name of a run, instead of its method's (may be repeated: one per run, in their order; \"\" keeps the name)",
+     OPTION_TEXTS(Options, captions, caption_count)},
     {OPTION_METHODS(Options, methods,
                     "default: engine, and pair-net if the scene names one; with --live: engine and interior")},
     {OPTION_SET(Options, set)},
@@ -44,11 +48,10 @@ static const CommandSpec spec = {
     PANELS_INPUTS(Options),
     .help =
         "Write one HTML file that plays runs side by side in any browser, without a network or other files. Its "
-        "readers "
-        "can stop, zoom, measure bodies, and link to a moment. A run is a stored trajectory (.npz). A scene (.yaml) is "
-        "simulated first. With --live, a method that a page cannot run is recorded. A page takes at most 64 MB: "
-        "contacts are left "
-        "out if it would take more.\v"
+        "readers can stop, zoom, measure bodies, and link to a moment. The address stack.html#stage shows the stage "
+        "and the time line alone, as the key h does: for a projector, and for <iframe src=\"stack.html#stage\"> in "
+        "another page. A run is a stored trajectory (.npz). A scene (.yaml) is simulated first. With --live, a method "
+        "that a page cannot run is recorded. A page takes at most 64 MB: contacts are left out if it would take more.\v"
         "Example: twinbox page scenes/stack.yaml -o stack.html\n"
         "         twinbox page --live scenes/stack.yaml --method engine --method interior -o live.html"};
 
@@ -72,11 +75,16 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
                           .every = options->every,
                           .set = set,
                           .live = live,
+                          .title = options->title,
                           .describe = draw_panels_defaults(NULL).describe};
     PlayerResult result;
+    if (options->caption_count > panels->count)
+        return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,
+                           panels->count == 1 ? "" : "s");
     for (int i = 0; i < panels->count; i++) {
         page.files[i] = file_of(panels->inputs[i]);
         if (page.files[i] == NULL) page.scenes[i] = panels->inputs[i];
+        if (i < options->caption_count && options->captions[i][0] != '\0') page.names[i] = options->captions[i];
     }
     join_settings(&options->set, set, sizeof set);
     if (!player_write(runs, panels->count, &page, options->output, &result, error)) return false;
@@ -162,11 +170,17 @@ static bool write_recorded(const Options *options, Panels *panels, Error *error)
            write_page(options, panels, NULL, error);
 }
 
+static bool check_texts(const Options *options, Error *error) {
+    bool ok = caption_check(options->title, "--title", error);
+    for (int i = 0; ok && i < options->caption_count; i++) ok = caption_check(options->captions[i], "--caption", error);
+    return ok;
+}
+
 bool command_page(int argc, char **argv, Error *error) {
     Options options = {.every = 1, .frames = {0, -1}};
     Panels panels = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
-    if (!output_check_file(options.output, ".html", error)) return false;
+    if (!output_check_file(options.output, ".html", error) || !check_texts(&options, error)) return false;
     if (options.live && (options.every > 1 || options.frames.first != 0 || options.frames.last != -1))
         return error_input(error, "--live", "shows whole runs; leave out --every and --frames");
     const bool ok = options.live ? write_live(&options, &panels, error) : write_recorded(&options, &panels, error);

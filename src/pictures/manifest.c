@@ -129,6 +129,7 @@ static void write_look(JsonWriter *json, const RenderLook *look) {
     json_put_text(json, "compare", look_compare_names[look->compare]);
     json_put_text(json, "camera", look_camera_names[look->camera]);
     json_put_text(json, "theme", look_theme_names[look->theme]);
+    if (look->labels != LOOK_NO_LABELS) json_put_text(json, "labels", look_labels_names[look->labels]);
     json_begin_array(json, "show", JSON_ONE_LINE);
     for (int i = 0; look_show_names[i] != NULL; i++)
         if (look->show >> i & 1) json_put_text(json, NULL, look_show_names[i]);

@@ -7,6 +7,11 @@
 #include "pixels/png.h"
 #include "runs/trajectory.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
 /* A box of the given width and height in pixels, not rotated, at (0, 0). */
 static Shape styled_box(const Picture *picture, double width, double height, const BodyColors *colors) {
     Rect panel = picture->layout.panels[0];
@@ -82,6 +87,51 @@ static Shape body_shape(const Picture *picture, int panel, int run, Moment momen
     return shape;
 }
 
+/* Text in a box: up to three digits of a mass, as the page's script writes numbers. */
+static void label_text(const Picture *picture, int run, int body, char *text, size_t size) {
+    const double mass = (double)picture->runs[run]->mass[body];
+    char rounded[32];
+    if (picture->look.labels == LOOK_NUMBERS) {
+        snprintf(text, size, "%d", body);
+        return;
+    }
+    snprintf(rounded, sizeof rounded, "%.2e", mass);
+    const int exponent = atoi(strchr(rounded, 'e') + 1), places = exponent < 2 ? 2 - exponent : 0;
+    snprintf(text, size, "%.*f", places, strtod(rounded, NULL));
+    if (places == 0) return;
+    for (size_t end = strlen(text); end > 0 && (text[end - 1] == '0' || text[end - 1] == '.'); end--) {
+        const bool point = text[end - 1] == '.';
+        text[end - 1] = '\0';
+        if (point) break;
+    }
+}
+
+static bool is_light(uint32_t color) {
+    const double red = (color >> 16 & 255) / 255.0, green = (color >> 8 & 255) / 255.0, blue = (color & 255) / 255.0;
+    return RED_LIGHT * red * red + GREEN_LIGHT * green * green + BLUE_LIGHT * blue * blue > LABEL_DARK_FROM;
+}
+
+/* Whether the label of a box of this shape is drawn: if it is large enough to be read, and inside the panel. */
+static bool draw_label(const Picture *picture, int panel, int run, int body, const Shape *shape, Drawing *drawing) {
+    if (picture->look.labels == LOOK_NO_LABELS || picture->runs[run]->fixed[body]) return false;
+    char text[64];
+    label_text(picture, run, body, text, sizeof text);
+    const double ems = LABEL_EMS * fmax((double)strlen(text), LABEL_DIGITS),
+                 side = 2 * fmin(shape->half_width, shape->half_height);
+    const double most = LABEL_CIRCLE * side / sqrt(ems * ems + LABEL_CAP * LABEL_CAP);
+    const Rect *rect = &picture->layout.panels[panel];
+    if (!(most >= LABEL_LEAST) || !(shape->x > rect->left && shape->x < rect->right) ||
+        !(shape->y > rect->top && shape->y < rect->bottom))
+        return false;
+    const Font font = font_pick(FONT_SEMIBOLD, most);
+    const int width = font_width(&font, text), height = (int)ceil(LABEL_CAP * font.pixels);
+    const int left = (int)rint(shape->x - width / 2.0), baseline = (int)rint(shape->y + height / 2.0);
+    if (left < rect->left || left + width > rect->right || baseline - height < rect->top || baseline > rect->bottom)
+        return false;
+    font_add(drawing, &font, text, left, baseline, is_light(shape->fill) ? INK : PANEL);
+    return true;
+}
+
 void body_draw(const Picture *picture, int panel, int run, Moment moment, int body, Drawing *drawing) {
     const Trajectory *trajectory = picture->runs[run];
     const Rect *clip = &picture->layout.panels[panel];
@@ -92,7 +142,8 @@ void body_draw(const Picture *picture, int panel, int run, Moment moment, int bo
     if (fixed || bomb) shape.band = 0;
     drawing_add_shape(drawing, &shape, clip);
     double side = 2 * fmin(shape.half_width, shape.half_height);
-    if (bomb) draw_target(&shape, TARGET * side, colors.band, clip, drawing);
+    const bool labelled = draw_label(picture, panel, run, body, &shape, drawing);
+    if (bomb && !labelled) draw_target(&shape, TARGET * side, colors.band, clip, drawing);
 }
 
 void body_draw_all(const Picture *picture, int panel, int run, Moment moment, bool fixed, Drawing *drawing) {

@@ -44,6 +44,9 @@ typedef enum LookCamera {
 
 typedef enum LookTheme { LOOK_LIGHT, LOOK_DARK } LookTheme;
 
+/* What stands in boxes that move and are large enough: nothing, the number of the body, its mass in kg. */
+typedef enum LookLabels { LOOK_NO_LABELS, LOOK_NUMBERS, LOOK_MASSES } LookLabels;
+
 /* Bits of `show`. */
 enum {
     LOOK_GHOSTS = 1,      /* the first run's bodies as outlines in the others' panels */
@@ -63,14 +66,15 @@ typedef struct RenderLook {
     CameraView view;             /* the fixed view, where a moving camera begins; width 0: that of `view_from` */
     const Trajectory *view_from; /* the run that the fixed camera shows; NULL: all */
     LookTheme theme;
+    LookLabels labels;
     unsigned show;                    /* LOOK_GHOSTS | ... */
     const char *costs[LOOK_RUNS_MAX]; /* cost of each run, as text; NULL: none */
     const char *end;                  /* title of the end card; NULL: a default */
 } RenderLook;
 
 /* The names used in options, in the order of the enums and bits; each list ends with NULL. */
-extern const char *const look_compare_names[], *const look_camera_names[], *const look_theme_names[],
-                                                                               *const look_show_names[];
+extern const char *const look_compare_names[],
+    *const look_camera_names[], *const look_theme_names[], *const look_labels_names[], *const look_show_names[];
 
 /* The light theme's colours, 0xRRGGBB. The colours of bodies follow Okabe and Ito: they differ with all common kinds of
    colour blindness, and in grey prints. */

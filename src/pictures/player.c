@@ -115,6 +115,8 @@ static void put_theme(JsonWriter *json, const char *key, const Theme *theme) {
     put_color(json, "impulse", theme->impulse);
     put_color(json, "velocity", theme->velocity);
     put_color(json, "event", theme->event);
+    put_color(json, "label_dark", INK);
+    put_color(json, "label_light", PANEL);
     put_body_colors(json, "bomb", &theme->bomb);
     json_put_bool(json, "ghost_is_band", theme->ghost_is_band);
     json_begin_object(json, "ramp", JSON_LINES);
@@ -151,6 +153,7 @@ static void put_provenance(JsonWriter *json, const Player *player, int index) {
     json_put_text(json, "scene", run->scene);
     json_put_text(json, "method", run->method);
     json_put_text(json, "name", name);
+    json_put_text(json, "caption", player->options->names[index]);
     json_put_text(json, "note", note);
     json_put_number(json, "ems", player_ems(FONT_SEMIBOLD, name));
     json_put_number(json, "note_ems", player_ems(FONT_REGULAR, note));
@@ -196,6 +199,7 @@ static void put_run_data(JsonWriter *json, const Player *player, int index) {
     json_put_int(json, "bomb", trajectory->bomb);
     json_put_int(json, "frames", run->frames);
     json_put_int(json, "chunks", run->chunks);
+    json_put_bool(json, "masses", trajectory_has_masses(trajectory));
     json_put_bool(json, "velocities", !trajectory->no_velocities);
     json_put_bool(json, "contacts", run->contacts != NULL || player_run_is_live(player, index));
     json_put_text(json, "live", player->options->live != NULL ? player->options->live->methods[index] : NULL);
@@ -266,6 +270,9 @@ static void put_data(FILE *file, const Player *player) {
     json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out"));
     json_put_number(&json, "visible", EVENTS_VISIBLE_DISTANCE);
     json_put_number(&json, "ground", FRAMING_GROUND);
+    json_begin_array(&json, "font_sizes", JSON_ONE_LINE);
+    for (int i = 0; i < FONT_SIZES; i++) json_put_int(&json, NULL, font_sizes[i]);
+    json_end(&json);
     put_left_out(&json, player);
     const CameraFrame framing = camera_frame(player->picture.runs, player->picture.count);
     camera_frame_put(&json, "framing", &framing);
@@ -326,6 +333,8 @@ static void put_run(FILE *file, const Player *player, int index) {
     put_packed(file, id, trajectory->size, bodies * sizeof *trajectory->size);
     snprintf(id, sizeof id, "fixed%d", index);
     put_packed(file, id, trajectory->fixed, bodies * sizeof *trajectory->fixed);
+    snprintf(id, sizeof id, "mass%d", index);
+    if (trajectory_has_masses(trajectory)) put_packed(file, id, trajectory->mass, bodies * sizeof *trajectory->mass);
     if (player_run_is_live(player, index)) return;
     snprintf(id, sizeof id, "hashes%d", index);
     put_packed(file, id, run->hashes, frames * sizeof *run->hashes);
@@ -378,11 +387,12 @@ static bool check_steps(const Trajectory *const *runs, int count, Error *error) 
 
 static bool plan(Player *player, const Trajectory *const *runs, int count, Error *error) {
     const PlayerOptions *options = player->options;
-    RenderOptions look = {.width = WIDTH, .height = HEIGHT, .title = options->title, .describe = options->describe};
-    for (int i = 0; i < count; i++) look.captions[i] = options->names[i];
+    const RenderOptions look = {.width = WIDTH, .height = HEIGHT, .describe = options->describe};
     if (!check_steps(runs, count, error) || !picture_plan(&player->picture, runs, count, WIDTH, HEIGHT, error) ||
         !picture_apply_options(&player->picture, &look, error))
         return false;
+    player->picture.title = options->title; /* after its check of their room: the page cuts what is too long */
+    for (int i = 0; i < count; i++) player->picture.captions[i] = options->names[i];
     const int end = player->picture.frames - 1, last = options->last < 0 ? end : options->last;
     if (options->first > end || last > end)
         return error_input(error, "--frames", "%d is beyond the last frame, %d",

@@ -29,6 +29,17 @@ static const double BAND_DARKER = 0.6,
 static const int SCALE_FIRST_DECADE = -3; /* the colour scale begins at 1 mm */
 static const int SCALE_LAST_DECADE = 1;   /* and ends at 10 m at the latest */
 
+/* Labels: upright text in the middle of a box, in a circle, so that its size does not depend on how the box is turned. */
+
+static const double LABEL_CIRCLE = 0.85; /* diameter of the circle / the box's shorter side */
+static const double LABEL_EMS = 0.64,
+                    LABEL_CAP = 0.73; /* width of a digit and height of capitals / size of the letters */
+static const int LABEL_DIGITS = 2;    /* shorter texts have the size of one with so many */
+static const double LABEL_LEAST = 10; /* pixels, size of the letters; smaller ones cannot be read */
+static const double LABEL_DARK_FROM =
+    0.2; /* luminance (of colours squared) from which dark text has more contrast than light */
+static const double RED_LIGHT = 0.2126, GREEN_LIGHT = 0.7152, BLUE_LIGHT = 0.0722; /* of sRGB: ITU-R BT.709 */
+
 /* Marks: in units of the shorter side of the panel, in pixels, and in units of the median box. */
 
 static const double MARK_DOT = 0.0052, MARK_LINE = 0.0034;

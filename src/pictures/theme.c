@@ -15,6 +15,7 @@
 const char *const look_compare_names[] = {"split", "overlay", "difference", NULL};
 const char *const look_camera_names[] = {"fit", "bomb", "divergence", NULL};
 const char *const look_theme_names[] = {"light", "dark", NULL};
+const char *const look_labels_names[] = {"none", "number", "mass", NULL};
 const char *const look_show_names[] = {"ghosts",   "distance",   "trails",   "contacts",
                                        "impulses", "velocities", "timeline", NULL};
 
@@ -32,6 +33,10 @@ static bool check_known(const RenderLook *look, const Trajectory *const *runs, i
     for (int i = 0; i < count; i++) {
         if ((look->show & LOOK_VELOCITIES) != 0 && runs[i]->no_velocities)
             return error_input(error, "render", "'velocities' cannot be shown: run %d (%s) does not have them", i + 1,
+                               runs[i]->method);
+        if (look->labels == LOOK_MASSES && !trajectory_has_masses(runs[i]))
+            return error_input(error, "render",
+                               "masses cannot be shown: run %d (%s) does not have them; simulate it again", i + 1,
                                runs[i]->method);
         if ((look->show & (LOOK_CONTACTS | LOOK_IMPULSES)) != 0 && runs[i]->no_contacts)
             return error_input(error, "render", "'%s' cannot be shown: run %d (%s) has no contacts",
@@ -264,6 +269,12 @@ static void add_heads(Row *row) {
     end_entry(row);
 }
 
+static void add_labels(Row *row) {
+    add_text(row, row->picture->look.labels == LOOK_MASSES ? "in boxes that are large enough: mass, kg"
+                                                           : "in boxes that are large enough: number of the body");
+    end_entry(row);
+}
+
 static void begin_row(Row *row) {
     const Layout *layout = &row->picture->layout;
     row->x = layout->area.left;
@@ -295,6 +306,7 @@ static int place_entries(const Picture *picture, Drawing *drawing) {
     bool difference = look->compare == LOOK_DIFFERENCE;
     if (difference || (look->show & LOOK_GHOSTS && look->compare == LOOK_SPLIT)) place_entry(&row, add_outline);
     if (difference || look->show & LOOK_DISTANCE) place_entry(&row, add_colors);
+    if (look->labels != LOOK_NO_LABELS) place_entry(&row, add_labels);
     if (look->show & LOOK_TRAILS) place_entry(&row, add_trail);
     if (look->show & LOOK_APPROACH && picture->runs[0]->bomb >= 0) place_entry(&row, add_approach);
     if (look->show & LOOK_CONTACTS) place_entry(&row, add_dot);

@@ -73,6 +73,7 @@ enum {
     ARRAY_CAMERA,
     ARRAY_SIZE,
     ARRAY_FIXED,
+    ARRAY_MASS,
     ARRAY_POSITION, /* these grow with the run */
     ARRAY_ANGLE,
     ARRAY_VELOCITY,

@@ -13,6 +13,7 @@
 static void describe_body(Trajectory *trajectory, int body, const BodyDef *def) {
     trajectory->size[body] = def->size;
     trajectory->fixed[body] = def->fixed;
+    trajectory->mass[body] = def->fixed ? 0 : def->mass;
 }
 
 Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int frames, Error *error) {

@@ -13,7 +13,7 @@
 #include <string.h>
 
 static double measure(double frames, double bodies, double contacts) {
-    double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + 1, small = 4096;
+    double pose = 2 * sizeof(Vec2) + 2 * sizeof(float), body = sizeof(Vec2) + sizeof(float) + 1, small = 4096;
     return frames * (bodies * pose + sizeof(int64_t)) + bodies * body + contacts * sizeof(TrajectoryContact) + small;
 }
 
@@ -23,14 +23,15 @@ static void *zeros(size_t count, size_t size) { return calloc(count > 0 ? count 
 static bool allocate(Trajectory *t) {
     size_t bodies = (size_t)t->bodies, poses = (size_t)t->frames * bodies;
     t->size = zeros(bodies, sizeof *t->size);
+    t->mass = zeros(bodies, sizeof *t->mass);
     t->fixed = zeros(bodies, sizeof *t->fixed);
     t->position = zeros(poses, sizeof *t->position);
     t->angle = zeros(poses, sizeof *t->angle);
     t->velocity = zeros(poses, sizeof *t->velocity);
     t->angular_velocity = zeros(poses, sizeof *t->angular_velocity);
     t->contact_start = zeros((size_t)t->frames + 1, sizeof *t->contact_start);
-    return t->size != NULL && t->fixed != NULL && t->position != NULL && t->angle != NULL && t->velocity != NULL &&
-           t->angular_velocity != NULL && t->contact_start != NULL;
+    return t->size != NULL && t->mass != NULL && t->fixed != NULL && t->position != NULL && t->angle != NULL &&
+           t->velocity != NULL && t->angular_velocity != NULL && t->contact_start != NULL;
 }
 
 Trajectory *trajectory_create(int frames, int bodies, Error *error) {
@@ -45,6 +46,7 @@ Trajectory *trajectory_create(int frames, int bodies, Error *error) {
         error_memory(error, "trajectory");
         return NULL;
     }
+    for (int i = 0; i < bodies; i++) t->mass[i] = NAN;
     for (size_t i = 0; i < (size_t)frames * (size_t)bodies; i++) {
         t->position[i] = t->velocity[i] = vec2(NAN, NAN);
         t->angle[i] = t->angular_velocity[i] = NAN;
@@ -55,6 +57,7 @@ Trajectory *trajectory_create(int frames, int bodies, Error *error) {
 void trajectory_destroy(Trajectory *t) {
     if (t == NULL) return;
     free(t->size);
+    free(t->mass);
     free(t->fixed);
     free(t->position);
     free(t->angle);
@@ -155,6 +158,7 @@ static void copy_head(Trajectory *to, const Trajectory *from, int step) {
     to->camera_center = from->camera_center;
     to->camera_size = from->camera_size;
     memcpy(to->size, from->size, (size_t)from->bodies * sizeof *to->size);
+    memcpy(to->mass, from->mass, (size_t)from->bodies * sizeof *to->mass);
     memcpy(to->fixed, from->fixed, (size_t)from->bodies * sizeof *to->fixed);
 }
 
@@ -173,6 +177,12 @@ Trajectory *trajectory_every(const Trajectory *from, int step, Error *error) {
     if (ok) return to;
     trajectory_destroy(to);
     return NULL;
+}
+
+bool trajectory_has_masses(const Trajectory *trajectory) {
+    for (int body = 0; body < trajectory->bodies; body++)
+        if (!trajectory->fixed[body] && isnan(trajectory->mass[body])) return false;
+    return true;
 }
 
 static bool is_of_bomb_and_box(const Trajectory *trajectory, const TrajectoryContact *contact) {

@@ -36,6 +36,7 @@ typedef struct Trajectory {
     Vec2 camera_center;                 /* m; the view that the scene sets */
     Vec2 camera_size;                   /* m, width and height; 0, 0: chosen by the renderer */
     Vec2 *size;                         /* [N] full width and height, m */
+    float *mass;                        /* [N] kg; NaN, in all or none: unknown; of static ones: any */
     uint8_t *fixed;                     /* [N] 1: static */
     Vec2 *position;                     /* [T, N]; NaN while the body does not exist, as in the next three */
     float *angle;                       /* [T, N] */
@@ -63,6 +64,9 @@ void trajectory_judge(Trajectory *trajectory, const char *words, int frame, int 
 
 /* True if the body exists in this frame. */
 bool trajectory_has(const Trajectory *trajectory, int frame, int body);
+
+/* Whether the masses of all bodies that are not static are known. */
+bool trajectory_has_masses(const Trajectory *trajectory);
 
 /* Bytes of all arrays in a file. */
 double trajectory_bytes(const Trajectory *trajectory);
@@ -97,10 +101,10 @@ uint64_t trajectory_hash(const Trajectory *trajectory);
    these frames; its verdict is in the first of them from the verdict's frame on. The caller destroys it. step >= 1. */
 Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *error);
 
-/* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], position[T,N,2],
-   angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
+/* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], mass[N],
+   position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
    contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], program, verdict, verdict_frame,
-   verdict_body. Without the velocities, the contacts, the program or the verdict where they are unknown. */
+   verdict_body. Without the masses, the velocities, the contacts, the program or the verdict where they are unknown. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the others

@@ -39,6 +39,9 @@ static bool check_head(const Trajectory *t, const char *path, Error *error) {
                                (double)size.x, (double)size.y);
         if (t->fixed[body] > 1)
             return error_input(error, path, "body %d: 'fixed' must be 0 or 1 (got %d)", body, t->fixed[body]);
+        if (!t->fixed[body] && (isinf(t->mass[body]) || t->mass[body] <= 0))
+            return error_input(error, path, "body %d: its mass must be finite and greater than 0 (got %g)", body,
+                               (double)t->mass[body]);
     }
     return true;
 }
@@ -207,6 +210,7 @@ const RunArray run_arrays[RUN_ARRAYS] = {
     {"camera", NPZ_FLOAT32, 2, {2, 2}, GROUP_NONE, {NULL}},
     {"size", NPZ_FLOAT32, 2, {OF_BODIES, 2}, GROUP_NONE, {"box_size", "dimensions", "extent", "extents"}},
     {"fixed", NPZ_UINT8, 1, {OF_BODIES}, GROUP_NONE, {"is_static", "static"}},
+    {"mass", NPZ_FLOAT32, 1, {OF_BODIES}, GROUP_NONE, {NULL}},
     {"position",
      NPZ_FLOAT32,
      3,
@@ -420,6 +424,15 @@ static bool read_fixed(Trajectory *t, NpzFile *file, const char *path, Error *er
     return true;
 }
 
+/* Or NaN. */
+static bool read_masses(Trajectory *t, NpzFile *file, const char *path, Error *error) {
+    const int64_t per_body[] = {t->bodies};
+    if (npz_has(file, "mass")) return (t->mass = npz_read(file, "mass", NPZ_FLOAT32, 1, per_body, error)) != NULL;
+    t->mass = malloc(((size_t)t->bodies + 1) * sizeof *t->mass);
+    for (int body = 0; t->mass != NULL && body < t->bodies; body++) t->mass[body] = NAN;
+    return t->mass != NULL || error_memory(error, path);
+}
+
 /* Both, or NaN. */
 static bool read_velocities(Trajectory *t, NpzFile *file, const char *path, Error *error) {
     const int64_t vectors[] = {t->frames, t->bodies, 2};
@@ -442,7 +455,8 @@ static bool read_poses(Trajectory *t, NpzFile *file, const char *path, Error *er
     return (t->size = npz_read(file, "size", NPZ_FLOAT32, 2, per_body, error)) != NULL &&
            (t->position = npz_read(file, "position", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
            (t->angle = npz_read(file, "angle", NPZ_FLOAT32, 2, vectors, error)) != NULL &&
-           read_fixed(t, file, path, error) && read_velocities(t, file, path, error);
+           read_fixed(t, file, path, error) && read_masses(t, file, path, error) &&
+           read_velocities(t, file, path, error);
 }
 
 /* Files have one array per quantity. Each is freed before the next is read. */

@@ -55,12 +55,17 @@ static bool begin_npz(TrajectoryStream *stream, Error *error) {
     static const int32_t version = TRAJECTORY_VERSION;
     const Trajectory *head = stream->head;
     static_assert(offsetof(Trajectory, camera_size) == offsetof(Trajectory, camera_center) + sizeof(Vec2), "one array");
-    const void *const known[ARRAY_POSITION] = {
-        [ARRAY_VERSION] = &version,    [ARRAY_SCENE] = head->scene,
-        [ARRAY_METHOD] = head->method, [ARRAY_SCENE_HASH] = &head->scene_hash,
-        [ARRAY_DT] = &head->dt,        [ARRAY_ITERATIONS] = head->iterations > 0 ? &head->iterations : NULL,
-        [ARRAY_BOMB] = &head->bomb,    [ARRAY_CAMERA] = &head->camera_center,
-        [ARRAY_SIZE] = head->size,     [ARRAY_FIXED] = head->fixed};
+    const void *const known[ARRAY_POSITION] = {[ARRAY_VERSION] = &version,
+                                               [ARRAY_SCENE] = head->scene,
+                                               [ARRAY_METHOD] = head->method,
+                                               [ARRAY_SCENE_HASH] = &head->scene_hash,
+                                               [ARRAY_DT] = &head->dt,
+                                               [ARRAY_ITERATIONS] = head->iterations > 0 ? &head->iterations : NULL,
+                                               [ARRAY_BOMB] = &head->bomb,
+                                               [ARRAY_CAMERA] = &head->camera_center,
+                                               [ARRAY_SIZE] = head->size,
+                                               [ARRAY_FIXED] = head->fixed,
+                                               [ARRAY_MASS] = trajectory_has_masses(head) ? head->mass : NULL};
     stream->npz = npz_stream_create(stream->path, RUN_ARRAYS, error);
     if (stream->npz == NULL) return false;
     for (int i = 0; i < RUN_ARRAYS; i++) stream->array[i] = -1;

@@ -138,6 +138,72 @@ def check_buttons(checks, page):
                                                     [True, True, 0.25])
 
 
+HOST = """<!DOCTYPE html><title>Host</title><body style="height: 3000px">
+<iframe src="three.html#stage&t=0.5" width="640" height="360"></iframe>"""
+SHOWN = """[...document.querySelectorAll("body [id]")].filter(each => each.checkVisibility?.() ?? each.getClientRects().length > 0)
+  .map(each => each.id).sort()"""
+STAGE = sorted(["player", "frame", "stage", "play", "scrubber", "marks", "bare", "status"])  # the last is empty, and speaks
+
+
+def check_stage(checks, browser):
+    """The stage and its time line alone: nothing else is shown, nothing scrolls, and a button leads to all controls and back."""
+    for size in (1440, 900), (1920, 1080), (640, 360), (320, 240):
+        page = browser.open("three.html", "stage&t=0.5", width=size[0], height=size[1])
+        page.settle()
+        checks.equal(f"{size}: what is shown", page.run(SHOWN), STAGE)
+        checks.equal(f"{size}: the page is the window", page.run("(e => [e.scrollWidth, e.scrollHeight])(document.documentElement)"),
+                     list(size))
+        checks.true(f"{size}: share of the stage", page.run("stage.clientHeight / innerHeight") > 0.6)
+        link = page.run("location.hash = '#t=0.25'; 0") or page.wait("player.view.frame === 15 && !player.view.stage")
+        page.settle()
+        checks.true(f"{size}: the whole page by a link without it", link and "keys" in page.run(SHOWN))
+        page.click(*page.middle("#bare"))
+        checks.equal(f"{size}: the stage by the button", page.run(SHOWN), STAGE)
+        page.wait("location.hash.includes('stage=1')")
+        page.click(*page.middle("#bare"))
+        checks.true(f"{size}: all controls by the button", "keys" in page.run(SHOWN))
+        checks.quiet(f"{size}: stage", page)
+        page.close()
+
+
+def check_embedded(checks, browser):
+    """In another page, the wheel scrolls that page."""
+    with open("host.html", "w", encoding="utf-8") as file:
+        file.write(HOST)
+    browser.ready, ready = "true", browser.ready
+    page = browser.open("host.html")
+    browser.ready = ready
+    page.wheel(300, 200, 400)
+    page.wait("scrollY > 100")
+    checks.true("the wheel over an embedded stage scrolls the page around it", True)
+    page.close()
+
+
+def check_labels(checks, browser):
+    """Numbers of bodies and masses, by the control and by a link; not of a run without masses."""
+    page = browser.open("three.html", "labels=mass&t=0.5")
+    checks.equal("labels by a link", [page.run("player.view.labels"), page.run("document.getElementById('labels').value")],
+                 ["mass", "mass"])
+    checks.near("mass of the bomb in the page", page.run("player.runs[0].mass[player.runs[0].bomb]"), 50, 0)
+    masses = runs.load("engine.npz")["mass"]
+    checks.equal("masses in the page", page.run("[...player.runs[0].mass]"), masses.tolist())
+    drawn = "(player.draw(), stage.toDataURL())"
+    with_masses = page.run(drawn)
+    page.run("player.change({labels: 'number'})")
+    page.settle()
+    checks.true("numbers are drawn otherwise than masses", page.run(drawn) != with_masses)
+    checks.quiet("labels", page)
+    page.close()
+    old = dict(runs.load("engine.npz"))
+    del old["mass"]
+    numpy.savez("massless.npz", **old)
+    checks.twinbox("page", "massless.npz", "-o", "massless.html")
+    page = browser.open("massless.html", "labels=mass")
+    checks.equal("no masses, no labels", page.run("player.view.labels"), "none")
+    checks.true("the choice is disabled", page.run("[...document.getElementById('labels').options].pop().disabled"))
+    page.close()
+
+
 def check_sizes(checks, browser):
     """Windows of all shapes, and screens with more pixels, one after the other in one page."""
     page = browser.open("three.html")
@@ -178,6 +244,9 @@ def main():
         checks.quiet("the page", page)
         page.close()
         check_sizes(checks, browser)
+        check_stage(checks, browser)
+        check_embedded(checks, browser)
+        check_labels(checks, browser)
         check_time(checks, browser)
         check_touch(checks, browser)
 

@@ -3,6 +3,7 @@
 run nothing."""
 import os
 import re
+import shlex
 import subprocess
 
 import hostile_runs
@@ -70,6 +71,38 @@ class Pages:
         result = subprocess.run(["bash", "-c", command], capture_output=True, text=True, stdin=subprocess.DEVNULL)
         checks.equal(f"exit status of {command}: {result.stderr[:200]}", result.returncode, 0)
         checks.true("the name of a file is no command", not os.path.exists("owned"))
+        page.close()
+
+    def titles(self):
+        """Title and captions of the command line: text, whatever it says; what cannot be drawn is refused with its place."""
+        checks, longest = self.checks, "\u00df" * 127
+        texts = [hostile_runs.MARKUP, hostile_runs.COMMENT, "'; alert(1); '", "W" * 60, longest, "\\u003c/script\\u003e ${x}"]
+        for text in texts:
+            for looks in {}, {"width": 390, "height": 844}, {"width": 640, "height": 360}:
+                page = self.open("plain", "seven", options=("--title", text, "--caption", text), **looks)
+                checks.equal(f"{text[:40]}: pictures in the page", page.run("document.images.length"), 0)
+                checks.equal(f"{text[:40]}: title and caption", page.run("[player.data.title, player.runs[0].name]"), [text, text])
+                checks.true(f"{text[:40]}: no wider than the window",
+                            page.run("document.documentElement.scrollWidth <= innerWidth"))
+                page.run("player.change({stage: true})")
+                page.settle()
+                checks.true(f"{text[:40]}: nor is the stage", page.run("document.documentElement.scrollWidth <= innerWidth"))
+                page.close()
+        for text, why in [("a\x1bb", "U+001B"), ("a\nb", "U+000A"), (b"a\xffb", "UTF-8"), ("W" * 256, "at most 255"),
+                          ("\u202eab", "U+202E"), ("\u6f22", "U+6F22")]:
+            for option in "--title", "--caption":
+                result = subprocess.run([checks.program, "page", "plain.npz", option, text, "-o", "refused.html"],
+                                        capture_output=True, stdin=subprocess.DEVNULL)
+                said = result.stderr.decode(errors="replace")
+                checks.true(f"{option} {text!r} is refused", result.returncode == 2 and option in said and why in said, said)
+        checks.true("and nothing written", not os.path.exists("refused.html"))
+        result = checks.twinbox("page", "plain.npz", "--caption", "a", "--caption", "b", "-o", "refused.html", status=2)
+        checks.true("more captions than runs", "2 captions for 1 run" in result.stderr, result.stderr)
+        page = self.open("plain", "seven", options=("--caption", "", "--caption", "it's \"two\""))
+        checks.equal("an empty caption keeps the name", page.run("player.runs[0].name"), "plain")
+        page.click(*page.middle("#copy-command"))
+        words = shlex.split(page.run("navigator.clipboard.readText()"))
+        checks.equal("captions in the copied command", words[-4:], ["--caption", "", "--caption", "it's \"two\""])
         page.close()
 
     def letters(self):
@@ -217,7 +250,7 @@ def main():
         checks.twinbox("simulate", f"{checks.scenes}/stack.yaml", "--frames", 20, "--method", "momentum", "-o",
                        "short.npz")
         pages = Pages(checks, browser)
-        for part in (pages.names, pages.letters, pages.worlds, pages.comings, pages.no_velocities, pages.one_frame,
+        for part in (pages.names, pages.titles, pages.letters, pages.worlds, pages.comings, pages.no_velocities, pages.one_frame,
                      pages.numbers,
                      pages.many, pages.long, pages.parts, pages.damage):
             part()

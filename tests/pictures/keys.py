@@ -128,6 +128,8 @@ class Keys:
             self.expect("c", "compare", wanted)
         for wanted in "light", "dark", "auto":
             self.expect("t", "theme", wanted)
+        self.expect("h", "stage", True)
+        self.expect("h", "stage", False)
         self.press("?")
         self.checks.equal("key ? opens the dialog", self.page.run("document.getElementById('help').open"), True)
         self.page.press("Escape")

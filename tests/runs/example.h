@@ -31,6 +31,7 @@ static inline Trajectory *example_trajectory(void) {
     t->size[0] = vec2(100, 20);
     t->size[1] = t->size[2] = vec2(1, 0.5F);
     t->fixed[0] = 1;
+    t->mass[0] = 0, t->mass[1] = 0.5F, t->mass[2] = 50;
     for (int frame = 0; frame < EXAMPLE_FRAMES; frame++) {
         float f = (float)frame;
         example_pose(t, frame, 0, (float[]){0, -10, 0, 0, 0, 0});

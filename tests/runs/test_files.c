@@ -86,6 +86,9 @@ TEST(bad_heads_are_refused) {
     REFUSE(size[1].x, 0, "body 1: its size must be finite and greater than 0");
     REFUSE(size[2].y, INFINITY, "body 2: its size");
     REFUSE(fixed[1], 2, "body 1: 'fixed' must be 0 or 1 (got 2)");
+    REFUSE(mass[1], 0, "body 1: its mass must be finite and greater than 0 (got 0)");
+    REFUSE(mass[1], -1, "body 1: its mass must");
+    REFUSE(mass[1], INFINITY, "body 1: its mass must");
     REFUSE(scene[1], '\n', "the name of the scene has the control character");
     REFUSE(method[0], '\33', "the name of the method has the control character");
     REFUSE(verdict[1], '\33', "the verdict has the control character");

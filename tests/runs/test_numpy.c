@@ -27,6 +27,7 @@ TEST(numpy_reads_every_member) {
                "f4),\n"
                "  'bomb': np.array(2, '<i4'), 'camera': np.array([[0, 5], [16, 9]], f4),\n"
                "  'size': np.array([[100, 20], [1, 0.5], [1, 0.5]], f4), 'fixed': np.array([1, 0, 0], 'u1'),\n"
+               "  'mass': np.array([0, 0.5, 50], f4),\n"
                "  'position': p, 'angle': a, 'velocity': v, 'angular_velocity': w,\n"
                "  'contact_start': np.array([0, 0, 0, 2, 2], '<i8'), 'contact_bodies': np.array([[0, 1], [0, 1]], "
                "'<i4'),\n"

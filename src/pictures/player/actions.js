@@ -27,6 +27,10 @@ function word(text) {
 }
 const file_of = ({file, method}) => word(file ?? method.replace(/[/\0]/g, "_") + ".npz");
 
+/* Names that the page's author gave. */
+const given_name = ({caption, name}) => name === caption ? caption : "";
+const captions_of = all => all.some(given_name) ? all.map(run => ` --caption ${word(given_name(run))}`).join("") : "";
+
 /* The command that makes a run of a scene; "" for a run that is a file. */
 function simulation(run) {
   const set = (run.live ? set_text() : data.set).split(",").filter(Boolean).map(part => `--set ${word(part)} `).join("");
@@ -44,7 +48,7 @@ ui["copy-command"].onclick = () => {
   const options = [["frames", number_of(view.frame)], ...shown("camera"), ["theme", theme_name(), "light"]];
   const found = runs.filter(run => !is_left_out(run) && (run.compared || !compares)), left = runs.filter(run => !found.includes(run));
   copy([...new Set(found.map(simulation)), "twinbox render ", found.map(file_of).join(" "), " -o frame ",
-    words("--", " ", options).join(" ")].join(""), "Command", left.length > 0 ? `, without ${left.map(({name}) => name).join(", ")}` : "");
+    words("--", " ", options).join(" "), captions_of(found)].join(""), "Command", left.length > 0 ? `, without ${left.map(({name}) => name).join(", ")}` : "");
 };
 ui.copied.onblur = () => { ui.refused.hidden = true; };
 ui.save.onclick = () => {

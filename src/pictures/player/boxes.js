@@ -75,13 +75,36 @@ function stroke_box(w, h, thickness, colour, outside = 0) {
   pen.stroke();
 }
 
+/* The label of a body, where it has one: with place and colour. */
+function label_of(run, body) {
+  const {fixed, size, mass} = runs[run], {left, top, width, height} = here;
+  if (view.labels === "none" || fixed[body] || !exists(run, now, body)) return null;
+  const text = String(view.labels === "mass" ? Number(mass[body].toPrecision(3)) : body);
+  const most = LABEL_CIRCLE * eye.scale * min(...size[body]) / hypot(LABEL_EMS * max(text.length, LABEL_DIGITS), LABEL_CAP);
+  if (!(most >= LABEL_LEAST)) return null;
+  const font = font_of(600, most), wide = text_width(font, text), high = ceil(LABEL_CAP * font.em);
+  const {x, y} = place(pose(run, now, body)), start = rint(x - wide / 2), baseline = rint(y + high / 2);
+  if (start < left || start + wide > left + width || baseline - high < top || baseline > top + height) return null;
+  const [red, green, blue] = channels(body_colours(run, body).fill).map(part => part / 255);
+  const light = RED_LIGHT * red * red + GREEN_LIGHT * green * green + BLUE_LIGHT * blue * blue > LABEL_DARK_FROM;
+  return {font, text, start, baseline, colour: look[light ? "label_dark" : "label_light"]};
+}
+
+/* On all that is drawn in the panel. */
+function draw_labels() {
+  runs[here.run].fixed.forEach((_, body) => {
+    const label = label_of(here.run, body);
+    if (label) write(label.font, label.text, label.start, label.baseline, label.colour);
+  });
+}
+
 /* The static bodies, or the others with the bomb on top. */
 function draw_bodies(still) {
   const {bodies, bomb, fixed} = runs[here.run];
   const draw = body => with_body(here.run, body, (w, h) => {
     const colours = body_colours(here.run, body), r = TARGET * min(w, h);
     fill_box(w, h, colours, still ? 0 : radius_of(w, h), !still && body !== bomb);
-    if (body !== bomb) return;
+    if (body !== bomb || label_of(here.run, body)) return;
     pen.fillStyle = colours.band; /* a dot in a ring, and a bar from the ring towards the local top */
     const half = TARGET_BAR_HEIGHT * r;
     pen.fillRect(-r / TARGET_BAR, -TARGET_BAR_RISE * r - half, 2 * r / TARGET_BAR, 2 * half);

@@ -89,16 +89,20 @@ function state_of(run) {
   return [...unseen > 0 ? [unseen + " out of view"] : [], ...end].join(", ");
 }
 
+/* A caption that the page's author chose is whole where it has room. */
+const caption_of = run => runs[run].name === runs[run].caption ? runs[run].caption : names[run];
+
 /* Of a run: its name, description and distance from the first run, and what cannot be seen. */
 function draw_caption(run, i) {
   const {title, axis, method, captions, overlay} = lay, gap = title.em >> 1;
   const {note, note_ems} = runs[run], {x, line} = captions.at[i];
   const left = here.left + x, start = left + swatch_side(title) + gap, end = here.left + here.width;
   const baseline = here.top - lay.rise - (captions.lines - 1 - line) * lay.line;
-  const most = end - start - distance_width(run), font = text_width(title, names[run]) <= most ? title : axis;
-  let next = start + min(most, text_width(font, names[run])) + gap, right = end;
+  const most = end - start - distance_width(run), name = caption_of(run);
+  const font = text_width(title, name) <= most ? title : axis;
+  let next = start + min(most, text_width(font, name)) + gap, right = end;
   draw_swatch(run, i > 0, left, baseline, swatch_side(title));
-  write(font, fitting(font, names[run], most / LEAST_WIDTH), start, baseline, look.ink, most);
+  write(font, fitting(font, name, most / LEAST_WIDTH), start, baseline, look.ink, most);
   if (distance_width(run) > 0) {
     const {width, draw} = distance_item(method, captions.label, largest(run, now));
     draw(overlay ? next : end - width, baseline);

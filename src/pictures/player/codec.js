@@ -24,6 +24,7 @@ const pairs = numbers => Array.from({length: numbers.length / 2}, (_, i) => [num
 const runs = data.runs.map((run, index) => Object.assign(make_states(run, run.frames, run.bodies), {
   index, stored: index, checked: 0, wrong: 0, size: pairs(new Float32Array(packed("size" + index).buffer)),
   fixed: Array.from(packed("fixed" + index), Boolean), reached: -1,
+  mass: run.masses && new Float32Array(packed("mass" + index).buffer),
   distances: run.live ? new Float32Array(run.frames) : new Float32Array(packed("distances" + index).buffer),
   hashes: run.live ? null : new DataView(packed("hashes" + index).buffer),
 }));

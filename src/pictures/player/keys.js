@@ -23,6 +23,7 @@ const ACTIONS = [
   ["+ -", "zoom in, out", key => nudge(key === "+" ? 1.25 : 0.8, 0, 0)],
   ["f", "fit the view", fit_view, "fit"],
   ["t", "colours: auto, light, dark", () => change({theme: next_of(THEMES, view.theme)}), "theme"],
+  ["h", "the stage and the time line alone, or all", () => change({stage: !view.stage}), "bare"],
   ["?", "this list", () => ui.help.showModal(), "keys"],
 ];
 if (data.live)

@@ -19,6 +19,12 @@ function text_width(font, text) {
   return ceil(ruler.measureText(text).width);
 }
 
+/* The largest that `render` has, at most so many pixels. */
+function font_of(weight, most) {
+  const em = data.font_sizes.findLast(size => size <= most);
+  return {em, css: `${weight} ${em}px Inter, system-ui, sans-serif`};
+}
+
 /* The text, or its beginning and an ellipsis, in at most `room` pixels. */
 function fitting(font, text, room) {
   let letters = [...text.slice(0, max(0, 5 * room / font.em))], cut = letters.join("");
@@ -29,10 +35,7 @@ function fitting(font, text, room) {
 
 function measures(width, height, legend_rows, lines) {
   const unit = min(height, UNIT_WIDTH * width), of = share => rint(share * max(unit, LEAST));
-  const font = (weight, share) => { /* the sizes that `render` has: 12, 13 .. 16, 18 .. 32, 36 .. */
-    const size = max(share * unit, 12), step = size < 17 ? 1 : size < 34 ? 2 : 4, em = floor(size / step) * step;
-    return {em, css: `${weight} ${em}px Inter, system-ui, sans-serif`};
-  };
+  const font = (weight, share) => font_of(weight, max(share * unit, 12));
   const margin = rint(max(PAGE_MARGIN * unit, MIN_MARGIN)), header = margin + of(HEADER_RISE), end = height - rint(PAGE_FOOT * unit);
   const title = font(600, TITLE_FONT), line = max(of(CAPTION_PITCH), rint(CAPTION_PITCH_EMS * title.em));
   const title_row = of(TITLE_ROW) + (lines - 1) * line, axis_row = of(AXIS_ROW), tick = of(AXIS_TICK), axis = font(400, AXIS_FONT);

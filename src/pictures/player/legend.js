@@ -23,6 +23,8 @@ function entries() {
       }}, ` ${["0.01", "0.1", "1", "10"][i]} ` + (i + 1 < decades ? "" : exceeded ? "m or more" : "m"));
     found.push(scale);
   }
+  if (view.labels !== "none")
+    found.push(["in boxes that are large enough: " + (view.labels === "mass" ? "mass, kg" : "number of the body")]);
   if (shows("trails"))
     add(2 * em, (x, y) => {
       for (let i = 0, n = LEGEND_TRAIL_PARTS; i < n; i++)

@@ -1,4 +1,4 @@
-/* The address: #t=0.55&body=7&compare=overlay&show=ghosts,trails&view=X,Y,W,H&speed=0.25&theme=dark */
+/* The address: #stage&t=0.55&body=7&compare=overlay&show=ghosts,trails&view=X,Y,W,H&speed=0.25&theme=dark */
 let writing = 0;
 
 /* Times in links are rounded: one within 0.02 of a stored frame means that frame. */
@@ -22,14 +22,15 @@ const words = (mark, join, pairs) =>
 function shown(key) {
   const {x, y, w, h} = shown_view(), text = [x.toFixed(6), y.toFixed(6), w, h].map(Number).join();
   return [["compare", view.compare, "split"], ["show", [...view.show].join(), ""],
+    ["labels", view.labels, "none"],
     [key, view.camera.kind === "fit" ? "" : text, ""]];
 }
 
 function link_text() {
-  const {camera, body, run, speed, slow, theme} = view;
+  const {camera, body, run, speed, slow, theme, stage} = view;
   return "#" + words("", "=", [["t", link_time()], ["body", body, -1], ["run", run, 0], ...shown("view"),
     ["follow", camera.kind === "body" ? "body" : "", ""], ["speed", speed, 1], ["slow", slow ? 1 : 0, 0],
-    ["theme", theme, "auto"], ...live_words()]).join("&");
+    ["theme", theme, "auto"], ["stage", stage ? 1 : 0, 0], ...live_words()]).join("&");
 }
 
 /* The launch of a live page, where it is not the first one. */
@@ -48,8 +49,8 @@ onhashchange = () => {
   change({
     frame: frame_at(Number(text("t"))), playing: false, body, run: one_of("run", [...runs.keys()], 0),
     slow: text("slow") === "1", speed: one_of("speed", SPEEDS, 1), compare: one_of("compare", COMPARES, "split"),
-    show: new Set(text("show").split(",")), theme: one_of("theme", THEMES, "auto"),
-    camera: is_view({x, y, w, h}) ? {kind, x, y, w, h} : FIT,
+    show: new Set(text("show").split(",")), labels: one_of("labels", LABELLINGS, "none"), theme: one_of("theme", THEMES, "auto"),
+    stage: link.has("stage") && text("stage") !== "0", camera: is_view({x, y, w, h}) ? {kind, x, y, w, h} : FIT,
   });
   if (!data.live) return;
   launch();

@@ -149,7 +149,8 @@ const weigh = text => text_width({css: "600 100px Inter, system-ui, sans-serif"}
 function describe_run(run) {
   const method = data.live.methods.find(({name}) => name === run.live.split(":")[0]);
   Object.assign(run, {method: run.live, name: run.live, ems: run.live === method?.name ? method.ems : weigh(run.live),
-    note: method?.note ?? "", note_ems: method?.note_ems ?? 0, file: null});
+    note: method?.note ?? "", note_ems: method?.note_ems ?? 0, file: null},
+    run.given?.live === run.live ? run.given : {}); /* the caption of its author */
 }
 
 /* All runs that have arrived are shown, together if they can. */
@@ -204,7 +205,8 @@ function take_part(run, part) {
   if (into?.shown !== part.id) {
     if (part.first !== 0) return; /* the rest of a launch that is not shown any more */
     into = run.next = make_states({shown: part.id, reached: -1}, part.frames, part.bodies);
-    Object.assign(into, {size: pairs(part.sizes), fixed: Array.from(part.fixed, Boolean), bomb: part.bomb,
+    Object.assign(into, {size: pairs(part.sizes), fixed: Array.from(part.fixed, Boolean), mass: part.masses,
+      bomb: part.bomb,
       ...part.scene, contacts: part.recorded, distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: ""});
   }
   copy_part(into, part);
@@ -236,6 +238,10 @@ function cannot_step(error) {
 
 function begin_live() {
   if (!data.live) return;
+  for (const run of live_runs()) {
+    const {live, name, ems, note, note_ems} = run;
+    if (run.caption !== null) run.given = {live, name, ems, note, note_ems};
+  }
   for (const run of recorded) Object.assign(run, {name: run.name + " (recorded)", ems: weigh(run.name + " (recorded)")});
   on_checked.push(take_stock);
   read_set(data.set);

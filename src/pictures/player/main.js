@@ -2,7 +2,10 @@
 let planned_for = "";
 const looks = new Map(); /* the control of each */
 const again = () => change({});
-const undecoded = () => { ui.summary.textContent = "The page is damaged: states cannot be decoded."; };
+function undecoded() {
+  page_problem = "The page is damaged: states cannot be decoded.";
+  show_problems();
+}
 
 function show_look() {
   const reasons = {}, {compare, show} = view;
@@ -13,14 +16,22 @@ function show_look() {
     input.parentNode.className = why && "off";
     if (why) (reasons[why] ??= []).push(look);
   }
+  ui.labels.value = view.labels;
+  for (const option of ui.labels.options) option.disabled = refused(option.value) !== "";
   tell(ui.reasons, Object.keys(reasons).map(why => `${reasons[why].join(", ")}: ${why}`).join("; "));
+}
+
+/* The whole page, or the stage and its time line alone. */
+function show_page() {
+  document.body.classList.toggle("bare", view.stage);
+  tell(ui.bare, view.stage ? "Controls" : "Stage only");
 }
 
 /* The header takes what its texts need; the rest of the window is the player's. */
 function draw_stage(decoded) {
   style.setProperty("--head", ui.player.parentNode.offsetTop + "px");
   const {clientWidth: width, clientHeight: height} = stage, scale = devicePixelRatio, context = stage.getContext("2d");
-  const wanted = [width, height, scale, view.compare, ...view.show].join();
+  const wanted = [width, height, scale, view.compare, view.labels, ...view.show].join();
   if (wanted !== planned_for) {
     stage.width = round(width * scale);
     stage.height = round(height * scale);
@@ -38,6 +49,7 @@ function draw() {
   apply_theme();
   show_time();
   show_look();
+  show_page();
   draw_stage(decoded);
   draw_plot();
   if (!decoded) return;
@@ -54,6 +66,8 @@ for (const look of [...COMPARES, ...SHOWS]) {
   looks.set(look, input);
   ui[kind].append(make("label", input, look));
 }
+for (const kind of LABELLINGS) ui.labels.append(new Option(kind === "mass" ? "mass, kg" : kind, kind));
+ui.labels.onchange = () => change({labels: ui.labels.value});
 on_checked.push(show_check, again);
 
 /* After a change of the runs: all that depends on them. */

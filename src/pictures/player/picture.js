@@ -37,6 +37,7 @@ function draw_panel(columns, rows) {
   outlines.forEach(draw_outlines);
   draw_pointer(run);
   all.forEach(draw_marks);
+  draw_labels();
   draw_pinned();
   if (runs[run].elsewhere) draw_elsewhere(runs[run]);
   pen.restore();

@@ -82,8 +82,9 @@ stage.onpointerup = stage.onpointercancel = event => {
 };
 stage.onpointerleave = () => { hover = null; measure(); };
 stage.ondblclick = fit_view;
-/* onwheel would be passive in some browsers. */
+/* onwheel would be passive in some browsers. A page that shows this stage scrolls by the wheel alone. */
 stage.addEventListener("wheel", event => {
+  if (view.stage && parent !== window && !event.ctrlKey) return;
   event.preventDefault();
   move_view(event.offsetX, event.offsetY, 2 ** (-event.deltaY / (event.deltaMode ? 15 : 500)), 0, 0);
 }, {passive: false});

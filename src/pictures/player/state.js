@@ -1,10 +1,11 @@
 /* The state of the page, its elements and its colours. */
 const COMPARES = ["split", "overlay", "difference"], THEMES = ["auto", "light", "dark"], FIT = {kind: "fit"};
+const LABELLINGS = ["none", "number", "mass"];
 const SHOWS = ["ghosts", "distance", "trails", "contacts", "impulses", "velocities"];
 const PARTS = {split: "", overlay: "ghosts", difference: "ghosts distance"}; /* which are no choice there */
 const view = {
   frame: 0, playing: false, speed: 1, slow: false, compare: "split", show: new Set(), body: -1, run: 0, camera: FIT,
-  theme: "auto",
+  theme: "auto", stage: false, labels: "none",
 };
 /* Of the runs; live ones come, go and change. on_runs: what depends on them. */
 let last = 0, most_bodies = 0, others = [], names = [];
@@ -70,9 +71,9 @@ function apply_theme() {
 
 /* Why a look cannot be had; "" if it can. */
 function refused(look) {
-  const need = look === "impulses" ? "contacts" : look, lacking = runs.findIndex(run => run[need] === false);
+  const need = {impulses: "contacts", mass: "masses"}[look] ?? look, lacking = runs.findIndex(run => run[need] === false);
   if (lacking >= 0) return `${names[lacking]} has no ${need}`;
-  return others.length > 0 || /split|trails|contacts|velocities/.test(need) ? "" : "no run compares with the first";
+  return others.length > 0 || /split|trails|contacts|velocities|none|number|masses/.test(need) ? "" : "no run compares with the first";
 }
 
 /* Shows what the pointer is at, and all that changed, with the next picture of the screen. */
@@ -90,6 +91,7 @@ function change(patch) {
   view.slow &&= data.impact >= 0;
   if (view.body < 0) view.run = 0;
   if (refused(view.compare)) view.compare = "split";
+  if (refused(view.labels)) view.labels = "none";
   view.show = new Set(SHOWS.filter(name => view.show.has(name) && !refused(name)));
   stale = true;
   measure();

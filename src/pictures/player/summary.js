@@ -74,5 +74,7 @@ function check_text() {
 }
 
 function show_check() {
+  if (checked().wrong > 0) page_problem = check_text();
+  show_problems();
   if (!data.live) ui.check.textContent = check_text();
 }

@@ -41,9 +41,9 @@ function add_event(form, run, at, words) {
 
 /* Each in the first row that has room. */
 function place_moments() {
-  const ends = [];
+  const ends = [], number = view.stage ? 2 : 12; /* pixels, beside the first sign */
   moments.forEach(({frame, events}, i) => {
-    const x = plot_x(frame) - GUTTER, free = ends.findIndex(end => end <= x - 20 - 6 * events.length);
+    const x = plot_x(frame) - GUTTER, free = ends.findIndex(end => end <= x - 8 - number - 6 * events.length);
     const row = free < 0 ? ends.length : free;
     ends[row] = x + 10;
     ui.marks.children[i].style = `right: calc(100% - ${x + 6}px); top: ${20 * row}px`;

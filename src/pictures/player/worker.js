@@ -41,6 +41,7 @@ function panel_worker() {
     const part = {
       id, first, last, bodies, scene: about, recorded: contacts === 1, frames: live.live_frames(run), bomb: live.live_bomb(run), ended,
       sizes: copy(Float32Array, live.live_sizes(run), 0, 2 * bodies), fixed: copy(Uint8Array, live.live_fixed(run), 0, bodies),
+      masses: copy(Float32Array, live.live_masses(run), 0, bodies),
       positions: copy(Float32Array, live.live_positions(run), 2 * at, 2 * count),
       angles: copy(Float32Array, live.live_angles(run), at, count),
       velocities: copy(Float32Array, live.live_velocities(run), 2 * at, 2 * count),
