@@ -38,9 +38,9 @@ static void pad(char *number, size_t size, const char *text, const char *longest
 void caption_distance(char *text, size_t size, double metres) {
     if (isnan(metres))
         snprintf(text, size, "\xE2\x80\x93");
-    else if (metres < 99.95)
-        snprintf(text, size, "%.*f", metres < 9.995 ? 2 : 1, metres);
-    else if (metres < 999.5)
+    else if (metres < DISTANCE_ONE_PLACE)
+        snprintf(text, size, "%.*f", metres < DISTANCE_TWO_PLACES ? 2 : 1, metres);
+    else if (metres < DISTANCE_MOST)
         snprintf(text, size, "%.0f", metres);
     else
         snprintf(text, size, ">999");

@@ -270,6 +270,7 @@ static void put_data(FILE *file, const Player *player) {
     json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out"));
     json_put_number(&json, "visible", EVENTS_VISIBLE_DISTANCE);
     json_put_number(&json, "ground", FRAMING_GROUND);
+    json_put_number(&json, "farthest", EXTENT_FARTHEST);
     json_begin_array(&json, "font_sizes", JSON_ONE_LINE);
     for (int i = 0; i < FONT_SIZES; i++) json_put_int(&json, NULL, font_sizes[i]);
     json_end(&json);

@@ -8,6 +8,7 @@
 #include "base/machine.h"
 #include "pictures/picture.h"
 #include "pictures/render_internal.h"
+#include "pictures/style.h"
 #include "runs/pieces.h"
 #include "runs/trajectory.h"
 
@@ -17,9 +18,6 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* s of simulated time: enough to see the bomb arrive and the boxes fly */
-static const double slow_before = 0.15, slow_after = 0.6;
 
 /* s, time to read a card */
 static const double card_seconds = 2;
@@ -43,8 +41,8 @@ static double nearest(double number) { return floor(number + 0.5); }
 static double at_least_one(double seconds, double rate) { return fmax(1, nearest(seconds * rate)); }
 
 static void plan_slow(MomentPlan *plan, int impact, int slow, double dt) {
-    plan->slow_first = (int)fmax(plan->first, impact - at_least_one(slow_before, 1 / dt));
-    plan->slow_last = (int)fmin(plan->last, impact + at_least_one(slow_after, 1 / dt));
+    plan->slow_first = (int)fmax(plan->first, impact - at_least_one(SLOW_BEFORE, 1 / dt));
+    plan->slow_last = (int)fmin(plan->last, impact + at_least_one(SLOW_AFTER, 1 / dt));
     if (plan->slow_first >= plan->slow_last)
         plan->slow_last = plan->slow_first = plan->first;
     else

@@ -81,6 +81,16 @@ static const double AXIS_DROP = 0.0275, AXIS_ROW = 0.038, AXIS_TICK = 0.006;
 static const double LEGEND_ROW = 0.046, LEGEND_PITCH = 0.035, LEGEND_DROP = 0.012;
 static const double PAGE_FOOT = 0.016;
 
+/* Distances, in captions and in curves over time. */
+
+static const double DISTANCE_TWO_PLACES = 9.995, DISTANCE_ONE_PLACE = 99.95, DISTANCE_MOST = 999.5; /* m, below which */
+static const int LOWEST_DECADE = -6, HIGHEST_DECADE = 3,
+                 MIN_DECADES = 3; /* of curves: 1 um to 1 km at most, 1 mm at least */
+
+/* Slow motion: s of simulated time before the bomb's impact and after it, enough to see it arrive and the boxes fly. */
+
+static const double SLOW_BEFORE = 0.15, SLOW_AFTER = 0.6;
+
 /* Panels and their metre grid. */
 
 static const double GAIN = 1.05, GAIN_WITH_CUT_NAMES = 1.5; /* of scale: an unusual arrangement has at least this */

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { LOWEST_DECADE = -6, HIGHEST_DECADE = 3, MIN_DECADES = 3, MAX_TICKS = 200 };
+enum { MAX_TICKS = 200 };
 static const double CURVE = 0.0024, MIN_CURVE = 1.3; /* thickness / the picture's height; pixels */
 static const double TICK_SPACING = 5;                /* ems between two times on the axis */
 static const double TOLERANCE = 0.2;                 /* pixels; largest deviation of a segment from the curve */

@@ -18,19 +18,23 @@ MOST_INSIDE = 1       # of 255
 LEAST_INTERIOR = 0.5  # of a panel's pixels
 MOST_OF_PANEL = 1.5   # of 255, the mean difference of a panel
 RUNS = "golden/trajectories/{}-engine.npz", "golden/trajectories/{}-pair-net.npz"
+GO_TO = """new Promise(done => {
+  if (location.hash === $0) return done();
+  addEventListener("hashchange", () => done(), {once: true});
+  location.hash = $0;
+})"""
 ALL = "ghosts,distance,trails,contacts,impulses,velocities"
 # scene, frame, compare, show, theme, view
 CASES = [
     ("stack", 40, "split", "", "light", ""),
     ("stack", 40, "split", "", "dark", ""),
-    ("stack", 40, "split", "ghosts", "light", ""),
     ("stack", 40, "split", "trails", "light", ""),
     ("stack", 40, "split", ALL, "dark", ""),
     ("stack", 70, "overlay", "", "light", ""),
     ("stack", 70, "overlay", "trails", "dark", "0,2,6,5"),
     ("stack", 30, "difference", "", "light", "0,3,4,3"),
     ("pyramid", 60, "difference", "velocities", "dark", ""),
-    ("pyramid", 60, "split", "contacts,impulses", "light", "0,1.5,6,4"),
+    ("pyramid", 60, "split", "ghosts,contacts,impulses", "light", "0,1.5,6,4"),
     ("pyramid_settled", 200, "split", "distance", "light", ""),
     ("pyramid_settled", 180, "split", "distance", "dark", "0,3,12,8"),
 ]
@@ -82,20 +86,30 @@ def options_of(compare_by, show, theme, view, camera):
     return [(key, value) for key, value in given if value]
 
 
-def check(checks, browser, files, frame, compare_by, show, theme, view, size=SIZE):
-    """One moment in both. Returns what was compared, and the page."""
+def check(checks, page, files, frame, compare_by, show, theme, view, size=SIZE):
+    """One moment in both: the pictures, where their panels are, and the colours inside."""
     what = f"{os.path.basename(files[0])} frame {frame} {compare_by} {show} {theme} {view}"
     render = [word for key, value in options_of(compare_by, show, theme, view, "camera") for word in ("--" + key, value)]
     checks.twinbox("render", *files, "-o", "drawn", "--size", "x".join(map(str, size)), "--frames", frame, *render)
     with open("drawn/manifest.json") as file:
         panels = [panel["rectangle"] for panel in json.load(file)["view"]["panels"]]
     fragment = "&".join(f"{key}={value}" for key, value in options_of(compare_by, show, theme, view, "view"))
-    page = browser.open("page.html", fragment, width=size[0], height=size[1])
+    page.run(GO_TO, "#" + fragment)
+    page.settle()
     rendered, drawn = pictures.read(f"drawn/frame_{frame:06d}.png"), pictures.draw(page, *size, frame)
     colours = compare(checks, what, rendered, drawn, panels)
     checks.quiet(what, page)
-    page.close()
     return rendered, drawn, panels, colours
+
+
+def pages_of(checks, browser, cases):
+    """Each page once, with the cases that it has."""
+    for scene in sorted({case[0] for case in cases}):
+        files = [file.format(scene) for file in RUNS]
+        checks.twinbox("page", *files, "-o", "page.html")
+        page = browser.open("page.html")
+        yield files, page, [case[1:] for case in cases if case[0] == scene]
+        page.close()
 
 
 COLUMNS, ROWS = 20, 12  # of boxes so large that bands have an inside
@@ -115,8 +129,9 @@ def write_scale():
 def check_scale(checks, browser):
     files = write_scale()
     checks.twinbox("page", *files, "-o", "page.html")
+    page = browser.open("page.html")
     for theme in "light", "dark":
-        *_, colours = check(checks, browser, files, 1, "split", "distance", theme, "11.875,6.875,26,16", (2560, 1440))
+        *_, colours = check(checks, page, files, 1, "split", "distance", theme, "11.875,6.875,26,16", (2560, 1440))
         checks.true(f"colours of the scale, {theme}", len(colours) > COLUMNS * ROWS, len(colours))
 
 
@@ -132,13 +147,9 @@ def check_sight(checks, rendered, drawn, panels):
 def main():
     with Checks() as checks, Chromium("!!window.player?.data") as browser:
         os.symlink(f"{checks.sources}/golden", "golden")
-        made = None
-        for scene, *case in sorted(CASES):
-            files = [file.format(scene) for file in RUNS]
-            if scene != made:
-                checks.twinbox("page", *files, "-o", "page.html")
-            made = scene
-            rendered, drawn, panels, _ = check(checks, browser, files, *case)
+        for files, page, cases in pages_of(checks, browser, CASES):
+            for case in cases:
+                rendered, drawn, panels, _ = check(checks, page, files, *case)
         check_sight(checks, rendered, drawn, panels)
         check_scale(checks, browser)
 

@@ -151,8 +151,8 @@ def check_stage(checks, browser):
         page = browser.open("three.html", "stage&t=0.5", width=size[0], height=size[1])
         page.settle()
         checks.equal(f"{size}: what is shown", page.run(SHOWN), STAGE)
-        checks.equal(f"{size}: the page is the window", page.run("(e => [e.scrollWidth, e.scrollHeight])(document.documentElement)"),
-                     list(size))
+        whole = page.run("(e => [e.scrollWidth, e.scrollHeight])(document.documentElement)")
+        checks.equal(f"{size}: the page is the window", whole, list(size))
         checks.true(f"{size}: share of the stage", page.run("stage.clientHeight / innerHeight") > 0.6)
         link = page.run("location.hash = '#t=0.25'; 0") or page.wait("player.view.frame === 15 && !player.view.stage")
         page.settle()

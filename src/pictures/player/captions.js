@@ -22,7 +22,8 @@ function item(font, label, number, longest, unit) {
 }
 
 function distance_item(font, label, metres) {
-  const places = metres < 9.995 ? 2 : metres < 99.95 ? 1 : 0, number = metres < 999.5 ? metres.toFixed(places) : ">999";
+  const places = metres < DISTANCE_TWO_PLACES ? 2 : metres < DISTANCE_ONE_PLACE ? 1 : 0;
+  const number = metres < DISTANCE_MOST ? metres.toFixed(places) : ">999";
   return item(font, label, isNaN(metres) ? "\u2013" : number, "0.00", " m");
 }
 
@@ -95,11 +96,12 @@ const caption_of = run => runs[run].name === runs[run].caption ? runs[run].capti
 /* Of a run: its name, description and distance from the first run, and what cannot be seen. */
 function draw_caption(run, i) {
   const {title, axis, method, captions, overlay} = lay, gap = title.em >> 1;
-  const {note, note_ems} = runs[run], {x, line} = captions.at[i];
+  const {ems, note, note_ems} = runs[run], {x, line} = captions.at[i];
   const left = here.left + x, start = left + swatch_side(title) + gap, end = here.left + here.width;
   const baseline = here.top - lay.rise - (captions.lines - 1 - line) * lay.line;
-  const most = end - start - distance_width(run), name = caption_of(run);
-  const font = text_width(title, name) <= most ? title : axis;
+  const name = caption_of(run), planned = ceil(ems * title.em), free = end - start - distance_width(run);
+  const most = overlay ? min(planned, free) : free; /* in an overlay the next caption is beside it */
+  const font = min(planned, text_width(title, name)) <= most ? title : axis;
   let next = start + min(most, text_width(font, name)) + gap, right = end;
   draw_swatch(run, i > 0, left, baseline, swatch_side(title));
   write(font, fitting(font, name, most / LEAST_WIDTH), start, baseline, look.ink, most);

@@ -36,7 +36,8 @@ function fitting(font, text, room) {
 function measures(width, height, legend_rows, lines) {
   const unit = min(height, UNIT_WIDTH * width), of = share => rint(share * max(unit, LEAST));
   const font = (weight, share) => font_of(weight, max(share * unit, 12));
-  const margin = rint(max(PAGE_MARGIN * unit, MIN_MARGIN)), header = margin + of(HEADER_RISE), end = height - rint(PAGE_FOOT * unit);
+  const margin = rint(max(PAGE_MARGIN * unit, MIN_MARGIN)), header = margin + of(HEADER_RISE);
+  const end = height - rint(PAGE_FOOT * unit);
   const title = font(600, TITLE_FONT), line = max(of(CAPTION_PITCH), rint(CAPTION_PITCH_EMS * title.em));
   const title_row = of(TITLE_ROW) + (lines - 1) * line, axis_row = of(AXIS_ROW), tick = of(AXIS_TICK), axis = font(400, AXIS_FONT);
   const pitch = of(LEGEND_PITCH), more = (legend_rows - 1) * pitch;

@@ -1,5 +1,5 @@
 /* The plot of the distances from the first run over time, logarithmic as in videos (src/pictures/timeline.c). */
-const LOWEST = -6, GUTTER = 44, BOTTOM = 88; /* decade; pixels */
+const GUTTER = 44, BOTTOM = 88; /* pixels */
 const DASHES = ["", "", "5 3", "1 2", "7 2 1 2", "3 2 3 5"], UNITS = ["1 \u00b5m", "1 mm", "1 m", "1 km"];
 let highest = 0;
 const dots = [], values = []; /* of each run at this time */
@@ -8,7 +8,7 @@ let plotted = "", cursor = null;
 const plot_width = () => ui.marks.clientWidth;
 const plot_x = frame => GUTTER + plot_width() * frame / (last || 1);
 const plot_y = metres =>
-  BOTTOM - (BOTTOM - 6) * (min(highest, max(LOWEST, log10(metres))) - LOWEST) / (highest - LOWEST);
+  BOTTOM - (BOTTOM - 6) * (min(highest, max(LOWEST_DECADE, log10(metres))) - LOWEST_DECADE) / (highest - LOWEST_DECADE);
 const dashed = run => `stroke:var(--fill${run});stroke-dasharray:${DASHES[run]};`;
 
 /* The largest value of each column of pixels. What is not known leaves a gap. */
@@ -31,7 +31,7 @@ function axes() {
   const step = power * [1, 2, 5, 10].find(factor => factor * power >= least);
   const text = (x, y, words) => make("text", {x, y}, words);
   const parts = [path(`M${GUTTER} 0h${width}V${BOTTOM}H${GUTTER}`, "fill:var(--panel)")];
-  for (let decade = LOWEST; decade <= highest; decade++) {
+  for (let decade = LOWEST_DECADE; decade <= highest; decade++) {
     const y = plot_y(10 ** decade), unit = UNITS[decade / 3 + 2] ?? "", colour = unit ? "grid_strong" : "grid";
     parts.push(path(`M${GUTTER} ${y}h${width}`, `stroke:var(--${colour})`), text(20, y + 4, unit));
   }
@@ -64,7 +64,7 @@ function draw_plot() {
 }
 
 function list_curves() {
-  highest = min(3, max(-3, ceil(log10(data.scales.largest || 1) - 1e-9)));
+  highest = min(HIGHEST_DECADE, max(LOWEST_DECADE + MIN_DECADES, ceil(log10(data.scales.largest || 1) - 1e-9)));
   plotted = "";
   ui.curves.hidden = last === 0 || others.length === 0;
   ui.key.replaceChildren(ui.curve);

@@ -1,5 +1,5 @@
 /* The pointer on the picture: hover measures, click pins, drag moves, wheel and pinch zoom all panels. */
-const CLICK = 4, SMALLEST = 1e-3, FARTHEST = 1e5; /* pixels; m, as for render --camera */
+const CLICK = 4, SMALLEST = 1e-3, FARTHEST = data.farthest; /* pixels; m, as for render --camera */
 const {stage} = ui, pressed = new Map();
 let planned = null, hover = null, grip = null, travelled = 0;
 

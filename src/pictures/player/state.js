@@ -73,7 +73,8 @@ function apply_theme() {
 function refused(look) {
   const need = {impulses: "contacts", mass: "masses"}[look] ?? look, lacking = runs.findIndex(run => run[need] === false);
   if (lacking >= 0) return `${names[lacking]} has no ${need}`;
-  return others.length > 0 || /split|trails|contacts|velocities|none|number|masses/.test(need) ? "" : "no run compares with the first";
+  const compares = !/split|trails|contacts|velocities|none|number|masses/.test(need);
+  return compares && others.length === 0 ? "no run compares with the first" : "";
 }
 
 /* Shows what the pointer is at, and all that changed, with the next picture of the screen. */

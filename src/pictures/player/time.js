@@ -20,7 +20,7 @@ function toggle_play() {
 /* Goes on by the time since the last picture, or waits where frames are not decoded yet: those of the next half second are
    on their way. Slow as by render --slow 4. */
 function tick(now) {
-  const since = (view.frame - data.impact) * data.dt, slow = view.slow && since >= -0.15 && since < 0.6 ? 4 : 1;
+  const since = (view.frame - data.impact) * data.dt, slow = view.slow && since >= -SLOW_BEFORE && since < SLOW_AFTER ? 4 : 1;
   const frame = min(last, view.frame + min(max(now - clock, 0), 250) / 1000 * view.speed / slow / data.dt);
   clock = now;
   if (ready(frame)) Object.assign(view, {frame, playing: frame < last});
