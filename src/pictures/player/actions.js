@@ -20,16 +20,14 @@ async function copy(text, what, but = "") {
   }
 }
 
-/* One word of a shell that is no option. */
-function word(text) {
-  const name = text.replace(/^-/, "./-");
-  return /^[\w./:=,+@%-]+$/.test(name) ? name : `'${name.replace(/'/g, "'\\''")}'`;
-}
+/* One word of a shell; one that is no option. */
+const quote = text => /^[\w./:=,+@%-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`;
+const word = text => quote(text.replace(/^-/, "./-"));
 const file_of = ({file, method}) => word(file ?? method.replace(/[/\0]/g, "_") + ".npz");
 
 /* Names that the page's author gave. */
 const given_name = ({caption, name}) => name === caption ? caption : "";
-const captions_of = all => all.some(given_name) ? all.map(run => ` --caption ${word(given_name(run))}`).join("") : "";
+const captions_of = all => all.some(given_name) ? all.map(run => ` --caption ${quote(given_name(run))}`).join("") : "";
 
 /* The command that makes a run of a scene; "" for a run that is a file. */
 function simulation(run) {

@@ -76,7 +76,7 @@ function stroke_box(w, h, thickness, colour, outside = 0) {
 }
 
 /* The label of a body, where it has one: with place and colour. */
-function label_of(run, body) {
+function box_label(run, body) {
   const {fixed, size, mass} = runs[run], {left, top, width, height} = here;
   if (view.labels === "none" || fixed[body] || !exists(run, now, body)) return null;
   const text = String(view.labels === "mass" ? Number(mass[body].toPrecision(3)) : body);
@@ -93,7 +93,7 @@ function label_of(run, body) {
 /* On all that is drawn in the panel. */
 function draw_labels() {
   runs[here.run].fixed.forEach((_, body) => {
-    const label = label_of(here.run, body);
+    const label = box_label(here.run, body);
     if (label) write(label.font, label.text, label.start, label.baseline, label.colour);
   });
 }
@@ -104,7 +104,7 @@ function draw_bodies(still) {
   const draw = body => with_body(here.run, body, (w, h) => {
     const colours = body_colours(here.run, body), r = TARGET * min(w, h);
     fill_box(w, h, colours, still ? 0 : radius_of(w, h), !still && body !== bomb);
-    if (body !== bomb || label_of(here.run, body)) return;
+    if (body !== bomb || box_label(here.run, body)) return;
     pen.fillStyle = colours.band; /* a dot in a ring, and a bar from the ring towards the local top */
     const half = TARGET_BAR_HEIGHT * r;
     pen.fillRect(-r / TARGET_BAR, -TARGET_BAR_RISE * r - half, 2 * r / TARGET_BAR, 2 * half);
