@@ -132,8 +132,9 @@ static inline uint32_t ink_of(const Collision *collision, int i) {
 
 static inline const char *name_of(const Collision *collision, int i) { return collision->names[i]; }
 
-/* Draws the projections of both boxes on the axes of each, and their overlaps, centred in the window. */
-void draw_overlaps(Sketch *sketch, View window, const Collision *collision);
+/* Draws the projections of both boxes on the axes of each, and their overlaps, in the window, with a scale below them and,
+   unless `down` is NULL, an arrow in this direction. ERROR_INPUT if the labels have no room. */
+bool draw_overlaps(Sketch *sketch, View window, const Collision *collision, const Vec2 *down, Error *error);
 
-/* Draws an enlarged view of the overlap: edges, normal and contact points, centred in the window. */
-void draw_contact_closeup(Sketch *sketch, View window, const Collision *collision);
+/* Draws an enlarged view of the overlap: edges, normal and contact points, in the window. ERROR_INPUT as above. */
+bool draw_contact_closeup(Sketch *sketch, View window, const Collision *collision, Error *error);

@@ -9,6 +9,7 @@
 #include "methods/methods.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"
+#include "pixels/type.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 
@@ -19,6 +20,7 @@ enum { BAND_BODIES = 5 }; /* bodies shifted, one at a time */
 
 static const uint32_t band_colour = 0xD3D8DF;
 static const double sample = 6; /* mm, line sample in the legend */
+static const char distance_label[] = "largest distance (m)";
 
 typedef struct Divergence {
     const FigureSpec *spec;
@@ -143,58 +145,75 @@ static bool ever_diverges(const double *distance, int frames) {
     return false;
 }
 
-/* Rows above the plot, down from `top`. */
-static void draw_legend(const Divergence *d, Sketch *sketch, double left, double top, double width) {
+/* The entry of a run in the legend; of the first, that of the band. */
+static WrappedText entry_of(const Divergence *d, int run, double width) {
     const FigureSpec *spec = d->spec;
-    const double line = line_height(spec->points), indent = sample + 1.5;
-    Point at = {left, top - line / 2};
-    for (int i = 1; i < spec->run_count; i++, at.y -= line) {
-        const Pen pen = line_pen(d, i);
-        bool ever = ever_diverges(d->distance[i], d->frames);
-        if (ever) sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
-        draw_fitted(sketch, (Point){at.x + indent, at.y}, spec->points, INK, width - indent, "%s vs %s%s",
-                    run_name(spec, spec->runs[i]).text, run_name(spec, spec->runs[0]).text, ever ? "" : ": identical");
-    }
-    if (d->low == NULL) return;
-    sketch_rectangle(sketch, (Point){at.x, at.y - 0.3 * line}, (Point){at.x + sample, at.y + 0.3 * line},
-                     &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
-    draw_fitted(sketch, (Point){at.x + indent, at.y}, spec->points, INK, width - indent,
-                "%s, one of %d bodies shifted by 1 \xC2\xB5m", run_name(spec, spec->runs[0]).text, d->shifted);
+    const RunName first = run_name(spec, spec->runs[0]), own = run_name(spec, spec->runs[run]);
+    if (run == 0)
+        return wrap_text(spec->points, width, "%s, one of %d bodies shifted by 1 \xC2\xB5m", first.text, d->shifted);
+    return wrap_text(spec->points, width, "%s vs %s%s", own.text, first.text,
+                     ever_diverges(d->distance[run], d->frames) ? "" : ": identical");
 }
 
-static void draw_impact(const Divergence *d, Sketch *sketch, const PlotPanel *plot) {
-    const Trajectory *run = d->spec->runs[0];
-    const int touch = trajectory_impact(run);
-    if (touch < 0) return;
-    const double x = plot_axis_place(&plot->x, touch * (double)run->dt);
+/* Rows above the plot, down from `top`, `width` mm wide. Returns their number; without a sketch, it only counts them. */
+static int draw_legend(const Divergence *d, Sketch *sketch, Point top, double width) {
+    const FigureSpec *spec = d->spec;
+    const double line = line_height(spec->points), indent = sample + number_gap(spec->points);
+    int rows = 0;
+    for (int i = 1; i <= spec->run_count; i++) {
+        const bool band = i == spec->run_count;
+        if (band && d->low == NULL) break;
+        const WrappedText words = entry_of(d, band ? 0 : i, width - indent);
+        const Point at = {top.x, top.y - (rows + 0.5) * line}, end = {at.x + sample, at.y};
+        rows += words.lines;
+        if (sketch == NULL) continue;
+        draw_wrapped(sketch, (Point){at.x + indent, at.y}, INK, &words);
+        if (band)
+            sketch_rectangle(sketch, (Point){at.x, at.y - 0.3 * line}, (Point){end.x, at.y + 0.3 * line},
+                             &(Pen){band_colour, 1, NO_COLOUR, 0, NULL});
+        else if (ever_diverges(d->distance[i], d->frames)) {
+            const Pen pen = line_pen(d, i);
+            sketch_line(sketch, at, end, &pen);
+        }
+    }
+    return rows;
+}
+
+/* The line at the bomb's touch, named above the plot, where no line can cross the name. */
+static void draw_impact(const Divergence *d, Sketch *sketch, const PlotPanel *plot, int touch) {
+    const double points = d->spec->points, half = type_width("impact", points) / 2;
+    const double x = plot_axis_place(&plot->x, touch * (double)d->spec->runs[0]->dt);
+    const double middle = fmin(fmax(x, plot->x.from + half), sketch->width - half - PAGE_EDGE);
     const Pen pen = pen_line(INK_SOFT, 1.2, "(4,4)");
-    const bool right = x > (plot->x.from + plot->x.to) / 2;
     sketch_line(sketch, (Point){x, plot->y.from}, (Point){x, plot->y.to}, &pen);
-    sketch_text(sketch, (Point){x + (right ? -0.8 : 0.8), plot->y.from + 0.7 * line_height(d->spec->points)},
-                &(TextStyle){d->spec->points, right ? TEXT_RIGHT : TEXT_LEFT, INK_SOFT, 0, true}, "impact");
+    sketch_text(sketch, (Point){middle, plot->y.to + 0.7 * line_height(points)},
+                &(TextStyle){points, TEXT_CENTER, INK, 0, false}, "impact");
 }
 
 static bool draw_plot(const Divergence *d, Sketch *sketch, PlotRange range, Error *error) {
     const FigureSpec *spec = d->spec;
-    const double shape = 0.55, tallest = 75, line = line_height(spec->points), room = 3;
-    const double left = plot_left_margin(spec->points), bottom = plot_bottom_margin(spec->points);
-    const double height = fmin(shape * spec->width, tallest), rows = spec->run_count - 1 + (d->low != NULL);
+    const double shape = 0.55, tallest = 75, line = line_height(spec->points), points = spec->points;
+    const double left = plot_left_margin(points), bottom = plot_bottom_margin(points), room = fmax(3, 0.9 * line);
+    const double height = fmin(fmax(shape * spec->width, type_width(distance_label, points)), tallest);
+    const int touch = trajectory_impact(spec->runs[0]);
+    const double above = touch >= 0 ? 1.2 * line : 0;
+    const int rows = draw_legend(d, NULL, (Point){0, 0}, spec->width - PAGE_EDGE - left);
     PlotPanel plot = {.box = {left, bottom, spec->width - room - left, height},
                       .x = plot_linear_axis(0, (d->frames - 1) * (double)spec->runs[0]->dt, "time (s)"),
-                      .y = plot_log_axis(range.least, range.most, "largest distance (m)"),
-                      .points = spec->points,
+                      .y = plot_log_axis(range.least, range.most, distance_label),
+                      .points = points,
                       .guides = true};
     plot.y.powers = true;
     plot_panel_place(&plot);
-    sketch_begin(sketch, spec->width, bottom + height + rows * line + 2);
-    Point *points = malloc(2 * (size_t)d->frames * sizeof *points);
-    if (points == NULL) return error_memory(error, "figure");
-    if (d->low != NULL) draw_band(d, sketch, &plot, points);
+    sketch_begin(sketch, spec->width, bottom + height + above + rows * line + (touch >= 0 ? 0.6 : 2));
+    Point *places = malloc(2 * (size_t)d->frames * sizeof *places);
+    if (places == NULL) return error_memory(error, "figure");
+    if (d->low != NULL) draw_band(d, sketch, &plot, places);
     plot_panel_draw(sketch, &plot);
-    draw_impact(d, sketch, &plot);
-    for (int i = 1; i < spec->run_count; i++) draw_line(d, sketch, &plot, i, points);
-    draw_legend(d, sketch, left, sketch->height, spec->width - left);
-    free(points);
+    if (touch >= 0) draw_impact(d, sketch, &plot, touch);
+    for (int i = 1; i < spec->run_count; i++) draw_line(d, sketch, &plot, i, places);
+    draw_legend(d, sketch, (Point){left, sketch->height}, spec->width - PAGE_EDGE - left);
+    free(places);
     return true;
 }
 

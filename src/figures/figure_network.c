@@ -43,12 +43,9 @@ uint32_t weight_colour(double share) {
     return mix(share > 0 ? above : below, fmin(fabs(share), 1));
 }
 
-/* In mm. */
-static double network_title_height(const FigureSpec *spec) { return 1.5 * line_height(spec->points); }
-
-/* The title, cut to the page's width: the file, and what is in it. */
-static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *format, ...) PRINTF_LIKE(3, 4);
-static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const char *format, ...) {
+/* The title: the file, and what is in it. */
+static WrappedText network_title(const FigureSpec *spec, const char *format, ...) PRINTF_LIKE(2, 3);
+static WrappedText network_title(const FigureSpec *spec, const char *format, ...) {
     char title[NETWORK_TEXT_SIZE + 160];
     const int used = snprintf(title, NETWORK_TEXT_SIZE, "%s: ", spec->network + file_folder_length(spec->network));
     const size_t begin = used < NETWORK_TEXT_SIZE ? (size_t)used : NETWORK_TEXT_SIZE - 1;
@@ -57,16 +54,24 @@ static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const cha
     vsnprintf(title + begin, sizeof title - begin, format, arguments);
     va_end(arguments);
     if (spec->facts != NULL) snprintf(spec->facts->network, sizeof spec->facts->network, "%s", title);
-    draw_fitted(sketch, (Point){PAGE_EDGE, sketch->height - 0.6 * line_height(spec->points)}, spec->points, INK,
-                sketch->width, "%s", title);
+    return wrap_text(spec->points, spec->width - 2 * PAGE_EDGE, "%s", title);
+}
+
+/* In mm. */
+static double network_title_height(const FigureSpec *spec, const WrappedText *title) {
+    return (title->lines + 0.5) * line_height(spec->points);
+}
+
+static void draw_network_title(Sketch *sketch, const FigureSpec *spec, const WrappedText *title) {
+    draw_wrapped(sketch, (Point){PAGE_EDGE, sketch->height - 0.6 * line_height(spec->points)}, INK, title);
 }
 
 /* "10-10-2, 132 parameters" */
-static void draw_dense_title(Sketch *sketch, const FigureSpec *spec, const Network *network) {
+static WrappedText dense_title(const FigureSpec *spec, const Network *network) {
     char widths[64];
     for (int i = 0, used = 0; i <= network->layers; i++)
         used += snprintf(widths + used, sizeof widths - (size_t)used, "%s%d", i > 0 ? "-" : "", network->widths[i]);
-    draw_network_title(sketch, spec, "%s, %d parameters", widths, network_parameter_count(network));
+    return network_title(spec, "%s, %d parameters", widths, network_parameter_count(network));
 }
 
 /* A picture per matrix. If it has more weights than pixels, each pixel shows the largest weight that it covers. */
@@ -88,7 +93,9 @@ typedef struct Matrices {
     const FigureSpec *spec;
     int count, columns, rows;
     const Matrix *matrices;
-    double width, height, row; /* mm: size of a picture; distance between rows of pictures */
+    double width, height; /* mm: size of a picture */
+    int above, below;     /* lines of text above and below each picture */
+    double top;           /* mm: of the first row */
 } Matrices;
 
 static double weight_at(const Matrix *matrix, int input, int output) {
@@ -137,53 +144,81 @@ static bool draw_weights(const Matrices *all, Sketch *sketch, const Matrix *matr
     return true;
 }
 
+static WrappedText matrix_name(const Matrices *all, const Matrix *matrix) {
+    return wrap_text(all->spec->points, all->width, "%s%s%s", matrix->name, matrix->activation[0] != '\0' ? ", " : "",
+                     matrix->activation);
+}
+
+static WrappedText matrix_facts(const Matrices *all, const Matrix *matrix) {
+    return wrap_text(SMALL_TYPE * all->spec->points, all->width, "%d to %d, max |w| %.2g", matrix->inputs,
+                     matrix->outputs, largest_in_matrix(matrix));
+}
+
+/* mm: between rows of pictures. */
+static double row_of_matrices(const Matrices *all) {
+    return all->height + (all->above + all->below + 0.5) * line_height(all->spec->points);
+}
+
 static bool draw_matrix(const Matrices *all, Sketch *sketch, int i, Error *error) {
     const Matrix *matrix = &all->matrices[i];
-    const double points = all->spec->points, line = line_height(points), small = SMALL_TYPE * points;
-    const double largest = largest_in_matrix(matrix), column = i % all->columns;
-    const double top = sketch->height - network_title_height(all->spec) - (i / all->columns) * all->row;
-    const Point low = {PAGE_EDGE + column * (all->width + matrix_gap), top - line - all->height};
-    if (!draw_weights(all, sketch, matrix, low, largest, error)) return false;
+    const double line = line_height(all->spec->points), column = i % all->columns;
+    const double top = all->top - (i / all->columns) * row_of_matrices(all);
+    const Point low = {PAGE_EDGE + column * (all->width + matrix_gap), top - all->above * line - all->height};
+    const WrappedText name = matrix_name(all, matrix), facts = matrix_facts(all, matrix);
+    if (!draw_weights(all, sketch, matrix, low, largest_in_matrix(matrix), error)) return false;
     sketch_rectangle(sketch, low, (Point){low.x + all->width, low.y + all->height},
                      &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
-    draw_fitted(sketch, (Point){low.x, top - line / 2}, points, INK, all->width, "%s%s%s", matrix->name,
-                matrix->activation[0] != '\0' ? ", " : "", matrix->activation);
-    draw_fitted(sketch, (Point){low.x, low.y - 0.6 * line}, small, INK_SOFT, all->width, "%d to %d, max |w| %.2g",
-                matrix->inputs, matrix->outputs, largest);
+    draw_wrapped(sketch, (Point){low.x, low.y + all->height + (name.lines - 0.5) * line}, INK, &name);
+    draw_wrapped(sketch, (Point){low.x, low.y - 0.6 * line}, INK_SOFT, &facts);
     return true;
 }
 
-/* The colour scale, from the most negative to the most positive weight. */
-static void draw_color_scale(const Matrices *all, Sketch *sketch) {
+/* The colour scale, from the most negative to the most positive weight, and the axes. Returns the rows; without a sketch, it
+   only counts them. */
+static int draw_color_scale(const Matrices *all, Sketch *sketch, double top) {
     enum { STEPS = 20 };
-    const double points = SMALL_TYPE * all->spec->points, y = 0.5 * line_height(points), high = 2, cell = 1;
+    const double points = SMALL_TYPE * all->spec->points, high = 2, gap = 1.2;
+    const double width = all->spec->width - 2 * PAGE_EDGE, before = type_width("negative", points) + gap;
+    const double after = gap + type_width("positive", points), cell = fmin(1, (width - before - after) / STEPS);
+    const WrappedText axes = wrap_text(points, width, "columns: inputs, rows: outputs");
     const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
-    sketch_text(sketch, (Point){PAGE_EDGE, y}, &words, "negative");
-    double x = PAGE_EDGE + type_width("negative", points) + 1.2;
-    const double start = x;
-    for (int i = 0; i < STEPS; i++, x += cell) {
+    Flow flow = {.first = {PAGE_EDGE, top - 0.5 * line_height(points)}, .width = width, .points = points};
+    const Point at = flow_place(&flow, before + STEPS * cell + after, 1);
+    flow_text(&flow, sketch, INK, &axes);
+    if (sketch == NULL) return flow.row + 1;
+    const Point low = {at.x + before, at.y - high / 2}, end = {low.x + STEPS * cell, low.y + high};
+    for (int i = 0; i < STEPS; i++) {
         const Pen pen = {weight_colour(2.0 * i / (STEPS - 1) - 1), 1, NO_COLOUR, 0, NULL};
-        sketch_rectangle(sketch, (Point){x, y - high / 2}, (Point){x + cell, y + high / 2}, &pen);
+        sketch_rectangle(sketch, (Point){low.x + i * cell, low.y}, (Point){low.x + (i + 1) * cell, end.y}, &pen);
     }
-    sketch_rectangle(sketch, (Point){start, y - high / 2}, (Point){x, y + high / 2},
-                     &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
-    sketch_text(sketch, (Point){x + 1.2, y}, &words, "positive; columns: inputs, rows: outputs");
+    sketch_rectangle(sketch, low, end, &(Pen){NO_COLOUR, 1, FRAME, 1, NULL});
+    sketch_text(sketch, at, &words, "negative");
+    sketch_text(sketch, (Point){end.x + gap, at.y}, &words, "positive");
+    return flow.row + 1;
 }
 
-static bool draw_all(Sketch *sketch, const FigureSpec *spec, const Matrix *matrices, int count, Error *error) {
+static bool draw_all(Sketch *sketch, const FigureSpec *spec, const WrappedText *title, const Matrix *matrices,
+                     int count, Error *error) {
     assert(count > 0);
     Matrices all = {.spec = spec, .count = count, .matrices = matrices};
-    const double usable = spec->width - 2 * PAGE_EDGE, line = line_height(spec->points);
+    const double usable = spec->width - 2 * PAGE_EDGE, line = line_height(SMALL_TYPE * spec->points);
     all.columns = (int)fmax(floor((usable + matrix_gap) / (narrowest_matrix + matrix_gap)), 1);
     if (all.columns > count) all.columns = count;
     all.rows = (count + all.columns - 1) / all.columns;
     all.width = fmin((usable - (all.columns - 1) * matrix_gap) / all.columns, widest_matrix);
     all.height = aspect * all.width;
-    all.row = all.height + 2.5 * line;
-    sketch_begin(sketch, spec->width, network_title_height(spec) + all.rows * all.row + 1.2 * line);
+    for (int i = 0; i < count; i++) {
+        const int above = matrix_name(&all, &matrices[i]).lines, below = matrix_facts(&all, &matrices[i]).lines;
+        if (above > all.above) all.above = above;
+        if (below > all.below) all.below = below;
+    }
+    const double foot = (draw_color_scale(&all, NULL, 0) + 0.2) * line;
+    sketch_begin(sketch, spec->width, network_title_height(spec, title) + all.rows * row_of_matrices(&all) + foot);
+    all.top = sketch->height - network_title_height(spec, title);
+    draw_network_title(sketch, spec, title);
     for (int i = 0; i < count; i++)
         if (!draw_matrix(&all, sketch, i, error)) return false;
-    draw_color_scale(&all, sketch);
+    draw_color_scale(&all, sketch, foot);
     return true;
 }
 
@@ -199,9 +234,8 @@ static bool draw_dense_matrices(Sketch *sketch, const FigureSpec *spec, const Ne
                                network->widths[i + 1],
                                false};
     }
-    if (!draw_all(sketch, spec, matrices, network->layers, error)) return false;
-    draw_dense_title(sketch, spec, network);
-    return true;
+    const WrappedText title = dense_title(spec, network);
+    return draw_all(sketch, spec, &title, matrices, network->layers, error);
 }
 
 static Matrix projection_matrix(const char *name, const Projection *projection) {
@@ -222,10 +256,9 @@ static bool draw_slot_matrices(Sketch *sketch, const FigureSpec *spec, const Slo
         layer_matrix("layer 2", &network->second),
         {"impulses", "linear", network->rows, network->second.to, 2 * network->slot_count, false},
     };
-    if (!draw_all(sketch, spec, matrices, (int)(sizeof matrices / sizeof *matrices), error)) return false;
-    draw_network_title(sketch, spec, "%d bodies, %d contacts, %zu parameters", network->body_count, network->slot_count,
-                       network->parameter_count);
-    return true;
+    const WrappedText title = network_title(spec, "%d bodies, %d contacts, %zu parameters", network->body_count,
+                                            network->slot_count, network->parameter_count);
+    return draw_all(sketch, spec, &title, matrices, (int)(sizeof matrices / sizeof *matrices), error);
 }
 
 /* A column of units per layer, and a line per weight: stronger ones are darker and wider. */
@@ -263,12 +296,17 @@ static void unit_name(const char *words, int i, int count, char name[32]) {
     if (!nth_word(words, i, count, name, 32)) snprintf(name, 32, "%d", i + 1);
 }
 
+/* Of names beside units, which are not farther apart than their step. */
+static double name_points(const Units *units) {
+    return fmin(SMALL_TYPE * units->spec->points, units->step / MM_PER_POINT);
+}
+
 static double widest_name(const Units *units, const char *words, int count) {
     double widest = 0;
     for (int i = 0; i < count; i++) {
         char name[32];
         unit_name(words, i, count, name);
-        widest = fmax(widest, type_width(name, SMALL_TYPE * units->spec->points));
+        widest = fmax(widest, type_width(name, name_points(units)));
     }
     return widest;
 }
@@ -324,7 +362,7 @@ static bool draw_weight_lines(const Units *units, Sketch *sketch, Error *error) 
 
 static void draw_unit_dots(const Units *units, Sketch *sketch) {
     const Network *network = units->network;
-    const double small = SMALL_TYPE * units->spec->points, beside = units->radius + name_gap;
+    const double small = name_points(units), beside = units->radius + name_gap;
     const Pen pen = {0xFFFFFF, 1, INK, 1.4, NULL};
     const int last = network->layers;
     for (int layer = 0; layer <= last; layer++)
@@ -339,32 +377,56 @@ static void draw_unit_dots(const Units *units, Sketch *sketch) {
         }
 }
 
-/* Below the columns the layers' sizes and activations, below these the meaning of lines. */
-static void draw_footer(const Units *units, Sketch *sketch) {
+/* "10 inputs", in two lines where columns are narrow. */
+static WrappedText size_of_layer(const Units *units, int layer) {
     const Network *network = units->network;
-    const double line = line_height(units->spec->points), points = units->spec->points;
-    const TextStyle center = {points, TEXT_CENTER, INK, 0, false}, left = {points, TEXT_LEFT, INK, 0, false};
-    const double sample = 7;
-    for (int layer = 0; layer <= network->layers; layer++) {
-        const double x = unit_place(units, layer, 0).x;
-        sketch_text(sketch, (Point){x, 2.6 * line}, &center, "%d %s", network->widths[layer],
-                    layer == 0                 ? network->widths[0] == 1 ? "input" : "inputs"
-                    : layer == network->layers ? network->widths[layer] == 1 ? "output" : "outputs"
-                                               : "units");
-        if (layer > 0)
-            sketch_text(sketch, (Point){x, 1.7 * line},
-                        &(TextStyle){SMALL_TYPE * points, TEXT_CENTER, INK_SOFT, 0, false}, "%s",
-                        activation_name(network->activations[layer - 1]));
-    }
-    double x = PAGE_EDGE;
+    const int width = network->widths[layer];
+    const double room = (units->right - units->left) / network->layers - name_gap;
+    return wrap_text(text_points("outputs", units->spec->points, room), room, "%d %s", width,
+                     layer == 0                 ? width == 1 ? "input" : "inputs"
+                     : layer == network->layers ? width == 1 ? "output" : "outputs"
+                                                : "units");
+}
+
+static int lines_of_sizes(const Units *units) {
+    int lines = 1;
+    for (int layer = 0; layer <= units->network->layers; layer++)
+        lines = (int)fmax(lines, size_of_layer(units, layer).lines);
+    return lines;
+}
+
+/* The meaning of lines. Returns the rows; without a sketch, it only counts them. */
+static int draw_samples(const Units *units, Sketch *sketch, double top) {
+    const double points = units->spec->points, sample = 7, gap = number_gap(points);
+    Flow flow = {.first = {PAGE_EDGE, top - 0.6 * line_height(points)},
+                 .width = units->spec->width - 2 * PAGE_EDGE,
+                 .points = points};
     for (int sign = 1; sign >= -1; sign -= 2) {
         const Pen pen = weight_pen(sign);
-        const Point from = {x, 0.6 * line}, to = {x + sample, 0.6 * line};
         char words[64];
         snprintf(words, sizeof words, "weight %s", show_decimals(sign * units->largest, 2).text);
-        sketch_line(sketch, from, to, &pen);
-        sketch_text(sketch, (Point){to.x + 1.2, to.y}, &left, "%s", words);
-        x = to.x + 1.2 + type_width(words, points) + 4;
+        const Point at = flow_place(&flow, sample + gap + type_width(words, points), 1);
+        if (sketch == NULL) continue;
+        sketch_line(sketch, at, (Point){at.x + sample, at.y}, &pen);
+        sketch_text(sketch, (Point){at.x + sample + gap, at.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%s",
+                    words);
+    }
+    return flow.row + 1;
+}
+
+/* Below the columns the layers' sizes and activations, down from `top`. */
+static void draw_footer(const Units *units, Sketch *sketch, double top) {
+    const Network *network = units->network;
+    const double points = units->spec->points, line = line_height(points);
+    for (int layer = 0; layer <= network->layers; layer++) {
+        const double x = unit_place(units, layer, 0).x;
+        const WrappedText size = size_of_layer(units, layer);
+        sketch_lines(sketch, (Point){x, top - 0.7 * line}, &(TextStyle){size.points, TEXT_CENTER, INK, 0, false},
+                     size.text);
+        if (layer > 0)
+            sketch_text(sketch, (Point){x, top - (size.lines + 0.6) * line},
+                        &(TextStyle){SMALL_TYPE * points, TEXT_CENTER, INK_SOFT, 0, false}, "%s",
+                        activation_name(network->activations[layer - 1]));
     }
 }
 
@@ -378,24 +440,28 @@ static bool check_room(const Units *units, Error *error) {
 }
 
 static bool draw_units(Sketch *sketch, const FigureSpec *spec, const Network *network, Error *error) {
-    const double line = line_height(spec->points), foot = 3.3 * line;
+    const double line = line_height(spec->points);
     const int last = network->layers;
     int most = 0;
     for (int i = 0; i <= last; i++) most = network->widths[i] > most ? network->widths[i] : most;
     Units units = {.spec = spec, .network = network, .largest = largest_weight(network)};
-    units.step = fmin(max_step, max_height / most);
+    units.step = fmin(fmax(max_step, 0.8 * line), max_height / most);
     units.radius = fmin(0.3 * units.step, 1.4);
-    const double beside = units.radius + name_gap, words = type_width("99 outputs", spec->points) / 2;
+    const double beside = units.radius + name_gap, words = type_width("2 outputs", spec->points) / 2 + 0.3;
     units.left = fmax(widest_name(&units, network->inputs, network->widths[0]) + beside, words) + 0.3;
     units.right =
         spec->width - fmax(widest_name(&units, network->outputs, network->widths[last]) + beside, words) - 0.3;
     if (!check_room(&units, error)) return false;
+    const WrappedText title = dense_title(spec, network);
+    const double samples = (draw_samples(&units, NULL, 0) + 0.2) * line;
+    const double foot = samples + (lines_of_sizes(&units) + 1.1) * line;
     units.middle = foot + most * units.step / 2;
-    sketch_begin(sketch, spec->width, foot + most * units.step + network_title_height(spec));
+    sketch_begin(sketch, spec->width, foot + most * units.step + network_title_height(spec, &title));
     bool done = draw_weight_lines(&units, sketch, error);
     draw_unit_dots(&units, sketch);
-    draw_footer(&units, sketch);
-    draw_dense_title(sketch, spec, network);
+    draw_footer(&units, sketch, foot);
+    draw_samples(&units, sketch, samples);
+    draw_network_title(sketch, spec, &title);
     return done;
 }
 

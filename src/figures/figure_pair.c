@@ -144,55 +144,66 @@ static bool choose(const FigureSpec *spec, Collision *collision, Error *error) {
                        collision->bodies[0], collision->bodies[1], (collision->step - 1) * (double)run->dt);
 }
 
-/* The picture is rotated: an arrow shows where down is. */
-static void draw_down_arrow(Sketch *sketch, const Collision *collision, const View *view, Vec2 down) {
-    const double reach = 3.5, x = (double)down.x, y = (double)down.y;
-    const Point middle = {view->low.x + 5, view->low.y + 14};
-    sketch_arrow(sketch, (Point){middle.x - reach * x, middle.y - reach * y},
-                 (Point){middle.x + reach * x, middle.y + reach * y}, HEAD_AT_END, INK_SOFT, 2);
-    sketch_text(sketch, (Point){middle.x + 5, middle.y}, &(TextStyle){collision->points, TEXT_LEFT, INK_SOFT, 0, false},
-                "down");
+static const char overlaps_title[] = "Overlaps along the axes of both boxes",
+                  contact_title[] = "Contact points: separations along the normal";
+
+/* A half of the picture and its title above. */
+typedef struct Half {
+    View window;
+    WrappedText title;
+} Half;
+
+static Half half_of(const FigureSpec *spec, const char *title, double left, double width) {
+    return (Half){.window = {.low = {left, 0}, .high = {left + width, 0}},
+                  .title = wrap_text(spec->points, width, "%s", title)};
 }
 
-static void draw_halves(Sketch *sketch, const Collision *collision, View overlaps, View contact, Vec2 down) {
-    const double line = line_height(collision->points);
-    const TextStyle words = {collision->points, TEXT_LEFT, INK, 0, false};
-    draw_overlaps(sketch, overlaps, collision);
-    draw_down_arrow(sketch, collision, &overlaps, down);
-    draw_contact_closeup(sketch, contact, collision);
-    sketch_text(sketch, (Point){overlaps.low.x, overlaps.high.y + 0.6 * line}, &words,
-                "Overlaps along the axes of both boxes");
-    sketch_text(sketch, (Point){contact.low.x, contact.high.y + 0.6 * line}, &words,
-                "Contact points: separations along the normal");
+static void draw_half_title(Sketch *sketch, const Half *half) {
+    const double line = line_height(half->title.points);
+    draw_wrapped(sketch, (Point){half->window.low.x, half->window.high.y + (half->title.lines - 0.4) * line}, INK,
+                 &half->title);
 }
 
-static void draw_title(Sketch *sketch, const FigureSpec *spec, const Collision *collision) {
-    const Trajectory *run = spec->runs[0];
-    draw_fitted(sketch, (Point){PAGE_EDGE, sketch->height - 0.6 * line_height(spec->points)}, spec->points, INK,
-                sketch->width - 2 * PAGE_EDGE, "%s, %.3f s, bodies %d and %d", run_name(spec, run).text,
-                (collision->step - 1) * (double)run->dt, collision->bodies[0], collision->bodies[1]);
+/* The halves beside each other, or the second below the first. */
+static void place_halves(const FigureSpec *spec, Half halves[2], double *height) {
+    const double width = spec->width, line = line_height(spec->points), edge = PAGE_EDGE, gap = 3;
+    const double least = 17 * line; /* mm: height of a half, for its labels */
+    if (width >= side_by_side) {
+        const double side = 0.44 * width, high = fmax(side, least);
+        halves[0] = half_of(spec, overlaps_title, edge, width - side - gap - edge);
+        halves[1] = half_of(spec, contact_title, width - side - edge, side);
+        for (int i = 0; i < 2; i++) halves[i].window.low.y = edge, halves[i].window.high.y = edge + high;
+        *height = edge + high + fmax(halves[0].title.lines, halves[1].title.lines) * line;
+    } else {
+        for (int i = 0; i < 2; i++)
+            halves[i] = half_of(spec, i == 0 ? overlaps_title : contact_title, edge, width - 2 * edge);
+        halves[1].window.low.y = edge, halves[1].window.high.y = edge + fmax(0.8 * width, least);
+        halves[0].window.low.y = halves[1].window.high.y + (halves[1].title.lines + 0.6) * line;
+        halves[0].window.high.y = halves[0].window.low.y + fmax(width, least);
+        *height = halves[0].window.high.y + halves[0].title.lines * line;
+    }
 }
 
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Collision collision;
+    Half halves[2];
+    double height;
     if (!choose(spec, &collision, error)) return false;
     if (spec->facts != NULL)
         *spec->facts = (FigureFacts){
             .frame_count = 1, .frames = {collision.step - 1}, .bodies = {collision.bodies[0], collision.bodies[1]}};
     const Vec2 down = collision_turn_up(&collision);
-    const double width = spec->width, line = line_height(spec->points), edge = PAGE_EDGE, gap = 3;
-    if (width >= side_by_side) {
-        const double side = 0.44 * width;
-        sketch_begin(sketch, width, side + 2.6 * line + edge);
-        draw_halves(sketch, &collision, (View){.low = {edge, edge}, .high = {width - side - gap, side + edge}},
-                    (View){.low = {width - side - edge, edge}, .high = {width - edge, side + edge}}, down);
-    } else {
-        const double upper = width, lower = 0.8 * width, middle = lower + 2 * line + edge;
-        sketch_begin(sketch, width, middle + upper + 2.6 * line);
-        draw_halves(sketch, &collision, (View){.low = {edge, middle}, .high = {width - edge, middle + upper}},
-                    (View){.low = {edge, edge}, .high = {width - edge, lower}}, down);
-    }
-    draw_title(sketch, spec, &collision);
+    const double line = line_height(spec->points);
+    const WrappedText title = wrap_text(
+        spec->points, spec->width - 2 * PAGE_EDGE, "%s, %.3f s, bodies %d and %d", run_name(spec, spec->runs[0]).text,
+        (collision.step - 1) * (double)spec->runs[0]->dt, collision.bodies[0], collision.bodies[1]);
+    place_halves(spec, halves, &height);
+    sketch_begin(sketch, spec->width, height + (title.lines + 0.6) * line);
+    if (!draw_overlaps(sketch, halves[0].window, &collision, &down, error) ||
+        !draw_contact_closeup(sketch, halves[1].window, &collision, error))
+        return false;
+    for (int i = 0; i < 2; i++) draw_half_title(sketch, &halves[i]);
+    draw_wrapped(sketch, (Point){PAGE_EDGE, sketch->height - 0.6 * line}, INK, &title);
     return true;
 }
 

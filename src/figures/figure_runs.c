@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The figures of moments of runs: strobe, strip, annotated. */
+/* The figures of moments of runs: strobe, strip. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "figures/figure.h"
@@ -27,6 +27,7 @@ typedef struct Strobe {
     const Trajectory *run;
     MethodColour colour;
     int frames[FIGURE_MOMENTS_MAX], count;
+    WrappedText title;
     RunCells cells;
     Point low;
 } Strobe;
@@ -76,22 +77,51 @@ static void draw_bomb_path(const Strobe *strobe, Sketch *sketch, const View *vie
     }
 }
 
+static PageBox box_on_page(const Strobe *strobe, const View *view, int frame, int body) {
+    Extent box = extent_empty;
+    extent_include(&box, strobe->run, frame, body);
+    const Point low = view_place(view, vec2((float)box.left, (float)box.bottom));
+    const Point high = view_place(view, vec2((float)box.right, (float)box.top));
+    return (PageBox){low.x, low.y, high.x, high.y};
+}
+
+/* Times cover no body of any moment, and no edge of the ground. */
+static void add_bodies(const Strobe *strobe, const View *view, LabelField *field) {
+    const Trajectory *run = strobe->run;
+    for (int body = 0; body < run->bodies; body++) {
+        for (int i = 0; i < strobe->count && !run->fixed[body]; i++)
+            if (trajectory_has(run, strobe->frames[i], body))
+                label_add_box(field, box_on_page(strobe, view, strobe->frames[i], body));
+        if (!run->fixed[body]) continue;
+        const PageBox box = box_on_page(strobe, view, 0, body);
+        label_add_segment(field, (Segment){box.left, box.top, box.right, box.top});
+        label_add_segment(field, (Segment){box.left, box.bottom, box.left, box.top});
+        label_add_segment(field, (Segment){box.right, box.bottom, box.right, box.top});
+    }
+    field->crossable = field->box_count;
+}
+
 /* The times at the bomb's positions, where there is room. */
 static void draw_times(const Strobe *strobe, Sketch *sketch, const View *view, LabelField *field) {
     const Trajectory *run = strobe->run;
-    const double points = SMALL_TYPE * strobe->spec->points, height = points * MM_PER_POINT;
+    const double points = SMALL_TYPE * strobe->spec->points, height = points * MM_PER_POINT, farthest = 12;
     const double half = 0.5 * (double)run->size[run->bomb].x * view->scale;
+    const Pen thin = pen_line(BOMB.line, 0.8, NULL);
     Point at;
-    for (int i = 0; i < strobe->count; i++)
-        if (find_bomb(strobe, view, strobe->frames[i], &at))
-            label_add_box(field, (PageBox){at.x - half, at.y - half, at.x + half, at.y + half});
+    add_bodies(strobe, view, field);
     for (int i = strobe->count - 1; i >= 0; i--) {
         char text[32];
         PageBox box;
+        Segment leader;
+        bool led = false;
         if (!find_bomb(strobe, view, strobe->frames[i], &at)) continue;
         snprintf(text, sizeof text, "%.2f s", strobe->frames[i] * (double)run->dt);
-        if (!label_place(field, at.x, at.y, 1.1 * half + 0.5, type_width(text, points) + 0.5, height, false, &box))
+        const double width = type_width(text, points) + 0.5;
+        const LabelWish wish = {at.x, at.y, half, 0, half + farthest, width, height, false, true, true};
+        if (!label_place(field, at.x, at.y, 1.1 * half + 0.5, width, height, false, &box) &&
+            !label_place_led(field, &wish, &box, &leader, &led))
             continue;
+        if (led) draw_leader(sketch, &leader, &box, &thin);
         sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
                     &(TextStyle){points, TEXT_CENTER, BOMB.line, 0, true}, "%s", text);
     }
@@ -109,24 +139,25 @@ static bool draw_bomb(const Strobe *strobe, Sketch *sketch, Error *error) {
     return true;
 }
 
-static void strobe_draw_texts(const Strobe *strobe, Sketch *sketch) {
+/* Below the picture: the scale, and who has left. Returns the rows; without a sketch, it only counts them. */
+static int strobe_foot(const Strobe *strobe, Sketch *sketch) {
     const FigureSpec *spec = strobe->spec;
-    const RunCells *cells = &strobe->cells;
-    const double line = line_height(spec->points), y = strobe->low.y / 2 - 0.2;
-    const double dt = (double)strobe->run->dt;
+    const int outside = run_count_outside(strobe->run, strobe->frames[strobe->count - 1], &strobe->cells.window);
+    const WrappedText words = wrap_text(spec->points, strobe->cells.width, "%d out of view at the end", outside);
+    Flow flow = {.first = {strobe->low.x, strobe->low.y - 0.7 * line_height(spec->points)},
+                 .width = strobe->cells.width,
+                 .points = spec->points};
+    run_cells_flow_scale_bar(&strobe->cells, sketch, &flow);
+    if (outside > 0) flow_text(&flow, sketch, INK_SOFT, &words);
+    return flow.row + 1;
+}
+
+static WrappedText strobe_title(const Strobe *strobe, double width) {
+    const double dt = (double)strobe->run->dt, points = strobe->spec->points;
     const double first = strobe->frames[0] * dt, last = strobe->frames[strobe->count - 1] * dt;
-    const Point top = {strobe->low.x, strobe->low.y + cells->height + 0.6 * line};
-    const RunName name = run_name(spec, strobe->run);
-    if (strobe->count > 1)
-        draw_fitted(sketch, top, spec->points, INK, cells->width, "%s, %d moments from %.2f to %.2f s", name.text,
-                    strobe->count, first, last);
-    else
-        draw_fitted(sketch, top, spec->points, INK, cells->width, "%s, %.2f s", name.text, last);
-    run_cells_draw_scale_bar(cells, sketch, (Point){strobe->low.x, y}, spec->points);
-    int outside = run_count_outside(strobe->run, strobe->frames[strobe->count - 1], &cells->window);
-    if (outside > 0)
-        sketch_text(sketch, (Point){strobe->low.x + cells->width, y},
-                    &(TextStyle){spec->points, TEXT_RIGHT, INK_SOFT, 0, false}, "%d out of view at the end", outside);
+    const RunName name = run_name(strobe->spec, strobe->run);
+    if (strobe->count == 1) return wrap_text(points, width, "%s, %.2f s", name.text, last);
+    return wrap_text(points, width, "%s, %d moments from %.2f to %.2f s", name.text, strobe->count, first, last);
 }
 
 static bool strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
@@ -140,13 +171,15 @@ static bool strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     run_window_widen(&window, width / height);
     bool done = run_cells_begin(&strobe.cells, &window, width, height, spec->dpi, error);
     if (done) {
-        strobe.low = (Point){(spec->width - strobe.cells.width) / 2, 1.2 * line};
-        sketch_begin(sketch, spec->width, strobe.cells.height + 2.4 * line);
+        strobe.title = strobe_title(&strobe, width);
+        strobe.low = (Point){(spec->width - strobe.cells.width) / 2, (strobe_foot(&strobe, NULL) + 0.2) * line};
+        sketch_begin(sketch, spec->width, strobe.low.y + strobe.cells.height + (strobe.title.lines + 0.2) * line);
         done = draw_moments(&strobe, sketch, error) && draw_bomb(&strobe, sketch, error);
     }
     if (done) {
         run_cells_frame(&strobe.cells, sketch, strobe.low);
-        strobe_draw_texts(&strobe, sketch);
+        draw_wrapped(sketch, (Point){strobe.low.x, sketch->height - 0.6 * line}, INK, &strobe.title);
+        strobe_foot(&strobe, sketch);
     }
     run_cells_free(&strobe.cells);
     return done;
@@ -185,12 +218,26 @@ typedef struct Strip {
     int frames[FIGURE_MOMENTS_MAX], count;
     RunCells cells;
     MethodColour colours[FIGURE_RUNS_MAX];
-    double left, top, foot; /* mm: space beside, above and below the cells */
-    double start;           /* left end of the first cell */
+    double left, top, foot;          /* mm: space beside, above and below the cells */
+    double start;                    /* left end of the first cell */
+    int name_lines;                  /* beside each row of cells */
+    int note_lines[FIGURE_RUNS_MAX]; /* below it */
+    double name_points;
 } Strip;
 
+/* mm */
+static double room_of_notes(const Strip *strip, int first, int end) {
+    double room = 0;
+    for (int row = first; row < end; row++)
+        if (strip->note_lines[row] > 0)
+            room += strip->note_lines[row] * line_height(SMALL_TYPE * strip->spec->points) + 0.4;
+    return room;
+}
+
 static double strip_height(const Strip *strip) {
-    return strip->top + strip->foot + strip->spec->run_count * (strip->cells.height + strip_gap) - strip_gap;
+    const int runs = strip->spec->run_count;
+    return strip->top + strip->foot + room_of_notes(strip, 0, runs) + runs * (strip->cells.height + strip_gap) -
+           strip_gap;
 }
 
 static bool check_bodies(const FigureSpec *spec, Error *error) {
@@ -218,23 +265,62 @@ static WorldWindow window_of_bodies(const Strip *strip) {
                          all.top - all.bottom + 2 * margin};
 }
 
-/* Cells beside names of this many lines. */
-static bool lay_out_beside(Strip *strip, int lines, Error *error) {
+/* Of the bodies in question: that others are cut off is meant. */
+static int count_outside(const Strip *strip, const Trajectory *run, int frame, const WorldWindow *window) {
     const FigureSpec *spec = strip->spec;
-    const double line = line_height(spec->points);
-    strip->left = (lines + 0.1) * line, strip->top = 1.15 * line, strip->foot = line + 0.6;
+    if (spec->body_count == 0) return run_count_outside(run, frame, window);
+    int count = 0;
+    for (int i = 0; i < spec->body_count; i++)
+        count += !run->fixed[spec->bodies[i]] && run_is_outside(run, frame, spec->bodies[i], window);
+    return count;
+}
+
+/* "2 out of view", in lines as wide as a cell; empty if all are there. */
+static WrappedText note_of(const Strip *strip, int row, int column) {
+    const RunCells *cells = &strip->cells;
+    const int outside = count_outside(strip, strip->spec->runs[row], strip->frames[column], &cells->window);
+    if (outside == 0) return (WrappedText){.lines = 0};
+    return wrap_text(text_points("of view", SMALL_TYPE * strip->spec->points, cells->width), cells->width,
+                     "%d out of view", outside);
+}
+
+/* The name of a row's run, in lines as long as its cells are high. */
+static WrappedText strip_name(const Strip *strip, int row) {
+    return wrap_text(strip->spec->points, strip->cells.height, "%s",
+                     run_name(strip->spec, strip->spec->runs[row]).text);
+}
+
+static const double smallest_time = 0.7; /* share of the font size */
+
+/* Of the times above the columns: smaller where these are narrow. */
+static double time_points(const Strip *strip) {
+    const double widest = type_width("0.00 s ", strip->spec->points);
+    return strip->spec->points * fmin(1, (strip->cells.width + strip_gap) / widest);
+}
+
+static bool check_cell(const Strip *strip, double width, double height, Error *error) {
+    const FigureSpec *spec = strip->spec;
+    const double least = 5, time = smallest_time * type_width("0.00 s ", spec->points) - strip_gap;
+    return (width >= fmax(least, time) && height >= least) ||
+           error_input(error, "figure",
+                       "%d moments of %d runs leave %.1f x %.1f mm per cell at a width of %g mm; at least "
+                       "%.1f x %g mm are needed at a font size of %g",
+                       strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, fmax(least, time),
+                       least, spec->points);
+}
+
+/* Cells in the room that names and notes leave. */
+static bool lay_out_cells(Strip *strip, Error *error) {
+    const FigureSpec *spec = strip->spec;
+    const double line = line_height(spec->points), runs = spec->run_count;
+    strip->left = strip->name_lines * line_height(strip->name_points) + 0.1 * line, strip->top = 1.15 * line,
+    strip->foot = line + 0.6;
     const double width = (spec->width - PAGE_EDGE - strip->left - (strip->count - 1) * strip_gap) / strip->count;
-    const double height = ((spec->height > 0 ? spec->height : FIGURE_HEIGHT_MAX) - strip->top - strip->foot -
-                           (spec->run_count - 1) * strip_gap) /
-                          spec->run_count;
-    const double least = 5;
-    if (width < least || height < least)
-        return error_input(error, "figure",
-                           "%d moments of %d runs leave %.1f x %.1f mm per cell at a width of %g mm; at least "
-                           "%g mm are needed",
-                           strip->count, spec->run_count, fmax(width, 0), fmax(height, 0), spec->width, least);
+    const double high = (spec->height > 0 ? spec->height : FIGURE_HEIGHT_MAX) - strip->top - strip->foot;
+    const double height = (high - (runs - 1) * strip_gap - room_of_notes(strip, 0, spec->run_count)) / runs;
     WorldWindow window = run_window(spec, strip->frames, strip->count);
     if (spec->body_count > 0) window = window_of_bodies(strip);
+    if (!check_cell(strip, width, height, error)) return false;
     if (spec->height > 0) run_window_fill(&window, width / height);
     if (!run_cells_begin(&strip->cells, &window, width, height, spec->dpi, error)) return false;
     if (!sketch_check_pixels(spec->width, strip_height(strip), spec->dpi, error)) return false;
@@ -243,99 +329,76 @@ static bool lay_out_beside(Strip *strip, int lines, Error *error) {
     return true;
 }
 
-static bool names_fit(const Strip *strip) {
-    for (int i = 0; i < strip->spec->run_count; i++)
-        if (type_width(run_name(strip->spec, strip->spec->runs[i]).text, strip->spec->points) > strip->cells.height)
-            return false;
-    return true;
+/* False if it had to. */
+static bool grow(int *lines, int needed) {
+    const bool enough = needed <= *lines;
+    if (!enough) *lines = needed;
+    return enough;
 }
 
+/* As many lines as names and notes need; more lines leave less room for the cells, and may need more. */
+static bool lay_out_lines(Strip *strip, Error *error) {
+    strip->name_lines = 1;
+    memset(strip->note_lines, 0, sizeof strip->note_lines);
+    for (;; run_cells_free(&strip->cells)) {
+        bool enough = true;
+        if (!lay_out_cells(strip, error)) return false;
+        for (int row = 0; row < strip->spec->run_count; row++) {
+            enough &= grow(&strip->name_lines, strip_name(strip, row).lines);
+            for (int column = 0; column < strip->count; column++)
+                enough &= grow(&strip->note_lines[row], note_of(strip, row, column).lines);
+        }
+        if (enough) return true;
+    }
+}
+
+/* Names that leave no room for the cells are smaller. */
 static bool strip_lay_out(Strip *strip, Error *error) {
-    if (!lay_out_beside(strip, 1, error)) return false;
-    if (names_fit(strip)) return true;
-    run_cells_free(&strip->cells);
-    return lay_out_beside(strip, 2, error);
+    const double smallest = fmax(0.55 * strip->spec->points, FIGURE_POINTS_MIN * SMALL_TYPE);
+    strip->name_points = strip->spec->points;
+    while (!lay_out_lines(strip, error)) {
+        if (error->kind != ERROR_INPUT || strip->name_points <= smallest) return false;
+        strip->name_points = fmax(0.85 * strip->name_points, smallest);
+        run_cells_free(&strip->cells);
+        *error = (Error){0};
+    }
+    return true;
 }
 
 static Point cell_corner(const Strip *strip, int row, int column) {
     const RunCells *cells = &strip->cells;
+    const int below = strip->spec->run_count - 1 - row;
     return (Point){strip->start + column * (cells->width + strip_gap),
-                   strip->foot + (strip->spec->run_count - 1 - row) * (cells->height + strip_gap)};
-}
-
-/* Of the bodies in question: that others are cut off is meant. */
-static int count_outside(const Strip *strip, const Trajectory *run, int frame) {
-    const FigureSpec *spec = strip->spec;
-    if (spec->body_count == 0) return run_count_outside(run, frame, &strip->cells.window);
-    int count = 0;
-    for (int i = 0; i < spec->body_count; i++)
-        count += !run->fixed[spec->bodies[i]] && run_is_outside(run, frame, spec->bodies[i], &strip->cells.window);
-    return count;
-}
-
-/* In the upper right corner of a cell, in as many words as it has room for. */
-static void draw_outside(const Strip *strip, Sketch *sketch, Point corner, int count) {
-    const double points = SMALL_TYPE * strip->spec->points, margin = 0.8;
-    char words[32];
-    snprintf(words, sizeof words, "%d out of view", count);
-    if (type_width(words, points) > strip->cells.width - 2 * margin) snprintf(words, sizeof words, "%d out", count);
-    const double share = fmin(1, (strip->cells.width - 2 * margin) / type_width(words, points));
-    sketch_text(sketch, (Point){corner.x - margin, corner.y - line_height(strip->spec->points) / 2},
-                &(TextStyle){share * points, TEXT_RIGHT, INK_SOFT, 0, true}, "%s", words);
+                   strip->foot + below * (cells->height + strip_gap) +
+                       room_of_notes(strip, row, strip->spec->run_count)};
 }
 
 static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, Error *error) {
     RunCells cells = strip->cells;
-    const FigureSpec *spec = strip->spec;
-    const Trajectory *run = spec->runs[row];
     const Point low = cell_corner(strip, row, column);
-    const int frame = strip->frames[column], outside = count_outside(strip, run, frame);
-    if (!run_cells_draw(&cells, sketch, low, run, frame, strip->colours[row], error)) return false;
+    const WrappedText note = note_of(strip, row, column);
+    if (!run_cells_draw(&cells, sketch, low, strip->spec->runs[row], strip->frames[column], strip->colours[row], error))
+        return false;
     run_cells_frame(&cells, sketch, low);
-    if (outside > 0) draw_outside(strip, sketch, (Point){low.x + cells.width, low.y + cells.height}, outside);
+    if (note.lines > 0) draw_wrapped(sketch, (Point){low.x, low.y - 0.6 * line_height(note.points)}, INK_SOFT, &note);
     return true;
-}
-
-static const double SMALLEST_NAME = 0.6; /* share of the font size; a name longer than that is cut */
-
-/* A line of a turned text beside a row, smaller if its row is too short for it. */
-static void draw_turned(const Strip *strip, Sketch *sketch, Point at, const char *words) {
-    const double points = strip->spec->points;
-    const double room = fmin(1, strip->cells.height / type_width(words, points));
-    sketch_text(sketch, at, &(TextStyle){room * points, TEXT_CENTER, INK, 90, false}, "%s", words);
-}
-
-/* The name of the method stays whole; its settings get a second line, and are cut to their row. */
-static void draw_name(const Strip *strip, Sketch *sketch, const RunName *name, Point low) {
-    const double middle = low.y + strip->cells.height / 2, points = strip->spec->points;
-    const size_t head = method_name_head(name->text);
-    if (type_width(name->text, points) <= strip->cells.height || name->text[head] == '\0') {
-        RunName whole = *name;
-        text_fit(whole.text, sizeof whole.text, points, strip->cells.height / SMALLEST_NAME);
-        draw_turned(strip, sketch, (Point){low.x - 0.55 * line_height(points), middle}, whole.text);
-        return;
-    }
-    RunName method = *name, settings = *name;
-    method.text[head + 1] = '\0';
-    memmove(settings.text, name->text + head + 1, sizeof settings.text - head - 1);
-    text_fit(settings.text, sizeof settings.text, points, strip->cells.height);
-    draw_turned(strip, sketch, (Point){low.x - 1.5 * line_height(points), middle}, method.text);
-    draw_turned(strip, sketch, (Point){low.x - 0.55 * line_height(points), middle}, settings.text);
 }
 
 static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
     const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;
-    const TextStyle upright = {spec->points, TEXT_CENTER, INK, 0, false};
+    const TextStyle turned = {strip->name_points, TEXT_CENTER, INK, 90, false};
     for (int row = 0; row < spec->run_count; row++) {
         const Point low = cell_corner(strip, row, 0);
-        const RunName name = run_name(spec, spec->runs[row]);
-        draw_name(strip, sketch, &name, low);
+        const WrappedText name = strip_name(strip, row);
+        const double first = low.x - (name.lines - 0.45) * line_height(strip->name_points);
+        sketch_lines(sketch, (Point){first, low.y + cells->height / 2}, &turned, name.text);
     }
     for (int column = 0; column < strip->count; column++) {
         const Point low = cell_corner(strip, 0, column);
-        sketch_text(sketch, (Point){low.x + cells->width / 2, low.y + cells->height + strip->top / 2}, &upright,
-                    "%.2f s", strip->frames[column] * (double)spec->runs[0]->dt);
+        sketch_text(sketch, (Point){low.x + cells->width / 2, low.y + cells->height + strip->top / 2},
+                    &(TextStyle){time_points(strip), TEXT_CENTER, INK, 0, false}, "%.2f s",
+                    strip->frames[column] * (double)spec->runs[0]->dt);
     }
     run_cells_draw_scale_bar(cells, sketch, (Point){strip->start, strip->foot / 2 - 0.3}, spec->points);
 }
@@ -377,181 +440,4 @@ const FigureKind figure_strip = {
     .max_bodies = FIGURE_BODIES_MAX,
     .draw = strip_draw,
     .caption = strip_caption,
-};
-
-/* One moment with the contacts, normals and impulses of the step that starts there. The poses are those before the
-   step, for which the contacts were found. */
-
-static const double annotated_gap = 2;               /* mm: between cells */
-static const double max_ring = 0.55, min_ring = 0.3; /* mm */
-static const double ring_share = 0.06;               /* / the shortest side of a body */
-static const double body_opacity = 0.4;              /* opacity of the bodies, so that the marks stand out */
-static const double annotated_aspect = 1.3;          /* height / width of a cell, at most */
-
-enum { MAX_PANELS = 3 };
-
-typedef struct Annotated {
-    const FigureSpec *spec;
-    int frame;
-    MethodColour colours[FIGURE_RUNS_MAX];
-    RunCells cells;
-    double top, foot, start; /* mm: above and below the cells; left end of the first cell */
-    ContactLook look;
-} Annotated;
-
-/* The frame before the step in which the bomb first touches a box; otherwise the frame before the largest impulse;
-   -1 without contacts. */
-static int find_moment(const Trajectory *run) {
-    int touch = trajectory_impact(run), frame = -1;
-    if (touch > 0) return touch - 1;
-    double largest = -1;
-    for (int step = 1; step < run->frames; step++)
-        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
-            double size = impulse_magnitude(&run->contacts[i]);
-            if (size > largest) largest = size, frame = step - 1;
-        }
-    return frame;
-}
-
-static bool choose_moment(Annotated *figure, Error *error) {
-    const FigureSpec *spec = figure->spec;
-    FigureSpec requested = *spec;
-    int count, moment = find_moment(spec->runs[0]), contacts = 0;
-    if (spec->time_count > 1)
-        return error_input(error, "--at", "this kind of figure shows one moment (got %d)", spec->time_count);
-    if (moment < 0) return error_input(error, spec->paths[0], "the run has no contacts with an impulse");
-    if (spec->time_count == 0) {
-        requested.time_count = 1;
-        requested.times[0] = moment * (double)spec->runs[0]->dt;
-    }
-    int frames[FIGURE_MOMENTS_MAX];
-    if (!run_frames(&requested, 1, 1, frames, &count, error)) return false;
-    figure->frame = frames[0];
-    for (int i = 0; i < spec->run_count; i++) {
-        const int64_t *start = spec->runs[i]->contact_start + figure->frame + 1;
-        for (int64_t k = start[0]; k < start[1]; k++) {
-            if (!contact_is_finite(&spec->runs[i]->contacts[k])) continue;
-            contacts++;
-            figure->look.largest = fmax(figure->look.largest, impulse_magnitude(&spec->runs[i]->contacts[k]));
-        }
-    }
-    return contacts > 0 || error_input(error, spec->paths[0], "has no contacts with an impulse in the step after %g s",
-                                       requested.times[0]);
-}
-
-static double ring_radius(const Trajectory *run, double scale) {
-    double side = HUGE_VAL;
-    for (int i = 0; i < run->bodies; i++)
-        if (!run->fixed[i]) side = fmin(side, fmin((double)run->size[i].x, (double)run->size[i].y));
-    return fmin(fmax(ring_share * side * scale, min_ring), max_ring);
-}
-
-static bool annotated_lay_out(Annotated *figure, Error *error) {
-    const FigureSpec *spec = figure->spec;
-    const double line = line_height(spec->points), arrow_share = 0.22, max_arrow = 14;
-    figure->top = 2.2 * line, figure->foot = 2.2 * line;
-    const double width = (spec->width - 2 * PAGE_EDGE - (spec->run_count - 1) * annotated_gap) / spec->run_count;
-    const double height = fmin(FIGURE_HEIGHT_MAX - figure->top - figure->foot, annotated_aspect * width);
-    WorldWindow window = run_window(spec, &figure->frame, 1);
-    run_window_widen(&window, width / height);
-    if (!run_cells_begin(&figure->cells, &window, width, height, spec->dpi, error)) return false;
-    figure->start = (spec->width - spec->run_count * figure->cells.width - (spec->run_count - 1) * annotated_gap) / 2;
-    figure->look.points = spec->points;
-    figure->look.ring = ring_radius(spec->runs[0], figure->cells.scale);
-    if (figure->look.largest > 0)
-        figure->look.arrow_scale = fmin(arrow_share * figure->cells.width, max_arrow) / figure->look.largest;
-    return true;
-}
-
-static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point low, int count, int numbered) {
-    const FigureSpec *spec = figure->spec;
-    const Trajectory *run = spec->runs[panel];
-    const double line = line_height(spec->points), top = low.y + figure->cells.height;
-    char part[48] = "";
-    draw_fitted(sketch, (Point){low.x, top + 1.6 * line}, spec->points, INK, figure->cells.width, "%s, %.3f s",
-                run_name(spec, run).text, figure->frame * (double)run->dt);
-    snprintf(part, sizeof part, run->no_impulses ? " found again" : ", impulses in N s");
-    if (numbered < count && !run->no_impulses) text_add(part, sizeof part, ", %d labelled", numbered);
-    draw_fitted(sketch, (Point){low.x, top + 0.6 * line}, SMALL_TYPE * spec->points, INK_SOFT, figure->cells.width,
-                "%d %s%s", count, count == 1 ? "contact" : "contacts", part);
-}
-
-static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
-    Image *image = run_cells_render(&figure->cells, figure->spec->runs[panel], figure->frame, figure->colours[panel],
-                                    STILL_ALL, error);
-    if (image == NULL) return false;
-    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
-        image->pixels[4 * i + 3] = (uint8_t)lrint(body_opacity * image->pixels[4 * i + 3]);
-    sketch_image(sketch, image, low, figure->cells.width);
-    image_destroy(image);
-    run_cells_frame(&figure->cells, sketch, low);
-    return true;
-}
-
-static bool draw_panel(Annotated *figure, Sketch *sketch, int panel, Error *error) {
-    const Point low = {figure->start + panel * (figure->cells.width + annotated_gap), figure->foot};
-    const View view = run_cells_view(&figure->cells, low);
-    int count, numbered;
-    if (!draw_scene(figure, sketch, panel, low, error) ||
-        !draw_contacts(sketch, &view, &figure->look, figure->spec->runs[panel], figure->frame + 1, &count, &numbered,
-                       error))
-        return false;
-    draw_title(figure, sketch, panel, low, count, numbered);
-    return true;
-}
-
-/* Two lines that explain the marks. */
-static void draw_legend(const Annotated *figure, Sketch *sketch) {
-    const FigureSpec *spec = figure->spec;
-    const double line = line_height(spec->points), points = SMALL_TYPE * spec->points;
-    const TextStyle words = {points, TEXT_LEFT, INK, 0, false};
-    double x = figure->start + figure->cells.width * 0.25 + 12, y = figure->foot - 0.7 * line;
-    run_cells_draw_scale_bar(&figure->cells, sketch, (Point){figure->start, y}, points);
-    draw_contact_sample(sketch, (Point){x, y}, &figure->look);
-    x = figure->start, y -= line;
-    if (figure->look.largest > 0) {
-        double shown = round_down(figure->look.largest), length = shown * figure->look.arrow_scale;
-        sketch_arrow(sketch, (Point){x, y}, (Point){x + length, y}, HEAD_AT_END, ACCENT, 2.4);
-        x += length + 1.2;
-        sketch_text(sketch, (Point){x, y}, &words, "%g N s on the body with the higher number", shown);
-    } else
-        sketch_text(sketch, (Point){x, y}, &words,
-                    spec->runs[0]->no_impulses ? "impulses are unknown" : "all impulses are 0");
-}
-
-static bool annotated_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
-    Annotated figure = {.spec = spec};
-    run_colours(spec, figure.colours);
-    bool done = run_check_worlds(spec, error) && choose_moment(&figure, error) && annotated_lay_out(&figure, error);
-    if (done) sketch_begin(sketch, spec->width, figure.top + figure.foot + figure.cells.height);
-    for (int i = 0; done && i < spec->run_count; i++) done = draw_panel(&figure, sketch, i, error);
-    if (done) draw_legend(&figure, sketch);
-    run_cells_free(&figure.cells);
-    return done;
-}
-
-static void annotated_caption(FILE *out, const FigureSpec *spec) {
-    fputs("Contacts of the ", out);
-    caption_scene(out, spec);
-    caption_times(out, spec);
-    fputs(": contact points, normals and impulses of the next step. ", out);
-    fputs(spec->run_count > 1 ? "From left to right: " : "Method: ", out);
-    caption_runs(out, spec, 0);
-    fputs(".", out);
-    for (int i = 0, said = 0; i < spec->run_count && !said; i++)
-        if (spec->runs[i]->no_impulses)
-            said = fputs(" Found again: contacts between the poses, of unknown impulses.", out) >= 0;
-}
-
-const FigureKind figure_annotated = {
-    .name = "annotated",
-    .summary = "one moment with contacts, normals and impulses",
-    .example = "annotated engine.npz --at 0.55 -o contacts.pdf",
-    .min_runs = 1,
-    .max_runs = MAX_PANELS,
-    .takes_times = true,
-    .takes_view = true,
-    .needs_contacts = true,
-    .draw = annotated_draw,
-    .caption = annotated_caption,
 };

@@ -24,6 +24,37 @@ uint32_t weight_colour(double share);
 /* The kinds of figures. */
 extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe, figure_network, figure_pair;
 
+/* A text in lines of a width. */
+typedef struct WrappedText {
+    char text[2 * CAPTION_TEXT_SIZE + 192];
+    int lines;
+    double points;
+} WrappedText;
+WrappedText wrap_text(double points, double width, const char *format, ...) PRINTF_LIKE(3, 4);
+
+/* From `left`, the middle of the first line. */
+void draw_wrapped(Sketch *sketch, Point left, uint32_t ink, const WrappedText *text);
+double wrapped_width(const WrappedText *text); /* mm: of the longest line */
+
+/* Items below a picture, from left to right; the next row begins where one has no room. */
+typedef struct Flow {
+    Point first;   /* middle of the left end of the first row */
+    double width;  /* mm */
+    double points; /* font size, which sets the distance of rows and items */
+    double used;   /* mm: of the row */
+    int row;       /* from 0 */
+} Flow;
+
+/* The place of an item of so many lines, the last of which ends its row if there are several. */
+Point flow_place(Flow *flow, double width, int lines);
+void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text); /* sketch NULL: takes its place */
+
+/* mm: between the end of a line or an arrow and the text that it belongs to; nearer it would be read as a minus sign. */
+double number_gap(double points);
+
+/* From a mark to its label, and along below it if the mark is beside it (label_place_led). */
+void draw_leader(Sketch *sketch, const Segment *leader, const PageBox *label, const Pen *pen);
+
 /* Shared by figures of runs: the frames, the part of the world, and its rendered pixels. */
 
 /* The frames of the spec's times, or of `moments` equidistant times over the whole run, in
@@ -80,18 +111,14 @@ View run_cells_view(const RunCells *cells, Point low);
 /* Draws a scale bar below the cells: a round length of at most a quarter of a cell, from `left`. */
 void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left, double points);
 
+/* The same as the next item; without a sketch, it only takes its place. */
+void run_cells_flow_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow);
+
 /* A line around a cell. */
 void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low);
 
 #define PAGE_EDGE 0.2   /* mm: margin of the page, half a frame's line */
 #define SMALL_TYPE 0.85 /* size of small texts / the figure's font size */
-
-/* Line height of text, mm. */
-double line_height(double points);
-
-/* A text from `left`, cut to `width` mm. */
-void draw_fitted(Sketch *sketch, Point left, double points, uint32_t ink, double width, const char *format, ...)
-    PRINTF_LIKE(6, 7);
 
 /* The caption of one of the figure's runs, or the name of its method (methods/methods.h). */
 typedef struct RunName {
@@ -122,8 +149,9 @@ bool contact_is_finite(const TrajectoryContact *contact);
 bool draw_contacts(Sketch *sketch, const View *view, const ContactLook *look, const Trajectory *run, int step,
                    int *count, int *numbered, Error *error);
 
-/* A sample for the legend: a contact's mark with its label. */
-void draw_contact_sample(Sketch *sketch, Point at, const ContactLook *look);
+/* A sample for the legend: a contact's mark with its label; and its width, mm. */
+void draw_contact_sample(Sketch *sketch, Point left, const ContactLook *look);
+double contact_sample_width(const ContactLook *look);
 
 /* Text for LaTeX. */
 

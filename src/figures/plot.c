@@ -107,9 +107,11 @@ void plot_panel_draw(Sketch *sketch, const PlotPanel *panel) {
     draw_x_axis(sketch, panel, ticks_of(panel, &panel->x, &room));
     sketch_rectangle(sketch, (Point){box->left, box->bottom},
                      (Point){box->left + box->width, box->bottom + box->height}, &pen);
-    if (panel->title != NULL)
-        plot_text(sketch, (Point){box->left, box->bottom + box->height + 2.5}, TEXT_LEFT, label_size(panel),
-                  panel->title);
+    if (panel->title == NULL) return;
+    double above = 2.5;
+    for (const char *c = panel->title; *c != '\0'; c++) above += *c == '\n' ? line_height(label_size(panel)) : 0;
+    plot_text(sketch, (Point){box->left, box->bottom + box->height + above}, TEXT_LEFT, label_size(panel),
+              panel->title);
 }
 
 PlotLook plot_look(int i, const char *name) {
@@ -146,7 +148,7 @@ void plot_line(Sketch *sketch, const Point *points, int count, const PlotLook *l
 }
 
 void plot_text(Sketch *sketch, Point at, TextAlign align, double points, const char *text) {
-    if (text[0] != '\0') sketch_text(sketch, at, &(TextStyle){points, align, INK, 0, false}, "%s", text);
+    sketch_lines(sketch, at, &(TextStyle){points, align, INK, 0, false}, text);
 }
 
 static void draw_sample(Sketch *sketch, const PlotLook *look, double left, double y) {
@@ -170,7 +172,9 @@ void plot_legend(Sketch *sketch, const PlotLook *looks, int count, int columns, 
         if (looks[i].name == NULL) continue;
         const double x = left + width * (shown % columns), y = top - LEGEND_ROW * (shown / columns);
         draw_sample(sketch, &looks[i], x, y);
-        plot_text(sketch, (Point){x + LEGEND_SAMPLE + LEGEND_GAP, y}, TEXT_LEFT, LEGEND_POINTS, looks[i].name);
+        const double room = width - LEGEND_SAMPLE - LEGEND_GAP - 0.5;
+        plot_text(sketch, (Point){x + LEGEND_SAMPLE + LEGEND_GAP, y}, TEXT_LEFT,
+                  text_points(looks[i].name, LEGEND_POINTS, room), looks[i].name);
         shown++;
     }
 }

@@ -22,7 +22,7 @@
 static const double min_arrow = 1;     /* mm */
 static const double long_arrow = 3;    /* mm; the number is at its tip, else at its point */
 static const double crowd = 5;         /* mm; numbers of points nearer than this to each other stand apart from them */
-static const double large_share = 0.3; /* impulses above this share of the largest always get a number */
+static const double large_share = 0.3; /* impulses above this share of the largest get a number even far away */
 
 enum { MAX_NUMBERS = 600 };
 
@@ -84,11 +84,17 @@ static void draw_contact_point(Sketch *sketch, Point at, Point normal, double ri
     sketch_dot(sketch, at, ring, &circle);
 }
 
-void draw_contact_sample(Sketch *sketch, Point at, const ContactLook *look) {
+static const char contact_words[] = "contact, normal";
+
+double contact_sample_width(const ContactLook *look) {
+    return 2 * NORMAL_RINGS * look->ring + 1 + type_width(contact_words, SMALL_TYPE * look->points);
+}
+
+void draw_contact_sample(Sketch *sketch, Point left, const ContactLook *look) {
     const double reach = NORMAL_RINGS * look->ring;
-    draw_contact_point(sketch, at, (Point){reach, 0}, look->ring);
-    sketch_text(sketch, (Point){at.x + reach + 1, at.y},
-                &(TextStyle){SMALL_TYPE * look->points, TEXT_LEFT, INK, 0, false}, "contact, normal");
+    draw_contact_point(sketch, (Point){left.x + reach, left.y}, (Point){reach, 0}, look->ring);
+    sketch_text(sketch, (Point){left.x + 2 * reach + 1, left.y},
+                &(TextStyle){SMALL_TYPE * look->points, TEXT_LEFT, INK, 0, false}, "%s", contact_words);
 }
 
 static void draw_contact(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field) {
@@ -117,36 +123,36 @@ static void format_number(char text[32], double value) {
 static bool place_number(const ContactLook *look, const ShownContact *contact, LabelField *field, LabelWish wish,
                          PageBox *box, Segment *leader, bool *led) {
     const Point tip = arrow_tip(look, contact);
-    const bool must = contact->size >= large_share * look->largest;
     const bool arrow = contact->size * look->arrow_scale >= long_arrow;
     *led = false;
     if (arrow && label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, false, box)) return true;
     if (label_place_led(field, &wish, box, leader, led)) return true;
     wish.nearest = 0;
-    if (label_place_led(field, &wish, box, leader, led)) return true;
-    return must && label_place(field, tip.x, tip.y, 0.7, wish.width, wish.height, true, box);
+    return label_place_led(field, &wish, box, leader, led);
 }
 
 /* Numbers stand outside the pile of contacts, whose middle is at `middle`. */
 static bool draw_number(const ContactLook *look, Sketch *sketch, const ShownContact *contact, LabelField *field,
                         double middle, bool crowded) {
-    const double points = SMALL_TYPE * look->points, em = points * MM_PER_POINT, farthest = 12;
+    const double points = SMALL_TYPE * look->points, em = points * MM_PER_POINT;
+    const double farthest = contact->size >= large_share * look->largest ? 30 : 12;
     char text[32];
     PageBox box;
     Segment leader;
     bool led;
     format_number(text, contact->size);
-    const LabelWish wish = {contact->at.x,
-                            contact->at.y,
-                            look->ring,
-                            crowded ? crowd : 0,
-                            farthest,
-                            type_width(text, points) + 0.25 * em,
-                            em,
-                            contact->at.x < middle};
+    const LabelWish wish = {.x = contact->at.x,
+                            .y = contact->at.y,
+                            .clear = look->ring,
+                            .nearest = crowded ? crowd : 0,
+                            .farthest = farthest,
+                            .width = type_width(text, points) + 0.4 * em,
+                            .height = 1.15 * em,
+                            .left = contact->at.x < middle,
+                            .shelf = true};
     if (!place_number(look, contact, field, wish, &box, &leader, &led)) return false;
     const Pen thin = pen_line(ACCENT, 0.8, NULL);
-    if (led) sketch_line(sketch, (Point){leader.x0, leader.y0}, (Point){leader.x1, leader.y1}, &thin);
+    if (led) draw_leader(sketch, &leader, &box, &thin);
     sketch_text(sketch, (Point){(box.left + box.right) / 2, (box.bottom + box.top) / 2},
                 &(TextStyle){points, TEXT_CENTER, ACCENT, 0, true}, "%s", text);
     return true;
@@ -316,21 +322,56 @@ void run_cells_draw_scale_bar(const RunCells *cells, Sketch *sketch, Point left,
     sketch_scale_bar(sketch, left, cells->scale, round_down(cells->window.width / 4), "m", points);
 }
 
+void run_cells_flow_scale_bar(const RunCells *cells, Sketch *sketch, Flow *flow) {
+    const double amount = round_down(cells->window.width / 4);
+    const Point left = flow_place(flow, sketch_scale_bar_width(cells->scale, amount, "m", flow->points), 1);
+    if (sketch != NULL) run_cells_draw_scale_bar(cells, sketch, left, flow->points);
+}
+
 void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low) {
     sketch_rectangle(sketch, low, (Point){low.x + cells->width, low.y + cells->height},
                      &(Pen){NO_COLOUR, 1, FRAME, 1.2, NULL});
 }
 
-double line_height(double points) { return 1.35 * points * MM_PER_POINT; }
-
-void draw_fitted(Sketch *sketch, Point left, double points, uint32_t ink, double width, const char *format, ...) {
-    char text[2 * CAPTION_TEXT_SIZE + 128];
+WrappedText wrap_text(double points, double width, const char *format, ...) {
+    WrappedText wrapped = {.points = points};
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    vsnprintf(wrapped.text, sizeof wrapped.text, format, arguments);
     va_end(arguments);
-    text_fit(text, sizeof text, points, width);
-    sketch_text(sketch, left, &(TextStyle){points, TEXT_LEFT, ink, 0, false}, "%s", text);
+    wrapped.lines = text_wrap(wrapped.text, sizeof wrapped.text, points, width);
+    return wrapped;
+}
+
+void draw_wrapped(Sketch *sketch, Point left, uint32_t ink, const WrappedText *text) {
+    sketch_lines(sketch, left, &(TextStyle){text->points, TEXT_LEFT, ink, 0, false}, text->text);
+}
+
+double wrapped_width(const WrappedText *text) {
+    double widest = 0;
+    for (const char *line = text->text; *line != '\0';) {
+        char words[sizeof text->text];
+        const size_t length = strcspn(line, "\n");
+        snprintf(words, sizeof words, "%.*s", (int)length, line);
+        widest = fmax(widest, type_width(words, text->points));
+        line += length + (line[length] == '\n');
+    }
+    return widest;
+}
+
+Point flow_place(Flow *flow, double width, int lines) {
+    const double line = line_height(flow->points), gap = 2 * flow->points * MM_PER_POINT;
+    if (flow->used > 0 && flow->used + gap + width > flow->width) flow->row++, flow->used = 0;
+    if (flow->used > 0) flow->used += gap;
+    const Point at = {flow->first.x + flow->used, flow->first.y - flow->row * line};
+    flow->used = lines > 1 ? flow->width : flow->used + width;
+    flow->row += lines - 1;
+    return at;
+}
+
+void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text) {
+    const Point at = flow_place(flow, wrapped_width(text), text->lines);
+    if (sketch != NULL) draw_wrapped(sketch, at, ink, text);
 }
 
 RunName run_name(const FigureSpec *spec, const Trajectory *run) {

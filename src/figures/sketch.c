@@ -308,16 +308,49 @@ void sketch_power_of_ten(Sketch *sketch, Point at, const TextStyle *style, int d
     }
 }
 
-void text_fit(char *words, size_t size, double points, double width) {
-    static const char ellipsis[] = "\xE2\x80\xA6";
-    if (type_width(words, points) <= width) return;
-    const double room = width - type_width(ellipsis, points);
-    const char *end = words, *next = words;
-    for (double used = 0; *next != '\0' && (size_t)(next - words) + sizeof ellipsis <= size; end = next) {
+/* Where a line of this width ends: at the text's own end of line if it fits. */
+static char *line_end(char *words, double points, double width) {
+    char *best[2] = {NULL, NULL}; /* behind a word or an item of a list; behind a sign */
+    double used = 0;
+    for (char *end = words; *end != '\0' && *end != '\n';) {
+        const char *next = end;
+        if (*end == ' ' && end > words) best[0] = end;
         used += type_next(&next)->advance * points * MM_PER_POINT / type_units;
-        if (used > room) break;
+        if (used > width && end > words) return best[0] != NULL ? best[0] : best[1] != NULL ? best[1] : end;
+        const char sign = *end;
+        end += next - end;
+        if (strchr(":,", sign) != NULL && *end != ' ') best[0] = end;
+        if (strchr("/=-_", sign) != NULL) best[1] = end;
     }
-    memcpy(words + (end - words), ellipsis, sizeof ellipsis);
+    return words + strcspn(words, "\n");
+}
+
+int text_wrap(char *words, size_t size, double points, double width) {
+    int lines = 1;
+    for (char *end = line_end(words, points, width); *end != '\0'; end = line_end(end + 1, points, width), lines++) {
+        const size_t rest = strlen(end) + 1;
+        const bool inserts = *end != ' ' && *end != '\n';
+        if (inserts && (size_t)(end - words) + rest + 1 > size) return lines;
+        if (inserts) memmove(end + 1, end, rest);
+        *end = '\n';
+    }
+    return lines;
+}
+
+double line_height(double points) { return 1.35 * points * MM_PER_POINT; }
+
+double text_points(const char *words, double points, double width) {
+    return points * width / fmax(type_width(words, points), width);
+}
+
+void sketch_lines(Sketch *sketch, Point first, const TextStyle *style, const char *lines) {
+    const double angle = style->degrees * M_PI / 180, down = line_height(style->points);
+    for (int i = 0; *lines != '\0'; i++) {
+        const int length = (int)strcspn(lines, "\n");
+        sketch_text(sketch, (Point){first.x + i * down * sin(angle), first.y - i * down * cos(angle)}, style, "%.*s",
+                    length, lines);
+        lines += length + (lines[length] == '\n');
+    }
 }
 
 ShownDecimals show_decimals(double value, int decimals) {
@@ -336,8 +369,16 @@ void sketch_scale_bar(Sketch *sketch, Point left, double scale, double amount, c
     sketch_line(sketch, left, right, &pen);
     sketch_line(sketch, (Point){left.x, left.y - up}, (Point){left.x, left.y + up}, &pen);
     sketch_line(sketch, (Point){right.x, right.y - up}, (Point){right.x, right.y + up}, &pen);
-    sketch_text(sketch, (Point){right.x + 1.4, left.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false}, "%g %s", amount,
-                unit);
+    sketch_text(sketch, (Point){right.x + number_gap(points), left.y}, &(TextStyle){points, TEXT_LEFT, INK, 0, false},
+                "%g %s", amount, unit);
+}
+
+double number_gap(double points) { return fmax(1.4, 0.55 * points * MM_PER_POINT); }
+
+double sketch_scale_bar_width(double scale, double amount, const char *unit, double points) {
+    char words[64];
+    snprintf(words, sizeof words, "%g %s", amount, unit);
+    return scale * amount + number_gap(points) + type_width(words, points);
 }
 
 double round_down(double most) {

@@ -189,8 +189,18 @@ void sketch_text(Sketch *sketch, Point at, const TextStyle *style, const char *f
 void sketch_power_of_ten(Sketch *sketch, Point at, const TextStyle *style, int digit, int power);
 double sketch_power_width(double points, int digit, int power);
 
-/* Shortens a text to a width in mm, with an ellipsis. */
-void text_fit(char *words, size_t size, double points, double width);
+/* Breaks a text into lines ('\n') of at most this width in mm: at spaces and behind colons and commas, else behind other
+   signs, else anywhere. Returns the number of lines. A text without room for its breaks ends there. */
+int text_wrap(char *words, size_t size, double points, double width);
+
+/* Draws such lines, the first at `first`, each below the one before. */
+void sketch_lines(Sketch *sketch, Point first, const TextStyle *style, const char *lines);
+
+/* mm, between such lines. */
+double line_height(double points);
+
+/* The font size at which a text is at most this wide, at most `points`. */
+double text_points(const char *words, double points, double width);
 
 /* A number as text with this many decimals: with a minus sign (U+2212), and without it for -0. */
 typedef struct ShownDecimals {
@@ -198,8 +208,9 @@ typedef struct ShownDecimals {
 } ShownDecimals;
 ShownDecimals show_decimals(double value, int decimals);
 
-/* A scale bar for an amount at `scale` mm per unit, labelled for example "5 m". */
+/* A scale bar for an amount at `scale` mm per unit, labelled for example "5 m"; and its width with the label, mm. */
 void sketch_scale_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points);
+double sketch_scale_bar_width(double scale, double amount, const char *unit, double points);
 
 /* The largest 1, 2 or 5 times a power of ten that is at most `most`; most > 0. */
 double round_down(double most);
@@ -254,7 +265,7 @@ PlotBox plot_grid_box(const PlotGrid *grid, int place);
 
 typedef struct PlotPanel {
     PlotBox box;
-    const char *title;
+    const char *title; /* may have lines (text_wrap) */
     PlotAxis x, y;
     double points; /* size of labels; numbers are slightly smaller; 0: 8 */
     bool guides;   /* a pale line at each number of the y axis */
@@ -298,6 +309,7 @@ PlotLook plot_look_thin(PlotLook look);
 /* A line through points of the page, and marks on them; a point that is NaN interrupts the line. */
 void plot_line(Sketch *sketch, const Point *points, int count, const PlotLook *look);
 
+/* Lines (text_wrap), the first at `at`. */
 void plot_text(Sketch *sketch, Point at, TextAlign align, double points, const char *text);
 
 /* A legend in columns over [left, page width], the middle of its first row at `top`. Looks without a name are left out. */
@@ -323,6 +335,7 @@ enum { LABEL_MAX_BOXES = 1024, LABEL_MAX_SEGMENTS = 2048 };
 typedef struct LabelField {
     PageBox frame; /* labels stay inside */
     int box_count, segment_count;
+    int crossable;                        /* the first boxes, which lines to labels may cross if they may cross lines */
     PageBox boxes[LABEL_MAX_BOXES];       /* marks and labels, never covered */
     Segment segments[LABEL_MAX_SEGMENTS]; /* lines, crossed only by labels that must be placed */
 } LabelField;
@@ -330,6 +343,9 @@ typedef struct LabelField {
 /* Beyond the limits boxes and segments are ignored, and labels may cover them. */
 void label_add_box(LabelField *field, PageBox box);
 void label_add_segment(LabelField *field, Segment segment);
+
+/* Whether a label here covers no box and crosses no line. */
+bool label_fits(const LabelField *field, const PageBox *box);
 
 /* Finds the box for a label of this size near (x, y), at least `distance` away: the nearest that covers no box and
    crosses no line. False if there is none; with `must`, the one that crosses the fewest lines. Adds the box to the
@@ -342,12 +358,15 @@ typedef struct LabelWish {
     double x, y, clear;
     double nearest, farthest; /* mm, from the mark to the label */
     double width, height;
-    bool left; /* try the left before the right */
+    bool left;   /* try the left before the right */
+    bool across; /* the line to the label may cross others, and crossable boxes */
+    bool
+        shelf; /* a line from beside ends at the lower corner and goes on below, not to be read as a number's minus sign */
 } LabelWish;
 
 /* Finds the nearest free place for a label, to which a straight line from its mark crosses nothing that is drawn; *leader is
-   that line, from the mark's edge to the label, and *led whether it is long enough to be drawn. Adds label and line to the
-   field. False if there is no place. */
+   that line, from the mark's edge to the label, and *led whether it is long enough to be drawn. Adds label
+   and line to the field. False if there is no place. */
 bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, Segment *leader, bool *led);
 
 /* mm: the page of a paper, and one of its two columns. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What plots are made of: axes and their ticks, styles, marks, and places of labels. */
+#include "figures/internal.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pixels/png.h"
@@ -366,6 +367,8 @@ static PageBox box_beside(double x, double y, int side, double distance, double 
     return (PageBox){centre_x - width / 2, centre_y - height / 2, centre_x + width / 2, centre_y + height / 2};
 }
 
+bool label_fits(const LabelField *field, const PageBox *box) { return is_free(field, box) && crossed(field, box) == 0; }
+
 bool label_place(LabelField *field, double x, double y, double distance, double width, double height, bool must,
                  PageBox *place) {
     /* A label farther away would seem to belong to another mark. */
@@ -414,9 +417,9 @@ static bool segments_meet(const Segment *a, const Segment *b) {
 /* The mark's own box contains the start of its leader. */
 static bool line_is_free(const LabelField *field, const Segment *line, const LabelWish *wish) {
     const double reach = hypot(line->x1 - wish->x, line->y1 - wish->y);
-    for (int i = 0; i < field->segment_count; i++)
+    for (int i = 0; i < field->segment_count && !wish->across; i++)
         if (segments_meet(line, &field->segments[i])) return false;
-    for (int i = 0; i < field->box_count; i++) {
+    for (int i = wish->across ? field->crossable : 0; i < field->box_count; i++) {
         const PageBox *box = &field->boxes[i];
         const bool own = wish->x >= box->left && wish->x <= box->right && wish->y >= box->bottom && wish->y <= box->top;
         if (!own && reach > 0 && crosses(line, box)) return false;
@@ -430,8 +433,15 @@ static PageBox box_towards(const LabelWish *wish, double angle, double distance)
     return (PageBox){x - wish->width / 2, y - wish->height / 2, x + wish->width / 2, y + wish->height / 2};
 }
 
+/* Beside its label, a mark leads to the lower corner and along below: a line that ended at the middle of a number would be
+   read as its minus sign. */
+static bool has_shelf(double from_y, const PageBox *box) { return from_y > box->bottom && from_y < box->top; }
+
 static Segment leader_to(const LabelWish *wish, const PageBox *box) {
-    const double x = fmin(fmax(wish->x, box->left), box->right), y = fmin(fmax(wish->y, box->bottom), box->top);
+    const double x = fmin(fmax(wish->x, box->left), box->right);
+    const double y = wish->shelf && has_shelf(wish->y, box) && x != wish->x
+                         ? box->bottom
+                         : fmin(fmax(wish->y, box->bottom), box->top);
     const double length = hypot(x - wish->x, y - wish->y), share = length > 0 ? fmin(1, wish->clear / length) : 1;
     return (Segment){wish->x + share * (x - wish->x), wish->y + share * (y - wish->y), x, y};
 }
@@ -443,10 +453,22 @@ bool label_place_led(LabelField *field, const LabelWish *wish, PageBox *place, S
             *place = box_towards(wish, angle_of(direction, wish->left), distance);
             *leader = leader_to(wish, place);
             if (!is_free(field, place) || crossed(field, place) > 0 || !line_is_free(field, leader, wish)) continue;
-            *led = hypot(leader->x1 - leader->x0, leader->y1 - leader->y0) > shortest;
+            const double x = fmin(fmax(wish->x, place->left), place->right);
+            const double y = fmin(fmax(wish->y, place->bottom), place->top);
+            *led = hypot(x - wish->x, y - wish->y) - wish->clear > shortest;
             label_add_box(field, *place);
-            if (*led) label_add_segment(field, *leader);
+            if (*led) {
+                label_add_segment(field, *leader);
+                if (wish->shelf && has_shelf(leader->y0, place))
+                    label_add_segment(field, (Segment){place->left, leader->y1, place->right, leader->y1});
+            }
             return true;
         }
     return false;
+}
+
+void draw_leader(Sketch *sketch, const Segment *leader, const PageBox *label, const Pen *pen) {
+    const double far = leader->x1 == label->left ? label->right : label->left;
+    const Point points[] = {{leader->x0, leader->y0}, {leader->x1, leader->y1}, {far, leader->y1}};
+    sketch_path(sketch, points, has_shelf(leader->y0, label) ? 3 : 2, pen);
 }

@@ -202,8 +202,8 @@ static void draw_key(Sketch *sketch) {
 
 /* Names, numbers and units in a column from `at` down. */
 static void draw_numbers(Sketch *sketch, Point at, const NumberName *names, const float *numbers, int count) {
-    const TextStyle name = {7.5, TEXT_LEFT, INK_SOFT, 0, false}, number = {7.5, TEXT_RIGHT, INK, 0, false};
-    const TextStyle unit = {7.5, TEXT_LEFT, INK_SOFT, 0, false};
+    const TextStyle name = {7.5, TEXT_LEFT, INK, 0, false}, number = {7.5, TEXT_RIGHT, INK, 0, false};
+    const TextStyle unit = {7.5, TEXT_LEFT, INK, 0, false};
     for (int i = 0; i < count; i++, at.y -= 4.2) {
         sketch_text(sketch, at, &name, "%s", names[i].name);
         sketch_text(sketch, (Point){at.x + 19.5, at.y}, &number, "%s", show_decimals((double)numbers[i], 3).text);

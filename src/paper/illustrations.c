@@ -132,8 +132,9 @@ static bool draw_narrow_phase(Sketch *sketch, Scene *const scenes[ILLUSTRATION_S
                               Error *error) {
     Collision collision;
     if (!find_collision(&collision, scenes[SCENE_PYRAMID], error)) return false;
-    draw_overlaps(sketch, (View){.low = {1, 0}, .high = {split + 4, height - 5}}, &collision);
-    draw_contact_closeup(sketch, (View){.low = {split, 1}, .high = {width - 1, height - 7}}, &collision);
+    if (!draw_overlaps(sketch, (View){.low = {1, 1}, .high = {split - 3, height - 5}}, &collision, NULL, error) ||
+        !draw_contact_closeup(sketch, (View){.low = {split, 1}, .high = {width - 1, height - 7}}, &collision, error))
+        return false;
     const TextStyle title = {8.5, TEXT_LEFT, INK, 0, false};
     sketch_text(sketch, (Point){1, height - 2.5}, &title, "Overlaps along the axes of both boxes");
     sketch_text(sketch, (Point){split, height - 2.5}, &title, "Contact points: separations along the normal");

@@ -126,8 +126,7 @@ static void draw_texts(const Factors *factors, Sketch *sketch, int half) {
         const bool alone = row->value[0] == '\0' || strcmp(row->factor, row->value) == 0;
         char text[2 * CSV_NAME_SIZE + 4];
         snprintf(text, sizeof text, "%s%s%s", row->factor, alone ? "" : " = ", alone ? "" : row->value);
-        text_fit(text, sizeof text, points, plot_left - 3);
-        plot_text(sketch, (Point){name_right, y}, TEXT_RIGHT, points, text);
+        plot_text(sketch, (Point){name_right, y}, TEXT_RIGHT, text_points(text, points, plot_left - 3), text);
         if (isnan(row->ratio)) plot_text(sketch, (Point){left + plot_left + 1, y}, TEXT_LEFT, points, "no result");
         snprintf(text, sizeof text, "%.0f", row->parameters);
         if (!isnan(row->parameters)) plot_text(sketch, (Point){left + numbers_right, y}, TEXT_RIGHT, points, text);
@@ -293,11 +292,9 @@ static bool loop_point(const void *of, int panel, int series, int i, PlotPoint *
 static void draw_names(const Loop *loop, Sketch *sketch) {
     for (int i = 0, next = 0; i < loop->count; i++) {
         if (loop->line[i] != next) continue;
-        char text[CSV_NAME_SIZE];
-        strcpy(text, loop->rows[i].network);
-        text_fit(text, sizeof text, 7, loop_left - 3);
+        const char *name = loop->rows[i].network;
         plot_text(sketch, (Point){loop_left - 1.5, loop_bottom + (loop->lines - next++ - 0.5) * loop_height},
-                  TEXT_RIGHT, 7, text);
+                  TEXT_RIGHT, text_points(name, 7, loop_left - 3), name);
     }
 }
 

@@ -188,7 +188,7 @@ static State describe_state(const Picture *picture, int panel, Moment moment) {
     State state = {"", ""};
     if (unseen > 0) {
         snprintf(state.full, sizeof state.full, "%d out of view%s", unseen, ended ? ", ended" : "");
-        snprintf(state.brief, sizeof state.brief, "%d out%s", unseen, ended ? ", ended" : "");
+        snprintf(state.brief, sizeof state.brief, "%d unseen%s", unseen, ended ? ", ended" : "");
     } else if (ended)
         snprintf(state.full, sizeof state.full, "ended"), snprintf(state.brief, sizeof state.brief, "ended");
     return state;

@@ -282,12 +282,18 @@ void marks_draw_below(const Picture *picture, int panel, Moment moment, Drawing 
             if (!picture->runs[run]->fixed[body]) draw_trail(picture, panel, run, moment, body, drawing);
 }
 
+/* Beyond the longest arrow that has the scale, ten times the value are drawn a third longer, so that values still differ;
+   thousands end at twice its length. The same in player/marks.js. */
+static double drawn_length(double length, double max_arrow) {
+    return length <= max_arrow ? length : max_arrow * (1 + fmin(log10(length / max_arrow) / 3, 1));
+}
+
 /* An arrow with `scale` pixels per unit; y up. */
 static void draw_arrow(const Picture *picture, int panel, Point from, double x, double y, double scale, uint32_t color,
                        Drawing *drawing) {
     double length = scale * sqrt(x * x + y * y), max_arrow = picture->scales.max_arrow;
     bool truncated = length > max_arrow;
-    double pixels = truncated ? scale * max_arrow / length : scale;
+    double pixels = truncated ? scale * drawn_length(length, max_arrow) / length : scale;
     ArrowStyle style = marks_arrow_style(picture, color);
     stroke_arrow(drawing, from, (Point){from.x + pixels * x, from.y - pixels * y}, truncated, &style,
                  &picture->layout.panels[panel]);

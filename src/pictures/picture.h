@@ -237,7 +237,7 @@ typedef struct Scales {
     double box;                             /* pixels, shorter side of the median box of the first run */
     double impulse, velocity;               /* pixels per N s and per m/s */
     double legend_impulse, legend_velocity; /* the values of the legend's arrows, round numbers */
-    double max_arrow;                       /* pixels; a longer arrow is truncated to this length and has two heads */
+    double max_arrow;                       /* pixels; a longer arrow grows by a third per decade, and has two heads */
     int last_decade;                        /* the colour scale ends at 10^last_decade m */
     bool exceeded;                          /* some distances exceed the end */
 } Scales;

@@ -265,7 +265,7 @@ static void add_velocity(Row *row) {
 }
 
 static void add_heads(Row *row) {
-    add_text(row, "(two heads: arrow truncated to fit)");
+    add_text(row, "(two heads: ten times as much is a third longer)");
     end_entry(row);
 }
 

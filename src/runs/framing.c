@@ -70,7 +70,6 @@ static bool extent_holds(const Extent *extent, const Trajectory *run, int frame,
 
 static const double FRAMING_MIN_SIDE = 2.0; /* m, of what stands, for the next two */
 /* Sides of what stands, around it. */
-static const double BOMB_REACH = 3; /* a bomb farther away is not shown, or it would be all that can be seen */
 static const double WAY_REACH = 8;  /* where its way is shown */
 static const double NEAR = 1;       /* a stack that falls over stays within this */
 static const double SETTLED_STEPS = 32;
@@ -208,39 +207,45 @@ static Extent joined(Extent a, const Extent *b) {
 
 static int shown_frame(const Trajectory *run, int frame) { return frame < run->frames ? frame : run->frames - 1; }
 
-static void include_frames(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *near,
-                           const Extent *reach) {
+static void include_frames(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *near) {
     for (int i = 0; i < count; i++)
         for (int body = 0; body < run->bodies; body++) {
-            const Extent *region = body == run->bomb ? reach : near;
             const int frame = shown_frame(run, frames[i]);
-            if (!run->fixed[body] && (region == NULL || extent_holds(region, run, frame, body)))
+            if (!run->fixed[body] && (near == NULL || extent_holds(near, run, frame, body)))
                 extent_include(all, run, frame, body);
         }
 }
 
-/* What flies off or sinks into the ground counts in no frame, or it would make all small. */
-static void include_staying(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *region) {
-    for (int body = 0; body < run->bodies; body++) {
-        bool stays = !run->fixed[body];
-        for (int i = 0; i < count && stays; i++) {
-            const int frame = shown_frame(run, frames[i]);
-            stays = extent_holds(region, run, frame, body) || !trajectory_has(run, frame, body);
-        }
-        for (int i = 0; i < count && stays; i++) extent_include(all, run, shown_frame(run, frames[i]), body);
+static bool stays(const Trajectory *run, const int *frames, int count, int body, const Extent *region) {
+    bool inside = !run->fixed[body];
+    for (int i = 0; i < count && inside; i++) {
+        const int frame = shown_frame(run, frames[i]);
+        inside = extent_holds(region, run, frame, body) || !trajectory_has(run, frame, body);
     }
+    return inside;
+}
+
+/* What flies off or sinks into the ground counts in no frame, or it would make all small; nor does the rest of a run most of
+   whose bodies do that. */
+static void include_staying(Extent *all, const Trajectory *run, const int *frames, int count, const Extent *region) {
+    int moving = 0, staying = 0;
+    for (int body = 0; body < run->bodies; body++)
+        moving += !run->fixed[body], staying += stays(run, frames, count, body, region);
+    for (int body = 0; 2 * staying > moving && body < run->bodies; body++)
+        for (int i = 0; i < count && stays(run, frames, count, body, region); i++)
+            extent_include(all, run, shown_frame(run, frames[i]), body);
 }
 
 Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count) {
     const Extent standing = standing_extent(runs[0], 0, NULL);
-    const Extent near = surroundings(&standing, NEAR), reach = surroundings(&standing, BOMB_REACH);
+    const Extent near = surroundings(&standing, NEAR);
     const Extent above = {near.left, near.right, standing.bottom, near.top};
     Extent all = extent_empty;
     if (!extent_is_empty(&standing)) {
-        include_frames(&all, runs[0], frames, count, &near, &reach);
+        include_frames(&all, runs[0], frames, count, &near);
         for (int i = 1; i < run_count; i++) include_staying(&all, runs[i], frames, count, &above);
     }
-    if (extent_is_empty(&all)) include_frames(&all, runs[0], frames, count, NULL, NULL);
+    if (extent_is_empty(&all)) include_frames(&all, runs[0], frames, count, NULL);
     return extent_is_empty(&all) ? fixed_extent(runs[0]) : all;
 }
 

@@ -66,7 +66,7 @@ double extent_side(const Extent *extent);
 void extent_include(Extent *extent, const Trajectory *run, int frame, int body);
 
 /* What runs show in these frames: the moving bodies of the first run, where they are near what stood at its start, and
-   those of the others that stay near it; without any, the static bodies. Empty if nothing can be framed. A frame
+   those of the others that stay near it, if most of a run's do; without any, the static bodies. Empty if nothing can be framed. A frame
    beyond a run's last counts as that. */
 Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int *frames, int count);
 

@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "figures/sketch.h"
 #include "pixels/png.h"
+#include "pixels/type.h"
 #include "runs/verdict.h"
 #include "studies/chart_internal.h"
 #include "studies/stability.h"
@@ -297,7 +298,41 @@ static void list_left_out(Borders *borders) {
 }
 
 /* mm */
-static double foot_of(const Borders *borders) { return borders->foot.count * NOTE_ROW; }
+static double foot_of(const Borders *borders) {
+    return NOTE_ROW * left_out_rows(&borders->foot, FIGURE_PAGE_WIDTH - legend_left - 1);
+}
+
+static const double name_points = 7, most_names = 0.45; /* share of the page; longer names are smaller */
+
+/* mm: left of the panels, for the names of methods. */
+static double room_of_names(const Borders *borders) {
+    double longest = borders->columns > 1 ? left : left_of_one;
+    for (int method = 0; method < borders->method_count; method++) {
+        const BorderRow *row = border_row(borders->table, borders->methods[method]);
+        char text[STABILITY_TEXT_SIZE];
+        stability_method_text(text, row->method, row->setting);
+        longest = fmax(longest, type_width(text, name_points) + 3);
+    }
+    return fmin(longest, most_names * FIGURE_PAGE_WIDTH);
+}
+
+/* The title of a study's panel, in lines. */
+static int wrap_title(char title[STABILITY_TEXT_SIZE], const Borders *borders, int study, double width) {
+    const BorderRow *first = border_row(borders->table, borders->studies[study]);
+    const StabilityStudy *known = study_of(borders->own, first);
+    stability_axis_text(title, known != NULL ? known->title : first->study, "");
+    chart_make_plain(title);
+    return text_wrap(title, STABILITY_TEXT_SIZE, 8, width);
+}
+
+/* mm: above panels of this width. */
+static double room_of_titles(const Borders *borders, double width) {
+    char title[STABILITY_TEXT_SIZE];
+    int lines = 1;
+    for (int study = 0; study < borders->study_count; study++)
+        lines = (int)fmax(lines, wrap_title(title, borders, study, width));
+    return title_room + (lines - 1) * line_height(8);
+}
 
 /* Uses the height of a printed page if that gives rows of a readable height. */
 static void lay_out(Borders *borders) {
@@ -306,34 +341,34 @@ static void lay_out(Borders *borders) {
     borders->legend_rows = (items + LEGEND_COLUMNS - 1) / LEGEND_COLUMNS;
     borders->columns = borders->study_count <= 2 ? borders->study_count : borders->study_count <= 6 ? 3 : 4;
     borders->rows = (borders->study_count + borders->columns - 1) / borders->columns;
-    const double legend = foot_of(borders) + LEGEND_ROW * borders->legend_rows + 2, around = title_room + axis_room;
+    PlotGrid grid = {.width = FIGURE_PAGE_WIDTH,
+                     .left = room_of_names(borders),
+                     .right = right,
+                     .columns = borders->columns,
+                     .rows = borders->rows,
+                     .gap = gap};
+    grid.top = room_of_titles(borders, plot_grid_box(&grid, 0).width);
+    const double legend = foot_of(borders) + LEGEND_ROW * borders->legend_rows + 2, around = grid.top + axis_room;
     const double room = (most_page - legend) / borders->rows - around;
     borders->row_height = fmin(fmax(room / borders->method_count, least_row), most_row);
-    borders->grid =
-        (PlotGrid){.width = FIGURE_PAGE_WIDTH,
-                   .height = legend + borders->rows * (around + borders->row_height * borders->method_count),
-                   .left = borders->columns > 1 ? left : left_of_one,
-                   .right = right,
-                   .bottom = legend + axis_room,
-                   .top = title_room,
-                   .columns = borders->columns,
-                   .rows = borders->rows,
-                   .gap = gap,
-                   .row_gap = around};
+    grid.height = legend + borders->rows * (around + borders->row_height * borders->method_count);
+    grid.bottom = legend + axis_room;
+    grid.row_gap = around;
+    borders->grid = grid;
 }
 
 /* A guide for each method, and in the first column its name. */
 static void draw_rows(const Borders *borders, const PlotPanel *panel, bool named) {
     const Pen guide = pen_line(0xE2E2E2, 0.6, NULL);
-    const double points = 7;
     for (int method = 0; method < borders->method_count; method++) {
         const BorderRow *row = border_row(borders->table, borders->methods[method]);
         const double y = plot_axis_place(&panel->y, method);
         char text[STABILITY_TEXT_SIZE];
         sketch_line(borders->sketch, (Point){panel->x.from, y}, (Point){panel->x.to, y}, &guide);
         if (!named) continue;
-        stability_method_text(text, points, borders->grid.left - 3, row->method, row->setting);
-        plot_text(borders->sketch, (Point){borders->grid.left - 1.5, y}, TEXT_RIGHT, points, text);
+        stability_method_text(text, row->method, row->setting);
+        plot_text(borders->sketch, (Point){borders->grid.left - 1.5, y}, TEXT_RIGHT,
+                  text_points(text, name_points, borders->grid.left - 3), text);
     }
 }
 
@@ -344,9 +379,7 @@ static void draw_panel(const Borders *borders, int place) {
     PlotPanel panel = {.box = plot_grid_box(&borders->grid, place)};
     BorderAxis axis = border_axis(borders->table, borders->studies[place], study, panel.box.width);
     char title[STABILITY_TEXT_SIZE];
-    stability_axis_text(title, study != NULL ? study->title : first->study, "");
-    chart_make_plain(title);
-    text_fit(title, sizeof title, 8, panel.box.width);
+    wrap_title(title, borders, place, panel.box.width);
     panel.title = title;
     panel.x = axis.axis;
     panel.x.label = axis.label;

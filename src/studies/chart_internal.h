@@ -213,7 +213,7 @@ MethodTimes *scene_times_read(const SceneStudy *study, const char *path, const c
 
 enum {
     CHART_MAX_LINES = 32,
-    CHART_TEXT_SIZE = 40,
+    CHART_TEXT_SIZE = 128,
     CHART_PANELS = 2,
     CHART_LOUD = 6 /* lines in colour, at most */
 };

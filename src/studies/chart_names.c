@@ -249,7 +249,8 @@ static void name_shade(ChartDrawing *drawing, int panel) {
     const PlotBox *box = &drawing->plot->box;
     const double width = type_width(text, CHART_SMALL_POINTS), height = row_height(CHART_SMALL_POINTS);
     if (drawing->chart->front_count[panel] == 0) return;
-    LabelWish wish = {.x = box->left + 2, .y = box->bottom + 1.5, .farthest = 3, .width = width, .height = height};
+    LabelWish wish = {
+        .x = box->left + 2, .y = box->bottom + 1.5 + height / 2, .farthest = 3, .width = width, .height = height};
     Label label = {.ink = CHART_GREY_INK};
     PageBox at;
     Segment leader;

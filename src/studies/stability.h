@@ -362,12 +362,11 @@ void map_cell_name(char name[MAP_NAME_SIZE], const MapCell *cell);
 
 bool map_cell_same_method(const MapCell *a, const MapCell *b);
 
-/* "engine:k=10,warm=off", of a program its `name` (methods/methods.h); for figures the same, plain and shortened to `most`
-   mm; and "Height (boxes)" for an axis. */
+/* "engine:k=10,warm=off", of a program its `name` (methods/methods.h); for figures the same, plain; and
+   "Height (boxes)" for an axis. */
 enum { STABILITY_TEXT_SIZE = CSV_NAME_SIZE + 2 * STABILITY_SETTING_SIZE + 8 };
 void stability_method_name(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting);
-void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
-                           const char *setting);
+void stability_method_text(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting);
 void stability_axis_text(char text[STABILITY_TEXT_SIZE], const char *parameter, const char *unit);
 
 /* The stability study: where each method fails. Tables: borders between holding and failing along one parameter

@@ -12,7 +12,7 @@
 
 #include <stdio.h>
 
-/* What a figure leaves out, with the reason: named at its foot, as far as there is room, and in its caption. Zero-initialise. */
+/* What a figure leaves out, with the reason: named at its foot and in its caption. Zero-initialise. */
 
 enum { LEFT_OUT_SIZE = 8192 };
 
@@ -30,8 +30,9 @@ void left_out_add_unconverged(LeftOut *left_out, const CsvTable *unconverged, co
 #define NOTE_ROW 3.4 /* mm */
 #define NOTE_POINTS 6.5
 
-/* From `left` to the edge of the page; a line is NOTE_ROW high. */
+/* From `left` to the edge of the page, in rows that are NOTE_ROW high; and the number of these rows on `width` mm. */
 void left_out_draw(const LeftOut *left_out, PlotPage *page, double left);
+int left_out_rows(const LeftOut *left_out, double width);
 
 /* The borders figure: how far each method holds in each study. */
 

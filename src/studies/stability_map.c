@@ -274,7 +274,7 @@ void left_out_add(LeftOut *left_out, const char *why, const char *method, const 
     const bool next = left_out->count > 0 && strncmp(left_out->lines[left_out->count - 1], why, length) == 0;
     if (!next) left_out->count++;
     char *line = left_out->lines[left_out->count - 1];
-    stability_method_text(name, 8, FIGURE_PAGE_WIDTH, method, setting);
+    stability_method_text(name, method, setting);
     text_add(line, LEFT_OUT_SIZE, "%s%s", next ? ", " : why, name);
 }
 
@@ -287,13 +287,28 @@ void left_out_add_unconverged(LeftOut *left_out, const CsvTable *unconverged, co
     text_add(left_out->lines[left_out->count - 1], LEFT_OUT_SIZE, "%s%s %s", next ? "; " : why, study, text);
 }
 
+/* "Left out, ...: a, b." in lines. */
+static int wrap_left_out(char line[LEFT_OUT_SIZE], const LeftOut *left_out, int i, double width) {
+    snprintf(line, LEFT_OUT_SIZE, "%.*s.", LEFT_OUT_SIZE - 2, left_out->lines[i]);
+    return text_wrap(line, LEFT_OUT_SIZE, NOTE_POINTS, width);
+}
+
+int left_out_rows(const LeftOut *left_out, double width) {
+    char line[LEFT_OUT_SIZE];
+    int rows = 0;
+    for (int i = 0; i < left_out->count; i++) rows += wrap_left_out(line, left_out, i, width);
+    return rows;
+}
+
 void left_out_draw(const LeftOut *left_out, PlotPage *page, double left) {
+    const double width = page->sketch.width - left - 1;
+    double y = NOTE_ROW * (left_out_rows(left_out, width) - 0.5);
     for (int i = 0; i < left_out->count; i++) {
         char line[LEFT_OUT_SIZE];
-        snprintf(line, sizeof line, "%s.", left_out->lines[i]);
-        text_add(page->caption, sizeof page->caption, " %s", line);
-        text_fit(line, sizeof line, NOTE_POINTS, page->sketch.width - left - 1);
-        plot_text(&page->sketch, (Point){left, NOTE_ROW * (left_out->count - i - 0.5)}, TEXT_LEFT, NOTE_POINTS, line);
+        text_add(page->caption, sizeof page->caption, " %s.", left_out->lines[i]);
+        const int rows = wrap_left_out(line, left_out, i, width);
+        plot_text(&page->sketch, (Point){left, y}, TEXT_LEFT, NOTE_POINTS, line);
+        y -= rows * NOTE_ROW;
     }
 }
 
@@ -346,25 +361,41 @@ static int count_used(const Layout *layout) {
     return count;
 }
 
+/* The title of a panel, in lines. */
+static int wrap_title(char title[STABILITY_TEXT_SIZE], const MapPanels *map, int panel, double width) {
+    stability_method_text(title, map->methods[panel]->method, map->methods[panel]->setting);
+    return text_wrap(title, STABILITY_TEXT_SIZE, 8, width);
+}
+
+/* mm: above panels of this width. */
+static double room_of_titles(const MapPanels *map, double width) {
+    char title[STABILITY_TEXT_SIZE];
+    int lines = 1;
+    for (int panel = 0; panel < map->panel_count; panel++)
+        lines = (int)fmax(lines, wrap_title(title, map, panel, width));
+    return title_room + (lines - 1) * line_height(8);
+}
+
 /* A single panel is one column of a printed page wide; several fill the page. */
-static Layout lay_out(const MapPanels *map, double foot, Sketch *sketch) {
+static Layout lay_out(const MapPanels *map, const LeftOut *left_out, Sketch *sketch) {
     int panels = map->panel_count;
-    Layout layout = {.map = map, .sketch = sketch, .foot = foot};
+    Layout layout = {.map = map, .sketch = sketch};
     find_used(&layout);
     PlotGrid grid = {.width = panels == 1 ? FIGURE_COLUMN_WIDTH : FIGURE_PAGE_WIDTH,
                      .left = label_room + map_axis_width(map->y, map->y_count),
                      .right = right,
-                     .top = title_room,
                      .columns = panels == 2 || panels == 4 ? 2
                                 : panels <= 6              ? (panels == 1 ? 1 : 3)
                                                            : 4,
-                     .gap = gap,
-                     .row_gap = title_room + row_gap};
+                     .gap = gap};
     grid.rows = (panels + grid.columns - 1) / grid.columns;
+    grid.top = room_of_titles(map, plot_grid_box(&grid, 0).width);
+    grid.row_gap = grid.top + row_gap;
+    layout.foot = NOTE_ROW * left_out_rows(left_out, grid.width - grid.left - 1);
     layout.legend_columns = panels == 1 ? LEGEND_COLUMNS_OF_ONE : LEGEND_COLUMNS;
     /* The border is one more legend item. */
     layout.legend_rows = (count_used(&layout) + layout.legend_columns) / layout.legend_columns;
-    grid.bottom = foot + LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
+    grid.bottom = layout.foot + LEGEND_ROW * layout.legend_rows + axis_room + 1.5;
     char label[STABILITY_TEXT_SIZE];
     stability_axis_text(label, map->first->y_parameter, map->first->y_unit);
     const double least = fmax(least_height, type_width(label, 8) + 1);
@@ -424,11 +455,10 @@ static void draw_border(const Layout *layout, int panel, const PlotPanel *plot) 
 
 static void draw_panel(const Layout *layout, int panel) {
     const MapPanels *map = layout->map;
-    const MapCell *method = map->methods[panel];
     PlotTicks ticks[2];
     char title[STABILITY_TEXT_SIZE], x[STABILITY_TEXT_SIZE], y[STABILITY_TEXT_SIZE];
     PlotPanel plot = {.box = plot_grid_box(&layout->grid, panel), .title = title};
-    stability_method_text(title, 8, plot.box.width, method->method, method->setting);
+    wrap_title(title, map, panel, plot.box.width);
     stability_axis_text(x, map->first->x_parameter, map->first->x_unit);
     stability_axis_text(y, map->first->y_parameter, map->first->y_unit);
     plot.x = map_axis(&ticks[0], true, map->x, map->x_count, layout->cell_x);
@@ -479,7 +509,7 @@ static void write_map(MapPanels *map, const CsvTable *unconverged, PlotPage *pag
     leave_out(map, &left_out);
     const int reasons = left_out.count;
     left_out_add_unconverged(&left_out, unconverged, map->first->map);
-    const Layout layout = lay_out(map, left_out.count * NOTE_ROW, &page->sketch);
+    const Layout layout = lay_out(map, &left_out, &page->sketch);
     sketch_begin(&page->sketch, layout.grid.width, layout.grid.height);
     for (int panel = 0; panel < map->panel_count; panel++) draw_panel(&layout, panel);
     draw_legend(&layout);

@@ -111,11 +111,9 @@ void stability_method_name(char text[STABILITY_TEXT_SIZE], const char *method, c
     method_name(text, STABILITY_TEXT_SIZE, whole);
 }
 
-void stability_method_text(char text[STABILITY_TEXT_SIZE], double points, double most, const char *method,
-                           const char *setting) {
+void stability_method_text(char text[STABILITY_TEXT_SIZE], const char *method, const char *setting) {
     stability_method_name(text, method, setting);
     chart_make_plain(text);
-    text_fit(text, STABILITY_TEXT_SIZE, points, most);
 }
 
 /* Words instead of the names of tables. */

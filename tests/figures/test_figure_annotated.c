@@ -111,13 +111,13 @@ static double distance_to_box(Point p, const PageBox *box) {
     return hypot(fmax(fmax(box->left - p.x, p.x - box->right), 0), fmax(fmax(box->bottom - p.y, p.y - box->top), 0));
 }
 
-/* A thin line leads from this point's ring to the box. */
+/* A thin line leads from this point's ring to the box, and may go on below it. */
 static bool is_led(const Sketch *sketch, Point point, const PageBox *box) {
     for (size_t i = 0; i < sketch->mark_count; i++) {
         const SketchMark *mark = &sketch->marks[i];
-        if (mark->kind != MARK_PATH || mark->count != 2 || mark->pen.width != 0.8) continue;
+        if (mark->kind != MARK_PATH || mark->count > 3 || mark->pen.width != 0.8) continue;
         const Point from = sketch->points[mark->first], to = sketch->points[mark->first + 1];
-        if (hypot(from.x - point.x, from.y - point.y) < 0.6 && distance_to_box(to, box) < 0.5) return true;
+        if (hypot(from.x - point.x, from.y - point.y) < 0.6 && distance_to_box(to, box) < 0.8) return true;
     }
     return false;
 }

@@ -232,11 +232,14 @@ TEST(texts_become_plain) {
     /* Letters of the font are kept, a letter with its mark too; others, controls and lone marks are not. */
     chart_plain(plain, "\xc3\xa4 a\xcc\x88 \xe6\x97\xa5 \xc2\x85 q\xcc\x88");
     assert_string_equal(plain, "\xc3\xa4 a\xcc\x88 ? ? q?");
-    chart_plain(plain, "01234567890123456789012345678901234\xc3\xa4"
-                       "6789"); /* not cut within a letter */
-    assert_string_equal(plain, "01234567890123456789012345678901234...");
-    chart_plain(plain, "0123456789012345678901234567890123456789");
-    assert_string_equal(plain, "012345678901234567890123456789012345...");
+    char many[200];
+    memset(many, 'x', sizeof many - 1), many[sizeof many - 1] = '\0';
+    chart_plain(plain, many);
+    assert_int_equal(strlen(plain), CHART_TEXT_SIZE - 1);
+    assert_string_equal(plain + CHART_TEXT_SIZE - 5, "x...");
+    memcpy(many + CHART_TEXT_SIZE - 5, "\xc3\xa4", 2);
+    chart_plain(plain, many); /* not cut within a letter */
+    assert_string_equal(plain + CHART_TEXT_SIZE - 6, "x...");
 }
 
 /* The chart of the stack; its marks name texts of the table. */

@@ -35,7 +35,7 @@ function entries() {
   if (shows("contacts")) add(2 * dot, (x, y) => draw_dots(dot, [{x: x + dot, y}]), "contact");
   if (shows("impulses")) arrow("impulse", "N s");
   if (shows("velocities")) arrow("velocity", "m/s");
-  if (shows("impulses") || shows("velocities")) found.push(["(two heads: arrow truncated to fit)"]);
+  if (shows("impulses") || shows("velocities")) found.push(["(two heads: ten times as much is a third longer)"]);
   return found;
 }
 

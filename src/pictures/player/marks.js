@@ -107,7 +107,8 @@ function draw_arrow(from, to, cut, t, colour, halo) {
 
 /* Of a vector, y up: "impulse" or "velocity". */
 function draw_vector(what, at, x, y) {
-  const {per} = sizes[what], fits = sizes.longest / (per * hypot(x, y)), pixels = per * min(1, fits), from = place(at);
+  const {per} = sizes[what], fits = sizes.longest / (per * hypot(x, y)), from = place(at);
+  const pixels = fits < 1 ? per * fits * (1 + min(-log10(fits) / 3, 1)) : per;
   draw_arrow(from, {x: from.x + pixels * x, y: from.y - pixels * y}, fits < 1, sizes.line, look[what], look.panel);
 }
 

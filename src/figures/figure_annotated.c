@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The figure of one moment with the contacts, normals and impulses of the step that starts there. The poses are those before the
+   step, for which the contacts were found. */
+#include "base/base.h"
+#include "engine/engine.h"
+#include "figures/figure.h"
+#include "figures/internal.h"
+#include "figures/sketch.h"
+#include "methods/methods.h"
+#include "pictures/picture.h"
+#include "pictures/render.h"
+#include "pixels/png.h"
+#include "pixels/type.h"
+#include "runs/trajectory.h"
+
+#include <math.h>
+
+static const double annotated_gap = 2;               /* mm: between cells */
+static const double max_ring = 0.55, min_ring = 0.3; /* mm */
+static const double ring_share = 0.06;               /* / the shortest side of a body */
+static const double body_opacity = 0.4;              /* opacity of the bodies, so that the marks stand out */
+static const double annotated_aspect = 1.3;          /* height / width of a cell, at most */
+
+enum { MAX_PANELS = 3 };
+
+typedef struct Annotated {
+    const FigureSpec *spec;
+    int frame;
+    MethodColour colours[FIGURE_RUNS_MAX];
+    RunCells cells;
+    double top, foot, start; /* mm: above and below the cells; left end of the first cell */
+    int title_lines;         /* of the panel with the most */
+    ContactLook look;
+} Annotated;
+
+/* The frame before the step in which the bomb first touches a box; otherwise the frame before the largest impulse;
+   -1 without contacts. */
+static int find_moment(const Trajectory *run) {
+    int touch = trajectory_impact(run), frame = -1;
+    if (touch > 0) return touch - 1;
+    double largest = -1;
+    for (int step = 1; step < run->frames; step++)
+        for (int64_t i = run->contact_start[step]; i < run->contact_start[step + 1]; i++) {
+            double size = impulse_magnitude(&run->contacts[i]);
+            if (size > largest) largest = size, frame = step - 1;
+        }
+    return frame;
+}
+
+static bool choose_moment(Annotated *figure, Error *error) {
+    const FigureSpec *spec = figure->spec;
+    FigureSpec requested = *spec;
+    int count, moment = find_moment(spec->runs[0]), contacts = 0;
+    if (spec->time_count > 1)
+        return error_input(error, "--at", "this kind of figure shows one moment (got %d)", spec->time_count);
+    if (moment < 0) return error_input(error, spec->paths[0], "the run has no contacts with an impulse");
+    if (spec->time_count == 0) {
+        requested.time_count = 1;
+        requested.times[0] = moment * (double)spec->runs[0]->dt;
+    }
+    int frames[FIGURE_MOMENTS_MAX];
+    if (!run_frames(&requested, 1, 1, frames, &count, error)) return false;
+    figure->frame = frames[0];
+    for (int i = 0; i < spec->run_count; i++) {
+        const int64_t *start = spec->runs[i]->contact_start + figure->frame + 1;
+        for (int64_t k = start[0]; k < start[1]; k++) {
+            if (!contact_is_finite(&spec->runs[i]->contacts[k])) continue;
+            contacts++;
+            figure->look.largest = fmax(figure->look.largest, impulse_magnitude(&spec->runs[i]->contacts[k]));
+        }
+    }
+    return contacts > 0 || error_input(error, spec->paths[0], "has no contacts with an impulse in the step after %g s",
+                                       requested.times[0]);
+}
+
+static double ring_radius(const Trajectory *run, double scale) {
+    double side = HUGE_VAL;
+    for (int i = 0; i < run->bodies; i++)
+        if (!run->fixed[i]) side = fmin(side, fmin((double)run->size[i].x, (double)run->size[i].y));
+    return fmin(fmax(ring_share * side * scale, min_ring), max_ring);
+}
+
+static WrappedText annotated_title(const Annotated *figure, int panel, double width) {
+    const FigureSpec *spec = figure->spec;
+    const Trajectory *run = spec->runs[panel];
+    return wrap_text(spec->points, width, "%s, %.3f s", run_name(spec, run).text, figure->frame * (double)run->dt);
+}
+
+/* What the numbers are, and how many contacts have one. */
+static WrappedText contacts_line(const Annotated *figure, int panel, double width, int count, int numbered) {
+    const bool unknown = figure->spec->runs[panel]->no_impulses;
+    char part[48] = "";
+    snprintf(part, sizeof part, unknown ? " found again" : ", impulses in N s");
+    if (numbered < count && !unknown) text_add(part, sizeof part, ", %d labelled", numbered);
+    return wrap_text(SMALL_TYPE * figure->spec->points, width, "%d %s%s", count, count == 1 ? "contact" : "contacts",
+                     part);
+}
+
+/* Room above the cells for the titles, and lines below them for the contacts. */
+static void annotated_lay_out_titles(Annotated *figure, double width) {
+    const double line = line_height(figure->spec->points);
+    int below = 0;
+    figure->title_lines = 0;
+    for (int panel = 0; panel < figure->spec->run_count; panel++) {
+        const int lines = annotated_title(figure, panel, width).lines;
+        const int contacts = contacts_line(figure, panel, width, 99999, 9999).lines;
+        if (lines > figure->title_lines) figure->title_lines = lines;
+        if (contacts > below) below = contacts;
+    }
+    figure->top = (figure->title_lines + 0.2) * line + below * fmin(line, SMALL_TYPE * line + 0.5);
+}
+
+/* What explains the marks. Returns the rows; without a sketch, it only counts them. */
+static int annotated_legend(const Annotated *figure, Sketch *sketch) {
+    const FigureSpec *spec = figure->spec;
+    const double points = SMALL_TYPE * spec->points, largest = figure->look.largest;
+    const double width = spec->width - PAGE_EDGE - figure->start;
+    Flow flow = {.first = {figure->start, figure->foot - 0.7 * line_height(points)}, .width = width, .points = points};
+    run_cells_flow_scale_bar(&figure->cells, sketch, &flow);
+    Point at = flow_place(&flow, contact_sample_width(&figure->look), 1);
+    if (sketch != NULL) draw_contact_sample(sketch, at, &figure->look);
+    if (largest > 0) {
+        const double shown = round_down(largest), arrow = shown * figure->look.arrow_scale, gap = number_gap(points);
+        const WrappedText words =
+            wrap_text(points, width - arrow - gap, "%g N s on the body with the higher number", shown);
+        at = flow_place(&flow, arrow + gap + wrapped_width(&words), words.lines);
+        if (sketch == NULL) return flow.row + 1;
+        sketch_arrow(sketch, at, (Point){at.x + arrow, at.y}, HEAD_AT_END, ACCENT, 2.4);
+        draw_wrapped(sketch, (Point){at.x + arrow + gap, at.y}, INK, &words);
+    } else {
+        const WrappedText words =
+            wrap_text(points, width, spec->runs[0]->no_impulses ? "impulses are unknown" : "all impulses are 0");
+        flow_text(&flow, sketch, INK, &words);
+    }
+    return flow.row + 1;
+}
+
+static bool annotated_lay_out(Annotated *figure, Error *error) {
+    const FigureSpec *spec = figure->spec;
+    const double line = line_height(spec->points), arrow_share = 0.22, max_arrow = 14, foot_lines = 5;
+    const double width = (spec->width - 2 * PAGE_EDGE - (spec->run_count - 1) * annotated_gap) / spec->run_count;
+    annotated_lay_out_titles(figure, width);
+    const double height = fmin(FIGURE_HEIGHT_MAX - figure->top - foot_lines * line, annotated_aspect * width);
+    WorldWindow window = run_window(spec, &figure->frame, 1);
+    run_window_widen(&window, width / height);
+    if (!run_cells_begin(&figure->cells, &window, width, height, spec->dpi, error)) return false;
+    figure->start = (spec->width - spec->run_count * figure->cells.width - (spec->run_count - 1) * annotated_gap) / 2;
+    figure->look.points = spec->points;
+    figure->look.ring = ring_radius(spec->runs[0], figure->cells.scale);
+    if (figure->look.largest > 0)
+        figure->look.arrow_scale = fmin(arrow_share * figure->cells.width, max_arrow) / figure->look.largest;
+    figure->foot = annotated_legend(figure, NULL) * line_height(SMALL_TYPE * spec->points) + 0.2 * line;
+    return true;
+}
+
+static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point low, int count, int numbered) {
+    const double line = line_height(figure->spec->points), width = figure->cells.width;
+    const WrappedText title = annotated_title(figure, panel, width);
+    const WrappedText contacts = contacts_line(figure, panel, width, count, numbered);
+    const double top = sketch->height - 0.6 * line;
+    draw_wrapped(sketch, (Point){low.x, top}, INK, &title);
+    draw_wrapped(sketch, (Point){low.x, top - title.lines * line}, INK_SOFT, &contacts);
+}
+
+static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
+    Image *image = run_cells_render(&figure->cells, figure->spec->runs[panel], figure->frame, figure->colours[panel],
+                                    STILL_ALL, error);
+    if (image == NULL) return false;
+    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
+        image->pixels[4 * i + 3] = (uint8_t)lrint(body_opacity * image->pixels[4 * i + 3]);
+    sketch_image(sketch, image, low, figure->cells.width);
+    image_destroy(image);
+    run_cells_frame(&figure->cells, sketch, low);
+    return true;
+}
+
+static bool draw_panel(Annotated *figure, Sketch *sketch, int panel, Error *error) {
+    const Point low = {figure->start + panel * (figure->cells.width + annotated_gap), figure->foot};
+    const View view = run_cells_view(&figure->cells, low);
+    int count, numbered;
+    if (!draw_scene(figure, sketch, panel, low, error) ||
+        !draw_contacts(sketch, &view, &figure->look, figure->spec->runs[panel], figure->frame + 1, &count, &numbered,
+                       error))
+        return false;
+    draw_title(figure, sketch, panel, low, count, numbered);
+    return true;
+}
+
+static bool annotated_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
+    Annotated figure = {.spec = spec};
+    run_colours(spec, figure.colours);
+    bool done = run_check_worlds(spec, error) && choose_moment(&figure, error) && annotated_lay_out(&figure, error);
+    if (done) sketch_begin(sketch, spec->width, figure.top + figure.foot + figure.cells.height);
+    for (int i = 0; done && i < spec->run_count; i++) done = draw_panel(&figure, sketch, i, error);
+    if (done) annotated_legend(&figure, sketch);
+    run_cells_free(&figure.cells);
+    return done;
+}
+
+static void annotated_caption(FILE *out, const FigureSpec *spec) {
+    fputs("Contacts of the ", out);
+    caption_scene(out, spec);
+    caption_times(out, spec);
+    fputs(": contact points, normals and impulses of the next step. ", out);
+    fputs(spec->run_count > 1 ? "From left to right: " : "Method: ", out);
+    caption_runs(out, spec, 0);
+    fputs(".", out);
+    for (int i = 0, said = 0; i < spec->run_count && !said; i++)
+        if (spec->runs[i]->no_impulses)
+            said = fputs(" Found again: contacts between the poses, of unknown impulses.", out) >= 0;
+}
+
+const FigureKind figure_annotated = {
+    .name = "annotated",
+    .summary = "one moment with contacts, normals and impulses",
+    .example = "annotated engine.npz --at 0.55 -o contacts.pdf",
+    .min_runs = 1,
+    .max_runs = MAX_PANELS,
+    .takes_times = true,
+    .takes_view = true,
+    .needs_contacts = true,
+    .draw = annotated_draw,
+    .caption = annotated_caption,
+};
