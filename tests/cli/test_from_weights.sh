@@ -6,7 +6,7 @@
 from_weights=$scenes/networks/from_weights
 python() { /usr/bin/python3 - "$@"; }
 
-# A network's own weights, in double and as PyTorch has them, give the same run.
+# A network's own weights, in double and by rows, as PyTorch has them, or by columns, give the same run.
 python "$scenes/networks" <<'PYTHON'
 import sys
 import numpy
@@ -18,12 +18,15 @@ for name in "pair-net", "contact-net", "scene-stack":
         weights |= {f"biases_{l}": net[f"{part}_biases"] for l, part in enumerate(("first", "second", "last"))}
     else:
         weights = {key: net[key] for key in net.files if key.startswith(("weights_", "biases_"))}
-    numpy.savez(f"{name}-weights.npz", **{key: array.astype("float64") for key, array in weights.items()})
+    for order in "C", "F":
+        numpy.savez(f"{name}-{order}.npz", **{key: array.astype("float64", order=order) for key, array in weights.items()})
 PYTHON
 for network in pair-net contact-net scene-stack; do
     method=${network/scene-stack/scene-net}
-    "$from_weights" "$network-weights.npz" "$scenes/networks/$network.npz" "$network.npz" || fail "from_weights $network"
-    for file in "$scenes/networks/$network.npz" "$network.npz"; do
+    for order in C F; do
+        "$from_weights" "$network-$order.npz" "$scenes/networks/$network.npz" "$network-by-$order.npz" || fail "$network $order"
+    done
+    for file in "$scenes/networks/$network.npz" "$network-by-C.npz" "$network-by-F.npz"; do
         run 0 simulate "$scenes/stack.yaml" --frames 60 --method "$method:network=$file" --hash "$network.csv"
         md5sum <"$network.csv" >>"$network.md5"
     done
@@ -88,9 +91,9 @@ refused scene-stack-double.npz scene-net "array 'second_rows' is float64 of 2 di
 refused scene-stack-shape.npz scene-net "array 'second_rows' has shape"
 refused scene-stack-nan.npz scene-net "second_rows: number 1 is nan; it must be finite"
 refused scene-stack-missing.npz scene-net "has no array 'second_rows'"
-refused pair-net.npz scene-net "not a file of kind 'scene-net'"
-refused scene-stack.npz pair-net "not a file of kind 'network'"
-refused contact-net.npz pair-net "the network has the target points, which is for contact-net"
+refused pair-net-by-C.npz scene-net "not a file of kind 'scene-net'"
+refused scene-stack-by-C.npz pair-net "not a file of kind 'network'"
+refused contact-net-by-C.npz pair-net "the network has the target points, which is for contact-net"
 
 # Layers that do not fit each other, or the inputs that LIKE names.
 python <<'PYTHON'
