@@ -147,7 +147,7 @@ static const Setting *find(const Settings *settings, const char *key) {
 
 bool settings_known(const SettingSpec *known, const char *key) {
     for (; known != NULL && known->key != NULL; known++)
-        if (strcmp(known->key, key) == 0 || strcmp(known->key, "*") == 0) return true;
+        if (strcmp(known->key, key) == 0) return true;
     return false;
 }
 
@@ -171,7 +171,8 @@ static bool parse_item(Settings *settings, const char *item, size_t length, cons
                            SETTING_KEY_SIZE - 1, SETTING_VALUE_SIZE - 1);
     memcpy(setting.key, item, key_length);
     memcpy(setting.value, equals + 1, value_length);
-    if (!settings_known(known, setting.key)) return unknown_key(known, setting.key, where, error);
+    if (!settings_known(known, setting.key) && !settings_known(known, "*"))
+        return unknown_key(known, setting.key, where, error);
     if (find(settings, setting.key) != NULL)
         return error_input(error, where, "setting '%s' is given twice", setting.key);
     if (settings->count == SETTINGS_MAX) return error_input(error, where, "more than %d settings", SETTINGS_MAX);

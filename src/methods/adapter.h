@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Programs that step scenes for twinbox: how they are started, asked and ended. The protocol is in scenes/engines/README.md. */
+/* Programs that step scenes or solve contact problems for twinbox: how they are started, asked and ended. The protocol is in
+   scenes/engines/README.md. */
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/methods.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,13 +33,11 @@ typedef struct AdapterFrame {
 /* Keeps the text for programs_failure(). */
 void program_failed(const char *text);
 
-/* Whether twinbox reads the setting itself. */
-bool exec_reads_setting(const char *key);
-
-/* An adapter of the program in the setting `program`, to which the other settings are passed, but for those that twinbox
-   reads itself: one that runs already and has nothing to do, else a new one. NULL with `why` set: the program cannot be run,
-   or does not answer in `seconds` as it should. */
-Adapter *adapter_take(const Settings *settings, double seconds, char why[], size_t size);
+/* An adapter of the program in the setting `program`, to which the other settings are passed, but for those in the method's
+   table, which twinbox reads itself: one that runs already and has nothing to do, else a new one. NULL with `why` set: the
+   program cannot be run, does not answer in `seconds` as it should, or answers what another method takes. */
+Adapter *adapter_take(const MethodDescription *method, const Settings *settings, double seconds, char why[],
+                      size_t size);
 
 /* The program may serve another run, unless it is in the middle of an answer. Not after a failure. */
 void adapter_give(Adapter *adapter);
@@ -53,3 +53,8 @@ const char *adapter_why(const Adapter *adapter);
 
 /* Frames that were asked for and have not been read. */
 int adapter_frames_left(const Adapter *adapter);
+
+/* Asks for the impulses [contact_count] of a contact problem, N s: any finite numbers. *ns: that the program took, as it
+   says; 0: unknown. */
+bool adapter_solve(Adapter *adapter, const ContactProblem *problem, ContactImpulse *impulses, int64_t *ns,
+                   double until);

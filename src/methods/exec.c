@@ -42,13 +42,6 @@ static const SettingSpec settings[] = {
     {"*", "all other settings are passed to the program", SETTING_OWN},
     {0}};
 
-bool exec_reads_setting(const char *key) {
-    static const char *const own[] = {"program", "name", "step_limit", "run_limit", "skin"};
-    for (size_t i = 0; i < sizeof own / sizeof *own; i++)
-        if (strcmp(key, own[i]) == 0) return true;
-    return false;
-}
-
 /* Programs start with the first step, so that one that cannot is a result of the run, as any later failure is. */
 static void *create(const Settings *chosen, const Scene *scene, Error *error) {
     static const Exec standard = {.step_limit = 10, .run_limit = 600};
@@ -91,7 +84,8 @@ static bool begin_run(Exec *exec, Error *error) {
     leave(exec);
     exec->end = clock_seconds() + (double)exec->run_limit;
     exec->bodies = exec->frame = 0;
-    exec->adapter = adapter_take(&exec->settings, (double)exec->step_limit, exec->why, sizeof exec->why);
+    exec->adapter = adapter_take(&stepping_exec.description, &exec->settings, (double)exec->step_limit, exec->why,
+                                 sizeof exec->why);
     return exec->adapter != NULL || fail(exec, error, exec->why);
 }
 
@@ -173,6 +167,7 @@ const SteppingKind stepping_exec = {
                     .settings = settings,
                     .own_settings = "",
                     .external = true,
+                    .whole_scenes = true,
                     .no_push_out = true,
                     .chart = METHOD_NO_RUNS,
                     .chart_quick = METHOD_NO_RUNS,

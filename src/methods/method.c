@@ -77,7 +77,7 @@ static bool parse_program(Method *method, const char *text, Error *error) {
     const MethodDescription *description = method->kind->description;
     char all[METHOD_TEXT_SIZE + sizeof "program="];
     if (text[strspn(text, ": ")] == '\0' || text[strspn(text, ": ")] == ',')
-        return error_input(error, description->name, "needs a program, as in '%s:node planck.mjs,name=Planck'",
+        return error_input(error, description->name, "needs a program, as in '%s:python3 mine.py,name=Mine'",
                            description->name);
     snprintf(all, sizeof all, "program=%s", text + 1);
     return settings_parse(&method->settings, all, description->settings, description->name, error);
@@ -221,6 +221,8 @@ static bool solve_metered(void *state, const ContactProblem *problem, ContactSol
     step_solving_begins(metered->step);
     bool solved = metered->solver->kind->solve(metered->solver->state, problem, solution, error);
     step_solving_ends(metered->step);
+    if (metered->step->meter != NULL && metered->solver->kind->reported != NULL)
+        metered->step->meter->reported = metered->solver->kind->reported(metered->solver->state);
     return solved;
 }
 

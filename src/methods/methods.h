@@ -65,14 +65,13 @@ typedef struct MethodDescription {
     const char *caption;         /* in frames, after the method's text: "sequential impulses"; NULL: nothing */
     MethodLook look;
     MethodRole role;
-    bool no_push_out; /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
+    bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
                             that it is scored against have none of position correction either */
-    bool no_contacts; /* it moves bodies without contacts: collision detection in its step serves measurement and
+    bool no_contacts;   /* it moves bodies without contacts: collision detection in its step serves measurement and
                             pictures only, so that its time is that of solve(), not the whole step's */
-    bool falls_back;  /* sweeps may solve a step instead; results report how often, as for networks */
-    bool
-        external; /* a program of others, which the text names behind ':': it runs whole scenes only, and its time is what
-                            it reports */
+    bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
+    bool external;      /* a program of others, which the text names behind ':'; its time is what it reports */
+    bool whole_scenes;  /* it runs scenes from their start, with contacts of its own: no single steps, no impulses */
     bool needs_network; /* runs only if the setting `network` or the scene names a file */
     const char *twin;   /* of a learned method: its ablation, as on the command line ("sain:net=off"); it takes the same
                             settings otherwise. NULL: nothing is learned */
@@ -92,6 +91,8 @@ typedef struct ContactSolverKind {
     void *(*create)(const Settings *settings, Error *error);
     ContactSolve *solve;
     void (*destroy)(void *state);
+    /* Of an external method: ns that the last solve took, as it says, 0 if unknown; else NULL. */
+    int64_t (*reported)(const void *state);
 } ContactSolverKind;
 
 /* A solver in use. */
@@ -126,7 +127,8 @@ typedef struct ContactSolver {
     STEPPING(subspace)            \
     STEPPING(exec)                \
     SOLVER(closed_form)           \
-    SOLVER(admm)
+    SOLVER(admm)                  \
+    SOLVER(exec_solver)
 
 #define METHOD_OMITTED(name)
 #define SOLVER_DECLARED(name) extern const ContactSolverKind solver_##name;
@@ -234,8 +236,8 @@ bool method_lacks_network(const Method *method, const Scene *scene);
    set. */
 const char *method_network(const Settings *settings, const Scene *scene, const char *name, Error *error);
 
-/* Programs of the method `exec`. Files may name methods, too: of runs that are to be repeated, of tables. So only a program
-   is started that a word of this command line names, "exec:PROGRAM". Without a call, none is. */
+/* Programs of the methods `exec` and `exec-solver`. Files may name methods, too: of runs that are to be repeated, of tables. So
+   only a program is started that a word of this command line names, "exec:PROGRAM". Without a call, none is. */
 void programs_allow(int argc, char **argv);
 
 enum { PROGRAM_NAME_SIZE = 48 };

@@ -22,7 +22,7 @@ Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int fr
     if (trajectory == NULL) return NULL;
     snprintf(trajectory->scene, sizeof trajectory->scene, "%s", scene->name);
     snprintf(trajectory->method, sizeof trajectory->method, "%s", method->text);
-    trajectory->no_contacts = method->kind->description->external;
+    trajectory->no_contacts = method->kind->description->whole_scenes;
     trajectory->scene_hash = scene_hash(scene);
     trajectory->iterations = scene->iterations;
     trajectory->dt = scene->dt;

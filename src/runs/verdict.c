@@ -118,7 +118,7 @@ const Scene *verdict_struck(const Scene *scene) {
 }
 
 void verdict_run_set_engine(VerdictRun *run, const Method *method) {
-    run->other_engine = method->kind->description->external;
+    run->other_engine = method->kind->description->whole_scenes;
     const char *text = run->other_engine ? settings_get(&method->settings, "skin") : NULL;
     run->finds_contacts = run->other_engine;
     if (text != NULL && !parse_float(text, &run->skin)) run->skin = 0;

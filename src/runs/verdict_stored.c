@@ -105,7 +105,7 @@ static bool watch_frame(VerdictWatch *watch, const VerdictRun *judged, const Tra
 
 static bool is_of_other_engine(const Trajectory *run) {
     const MethodDescription *method = method_describe(run->method);
-    return method == NULL || method->external;
+    return method == NULL || method->whole_scenes;
 }
 
 static bool judge(SimulateVerdict *verdict, const Trajectory *run, const RunScene *by, const World *world,

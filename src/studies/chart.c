@@ -263,8 +263,9 @@ static void fill_rows(const Assembly *assembly, int contender, ChartRow *rows) {
             row->error_worst = scores->worst[phase];
             scene_row_measures(row, scores->measures, study->launch_count);
         }
-    if (!study->contenders[contender]->method.kind->description->external)
-        assembly->solves->frozen = steps[PROTOCOL_FROZEN] + assembly->solves->frozen_unconverged;
+    /* The same of all, but of programs that fail or run whole scenes. */
+    const int64_t frozen = steps[PROTOCOL_FROZEN] + assembly->solves->frozen_unconverged;
+    if (frozen > assembly->solves->frozen) assembly->solves->frozen = frozen;
     assembly->solves->closed += steps[PROTOCOL_CLOSED] + scores->unconverged;
     assembly->solves->closed_unconverged += scores->unconverged;
     method_scores_free(scores);

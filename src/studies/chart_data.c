@@ -37,7 +37,8 @@ void chart_plain(char out[CHART_TEXT_SIZE], const char *text) {
 /* "scene-net:scene-stack" of "scene-net:network=scenes/networks/scene-stack.npz"; of a program its setting `name`. */
 void chart_line_name(const char *key, char name[CHART_TEXT_SIZE]) {
     char text[CHART_FAMILY_SIZE] = "";
-    const char *given = strncmp(key, "exec:", 5) == 0 ? strstr(key, ",name=") : NULL;
+    const MethodDescription *method = method_describe(key);
+    const char *given = method != NULL && method->external ? strstr(key, ",name=") : NULL;
     const char *network = strstr(key, "network=");
     if (given != NULL) {
         given += strlen(",name=");

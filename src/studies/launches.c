@@ -157,7 +157,7 @@ static bool score_with(LaunchPiece *piece, Stepper *stepper, LaunchScores *score
     bool ok = rollout_run(&rollout, stepper, &piece->launched, &piece->study->size.closed,
                           scores->steps[PROTOCOL_CLOSED], error);
     if (ok) scores->measures = run_measures(&rollout.log, &piece->converged, &piece->launched);
-    const bool frozen = !stepper_describe(stepper)->external;
+    const bool frozen = !stepper_describe(stepper)->whole_scenes;
     ok = ok &&
          (!frozen || snapshots_score(&piece->snapshots, stepper, rollout.world, scores->steps[PROTOCOL_FROZEN], error));
     scores->unconverged = rollout.unconverged;

@@ -174,7 +174,7 @@ static bool log_step(StepLog *log, const Cost *cost, Phase phase, Error *error) 
     return true;
 }
 
-/* Ends early if the state becomes NaN or infinite. */
+/* Ends early if the state becomes NaN or infinite, or a program fails. */
 static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, const Meter *meter, StepLog *log,
                        Error *error) {
     World *world = scene_world(launched, error);
@@ -193,18 +193,22 @@ static bool run_closed(Stepper *stepper, const Scene *launched, int last_frame, 
     return false;
 }
 
+/* Ends early if a program fails. */
 static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world, const Meter *meter, StepLog *log,
                        Error *error) {
+    Error failure = {0};
     Cost cost;
     for (int i = 0; i < list->count; i++) {
         const Snapshot *snapshot = &list->items[i];
-        if (!world_copy(world, snapshot->world, error) ||
-            !metered_step(stepper, world, (Step){.scene = snapshot->scene, .frame = snapshot->frame}, meter, &cost,
-                          error) ||
-            !log_step(log, &cost, snapshot->phase, error))
-            return false;
+        const Step step = {.scene = snapshot->scene, .frame = snapshot->frame};
+        if (!world_copy(world, snapshot->world, &failure) ||
+            !metered_step(stepper, world, step, meter, &cost, &failure) ||
+            !log_step(log, &cost, snapshot->phase, &failure))
+            break;
     }
-    return true;
+    if (failure.kind == ERROR_NONE || failure.failure == FAILURE_ADAPTER) return true;
+    *error = failure;
+    return false;
 }
 
 /* One contender. */
@@ -232,7 +236,8 @@ static bool run_both(const Timing *timing, const Timed *timed, int launches, con
         if (!run_closed(timed->stepper, &timing->options->launches[i], timing->options->last_frame, meter, closed,
                         error))
             return false;
-    return is_external(timed) || run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
+    return stepper_describe(timed->stepper)->whole_scenes ||
+           run_frozen(timed->stepper, timing->snapshots, timing->world, meter, frozen, error);
 }
 
 static bool varies(const Timing *timing, int contender) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The method exec reads what a program writes: answers with random damage end the run with a reason, or are numbers that an
-   engine could have answered. The program is a shell that writes a file whatever it is asked. */
+/* The methods exec and exec-solver read what a program writes: answers with random damage end the run with a reason, or are
+   numbers that an engine or a solver could have answered. The program is a shell that writes a file whatever it is asked. */
 #include "testing.h"
 
 #include "methods/adapter.h"
@@ -24,6 +24,14 @@ static void add(Answers *answers, const void *bytes, size_t size) {
 }
 
 static void add_text(Answers *answers, const char *text) { add(answers, text, strlen(text)); }
+
+/* Of a solver, for the first step of a box that rests on the ground. */
+static Answers right_impulses(void) {
+    Answers answers = {.size = 0};
+    add_text(&answers, "{\"twinbox\": 1, \"name\": \"cat\", \"version\": \"1\", \"answers\": \"impulses\"}\n"
+                       "{\"problem\": 1, \"ns\": 1500, \"impulses\": [0.0833, 0.001, 0.0833, -0.001]}\n");
+    return answers;
+}
 
 static Answers right_answers(bool binary) {
     Answers answers = {.size = 0};
@@ -69,8 +77,8 @@ static void damage(Answers *answers, uint32_t *random) {
     }
 }
 
-/* The run of a scene by a program that gives these answers, and may take these seconds for each. */
-static bool run_answers(const Answers *answers, int seconds, Error *error) {
+/* The run of a scene of this height by a program that gives these answers, and may take these seconds for each. */
+static bool run_program(const char *name, const Answers *answers, float y, int frames, int seconds, Error *error) {
     static char method_text[300];
     static int runs;
     static char *arguments[] = {method_text};
@@ -79,11 +87,14 @@ static bool run_answers(const Answers *answers, int seconds, Error *error) {
     static const char program[] = "read hello; head -n 1 $1; head -c 1 >/dev/null; tail -n +2 $1\n";
     const char *shell = write_bytes(temporary_path("program"), program, strlen(program));
     /* The number gives each run a process of its own. */
-    snprintf(method_text, sizeof method_text, "exec:/bin/sh %s %s %d,step_limit=%d", shell, path, runs++, seconds);
+    snprintf(method_text, sizeof method_text, "%s:/bin/sh %s %s %d,step_limit=%d", name, shell, path, runs++, seconds);
     programs_allow(1, arguments);
-    const char *text = "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: 6\nbodies:\n"
-                       "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n"
-                       "  - {size: [1, 1], mass: 1, position: [0, 100], friction: 0.2}\n";
+    char text[256];
+    snprintf(text, sizeof text,
+             "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: %d\nbodies:\n"
+             "  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}\n"
+             "  - {size: [1, 1], mass: 1, position: [0, %g], friction: 0.2}\n",
+             frames, (double)y);
     Scene *scene = scene_read(write_bytes(temporary_path("fall.yaml"), text, strlen(text)), error);
     assert_ok(scene != NULL, *error);
     assert_ok(method_parse(&method, method_text, error), *error);
@@ -92,7 +103,17 @@ static bool run_answers(const Answers *answers, int seconds, Error *error) {
     return done;
 }
 
+static bool run_answers(const Answers *answers, int seconds, Error *error) {
+    return run_program("exec", answers, 100, FRAMES, seconds, error);
+}
+
+static bool run_impulses(const Answers *answers, int seconds, Error *error) {
+    return run_program("exec-solver", answers, 0.495f, 1, seconds, error);
+}
+
 TEST(right_answers_are_taken) {
+    const Answers impulses = right_impulses();
+    assert_ok(run_impulses(&impulses, 60, &error), error);
     for (int binary = 0; binary < 2; binary++) {
         const Answers answers = right_answers(binary);
         assert_ok(run_answers(&answers, 60, &error), error);
@@ -111,6 +132,20 @@ TEST(damaged_answers_end_the_run_or_are_numbers) {
         assert_error(error, ERROR_INPUT, "adapter failed: ");
     }
     assert_in_range(refused, DAMAGES, 2 * DAMAGES - 1);
+}
+
+TEST(damaged_impulses_end_the_run_or_are_numbers) {
+    int refused = 0;
+    for (uint32_t seed = 0; seed < DAMAGES; seed++) {
+        uint32_t random = seed;
+        Answers answers = right_impulses();
+        damage(&answers, &random);
+        error = (Error){0};
+        if (run_impulses(&answers, 1, &error)) continue;
+        refused++;
+        assert_error(error, ERROR_INPUT, "adapter failed: ");
+    }
+    assert_in_range(refused, DAMAGES / 2, DAMAGES - 1);
 }
 
 RUN_TESTS(NULL, NULL)
