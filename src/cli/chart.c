@@ -61,7 +61,9 @@ static bool write_page(Pages *pages, const Contender *contender, const WorstLaun
              worst->launch + 1);
     snprintf(title, sizeof title, "%s, launch %d from x = %.4g m", scene.name, worst->launch + 1,
              (double)launch_of(&scene).x);
-    const PlayerOptions options = {.first = worst->touch > around ? worst->touch - around : 0,
+    const char *const methods[] = {converged->method, run->method};
+    const PlayerOptions options = {.colours = colours_of_these(&pages->options->look.colours, methods, 2),
+                                   .first = worst->touch > around ? worst->touch - around : 0,
                                    .last = scene.frames,
                                    .title = title,
                                    .describe = method_describe};
@@ -209,6 +211,7 @@ static const Option option_table[] = {
     {"--size", 0, "page|column|slide",
      "178 x 92 mm, two columns of a paper; 85 x 144 mm, one column; or 160 x 90 mm, 16:9 (default: page)",
      OPTION_READ(read_size, Options, study.look.size)},
+    {OPTION_COLOUR(Options, study.look.colours)},
     {"--words", 0, NULL, "Also write the caption below the picture", OPTION_FLAG(Options, study.look.words)},
     {OPTION_SHARD(Options, shard)},
     {0}};
@@ -283,7 +286,8 @@ static bool draw_again(const Options *given, const char *csv, Error *error) {
         options->launches.bomb_x.count > 0)
         return error_input(error, csv, "a finished chart is drawn as it is: give only this file and -o DIR");
     if (!csv_table_read(&table, csv, &chart_layout, error)) return false;
-    const bool drawn = chart_highlight_check(options->look.highlight, table.rows, table.count, error) &&
+    const bool drawn = chart_colours_check(&options->look.colours, table.rows, table.count, error) &&
+                       chart_highlight_check(options->look.highlight, table.rows, table.count, error) &&
                        folder_reserve(options->folder, error) && draw_scenes(&table, csv, options, error) &&
                        draw_equal_time(csv, options->folder, error);
     progress_bar_end();
@@ -330,15 +334,16 @@ static bool draw(const SpeedAccuracyOptions *options, const SpeedAccuracyScene *
 }
 
 /* Before the work: a name that no method of the study has. */
-static bool check_highlight(const SpeedAccuracyOptions *options, Error *error) {
+static bool check_look(const SpeedAccuracyOptions *options, Error *error) {
     ContenderList contenders;
-    if (options->look.highlight == NULL) return true;
+    if (options->look.highlight == NULL && options->look.colours.count == 0) return true;
     if (!contenders_parse(&contenders, options->methods, options->quick ? STUDY_CHART_QUICK : STUDY_CHART, error))
         return false;
     ChartRow *rows = calloc((size_t)contenders.count + 1, sizeof *rows);
     for (int i = 0; rows != NULL && i < contenders.count; i++)
         rows[i] = (ChartRow){.method = contenders.items[i].name, .setting = contenders.items[i].setting};
     const bool ok = (rows != NULL || error_memory(error, "--highlight")) &&
+                    chart_colours_check(&options->look.colours, rows, contenders.count, error) &&
                     chart_highlight_check(options->look.highlight, rows, contenders.count, error);
     free(rows);
     contenders_free(&contenders);
@@ -379,6 +384,6 @@ bool command_chart(int argc, char **argv, Error *error) {
         const char *path = options.scenes[i];
         if (!type_check(path + file_folder_length(path), path, error)) return false;
     }
-    return shard_option_take(&run, options.shard, argc, argv, error) && check_highlight(&options.study, error) &&
+    return shard_option_take(&run, options.shard, argc, argv, error) && check_look(&options.study, error) &&
            output_check_folder(options.study.folder, error) && study(&options.study, error);
 }

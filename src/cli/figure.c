@@ -54,6 +54,7 @@ static const Option option_table[] = {
      "Caption of a run, instead of its method's name (may be repeated: one per run, in their order; \"\" keeps the "
      "name)",
      OPTION_TEXTS(Options, figure.captions, caption_count)},
+    {OPTION_COLOUR(Options, figure.colours)},
     {"--outlines", 0, NULL, "SVG: text as outlines, for programs that ignore embedded fonts",
      OPTION_FLAG(Options, outlines)},
     {0}};

@@ -72,6 +72,16 @@ struct Option {
         "bomb_speed (may be repeated)",                                                                             \
         OPTION_READ(option_set, T, member)
 
+/* The members of a ColourChoices (pictures/colours.h). */
+#define OPTION_COLOUR(T, member)                                                                                   \
+    "--colour", 0, "NAME=RRGGBB",                                                                                  \
+        "Colour of a method or of one run, such as planck=2a9d8f (may be repeated). By default a method has one "  \
+        "colour "                                                                                                  \
+        "in all pictures; its further settings in a picture, in alphabetical order, have shades of it; any other " \
+        "name "                                                                                                    \
+        "has a spare colour, which the name chooses",                                                              \
+        OPTION_TEXTS(T, member.texts, member.count)
+
 OptionRead option_text, option_path, option_flag, option_seed, option_range, option_int, option_float, option_double,
     option_enum, option_flags, option_texts, option_paths, option_set, option_output, option_binary;
 

@@ -21,6 +21,7 @@ typedef struct Options {
     bool live;
     FrameRange frames;
     SceneSettings set;
+    ColourChoices colours;
 } Options;
 
 static const Option option_table[] = {
@@ -36,6 +37,7 @@ static const Option option_table[] = {
     {OPTION_METHODS(Options, methods,
                     "default: engine, and pair-net if the scene names one; with --live: engine and interior")},
     {OPTION_SET(Options, set)},
+    {OPTION_COLOUR(Options, colours)},
     {.help = "Live pages:"},
     {"--live", 0, NULL,
      "The page steps the scene itself: its readers drag the bomb and change settings and methods, and get the bits of "
@@ -76,6 +78,7 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
                           .set = set,
                           .live = live,
                           .title = options->title,
+                          .colours = options->colours,
                           .describe = draw_panels_defaults(NULL).describe};
     PlayerResult result;
     if (options->caption_count > panels->count)

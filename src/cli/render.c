@@ -46,7 +46,10 @@ static const Option option_table[] = {
     {"--hold", 0, "SECONDS", "Hold the last frame for this long",
      OPTION_DOUBLE(Options, render.hold, 0, RENDER_HOLD_MAX)},
     {"--title", 0, "TEXT", "Begin with a title card of two seconds", OPTION_TEXT(Options, render.title)},
-    {"--end", 0, "TEXT", "End with a card of two seconds", OPTION_TEXT(Options, render.look.end)},
+    {"--end", 0, "TEXT",
+     "End with a card of two seconds, with a table of the distances from the reference, or from the run that held best",
+     OPTION_TEXT(Options, render.look.end)},
+    {"--no-table", 0, NULL, "The card of --end has its text only", OPTION_FLAG(Options, render.look.end_bare)},
     {"--video", 0, "FILE",
      "Also encode a video: FILE.mp4 (H.264), .webm (VP9) or .gif; - writes y4m in 4:4:4 and BT.709 to standard output "
      "(may be repeated)",
@@ -80,6 +83,7 @@ static const Option option_table[] = {
     {"--view-from", 0, "RUN", "The fixed view of this run (.npz) instead of the first panel's",
      OPTION_PATH(Options, view_from)},
     {"--theme", 0, "light|dark", "Colours (default: light)", OPTION_ENUM(Options, render.look.theme, look_theme_names)},
+    {OPTION_COLOUR(Options, render.colours)},
     {"--caption", 0, "TEXT",
      "Caption of a run, instead of its method's name and description (may be repeated: one per run, in their order; "
      "\"\" keeps the name)",
@@ -226,7 +230,8 @@ static bool choose_mode(Options *options, int argc, char **argv, Error *error) {
 }
 
 static bool check_texts(const Options *options, Error *error) {
-    bool ok = caption_check(options->render.title, "--title", error) &&
+    bool ok = colours_check(&options->render.colours, error) &&
+              caption_check(options->render.title, "--title", error) &&
               caption_check(options->render.look.end, "--end", error);
     for (int i = 0; ok && i < options->caption_count; i++)
         ok = caption_check(options->render.captions[i], "--caption", error);
@@ -242,6 +247,8 @@ bool command_render(int argc, char **argv, Error *error) {
     options.render.first = options.frames.first;
     options.render.last = options.frames.last;
     options.render.title_card = options.render.title != NULL;
+    if (options.render.look.end_bare && options.render.look.end == NULL)
+        return error_input(error, "--no-table", "needs --end TEXT: only that card has a table");
     options.render.end_card = options.render.look.end != NULL;
     Panels panels = {0};
     RenderLook *look = &options.render.look;

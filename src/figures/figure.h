@@ -34,18 +34,19 @@ typedef struct FigureSpec {
     const Trajectory *runs[FIGURE_RUNS_MAX];
     const char *paths[FIGURE_RUNS_MAX];    /* file names of the runs, for messages */
     const char *captions[FIGURE_RUNS_MAX]; /* instead of the names of the runs' methods; NULL or "": these */
-    int time_count;                        /* 0: the kind chooses */
-    double times[FIGURE_MOMENTS_MAX];      /* s, ascending */
-    int moments;                           /* number of equidistant moments; 0: the kind chooses */
-    const char *scene;                     /* divergence: scene of the first run, for the band of chaotic divergence;
+    ColourChoices colours;
+    int time_count;                   /* 0: the kind chooses */
+    double times[FIGURE_MOMENTS_MAX]; /* s, ascending */
+    int moments;                      /* number of equidistant moments; 0: the kind chooses */
+    const char *scene;                /* divergence: scene of the first run, for the band of chaotic divergence;
                                            NULL: no band */
-    const char *network;                   /* network: the file */
-    CameraView view;                       /* the part of the world to show; width 0: that of `view_from` */
-    const Trajectory *view_from;           /* the run whose bodies set the view; NULL: the first */
-    int body_count;                        /* 0: the kind chooses */
-    int bodies[FIGURE_BODIES_MAX];         /* narrow-phase: the pair; strip: those that must be in view */
-    FigureFacts *facts;                    /* filled in by drawing; NULL: not wanted */
-    const Progress *progress;              /* of simulations run for the figure, or NULL */
+    const char *network;              /* network: the file */
+    CameraView view;                  /* the part of the world to show; width 0: that of `view_from` */
+    const Trajectory *view_from;      /* the run whose bodies set the view; NULL: the first */
+    int body_count;                   /* 0: the kind chooses */
+    int bodies[FIGURE_BODIES_MAX];    /* narrow-phase: the pair; strip: those that must be in view */
+    FigureFacts *facts;               /* filled in by drawing; NULL: not wanted */
+    const Progress *progress;         /* of simulations run for the figure, or NULL */
 } FigureSpec;
 
 typedef struct FigureKind {

@@ -26,7 +26,7 @@ enum { MAX_PANELS = 3 };
 typedef struct Annotated {
     const FigureSpec *spec;
     int frame;
-    MethodColour colours[FIGURE_RUNS_MAX];
+    RunColours colours[FIGURE_RUNS_MAX];
     RunCells cells;
     double top, foot, start; /* mm: above and below the cells; left end of the first cell */
     int title_lines;         /* of the panel with the most */
@@ -163,7 +163,7 @@ static void draw_title(const Annotated *figure, Sketch *sketch, int panel, Point
 }
 
 static bool draw_scene(Annotated *figure, Sketch *sketch, int panel, Point low, Error *error) {
-    Image *image = run_cells_render(&figure->cells, figure->spec->runs[panel], figure->frame, figure->colours[panel],
+    Image *image = run_cells_render(&figure->cells, figure->spec->runs[panel], figure->frame, &figure->colours[panel],
                                     STILL_ALL, error);
     if (image == NULL) return false;
     for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++)
@@ -188,8 +188,8 @@ static bool draw_panel(Annotated *figure, Sketch *sketch, int panel, Error *erro
 
 static bool annotated_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Annotated figure = {.spec = spec};
-    run_colours(spec, figure.colours);
-    bool done = run_check_worlds(spec, error) && choose_moment(&figure, error) && annotated_lay_out(&figure, error);
+    bool done = run_colours(spec, figure.colours, error) && run_check_worlds(spec, error) &&
+                choose_moment(&figure, error) && annotated_lay_out(&figure, error);
     if (done) sketch_begin(sketch, spec->width, figure.top + figure.foot + figure.cells.height);
     for (int i = 0; done && i < spec->run_count; i++) done = draw_panel(&figure, sketch, i, error);
     if (done) annotated_legend(&figure, sketch);

@@ -24,7 +24,7 @@ static const char distance_label[] = "largest distance (m)";
 
 typedef struct Divergence {
     const FigureSpec *spec;
-    MethodColour colours[FIGURE_RUNS_MAX];
+    RunColours colours[FIGURE_RUNS_MAX];
     int frames;                        /* of the first run */
     double *distance[FIGURE_RUNS_MAX]; /* [frames] m; NaN after the end of either run; NULL for the first run */
     double *low, *high;                /* [frames] m, the band; NULL: none. NaN after its end */
@@ -116,7 +116,7 @@ static int gather(const Divergence *d, const PlotPanel *plot, const double *valu
 
 /* The colour of the method; the dashes tell lines apart in grey. */
 static Pen line_pen(const Divergence *d, int run) {
-    return pen_line(plot_method_colour(d->colours[run]), 2.2, plot_style(run - 1).dashes);
+    return pen_line(d->colours[run].light.fill, 2.2, plot_style(run - 1).dashes);
 }
 
 static void draw_line(const Divergence *d, Sketch *sketch, const PlotPanel *plot, int run, Point *points) {
@@ -219,9 +219,9 @@ static bool draw_plot(const Divergence *d, Sketch *sketch, PlotRange range, Erro
 
 static bool draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Divergence d = {.spec = spec};
-    run_colours(spec, d.colours);
     PlotRange range = plot_range();
-    bool done = run_check_worlds(spec, error) && measure(&d, error) && (spec->scene == NULL || make_band(&d, error));
+    bool done = run_colours(spec, d.colours, error) && run_check_worlds(spec, error) && measure(&d, error) &&
+                (spec->scene == NULL || make_band(&d, error));
     for (int i = 1; done && i < spec->run_count; i++) include(&range, d.distance[i], d.frames);
     if (done) include(&range, d.low, d.frames), include(&range, d.high, d.frames);
     if (done && range.most == 0)

@@ -25,7 +25,7 @@ static const double palest = 0.12, before_last = 0.5; /* opacity of the first mo
 typedef struct Strobe {
     const FigureSpec *spec;
     const Trajectory *run;
-    MethodColour colour;
+    RunColours colours;
     int frames[FIGURE_MOMENTS_MAX], count;
     WrappedText title;
     RunCells cells;
@@ -45,11 +45,12 @@ static void blend_over(Image *image, const Image *upper, double opacity) {
 }
 
 static bool draw_moments(Strobe *strobe, Sketch *sketch, Error *error) {
-    Image *image = run_cells_render(&strobe->cells, strobe->run, strobe->frames[0], strobe->colour, STILL_FIXED, error);
+    Image *image =
+        run_cells_render(&strobe->cells, strobe->run, strobe->frames[0], &strobe->colours, STILL_FIXED, error);
     bool done = image != NULL;
     for (int i = 0; done && i < strobe->count; i++) {
         Image *moment =
-            run_cells_render(&strobe->cells, strobe->run, strobe->frames[i], strobe->colour, STILL_MOVING, error);
+            run_cells_render(&strobe->cells, strobe->run, strobe->frames[i], &strobe->colours, STILL_MOVING, error);
         done = moment != NULL;
         if (done) blend_over(image, moment, opacity_of(strobe, i));
         image_destroy(moment);
@@ -165,8 +166,9 @@ static bool strobe_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     const double max_height = 120, max_aspect = 1.2; /* mm; height / width */
     const double line = line_height(spec->points), width = spec->width - 2 * PAGE_EDGE;
     const double height = fmin(max_height, max_aspect * width);
-    run_colours(spec, &strobe.colour);
-    if (!run_frames(spec, STROBE_MOMENTS, 0, strobe.frames, &strobe.count, error)) return false;
+    if (!run_colours(spec, &strobe.colours, error) ||
+        !run_frames(spec, STROBE_MOMENTS, 0, strobe.frames, &strobe.count, error))
+        return false;
     WorldWindow window = run_window(strobe.spec, strobe.frames, strobe.count);
     run_window_widen(&window, width / height);
     bool done = run_cells_begin(&strobe.cells, &window, width, height, spec->dpi, error);
@@ -217,7 +219,7 @@ typedef struct Strip {
     const FigureSpec *spec;
     int frames[FIGURE_MOMENTS_MAX], count;
     RunCells cells;
-    MethodColour colours[FIGURE_RUNS_MAX];
+    RunColours colours[FIGURE_RUNS_MAX];
     double left, top, foot;          /* mm: space beside, above and below the cells */
     double start;                    /* left end of the first cell */
     int name_lines;                  /* beside each row of cells */
@@ -377,7 +379,8 @@ static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, E
     RunCells cells = strip->cells;
     const Point low = cell_corner(strip, row, column);
     const WrappedText note = note_of(strip, row, column);
-    if (!run_cells_draw(&cells, sketch, low, strip->spec->runs[row], strip->frames[column], strip->colours[row], error))
+    if (!run_cells_draw(&cells, sketch, low, strip->spec->runs[row], strip->frames[column], &strip->colours[row],
+                        error))
         return false;
     run_cells_frame(&cells, sketch, low);
     if (note.lines > 0) draw_wrapped(sketch, (Point){low.x, low.y - 0.6 * line_height(note.points)}, INK_SOFT, &note);
@@ -405,8 +408,7 @@ static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
 
 static bool strip_draw(Sketch *sketch, const FigureSpec *spec, Error *error) {
     Strip strip = {.spec = spec};
-    run_colours(spec, strip.colours);
-    bool done = run_check_worlds(spec, error) && check_bodies(spec, error) &&
+    bool done = run_colours(spec, strip.colours, error) && run_check_worlds(spec, error) && check_bodies(spec, error) &&
                 run_frames(spec, STRIP_MOMENTS, 0, strip.frames, &strip.count, error) && strip_lay_out(&strip, error);
     if (done) sketch_begin(sketch, spec->width, strip_height(&strip));
     for (int row = 0; done && row < spec->run_count; row++)

@@ -98,12 +98,12 @@ bool run_cells_begin(RunCells *cells, const WorldWindow *window, double width, d
 void run_cells_free(RunCells *cells);
 
 /* Renders part of a frame into a new image of a cell's size. */
-Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, MethodColour colour, StillParts parts,
+Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, const RunColours *colours, StillParts parts,
                         Error *error);
 
 /* Renders a frame onto the page, lower left corner at `low`. */
-bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, MethodColour colour,
-                    Error *error);
+bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame,
+                    const RunColours *colours, Error *error);
 
 /* The mapping from metres to the page in a cell. */
 View run_cells_view(const RunCells *cells, Point low);
@@ -127,7 +127,7 @@ typedef struct RunName {
 RunName run_name(const FigureSpec *spec, const Trajectory *run);
 
 /* The runs' colours, FIGURE_RUNS_MAX of them. */
-void run_colours(const FigureSpec *spec, MethodColour *colours);
+bool run_colours(const FigureSpec *spec, RunColours *colours, Error *error);
 
 /* Draws the contacts of a step over a picture of its bodies: points, normals, and impulses as arrows and numbers. */
 

@@ -291,18 +291,18 @@ void run_cells_free(RunCells *cells) {
     cells->still = NULL;
 }
 
-Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, MethodColour colour, StillParts parts,
+Image *run_cells_render(RunCells *cells, const Trajectory *run, int frame, const RunColours *colours, StillParts parts,
                         Error *error) {
-    const StillShot shot = {run, frame, colour, parts, cells->camera};
+    const StillShot shot = {run, frame, colours->light, parts, cells->camera};
     Image *image = image_create(cells->columns, cells->rows, error);
     if (image == NULL || still_draw(cells->still, &shot, image, error)) return image;
     image_destroy(image);
     return NULL;
 }
 
-bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame, MethodColour colour,
-                    Error *error) {
-    Image *image = run_cells_render(cells, run, frame, colour, STILL_ALL, error);
+bool run_cells_draw(RunCells *cells, Sketch *sketch, Point low, const Trajectory *run, int frame,
+                    const RunColours *colours, Error *error) {
+    Image *image = run_cells_render(cells, run, frame, colours, STILL_ALL, error);
     if (image == NULL) return false;
     sketch_image(sketch, image, low, cells->width);
     image_destroy(image);
@@ -385,8 +385,8 @@ RunName run_name(const FigureSpec *spec, const Trajectory *run) {
     return name;
 }
 
-void run_colours(const FigureSpec *spec, MethodColour *colours) {
-    const MethodDescription *methods[FIGURE_RUNS_MAX];
-    for (int i = 0; i < spec->run_count; i++) methods[i] = method_describe(spec->runs[i]->method);
-    method_colours_assign(methods, spec->run_count, colours);
+bool run_colours(const FigureSpec *spec, RunColours *colours, Error *error) {
+    const char *methods[FIGURE_RUNS_MAX];
+    for (int i = 0; i < spec->run_count; i++) methods[i] = spec->runs[i]->method;
+    return colours_assign(methods, spec->run_count, &spec->colours, colours, error);
 }

@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "pictures/colours.h"
 #include "pixels/png.h"
 
 #include <stdbool.h>
@@ -233,12 +234,9 @@ typedef struct PlotStyle {
 /* The style of series i, which is no method. */
 PlotStyle plot_style(int i);
 
-/* The styles of `count` series, each of a method (NULL: unknown), all different: colour and symbol of its description.
-   Several series of one method have one colour, the second with an open symbol, further ones with others. */
-void plot_method_styles(const MethodDescription *const *methods, int count, PlotStyle *styles);
-
-/* The colour of a method's line. */
-uint32_t plot_method_colour(MethodColour colour);
+/* The style of a series that is a method: further settings of one have a shade, the first with an open symbol, others with
+   other symbols. */
+PlotStyle plot_method_style(const RunColours *colours);
 
 /* A mark of this radius in mm; the lines of open symbols and crosses are `line` wide (LINE_UNIT). */
 void plot_mark(Sketch *sketch, Point at, const PlotStyle *style, double radius, double line);

@@ -187,20 +187,6 @@ void plot_ticks_choose(PlotTicks *ticks, const PlotAxis *axis, double points, bo
     }
 }
 
-/* The hues of pictures/theme.c; `ink` is darker, for text. */
-static const struct {
-    uint32_t colour, ink;
-} colours[METHOD_COLOURS] = {
-    [METHOD_BLACK] = {0x000000, 0x000000},  [METHOD_VERMILION] = {0xD55E00, 0xA84A00},
-    [METHOD_BLUE] = {0x0072B2, 0x005A8C},   [METHOD_GREEN] = {0x009E73, 0x00704F},
-    [METHOD_PURPLE] = {0xCC79A7, 0x95457A}, [METHOD_SKY] = {0x56B4E9, 0x20719F},
-    [METHOD_ORANGE] = {0xE69F00, 0x8F6200}, [METHOD_WINE] = {0x882255, 0x882255},
-};
-
-/* For series that are no methods. */
-static const MethodColour colour_order[] = {METHOD_BLACK,  METHOD_VERMILION, METHOD_BLUE,  METHOD_GREEN,
-                                            METHOD_PURPLE, METHOD_SKY,       METHOD_ORANGE};
-
 /* For series that are no methods: filled, then open; then crosses. */
 enum { SHAPES = 6, STYLES = 2 * SHAPES + 3 };
 static const int shapes[SHAPES] = {
@@ -208,48 +194,18 @@ static const int shapes[SHAPES] = {
 
 static const char *const dashes[] = {NULL, "(5,2.5)", "(1.6,1.6)", "(6,1.8,1.4,1.8)", "(9,2.5)", "(3.2,1.8,3.2,4)"};
 
-enum { COLOUR_ORDER = sizeof colour_order / sizeof *colour_order, DASHES = sizeof dashes / sizeof *dashes };
+enum { DASHES = sizeof dashes / sizeof *dashes };
 
 PlotStyle plot_style(int i) {
     const int place = i % STYLES;
-    const MethodColour colour = colour_order[i % COLOUR_ORDER];
+    const RunColours hue = colours_hue(i % (COLOUR_HUES - 1)); /* without wine: it is dark, as black is */
     return (PlotStyle){place < 2 * SHAPES ? shapes[place % SHAPES] : PLOT_PLUS + place - 2 * SHAPES,
-                       place >= SHAPES && place < 2 * SHAPES, colours[colour].colour, colours[colour].ink,
-                       dashes[i % (DASHES - 1)]};
+                       place >= SHAPES && place < 2 * SHAPES, hue.light.fill, hue.ink, dashes[i % (DASHES - 1)]};
 }
 
-uint32_t plot_method_colour(MethodColour colour) { return colours[colour].colour; }
-
-/* The looks of one colour in the order in which they are tried: the symbol, filled, then open; then the other symbols. */
-enum { VARIANTS = 2 * METHOD_SYMBOLS };
-
-static PlotStyle variant_of(MethodLook look, int variant) {
-    const int symbol = ((int)look.symbol + variant / 2) % METHOD_SYMBOLS;
-    return (PlotStyle){symbol, variant % 2 == 1, colours[look.colour].colour, colours[look.colour].ink, dashes[symbol]};
-}
-
-static bool is_taken(const PlotStyle *styles, int count, const PlotStyle *style) {
-    for (int i = 0; i < count; i++)
-        if (styles[i].symbol == style->symbol && styles[i].open == style->open && styles[i].colour == style->colour)
-            return true;
-    return false;
-}
-
-void plot_method_styles(const MethodDescription *const *methods, int count, PlotStyle *styles) {
-    for (int i = 0, unknown = 0; i < count; i++) {
-        MethodLook look = methods[i] != NULL ? methods[i]->look : (MethodLook){METHOD_NO_COLOUR, METHOD_CIRCLE};
-        const bool stated = look.colour != METHOD_NO_COLOUR;
-        do {
-            if (!stated)
-                look = (MethodLook){(MethodColour)(1 + unknown % (METHOD_COLOURS - 1)),
-                                    (MethodSymbol)(METHOD_PENTAGON - unknown % METHOD_SYMBOLS)};
-            unknown += !stated;
-            for (int variant = 0; variant < VARIANTS; variant++) {
-                styles[i] = variant_of(look, variant);
-                if (!is_taken(styles, i, &styles[i])) break;
-            }
-        } while (!stated && is_taken(styles, i, &styles[i]));
-    }
+PlotStyle plot_method_style(const RunColours *colours) {
+    const int symbol = ((int)colours->symbol + colours->shade / 2) % METHOD_SYMBOLS;
+    return (PlotStyle){symbol, colours->shade % 2 == 1, colours->light.fill, colours->ink, dashes[symbol]};
 }
 
 /* Corners, the angle of the first one and the radius, such that all look equally large. */

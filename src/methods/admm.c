@@ -113,7 +113,6 @@ const ContactSolverKind solver_admm = {
     .description = {.name = "admm",
                     .summary = "proximal ADMM: a factorization over the bodies, then many solutions with it",
                     .caption = "proximal ADMM",
-                    .look = {METHOD_VERMILION, METHOD_TRIANGLE},
                     .settings = settings,
                     .falls_back = true,
                     .chart = METHOD_RUNS("k=5", "k=10", "k=20", "k=50", "k=100", "k=2,near=0.1,more=400",

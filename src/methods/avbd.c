@@ -385,7 +385,6 @@ const SteppingKind stepping_avbd = {
     .description = {.name = "avbd",
                     .summary = "augmented vertex block descent: implicit positions, body after body",
                     .caption = "augmented vertex block descent",
-                    .look = {METHOD_GREEN, METHOD_DIAMOND},
                     .settings = settings,
                     .own_settings = "k=10",
                     .no_push_out = true,

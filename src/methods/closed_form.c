@@ -78,7 +78,6 @@ const ContactSolverKind solver_closed_form = {
     .description = {.name = "closed-form",
                     .summary = "complementarity-free contact: each contact answers once, as a damped spring",
                     .caption = "complementarity-free contact",
-                    .look = {METHOD_VERMILION, METHOD_CIRCLE},
                     .settings = settings,
                     .chart = METHOD_RUNS("", "damping=0.6", "stiffness=0,damping=1", "stiffness=0.5,damping=0.02",
                                          "stiffness=1,damping=0.5", "stiffness=1,damping=1")},

@@ -23,7 +23,6 @@ const ContactSolverKind solver_constant = {
                     .summary =
                         "baseline: predicts the mean of the training data of pair-net or contact-net for every pair",
                     .caption = "mean of the training data",
-                    .look = {METHOD_WINE, METHOD_SQUARE},
                     .settings = settings,
                     .role = METHOD_BASELINE,
                     .needs_network = true,

@@ -68,7 +68,6 @@ const ContactSolverKind solver_engine = {
     .description = {.name = "engine",
                     .summary = "sequential impulses with warm starting: the physics engine",
                     .caption = "physics engine, sequential impulses",
-                    .look = {METHOD_BLUE, METHOD_CIRCLE},
                     .settings = settings,
                     .shipped = "k=10",
                     .chart = METHOD_RUNS("k=5", "k=10", "k=50", "k=100", "k=2,near=0.1,more=400",

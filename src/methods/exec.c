@@ -163,7 +163,6 @@ const SteppingKind stepping_exec = {
     .description = {.name = "exec",
                     .summary = "another program, such as a real engine: exec:PROGRAM WORD...,KEY=VALUE,...",
                     .caption = "another program",
-                    .look = {METHOD_BLACK, METHOD_PENTAGON},
                     .settings = settings,
                     .own_settings = "",
                     .external = true,

@@ -236,7 +236,6 @@ const SteppingKind stepping_gns = {
     .description = {.name = "gns",
                     .summary = "graph network-based simulator: boxes as particles, moved by a learned network",
                     .caption = "graph network on particles",
-                    .look = {METHOD_PURPLE, METHOD_CIRCLE},
                     .settings = settings,
                     .no_contacts = true,
                     .falls_back = true,

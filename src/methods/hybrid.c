@@ -249,7 +249,6 @@ const ContactSolverKind solver_hybrid = {
     .description = {.name = "hybrid",
                     .summary = "a memory answers familiar impacts; others are solved to convergence",
                     .caption = "memory of solved impacts",
-                    .look = {METHOD_GREEN, METHOD_SQUARE},
                     .settings = settings,
                     .falls_back = true,
                     .needs_network = true,

@@ -438,7 +438,6 @@ const ContactSolverKind solver_interior = {
     .description = {.name = "interior",
                     .summary = "interior-point steps with a sparse direct solve over the bodies",
                     .caption = "interior-point steps",
-                    .look = {METHOD_PURPLE, METHOD_DIAMOND},
                     .settings = settings,
                     .falls_back = true,
                     .chart = METHOD_RUNS("near=1", "near=0.1", "near=0.02", "near=0.002", "near=0.0005", "near=0.0001"),

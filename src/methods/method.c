@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Methods by name: texts and looks, the registry, solvers and steppers made from their settings (methods/methods.h). */
+/* Methods by name: names, the registry, solvers and steppers made from their settings (methods/methods.h). */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "scenes/scenes.h"
 
-#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,22 +34,6 @@ size_t method_name(char *name, size_t size, const char *text) {
 }
 
 size_t method_name_head(const char *name) { return strcspn(name, ":"); }
-
-void method_colours_assign(const MethodDescription *const *methods, int count, MethodColour *colours) {
-    bool taken[METHOD_COLOURS] = {[METHOD_NO_COLOUR] = true};
-    assert(count < METHOD_COLOURS);
-    for (int i = 0; i < count; i++) {
-        MethodColour stated = methods[i] != NULL ? methods[i]->look.colour : METHOD_NO_COLOUR;
-        colours[i] = taken[stated] ? METHOD_NO_COLOUR : stated;
-        taken[stated] = true;
-    }
-    for (int i = 0, next = METHOD_NO_COLOUR; i < count; i++) {
-        if (colours[i] != METHOD_NO_COLOUR) continue;
-        while (taken[next]) next++;
-        colours[i] = (MethodColour)next;
-        taken[next] = true;
-    }
-}
 
 /* The method in `name` or `name:key=value,...`, or NULL. */
 static const MethodKind *find(const char *text) {

@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 /* What lists, charts, studies and captions know of a method. A field left zero has a sensible default: a name and a
-   summary are enough to begin with; methods/method_looks also wants a caption and a look. */
+   summary are enough to begin with; pictures/colours also wants a caption, and a colour in pictures/colours.c. */
 
 /* What a method's results are compared for. */
 typedef enum MethodRole {
@@ -19,38 +19,6 @@ typedef enum MethodRole {
     METHOD_BASELINE, /* solves nothing; other methods must be more accurate */
     METHOD_REFERENCE /* the converged solution: errors of other methods are measured against it */
 } MethodRole;
-
-/* By its colour a reader finds a method again in all pictures. They differ with all common kinds of
-   colour blindness. The palettes are in pictures/theme.c and figures/sketch_plot.c. */
-typedef enum MethodColour {
-    METHOD_NO_COLOUR, /* any that is left */
-    METHOD_BLUE,
-    METHOD_ORANGE,
-    METHOD_GREEN,
-    METHOD_PURPLE,
-    METHOD_SKY,
-    METHOD_WINE,
-    METHOD_VERMILION,
-    METHOD_BLACK,
-    METHOD_COLOURS
-} MethodColour;
-
-/* Marks and dashes in charts. */
-typedef enum MethodSymbol {
-    METHOD_CIRCLE,
-    METHOD_SQUARE,
-    METHOD_TRIANGLE,
-    METHOD_DIAMOND,
-    METHOD_INVERTED_TRIANGLE,
-    METHOD_PENTAGON,
-    METHOD_SYMBOLS
-} MethodSymbol;
-
-/* Different for every method: those of one colour differ in their symbol. */
-typedef struct MethodLook {
-    MethodColour colour;
-    MethodSymbol symbol;
-} MethodLook;
 
 /* Settings that a study runs a method with, each as on the command line ("k=10,warm=off"; "": none given), ended by
    NULL. */
@@ -63,7 +31,6 @@ typedef struct MethodDescription {
     const char *name, *summary;  /* as on the command line; one line for `twinbox methods` */
     const SettingSpec *settings; /* ended by a NULL key; NULL: the method has none */
     const char *caption;         /* in frames, after the method's text: "sequential impulses"; NULL: nothing */
-    MethodLook look;
     MethodRole role;
     bool no_push_out;   /* it moves overlapping bodies apart without giving them a velocity; so the converged velocities
                             that it is scored against have none of position correction either */
@@ -105,7 +72,7 @@ typedef struct ContactSolver {
    line SOLVER(NAME) here. */
 
 /* In the order of lists and charts. SOLVER(x) is solver_x; STEPPING(x) is stepping_x, for methods that need more than one
-   solver call in a step. New methods go to the end: lines of a chart get their colours in this order. */
+   solver call in a step. New methods go to the end. */
 #define METHODS(SOLVER, STEPPING) \
     SOLVER(engine)                \
     SOLVER(momentum)              \
@@ -271,17 +238,12 @@ const MethodDescription *stepper_describe(const Stepper *stepper);
    world_solution() are those of the step. */
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error);
 
-/* How methods are named and told apart in all pictures: captions, legends, charts and figures.
+/* How methods are named in all pictures: captions, legends, charts and figures. Their colours: pictures/colours.h.
 
-   The name is the method's text as on the command line ("momentum:k=20"), without the folders of its files. The colour is
-   the one that its description states, unless another run of the picture has it. */
+   The name is the method's text as on the command line ("momentum:k=20"), without the folders of its files. */
 
 /* Copies a method's text without the folders of its files, which differ between machines. Returns its length. */
 size_t method_name(char *name, size_t size, const char *text);
 
 /* Length of the part of a name before its settings. */
 size_t method_name_head(const char *name);
-
-/* Colours of the runs of one picture, all different: the described ones in the order of the runs; then for the others the
-   first ones that are left. methods[i] NULL: unknown. count < METHOD_COLOURS. */
-void method_colours_assign(const MethodDescription *const *methods, int count, MethodColour *colours);

@@ -151,7 +151,6 @@ const ContactSolverKind solver_momentum = {
     .description = {.name = "momentum",
                     .summary = "sequential impulses with momentum extrapolation between sweeps",
                     .caption = "sequential impulses with momentum",
-                    .look = {METHOD_GREEN, METHOD_TRIANGLE},
                     .settings = settings,
                     .chart = METHOD_RUNS("k=5", "k=20", "k=50", "k=100", "k=1,near=0.005,more=10000",
                                          "k=1,near=0.0002,more=10000", "k=5,near=0.5,more=10000",

@@ -159,7 +159,6 @@ const ContactSolverKind solver_nncg = {
     .description = {.name = "nncg",
                     .summary = "nonsmooth nonlinear conjugate gradients over sweeps",
                     .caption = "conjugate gradients over sweeps",
-                    .look = {METHOD_BLACK, METHOD_DIAMOND},
                     .settings = settings,
                     .chart = METHOD_RUNS("k=5", "k=20", "k=50", "k=1,near=0.5,more=10000", "k=1,near=0.02,more=10000",
                                          "k=5,near=0.02,more=10000", "k=5,near=0.001,more=10000",

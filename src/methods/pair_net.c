@@ -351,7 +351,6 @@ const ContactSolverKind solver_contact_net = {
                     .summary =
                         "beyond the paper: a network predicts impulses at contact points, clamped to the friction cone",
                     .caption = "neural network for contact points",
-                    .look = {METHOD_WINE, METHOD_TRIANGLE},
                     .settings = contact_net_settings,
                     .needs_network = true,
                     .twin = "contact-net:net=off",
@@ -417,7 +416,6 @@ const ContactSolverKind solver_relu_net = {
     .description = {.name = "relu-net",
                     .summary = "sequential impulses written as a ReLU network; nothing is trained",
                     .caption = "sequential impulses as a ReLU network",
-                    .look = {METHOD_WINE, METHOD_CIRCLE},
                     .settings = relu_net_settings,
                     .chart = METHOD_NO_RUNS,
                     .chart_quick = METHOD_NO_RUNS,
@@ -481,7 +479,6 @@ const ContactSolverKind solver_pair_net = {
     .description = {.name = "pair-net",
                     .summary = "the paper's network: predicts the change of velocities, pair by pair",
                     .caption = "neural network for pairs",
-                    .look = {METHOD_ORANGE, METHOD_DIAMOND},
                     .settings = settings,
                     .needs_network = true,
                     .twin = "pair-net:net=off",

@@ -159,7 +159,6 @@ const SteppingKind stepping_playback = {
     .description = {.name = "playback",
                     .summary = "baseline without physics: replays the velocities of the nearest recorded launch",
                     .caption = "nearest recorded launch",
-                    .look = {METHOD_BLACK, METHOD_INVERTED_TRIANGLE},
                     .settings = settings,
                     .role = METHOD_BASELINE,
                     .chart = METHOD_RUNS("launches=25", "launches=100"),

@@ -335,7 +335,6 @@ const ContactSolverKind solver_reference = {
     .description = {.name = "reference",
                     .summary = "the converged solution, by interior points in double; errors are measured against it",
                     .caption = "converged solution",
-                    .look = {METHOD_BLACK, METHOD_CIRCLE},
                     .role = METHOD_REFERENCE,
                     .settings = settings,
                     .stability_place = 6},

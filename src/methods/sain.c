@@ -306,7 +306,6 @@ const ContactSolverKind solver_sain = {
     .description = {.name = "sain",
                     .summary = "10 sweeps of the engine, then a network corrects each body that touches another",
                     .caption = "engine corrected by an interaction network",
-                    .look = {METHOD_ORANGE, METHOD_TRIANGLE},
                     .settings = settings,
                     .needs_network = true,
                     .twin = "sain:net=off",

@@ -386,7 +386,6 @@ const ContactSolverKind solver_scene_net = {
     .description = {.name = "scene-net",
                     .summary = "a network predicts all impulses of a scene at impacts; sweeps follow",
                     .caption = "neural network for a scene",
-                    .look = {METHOD_SKY, METHOD_DIAMOND},
                     .settings = settings,
                     .needs_network = true,
                     .twin = "scene-net:net=off",

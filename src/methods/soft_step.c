@@ -310,7 +310,6 @@ const SteppingKind stepping_soft_step = {
     .description = {.name = "soft-step",
                     .summary = "Box2D v3's solver: soft contacts, substeps and relaxation",
                     .caption = "Box2D v3's solver",
-                    .look = {METHOD_BLUE, METHOD_SQUARE},
                     .settings = settings,
                     .own_settings = "substeps=4",
                     .no_push_out = true,

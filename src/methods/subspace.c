@@ -264,7 +264,6 @@ const SteppingKind stepping_subspace = {
     .description = {.name = "subspace",
                     .summary = "no solver: a network predicts principal components of all poses",
                     .caption = "principal components",
-                    .look = {METHOD_SKY, METHOD_CIRCLE},
                     .settings = settings,
                     .needs_network = true,
                     .twin = "subspace:net=off",

@@ -159,7 +159,6 @@ const SteppingKind stepping_substepping = {
     .description = {.name = "substepping",
                     .summary = "one collision pass, then small steps of sequential impulses",
                     .caption = "small steps of sequential impulses",
-                    .look = {METHOD_PURPLE, METHOD_SQUARE},
                     .settings = settings,
                     .own_settings = "substeps=4,k=1",
                     .chart = METHOD_RUNS("substeps=2", "substeps=4,k=4", "substeps=10", "substeps=8,k=16",

@@ -139,8 +139,9 @@ Vec2 camera_needs(const CameraFrame *frame) {
 
 Camera camera_fit(const CameraFrame *frame, int width, int height) {
     const Extent *held = &frame->held, *room = &frame->room;
-    const double needed = held->right - held->left, high = held->top - held->bottom;
-    const double scale = nice_scale(fmin(width / needed, height / high));
+    const double high = held->top - held->bottom, largest = fmin(width / (held->right - held->left), height / high);
+    const double all = width / (frame->action.right - frame->action.left);
+    const double scale = nice_scale(fmin(largest, fmax(all, LEAST_SCALE * largest)));
     if (frame->set) return look_at(frame->middle, (held->bottom + held->top) / 2, scale, width, height);
     /* Spare width goes to both sides of what stands, then to where it falls; spare height above: sky distracts less
        than ground. */

@@ -4,9 +4,11 @@
 #include "pictures/internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"
+#include "runs/verdict.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* In units of the picture's shorter side, as in picture.c. */
 static const double HEAD = 0.075, HEAD_LINE = 0.095, SUBHEAD = 0.036, ROW = 0.036, CELL = 0.030, LINE = 0.072;
@@ -83,7 +85,8 @@ TextLines card_head(const Picture *picture, MomentKind kind) {
 static int draw_head(const Card *card, MomentKind kind) {
     const TextLines head = card_head(card->picture, kind);
     const int lines = head.count < TEXT_LINES_MAX ? head.count : TEXT_LINES_MAX;
-    const int last = head_baseline(card, lines, card->picture->count);
+    const bool bare = kind == MOMENT_END && card->picture->look.end_bare;
+    const int last = head_baseline(card, lines, bare ? 0 : card->picture->count);
     for (int i = 0; i < lines; i++) {
         const int baseline = last - (int)rint((lines - 1 - i) * HEAD_LINE * card->unit);
         add(card, &card->head, head.lines[i], card->left, baseline, card->right, card->picture->theme->ink);
@@ -108,22 +111,48 @@ static void draw_title(const Card *card) {
     }
 }
 
-/* The time of the first divergence from the first run, or a dash. */
-static void format_divergence_time(const Picture *picture, int run, char *text, size_t size) {
-    int frame = 0;
-    while (frame < picture->frames &&
-           !(picture_run_distance(picture, run, moment_stored(frame)) > EVENTS_VISIBLE_DISTANCE))
-        frame++;
-    if (frame < picture->frames)
-        snprintf(text, size, "%.2f s", frame * (double)picture->runs[0]->dt);
-    else
-        snprintf(text, size, "\xE2\x80\x93");
+/* How bad the verdict of a run is; -1: unknown. */
+static int badness(const Trajectory *run) {
+    for (int verdict = VERDICT_SETTLES; verdict < VERDICTS; verdict++) {
+        const char *name = verdict_name((Verdict)verdict);
+        const char after = strncmp(run->verdict, name, strlen(name)) == 0 ? run->verdict[strlen(name)] : 'x';
+        if (after == '\0' || after == ' ' || after == ':') return verdict;
+    }
+    return -1;
 }
 
-/* The distance in the last frame that both this run and the first have. */
-static double last_distance(const Picture *picture, int run) {
-    int frames = picture->runs[0]->frames, own = picture->runs[run]->frames;
-    return picture_run_distance(picture, run, moment_stored((own < frames ? own : frames) - 1));
+static bool is_reference(const Picture *picture, int run) {
+    return picture->methods[run] != NULL && picture->methods[run]->role == METHOD_REFERENCE;
+}
+
+/* The run that the table compares with: the reference; else the first, unless another has a better verdict. What burst says
+   nothing of the others. */
+static int choose_base(const Picture *picture) {
+    int base = 0;
+    bool known = true;
+    for (int run = 0; run < picture->count; run++) {
+        if (is_reference(picture, run)) return run;
+        known &= badness(picture->runs[run]) >= 0;
+        if (badness(picture->runs[run]) < badness(picture->runs[base])) base = run;
+    }
+    return known ? base : 0;
+}
+
+static CardRow distances_from(const Trajectory *base, const Trajectory *run) {
+    const int frames = run->frames < base->frames ? run->frames : base->frames;
+    CardRow row = {.frame = -1};
+    for (int frame = 0; frame < frames; frame++) {
+        row.last = trajectory_distance(base, run, frame);
+        row.largest = fmax(row.largest, row.last);
+        if (row.frame < 0 && row.last > EVENTS_VISIBLE_DISTANCE) row.frame = frame;
+    }
+    return row;
+}
+
+void card_plan(Picture *picture) {
+    picture->card_base = choose_base(picture);
+    for (int run = 0; run < picture->count; run++)
+        picture->card_rows[run] = distances_from(picture->runs[picture->card_base], picture->runs[run]);
 }
 
 static void format_metres(char *text, size_t size, double metres) {
@@ -133,14 +162,18 @@ static void format_metres(char *text, size_t size, double metres) {
 }
 
 static void draw_distances(const Card *card, int run, int baseline, const int columns[3]) {
-    const Theme *theme = card->picture->theme;
+    const uint32_t ink = card->picture->theme->ink;
+    const CardRow *row = &card->picture->card_rows[run];
     char text[64];
-    format_metres(text, sizeof text, last_distance(card->picture, run));
-    add_right(card, &card->cell, text, columns[0], baseline, theme->ink);
-    format_metres(text, sizeof text, card->picture->run_largest[run]);
-    add_right(card, &card->cell, text, columns[1], baseline, theme->ink);
-    format_divergence_time(card->picture, run, text, sizeof text);
-    add_right(card, &card->cell, text, columns[2], baseline, theme->ink);
+    format_metres(text, sizeof text, row->last);
+    add_right(card, &card->cell, text, columns[0], baseline, ink);
+    format_metres(text, sizeof text, row->largest);
+    add_right(card, &card->cell, text, columns[1], baseline, ink);
+    if (row->frame >= 0)
+        snprintf(text, sizeof text, "%.2f s", row->frame * (double)card->picture->runs[0]->dt);
+    else
+        snprintf(text, sizeof text, "\xE2\x80\x93");
+    add_right(card, &card->cell, text, columns[2], baseline, ink);
 }
 
 static void draw_end(const Card *card) {
@@ -148,9 +181,11 @@ static void draw_end(const Card *card) {
     const Picture *picture = card->picture;
     const Theme *theme = picture->theme;
     char title[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], text[2 * CAPTION_TEXT_SIZE];
+    const int base = picture->card_base;
     const int first = draw_head(card, MOMENT_END), column = (int)rint(0.17 * (card->right - card->left));
     const int columns[3] = {card->right - 2 * column, card->right - column, card->right};
-    caption_method(picture, 0, title, note);
+    if (picture->look.end_bare) return;
+    caption_method(picture, base, title, note);
     snprintf(text, sizeof text, picture->count > 1 ? "distance from %s" : "%s", title);
     int baseline = first + (int)rint(0.065 * card->unit);
     add(card, &card->cell, text, card->left, baseline, columns[0] - column, theme->ink_soft);
@@ -159,8 +194,8 @@ static void draw_end(const Card *card) {
     draw_rule(card, baseline + (int)rint(0.02 * card->unit));
     for (int run = 0; run < picture->count; run++) {
         baseline = row_baseline(card, first, run) + (int)rint(0.02 * card->unit);
-        add_method(card, run, baseline, run > 0 ? columns[0] - column : card->right, note);
-        if (run > 0) draw_distances(card, run, baseline, columns);
+        add_method(card, run, baseline, run != base ? columns[0] - column : card->right, note);
+        if (run != base) draw_distances(card, run, baseline, columns);
     }
 }
 
@@ -175,22 +210,21 @@ void card_draw(const Picture *picture, Moment moment, Drawing *drawing) {
 
 /* Above a panel. */
 
-enum { OVERLAY_LINES = 3 }; /* with more, an overlay has names only */
+enum { OVERLAY_LINES = 6 }; /* with more, an overlay has names only */
 
-/* What a panel does not show, in full and in short. */
+/* What a panel does not show; empty: nothing. */
 typedef struct State {
-    char full[64], brief[64];
+    char text[64];
 } State;
 
 static State describe_state(const Picture *picture, int panel, Moment moment) {
     const bool ended = moment.frame >= picture->runs[picture_run(picture, panel)]->frames;
     const int unseen = panel_count_out_of_view(picture, panel, moment);
-    State state = {"", ""};
-    if (unseen > 0) {
-        snprintf(state.full, sizeof state.full, "%d out of view%s", unseen, ended ? ", ended" : "");
-        snprintf(state.brief, sizeof state.brief, "%d unseen%s", unseen, ended ? ", ended" : "");
-    } else if (ended)
-        snprintf(state.full, sizeof state.full, "ended"), snprintf(state.brief, sizeof state.brief, "ended");
+    State state = {""};
+    if (unseen > 0)
+        snprintf(state.text, sizeof state.text, "%d out of view%s", unseen, ended ? ", ended" : "");
+    else if (ended)
+        snprintf(state.text, sizeof state.text, "ended");
     return state;
 }
 
@@ -215,11 +249,30 @@ static int panel_width(const Picture *picture) {
 
 static bool has_distance(const Picture *picture, int run) { return run > 0 && !caption_is_pair(picture); }
 
-/* Of a run's distance and the space before it. */
-static int distance_width(const Picture *picture, int run, const char *label) {
-    const CaptionItem distance = caption_distance_item(label, 0);
+/* Of a run's distance, with its word, and the space before it. */
+static int distance_width(const Picture *picture, int run) {
+    const CaptionItem distance = caption_distance_item("distance ", 0);
     const Font *font = &picture->layout.method;
     return has_distance(picture, run) ? caption_item_width(font, &distance) + font->pixels : 0;
+}
+
+/* Whether distances have a line of their own, nearest to the panels: beside the name of some run there is no room. */
+static bool distances_below(const Picture *picture) {
+    if (picture->look.compare == LOOK_OVERLAY) return false;
+    for (int panel = 0; panel < picture->panel_count; panel++) {
+        const int run = picture_run(picture, panel);
+        char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
+        caption_method(picture, run, name, note);
+        if (has_distance(picture, run) &&
+            swatch_room(picture) + font_width(&picture->layout.title, name) + distance_width(picture, run) >
+                panel_width(picture))
+            return true;
+    }
+    return false;
+}
+
+static int distance_beside(const Picture *picture, int run) {
+    return distances_below(picture) ? 0 : distance_width(picture, run);
 }
 
 int caption_least_width(const Picture *picture, bool whole) {
@@ -230,7 +283,7 @@ int caption_least_width(const Picture *picture, bool whole) {
         caption_method(picture, run, name, note);
         if (!whole) snprintf(name + method_name_head(name), 4, "\xE2\x80\xA6"); /* an ellipsis */
         const int width = swatch_room(picture) + font_width(whole ? &layout->title : &layout->axis, name) +
-                          (whole ? distance_width(picture, run, "") : 0);
+                          (whole && has_distance(picture, run) ? font_width(&layout->method, "0.00 m") : 0);
         if (width > least) least = width;
     }
     return least;
@@ -244,7 +297,7 @@ typedef struct Name {
 
 static Name lay_out_name(const Picture *picture, int run) {
     const Layout *layout = &picture->layout;
-    const int room = panel_width(picture) - swatch_width(picture, run), first = room - distance_width(picture, run, "");
+    const int room = panel_width(picture) - swatch_width(picture, run), first = room - distance_beside(picture, run);
     char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE];
     caption_method(picture, run, name, note);
     const TextLines lines = text_lines(&layout->title, name, first, room);
@@ -275,9 +328,9 @@ static bool has_room(const Picture *picture, int run, Notes notes) {
     const Layout *layout = &picture->layout;
     const Name name = lay_out_name(picture, run);
     const int swatch = swatch_room(picture), beside = swatch - swatch_width(picture, run) +
-                                                      name_width(picture, run, &name) +
-                                                      distance_width(picture, run, "") +
-                                                      font_width(&layout->method, "00 out") + layout->title.pixels / 2;
+                                                      name_width(picture, run, &name) + distance_beside(picture, run) +
+                                                      font_width(&layout->method, "00 out of view") +
+                                                      layout->title.pixels / 2;
     char text[4 * CAPTION_TEXT_SIZE];
     notes_of(picture, run, text);
     if (text[0] == '\0') return true;
@@ -306,8 +359,7 @@ static int place_runs(const Picture *picture, bool notes, int lefts[RENDER_PANEL
         char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], text[4 * CAPTION_TEXT_SIZE];
         caption_method(picture, run, name, note);
         notes_of(picture, run, text);
-        const int width = swatch_width(picture, run) + font_width(&layout->title, name) +
-                          distance_width(picture, run, "") +
+        const int width = swatch_width(picture, run) + font_width(&layout->title, name) + distance_width(picture, run) +
                           (notes && text[0] != '\0' ? gap + font_width(&layout->method, text) : 0);
         if (x > 0 && x + width > panel_width(picture)) x = 0, line++;
         lefts[run] = x, lines[run] = line;
@@ -328,7 +380,7 @@ int caption_lines(const Picture *picture) {
         const int names = lay_out_name(picture, picture_run(picture, panel)).text.count;
         if (names > most) most = names < TEXT_LINES_MAX ? names : TEXT_LINES_MAX;
     }
-    return most + (notes.font != NULL && !notes.beside);
+    return most + (notes.font != NULL && !notes.beside) + distances_below(picture);
 }
 
 bool captions_fit(const Picture *picture, Error *error) {
@@ -363,36 +415,19 @@ static void draw_overlay(const Picture *picture, Moment moment, const Rect *rect
         notes_of(picture, run, text);
         x = caption_name_draw(picture, &layout->title, name, x, line, rect->right - x, drawing) + gap;
         if (run > 0) {
-            const CaptionItem distance = caption_distance_item("", picture_run_distance(picture, run, moment));
+            const CaptionItem distance = caption_distance_item("distance ", picture_run_distance(picture, run, moment));
             caption_item_draw(picture, &layout->method, &distance, x, line, drawing);
-            x += distance_width(picture, run, "");
+            x += distance_width(picture, run);
         }
         if (notes) font_add(drawing, &layout->method, text, x, line, picture->theme->ink_soft);
     }
 }
 
-/* "distance " if it fits above every panel, also beside a number of bodies out of view: it must not come and go. */
-static const char *distance_label(const Picture *picture, Notes notes) {
-    for (int panel = 0; panel < picture->panel_count; panel++) {
-        const int run = picture_run(picture, panel);
-        const Name name = lay_out_name(picture, run);
-        char text[4 * CAPTION_TEXT_SIZE];
-        notes_of(picture, run, text);
-        const int beside = notes.beside ? font_width(notes.font, text) + picture->layout.title.pixels / 2 : 0;
-        if (name_width(picture, run, &name) + beside + distance_width(picture, run, "distance ") +
-                font_width(&picture->layout.method, "00 out") >
-            panel_width(picture))
-            return "";
-    }
-    return "distance ";
-}
-
-/* At the right of the first line, where it begins, if there is room; otherwise in the panel's upper right corner, on
-   its colour: what cannot be seen must be stated. */
-static void draw_state(const Picture *picture, const Rect *panel, const State *state, int left, int right, int baseline,
+/* At the right of a line, where it begins, if there is room; otherwise in the panel's upper right corner, on its colour: what
+   cannot be seen must be stated. */
+static void draw_state(const Picture *picture, const Rect *panel, const char *text, int left, int right, int baseline,
                        Drawing *drawing) {
     const Font *font = &picture->layout.method, *small = &picture->layout.axis;
-    const char *text = font_width(font, state->full) <= right - left ? state->full : state->brief;
     if (font_width(font, text) <= right - left) {
         font_add(drawing, font, text, right - font_width(font, text), baseline, picture->theme->ink_soft);
         return;
@@ -428,15 +463,24 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
                                  notes.beside ? last : last + layout->caption_pitch, picture->theme->ink_soft);
         if (notes.beside) left = end + layout->title.pixels / 2;
     }
-    int right = rect->right;
+    int right = rect->right, line = baseline;
+    const bool below = distances_below(picture);
+    int free = left;
+    if (below) line = rect->top - layout->title_rise, free = x;
     if (has_distance(picture, run)) {
-        const char *label = distance_label(picture, notes);
-        const CaptionItem item = caption_distance_item(label, picture_run_distance(picture, run, moment));
+        const CaptionItem item = caption_distance_item("distance ", picture_run_distance(picture, run, moment));
         const int width = caption_item_width(&layout->method, &item);
         if (width <= right - rect->left)
-            caption_item_draw(picture, &layout->method, &item, right - width, baseline, drawing);
-        right -= distance_width(picture, run, label);
+            caption_item_draw(picture, &layout->method, &item, below ? free : right - width, line, drawing);
+        if (below)
+            free += distance_width(picture, run);
+        else
+            right -= distance_width(picture, run);
     }
     const State state = describe_state(picture, panel, moment);
-    if (state.full[0] != '\0') draw_state(picture, rect, &state, left, right, baseline, drawing);
+    if (state.text[0] == '\0') return;
+    if (below && font_width(&layout->method, state.text) > right - left)
+        draw_state(picture, rect, state.text, free, right, line, drawing);
+    else
+        draw_state(picture, rect, state.text, left, right, baseline, drawing);
 }

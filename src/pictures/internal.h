@@ -209,6 +209,9 @@ void caption_item_draw(const Picture *picture, const Font *font, const CaptionIt
 /* The title of a card, MOMENT_TITLE or MOMENT_END, in its lines. */
 TextLines card_head(const Picture *picture, MomentKind kind);
 
+/* What the end card's table has: picture->card_base and card_rows. */
+void card_plan(Picture *picture);
+
 /* `moment` has kind MOMENT_TITLE or MOMENT_END. */
 void card_draw(const Picture *picture, Moment moment, Drawing *drawing);
 

@@ -114,6 +114,7 @@ static void write_runs(JsonWriter *json, const Manifest *manifest) {
         json_put_hash(json, "scene_hash", run->scene_hash);
         json_put_text(json, "method", run->method);
         json_put_text(json, "caption", manifest->options->captions[i]);
+        colour_put(json, "colour", picture_body_colors(manifest->picture, i)->fill);
         json_put_text(json, "note", manifest->options->notes[i]);
         json_put_text(json, "cost", manifest->options->look.costs[i]);
         json_put_int(json, "frames", run->frames);
@@ -169,6 +170,7 @@ static void write_head(JsonWriter *json, const Manifest *manifest) {
     json_put_text(json, "png", options->small ? "small" : "fast");
     json_put_text(json, "title", options->title);
     json_put_text(json, "end", options->look.end);
+    json_put_bool(json, "end_table", options->look.end != NULL && !options->look.end_bare);
     write_runs(json, manifest);
     write_look(json, &options->look);
     write_order(json, manifest);

@@ -133,13 +133,17 @@ static bool check_size(int width, int height, Error *error) {
                        RENDER_SIDE_MIN, RENDER_SIDE_MAX, width, height);
 }
 
-static void find_largest_distances(Picture *picture) {
-    for (int i = 1; i < picture->count; i++) {
+static void find_largest_distance(Picture *picture) {
+    for (int i = 1; i < picture->count; i++)
         for (int frame = 0; frame < picture->runs[i]->frames; frame++)
-            picture->run_largest[i] =
-                fmax(picture->run_largest[i], picture_run_distance(picture, i, moment_stored(frame)));
-        picture->largest_distance = fmax(picture->largest_distance, picture->run_largest[i]);
-    }
+            picture->largest_distance =
+                fmax(picture->largest_distance, picture_run_distance(picture, i, moment_stored(frame)));
+}
+
+static bool assign_colours(Picture *picture, const ColourChoices *choices, Error *error) {
+    const char *methods[RENDER_PANELS_MAX];
+    for (int i = 0; i < picture->count; i++) methods[i] = picture->runs[i]->method;
+    return colours_assign(methods, picture->count, choices, picture->colours, error);
 }
 
 bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, int width, int height, Error *error) {
@@ -149,9 +153,9 @@ bool picture_plan(Picture *picture, const Trajectory *const *runs, int count, in
         picture->runs[i] = runs[i];
         if (runs[i]->frames > picture->frames) picture->frames = runs[i]->frames;
     }
-    method_colours_assign(picture->methods, count, picture->colours);
+    if (!assign_colours(picture, NULL, error)) return false;
     panels_arrange(picture, width, height, 0);
-    find_largest_distances(picture);
+    find_largest_distance(picture);
     return true;
 }
 
@@ -205,7 +209,8 @@ bool picture_apply_options(Picture *picture, const RenderOptions *options, Error
         picture->notes[i] = options->notes[i];
         if (options->describe != NULL) picture->methods[i] = options->describe(picture->runs[i]->method);
     }
-    method_colours_assign(picture->methods, picture->count, picture->colours);
+    if (!assign_colours(picture, &options->colours, error)) return false;
+    if (options->end_card) card_plan(picture);
     picture->look = options->look;
     picture->theme = theme_get(options->look.theme);
     if (memcmp(&picture->look, &plain, sizeof plain) == 0) {
@@ -249,7 +254,8 @@ bool picture_draws_outlines(const Picture *picture, int panel, int run) {
 }
 
 const BodyColors *picture_body_colors(const Picture *picture, int run) {
-    return &picture->theme->bodies[picture->colours[run]];
+    const RunColours *colours = &picture->colours[run];
+    return picture->theme == theme_get(LOOK_DARK) ? &colours->dark : &colours->light;
 }
 
 uint32_t picture_ghost_color(const Picture *picture, int run) {

@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
+#include "pictures/colours.h"
 #include "pixels/gl.h"
 #include "runs/framing.h"
 #include "runs/trajectory.h"
@@ -70,23 +71,19 @@ typedef struct RenderLook {
     unsigned show;                    /* LOOK_GHOSTS | ... */
     const char *costs[LOOK_RUNS_MAX]; /* cost of each run, as text; NULL: none */
     const char *end;                  /* title of the end card; NULL: a default */
+    bool end_bare;                    /* the end card has no table */
 } RenderLook;
 
 /* The names used in options, in the order of the enums and bits; each list ends with NULL. */
 extern const char *const look_compare_names[],
     *const look_camera_names[], *const look_theme_names[], *const look_labels_names[], *const look_show_names[];
 
-/* The light theme's colours, 0xRRGGBB. The colours of bodies follow Okabe and Ito: they differ with all common kinds of
-   colour blindness, and in grey prints. */
+/* The light theme's colours, 0xRRGGBB; those of bodies: pictures/colours.h. */
 
 static const uint32_t PAGE = 0xF5F6F8, PANEL = 0xFFFFFF, FRAME = 0xC3C9D2;
 static const uint32_t GRID = 0xF0F2F5, GRID_STRONG = 0xDFE3E9;
 static const uint32_t INK = 0x1B2330, INK_SOFT = 0x667080;
 static const uint32_t GROUND = 0xD3D8DF, GROUND_LINE = 0x5A6472;
-
-typedef struct BodyColors {
-    uint32_t fill, line, band; /* the band along the local top shows the rotation */
-} BodyColors;
 
 #define BOMB_COLORS \
     { 0xA0200F, 0x4E0A03, 0xFFE9DF }
@@ -98,7 +95,6 @@ typedef struct Theme {
     uint32_t impulse, velocity; /* arrows */
     uint32_t event;             /* event lines in the timeline */
     BodyColors bomb;
-    BodyColors bodies[METHOD_COLOURS]; /* by the colour of the run's method */
     bool ghost_is_band;         /* outlines of a run over others have the colour of its bands, else of its boxes */
     double ramp_near, ramp_far; /* range of the colour scale: large distances stand out most */
 } Theme;
@@ -159,6 +155,7 @@ typedef struct RenderOptions {
     /* The description of a run's method ("engine:k=20"), for its title and caption. NULL, or returns NULL: the text of the
        method is its title. */
     const MethodDescription *(*describe)(const char *method);
+    ColourChoices colours;
     RenderLook look;           /* zeros: bodies side by side */
     int slow;                  /* slow-motion factor around the impact; 0, 1: none */
     double hold;               /* s, repeats the last frame */
@@ -262,6 +259,12 @@ double scales_share(const Scales *scales, double distance);
 
 /* The picture of one frame of a comparison: panels side by side below one header. Independent of OpenGL. */
 
+/* How far a run is from the one that the end card compares with. */
+typedef struct CardRow {
+    double last, largest; /* m: in the last frame of both, and in any */
+    int frame;            /* the first in which that can be seen; -1: none */
+} CardRow;
+
 /* Everything that is chosen once per sequence, from the whole run, so that only bodies move between frames. */
 typedef struct Picture {
     const Trajectory *runs[RENDER_PANELS_MAX]; /* one panel per run, unless the look requires otherwise */
@@ -271,12 +274,11 @@ typedef struct Picture {
     Camera camera;           /* for a panel whose upper left corner is (0, 0) */
     double grid_scale;       /* pixels per metre used to choose the grid; constant while the camera moves */
     double largest_distance; /* m, over the whole run */
-    double run_largest[RENDER_PANELS_MAX]; /* the same, per run */
-    const char *title;                     /* as in RenderOptions; must outlive the picture */
+    const char *title;       /* as in RenderOptions; must outlive the picture */
     const char *captions[RENDER_PANELS_MAX];
     const char *notes[RENDER_PANELS_MAX];
     const MethodDescription *methods[RENDER_PANELS_MAX]; /* of the runs; NULL: unknown */
-    MethodColour colours[RENDER_PANELS_MAX];             /* of the runs, all different */
+    RunColours colours[RENDER_PANELS_MAX];               /* of the runs, all different */
     RenderLook look;
     const Theme *theme;
     int panel_count; /* number of panels drawn */
@@ -286,6 +288,8 @@ typedef struct Picture {
     float *curves; /* [count][curve_points], m: the largest distance from the first run in each interval; NaN after
                       the run's end. NULL without a timeline. */
     int curve_points;
+    int card_base; /* the run that the end card compares with */
+    CardRow card_rows[RENDER_PANELS_MAX];
 } Picture;
 
 /* Plans a picture with the default look. ERROR_INPUT if the runs cannot be shown side by side. The trajectories must

@@ -87,41 +87,35 @@ enum {
     EM = 40 /* pixels: large, as widths are whole pixels */
 };
 
-static void put_color(JsonWriter *json, const char *key, uint32_t color) {
-    char text[16];
-    snprintf(text, sizeof text, "#%06x", color);
-    json_put_text(json, key, text);
-}
-
 static void put_body_colors(JsonWriter *json, const char *key, const BodyColors *colors) {
     json_begin_object(json, key, JSON_ONE_LINE);
-    put_color(json, "fill", colors->fill);
-    put_color(json, "line", colors->line);
-    put_color(json, "band", colors->band);
+    colour_put(json, "fill", colors->fill);
+    colour_put(json, "line", colors->line);
+    colour_put(json, "band", colors->band);
     json_end(json);
 }
 
 static void put_theme(JsonWriter *json, const char *key, const Theme *theme) {
     json_begin_object(json, key, JSON_LINES);
-    put_color(json, "page", theme->page);
-    put_color(json, "panel", theme->panel);
-    put_color(json, "frame", theme->frame);
-    put_color(json, "grid", theme->grid);
-    put_color(json, "grid_strong", theme->grid_strong);
-    put_color(json, "ink", theme->ink);
-    put_color(json, "ink_soft", theme->ink_soft);
-    put_color(json, "ground", theme->ground);
-    put_color(json, "ground_line", theme->ground_line);
-    put_color(json, "impulse", theme->impulse);
-    put_color(json, "velocity", theme->velocity);
-    put_color(json, "event", theme->event);
-    put_color(json, "label_dark", INK);
-    put_color(json, "label_light", PANEL);
+    colour_put(json, "page", theme->page);
+    colour_put(json, "panel", theme->panel);
+    colour_put(json, "frame", theme->frame);
+    colour_put(json, "grid", theme->grid);
+    colour_put(json, "grid_strong", theme->grid_strong);
+    colour_put(json, "ink", theme->ink);
+    colour_put(json, "ink_soft", theme->ink_soft);
+    colour_put(json, "ground", theme->ground);
+    colour_put(json, "ground_line", theme->ground_line);
+    colour_put(json, "impulse", theme->impulse);
+    colour_put(json, "velocity", theme->velocity);
+    colour_put(json, "event", theme->event);
+    colour_put(json, "label_dark", INK);
+    colour_put(json, "label_light", PANEL);
     put_body_colors(json, "bomb", &theme->bomb);
     json_put_bool(json, "ghost_is_band", theme->ghost_is_band);
     json_begin_object(json, "ramp", JSON_LINES);
     json_begin_array(json, "stops", JSON_ONE_LINE);
-    for (int i = 0; i < THEME_STOPS; i++) put_color(json, NULL, theme_stops[i]);
+    for (int i = 0; i < THEME_STOPS; i++) colour_put(json, NULL, theme_stops[i]);
     json_end(json);
     json_put_number(json, "near", theme->ramp_near);
     json_put_number(json, "far", theme->ramp_far);
@@ -183,10 +177,10 @@ static void put_verdict(JsonWriter *json, const Player *player, const Trajectory
     json_end(json);
 }
 
-void player_put_colours(JsonWriter *json, MethodColour colour) {
-    json_begin_object(json, "colours", JSON_ONE_LINE);
-    put_body_colors(json, "light", &theme_get(LOOK_LIGHT)->bodies[colour]);
-    put_body_colors(json, "dark", &theme_get(LOOK_DARK)->bodies[colour]);
+void player_put_colours(JsonWriter *json, const char *key, const RunColours *colours) {
+    json_begin_object(json, key, JSON_ONE_LINE);
+    put_body_colors(json, "light", &colours->light);
+    put_body_colors(json, "dark", &colours->dark);
     json_end(json);
 }
 
@@ -203,7 +197,7 @@ static void put_run_data(JsonWriter *json, const Player *player, int index) {
     json_put_bool(json, "velocities", !trajectory->no_velocities);
     json_put_bool(json, "contacts", run->contacts != NULL || player_run_is_live(player, index));
     json_put_text(json, "live", player->options->live != NULL ? player->options->live->methods[index] : NULL);
-    player_put_colours(json, player->picture.colours[index]);
+    player_put_colours(json, "colours", &player->picture.colours[index]);
     put_verdict(json, player, trajectory);
     json_put_bool(json, "compared", run->compared);
     json_put_text(json, "why", run->why);
@@ -266,8 +260,8 @@ static void put_data(FILE *file, const Player *player) {
     json_put_int(&json, "total", player->picture.frames);
     json_put_int(&json, "chunk", PLAYER_CHUNK);
     json_put_int(&json, "impact", player_stored(&player->frames, first_impact(&player->picture)));
-    json_put_number(&json, "distance_ems", player_ems(FONT_REGULAR, "0.00 m"));
-    json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out"));
+    json_put_number(&json, "distance_ems", player_ems(FONT_REGULAR, "distance 0.00 m"));
+    json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out of view"));
     json_put_number(&json, "visible", EVENTS_VISIBLE_DISTANCE);
     json_put_number(&json, "ground", FRAMING_GROUND);
     json_put_number(&json, "farthest", EXTENT_FARTHEST);
@@ -285,7 +279,7 @@ static void put_data(FILE *file, const Player *player) {
     json_begin_array(&json, "runs", JSON_LINES);
     for (int i = 0; i < player->picture.count; i++) put_run_data(&json, player, i);
     json_end(&json);
-    if (player->options->live != NULL) player_live_put(&json);
+    if (player->options->live != NULL) player_live_put(&json, player);
     json_end(&json);
 }
 
@@ -388,7 +382,8 @@ static bool check_steps(const Trajectory *const *runs, int count, Error *error) 
 
 static bool plan(Player *player, const Trajectory *const *runs, int count, Error *error) {
     const PlayerOptions *options = player->options;
-    const RenderOptions look = {.width = WIDTH, .height = HEIGHT, .describe = options->describe};
+    const RenderOptions look = {
+        .width = WIDTH, .height = HEIGHT, .describe = options->describe, .colours = options->colours};
     if (!check_steps(runs, count, error) || !picture_plan(&player->picture, runs, count, WIDTH, HEIGHT, error) ||
         !picture_apply_options(&player->picture, &look, error))
         return false;

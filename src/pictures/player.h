@@ -30,7 +30,8 @@ typedef struct PlayerOptions {
     const char *scenes[RENDER_PANELS_MAX]; /* of runs that have no file: as on the command line, for the same; NULL */
     const char *set;                       /* settings of these scenes: "name=value,name=value"; "", NULL: none */
     const char *names[RENDER_PANELS_MAX];  /* of runs; NULL: the method */
-    const PlayerLive *live;                /* NULL: all runs are recorded */
+    ColourChoices colours;
+    const PlayerLive *live; /* NULL: all runs are recorded */
     /* The description of a run's method ("engine:k=20"). NULL, or returns NULL: the method has no description. */
     const MethodDescription *(*describe)(const char *method);
 } PlayerOptions;

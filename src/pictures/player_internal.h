@@ -112,10 +112,10 @@ static inline bool player_run_is_live(const Player *player, int index) {
 
 /* What a page with live runs needs beside them (player_live.c): deflates module and bundle; the key "live" of the data. */
 bool player_live_pack(Player *player, Error *error);
-void player_live_put(JsonWriter *json);
+void player_live_put(JsonWriter *json, const Player *player);
 
 /* The colours of a run's boxes, by theme. */
-void player_put_colours(JsonWriter *json, MethodColour colour);
+void player_put_colours(JsonWriter *json, const char *key, const RunColours *colours);
 
 /* Width of text in ems of the built-in font. Grids of panels depend on it: not on the reader's fonts. */
 double player_ems(FontFace face, const char *text);

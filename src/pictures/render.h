@@ -132,7 +132,7 @@ typedef enum StillParts { STILL_FIXED = 1, STILL_MOVING = 2, STILL_ALL = 3 } Sti
 typedef struct StillShot {
     const Trajectory *run;
     int frame;
-    MethodColour colour; /* of the bodies */
+    BodyColors colours; /* of the bodies */
     StillParts parts;
     Camera camera; /* for the whole image */
 } StillShot;

@@ -209,7 +209,7 @@ static Picture plan(const Still *still, const StillShot *shot) {
     Picture picture = {.count = 1, .frames = shot->run->frames, .camera = shot->camera};
     picture.layout.panels[0] = (Rect){0, 0, still->on_white->width, still->on_white->height};
     picture.runs[0] = shot->run;
-    picture.colours[0] = shot->colour;
+    picture.colours[0].light = shot->colours;
     picture.theme = theme_get(LOOK_LIGHT);
     return picture;
 }

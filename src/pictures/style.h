@@ -97,8 +97,9 @@ static const double GAIN = 1.05, GAIN_WITH_CUT_NAMES = 1.5; /* of scale: an unus
 /* Of a panel's width and height: what the scene covers at least, or the panel shrinks until it covers the third share. */
 static const double LEAST_SHARE_X = 0.2, LEAST_SHARE_Y = 0.4, FULL_SHARE = 0.65;
 static const double LEAST_PANEL_WIDTH = 22, LEAST_PANEL_HEIGHT = 5; /* ems of the captions, of a panel that shrinks */
-static const double WHOLE_SCALE = 12; /* from here on a whole number of pixels a metre costs little room */
-static const double SCALE_PARTS = 64; /* below, a whole number of these parts of a pixel, from one pixel a metre on */
+static const double WHOLE_SCALE = 12;  /* from here on a whole number of pixels a metre costs little room */
+static const double LEAST_SCALE = 0.7; /* of the largest scale: for the sake of what happens after the impact */
+static const double SCALE_PARTS = 64;  /* below, a whole number of these parts of a pixel, from one pixel a metre on */
 static const double MIN_SPACING = 0.010;  /* between thin lines / the panel's height */
 static const double MIN_PIXELS = 6;       /* the same, in pixels */
 static const double MAX_SPACING = 0.6;    /* between strong lines / the panel's height */

@@ -63,8 +63,6 @@ bool look_check(const RenderLook *look, const Trajectory *const *runs, int count
     return true;
 }
 
-/* The hues of methods are Okabe and Ito's (2008); wine, from Tol (2021), replaces yellow, which is too light for lines.
-   Purple, sky and vermilion are a little lighter or darker than theirs, so that any two differ in grey. */
 static const Theme light = {
     .page = PAGE,
     .panel = PANEL,
@@ -80,22 +78,10 @@ static const Theme light = {
     .event = 0x8A94A3,
     .ghost_is_band = false,
     .bomb = BOMB_COLORS,
-    .bodies =
-        {
-            [METHOD_BLUE] = {0x0072B2, 0x00395C, 0x4FA6D8},
-            [METHOD_ORANGE] = {0xE69F00, 0x7A4F00, 0xFFD47A},
-            [METHOD_GREEN] = {0x009E73, 0x004D38, 0x5CCBAA},
-            [METHOD_PURPLE] = {0xD07CB1, 0x6E2F52, 0xEBBBD5},
-            [METHOD_SKY] = {0x66C1F7, 0x1D5F87, 0xB5DFF7},
-            [METHOD_WINE] = {0x882255, 0x3F0F27, 0xC98BA6},
-            [METHOD_VERMILION] = {0xD25A09, 0x6B2F00, 0xF7B07A},
-            [METHOD_BLACK] = {0x181D24, 0x000000, 0x8D99A8},
-        },
     .ramp_near = 0,
     .ramp_far = 1,
 };
 
-/* The same hues; line and band colours are exchanged, as light colours stand out on a dark page. */
 static const Theme dark = {
     .page = 0x12161C,
     .panel = 0x1A2028,
@@ -111,17 +97,6 @@ static const Theme dark = {
     .event = 0x77849A,
     .ghost_is_band = true,
     .bomb = {0xCC3620, 0x3D0D03, 0xFFF1EA},
-    .bodies =
-        {
-            [METHOD_BLUE] = {0x2A86C4, 0x061D2D, 0x8CCBF0},
-            [METHOD_ORANGE] = {0xE9A92A, 0x3B2600, 0xFFE3A3},
-            [METHOD_GREEN] = {0x1BB28C, 0x02271C, 0x8FE3C8},
-            [METHOD_PURPLE] = {0xD894BE, 0x3A132A, 0xF6D3E5},
-            [METHOD_SKY] = {0x7ECAF8, 0x0F3349, 0xD0ECFC},
-            [METHOD_WINE] = {0xB0487D, 0x2A0818, 0xE8B4CE},
-            [METHOD_VERMILION] = {0xE6722E, 0x3A1600, 0xFFC9A0},
-            [METHOD_BLACK] = {0xCFD7E2, 0x232A33, 0xF2F5F8}, /* white here: what is most unlike the page */
-        },
     .ramp_near = 0.86,
     .ramp_far = 0,
 };

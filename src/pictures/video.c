@@ -206,10 +206,17 @@ static void bound_memory(Arguments *arguments, const Encoding *encoding, char ah
     ADD(arguments, encoding->format->ahead, ahead, "-threads", "4");
 }
 
+/* A key frame at least each second: players seek from one to the next. A GIF has none. */
+static void seek_by_seconds(Arguments *arguments, const Encoding *encoding, char most[16]) {
+    if (encoding->format->ahead == NULL) return;
+    snprintf(most, 16, "%.0f", fmax(1, floor(encoding->options->frame_rate / encoding->stride)));
+    ADD(arguments, "-g", most);
+}
+
 /* Feeds all pictures to an ffmpeg with these further arguments. */
 static bool run_ffmpeg(const Encoding *encoding, const char *const *format_arguments, const char *output,
                        Error *error) {
-    char size[32], rate[32], ahead[16];
+    char size[32], rate[32], ahead[16], seconds[16];
     Arguments arguments = {0};
     snprintf(size, sizeof size, "%dx%d", encoding->width, encoding->height);
     snprintf(rate, sizeof rate, "%.0f/%d", 1000 * encoding->options->frame_rate, 1000 * encoding->stride);
@@ -217,6 +224,7 @@ static bool run_ffmpeg(const Encoding *encoding, const char *const *format_argum
     ADD(&arguments, "-video_size", size, "-framerate", rate, "-i", "-");
     add(&arguments, format_arguments);
     bound_memory(&arguments, encoding, ahead);
+    seek_by_seconds(&arguments, encoding, seconds);
     ADD(&arguments, output);
     RawTarget target = {.rgb = malloc(3 * (size_t)encoding->width * (size_t)encoding->height)};
     if (target.rgb == NULL) return error_memory(error, encoding->options->path);

@@ -73,8 +73,9 @@ static const double FRAMING_MIN_SIDE = 2.0; /* m, of what stands, for the next t
 static const double WAY_REACH = 8;  /* where its way is shown */
 static const double NEAR = 1;       /* a stack that falls over stays within this */
 static const double SETTLED_STEPS = 32;
-static const double SAG = 0.9;         /* of its height: what stands higher has not fallen together */
-static const double BOMB_MARGIN = 0.1; /* of its size */
+static const double SAG = 0.9;          /* of its height: what stands higher has not fallen together */
+static const double BOMB_MARGIN = 0.1;  /* of its size */
+static const double ACTION_STEP = 0.25; /* sides of what stands: in such steps the view follows what happens to it */
 
 /* Whether a body stands in this frame, in a region (NULL: anywhere): it moves, and is not the bomb. */
 static bool stands(const Trajectory *run, int frame, int body, const Extent *region) {
@@ -249,6 +250,45 @@ Extent framing_in_frames(const Trajectory *const *runs, int run_count, const int
     return extent_is_empty(&all) ? fixed_extent(runs[0]) : all;
 }
 
+/* Widens the extent by where a body is from a frame on, if it stays in a region. */
+static void include_stay(Extent *all, const Trajectory *run, int first, int body, const Extent *region) {
+    Extent own = *all;
+    for (int frame = first; frame < run->frames; frame++) {
+        if (!trajectory_has(run, frame, body)) continue;
+        if (!extent_holds(region, run, frame, body)) return;
+        extent_include(&own, run, frame, body);
+    }
+    *all = own;
+}
+
+/* How far beyond what stands its bodies, and the bomb, get in a run after the impact, to either side. What flies off counts in
+   no run, or it would make all small. */
+static double reach_of(const Trajectory *run, const Extent *standing, int impact) {
+    const Extent near = surroundings(standing, NEAR);
+    const Extent above = {near.left, near.right, standing->bottom, near.top};
+    Extent all = *standing;
+    for (int body = 0; body < run->bodies; body++)
+        if (!run->fixed[body]) include_stay(&all, run, impact, body, &above);
+    return fmax(standing->left - all.left, all.right - standing->right);
+}
+
+/* What stands, widened by what happens after the impact in half of the runs: one that bursts shows nothing of the others. To both
+   sides, so that what stands is in the middle; in steps, so that runs that differ little have the same view. */
+static Extent action_extent(const Extent *standing, const Trajectory *const *runs, int count, int impact) {
+    const double step = ACTION_STEP * extent_side(standing);
+    double reach = HUGE_VAL;
+    Extent action = *standing;
+    for (int i = 0; i < count; i++) {
+        const double own = reach_of(runs[i], standing, impact);
+        int held = 0;
+        for (int k = 0; k < count; k++) held += reach_of(runs[k], standing, impact) <= own;
+        if (2 * held >= count) reach = fmin(reach, own);
+    }
+    action.left -= step * rint(reach / step);
+    action.right += step * rint(reach / step);
+    return action;
+}
+
 static const double FILL = 0.82;     /* of a panel's width or height: what stands; 0.7 with the scale rounded down */
 static const double MIN_VIEW = 1e-3; /* m; the smallest view that can be set */
 bool camera_view_is_usable(const CameraView *view) {
@@ -272,7 +312,7 @@ static Extent add_margins(const Extent *e) {
 CameraFrame camera_frame_of(const CameraView *view) {
     const Extent held = {view->x - view->width / 2, view->x + view->width / 2, view->y - view->height / 2,
                          view->y + view->height / 2};
-    return (CameraFrame){true, held, held, view->x};
+    return (CameraFrame){true, held, held, held, view->x};
 }
 
 CameraFrame camera_frame(const Trajectory *const *runs, int count) {
@@ -291,11 +331,14 @@ CameraFrame camera_frame(const Trajectory *const *runs, int count) {
     const bool struck = !leaves && impact >= 1;
     const Extent settled = struck ? settled_extent(&all, run, impact) : all;
     if (struck && most_are_in(&settled, run)) all = settled;
-    CameraFrame frame = {false, add_margins(&all), add_margins(&all), (all.left + all.right) / 2};
+    const Extent framed = add_margins(&all);
+    CameraFrame frame = {false, framed, framed, framed, (all.left + all.right) / 2};
     if (!struck) return frame;
-    const Extent fallen = room_to_fall(run, &all, impact);
+    const Extent fallen = room_to_fall(run, &all, impact), action = action_extent(&all, runs, count, impact);
     const int strikes = strike_frame(run, &settled, impact);
     if (extent_holds(&near, run, strikes, run->bomb)) include_bomb(&frame.held, run, strikes);
+    frame.action = add_margins(&action);
+    frame.action = joined(frame.action, &frame.held);
     frame.room = add_margins(&fallen);
     frame.room = joined(frame.room, &frame.held);
     return frame;
@@ -310,7 +353,7 @@ CameraFrame camera_frame_approach(const Trajectory *run) {
     for (int i = bomb_first_frame(run); i <= last; i++)
         if (extent_holds(&reach, run, i, run->bomb)) extent_include(&all, run, i, run->bomb);
     all = add_margins(&all);
-    return (CameraFrame){false, all, all, (all.left + all.right) / 2};
+    return (CameraFrame){false, all, all, all, (all.left + all.right) / 2};
 }
 
 void camera_frame_put(JsonWriter *json, const char *key, const CameraFrame *frame) {
@@ -320,6 +363,8 @@ void camera_frame_put(JsonWriter *json, const char *key, const CameraFrame *fram
     json_put_number(json, "right", frame->held.right);
     json_put_number(json, "bottom", frame->held.bottom);
     json_put_number(json, "top", frame->held.top);
+    json_put_number(json, "action_left", frame->action.left);
+    json_put_number(json, "action_right", frame->action.right);
     json_put_number(json, "room_left", frame->room.left);
     json_put_number(json, "room_right", frame->room.right);
     json_put_number(json, "middle", frame->middle);

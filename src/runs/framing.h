@@ -24,12 +24,14 @@ typedef struct Extent {
 
 /* What a fixed camera shows. By default it frames what stands, so that this fills three quarters of a panel's width or
    height: the moving bodies where they start, the ground below them, and the bomb when it strikes them. The bomb comes
-   into the picture from its edge. What happens after the impact does not count, so that runs with the same start have
-   the same view: a body that flies off leaves the picture and changes nothing in the frames before. Only if most of the
-   first run's bodies go far away, as on a slope, is it all that they reach in the whole run. */
+   into the picture from its edge. Of what happens after the impact counts only how far what stood gets in half of the runs, as
+   long as it stays near, in coarse steps: so runs that differ little have the same view, and a body that flies off leaves the
+   picture and changes nothing in the frames before. Only if most of the first run's bodies go far away, as on a slope, is it
+   all that they reach in the whole run. */
 typedef struct CameraFrame {
     bool set;      /* given: shown in the middle of a panel */
     Extent held;   /* in view whatever the panel's shape, with the margin */
+    Extent action; /* in view unless all would get too small: what happens after the impact; only the width counts */
     Extent room;   /* in view as far as the panel has room: where what stands falls when the bomb strikes it */
     double middle; /* m, x of the middle of what stands */
 } CameraFrame;
@@ -44,7 +46,7 @@ CameraFrame camera_frame(const Trajectory *const *runs, int count);
 /* What stands at the start and the bomb's way to it, as far as it is not far away. */
 CameraFrame camera_frame_approach(const Trajectory *run);
 
-/* An object with set, the sides of held, room_left, room_right and middle. */
+/* An object with set, the sides of held, action_left, action_right, room_left, room_right and middle. */
 void camera_frame_put(JsonWriter *json, const char *key, const CameraFrame *frame);
 
 /* The part of the world that bodies of a run cover. */

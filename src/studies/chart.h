@@ -8,6 +8,7 @@
 #include "methods/criteria.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
+#include "pictures/colours.h"
 #include "runs/pieces.h"
 #include "scenes/scenes.h"
 
@@ -349,6 +350,7 @@ typedef struct ChartLook {
     ChartSize size;
     const char *highlight; /* methods to be drawn in colour, separated by commas; NULL: none beside the usual ones */
     bool words;            /* the caption below the picture, too, which makes it higher */
+    ColourChoices colours; /* those that name a line count */
 } ChartLook;
 
 /* The speed-accuracy study: every method in every scene, on held-out launches.
@@ -577,6 +579,10 @@ typedef struct LaunchPage {
 extern const CsvLayout launch_page_layout;
 
 /* Charts of speed against accuracy, drawn from chart.csv. */
+
+/* ERROR_INPUT if a choice names no line of the charts of these rows, of which method and setting count, or has a colour that is
+   refused (pictures/colours.h). */
+bool chart_colours_check(const ColourChoices *choices, const ChartRow *rows, int count, Error *error);
 
 /* Whether rows of the table have each name of the list, at most as many as there are colours. ERROR_INPUT otherwise. */
 bool chart_highlight_check(const char *highlight, const ChartRow *rows, int count, Error *error);

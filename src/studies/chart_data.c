@@ -4,6 +4,7 @@
 #include "base/csv.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
+#include "pictures/colours.h"
 #include "pixels/type.h"
 #include "scenes/scenes.h"
 #include "studies/chart.h"
@@ -77,6 +78,30 @@ static bool add_lines(Chart *chart, const CsvTable *table, const char *scene, co
         line->competes = line->description == NULL || line->description->role == METHOD_COMPETES;
     }
     return true;
+}
+
+bool chart_colour(Chart *chart, const ColourChoices *choices, Error *error) {
+    const char *keys[CHART_MAX_LINES];
+    RunColours colours[CHART_MAX_LINES];
+    for (int i = 0; i < chart->line_count; i++) keys[i] = chart->lines[i].key;
+    const ColourChoices these = colours_of_these(choices, keys, chart->line_count);
+    if (!colours_assign(keys, chart->line_count, &these, colours, error)) return false;
+    for (int i = 0; i < chart->line_count; i++) chart->lines[i].colours = colours[i];
+    return true;
+}
+
+bool chart_colours_check(const ColourChoices *choices, const ChartRow *rows, int count, Error *error) {
+    char keys[CHART_MAX_LINES][CHART_FAMILY_SIZE];
+    const char *methods[CHART_MAX_LINES];
+    RunColours colours[CHART_MAX_LINES];
+    int lines = 0;
+    for (int i = 0; i < count && lines < CHART_MAX_LINES; i++) {
+        int k = 0;
+        chart_row_family(&rows[i], keys[lines]);
+        while (k < lines && strcmp(keys[k], keys[lines]) != 0) k++;
+        if (k == lines) methods[lines] = keys[lines], lines++;
+    }
+    return colours_assign(methods, lines, choices, colours, error);
 }
 
 /* The panel of a row, or -1. */
@@ -310,7 +335,8 @@ bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const 
     chart_times_note(chart->times, table->rows, table->count);
     chart_make_plain(chart->times);
     bool gathered =
-        add_lines(chart, table, scene, path, error) && add_marks(chart, table, scene, path, highlight, error) &&
+        add_lines(chart, table, scene, path, error) && chart_colour(chart, NULL, error) &&
+        add_marks(chart, table, scene, path, highlight, error) &&
         (chart->panels[0].count + chart->panels[1].count > 0 ||
          error_input(error, path, "no row of the scene '%s' in closed loop has a time and an error", scene));
     if (!gathered) chart_free(chart);

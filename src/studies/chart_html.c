@@ -171,7 +171,8 @@ static void put_scene(FILE *out, ChartHtml *html, const ChartRow *first) {
         fprintf(out, ", %d launches</h2>\n", first->launches);
         fputs("<p>Without a chart: its times were measured on another processor.</p>\n", out);
     } else if (chart_gather(&chart, &html->chart, first->scene, html->csv, html->look->highlight, html->error)) {
-        html->failed = !chart_picture_make(&picture, &chart, first->scene, html->look, html->error);
+        html->failed = !chart_colour(&chart, &html->look->colours, html->error) ||
+                       !chart_picture_make(&picture, &chart, first->scene, html->look, html->error);
         if (!html->failed) {
             study_page_section(out, first->scene);
             fprintf(out, ", %d launches</h2>\n", chart.launches);

@@ -232,6 +232,7 @@ typedef struct ChartLine {
     const char *method;                   /* as in the table, which outlives it */
     const MethodDescription *description; /* NULL: an unknown method */
     ChartRank rank;
+    RunColours colours;
     bool asked;                        /* named by the reader */
     int marks[CHART_PANELS], left_out; /* numbers of marks drawn and left out */
     int varying;                       /* number of marks drawn whose time varies (ChartRow.us_varies) */
@@ -282,6 +283,8 @@ typedef struct Chart {
    are ignored. False with error set if nothing remains, or for more than CHART_MAX_LINES lines. */
 bool chart_gather(Chart *chart, const CsvTable *table, const char *scene, const char *path, const char *highlight,
                   Error *error);
+/* Colours the lines of a gathered chart again, with what was chosen. */
+bool chart_colour(Chart *chart, const ColourChoices *choices, Error *error);
 void chart_free(Chart *chart);
 
 /* Whether a program of others takes its steps, by its own clock. */

@@ -64,12 +64,11 @@ static void lay_out(ChartPicture *picture, double words) {
     }
 }
 
-/* A silenced twin has its method's colour, dashed and open; a program of others is open, too. */
+/* A silenced twin has a shade of its method's colour, dashed and open; a program of others is open, too. */
 PlotStyle chart_line_style(const ChartLine *line) {
-    const MethodDescription *method = line->description;
     PlotStyle style = {.symbol = METHOD_CIRCLE, .colour = GREY_LINE, .ink = CHART_GREY_INK};
     if (line->rank != CHART_COLOURED) return style;
-    plot_method_styles(&method, 1, &style);
+    style = plot_method_style(&line->colours);
     const bool twin = chart_twin_word(line) != NULL;
     style.symbol = METHOD_CIRCLE;
     style.open = twin || chart_is_program(line);
@@ -286,7 +285,7 @@ bool chart_plot(const char *csv_path, const char *scene, const char *folder, con
     ChartPicture picture;
     bool drawn = chart_gather(&chart, &table, scene, csv_path, look->highlight, error);
     if (drawn) {
-        drawn = chart_picture_make(&picture, &chart, scene, look, error);
+        drawn = chart_colour(&chart, &look->colours, error) && chart_picture_make(&picture, &chart, scene, look, error);
         if (drawn) {
             drawn = write_picture(&picture, stem, error);
             chart_picture_free(&picture);

@@ -128,7 +128,6 @@ TEST(a_picture_has_its_caption) {
     caption_method(&picture, 0, name, note);
     assert_string_equal(name, "of-test");
     assert_string_equal(note, "solver of a test");
-    assert_int_equal(picture.colours[0], METHOD_BLUE); /* none stated: the first */
     picture_free(&picture);
     trajectory_destroy(run);
 }

@@ -58,9 +58,9 @@ TEST_WITH(what_stands_and_what_strikes_is_held, make, destroy) {
         }
 }
 
-/* Whatever a body does after the impact, or less than half of all bodies without one, every frame has the same view. */
+/* Wherever a body flies after the impact, or less than half of all bodies without one, every frame has the same view. */
 TEST_WITH(a_body_that_flies_off_changes_nothing, make, destroy) {
-    static const float far[] = {3, 20, 1e3F, 1e5F, 1e30F, NAN};
+    static const float far[] = {20, 1e3F, 1e5F, 1e30F, NAN};
     for (int impact = 0; impact < 2; impact++) {
         if (impact) add_impact(5);
         const Camera before = fitted(900, 880);
@@ -176,7 +176,7 @@ TEST_WITH(what_falls_together_is_framed_as_it_is_struck, make, destroy) {
     assert_memory_equal(&loose, &sags, sizeof loose);
     assert_true(falls.scale > 1.1 * loose.scale && falls.scale <= stands.scale);
     assert_memory_equal(&falls, &little, sizeof falls);
-    assert_true(far.scale < stands.scale / 1.8); /* half of the boxes would be above the picture */
+    assert_true(far.scale * 15 <= 900); /* or half of the boxes would be above the picture */
 }
 
 /* With room at both sides, the boxes from -2.5 m to 3 m are in the middle, wherever the bomb comes from. */

@@ -151,6 +151,10 @@ TEST_WITH(no_caption_of_a_method_is_cut, make, destroy) {
 TEST_WITH(a_caption_of_the_options_is_whole_or_refused, make, destroy) {
     static const char words[] =
         "Sequential impulses with a warm start, ten sweeps per step, and the friction of Coulomb";
+    static const char longer[] =
+        "Sequential impulses with a warm start, ten sweeps per step, and the friction of Coulomb, as in Box2D-Lite, "
+        "but "
+        "with all contacts of a pair solved at once and with the impulses of the step before it, where there are any";
     RenderOptions options = {.width = 1280, .height = 720, .captions = {NULL, words}};
     Picture picture;
     Drawing drawing = {0};
@@ -159,7 +163,7 @@ TEST_WITH(a_caption_of_the_options_is_whole_or_refused, make, destroy) {
     caption_panel(&picture, 1, moment_stored(0), &drawing);
     assert_true(has_words(&drawing, &picture.layout, words));
     drawing_free(&drawing);
-    options.width = 480, options.height = 320;
+    options.width = 480, options.height = 320, options.captions[1] = longer;
     assert_refused(picture_check(panels, 6, &options, &error), "--caption", "lines in panels of this size");
 }
 

@@ -153,7 +153,7 @@ static void assert_colour(const json_t *panel, const json_t *camera, const Image
 
 /* A box has the colour of its run's method; the bomb has a light dot in its centre. */
 static void check_bodies(const json_t *view_panels, const json_t *picture, const Image *image) {
-    static const MethodColour colours[2] = {METHOD_BLUE, METHOD_ORANGE}; /* of engine and pair-net */
+    static const uint32_t fills[2] = {0x0072B2, 0xE69F00}; /* of engine and pair-net */
     const Theme *theme = theme_get(LOOK_LIGHT);
     const json_t *moving = json_object_get(picture, "camera");
     const int frame = (int)number_of(picture, "frame");
@@ -161,8 +161,7 @@ static void check_bodies(const json_t *view_panels, const json_t *picture, const
         const json_t *panel = json_array_get(view_panels, (size_t)run);
         const int shown = frame < runs[run]->frames ? frame : runs[run]->frames - 1;
         if (moving == NULL)
-            assert_colour(panel, panel, image, *run_position(runs[run], shown, SECOND_BOX),
-                          theme->bodies[colours[run]].fill);
+            assert_colour(panel, panel, image, *run_position(runs[run], shown, SECOND_BOX), fills[run]);
         else if (shown >= 2)
             assert_colour(panel, moving, image, *run_position(runs[run], shown, BOMB_BODY), theme->bomb.band);
     }

@@ -11,11 +11,11 @@ enum { SIDE = 200 };
 /* 20 pixels per metre; the ground's top is row 160. */
 static const Camera camera = {20, 100, 160};
 
-static Image *shoot(const Trajectory *run, int frame, MethodColour colour, StillParts parts) {
+static Image *shoot(const Trajectory *run, int frame, uint32_t fill, StillParts parts) {
     Error error = {0};
     Still *still = still_create(SIDE, SIDE, &error);
     Image *image = image_sized(SIDE, SIDE);
-    const StillShot shot = {run, frame, colour, parts, camera};
+    const StillShot shot = {run, frame, {fill, fill, fill}, parts, camera};
     assert_ok(still != NULL && still_draw(still, &shot, image, &error), error);
     still_destroy(still);
     return image;
@@ -29,17 +29,17 @@ static void expect_pixel(const Image *image, int x, int y, unsigned rgba) {
 
 TEST(bodies_stand_on_nothing) {
     Trajectory *run = run_make("engine", 3);
-    Image *image = shoot(run, 0, METHOD_BLUE, STILL_ALL);
+    Image *image = shoot(run, 0, 0x0072B2, STILL_ALL);
     expect_pixel(image, 60, 150, 0x0072B2FF);  /* the middle of the first box */
     expect_pixel(image, 100, 150, 0x00000000); /* between the boxes */
     expect_pixel(image, 100, 180, 0xD3D8DFFF); /* the ground */
     expect_pixel(image, 120, 48, 0x00000000);  /* the bomb appears later */
     image_destroy(image);
-    image = shoot(run, 0, METHOD_ORANGE, STILL_MOVING);
+    image = shoot(run, 0, 0xE69F00, STILL_MOVING);
     expect_pixel(image, 60, 150, 0xE69F00FF);
     expect_pixel(image, 100, 180, 0x00000000);
     image_destroy(image);
-    image = shoot(run, 2, METHOD_BLUE, STILL_FIXED);
+    image = shoot(run, 2, 0x0072B2, STILL_FIXED);
     expect_pixel(image, 60, 150, 0x00000000);
     expect_pixel(image, 100, 180, 0xD3D8DFFF);
     image_destroy(image);
@@ -49,7 +49,7 @@ TEST(bodies_stand_on_nothing) {
 /* Alpha sums to the boxes' areas (corners are round): an edge within a pixel counts in part. */
 TEST(alpha_is_coverage) {
     Trajectory *run = run_make("engine", 8);
-    Image *image = shoot(run, 7, METHOD_BLUE, STILL_MOVING);
+    Image *image = shoot(run, 7, 0x0072B2, STILL_MOVING);
     double sum = 0;
     int partial = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {

@@ -4,6 +4,7 @@
    vision deficiency" (2009), severity 1. */
 #include "testing.h"
 
+#include "methods/methods.h"
 #include "pictures/picture.h"
 
 #include <math.h>
@@ -39,37 +40,77 @@ static Lab seen(uint32_t colour, int sight) {
 
 static double distance(Lab a, Lab b) { return sqrt(pow(a.l - b.l, 2) + pow(a.a - b.a, 2) + pow(a.b - b.b, 2)); }
 
-enum { SIGHTS = 4, COLOURS_MAX = METHOD_COLOURS + 2 };
+/* Of each method with a colour of its own, the eight most compared first; of seven others, which take all spare ones; of the
+   bomb; of contacts. */
+enum { SIGHTS = 4, OTHERS = 7, MOST = COLOURS_MAX + 2 };
 
-/* Of each method, from METHOD_BLUE on, of the bomb, of contacts. */
-static void colours_of(const Theme *theme, uint32_t colours[COLOURS_MAX]) {
-    for (int i = METHOD_BLUE; i < METHOD_COLOURS; i++) colours[i] = theme->bodies[i].fill;
-    colours[METHOD_COLOURS] = theme->bomb.fill;
-    colours[METHOD_COLOURS + 1] = theme->impulse;
+typedef struct Colours {
+    int methods, bomb; /* numbers of methods and others; the bomb's place is behind, that of contacts the next */
+    char names[COLOURS_MAX][32];
+    uint32_t fills[MOST];
+} Colours;
+
+static Colours colours_of(LookTheme theme) {
+    Colours all = {0};
+    const char *names[COLOURS_MAX];
+    RunColours colours[COLOURS_MAX];
+    Error error = {0};
+    for (int i = 0; i < COLOUR_HUES; i++) {
+        for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+            RunColours family[COLOUR_SHADES];
+            if (!colours_have(kind->description->name)) continue;
+            colours_family(kind->description->name, NULL, family);
+            if (family[0].light.fill == colours_hue(i).light.fill)
+                strcpy(all.names[all.methods++], kind->description->name);
+        }
+    }
+    assert_int_equal(all.methods, COLOUR_HUES);
+    for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {
+        int i = 0;
+        while (i < COLOUR_HUES && strcmp(all.names[i], kind->description->name) != 0) i++;
+        if (i == COLOUR_HUES && colours_have(kind->description->name))
+            strcpy(all.names[all.methods++], kind->description->name);
+    }
+    for (int i = 0; i < OTHERS; i++) snprintf(all.names[all.methods++], sizeof *all.names, "other %d", i);
+    for (int i = 0; i < all.methods; i++) names[i] = all.names[i];
+    assert_ok(colours_assign(names, all.methods, NULL, colours, &error), error);
+    for (int i = 0; i < all.methods; i++)
+        all.fills[i] = theme == LOOK_DARK ? colours[i].dark.fill : colours[i].light.fill;
+    all.bomb = all.methods;
+    all.fills[all.bomb] = theme_get(theme)->bomb.fill;
+    all.fills[all.bomb + 1] = theme_get(theme)->impulse;
+    return all;
 }
 
-/* 2.3 is what a trained eye just notices; boxes are small and apart. The bomb also has a sign on it. */
+/* 2.3 is what a trained eye just notices; boxes are small and apart. The bomb also has a sign on it. Those that are compared most are
+   further apart, and so are all for normal sight. */
 TEST(colours_of_boxes_and_the_bomb_differ_for_all_readers) {
     for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++)
-        for (int sight = 0; sight < SIGHTS; sight++)
-            for (int i = METHOD_ORANGE; i <= METHOD_COLOURS; i++)
-                for (int k = METHOD_BLUE; k < i; k++) {
-                    uint32_t colours[COLOURS_MAX];
-                    colours_of(theme_get((LookTheme)t), colours);
-                    const double d = distance(seen(colours[i], sight), seen(colours[k], sight));
-                    if (d < 14.5) fail_msg("theme %d, sight %d: colours %d and %d are %.1f apart", t, sight, k, i, d);
+        for (int sight = 0; sight < SIGHTS; sight++) {
+            const Colours all = colours_of((LookTheme)t);
+            for (int i = 1; i <= all.bomb; i++)
+                for (int k = 0; k < i; k++) {
+                    const bool most = k < COLOUR_HUES && (i < COLOUR_HUES || i == all.bomb);
+                    const double d = distance(seen(all.fills[i], sight), seen(all.fills[k], sight));
+                    if (d < (most ? 14.5 : sight == 0 ? 13 : 10))
+                        fail_msg("theme %d, sight %d: %s and %s are %.1f apart", t, sight, all.names[k],
+                                 i < all.bomb ? all.names[i] : "the bomb", d);
                 }
+        }
 }
 
-/* In grey any two methods differ, and the engine more from every other. */
+/* In grey any two of those that are compared most differ, and the engine more from every other. */
 TEST(grey_tells_methods_apart) {
-    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++)
-        for (int i = METHOD_ORANGE; i < METHOD_COLOURS; i++)
-            for (int k = METHOD_BLUE; k < i; k++) {
-                const BodyColors *bodies = theme_get((LookTheme)t)->bodies;
-                const double d = fabs(seen(bodies[i].fill, 0).l - seen(bodies[k].fill, 0).l);
-                if (d < (k == METHOD_BLUE ? 6 : 4)) fail_msg("theme %d: %d and %d are %.1f apart in grey", t, k, i, d);
+    for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
+        const Colours all = colours_of((LookTheme)t);
+        for (int i = 1; i < COLOUR_HUES; i++)
+            for (int k = 0; k < i; k++) {
+                const bool engine = strcmp(all.names[i], "engine") == 0 || strcmp(all.names[k], "engine") == 0;
+                const double d = fabs(seen(all.fills[i], 0).l - seen(all.fills[k], 0).l);
+                if (d < (engine ? 6 : 4))
+                    fail_msg("theme %d: %s and %s are %.1f apart in grey", t, all.names[k], all.names[i], d);
             }
+    }
 }
 
 /* Boxes, the bomb and contacts stand out from what is behind them, for all readers and in grey; least from the ground.
@@ -78,13 +119,12 @@ TEST(colours_differ_from_what_is_behind_them) {
     for (int t = LOOK_LIGHT; t <= LOOK_DARK; t++) {
         const Theme *theme = theme_get((LookTheme)t);
         const uint32_t behind[] = {theme->panel, theme->page, theme->ground};
-        uint32_t colours[COLOURS_MAX];
-        colours_of(theme, colours);
-        for (int i = METHOD_BLUE; i < COLOURS_MAX; i++)
+        const Colours all = colours_of((LookTheme)t);
+        for (int i = 0; i <= all.bomb + 1; i++)
             for (int k = 0; k < 3; k++) {
                 for (int sight = 0; sight < SIGHTS; sight++)
-                    assert_true(distance(seen(colours[i], sight), seen(behind[k], sight)) > (k < 2 ? 25 : 17));
-                assert_true(fabs(seen(colours[i], 0).l - seen(behind[k], 0).l) > (k < 2 ? 20 : 11));
+                    assert_true(distance(seen(all.fills[i], sight), seen(behind[k], sight)) > (k < 2 ? 25 : 17));
+                assert_true(fabs(seen(all.fills[i], 0).l - seen(behind[k], 0).l) > (k < 2 ? 20 : 11));
             }
     }
 }
@@ -95,11 +135,10 @@ TEST(contacts_stand_out_from_boxes_and_the_bomb) {
         for (int sight = 0; sight < SIGHTS; sight++) {
             const Theme *theme = theme_get((LookTheme)t);
             const Lab dot = seen(theme->impulse, sight), ring = seen(theme->panel, sight);
-            uint32_t colours[COLOURS_MAX];
-            colours_of(theme, colours);
+            const Colours all = colours_of((LookTheme)t);
             assert_true(distance(dot, ring) > 60);
-            for (int i = METHOD_BLUE; i <= METHOD_COLOURS; i++) {
-                const Lab box = seen(colours[i], sight);
+            for (int i = 0; i <= all.bomb; i++) {
+                const Lab box = seen(all.fills[i], sight);
                 assert_true(fmax(distance(box, dot), distance(box, ring)) > 40);
             }
         }

@@ -308,22 +308,16 @@ TEST(the_axes_show_the_coloured_curves) {
                    NULL);
 }
 
-/* Methods keep their colour, whichever others are in the chart; all lines differ. */
+/* Methods keep their colour and symbol, whichever others are in the chart; a second line has another colour and an open
+   symbol. */
 TEST(a_method_has_one_style_in_all_charts) {
-    const MethodDescription *engine = method_describe("engine"), *momentum = method_describe("momentum");
-    PlotStyle one[2], other[CHART_MAX_LINES];
-    plot_method_styles((const MethodDescription *[]){momentum, engine}, 2, one);
-    const MethodDescription *many[CHART_MAX_LINES] = {engine, NULL, momentum, momentum};
-    plot_method_styles(many, CHART_MAX_LINES, other);
-    assert_int_equal(one[0].colour, plot_method_colour(METHOD_GREEN));
-    assert_int_equal(one[0].colour, other[2].colour);
-    assert_int_equal(one[0].symbol, other[2].symbol);
-    assert_int_equal(other[3].colour, other[2].colour); /* a second line of one method: its symbol, open */
-    assert_true(other[3].symbol == other[2].symbol && other[3].open && !other[2].open);
-    for (int i = 0; i < CHART_MAX_LINES; i++)
-        for (int k = 0; k < i; k++)
-            assert_true(other[i].symbol != other[k].symbol || other[i].open != other[k].open ||
-                        other[i].colour != other[k].colour);
+    RunColours two[2], three[3];
+    assert_ok(colours_assign((const char *[]){"momentum", "engine"}, 2, NULL, two, &error), error);
+    assert_ok(colours_assign((const char *[]){"engine", "momentum:near", "momentum"}, 3, NULL, three, &error), error);
+    const PlotStyle one = plot_method_style(&two[0]), same = plot_method_style(&three[2]),
+                    other = plot_method_style(&three[1]);
+    assert_true(one.colour == same.colour && one.symbol == same.symbol && !same.open);
+    assert_true(other.colour != same.colour && other.symbol == same.symbol && other.open);
 }
 
 /* A curve has the settings that no other setting of the method beats. */

@@ -11,9 +11,10 @@ function look_at(x, y, w, h, {width, height}) {
 /* Spare width goes to both sides of what stands, then to where it falls; spare height above: sky distracts less than
    ground. */
 function fit_camera(grid) {
-  const {set, left, right, bottom, top, room_left, room_right, middle} = data.framing;
-  const w = right - left, h = top - bottom;
-  const centred = look_at(left + w / 2, bottom + h / 2, w, h, grid), {scale} = centred;
+  const {set, left, right, bottom, top, action_left, action_right, room_left, room_right, middle} = data.framing;
+  const h = top - bottom, largest = min(grid.width / (right - left), grid.height / h);
+  const w = max(right - left, min(action_right - action_left, grid.width / (LEAST_SCALE * largest)));
+  const centred = look_at((left + right) / 2, bottom + h / 2, w, h, grid), {scale} = centred;
   const half = grid.width / scale / 2, reach = max(half, (room_right - room_left) / 2);
   const falls = min(max(middle, room_right - reach), room_left + reach), x = min(max(falls, right - half), left + half);
   const whole = grid.height / scale, below = min((whole - h) / 2, data.ground * whole);

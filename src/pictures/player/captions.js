@@ -48,23 +48,23 @@ const swatch_side = font => trunc(font.em * 3 / 4);
    because what is where must not depend on the reader's. */
 const distance_width = run =>
   others.includes(run) && !lay.pair ? ceil(data.distance_ems * lay.method.em) + lay.method.em : 0;
-function caption_width(run, font) {
+function caption_width(run, font, apart) {
   const {title} = lay, gap = title.em >> 1, {ems, note, note_ems} = runs[run];
-  return swatch_side(title) + gap + ceil(ems * title.em) + distance_width(run) +
+  return swatch_side(title) + gap + ceil(ems * title.em) + (apart ? 0 : distance_width(run)) +
     (font && note ? gap + ceil(note_ems * font.em) : 0);
 }
 
-/* Notes are beside the names if all have room there, with a number of bodies out of view; otherwise below; otherwise
+/* Distances have a line of their own, nearest to the panels, if beside some name there is no room. Notes are beside the names if all have room there, with a number of bodies out of view; otherwise below; otherwise
    nowhere. The runs of an overlay share lines. */
 function lay_captions(width) {
   const {panels: [{run, outlines}], title, method, axis} = lay, gap = title.em >> 1, fonts = [method, axis];
   if (!lay.overlay) {
     const every = fits => lay.panels.every(({run}) => !runs[run].note || fits(run)), out = ceil(data.out_ems * method.em);
-    const beside = fonts.find(font => every(each => caption_width(each, font) + gap + out <= width));
+    const apart = lay.panels.some(({run}) => distance_width(run) > 0 && caption_width(run) > width);
+    const beside = fonts.find(font => every(each => caption_width(each, font, apart) + gap + out <= width));
     const below = !beside && fonts.find(font =>
       every(each => swatch_side(title) + gap + ceil(runs[each].note_ems * font.em) <= width));
-    const label = lay.panels.every(({run}) => caption_width(run, beside) + gap + out + 5 * method.em <= width);
-    return {beside, below, label: label ? "distance " : "", lines: below ? 2 : 1, at: [{x: 0, line: 0}]};
+    return {beside, below, apart, lines: 1 + (below ? 1 : 0) + (apart ? 1 : 0), at: [{x: 0, line: 0}]};
   }
   const flow = beside => {
     let x = 0, line = 0;
@@ -75,10 +75,10 @@ function lay_captions(width) {
       x += needed + 3 * gap;
       return place;
     });
-    return {beside, label: "", lines: line + 1, at};
+    return {beside, lines: line + 1, at};
   };
   const whole = flow(method);
-  return whole.lines <= 3 ? whole : flow();
+  return whole.lines <= 6 ? whole : flow();
 }
 
 /* What a panel does not show. */
@@ -99,16 +99,18 @@ function draw_caption(run, i) {
   const {ems, note, note_ems} = runs[run], {x, line} = captions.at[i];
   const left = here.left + x, start = left + swatch_side(title) + gap, end = here.left + here.width;
   const baseline = here.top - lay.rise - (captions.lines - 1 - line) * lay.line;
-  const name = caption_of(run), planned = ceil(ems * title.em), free = end - start - distance_width(run);
-  const most = overlay ? min(planned, free) : free; /* in an overlay the next caption is beside it */
+  const name = caption_of(run), planned = ceil(ems * title.em), room_of_name = end - start - (captions.apart ? 0 : distance_width(run));
+  const most = overlay ? min(planned, room_of_name) : room_of_name; /* in an overlay the next caption is beside it */
   const font = min(planned, text_width(title, name)) <= most ? title : axis;
-  let next = start + min(most, text_width(font, name)) + gap, right = end;
+  let next = start + min(most, text_width(font, name)) + gap, right = end, free = start;
   draw_swatch(run, i > 0, left, baseline, swatch_side(title));
   write(font, fitting(font, name, most / LEAST_WIDTH), start, baseline, look.ink, most);
   if (distance_width(run) > 0) {
-    const {width, draw} = distance_item(method, captions.label, largest(run, now));
-    draw(overlay ? next : end - width, baseline);
+    const {width, draw} = distance_item(method, "distance ", largest(run, now));
+    if (captions.apart) draw(start, here.top - lay.rise);
+    else draw(overlay ? next : end - width, baseline);
     if (overlay) next += distance_width(run);
+    else if (captions.apart) free = start + distance_width(run);
     else right -= width + method.em;
   }
   if (captions.beside) {
@@ -118,6 +120,7 @@ function draw_caption(run, i) {
   } else if (captions.below) write(captions.below, note, start, baseline + lay.line, look.ink_soft, end - start);
   const state = overlay ? "" : state_of(run), room = text_width(method, state);
   if (state && room <= right - next) write(method, state, right - room, baseline);
+  else if (state && captions.apart && room <= right - free) write(method, state, right - room, here.top - lay.rise);
   else if (state) { /* in the panel, on its colour: what cannot be seen must be stated */
     const wide = text_width(axis, state), x = end - gap - wide, y = here.top + gap;
     bar(x - 2, y, wide + 4, axis.em + 4, look.panel);

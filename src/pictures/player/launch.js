@@ -52,18 +52,24 @@ function method_text(name, settings) {
   return name + (given.length > 0 ? ":" + given.join() : "");
 }
 
-/* Those of its method, or of another if a panel has them: two panels of one method are told apart. */
-function colours_for(run, text) {
-  const own = data.live.methods.find(({name}) => name === text.split(":")[0])?.colours ?? runs[0].colours;
-  const taken = new Set(runs.filter(each => each !== run).map(({colours}) => colours.light.fill));
-  return [own, ...data.live.methods.map(({colours}) => colours)].find(each => !taken.has(each.light.fill)) ?? own;
+/* The rule of src/pictures/colours.h: panels of one method have its colour and shades of it, by their names. */
+function colour_runs() {
+  const head = ({method}) => method.split(":")[0], taken = new Set();
+  for (const run of [...runs].sort((a, b) => a.method < b.method ? -1 : a.method > b.method ? 1 : a.index - b.index)) {
+    const shades = data.live.methods.find(({name}) => name === head(run))?.shades;
+    if (!shades) continue;
+    let shade = run.method.includes("net=off") ? 1 : 0;
+    while (taken.has(head(run) + shade)) shade++;
+    taken.add(head(run) + shade);
+    run.colours = shades[shade % shades.length];
+  }
 }
 
 /* Another method has other colours. */
 function change_method(run, text) {
-  if (text.split(":")[0] !== run.live.split(":")[0]) run.colours = colours_for(run, text);
   run.live = text;
   describe_run(run);
+  colour_runs();
 }
 
 function set_method(run, text) {
@@ -125,6 +131,7 @@ function list_methods() {
 function remove_panel(run) {
   run.worker?.terminate();
   runs.splice(runs.indexOf(run), 1);
+  colour_runs();
   Object.assign(view, {body: -1, run: 0});
   take_stock();
   list_methods();
@@ -141,9 +148,10 @@ function add_panel(text = "engine") {
   const run = Object.assign(make_states({}, 1, 0), {index: runs.length, live: text, size: [], fixed: [], bomb: -1, reached: -1,
     distances: new Float32Array(1), velocities: true, contacts: true, compared: false, why: "", scene: like.scene,
     made_of: like.made_of, iterations: like.iterations, dt: like.dt, steps: like.steps, scene_hash: "", verdict: null,
-    colours: colours_for(null, text)});
+    colours: like.colours});
   describe_run(run);
   runs.push(run);
+  colour_runs();
   open_worker(run);
   start(run);
   take_stock();
