@@ -131,8 +131,8 @@ LIVE_EXPORT(live_hash) uint64_t live_hash(const LiveRun *run, int frame);
    NULL if a step failed for another reason than a NaN or infinite state. */
 LIVE_EXPORT(live_verdict) const char *live_verdict(const LiveRun *run);
 
-/* What a picture of the run so far shows, as twinbox render frames it, as JSON: set, left, right, bottom, top, room_left,
-   room_right, middle (CameraFrame in runs/framing.h), m. */
+/* What a picture of the run so far shows, as twinbox render frames it, as JSON: set, left, right, bottom, top, action_left,
+   action_right, room_left, room_right, middle (CameraFrame in runs/framing.h), m. */
 LIVE_EXPORT(live_framing) const char *live_framing(const LiveRun *run);
 
 /* The functions of the program. */

@@ -179,6 +179,10 @@ run 2 chart -o none
 complains "a scene file, or the chart.csv of an earlier run, is needed"
 run 2 chart "$scenes/single.yaml"
 complains "-o DIR is needed"
+run 2 chart "$scenes/single.yaml" -o none --quick --methods engine,interior --colour motor=7a9a01
+complains "--colour: error: 'motor' is not a run of this picture"
+run 2 chart "$scenes/single.yaml" -o none --quick --methods engine,interior --colour interior=0072b2
+complains "too close to the colour of 'engine'"
 run 3 chart "$scenes/single.yaml" -o /proc/none --quick --methods engine:k=10
 [ -e none/chart.csv ] && fail "a chart that was refused has a table"
 finish

@@ -205,4 +205,26 @@ mkdir -p jail
 run 0 render evil.npz -o jail/frames --size 192x108
 equal "files in the folder" "$(ls jail/frames | grep -v '^frame_')" "$(printf '_._.._evil-_tmp_.._x.npz\nmanifest.json')"
 equal "folders beside it" "$(ls jail)" frames
+
+# Colours are those of methods, whatever their order; a chosen one redraws what an earlier call drew.
+colours() { sed -n 's/.*"method": "\([^"]*\)".*"colour": "\([^"]*\)".*/\1 \2/p' "$1/manifest.json" | sort; }
+few="--size 192x108 --frames 2"
+run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o there $few
+run 0 render pictures/single-pair-net.npz pictures/single-engine.npz -o back $few
+equal "colours in another order" "$(colours back)" "$(colours there)"
+run 0 render pictures/single-engine.npz pictures/single-pair-net.npz -o there $few --resume --colour pair-net=7a9a01
+says "0 of them kept"
+equal "a chosen colour" "$(colours there | sed -n 's/^pair-net.* //p')" "#7a9a01"
+equal "the other" "$(colours there | sed -n 's/^engine.* //p')" "#0072b2"
+run 2 render pictures/single-engine.npz -o none $few --colour engine=blue
+complains "--colour: error: 'engine=blue' is not NAME=RRGGBB, with six hex digits"
+run 2 render pictures/single-engine.npz -o none $few --colour motor=7a9a01
+complains "--colour: error: 'motor' is not a run of this picture"
+run 2 page pictures/single-engine.npz pictures/single-pair-net.npz -o none.html --colour pair-net=0072b2
+complains "too close to the colour of 'engine'"
+run 2 figure strip pictures/single-engine.npz -o none.pdf --colour engine=ffffff
+complains "too light to be seen on white"
+run 2 render pictures/single-engine.npz -o none $few --no-table
+complains "--no-table: error: needs --end TEXT"
+[ ! -e none ] && [ ! -e none.html ] && [ ! -e none.pdf ] || fail "a refused colour leaves a file"
 finish

@@ -100,6 +100,30 @@ TEST_WITH(no_mark_of_frame_0_moves, make, destroy) {
     trajectory_destroy(other);
 }
 
+/* What falls over near in half of the runs is in view; in one of three it counts for nothing, nor does a sag. */
+TEST_WITH(what_half_of_the_runs_do_is_in_view, make, destroy) {
+    Trajectory *others[2] = {run_make("momentum", 12), run_make("pair-net", 12)};
+    const Trajectory *panels[] = {run, others[0], others[1]};
+    add_impact(5);
+    for (int i = 0; i < SIZES; i++) {
+        const CameraFrame stands = camera_frame(panels, 3);
+        const Camera before = camera_fit(&stands, sizes[i][0], sizes[i][1]);
+        for (int frame = 6; frame < 12; frame++) run_position(others[0], frame, FIRST_BOX)->x = -3.8F;
+        const CameraFrame one = camera_frame(panels, 3);
+        const Camera same = camera_fit(&one, sizes[i][0], sizes[i][1]);
+        assert_memory_equal(&before, &same, sizeof before);
+        for (int frame = 6; frame < 12; frame++) run_position(others[1], frame, FIRST_BOX)->x = -3.8F;
+        const CameraFrame two = camera_frame(panels, 3);
+        const Camera farther = camera_fit(&two, sizes[i][0], sizes[i][1]);
+        assert_inside(&farther, -4.3, 0.5, sizes[i]);
+        assert_inside(&farther, 4.3, 0.5, sizes[i]); /* as far to the other side */
+        assert_true(farther.scale <= before.scale && farther.scale > 0.68 * before.scale);
+        for (int frame = 6; frame < 12; frame++)
+            run_position(others[0], frame, FIRST_BOX)->x = run_position(others[1], frame, FIRST_BOX)->x = -2;
+    }
+    for (int i = 0; i < 2; i++) trajectory_destroy(others[i]);
+}
+
 /* On a slope without a view of its own, nothing stays where it starts. */
 TEST_WITH(where_most_bodies_leave_all_their_way_is_held, make, destroy) {
     for (int frame = 1; frame < run->frames; frame++) {

@@ -57,6 +57,59 @@ static Picture plan(const char *title, const char *caption, int width, int heigh
     return picture;
 }
 
+static size_t end_glyphs(const RenderOptions *options) {
+    Error error = {0};
+    Picture picture;
+    Drawing drawing = {0};
+    assert_ok(picture_plan(&picture, (const Trajectory *const *)runs, 2, 1280, 720, &error), error);
+    assert_ok(picture_apply_options(&picture, options, &error), error);
+    card_draw(&picture, (Moment){.kind = MOMENT_END}, &drawing);
+    const size_t glyphs = drawing.glyph_count;
+    drawing_free(&drawing);
+    picture_free(&picture);
+    return glyphs;
+}
+
+TEST_WITH(an_end_card_without_its_table_has_its_text_only, make, destroy) {
+    RenderOptions options = {
+        .width = 1280, .height = 720, .end_card = true, .look = {.end = "Thanks", .end_bare = true}};
+    assert_int_equal(end_glyphs(&options), strlen("Thanks"));
+    options.look.end_bare = false;
+    assert_true(end_glyphs(&options) > 2 * strlen("Thanks"));
+}
+
+/* The run that the table compares with: what held best; the reference, whatever it did; without verdicts the first. */
+TEST_WITH(an_end_card_compares_with_what_held, make, destroy) {
+    static const struct {
+        const char *methods[2], *verdicts[2];
+        int base;
+    } cases[] = {
+        {{"engine", "pair-net"}, {"", ""}, 0},
+        {{"pair-net", "engine"}, {"explodes at 0.3 s (body 7)", "stands"}, 1},
+        {{"engine", "pair-net"}, {"stands", "explodes at 0.3 s (body 7)"}, 0},
+        {{"engine", "interior"}, {"falls: 1 of 2 boxes fell", "falls: 2 of 2 boxes fell"}, 0},
+        {{"pair-net", "engine"}, {"explodes at 0.3 s (body 7)", ""}, 0},
+        {{"engine", "reference"}, {"stands", "falls"}, 1},
+    };
+    const RenderOptions options = {.width = 1280, .height = 720, .end_card = true, .describe = method_describe};
+    run_position(runs[1], 5, FIRST_BOX)->y += 3;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Picture picture;
+        for (int k = 0; k < 2; k++) {
+            strcpy(runs[k]->method, cases[i].methods[k]);
+            strcpy(runs[k]->verdict, cases[i].verdicts[k]);
+        }
+        assert_ok(picture_plan(&picture, (const Trajectory *const *)runs, 2, 1280, 720, &error), error);
+        assert_ok(picture_apply_options(&picture, &options, &error), error);
+        assert_int_equal(picture.card_base, cases[i].base);
+        const CardRow *row = &picture.card_rows[1 - cases[i].base];
+        assert_near(row->largest, 3, 1e-6);
+        assert_int_equal(row->frame, 5);
+        assert_near(row->last, 0, 1e-9);
+        picture_free(&picture);
+    }
+}
+
 /* Each line moves the panels down. */
 TEST_WITH(the_header_is_as_high_as_its_title, make, destroy) {
     const Picture one = plan(NULL, NULL, 960, 540), more = plan(LONG_TITLE, NULL, 960, 540);

@@ -59,9 +59,40 @@ static void probe(const char *path, int *frames, double *rate, int *width, int *
     *rate = (double)over / under;
 }
 
+/* The most frames from one key frame to the next, or to the end. */
+static int longest_seek(const char *path) {
+    char text[4096], name[300];
+    int longest = 0, since = 0;
+    Error error = {0};
+    Process process;
+    snprintf(name, sizeof name, "file:%s", path);
+    const char *argv[] = {"ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries", "packet=flags", "-of",
+                          "csv=p=0", name, NULL};
+    assert_ok(process_start(&process, argv, &error), error);
+    assert_ok(process_finish(&process, text, sizeof text, &error), error);
+    assert_int_equal(text[0], 'K');
+    for (const char *line = text; *line != '\0'; line += strcspn(line, "\n"), line += *line == '\n') {
+        since = *line == 'K' ? 0 : since + 1;
+        if (since > longest) longest = since;
+    }
+    return longest + 1;
+}
+
 static void assert_nothing_left(const char *directory) {
     assert_int_equal(count_files(directory, ".tmp"), 0);
     assert_int_equal(count_files(directory, ".part"), 0);
+}
+
+/* Players seek from one key frame to the next: at 2.5 Hz, nine frames are 3.6 s. */
+TEST(a_key_frame_comes_each_second) {
+    static const char *const names[] = {"seek.mp4", "seek.webm"};
+    for (int i = 0; i < 2; i++) {
+        VideoOptions options = options_for(temporary_path(names[i]));
+        options.frame_rate = 2.5;
+        assert_ok(video_encode(&options, NULL, &error), error);
+        const int most = longest_seek(options.path);
+        if (most > 2) fail_msg("%s: %d frames of 0.4 s without a key frame", names[i], most);
+    }
 }
 
 TEST(each_form_has_all_its_frames_and_the_same_bytes_again) {
