@@ -9,6 +9,7 @@
 #include "pictures/player.h"
 #include "pictures/render.h"
 #include "studies/chart.h"
+#include "studies/chart_internal.h"
 
 enum { WIDTH = 1920, HEIGHT = 320, FRAMES = 3 };
 
@@ -117,11 +118,11 @@ TEST(film_page_and_figure_have_the_colours_of_methods) {
     }
 }
 
-/* A line of each: in the picture of all, each colour strokes something. */
+/* A line of each, highlighted in turn. */
 TEST(a_chart_of_all_methods_has_no_colour_twice) {
     const char *names[COLOURS_MAX];
     RunColours colours[COLOURS_MAX];
-    char lines[8192] = "", stroke[32];
+    char lines[8192] = "";
     size_t size, used = 0;
     const int count = list_methods(names);
     for (int i = 0; i < count; i++) {
@@ -135,13 +136,25 @@ TEST(a_chart_of_all_methods_has_no_colour_twice) {
         }
     }
     assert_ok(colours_assign(names, count, NULL, colours, &error), error);
-    assert_ok(chart_plot(write_chart(lines), "stack", temporary_folder, NULL, &error), error);
-    char *svg = read_whole(temporary_path("chart-stack.svg"), &size);
+    const char *path = write_chart(lines);
+    CsvTable table;
+    assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
     for (int i = 0; i < count; i++) {
-        snprintf(stroke, sizeof stroke, "\"#%06X\"", colours[i].light.fill);
-        if (strstr(svg, stroke) == NULL) fail_msg("the chart lacks %s of %s", stroke, names[i]);
+        Chart chart;
+        assert_ok(chart_gather(&chart, &table, "stack", path, names[i], &error), error);
+        int line = 0;
+        while (line < chart.line_count && strcmp(chart.lines[line].key, names[i]) != 0) line++;
+        assert_true(line < chart.line_count);
+        assert_int_equal(chart_line_style(&chart.lines[line]).colour, colours[i].light.fill);
         for (int k = 0; k < i; k++) assert_int_not_equal(colours[i].light.fill, colours[k].light.fill);
+        chart_free(&chart);
     }
+    csv_table_free(&table);
+    assert_ok(chart_plot(path, "stack", temporary_folder, &(ChartLook){.highlight = "momentum"}, &error), error);
+    char *svg = read_whole(temporary_path("chart-stack.svg"), &size);
+    static const char *const strokes[] = {"\"#0072B2", "\"#D07CB1", "\"#009E73"}; /* engine, interior, momentum */
+    for (int i = 0; i < 3; i++)
+        if (strstr(svg, strokes[i]) == NULL) fail_msg("the chart lacks %s", strokes[i]);
     free(svg);
 }
 
