@@ -95,7 +95,6 @@ const ContactSolverKind solver_exec_solver = {
     .description = {.name = "exec-solver",
                     .summary = "another program solves each step's contacts: exec-solver:PROGRAM WORD...,KEY=VALUE,...",
                     .caption = "a solver of others",
-                    .look = {METHOD_BLACK, METHOD_SQUARE},
                     .settings = settings,
                     .own_settings = "",
                     .external = true,

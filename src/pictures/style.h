@@ -37,7 +37,7 @@ static const double LABEL_EMS = 0.64,
 static const int LABEL_DIGITS = 2;    /* shorter texts have the size of one with so many */
 static const double LABEL_LEAST = 10; /* pixels, size of the letters; smaller ones cannot be read */
 static const double LABEL_DARK_FROM =
-    0.2; /* luminance (of colours squared) from which dark text has more contrast than light */
+    0.22; /* luminance (of colours squared) from which dark text has more contrast than light */
 static const double RED_LIGHT = 0.2126, GREEN_LIGHT = 0.7152, BLUE_LIGHT = 0.0722; /* of sRGB: ITU-R BT.709 */
 
 /* Marks: in units of the shorter side of the panel, in pixels, and in units of the median box. */
