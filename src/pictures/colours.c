@@ -69,7 +69,7 @@ static uint32_t with_luma(uint32_t colour, double wanted) {
 }
 
 /* Lightest and darkest fill that stands out from panels, ground and page of the light theme; lightest text on white. */
-static const double LIGHTEST = 187, DARKEST = 48, INK_LIGHTEST = 107;
+static const double LIGHTEST = 187, DARKEST = 48, INK_LIGHTEST = 92;
 
 /* Of the dark theme, for one of the light. */
 static double dark_luma(double light) { return 100 + 0.6 * light; }

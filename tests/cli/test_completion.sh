@@ -111,7 +111,7 @@ twinbox help <ALL>|twinbox help COMMANDS
 twinbox export <ALL>|twinbox export drawn engine.npz two\ words.npz 
 twinbox figure n<ALL>|twinbox figure narrow-phase network 
 twinbox render --png <ALL>|twinbox render --png fast small 
-twinbox solve --<ALL>|twinbox solve --bomb-x --frame --help --impulses --json --method --output --quiet --run-by --verbose --version 
+twinbox solve --<ALL>|twinbox solve --bomb-x --frame --help --impulses --json --method --output --quiet --run-by --set --verbose --version 
 twinbox simulate our_wall.yaml <ALL>|twinbox simulate our_wall.yaml 
 END
 cut -d'|' -f1 alike >keys

@@ -487,14 +487,13 @@ TEST(marks_stay_on_the_page_of_a_high_chart) {
     free_chart(&chart, &table);
 }
 
-/* Two names that are equal where they are truncated. */
-TEST(truncated_names_stay_distinct) {
+/* Two networks of one name in different folders. */
+TEST(equal_names_stay_distinct) {
     CsvTable table;
-    Chart chart = gather(
-        &table, "stack,a-name-of-more-than-forty-characters-which-ends-in-1,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
-                "stack,a-name-of-more-than-forty-characters-which-ends-in-2,k=1,closed,impact,9,2,2,2,,,3,,,,,,,,\n");
+    Chart chart = gather(&table, "stack,scene-net,network=a/net.npz,closed,impact,9,2,2,2,,,3,,,,,,,,\n"
+                                 "stack,scene-net,network=b/net.npz,closed,impact,9,2,2,2,,,3,,,,,,,,\n");
     assert_int_equal(chart.line_count, 2);
-    assert_string_equal(chart.lines[0].name, "a-name-of-more-than-forty-characters...");
+    assert_string_equal(chart.lines[0].name, "scene-net:net");
     assert_string_equal(chart.lines[1].name, chart.lines[0].name);
     free_chart(&chart, &table);
 }
