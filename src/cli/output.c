@@ -246,3 +246,13 @@ void installed_scenes(InstalledScene *found, void *context) {
         list_scenes(folder, scene_folders[i], found, context);
     }
 }
+
+bool output_check_folder_name(const char *path, Error *error) {
+    static const char *const endings[] = {".png", ".svg",  ".pdf", ".html", ".csv",  ".json",
+                                          ".npz", ".yaml", ".md",  ".mp4",  ".webm", ".gif"};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (file_name_ends_with(path, endings[i]))
+            return error_input(error, path, "is the name of a file; expected that of a folder, such as %.*s",
+                               (int)(strlen(path) - strlen(endings[i])), path);
+    return true;
+}

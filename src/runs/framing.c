@@ -70,8 +70,8 @@ static bool extent_holds(const Extent *extent, const Trajectory *run, int frame,
 
 static const double FRAMING_MIN_SIDE = 2.0; /* m, of what stands, for the next two */
 /* Sides of what stands, around it. */
-static const double WAY_REACH = 8;  /* where its way is shown */
-static const double NEAR = 1;       /* a stack that falls over stays within this */
+static const double WAY_REACH = 8; /* where its way is shown */
+static const double NEAR = 1;      /* a stack that falls over stays within this */
 static const double SETTLED_STEPS = 32;
 static const double SAG = 0.9;          /* of its height: what stands higher has not fallen together */
 static const double BOMB_MARGIN = 0.1;  /* of its size */

@@ -55,7 +55,7 @@ for name in "a b", "a_b":
     save(name, one, other)
 bare = {key: value for key, value in one.items() if not key.startswith(("contact_", "verdict"))}
 fewer = {key: value[:, :-1] if value.ndim > 1 and len(value) == 81 else value for key, value in bare.items()}
-fewer |= {"size": bare["size"][:-1], "fixed": bare["fixed"][:-1], "bomb": numpy.int32(-1)}
+fewer |= {key: bare[key][:-1] for key in ("size", "fixed", "mass")} | {"bomb": numpy.int32(-1)}
 save("fewer", bare, fewer)
 save("slower", bare, bare | {"dt": numpy.float32(0.01)})
 long = {key: numpy.repeat(value, 300, 0) if len(value.shape) > 1 and len(value) == 81 else value for key, value in bare.items()}

@@ -49,8 +49,8 @@ seen="twinbox render: error: unrecognized option '--vidoe'; did you mean '--vide
 refuse render a.npz --vidoe=b.mp4 -o d
 seen="did you mean '--help'?"
 refuse render --hepl
-seen="unrecognized option '--colour'"
-refuse render a.npz --colour red -o d
+seen="unrecognized option '--tint'"
+refuse render a.npz --tint red -o d
 ! grep -q "did you mean" err || fail "a suggestion from afar: $(<err)"
 seen="option '--s' is ambiguous"
 refuse render a.npz --s 2 -o d

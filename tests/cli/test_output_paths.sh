@@ -47,7 +47,7 @@ refused 3 "nowhere/v.json: error: cannot write" simulate stack.yaml --verdict no
 refused 2 "pair.npz: error: holds a file of kind 'network'" solve stack.yaml --frame 41 -o pair.npz
 for study in "chart stack.yaml" stability "stability $scenes/stability/friction_ramp.yaml --vary slope" paper; do
     refused 3 "cannot write" $study -o /proc/none
-    refused 3 "'run.npz' is not a folder" $study -o run.npz
+    refused 2 "run.npz: error: is the name of a file; expected that of a folder, such as run" $study -o run.npz
     refused 3 "run.npz/out: error: cannot write: a part of the path is not a folder" $study -o run.npz/out
 done
 cmp -s run.npz run.kept || fail "a run was overwritten"

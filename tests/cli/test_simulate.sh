@@ -96,7 +96,7 @@ complains "height must be a whole number"
 run 2 simulate "$stability/stack_height.yaml" --set hight=3
 complains "did you mean 'height'?"
 run 2 simulate "$scenes/stack.yaml" --set height=3
-complains "'height' is not a parameter; known: none"
+complains "'height' is not a parameter; known: iterations, dt, friction, bomb_x, bomb_y, bomb_mass, bomb_speed"
 run 2 simulate "$stability/stack_height.yaml" $(for i in 1 2 3 4 5 6 7; do echo --set height=3; done)
 complains "the parameter 'height' is set twice"
 run 2 simulate nowhere.yaml

@@ -136,7 +136,7 @@ TEST(damaged_results_are_refused) {
     /* The number of methods, the index and the head of the first part; a few more steps may have been left out. */
     const size_t index = 3 * sizeof(int64_t), part = index + METHODS * sizeof(int64_t), counts = part + sizeof(int64_t),
                  criteria = counts + sizeof(int32_t[PROTOCOLS][PHASES]),
-                 values = criteria + sizeof(CriteriaSum[PROTOCOLS][PHASES]) + 64;
+                 values = criteria + sizeof(CriteriaSum[PROTOCOLS][PHASES]) + sizeof(RunMeasures);
     for (size_t at = 0; at < criteria; at++) {
         if ((at >= sizeof(int64_t) && at < index) || (at >= part && at < part + 3)) continue;
         for (int bit = 0; bit < 8; bit++) {
