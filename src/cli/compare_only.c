@@ -34,6 +34,12 @@ Trajectory *trajectory_read(const char *path, Error *error) {
     return NULL;
 }
 
+bool trajectory_part(const Trajectory *a, const Trajectory *b, const PoseTolerance *tolerance,
+                     TrajectoryParting *parting, Error *error) {
+    (void)a, (void)b, (void)tolerance, (void)parting;
+    return error_input(error, "compare", "%s", only);
+}
+
 /* Without runs, reports have no pages of them. */
 bool player_write(const Trajectory *const *runs, int count, const PlayerOptions *options, const char *path,
                   PlayerResult *result, Error *error) {
