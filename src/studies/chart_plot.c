@@ -204,7 +204,8 @@ static double draw_paragraph(Sketch *sketch, const char *text, double left, doub
     for (const char *word = text; *word != '\0';) {
         char longer[SKETCH_TEXT_SIZE];
         const size_t length = strcspn(word, " \n");
-        snprintf(longer, sizeof longer, "%s%s%.*s", row, row[0] != '\0' ? " " : "", (int)length, word);
+        strcpy(longer, row);
+        text_add(longer, sizeof longer, "%s%.*s", row[0] != '\0' ? " " : "", (int)length, word);
         if (row[0] != '\0' && type_width(longer, CHART_SMALL_POINTS) > width) {
             if (sketch != NULL) plot_text(sketch, (Point){left, y}, TEXT_LEFT, CHART_SMALL_POINTS, row);
             y -= PARAGRAPH_ROW;
