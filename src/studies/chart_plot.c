@@ -26,7 +26,6 @@
 
 #define GREY_LINE 0xB9BFC7u
 #define SHADE 0xEEF1F5u
-#define PARAGRAPH_ROW 3.1 /* mm */
 
 static const struct {
     double width, height, gap, row_gap;
@@ -197,28 +196,6 @@ static bool draw_panel(ChartPicture *picture, int panel) {
     return whole;
 }
 
-/* A paragraph below the picture. Draws nothing without a sketch. Returns its height. */
-static double draw_paragraph(Sketch *sketch, const char *text, double left, double width, double top) {
-    char row[SKETCH_TEXT_SIZE] = "";
-    double y = top - PARAGRAPH_ROW / 2;
-    for (const char *word = text; *word != '\0';) {
-        char longer[SKETCH_TEXT_SIZE];
-        const size_t length = strcspn(word, " \n");
-        strcpy(longer, row);
-        text_add(longer, sizeof longer, "%s%.*s", row[0] != '\0' ? " " : "", (int)length, word);
-        if (row[0] != '\0' && type_width(longer, CHART_SMALL_POINTS) > width) {
-            if (sketch != NULL) plot_text(sketch, (Point){left, y}, TEXT_LEFT, CHART_SMALL_POINTS, row);
-            y -= PARAGRAPH_ROW;
-            row[0] = '\0';
-            continue;
-        }
-        strcpy(row, longer);
-        word += length + strspn(word + length, " \n");
-    }
-    if (sketch != NULL) plot_text(sketch, (Point){left, y}, TEXT_LEFT, CHART_SMALL_POINTS, row);
-    return top - y + PARAGRAPH_ROW / 2;
-}
-
 /* Everything but the caption's words below. */
 static bool draw_panels(ChartPicture *picture, const char *title, double words) {
     bool whole = true;
@@ -232,11 +209,14 @@ static bool draw_panels(ChartPicture *picture, const char *title, double words) 
 
 /* Names that find no place are known when the panels are drawn, and the height of the caption after that. */
 static bool draw_words(ChartPicture *picture, const char *title) {
-    const double width = picture->width - LEFT_MARGIN - RIGHT_MARGIN, gap = 2;
-    const double words = gap + draw_paragraph(NULL, picture->caption, 0, width, 0);
+    char lines[sizeof picture->caption];
+    const double gap = 2, row = line_height(CHART_SMALL_POINTS);
+    snprintf(lines, sizeof lines, "%.*s", (int)strcspn(picture->caption, "\n"), picture->caption);
+    const double words =
+        gap + row * text_wrap(lines, sizeof lines, CHART_SMALL_POINTS, picture->width - LEFT_MARGIN - RIGHT_MARGIN);
     sketch_free(&picture->sketch);
     if (!draw_panels(picture, title, words)) return false;
-    draw_paragraph(&picture->sketch, picture->caption, LEFT_MARGIN, width, words - gap);
+    plot_text(&picture->sketch, (Point){LEFT_MARGIN, words - gap - row / 2}, TEXT_LEFT, CHART_SMALL_POINTS, lines);
     return true;
 }
 
