@@ -18,6 +18,7 @@ METHODS = "engine", "interior"
 SCENES = "single", "stack", "pyramid", "families/gate", "families/wall"
 LAUNCHES, POSITIONS = 20, 50  # of each scene; of a drag
 ENDED = "player.runs.every(run => run.hash && run.reached === run.frames - 1 && run.shown === player.launched())"
+FRAMED = "Object.entries(player.runs[0].framing).every(([key, value]) => player.data.framing[key] === value)"
 HASHES = "player.runs.map(run => run.hash)"
 PROOFS = "document.getElementById('check').textContent.split('= that of the C program').length - 1"
 PROBLEM = "document.getElementById('problem').textContent"
@@ -81,6 +82,7 @@ def check_launches(checks, browser):
 
 def check_drag(checks, page):
     page.wait(ENDED)
+    page.wait(FRAMED)  # a moment later; it would move the bomb from under the pointer
     page.run("player.change({frame: 8})")
     page.settle()
     x, y = page.run(BOMB)
