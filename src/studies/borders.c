@@ -1,234 +1,56 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The axis of a study in the borders figure. */
+/* The borders figure: a table of studies and methods, whose cells show which part of the study's range holds. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "figures/sketch.h"
-#include "pixels/png.h"
 #include "pixels/type.h"
 #include "runs/verdict.h"
 #include "studies/chart_internal.h"
 #include "studies/stability.h"
 #include "studies/stability_internal.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-typedef struct BorderAxis {
-    PlotAxis axis; /* over the study's values, widened if too narrow, with a margin at both ends */
-    bool falling;  /* smaller values are harder: most methods hold above their border and fail below */
-    char label[STABILITY_TEXT_SIZE];
-    PlotTicks ticks; /* within the values */
-} BorderAxis;
-
-/* Margin at both ends for the marks of methods that hold over the whole range or never. */
-#define BORDER_AXIS_ROOM 4.4 /* mm */
-
-/* The marks in a panel of the borders figure: bars where a method holds, tiles where it fails, arrows and crosses. */
-
-/* The rows of a study's panel, one per method, from the top. */
-typedef struct BorderRows {
-    const CsvTable *table;
-    Sketch *sketch;
-    const BorderRow *study; /* any row of the study */
-    const PlotPanel *panel; /* placed */
-    bool falling;           /* as of BorderAxis */
-    const int *methods;     /* [method_count]: a table row of each method */
-    int method_count;
-} BorderRows;
-
-/* Signs in the legend: holds, holds throughout, never holds, and the line up to which rigid boxes hold where a study has it. */
-enum { BORDER_SIGNS = 4 };
-
-/* Axes with a larger ratio of their ends are logarithmic. */
-static const double long_axis = 8;
-
-/* An axis with a smaller ratio of its ends would exaggerate differences of a few percent; it is widened by the factor
-   `apart` at both ends. */
-static const double least_ratio = 1.5, apart = 1.5;
-
-/* Beyond this range numbers are powers of ten. */
-static const double plain_least = 1e-3, plain_most = 1e5;
-
-/* The study of the row; NULL: another program's. */
-static const StabilityStudy *study_of(const StabilityOwn *own, const BorderRow *row) {
-    const StabilityStudy *studies = own != NULL ? own->studies : stability_studies;
-    const int count = own != NULL ? own->study_count : stability_study_count;
-    for (int i = 0; i < count; i++)
-        if (strcmp(studies[i].name, row->study) == 0 && strcmp(studies[i].parameter, row->parameter) == 0)
-            return &studies[i];
-    return NULL;
-}
-
-/* A number at an end of the range, instead of those that it would touch. */
-static void name_end(PlotTicks *ticks, const PlotAxis *axis, double value) {
-    const double points = 7.5, between = 1;
-    PlotTick end = {.value = value};
-    snprintf(end.text, sizeof end.text, "%.4g", value);
-    for (int i = 0; i < ticks->count; i++) {
-        PlotTick *other = &ticks->items[i];
-        const double distance = fabs(plot_axis_place(axis, other->value) - plot_axis_place(axis, value));
-        const double width = plot_tick_width(other, points);
-        if (width == 0 || distance > (width + plot_tick_width(&end, points)) / 2 + between) continue;
-        if (distance < 0.01) return;
-        other->text[0] = '\0';
-        other->digit = 0;
-    }
-    plot_tick_add(ticks, value, false, end.text);
-}
-
-/* From the least to the most value, with numbers at both. */
-static void set_axis(BorderAxis *out, double least, double most, bool logarithmic, double width) {
-    const double share = BORDER_AXIS_ROOM / (width - 2 * BORDER_AXIS_ROOM);
-    PlotAxis axis = plot_linear_axis(least - share * (most - least), most + share * (most - least), NULL), inside;
-    if (logarithmic) {
-        axis.scale = PLOT_LOG;
-        axis.low = least / pow(most / least, share);
-        axis.high = most * pow(most / least, share);
-        axis.powers = least < plain_least || most >= plain_most;
-    }
-    axis.outside = true;
-    inside = axis;
-    inside.low = least, inside.high = most;
-    inside.to = width - 2 * BORDER_AXIS_ROOM;
-    plot_ticks_choose(&out->ticks, &inside, 7.5, true);
-    name_end(&out->ticks, &inside, least);
-    name_end(&out->ticks, &inside, most);
-    out->axis = axis;
-}
-
-/* The axis of the study of row `first`, `width` mm long; its label and ticks are not set in `axis`. */
-static BorderAxis border_axis(const CsvTable *table, int first, const StabilityStudy *study, double width) {
-    BorderAxis axis = {0};
-    double least = INFINITY, most = -INFINITY;
-    int falling = 0;
-    for (int i = first; i < table->count; i++) {
-        const BorderRow *row = border_row(table, i);
-        if (strcmp(row->study, border_row(table, first)->study) != 0) continue;
-        least = fmin(least, fmin(row->holds_at, row->fails_at));
-        most = fmax(most, fmax(row->holds_at, row->fails_at));
-        falling += (row->fails_at < row->holds_at) - (row->fails_at > row->holds_at);
-    }
-    if (!(least <= most)) least = most = 0;
-    if (study != NULL) {
-        least = study->scan.from;
-        most = study->scan.to;
-    } else if (least > 0 && most / least < least_ratio) {
-        least /= apart;
-        most *= apart;
-    }
-    set_axis(&axis, least, most, study != NULL ? study->scan.logarithmic : least > 0 && most / least > long_axis,
-             width);
-    axis.falling = study != NULL && !study->scan.either ? study->scan.fails_low : falling > 0;
-    stability_axis_text(axis.label, border_row(table, first)->parameter, border_row(table, first)->unit);
-    return axis;
-}
-
-/* mm; half_tile, half_sign: from the centre of a tile, arrow head or cross to its edge */
-static const double bar_height = 1.2, half_tile = 1.15, half_sign = 0.75;
-
-static const Pen bar_pen = {0xA3CBE5, 1, NO_COLOUR, 0, NULL}, sign_pen = {NO_COLOUR, 1, 0x000000, 1.6, NULL},
-                 rigid_pen = {NO_COLOUR, 1, 0x000000, 0.8, "(3,3)"};
-
-static bool holds_throughout(const BorderRow *row) {
-    return isnan(row->fails_at) && !isnan(row->holds_at) && verdict_holds((Verdict)row->verdict);
-}
-
-static bool never_holds(const BorderRow *row) { return isnan(row->holds_at) && !isnan(row->fails_at); }
-
-static double place_of(const BorderRows *rows, double value) { return plot_axis_place(&rows->panel->x, value); }
-
-/* The other end of the bar that starts at a border: the next border of the same method in that direction, or the
-   panel's edge. */
-static double far_end(const BorderRows *rows, const BorderRow *row, bool low) {
-    double end = low ? rows->panel->x.from : rows->panel->x.to, from = place_of(rows, row->holds_at);
-    for (int i = 0; i < rows->table->count; i++) {
-        const BorderRow *other = border_row(rows->table, i);
-        if (other == row || !border_same_study(other, row) || !border_same_method(other, row)) continue;
-        double place = place_of(rows, other->holds_at);
-        if (low ? place <= from && place > end : place >= from && place < end) end = place;
-    }
-    return end;
-}
-
-static void put_bar(Sketch *sketch, double from, double to, double y) {
-    sketch_rectangle(sketch, (Point){fmin(from, to), y - bar_height / 2}, (Point){fmax(from, to), y + bar_height / 2},
-                     &bar_pen);
-}
-
-static void draw_bar(const BorderRows *rows, const BorderRow *row, double y) {
-    if (isnan(row->holds_at)) return;
-    if (holds_throughout(row)) {
-        put_bar(rows->sketch, rows->panel->x.from, rows->panel->x.to, y);
-        return;
-    }
-    const bool low = isnan(row->fails_at) ? !rows->falling : row->holds_at < row->fails_at;
-    put_bar(rows->sketch, far_end(rows, row, low), place_of(rows, row->holds_at), y);
-}
-
-/* An arrow head. */
-static void put_head(Sketch *sketch, Point tip, bool to_the_left) {
-    const double back = tip.x + (to_the_left ? 2 : -2) * half_sign;
-    sketch_path(sketch, (const Point[]){{back, tip.y + half_sign}, tip, {back, tip.y - half_sign}}, 3, &sign_pen);
-}
-
-static void put_cross(Sketch *sketch, Point at) {
-    for (int up = -1; up <= 1; up += 2)
-        sketch_line(sketch, (Point){at.x - half_sign, at.y - up * half_sign},
-                    (Point){at.x + half_sign, at.y + up * half_sign}, &sign_pen);
-}
-
-/* In the margin next to the study's easiest value, or to its hardest one. */
-static double margin_of(const BorderRows *rows, bool easy) {
-    const PlotAxis *axis = &rows->panel->x;
-    return easy == rows->falling ? axis->to - BORDER_AXIS_ROOM / 2 : axis->from + BORDER_AXIS_ROOM / 2;
-}
-
-/* Without fails_at: in the margin, as all values beyond holds_at are undecided. */
-static double tile_place(const BorderRows *rows, const BorderRow *row) {
-    return isnan(row->fails_at) ? margin_of(rows, isnan(row->holds_at)) : place_of(rows, row->fails_at);
-}
-
-static void draw_sign(const BorderRows *rows, const BorderRow *row, double y) {
-    const double tip = rows->falling ? rows->panel->x.from + half_sign : rows->panel->x.to - half_sign;
-    if (holds_throughout(row)) put_head(rows->sketch, (Point){tip, y}, rows->falling);
-    if (never_holds(row)) put_cross(rows->sketch, (Point){margin_of(rows, true), y});
-}
-
-static void draw_each(const BorderRows *rows, void (*put)(const BorderRows *, const BorderRow *, double)) {
-    for (int i = 0; i < rows->table->count; i++) {
-        const BorderRow *row = border_row(rows->table, i);
-        for (int method = 0; border_same_study(row, rows->study) && method < rows->method_count; method++)
-            if (border_same_method(border_row(rows->table, rows->methods[method]), row))
-                put(rows, row, plot_axis_place(&rows->panel->y, method));
-    }
-}
-
-static void draw_tile(const BorderRows *rows, const BorderRow *row, double y) {
-    const Tile tile = {.at = {tile_place(rows, row), y}, .look = row->verdict};
-    if (holds_throughout(row)) return;
-    verdict_draw_tiles(rows->sketch, &tile, 1, (TileSize){.width = 2 * half_tile, .height = 2 * half_tile});
-}
-
-static void border_marks_draw(const BorderRows *rows) {
-    draw_each(rows, draw_bar);
-    draw_each(rows, draw_tile);
-    draw_each(rows, draw_sign);
-}
-
-static void border_sample_draw(Sketch *sketch, int sign, Point left, double width) {
-    if (sign < 2) put_bar(sketch, left.x, left.x + width, left.y);
-    if (sign == 1) put_head(sketch, (Point){left.x + width, left.y}, false);
-    if (sign == 2) put_cross(sketch, (Point){left.x + width / 2, left.y});
-    if (sign == 3)
-        sketch_line(sketch, (Point){left.x + width / 2, left.y - 1.5}, (Point){left.x + width / 2, left.y + 1.5},
-                    &rigid_pen);
-}
-
 /* mm */
-static const double left = 33, left_of_one = 52, right = 2, gap = 3.5, title_room = 5.5, axis_room = 8.8,
-                    legend_left = 20, most_page = 235, most_row = 3.4, least_row = 2.5, sample = 5.5, name_gap = 1.3;
+static const double row_height = 4.4, tile_height = 3.5, heading_height = 5.5, most_column = 20, most_study = 62,
+                    column_gap = 0.8, least_symbol = 2.4, symbol_width = 1.4, tick_end = 1.3, least_fail = 0.5,
+                    number_gap = 0.35, name_gap = 0.6, text_gap = 2, edge = 1, right = 3.6, head_gap = 1,
+                    most_label = 0.45 * FIGURE_PAGE_WIDTH, legend_item = 31;
 
-enum { LEGEND_COLUMNS = 5 };
+/* A smaller share of a range is not seen. */
+static const double least_seen = 0.02;
+
+/* Sizes of text. */
+static const double title_points = 7.5, small_points = 6.5, least_size = 0.85; /* of small_points */
+
+static const Pen rigid_pen = {NO_COLOUR, 1, 0x000000, 1.2, NULL};
+
+#define HOLDS_COLOUR 0xA3CBE5u /* of VERDICT_CREEPS */
+#define SOFT_COLOUR 0x606060u
+
+enum { FEW_STUDIES = 3 };
+
+typedef struct BorderStudy {
+    const BorderRow *row;        /* the first one of the study */
+    const StabilityStudy *known; /* or NULL */
+    BorderRange range;
+    bool struck;
+    double held;                      /* mean share, of the methods that apply */
+    char title[STABILITY_TEXT_SIZE];  /* "Heavy box on one" */
+    char extent[STABILITY_TEXT_SIZE]; /* "ratio 1 to 1000" */
+} BorderStudy;
+
+typedef struct BorderMethod {
+    const BorderRow *row; /* its first one */
+    double held;          /* mean share, of all studies */
+    int as_far;           /* studies in which it holds as far as the reference */
+    char name[STABILITY_TEXT_SIZE];
+    int lines;     /* of the name */
+    double points; /* its size */
+} BorderMethod;
 
 typedef struct Borders {
     const CsvTable *table;
@@ -236,23 +58,25 @@ typedef struct Borders {
     const StabilityOwn *own; /* or NULL */
     Sketch *sketch;
     LeftOut foot; /* what is left out, where the reference did not converge */
-    int study_count, method_count;
-    int studies[BORDERS_MAX_STUDIES], methods[BORDERS_MAX_METHODS]; /* first row of each */
-    int left_out[BORDERS_MAX_METHODS], left_out_count;              /* the same of methods that no study applies to */
-    int columns, rows, signs, legend_rows;
-    double row_height; /* mm */
-    PlotGrid grid;
-    bool used[VERDICT_LOOKS];
+    int study_count, method_count, struck_count;
+    BorderStudy studies[BORDERS_MAX_STUDIES];  /* those that are not struck first; what most methods hold first */
+    BorderMethod methods[BORDERS_MAX_METHODS]; /* what holds most first */
+    bool used[VERDICT_LOOKS], rigid;
+    bool few;                    /* a column for each study and a row for each method, instead of the reverse */
+    double width, label, column; /* mm: of the page, of the names of rows, of a column */
+    int tiers, lines;            /* of the methods' names above columns: heights, and lines of the longest */
 } Borders;
 
-/* Adds row i if it is the first of its study or method. False if there are too many. */
-static bool add_first(const CsvTable *table, int i, bool (*same)(const BorderRow *, const BorderRow *), int *firsts,
-                      int *count, int most) {
-    for (int k = 0; k < *count; k++)
-        if (same(border_row(table, firsts[k]), border_row(table, i))) return true;
-    if (*count == most) return false;
-    firsts[(*count)++] = i;
-    return true;
+/* The column of the reference, or -1. */
+static int find_reference(const Borders *borders) {
+    for (int i = 0; i < borders->method_count; i++)
+        if (strcmp(borders->methods[i].row->method, "reference") == 0) return i;
+    return -1;
+}
+
+static BorderCell cell_at(const Borders *borders, int study, int method) {
+    return border_cell(borders->table, borders->studies[study].row, borders->methods[method].row,
+                       &borders->studies[study].range);
 }
 
 /* Whether a study applies to the row's method. */
@@ -263,185 +87,394 @@ static bool is_applicable(const CsvTable *table, const BorderRow *row) {
     return found;
 }
 
-static bool gather(Borders *borders, Error *error) {
+static const char *sign(double value) { return value < 0 ? "−" : ""; }
+
+/* "2 to 40 boxes"; without a unit "ratio 1 to 1000". */
+static void name_extent(char text[STABILITY_TEXT_SIZE], const BorderRow *row, const BorderRange *range) {
+    char parameter[STABILITY_TEXT_SIZE] = "";
+    if (row->unit[0] == '\0') {
+        stability_axis_text(parameter, row->parameter, "");
+        parameter[0] = (char)tolower((unsigned char)parameter[0]);
+        text_add(parameter, sizeof parameter, " ");
+    }
+    snprintf(text, STABILITY_TEXT_SIZE, "%s%s%.7g to %s%.7g%s%s", parameter, sign(range->easy), fabs(range->easy),
+             sign(range->hard), fabs(range->hard), row->unit[0] != '\0' ? " " : "", row->unit);
+    chart_make_plain(text);
+}
+
+static bool add_study(Borders *borders, int i, Error *error) {
     const CsvTable *table = borders->table;
-    bool any = false;
-    for (int i = 0; i < table->count; i++) any = any || border_row(table, i)->verdict != LOOK_NOT_APPLICABLE;
-    for (int i = 0; i < table->count; i++) {
-        const BorderRow *row = border_row(table, i);
-        if (!add_first(table, i, border_same_study, borders->studies, &borders->study_count, BORDERS_MAX_STUDIES))
-            return csv_table_error(table, i, 0, error, "more than %d studies: too many for a figure",
-                                   BORDERS_MAX_STUDIES);
-        const bool left_out = any && !is_applicable(table, row);
-        if (!add_first(table, i, border_same_method, left_out ? borders->left_out : borders->methods,
-                       left_out ? &borders->left_out_count : &borders->method_count, BORDERS_MAX_METHODS))
-            return csv_table_error(table, i, 0, error, "more than %d methods: too many for a figure",
-                                   BORDERS_MAX_METHODS);
-        if (!left_out && !verdict_holds((Verdict)row->verdict)) borders->used[row->verdict] = true;
-    }
-    borders->signs = BORDER_SIGNS - 1;
-    for (int i = 0; i < borders->study_count; i++) {
-        const StabilityStudy *study = study_of(borders->own, border_row(table, borders->studies[i]));
-        if (study != NULL && study->rigid != NULL) borders->signs = BORDER_SIGNS;
-    }
+    const BorderRow *row = border_row(table, i);
+    for (int k = 0; k < borders->study_count; k++)
+        if (border_same_study(borders->studies[k].row, row)) return true;
+    if (borders->study_count == BORDERS_MAX_STUDIES)
+        return csv_table_error(table, i, 0, error, "more than %d studies: too many for a figure", BORDERS_MAX_STUDIES);
+    BorderStudy *study = &borders->studies[borders->study_count++];
+    study->row = row;
+    study->known = border_study(borders->own, row);
+    study->range = border_range(table, i, study->known);
+    study->struck = border_is_struck(table, i);
+    stability_axis_text(study->title, study->known != NULL ? study->known->title : row->study, "");
+    chart_make_plain(study->title);
+    name_extent(study->extent, row, &study->range);
+    borders->struck_count += study->struck;
+    borders->rigid = borders->rigid || (study->known != NULL && study->known->rigid != NULL);
     return true;
 }
 
-static void list_left_out(Borders *borders) {
-    for (int i = 0; i < borders->left_out_count; i++) {
-        const BorderRow *row = border_row(borders->table, borders->left_out[i]);
+/* A method to which no study applies is named at the foot, unless that is so of all. */
+static bool add_method(Borders *borders, int i, bool any, Error *error) {
+    const BorderRow *row = border_row(borders->table, i);
+    for (int k = 0; k < i; k++)
+        if (border_same_method(border_row(borders->table, k), row)) return true;
+    if (any && !is_applicable(borders->table, row)) {
         left_out_add(&borders->foot, "Left out, as not applicable: ", row->method, row->setting);
+        return true;
     }
+    if (borders->method_count == BORDERS_MAX_METHODS)
+        return csv_table_error(borders->table, i, 0, error, "more than %d methods: too many for a figure",
+                               BORDERS_MAX_METHODS);
+    BorderMethod *method = &borders->methods[borders->method_count++];
+    method->row = row;
+    stability_method_text(method->name, row->method, row->setting);
+    return true;
+}
+
+static bool gather(Borders *borders, Error *error) {
+    const CsvTable *table = borders->table;
+    bool any = false, ok = true;
+    for (int i = 0; i < table->count; i++) any = any || border_row(table, i)->verdict != LOOK_NOT_APPLICABLE;
+    for (int i = 0; ok && i < table->count; i++)
+        ok = add_study(borders, i, error) && add_method(borders, i, any, error);
+    return ok;
+}
+
+static void note_looks(Borders *borders, const BorderCell *cell) {
+    double decided = 0;
+    for (int i = 0; i < cell->count; i++) {
+        decided += cell->spans[i].to - cell->spans[i].from;
+        if (!cell->spans[i].holds) borders->used[cell->spans[i].look] = true;
+    }
+    if (cell->row == NULL) return;
+    if (cell->row->verdict == LOOK_NOT_APPLICABLE)
+        borders->used[LOOK_NOT_APPLICABLE] = true;
+    else if (decided < 1 - least_seen)
+        borders->used[VERDICT_UNDECIDED] = true;
+}
+
+/* Struck studies tell where a method agrees with the reference. Without the reference it is the whole range that counts. */
+static bool holds_as_far(const Borders *borders, int study, const BorderCell *cell) {
+    const int reference = find_reference(borders);
+    if (borders->studies[study].struck || reference < 0) return border_holds_throughout(cell);
+    const BorderCell far = cell_at(borders, study, reference);
+    if (far.row == NULL) return border_holds_throughout(cell);
+    return cell->count > 0 && cell->held >= far.held - least_seen;
+}
+
+static void measure(Borders *borders) {
     for (int i = 0; i < borders->study_count; i++)
-        left_out_add_unconverged(&borders->foot, borders->unconverged,
-                                 border_row(borders->table, borders->studies[i])->study);
-}
-
-/* mm */
-static double foot_of(const Borders *borders) {
-    return NOTE_ROW * left_out_rows(&borders->foot, FIGURE_PAGE_WIDTH - legend_left - 1);
-}
-
-static const double name_points = 7, most_names = 0.45; /* share of the page; longer names are smaller */
-
-/* mm: left of the panels, for the names of methods. */
-static double room_of_names(const Borders *borders) {
-    double longest = borders->columns > 1 ? left : left_of_one;
-    for (int method = 0; method < borders->method_count; method++) {
-        const BorderRow *row = border_row(borders->table, borders->methods[method]);
-        char text[STABILITY_TEXT_SIZE];
-        stability_method_text(text, row->method, row->setting);
-        longest = fmax(longest, type_width(text, name_points) + 3);
+        left_out_add_unconverged(&borders->foot, borders->unconverged, borders->studies[i].row->study);
+    for (int study = 0; study < borders->study_count; study++) {
+        int applicable = 0;
+        for (int method = 0; method < borders->method_count; method++) {
+            const BorderCell cell = cell_at(borders, study, method);
+            borders->methods[method].held += cell.held / borders->study_count;
+            borders->methods[method].as_far += holds_as_far(borders, study, &cell);
+            borders->studies[study].held += cell.held;
+            applicable += cell.row != NULL && cell.row->verdict != LOOK_NOT_APPLICABLE;
+            note_looks(borders, &cell);
+        }
+        if (applicable > 0) borders->studies[study].held /= applicable;
     }
-    return fmin(longest, most_names * FIGURE_PAGE_WIDTH);
 }
 
-/* The title of a study's panel, in lines. */
-static int wrap_title(char title[STABILITY_TEXT_SIZE], const Borders *borders, int study, double width) {
-    const BorderRow *first = border_row(borders->table, borders->studies[study]);
-    const StabilityStudy *known = study_of(borders->own, first);
-    stability_axis_text(title, known != NULL ? known->title : first->study, "");
-    chart_make_plain(title);
-    return text_wrap(title, STABILITY_TEXT_SIZE, 8, width);
+/* Ties stay in the order of the table, whose rows are in an array. */
+static int by_study(const void *a, const void *b) {
+    const BorderStudy *one = a, *other = b;
+    if (one->struck != other->struck) return one->struck ? 1 : -1;
+    if (one->held != other->held) return one->held < other->held ? 1 : -1;
+    return one->row < other->row ? -1 : 1;
 }
 
-/* mm: above panels of this width. */
-static double room_of_titles(const Borders *borders, double width) {
-    char title[STABILITY_TEXT_SIZE];
-    int lines = 1;
-    for (int study = 0; study < borders->study_count; study++)
-        lines = (int)fmax(lines, wrap_title(title, borders, study, width));
-    return title_room + (lines - 1) * line_height(8);
+static int by_method(const void *a, const void *b) {
+    const BorderMethod *one = a, *other = b;
+    const bool reference = strcmp(one->row->method, "reference") == 0;
+    if (reference != (strcmp(other->row->method, "reference") == 0)) return reference ? -1 : 1;
+    if (one->held != other->held) return one->held < other->held ? 1 : -1;
+    return one->row < other->row ? -1 : 1;
 }
 
-/* Uses the height of a printed page if that gives rows of a readable height. */
+/* mm: of the widest word of a name, which is broken at spaces and behind colons and commas. */
+static double word_width(const char *name) {
+    char word[STABILITY_TEXT_SIZE];
+    double widest = 0;
+    for (const char *start = name; *start != '\0';) {
+        const size_t length = strcspn(start, " :,");
+        snprintf(word, sizeof word, "%.*s", (int)length + (start[length] != '\0'), start);
+        widest = fmax(widest, type_width(word, small_points));
+        start += length + (start[length] != '\0');
+    }
+    return widest;
+}
+
+/* Names wider than a column alternate between two heights, and so have twice the room. A word that is still too long is smaller. */
+static void lay_out_names(Borders *borders) {
+    double widest = 0;
+    for (int i = 0; i < borders->method_count; i++) widest = fmax(widest, word_width(borders->methods[i].name));
+    borders->tiers = widest > borders->column - name_gap && borders->method_count > 1 ? 2 : 1;
+    const double room = borders->tiers * borders->column - name_gap;
+    for (int i = 0; i < borders->method_count; i++) {
+        BorderMethod *method = &borders->methods[i];
+        method->points = small_points * fmin(fmax(0.98 * room / word_width(method->name), least_size), 1);
+        method->lines = text_wrap(method->name, sizeof method->name, method->points, room);
+        if (method->lines > borders->lines) borders->lines = method->lines;
+    }
+}
+
+/* Of a few studies the methods' names, which may be long, stand beside the rows. The columns share the page, up to a width. */
 static void lay_out(Borders *borders) {
-    int items = borders->signs;
-    for (int look = 0; look < VERDICT_LOOKS; look++) items += borders->used[look];
-    borders->legend_rows = (items + LEGEND_COLUMNS - 1) / LEGEND_COLUMNS;
-    borders->columns = borders->study_count <= 2 ? borders->study_count : borders->study_count <= 6 ? 3 : 4;
-    borders->rows = (borders->study_count + borders->columns - 1) / borders->columns;
-    PlotGrid grid = {.width = FIGURE_PAGE_WIDTH,
-                     .left = room_of_names(borders),
-                     .right = right,
-                     .columns = borders->columns,
-                     .rows = borders->rows,
-                     .gap = gap};
-    grid.top = room_of_titles(borders, plot_grid_box(&grid, 0).width);
-    const double legend = foot_of(borders) + LEGEND_ROW * borders->legend_rows + 2, around = grid.top + axis_room;
-    const double room = (most_page - legend) / borders->rows - around;
-    borders->row_height = fmin(fmax(room / borders->method_count, least_row), most_row);
-    grid.height = legend + borders->rows * (around + borders->row_height * borders->method_count);
-    grid.bottom = legend + axis_room;
-    grid.row_gap = around;
-    borders->grid = grid;
+    const int columns = borders->few ? borders->study_count : borders->method_count;
+    double label = 0;
+    for (int i = 0; borders->few && i < borders->method_count; i++)
+        label = fmax(label, type_width(borders->methods[i].name, title_points));
+    for (int i = 0; !borders->few && i < borders->study_count; i++)
+        label = fmax(label, type_width(borders->studies[i].title, title_points) + text_gap +
+                                type_width(borders->studies[i].extent, small_points));
+    borders->label = fmin(edge + label + text_gap, most_label);
+    borders->column =
+        fmin((FIGURE_PAGE_WIDTH - borders->label - right) / columns, borders->few ? most_study : most_column);
+    borders->width = fmax(borders->label + borders->column * columns + right, FIGURE_COLUMN_WIDTH);
+    if (!borders->few) lay_out_names(borders);
 }
 
-/* A guide for each method, and in the first column its name. */
-static void draw_rows(const Borders *borders, const PlotPanel *panel, bool named) {
-    const Pen guide = pen_line(0xE2E2E2, 0.6, NULL);
+/* mm: the left edge of a column. */
+static double column_left(const Borders *borders, int i) { return borders->label + borders->column * i; }
+
+/* From the top of the page to the first row. */
+static double head_height(const Borders *borders) {
+    return borders->tiers * (borders->lines * line_height(small_points) + head_gap) + head_gap;
+}
+
+/* The names of methods; a line leads from those of the upper tier to their column. */
+static void draw_head(const Borders *borders, double bottom) {
+    const double tier = borders->lines * line_height(small_points) + head_gap;
+    const Pen leader = pen_line(0xB0B0B0, 0.8, NULL);
+    for (int i = 0; i < borders->method_count; i++) {
+        const BorderMethod *method = &borders->methods[i];
+        const bool upper = borders->tiers == 2 && i % 2 == 1;
+        const double x = column_left(borders, i) + borders->column / 2, low = bottom + head_gap + (upper ? tier : 0);
+        if (upper) sketch_line(borders->sketch, (Point){x, bottom}, (Point){x, low - 0.4}, &leader);
+        plot_text(borders->sketch, (Point){x, low + (method->lines - 0.5) * line_height(small_points)}, TEXT_CENTER,
+                  method->points, method->name);
+    }
+}
+
+/* In how many studies a method holds as far as can be. */
+static void draw_as_far(const Borders *borders, double y) {
+    const bool reference = find_reference(borders) >= 0;
+    char text[STABILITY_TEXT_SIZE];
+    snprintf(text, sizeof text, "%s, of %d", reference ? "As far as the reference" : "Over the whole range",
+             borders->study_count);
+    plot_text(borders->sketch, (Point){edge, y}, TEXT_LEFT, title_points, text);
+    for (int i = reference; i < borders->method_count; i++) {
+        snprintf(text, sizeof text, "%d", borders->methods[i].as_far);
+        plot_text(borders->sketch, (Point){column_left(borders, i) + borders->column / 2, y}, TEXT_CENTER, title_points,
+                  text);
+    }
+}
+
+static void fill(Sketch *sketch, double from, double to, double y, uint32_t colour) {
+    sketch_rectangle(sketch, (Point){from, y - tile_height / 2}, (Point){to, y + tile_height / 2},
+                     &(Pen){colour, 1, NO_COLOUR, 0, NULL});
+}
+
+/* A verdict's symbol, in the middle of a part that has room for it. */
+static void put_symbol(Sketch *sketch, double from, double to, double y, int look) {
+    const Tile tile = {.at = {(from + to) / 2, y}, .look = look};
+    if (to - from >= least_symbol) verdict_draw_symbol(sketch, &tile, symbol_width);
+}
+
+/* A span's ends on the page. What fails is always seen, be it a single value. */
+static BorderSpan placed(const BorderSpan *span, double left, double width) {
+    BorderSpan out = *span;
+    out.from = left + width * span->from;
+    out.to = left + width * span->to;
+    if (!span->holds && out.to - out.from < least_fail) {
+        out.from = fmin(out.from, left + width - least_fail);
+        out.to = out.from + least_fail;
+    }
+    return out;
+}
+
+/* The value up to which the first part holds, at that part's end. False: no room. */
+static bool put_number(Sketch *sketch, const BorderSpan *span, bool at_right, double value, double y) {
+    char text[32];
+    snprintf(text, sizeof text, fabs(value) >= 10 && fabs(value) < 1e5 ? "%.0f" : "%.2g", value);
+    if (span->to - span->from < type_width(text, small_points) + 2 * number_gap) return false;
+    const TextStyle style = {.points = small_points,
+                             .align = at_right ? TEXT_RIGHT : TEXT_LEFT,
+                             .colour = span->holds ? 0x000000 : verdict_looks[span->look].ink};
+    sketch_text(sketch, (Point){at_right ? span->to - number_gap : span->from + number_gap, y}, &style, "%s", text);
+    return true;
+}
+
+/* The first border's value stands in the part that holds or, if that is too narrow, in the one that fails. */
+static int number_border(Sketch *sketch, const BorderCell *cell, const BorderSpan *spans, double y) {
+    const int holds = cell->count > 0 && !spans[0].holds, fails = !holds;
+    if (cell->count == 0 || holds >= cell->count || isnan(cell->row->holds_at) || border_holds_throughout(cell))
+        return -1;
+    if (put_number(sketch, &spans[holds], holds == 0, cell->row->holds_at, y) || fails >= cell->count) return -1;
+    return put_number(sketch, &spans[fails], holds != 0, cell->row->holds_at, y) ? fails : -1;
+}
+
+/* Ticks at the edges of a cell, up to which rigid boxes hold. */
+static void draw_rigid(Sketch *sketch, double x, double y) {
+    for (int up = -1; up <= 1; up += 2)
+        sketch_line(sketch, (Point){x, y + up * row_height / 2}, (Point){x, y + up * tick_end}, &rigid_pen);
+}
+
+static void draw_cell(const Borders *borders, int study, int method, double y) {
+    const BorderCell cell = cell_at(borders, study, method);
+    const StabilityStudy *known = borders->studies[study].known;
+    const double left = column_left(borders, borders->few ? study : method) + column_gap / 2,
+                 width = borders->column - column_gap;
+    BorderSpan spans[2 * BORDERS_MAX];
+    if (cell.row == NULL) return;
+    if (cell.row->verdict == LOOK_NOT_APPLICABLE) {
+        put_symbol(borders->sketch, left, left + width, y, LOOK_NOT_APPLICABLE);
+        return;
+    }
+    fill(borders->sketch, left, left + width, y, verdict_looks[VERDICT_UNDECIDED].fill);
+    for (int i = 0; i < cell.count; i++) {
+        spans[i] = placed(&cell.spans[i], left, width);
+        fill(borders->sketch, spans[i].from, spans[i].to, y,
+             spans[i].holds ? HOLDS_COLOUR : verdict_looks[spans[i].look].fill);
+    }
+    const int numbered = number_border(borders->sketch, &cell, spans, y);
+    for (int i = 0; i < cell.count; i++)
+        if (!spans[i].holds && i != numbered) put_symbol(borders->sketch, spans[i].from, spans[i].to, y, spans[i].look);
+    if (known != NULL && known->rigid != NULL)
+        draw_rigid(borders->sketch, left + width * border_range_share(&borders->studies[study].range, known->rigid()),
+                   y);
+}
+
+static void draw_study(const Borders *borders, int i, double y) {
+    const BorderStudy *study = &borders->studies[i];
+    const double end = borders->label - text_gap,
+                 room = end - edge - text_gap - type_width(study->extent, small_points);
+    const TextStyle soft = {.points = small_points, .align = TEXT_RIGHT, .colour = SOFT_COLOUR};
+    plot_text(borders->sketch, (Point){edge, y}, TEXT_LEFT, text_points(study->title, title_points, room),
+              study->title);
+    sketch_text(borders->sketch, (Point){end, y}, &soft, "%s", study->extent);
+    for (int method = 0; method < borders->method_count; method++) draw_cell(borders, i, method, y);
+}
+
+/* What blue means in the rows below. */
+static void draw_heading(const Borders *borders, bool struck, double y) {
+    const Pen rule = pen_line(0x909090, 0.8, NULL);
+    const double top = y + heading_height / 2 - 0.6;
+    sketch_line(borders->sketch, (Point){edge, top}, (Point){column_left(borders, borders->method_count), top}, &rule);
+    fill(borders->sketch, edge, edge + tile_height, y - 0.4, HOLDS_COLOUR);
+    plot_text(borders->sketch, (Point){edge + tile_height + 1.3, y - 0.4}, TEXT_LEFT, title_points,
+              struck ? "as many boxes fall as with the reference" : "holds");
+}
+
+static int legend_columns(const Borders *borders) { return (int)((borders->width - edge) / legend_item); }
+
+static void draw_legend(const Borders *borders, double foot, int rows) {
+    const LegendPlace place = {edge, foot + LEGEND_ROW * (rows - 0.5), legend_item, legend_columns(borders)};
+    const char *blue = borders->struck_count == 0                      ? "holds"
+                       : borders->struck_count == borders->study_count ? "as the reference"
+                                                                       : "holds, or agrees";
+    int next = verdict_draw_legend(borders->sketch, borders->used, &place);
+    for (int sample = !borders->few; sample <= borders->rigid; sample++, next++) {
+        const Point at = {edge + legend_item * (next % place.columns), place.top - LEGEND_ROW * (next / place.columns)};
+        if (sample == 0)
+            fill(borders->sketch, at.x, at.x + 2.9, at.y, HOLDS_COLOUR);
+        else
+            sketch_line(borders->sketch, (Point){at.x + 1.4, at.y - 1.5}, (Point){at.x + 1.4, at.y + 1.5}, &rigid_pen);
+        plot_text(borders->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS,
+                  sample == 0 ? blue : "rigid boxes");
+    }
+}
+
+/* Rows of studies, under a heading for those that are struck and one for the others. Returns where they begin. */
+static double draw_studies(const Borders *borders, double below) {
+    const bool both = borders->struck_count > 0 && borders->struck_count < borders->study_count;
+    const double top = below + row_height * (borders->study_count + 1) + heading_height * (both ? 2 : 1);
+    double y = top - row_height / 2;
+    draw_head(borders, top);
+    draw_as_far(borders, y);
+    for (int i = 0; i < borders->study_count; i++) {
+        const bool struck = borders->studies[i].struck;
+        if (i == 0 || struck != borders->studies[i - 1].struck) {
+            draw_heading(borders, struck, y - row_height / 2 - heading_height / 2);
+            y -= heading_height;
+        }
+        draw_study(borders, i, y -= row_height);
+    }
+    return top + head_height(borders);
+}
+
+/* Rows of methods; above the columns the names of the studies and their ranges. */
+static double draw_methods(const Borders *borders, double below) {
+    const double top = below + row_height * borders->method_count;
+    double highest = top;
+    for (int i = 0; i < borders->study_count; i++) {
+        const BorderStudy *study = &borders->studies[i];
+        const TextStyle soft = {.points = small_points, .colour = SOFT_COLOUR};
+        const double left = column_left(borders, i) + column_gap / 2, low = top + head_gap + line_height(small_points);
+        char title[STABILITY_TEXT_SIZE];
+        snprintf(title, sizeof title, "%s", study->title);
+        const int lines = text_wrap(title, sizeof title, title_points, borders->column - column_gap);
+        const double high = low + lines * line_height(title_points);
+        sketch_text(borders->sketch, (Point){left, low - line_height(small_points) / 2}, &soft, "%s", study->extent);
+        plot_text(borders->sketch, (Point){left, high - line_height(title_points) / 2}, TEXT_LEFT, title_points, title);
+        highest = fmax(highest, high + head_gap);
+    }
     for (int method = 0; method < borders->method_count; method++) {
-        const BorderRow *row = border_row(borders->table, borders->methods[method]);
-        const double y = plot_axis_place(&panel->y, method);
-        char text[STABILITY_TEXT_SIZE];
-        sketch_line(borders->sketch, (Point){panel->x.from, y}, (Point){panel->x.to, y}, &guide);
-        if (!named) continue;
-        stability_method_text(text, row->method, row->setting);
-        plot_text(borders->sketch, (Point){borders->grid.left - 1.5, y}, TEXT_RIGHT,
-                  text_points(text, name_points, borders->grid.left - 3), text);
+        const double y = top - row_height * (method + 0.5), room = borders->label - edge - text_gap;
+        const char *name = borders->methods[method].name;
+        plot_text(borders->sketch, (Point){edge, y}, TEXT_LEFT, text_points(name, title_points, room), name);
+        for (int study = 0; study < borders->study_count; study++) draw_cell(borders, study, method, y);
     }
+    return highest;
 }
 
-static void draw_panel(const Borders *borders, int place) {
-    static const PlotTicks none;
-    const BorderRow *first = border_row(borders->table, borders->studies[place]);
-    const StabilityStudy *study = study_of(borders->own, first);
-    PlotPanel panel = {.box = plot_grid_box(&borders->grid, place)};
-    BorderAxis axis = border_axis(borders->table, borders->studies[place], study, panel.box.width);
-    char title[STABILITY_TEXT_SIZE];
-    wrap_title(title, borders, place, panel.box.width);
-    panel.title = title;
-    panel.x = axis.axis;
-    panel.x.label = axis.label;
-    panel.x.ticks = &axis.ticks;
-    panel.y = plot_linear_axis(borders->method_count - 0.5, -0.5, NULL);
-    panel.y.ticks = &none;
-    plot_panel_place(&panel);
-    draw_rows(borders, &panel, place % borders->columns == 0);
-    if (study != NULL && study->rigid != NULL) {
-        const double x = plot_axis_place(&panel.x, study->rigid());
-        sketch_line(borders->sketch, (Point){x, panel.y.from}, (Point){x, panel.y.to}, &rigid_pen);
-    }
-    border_marks_draw(&(BorderRows){borders->table, borders->sketch, first, &panel, axis.falling, borders->methods,
-                                    borders->method_count});
-    plot_panel_draw(borders->sketch, &panel);
-}
-
-/* How many rows are of struck scenes. */
-static int struck_rows(const Borders *borders) {
-    int count = 0;
-    for (int i = 0; i < borders->table->count; i++) count += border_is_struck(borders->table, i);
-    return count;
-}
-
-/* Of struck scenes a bar says that a method agrees with the reference, not that boxes stand. */
-static void draw_samples(const Borders *borders, const LegendPlace *place, int first) {
-    static const char *const holds[BORDER_SIGNS] = {"holds", "holds throughout", "never holds", "rigid boxes"};
-    static const char *const agrees[BORDER_SIGNS] = {"as the reference", "throughout", "never", "rigid boxes"};
-    static const char *const both[BORDER_SIGNS] = {"holds, or agrees", "throughout", "never", "rigid boxes"};
-    const int struck = struck_rows(borders);
-    const char *const *names = struck == 0 ? holds : struck == borders->table->count ? agrees : both;
-    for (int i = 0; i < borders->signs; i++) {
-        const Point at = {place->left + place->width * ((first + i) % place->columns),
-                          place->top - LEGEND_ROW * ((first + i) / place->columns)};
-        border_sample_draw(borders->sketch, i, at, sample);
-        plot_text(borders->sketch, (Point){at.x + sample + name_gap, at.y}, TEXT_LEFT, LEGEND_POINTS, names[i]);
-    }
-}
-
-static void draw_legend(const Borders *borders) {
-    LegendPlace place = {legend_left, foot_of(borders) + LEGEND_ROW * (borders->legend_rows - 0.5) + 0.5,
-                         (FIGURE_PAGE_WIDTH - legend_left) / LEGEND_COLUMNS, LEGEND_COLUMNS};
-    draw_samples(borders, &place, verdict_draw_legend(borders->sketch, borders->used, &place));
+/* From the foot: what is left out, legend, rows, names. */
+static void draw(Borders *borders) {
+    int items = borders->rigid + borders->few;
+    for (int look = 0; look < VERDICT_LOOKS; look++) items += borders->used[look];
+    const int columns = legend_columns(borders), rows = (items + columns - 1) / columns;
+    const double foot = NOTE_ROW * left_out_rows(&borders->foot, borders->width - edge - 1) + 1;
+    const double below = foot + LEGEND_ROW * rows + 1;
+    sketch_begin(borders->sketch, borders->width, 0);
+    borders->sketch->height = borders->few ? draw_methods(borders, below) : draw_studies(borders, below);
+    draw_legend(borders, foot, rows);
 }
 
 static void write_caption(const Borders *borders, PlotPage *page) {
     WordList words = {0};
     text_add(page->caption, sizeof page->caption,
-             "How far each method holds, on each study's own axis. Bars cover the values that hold. Tiles show how a "
-             "method fails: at the first value that fails or, where tiny shifts of the start decide beyond the bar, at "
-             "the far end. Arrow: holds over the whole range; cross: never holds; no mark: not in the study.%s",
-             borders->signs == BORDER_SIGNS ? " Dashed line: rigid boxes hold up to here, in closed form." : "");
-    if (struck_rows(borders) > 0) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
-    if (borders->foot.count > (borders->left_out_count > 0))
-        text_add(page->caption, sizeof page->caption, " %s", stability_unconverged_words);
-    left_out_draw(&borders->foot, page, legend_left);
+             "How far each method holds. A cell is the study's range, from its easy end (left) to its hard one. Blue "
+             "holds, another "
+             "colour fails in the way that its symbol shows, and where a shift of a micrometre decides it is pale. The "
+             "number "
+             "is the last value that holds, rounded. A stroke: the method does not apply; an empty cell: not in the "
+             "study. Sorted by "
+             "what holds, the reference first.%s",
+             borders->rigid ? " Ticks: rigid boxes hold up to here, in closed form." : "");
+    if (borders->struck_count > 0) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
+    for (int i = 0; i < borders->study_count; i++)
+        if (stability_unconverged(borders->unconverged, borders->studies[i].row->study,
+                                  (char[UNCONVERGED_TEXT_SIZE]){0})) {
+            text_add(page->caption, sizeof page->caption, " %s", stability_unconverged_words);
+            break;
+        }
+    left_out_draw(&borders->foot, page, edge);
+    for (int i = 0; i < borders->method_count; i++) words_add_method(&words, borders->methods[i].row->method);
     for (int i = 0; i < borders->method_count; i++)
-        words_add_method(&words, border_row(borders->table, borders->methods[i])->method);
-    for (int i = 0; i < borders->method_count; i++) {
-        const BorderRow *row = border_row(borders->table, borders->methods[i]);
-        words_add_settings(&words, row->method, row->setting);
-    }
+        words_add_settings(&words, borders->methods[i].row->method, borders->methods[i].row->setting);
     words_join(&words, page->caption, sizeof page->caption);
 }
 
@@ -449,11 +482,12 @@ bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged,
                              PlotPage *page, Error *error) {
     Borders borders = {.table = table, .unconverged = unconverged, .own = own, .sketch = &page->sketch};
     if (!gather(&borders, error)) return false;
-    list_left_out(&borders);
+    borders.few = borders.study_count <= FEW_STUDIES;
+    measure(&borders);
+    qsort(borders.studies, (size_t)borders.study_count, sizeof *borders.studies, by_study);
+    qsort(borders.methods, (size_t)borders.method_count, sizeof *borders.methods, by_method);
     lay_out(&borders);
-    sketch_begin(&page->sketch, borders.grid.width, borders.grid.height);
-    for (int study = 0; study < borders.study_count; study++) draw_panel(&borders, study);
-    draw_legend(&borders);
+    draw(&borders);
     write_caption(&borders, page);
     return true;
 }

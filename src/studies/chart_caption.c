@@ -101,7 +101,7 @@ static void add_curves(const Caption *caption) {
     text_add(
         caption->text, caption->size,
         " A curve joins the settings of a method that no other of its settings beats in both time and error; chart.csv "
-        "has all. Shaded: what no method reaches. Bars: quartiles of the time over repetitions of the same steps.");
+        "has all. Shaded: what no solver reaches. Bars: quartiles of the time over repetitions of the same steps.");
     if (shipped != NULL)
         text_add(caption->text, caption->size,
                  " Ring and dotted lines: %s as shipped, with whose time and error the others are compared.",

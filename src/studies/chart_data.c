@@ -181,7 +181,13 @@ static void add_rows(Chart *chart, const CsvTable *table, const char *scene) {
     }
 }
 
-/* The front is that of all rows that compete, whether they are drawn or not. */
+/* The reference is a solver, too: what it reaches is reached. */
+static bool is_solver(const ChartLine *line) {
+    return !chart_is_program(line) &&
+           (line->competes || (line->description != NULL && line->description->role == METHOD_REFERENCE));
+}
+
+/* The front is that of all solvers, whether they are drawn or not. */
 static bool find_front(Chart *chart, int p) {
     ChartPanel *panel = &chart->panels[p];
     CurvePoint *front = chart->front[p] = malloc((size_t)panel->count * sizeof *front + 1);
@@ -190,8 +196,7 @@ static bool find_front(Chart *chart, int p) {
     for (int i = 0; i < panel->count; i++) {
         const ChartMark *mark = &panel->marks[i];
         const ChartLine *line = &chart->lines[mark->line];
-        if (line->competes && !mark->lost && !chart_is_program(line))
-            front[count++] = (CurvePoint){mark->us, mark->error};
+        if (is_solver(line) && !mark->lost) front[count++] = (CurvePoint){mark->us, mark->error};
     }
     chart->front_count[p] = error_curve_front(front, count);
     for (int i = 0; i < panel->count; i++)

@@ -268,7 +268,8 @@ typedef struct Chart {
     int floored; /* number of marks drawn at PARETO_RESOLUTION */
     ChartLine lines[CHART_MAX_LINES];
     ChartPanel panels[CHART_PANELS]; /* impact frames and the frames after; closed loop */
-    CurvePoint *front[CHART_PANELS]; /* [front_count] the Pareto front by rising time, of all methods that compete */
+    CurvePoint *front
+        [CHART_PANELS]; /* [front_count] the Pareto front by rising time, of all methods that compete and the reference */
     int front_count[CHART_PANELS];
     double us_least, us_most, error_least, error_most; /* ranges of all marks */
     char times[CHART_TIMES_SIZE];                      /* chart_times_note(), of the whole table; plain */

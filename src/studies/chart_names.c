@@ -245,7 +245,7 @@ static void draw_cross(const ChartDrawing *drawing) {
 
 /* In the lower left corner, where the shade is widest, if it has room there. */
 static void name_shade(ChartDrawing *drawing, int panel) {
-    static const char text[] = "no method gets here";
+    static const char text[] = "no solver gets here";
     const PlotBox *box = &drawing->plot->box;
     const double width = type_width(text, CHART_SMALL_POINTS), height = row_height(CHART_SMALL_POINTS);
     if (drawing->chart->front_count[panel] == 0) return;

@@ -45,6 +45,9 @@ typedef struct Tile {
     bool bare; /* without its symbol */
 } Tile;
 
+/* The tile's symbol alone, `width` mm wide. */
+void verdict_draw_symbol(Sketch *sketch, const Tile *tile, double width);
+
 /* Draws all fills, then all symbols. */
 void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize size);
 

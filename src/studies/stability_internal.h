@@ -34,17 +34,53 @@ void left_out_add_unconverged(LeftOut *left_out, const CsvTable *unconverged, co
 void left_out_draw(const LeftOut *left_out, PlotPage *page, double left);
 int left_out_rows(const LeftOut *left_out, double width);
 
+/* Which parts of a study's range hold. */
+
+/* From the end where most methods hold to the end where most fail. */
+typedef struct BorderRange {
+    double easy, hard;
+    bool logarithmic, whole;
+} BorderRange;
+
+/* A part of a range, in shares, that holds or fails. */
+typedef struct BorderSpan {
+    double from, to;
+    bool holds;
+    int look; /* of what fails */
+} BorderSpan;
+
+/* What a method does over the range of a study. */
+typedef struct BorderCell {
+    const BorderRow *row; /* of its first border; NULL: the method is not in the study */
+    int count;
+    BorderSpan spans[2 * BORDERS_MAX]; /* from easy to hard; what is between them is undecided */
+    double held;                       /* their share that holds */
+} BorderCell;
+
+/* The study of the row, of `own` or, if it is NULL, of the table of studies; NULL: another program's. */
+const StabilityStudy *border_study(const StabilityOwn *own, const BorderRow *row);
+
+/* The range of the study of row `first`: as it is scanned or, of another program's, that of its borders. */
+BorderRange border_range(const CsvTable *table, int first, const StabilityStudy *study);
+
+/* Where a value is in the range: 0 at the easy end, 1 at the hard one. */
+double border_range_share(const BorderRange *range, double value);
+
+BorderCell border_cell(const CsvTable *table, const BorderRow *study, const BorderRow *method,
+                       const BorderRange *range);
+
+/* The method holds over the whole range. */
+bool border_holds_throughout(const BorderCell *cell);
+
 /* The borders figure: how far each method holds in each study. */
 
 enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
 
-/* Writes the figure and its caption: one panel per study, with its own axis, and one row per method that applies to one
-   of them; the caption names the others. The axis has the range of the study, of `own` or, if it is NULL, of the table of
-   studies; of other studies, that of their borders. A bar covers the values that hold, up to holds_at. A tile at fails_at
-   shows how the method fails (studies/stability.h); if the values beyond the bar are undecided, it is at the far end. An
-   arrow marks a method that holds over the whole range, a cross one that never holds. The foot names where the reference did
-   not converge, by unconverged.csv. ERROR_INPUT, with
-   path:line:column: more than BORDERS_MAX_METHODS methods or BORDERS_MAX_STUDIES studies. */
+/* Writes the figure and its caption: a row for each study, struck ones last, and a column for each method that applies to one
+   of them; the caption names the others. A cell is the range of the study, with the parts that hold and those that fail,
+   each in the colour of its verdict. Columns and rows are sorted by what holds, the reference first. The foot names where the
+   reference did not converge, by unconverged.csv. ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or
+   BORDERS_MAX_STUDIES studies. */
 bool stability_borders_write(const CsvTable *table, const CsvTable *unconverged, const StabilityOwn *own,
                              PlotPage *page, Error *error);
 

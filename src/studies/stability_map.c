@@ -212,7 +212,7 @@ static double symbol_width(TileSize size) {
     return fmin(symbol_share * room, most_symbol);
 }
 
-static void draw_symbol(Sketch *sketch, const Tile *tile, double width) {
+void verdict_draw_symbol(Sketch *sketch, const Tile *tile, double width) {
     const VerdictLook *look = &verdict_looks[tile->look];
     const PlotStyle style = {.symbol = look->symbol, .open = look->open, .colour = look->ink};
     const double half = width / 2;
@@ -235,7 +235,7 @@ void verdict_draw_tiles(Sketch *sketch, const Tile *tiles, int count, TileSize s
                          &(Pen){fill, 1, NO_COLOUR, 0, NULL});
     }
     for (int i = 0; i < count; i++)
-        if (!tiles[i].bare) draw_symbol(sketch, &tiles[i], symbol_width(size));
+        if (!tiles[i].bare) verdict_draw_symbol(sketch, &tiles[i], symbol_width(size));
 }
 
 int verdict_draw_legend(Sketch *sketch, const bool used[VERDICT_LOOKS], const LegendPlace *place) {

@@ -36,20 +36,26 @@ static inline void draw(void) {
 }
 
 /* Defines areas(svg, "#RRGGBB"): filled areas of a colour, each [left, top, right, bottom] in mm; count(svg, "#RRGGBB");
-   texts(svg); and caption(name). */
-#define SVG_FUNCTIONS                                                                                       \
-    "import sys, re, xml.etree.ElementTree as tree\n"                                                       \
-    "def read(name): return open(sys.argv[1] + '/' + name + '.svg').read()\n"                               \
-    "def caption(name): return open(sys.argv[1] + '/' + name + '.txt').read()\n"                            \
-    "def areas(svg, colour):\n"                                                                             \
-    "    paths = re.findall('<path d=\"M([^\"]*)Z\" fill=\"%s\"' % colour, svg)\n"                          \
-    "    corners = [[tuple(map(float, p.split())) for p in path.split('L')] for path in paths]\n"           \
-    "    return [[min(x), min(y), max(x), max(y)] for x, y in (zip(*c) for c in corners if len(c) == 4)]\n" \
-    "def count(svg, colour): return len(areas(svg, colour))\n"                                              \
-    "def texts(svg):\n"                                                                                     \
-    "    found = tree.fromstring(svg).iter('{http://www.w3.org/2000/svg}text')\n"                           \
-    "    return [' '.join(''.join(e.itertext()).split()) for e in found]\n"                                 \
-    "def expect(found, wanted, what):\n"                                                                    \
+   texts(svg); caption(name); and cells("Title", colour): the parts of this colour in a row of the borders figure, from the
+   left; holds, falls, ...: colours. */
+#define SVG_FUNCTIONS                                                                                          \
+    "import sys, re, xml.etree.ElementTree as tree\n"                                                          \
+    "def read(name): return open(sys.argv[1] + '/' + name + '.svg').read()\n"                                  \
+    "def caption(name): return open(sys.argv[1] + '/' + name + '.txt').read()\n"                               \
+    "def areas(svg, colour):\n"                                                                                \
+    "    paths = re.findall('<path d=\"M([^\"]*)Z\" fill=\"%s\"' % colour, svg)\n"                             \
+    "    corners = [[tuple(map(float, p.split())) for p in path.split('L')] for path in paths]\n"              \
+    "    return [[min(x), min(y), max(x), max(y)] for x, y in (zip(*c) for c in corners if len(c) == 4)]\n"    \
+    "def count(svg, colour): return len(areas(svg, colour))\n"                                                 \
+    "def texts(svg):\n"                                                                                        \
+    "    found = tree.fromstring(svg).iter('{http://www.w3.org/2000/svg}text')\n"                              \
+    "    return [' '.join(''.join(e.itertext()).split()) for e in found]\n"                                    \
+    "holds, falls, sinks, explodes, pale = '#A3CBE5', '#EE9A2E', '#CF6414', '#6E1650', '#F2F0E6'\n"            \
+    "def cells(title, colour):\n"                                                                              \
+    "    svg = read('borders')\n"                                                                              \
+    "    y = float(re.search('<text transform=\"translate[(][^ ]* ([^)]*)[)][^>]*>' + title + '<', svg)[1])\n" \
+    "    return sorted(area for area in areas(svg, colour) if area[1] < y < area[3])\n"                        \
+    "def expect(found, wanted, what):\n"                                                                       \
     "    assert found == wanted, (what, found, wanted)\n"
 
 /* Runs a program with these functions on the figures. */

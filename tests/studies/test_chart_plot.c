@@ -52,7 +52,7 @@ TEST(a_picture_and_its_caption_are_written) {
                "assert 'font/otf' in root[1].text and 'Arial' in root.get('font-family')\n"
                "texts = [t for e in root.iter('{http://www.w3.org/2000/svg}text') for t in e.itertext()]\n"
                "for wanted in ('At the impact', 'In the 60 frames after it', 'engine', 'engine:warm=off', 'momentum',\n"
-               "               'momentum-schedule', 'playback', 'pair-net', 'no method gets here', 'k=100',\n"
+               "               'momentum-schedule', 'playback', 'pair-net', 'no solver gets here', 'k=100',\n"
                "               'pyramid_settled, 40 launches'):\n"
                "    assert wanted in texts, (wanted, texts)\n",
                drawn_file("pyramid_settled", "svg"));
@@ -443,6 +443,20 @@ TEST(programs_are_drawn_with_their_own_time) {
     free_chart(&chart, &table);
     expect_caption(path, " Rapier: a program of others, by its own clock", NULL);
     expect_caption(path, "Without time or error: exec:program=silent (1), exec:program=zero (1).", NULL);
+}
+
+/* What the reference reaches is no place that no solver gets to; a baseline solves nothing. */
+TEST(the_front_goes_through_the_reference) {
+    CsvTable table;
+    const char *path = write_rows("stack,engine,k=10,closed,impact,40,5,5,5,,,1,,,,,,,,\n"
+                                  "stack,reference,,closed,impact,40,50,50,50,,,0.0001,,,,,,,,\n"
+                                  "stack,playback,launches=25,closed,impact,40,1,1,1,,,0.5,,,,,,,,\n");
+    assert_ok(csv_table_read(&table, path, &chart_layout, &error), error);
+    Chart chart;
+    assert_ok(chart_gather(&chart, &table, "stack", path, NULL, &error), error);
+    assert_int_equal(chart.front_count[0], 2);
+    assert_true(chart.front[0][0].us == 5 && chart.front[0][1].us == 50);
+    free_chart(&chart, &table);
 }
 
 /* Methods and settings that are drawn, each once, and no others. */
