@@ -329,9 +329,10 @@ typedef struct ChartDrawing {
     const ChartPanel *panel;
     const PlotPanel *plot;
     Sketch *sketch;
-    LabelField field; /* its first two segments are the lines through the engine as shipped */
-    int marks;        /* the field's boxes of marks; those of labels follow */
-    bool *named;      /* [line] */
+    LabelField field;                       /* its first two segments are the lines through the engine as shipped */
+    int marks;                              /* the field's boxes of marks; those of labels follow */
+    bool *named;                            /* [line] */
+    const ChartMark *told[CHART_MAX_LINES]; /* in this panel: the mark that a line's name tells of, or NULL */
 } ChartDrawing;
 
 static inline const ChartLine *chart_line_of(const ChartDrawing *drawing, const ChartMark *mark) {

@@ -18,6 +18,9 @@ typedef struct Label {
     uint32_t ink;
 } Label;
 
+/* mm: between a label and what is beyond its end. */
+static const double label_gap = 0.8;
+
 static double row_height(double points) { return 1.2 * points * MM_PER_POINT; }
 
 static void label_row(Label *label, double points, const char *text) {
@@ -46,7 +49,7 @@ static bool place_label(ChartDrawing *drawing, const ChartMark *mark, const Labe
                                                                   : CHART_GREY_RADIUS,
                       .farthest = farthest};
     for (int i = 0; i < label->count; i++) {
-        wish.width = fmax(wish.width, type_width(label->rows[i], label->points[i]));
+        wish.width = fmax(wish.width, type_width(label->rows[i], label->points[i]) + label_gap);
         wish.height += row_height(label->points[i]);
     }
     PageBox box;
@@ -92,42 +95,49 @@ static const ChartMark *find_chief(const ChartDrawing *drawing, int line) {
     return chief;
 }
 
-/* At the chief mark of a line or, if there is no room, at another one, the most accurate first. */
-static bool place_on_line(ChartDrawing *drawing, const ChartMark *chief, const Label *label) {
-    const double farthest = 12;
-    bool placed = place_label(drawing, chief, label, farthest);
-    for (double far = 3; !placed && far <= farthest; far *= 2)
-        for (int i = drawing->panel->count - 1; !placed && i >= 0; i--) {
-            const ChartMark *mark = &drawing->panel->marks[i];
-            placed = mark != chief && mark->line == chief->line && place_label(drawing, mark, label, far);
-        }
-    drawing->named[chief->line] |= placed;
-    return placed;
-}
-
 /* A silenced twin stands beside its method, in its colour: "net=off". */
 static const char *name_of(const ChartLine *line) {
     const char *word = chart_twin_word(line);
     return word != NULL ? word : line->name;
 }
 
-/* The name of a coloured line, and how its chief setting stands to the engine as shipped. */
-static void name_coloured(ChartDrawing *drawing, int index) {
-    const ChartLine *line = &drawing->chart->lines[index];
-    const ChartMark *chief = find_chief(drawing, index), *shipped = chart_find_shipped(drawing->panel);
-    Label label = {.ink = chart_line_style(line).ink};
-    if (chief == NULL) return;
-    label_row(&label, CHART_NAME_POINTS, name_of(line));
-    Label whole = label;
-    if (chief != shipped) label_row(&whole, CHART_SMALL_POINTS, chief->label);
-    if (shipped != NULL && chief->line != shipped->line && !chart_is_program(line)) {
+/* The name of a coloured line; of a mark, how its setting stands to the engine as shipped. */
+static Label label_of(const ChartDrawing *drawing, int line, const ChartMark *mark) {
+    const ChartMark *shipped = chart_find_shipped(drawing->panel);
+    Label label = {.ink = chart_line_style(&drawing->chart->lines[line]).ink};
+    label_row(&label, CHART_NAME_POINTS, name_of(&drawing->chart->lines[line]));
+    if (mark == NULL || mark == shipped) return label;
+    label_row(&label, CHART_SMALL_POINTS, mark->label);
+    if (shipped != NULL && line != shipped->line && !chart_is_program(&drawing->chart->lines[line])) {
         char text[48];
-        write_factor(text, sizeof text, chief->us / shipped->us, "time,");
-        label_row(&whole, CHART_SMALL_POINTS, text);
-        write_factor(text, sizeof text, chief->error / shipped->error, "error");
-        label_row(&whole, CHART_SMALL_POINTS, text);
+        write_factor(text, sizeof text, mark->us / shipped->us, "time,");
+        label_row(&label, CHART_SMALL_POINTS, text);
+        write_factor(text, sizeof text, mark->error / shipped->error, "error");
+        label_row(&label, CHART_SMALL_POINTS, text);
     }
-    if (!place_on_line(drawing, chief, &whole)) place_on_line(drawing, chief, &label);
+    return label;
+}
+
+/* At the chief mark of a line, else at another one, the most accurate first: with what is to say of that mark, or the name alone. */
+static const ChartMark *name_mark(ChartDrawing *drawing, const ChartMark *chief, bool whole) {
+    const double farthest = 12;
+    for (double far = 3; far <= farthest; far *= 2)
+        for (int i = drawing->panel->count; i >= 0; i--) {
+            const ChartMark *mark = i == drawing->panel->count ? chief : &drawing->panel->marks[i];
+            if (mark->line != chief->line || mark->lost) continue;
+            const Label label = label_of(drawing, chief->line, whole ? mark : NULL);
+            if (place_label(drawing, mark, &label, mark == chief ? 2 * farthest : far)) return mark;
+        }
+    return NULL;
+}
+
+/* Of a coloured line. */
+static void name_coloured(ChartDrawing *drawing, int line) {
+    const ChartMark *chief = find_chief(drawing, line);
+    if (chief == NULL) return;
+    const ChartMark *mark = name_mark(drawing, chief, true);
+    drawing->told[line] = mark;
+    drawing->named[line] |= mark != NULL || name_mark(drawing, chief, false) != NULL;
 }
 
 static int next_coloured(const ChartDrawing *drawing, const bool *named) {
@@ -166,15 +176,14 @@ static void name_grey(ChartDrawing *drawing, int index) {
     drawing->named[index] |= placed;
 }
 
-/* The quickest and the most accurate setting of a coloured line; its name speaks of the chief one. */
+/* The quickest and the most accurate setting of a coloured line, where its name does not tell of them. */
 static void name_settings(ChartDrawing *drawing, int index) {
     const ChartPanel *panel = drawing->panel;
-    const ChartMark *chief = find_chief(drawing, index);
     for (int i = 0; i < panel->count; i++) {
         const ChartMark *mark = &panel->marks[i];
         const bool first = i == 0 || panel->marks[i - 1].line != index;
         const bool last = i + 1 == panel->count || panel->marks[i + 1].line != index;
-        if (mark->line != index || !(first || last) || mark == chief || mark->shipped) continue;
+        if (mark->line != index || !(first || last) || mark == drawing->told[index] || mark->shipped) continue;
         Label label = {.ink = chart_line_style(&drawing->chart->lines[index]).ink};
         label_row(&label, CHART_SMALL_POINTS, mark->label);
         place_label(drawing, mark, &label, 1.8);
