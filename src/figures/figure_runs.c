@@ -222,10 +222,15 @@ typedef struct Strip {
     RunColours colours[FIGURE_RUNS_MAX];
     double left, top, foot;          /* mm: space beside, above and below the cells */
     double start;                    /* left end of the first cell */
-    int name_lines;                  /* beside each row of cells */
-    int note_lines[FIGURE_RUNS_MAX]; /* below it */
-    double name_points;
+    bool above;                      /* names stand above their rows, not beside them */
+    int name_lines;                  /* of the longest name */
+    int note_lines[FIGURE_RUNS_MAX]; /* below each row of cells */
 } Strip;
+
+/* mm: from a row to the next, without notes */
+static double row_pitch(const Strip *strip) {
+    return strip->cells.height + strip_gap + (strip->above ? strip->name_lines * line_height(strip->spec->points) : 0);
+}
 
 /* mm */
 static double room_of_notes(const Strip *strip, int first, int end) {
@@ -238,8 +243,7 @@ static double room_of_notes(const Strip *strip, int first, int end) {
 
 static double strip_height(const Strip *strip) {
     const int runs = strip->spec->run_count;
-    return strip->top + strip->foot + room_of_notes(strip, 0, runs) + runs * (strip->cells.height + strip_gap) -
-           strip_gap;
+    return strip->top + strip->foot + room_of_notes(strip, 0, runs) + runs * row_pitch(strip) - strip_gap;
 }
 
 static bool check_bodies(const FigureSpec *spec, Error *error) {
@@ -286,10 +290,24 @@ static WrappedText note_of(const Strip *strip, int row, int column) {
                      "%d out of view", outside);
 }
 
-/* The name of a row's run, in lines as long as its cells are high. */
+/* The name of a row's run: beside the row in lines as long as its cells are high, or above it. */
 static WrappedText strip_name(const Strip *strip, int row) {
-    return wrap_text(strip->spec->points, strip->cells.height, "%s",
-                     run_name(strip->spec, strip->spec->runs[row]).text);
+    const double width = strip->above ? strip->spec->width - 2 * PAGE_EDGE : strip->cells.height;
+    return wrap_text(strip->spec->points, width, "%s", run_name(strip->spec, strip->spec->runs[row]).text);
+}
+
+/* Whether a name can be read when turned: in two lines, none of which ends inside a word or a setting. */
+static bool fits_beside(const Strip *strip, int row) {
+    const RunName name = run_name(strip->spec, strip->spec->runs[row]);
+    for (const char *part = name.text; *part != '\0';) {
+        char words[sizeof name.text];
+        size_t length = strcspn(part, " :");
+        length += part[length] == ':';
+        snprintf(words, sizeof words, "%.*s", (int)length, part);
+        if (type_width(words, strip->spec->points) > strip->cells.height) return false;
+        part += length + (part[length] == ' ');
+    }
+    return strip_name(strip, row).lines <= 2;
 }
 
 static const double smallest_time = 0.7; /* share of the font size */
@@ -315,11 +333,12 @@ static bool check_cell(const Strip *strip, double width, double height, Error *e
 static bool lay_out_cells(Strip *strip, Error *error) {
     const FigureSpec *spec = strip->spec;
     const double line = line_height(spec->points), runs = spec->run_count;
-    strip->left = strip->name_lines * line_height(strip->name_points) + 0.1 * line, strip->top = 1.15 * line,
-    strip->foot = line + 0.6;
+    const double names = strip->name_lines * line;
+    strip->left = strip->above ? PAGE_EDGE : names + 0.1 * line, strip->top = 1.15 * line, strip->foot = line + 0.6;
     const double width = (spec->width - PAGE_EDGE - strip->left - (strip->count - 1) * strip_gap) / strip->count;
     const double high = (spec->height > 0 ? spec->height : FIGURE_HEIGHT_MAX) - strip->top - strip->foot;
-    const double height = (high - (runs - 1) * strip_gap - room_of_notes(strip, 0, spec->run_count)) / runs;
+    const double texts = room_of_notes(strip, 0, spec->run_count) + (strip->above ? runs * names : 0);
+    const double height = (high - (runs - 1) * strip_gap - texts) / runs;
     WorldWindow window = run_window(spec, strip->frames, strip->count);
     if (spec->body_count > 0) window = window_of_bodies(strip);
     if (!check_cell(strip, width, height, error)) return false;
@@ -346,6 +365,8 @@ static bool lay_out_lines(Strip *strip, Error *error) {
         bool enough = true;
         if (!lay_out_cells(strip, error)) return false;
         for (int row = 0; row < strip->spec->run_count; row++) {
+            if (!strip->above && !fits_beside(strip, row))
+                return error_input(error, "figure", "the names have no room beside the rows");
             enough &= grow(&strip->name_lines, strip_name(strip, row).lines);
             for (int column = 0; column < strip->count; column++)
                 enough &= grow(&strip->note_lines[row], note_of(strip, row, column).lines);
@@ -354,25 +375,20 @@ static bool lay_out_lines(Strip *strip, Error *error) {
     }
 }
 
-/* Names that leave no room for the cells are smaller. */
+/* Names stand beside their rows if all have room there. */
 static bool strip_lay_out(Strip *strip, Error *error) {
-    const double smallest = fmax(0.55 * strip->spec->points, FIGURE_POINTS_MIN * SMALL_TYPE);
-    strip->name_points = strip->spec->points;
-    while (!lay_out_lines(strip, error)) {
-        if (error->kind != ERROR_INPUT || strip->name_points <= smallest) return false;
-        strip->name_points = fmax(0.85 * strip->name_points, smallest);
-        run_cells_free(&strip->cells);
-        *error = (Error){0};
-    }
-    return true;
+    if (lay_out_lines(strip, error) || error->kind != ERROR_INPUT) return error->kind == ERROR_NONE;
+    run_cells_free(&strip->cells);
+    *error = (Error){0};
+    strip->above = true;
+    return lay_out_lines(strip, error);
 }
 
 static Point cell_corner(const Strip *strip, int row, int column) {
     const RunCells *cells = &strip->cells;
     const int below = strip->spec->run_count - 1 - row;
     return (Point){strip->start + column * (cells->width + strip_gap),
-                   strip->foot + below * (cells->height + strip_gap) +
-                       room_of_notes(strip, row, strip->spec->run_count)};
+                   strip->foot + below * row_pitch(strip) + room_of_notes(strip, row, strip->spec->run_count)};
 }
 
 static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, Error *error) {
@@ -390,16 +406,20 @@ static bool draw_cell(const Strip *strip, Sketch *sketch, int row, int column, E
 static void strip_draw_texts(const Strip *strip, Sketch *sketch) {
     const FigureSpec *spec = strip->spec;
     const RunCells *cells = &strip->cells;
-    const TextStyle turned = {strip->name_points, TEXT_CENTER, INK, 90, false};
+    const TextStyle turned = {spec->points, TEXT_CENTER, INK, 90, false};
+    const double line = line_height(spec->points), above = row_pitch(strip) - strip_gap;
     for (int row = 0; row < spec->run_count; row++) {
         const Point low = cell_corner(strip, row, 0);
         const WrappedText name = strip_name(strip, row);
-        const double first = low.x - (name.lines - 0.45) * line_height(strip->name_points);
-        sketch_lines(sketch, (Point){first, low.y + cells->height / 2}, &turned, name.text);
+        const Point first = {low.x - (name.lines - 0.45) * line, low.y + cells->height / 2};
+        if (strip->above)
+            draw_wrapped(sketch, (Point){low.x, low.y + above - 0.5 * line}, INK, &name);
+        else
+            sketch_lines(sketch, first, &turned, name.text);
     }
     for (int column = 0; column < strip->count; column++) {
         const Point low = cell_corner(strip, 0, column);
-        sketch_text(sketch, (Point){low.x + cells->width / 2, low.y + cells->height + strip->top / 2},
+        sketch_text(sketch, (Point){low.x + cells->width / 2, low.y + above + strip->top / 2},
                     &(TextStyle){time_points(strip), TEXT_CENTER, INK, 0, false}, "%.2f s",
                     strip->frames[column] * (double)spec->runs[0]->dt);
     }
