@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "engine/engine.h"
+#include "methods/methods.h"
 
 #include <assert.h>
 #include <math.h>
@@ -200,8 +201,11 @@ int trajectory_impact(const Trajectory *trajectory) {
 
 enum { STEM_SIZE = 2 * TRAJECTORY_NAME_SIZE + 2 };
 
+/* Without the folders of networks and programs, so that runs of two machines have the same names. */
 static void make_stem(const Trajectory *run, char stem[STEM_SIZE]) {
-    snprintf(stem, STEM_SIZE, "%s-%s", run->scene, run->method);
+    char name[TRAJECTORY_NAME_SIZE];
+    method_name(name, sizeof name, run->method);
+    snprintf(stem, STEM_SIZE, "%s-%s", run->scene, name);
     file_name_clean(stem);
 }
 

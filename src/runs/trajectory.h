@@ -168,8 +168,8 @@ bool blender_run_write(const Trajectory *run, const char *path, Error *error);
 
 enum { TRAJECTORY_FILE_NAME_SIZE = 2 * TRAJECTORY_NAME_SIZE + 24 };
 
-/* The file name of run `index` of these: SCENE-METHOD.npz, with '_' for what does not belong in a file name. A second run
-   of that name gets SCENE-METHOD-2.npz, and so on. */
+/* The file name of run `index` of these: SCENE-METHOD.npz, with the method_name() and '_' for what does not belong in a file
+   name. A second run of that name gets SCENE-METHOD-2.npz, and so on. */
 void trajectory_file_name(const Trajectory *const *runs, int index, char name[TRAJECTORY_FILE_NAME_SIZE]);
 
 /* What scene and method are called in a run that does not state it: the file's name without folder and ending. Bytes that

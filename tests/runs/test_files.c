@@ -74,6 +74,19 @@ TEST(names_of_files_lose_what_a_terminal_would_obey) {
     assert_string_equal(name, "z\xc3\xa4h___");
 }
 
+TEST(stored_runs_are_named_without_folders) {
+    Trajectory *runs[] = {example_trajectory(), example_trajectory()};
+    char name[TRAJECTORY_FILE_NAME_SIZE];
+    for (int i = 0; i < 2; i++) strcpy(runs[i]->scene, "wall");
+    strcpy(runs[0]->method, "pair-net:network=/some/where/net.npz,k=20");
+    strcpy(runs[1]->method, "pair-net:network=else/where/net.npz,k=20");
+    trajectory_file_name((const Trajectory *const *)runs, 0, name);
+    assert_string_equal(name, "wall-pair-net_network=net.npz_k=20.npz");
+    trajectory_file_name((const Trajectory *const *)runs, 1, name);
+    assert_string_equal(name, "wall-pair-net_network=net.npz_k=20-2.npz");
+    for (int i = 0; i < 2; i++) trajectory_destroy(runs[i]);
+}
+
 TEST(bad_heads_are_refused) {
     REFUSE(dt, 0, "dt must be finite and greater than 0 (got 0)");
     REFUSE(dt, -1, "dt must be");
