@@ -63,6 +63,7 @@ double panel_side(const Picture *picture);
 int panel_count_out_of_view(const Picture *picture, int panel, Moment moment);
 
 /* The legend of outlines, colours, dots and arrows, in rows below the panels. */
+#define ARROW_NOTE "(two heads: ten times as much is a third longer)"
 
 /* The rows it needs at the picture's width; 0: nothing to explain. */
 int legend_rows(const Picture *picture);

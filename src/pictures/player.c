@@ -262,6 +262,8 @@ static void put_data(FILE *file, const Player *player) {
     json_put_int(&json, "impact", player_stored(&player->frames, first_impact(&player->picture)));
     json_put_number(&json, "distance_ems", player_ems(FONT_REGULAR, "distance 0.00 m"));
     json_put_number(&json, "out_ems", player_ems(FONT_REGULAR, "00 out of view"));
+    json_put_text(&json, "arrow_note", ARROW_NOTE);
+    json_put_number(&json, "arrow_note_ems", player_ems(FONT_REGULAR, ARROW_NOTE));
     json_put_number(&json, "visible", EVENTS_VISIBLE_DISTANCE);
     json_put_number(&json, "ground", FRAMING_GROUND);
     json_put_number(&json, "farthest", EXTENT_FARTHEST);

@@ -199,7 +199,7 @@ static void add_approach(Row *row) {
     const int width = row->font->pixels * 2;
     stroke_dashed(row->drawing, (Point){row->x, row->middle}, (Point){row->x + width, row->middle}, &line, &row->clip);
     row->x += width + row->font->pixels / 2;
-    snprintf(text, sizeof text, "way of the bomb, from %.3g s until it strikes",
+    snprintf(text, sizeof text, "path of the bomb, from %.3g s until it strikes",
              bomb_first_frame(run) * (double)run->dt);
     add_text(row, text);
     end_entry(row);
@@ -240,7 +240,7 @@ static void add_velocity(Row *row) {
 }
 
 static void add_heads(Row *row) {
-    add_text(row, "(two heads: ten times as much is a third longer)");
+    add_text(row, ARROW_NOTE);
     end_entry(row);
 }
 

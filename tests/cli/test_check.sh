@@ -96,7 +96,7 @@ equal "the summary on standard error" "$(cat err)" "$(head -n 6 expected)"
 run 2 check tower.yaml -o first.jpg
 complains "first.jpg: error: the name of the picture must end in .png"
 
-# The picture is what render draws of that frame. The way of the bomb is in it, too.
+# The picture is what render draws of that frame. The path of the bomb is in it, too.
 run 0 render tower.yaml -o frames --frames 0 --size 1280x720
 run 1 compare first.png frames/frame_000000.png
 sed '/^bomb:/d; s/^frames: .*/frames: 1/' tower.yaml >still.yaml

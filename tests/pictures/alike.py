@@ -23,7 +23,7 @@ GO_TO = """new Promise(done => {
   addEventListener("hashchange", () => done(), {once: true});
   location.hash = $0;
 })"""
-MANY = "ghosts,distance,trails,velocities"  # as many as the legend has in one row in the browser's font, too
+MANY = "ghosts,distance,trails,contacts,impulses,velocities"  # more than the browser's font, where it is wider, has in render's rows
 # scene, frame, compare, show, theme, view
 CASES = [
     ("stack", 40, "split", "", "light", ""),

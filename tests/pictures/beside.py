@@ -109,15 +109,15 @@ def check_elsewhere(checks, page, pair_net):
     pick(page, "bomb_x", 1.5)
     checks.true("no colour", page.run(COLOUR, 2) <= 4, page.run(COLOUR, 2))
     checks.true("the live panel's colour", page.run(COLOUR, 0) > 50)
-    checks.equal("its line", page.run(LINES)[2], "pair-net (recorded) shows another launch: bomb x 5 m")
+    checks.equal("its line", page.run(LINES)[2], "pair-net (recorded) shows another launch: bomb x 5\u00a0m")
     page.run("audit.drawn.length = 0")
     page.run("player.draw()")
     drawn = [text["text"] for text in page.run("audit.drawn")]
-    checks.true("the panel says so", "Another launch" in drawn and "bomb x 5 m" in drawn, drawn)
+    checks.true("the panel says so", "Another launch" in drawn and "bomb x 5\u00a0m" in drawn, drawn)
     checks.true("nothing is left empty", "()" not in page.run("document.body.innerText"))
     checks.true("no moment of another launch", "pair-net" not in page.run(TEXT, "moments"), page.run(TEXT, "moments"))
     pick(page, "dt", 0.01)
-    checks.equal("settings that differ", page.run("player.runs[2].elsewhere"), "bomb x 5 m, time step 1/60 s")
+    checks.equal("settings that differ", page.run("player.runs[2].elsewhere"), "bomb x 5\u00a0m, time step 1/60\u00a0s")
     x, y = map(float, pair_net["position"][30, 11])
     far = page.run("""((plan, frame) => {
       const camera = player.camera(plan, frame), wanted = player.to_pixel(plan, camera, 2, $0, $1);
@@ -177,7 +177,7 @@ def check_others(checks, browser):
     checks.equal("other settings", page.run("player.runs.map(run => run.elsewhere)"), ["", "", "its settings are not those of the page"])
     check_command(checks, page, 2, ["engine (recorded)"])
     pick(page, "bomb_x", 2)
-    checks.equal("its own launch", page.run("player.runs.map(run => run.elsewhere)"), ["", "bomb x 5 m", ""])
+    checks.equal("its own launch", page.run("player.runs.map(run => run.elsewhere)"), ["", "bomb x 5\u00a0m", ""])
     checks.equal("there both are equal", page.run(LINES)[2].split(", ")[-1], "bit for bit")
     check_command(checks, page, 1, ["playback (recorded), engine (recorded)"])
     checks.quiet("other settings", page)

@@ -40,12 +40,30 @@ def parting(first, other):
 
 
 def check_marks(checks, page, loaded):
-    """The frames of the page's moments in their order. Those of verdicts are as the runs state them."""
+    """The frames of the page's moments in their order. Those of verdicts are as the runs state them. Where runs differ in a bit
+    is none if their methods differ."""
     stored = page.run("player.runs.flatMap(run => [run.differs, run.apart]).filter(Boolean).map(mark => mark.frame)"
                       ".concat(player.data.impact)")
     checks.equal("frames of impact, first different bits and first millimetres", sorted(stored), moments(loaded))
-    verdicts = page.run("player.runs.map(run => run.verdict?.frame ?? -1).filter(frame => frame >= 0)")
-    return sorted({*stored, *verdicts})
+    marked = page.run("player.runs.flatMap(run => [run.apart, run.verdict, run.method === player.runs[0].method && run.differs])"
+                      ".filter(mark => mark?.frame >= 0).map(mark => mark.frame).concat(player.data.impact)")
+    checks.true("variables of the style are colours", page.run("![...document.documentElement.style].some(name => "
+                "name.startsWith('--') && !/^#/.test(document.documentElement.style.getPropertyValue(name)))"))
+    return sorted(set(marked))
+
+
+def check_equal_methods(checks, browser):
+    """Where runs of one method first differ in a bit has a mark: a step in another place, and nothing else of the run."""
+    moved = dict(numpy.load("engine.npz"))
+    moved["position"][9, 3, 0] = numpy.nextafter(moved["position"][9, 3, 0], numpy.float32(9))
+    numpy.savez("moved.npz", **moved)
+    checks.twinbox("page", "engine.npz", "moved.npz", "-o", "equal.html")
+    page = browser.open("equal.html")
+    marks = page.run("[...document.querySelectorAll('#marks button')].map(mark => mark.ariaLabel)")
+    checks.equal("marks of a different bit", [mark for mark in marks if "differs from here on, body\u00a03" in mark],
+                 [mark for mark in marks if " 0.150 s" in mark])
+    checks.true("there is one", any(" 0.150 s" in mark for mark in marks), marks)
+    page.close()
 
 
 def check_words(checks, page, loaded):
@@ -229,6 +247,7 @@ def main():
         frames = check_marks(checks, page, loaded)
         Keys(checks, page, frames).all()
         check_moments(checks, page, frames)
+        check_equal_methods(checks, browser)
         check_words(checks, page, loaded)
         check_mouse(checks, page, FRAMES)
         check_buttons(checks, page)

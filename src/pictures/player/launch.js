@@ -43,7 +43,7 @@ function setting_row(each) {
     show_settings(); /* what is no number is not kept */
   }, "aria-label": `${label}${unit ? ", " + unit : ""}`});
   inputs.set(name, [range, number]);
-  return make("tr", make("th", label), make("td", range), make("td", number), make("td", unit ?? ""));
+  return make("tr", make("th", label), make("td", range), make("td", number), make("td", (unit ?? "").replaceAll("/", "/\u2060"))); /* "m/s" stays one word */
 }
 
 /* The text of a method, "interior:near=0.02", of its controls. */

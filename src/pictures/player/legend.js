@@ -35,24 +35,34 @@ function entries() {
   if (shows("contacts")) add(2 * dot, (x, y) => draw_dots(dot, [{x: x + dot, y}]), "contact");
   if (shows("impulses")) arrow("impulse", "N s");
   if (shows("velocities")) arrow("velocity", "m/s");
-  if (shows("impulses") || shows("velocities")) found.push(["(two heads: ten times as much is a third longer)"]);
+  if (shows("impulses") || shows("velocities")) found.push([data.arrow_note]);
   return found;
 }
 
-/* Measures, or draws. An entry that would reach too far right begins a row. Returns the number of rows. */
-function place_entries(drawing) {
-  const {axis, left, right, legend, pitch} = lay, width = part => part.width || text_width(axis, part);
+/* Entries in rows: one that would reach too far right begins a row. Returns the number of rows. */
+function flow_entries(width, draw) {
+  const {axis, left, right} = lay;
   let x = left, rows = 0;
   for (const entry of entries()) {
     const end = entry.reduce((sum, part) => sum + width(part), x);
     if (rows === 0 || (x > left && end > right)) [x, rows] = [left, rows + 1];
     for (const part of entry) {
-      const baseline = legend + (rows - 1) * pitch;
-      if (drawing && !part.width) write(axis, part, x, baseline);
-      else if (drawing) part.draw?.(x, baseline - axis.em * LEGEND_MIDDLE, baseline);
+      draw?.(part, x, rows - 1);
       x += width(part);
     }
     x += 2 * axis.em;
   }
   return rows;
+}
+
+/* Measures, or draws. Where the reader's font is wider than `render`'s, texts are narrowed if that takes fewer rows. */
+function place_entries(drawing) {
+  const {axis, legend, pitch} = lay, planned = min(1, data.arrow_note_ems * axis.em / text_width(axis, data.arrow_note));
+  const own = part => part.width || text_width(axis, part), narrow = part => part.width || ceil(planned * own(part));
+  const width = flow_entries(narrow) < flow_entries(own) ? narrow : own;
+  return flow_entries(width, drawing ? (part, x, row) => {
+    const baseline = legend + row * pitch;
+    if (part.width) part.draw?.(x, baseline - axis.em * LEGEND_MIDDLE, baseline);
+    else write(axis, part, x, baseline, look.ink_soft, width(part));
+  } : null);
 }

@@ -1,5 +1,5 @@
 /* The address: #stage&t=0.55&body=7&compare=overlay&show=ghosts,trails&view=X,Y,W,H&speed=0.25&theme=dark */
-let writing = 0;
+let writing = 0, followed = "";
 
 /* Times in links are rounded: one within 0.02 of a stored frame means that frame. */
 function frame_at(t) {
@@ -41,6 +41,7 @@ const live_words = () => !data.live ? [] : [["set", encodeURIComponent(set_text(
 
 /* What is absent or malformed has its default. */
 onhashchange = () => {
+  followed = location.hash;
   if (data.live) follow_link(location.hash);
   const link = new URLSearchParams(location.hash.slice(1)), text = key => link.get(key) ?? "";
   const one_of = (key, list, usual) => list.find(each => String(each) === text(key)) ?? usual;
@@ -84,9 +85,10 @@ function follow_link(fragment) {
 function settle() {
   clearTimeout(writing);
   writing = setTimeout(() => {
-    if (view.playing) return;
+    if (view.playing || location.hash !== followed) return; /* a link is still to be followed */
     const far = others.map(run => `; ${names[run]} is ${metric(largest(run, view.frame), "m")} from ${names[0]}`);
     stage.ariaLabel = [ui.time.textContent, ...far, view.body < 0 ? "" : "; " + ui.named.textContent].join("");
     try { history.replaceState(null, "", link_text()); } catch { /* not allowed where the page is shown */ }
+    followed = location.hash;
   }, 250);
 }

@@ -126,7 +126,8 @@ function launch_words(run) {
   const other = [...new Set([...first.keys(), ...chosen.keys()])].filter(name => parameter(name) && then(name) !== value_of(name));
   if (run.why) return run.why;
   if (launch_of(run) !== first_scene || other.length === 0) return "its settings are not those of the page";
-  return other.map(name => `${label_of(name)} ${setting_text(parameter(name), then(name))} ${parameter(name).unit ?? ""}`.trim()).join(", ");
+  return other.map(name => `${label_of(name)} ${setting_text(parameter(name), then(name)).replace("-", "\u2212")}\u00a0` +
+    (parameter(name).unit ?? "")).map(text => text.trim()).join(", ");
 }
 
 /* The view is what `render` shows of this launch, when the launch rests: a view that moves along would hide what a drag changes. A

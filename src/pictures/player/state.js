@@ -62,7 +62,8 @@ function apply_theme() {
   tell(ui.theme, "Colours: " + view.theme);
   if (themed === name) return;
   themed = style.colorScheme = name;
-  for (const key in theme()) style.setProperty("--" + key, theme()[key]);
+  for (const [key, value] of Object.entries(theme()).filter(([, value]) => value.at)) /* colours alone: texts */
+    style.setProperty("--" + key, value);
   [...runs.map(run => run.colours[name]), theme().bomb].forEach(({fill, line}, run) => {
     style.setProperty("--fill" + run, fill);
     style.setProperty("--line" + run, line);

@@ -10,12 +10,15 @@ const away = frame => `at ${time_text(frame)}`;
 /* Without figures: "collapses: 8 of 10 boxes fell". */
 const outcome = run => (short_verdict(run) || (runs[run].live ? "still runs" : "")).split(", first at")[0];
 
+/* Whether a live page has all states of a run. */
+const is_whole = run => run.live ? run.ended && run.reached >= 0 : known(run) === run.frames - 1;
+
 /* When a run is seen to part from the first one. */
-function parting({compared, why, live, differs, distances}) {
-  const visible = distances.findIndex(metres => metres > VISIBLE * data.scales.box);
+function parting(run) {
+  const {compared, why, differs, distances} = run, visible = distances.findIndex(metres => metres > VISIBLE * data.scales.box);
   if (!compared) return why && `cannot be compared (${cut(why, 200)})`;
   if (visible >= 0) return `parts from ${names[0]} at ${seconds(visible).toFixed(2)} s`;
-  if (live && runs.some(run => run.live && !run.ended)) return "";
+  if (data.live && ![runs[0], run].every(is_whole)) return "";
   return differs ? `stays with ${names[0]}` : `equals ${names[0]}, bit for bit`;
 }
 

@@ -71,7 +71,8 @@ function list_moments() {
     const {differs, apart, verdict, elsewhere} = each;
     each.ended = verdict?.text ?? "";
     if (elsewhere) return;
-    add_event(DIAMOND, run, differs, names[run] + " differs from here on");
+    if (each.method === runs[0].method) /* others differ in a bit from the first step on */
+      add_event(DIAMOND, run, differs, names[run] + " differs from here on");
     add_event(TRIANGLE, run, apart, names[run] + " is 1 mm away");
     add_event(SQUARE, run, verdict, names[run] + " " + short_verdict(run));
   });
