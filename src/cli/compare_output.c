@@ -33,6 +33,19 @@ static void print_names(const Regression *regression, PixelVerdict verdict, cons
     printf(count > NAMED ? " ...\n" : "\n");
 }
 
+/* The trajectories that only this folder has. */
+static void print_runs_alone(const Regression *regression, RegressionSide side) {
+    enum { NAMED = 10 };
+    const int count = regression->runs_alone[side];
+    int named = 0;
+    if (count == 0) return;
+    printf("only in %s: %d %s:", regression->sequences[side]->folder, count,
+           count == 1 ? "trajectory" : "trajectories");
+    for (int i = 0; i < regression->run_count && named < NAMED; i++)
+        if (regression->runs[i].alone[side]) printf(" %s", regression->runs[i].name), named++;
+    printf(count > NAMED ? " ...\n" : "\n");
+}
+
 static const char *differ(int count) { return count == 1 ? "differs" : "differ"; }
 
 /* The three largest regions. */
@@ -80,7 +93,8 @@ static void print_causes(const Regression *regression) {
 }
 
 static void print_counts(const Regression *regression) {
-    const int *by = regression->by_verdict, runs = regression->run_count, run_failed = regression->run_failed;
+    const int *by = regression->by_verdict, alone = regression->runs_alone[EXPECTED] + regression->runs_alone[ACTUAL];
+    const int runs = regression->run_count - alone, run_failed = regression->run_failed - alone;
     int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA];
     int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
     if (different > 0) printf("%d of %d frame%s %s", different, compared, plural(compared), differ(different));
@@ -112,6 +126,7 @@ static bool print_difference(const Regression *regression, Error *error) {
     print_views(regression);
     print_names(regression, PIXELS_MISSING, regression->sequences[EXPECTED]->folder);
     print_names(regression, PIXELS_EXTRA, regression->sequences[ACTUAL]->folder);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) print_runs_alone(regression, side);
     print_first(regression);
     if (!print_cases(regression, error)) return false;
     print_causes(regression);

@@ -389,6 +389,8 @@ static void count(Regression *regression) {
         regression->run_within += runs[i].within;
         if (!run_failed(&runs[i])) continue;
         regression->run_failed++;
+        for (RegressionSide side = EXPECTED; side < SIDES; side++) regression->runs_alone[side] += runs[i].alone[side];
+        if (runs[i].alone[EXPECTED] || runs[i].alone[ACTUAL]) continue;
         int first = regression->first_run;
         if (first < 0 || (unsigned)runs[i].difference.frame < (unsigned)runs[first].difference.frame)
             regression->first_run = i;

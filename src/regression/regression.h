@@ -181,6 +181,7 @@ typedef struct RegressionFrame {
 typedef struct RegressionRun {
     char *name;
     RegressionFile files[SIDES];
+    bool alone[SIDES]; /* only this folder has it; there is no difference then */
     TrajectoryDifference difference;
     bool within;       /* the poses are within the tolerance in all frames, of which both runs have equally many */
     PartedBody beyond; /* where they first are not; frame -1: nowhere, or there is no tolerance */
@@ -210,10 +211,11 @@ typedef struct Regression {
     RegressionCause *causes;          /* different cameras first, then by first frame */
     int metadata, first_metadata;     /* frames whose metadata differs, and the first of them (-1: none) */
     int metadata_failed;              /* frames that fail for nothing else */
-    int runs_left_out;                /* .npz files that only the expected folder has */
-    int runs_foreign;                 /* .npz files that are a trajectory in neither folder */
-    int other_accepted;               /* frames that pass by another accepted picture than the one of their name */
-    double seconds;                   /* of the whole comparison */
+    int runs_alone[SIDES]; /* trajectories that only this folder has, if no pictures are compared: they fail */
+    int runs_left_out;     /* beside pictures: .npz files that only the expected folder has */
+    int runs_foreign;      /* .npz files that are a trajectory in neither folder */
+    int other_accepted;    /* frames that pass by another accepted picture than the one of their name */
+    double seconds;        /* of the whole comparison */
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are checked (pixels/png.h), but not decoded.
@@ -226,7 +228,8 @@ void regression_free(Regression *regression);
 bool regression_passed(const Regression *regression);
 bool frame_failed(const RegressionFrame *frame);
 bool run_failed(const RegressionRun *run);
-const char *run_verdict(const RegressionRun *run);    /* "equal", "within tolerance" or "physics changed" */
+const char *
+run_verdict(const RegressionRun *run); /* "equal", "within tolerance", "physics changed", "missing" or "extra" */
 const char *frame_name(const RegressionFrame *frame); /* of `base` */
 double frame_severity(const RegressionFrame *frame); /* differing pixels; infinite where sizes differ or a file lacks */
 

@@ -52,7 +52,8 @@ static RegressionCase regression_case(const Regression *regression, int i) {
                            .words = run_words(run),
                            .seconds = run->seconds};
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (!file_path(made.paths[side], PATH_MAX, &(Error){0}, "%s/%s", regression->sequences[side]->folder,
+        if (run->alone[side == EXPECTED ? ACTUAL : EXPECTED] ||
+            !file_path(made.paths[side], PATH_MAX, &(Error){0}, "%s/%s", regression->sequences[side]->folder,
                        run->name))
             made.paths[side][0] = '\0';
     return made;
@@ -482,8 +483,8 @@ static void write_run(JsonWriter *json, const RegressionRun *run) {
     json_put_bool(json, "failed", run_failed(run));
     json_put_bool(json, "shown", true);
     json_put_text(json, "words", run_words(run).text);
-    write_file(json, "expected", run->name, &run->files[EXPECTED]);
-    write_file(json, "actual", run->name, &run->files[ACTUAL]);
+    write_file(json, "expected", run->alone[ACTUAL] ? NULL : run->name, &run->files[EXPECTED]);
+    write_file(json, "actual", run->alone[EXPECTED] ? NULL : run->name, &run->files[ACTUAL]);
     json_end(json);
 }
 

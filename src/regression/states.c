@@ -29,32 +29,42 @@ static bool run_path(const Regression *regression, RegressionSide side, const ch
 
 static bool is_run(const char *name) { return file_name_ends_with(name, ".npz") && name_is_text(name); }
 
-/* Adds a file of the expected folder if the actual folder has it, too. */
-static bool add_run(Regression *regression, const char *name, Error *error) {
+/* Adds a file of one folder. That the other folder has no such file is a failure, unless there are pictures: then the runs
+   only explain them. */
+static bool add_run(Regression *regression, RegressionSide side, const char *name, Error *error) {
+    const RegressionSide other = side == EXPECTED ? ACTUAL : EXPECTED;
     char path[PATH_MAX];
     struct stat status;
     if (!name_is_text(name)) return true; /* of its folder */
-    if (!run_path(regression, ACTUAL, name, path, error)) return false;
-    if (stat(path, &status) != 0) {
-        if (errno != ENOENT && errno != ENOTDIR)
-            return error_system(error, path, "cannot be read: %s", strerror(errno));
-        regression->runs_left_out++;
+    if (!run_path(regression, other, name, path, error)) return false;
+    const bool alone = stat(path, &status) != 0;
+    if (alone && errno != ENOENT && errno != ENOTDIR)
+        return error_system(error, path, "cannot be read: %s", strerror(errno));
+    if (!alone && side == ACTUAL) return true; /* added with the expected one */
+    if (alone && regression->count > 0) {
+        regression->runs_left_out += side == EXPECTED;
         return true;
     }
     char *copy = strdup(name);
     if (copy == NULL) return error_memory(error, name);
-    regression->runs[regression->run_count++] = (RegressionRun){.name = copy, .beyond = {.frame = -1}};
+    RegressionRun *run = &regression->runs[regression->run_count++];
+    *run = (RegressionRun){.name = copy, .beyond = {.frame = -1}};
+    run->alone[side] = alone;
     return true;
 }
 
 static bool list_runs(Regression *regression, Error *error) {
-    const char *folder = regression->sequences[EXPECTED]->folder;
-    FolderList files;
-    if (!folder_list(&files, folder, is_run, !regression->options.flat, error)) return false;
-    regression->runs = calloc(files.count + 1, sizeof *regression->runs);
-    bool ok = regression->runs != NULL || error_memory(error, folder);
-    for (size_t i = 0; ok && i < files.count; i++) ok = add_run(regression, files.names[i], error);
-    folder_list_free(&files);
+    FolderList files[SIDES] = {{0}, {0}};
+    bool ok = true;
+    for (RegressionSide side = EXPECTED; ok && side < SIDES; side++)
+        ok = folder_list(&files[side], regression->sequences[side]->folder, is_run, !regression->options.flat, error);
+    regression->runs = calloc(files[EXPECTED].count + files[ACTUAL].count + 1, sizeof *regression->runs);
+    ok = ok && (regression->runs != NULL || error_memory(error, "runs"));
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) {
+        for (size_t i = 0; ok && i < files[side].count; i++)
+            ok = add_run(regression, side, files[side].names[i], error);
+        folder_list_free(&files[side]);
+    }
     return ok;
 }
 
@@ -108,13 +118,13 @@ static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], const P
     return ok || *foreign;
 }
 
-/* Equal bytes are equal runs, if they are a run. */
+/* Equal bytes are equal runs, if they are a run; so is a run alone. */
 static bool read_run(RegressionRun *run, const char *path, bool *foreign, Error *error) {
     Error failure = {0};
     Trajectory *trajectory = trajectory_read(path, &failure);
     *foreign = trajectory == NULL;
     trajectory_destroy(trajectory);
-    run->difference.equal = true;
+    run->difference = (TrajectoryDifference){.equal = true, .frame = -1, .body = -1, .max_frame = -1, .max_body = -1};
     if (failure.kind == ERROR_SYSTEM) *error = failure;
     return failure.kind != ERROR_SYSTEM;
 }
@@ -123,6 +133,7 @@ static bool judge_run(const Regression *regression, RegressionRun *run, bool *fo
     char paths[SIDES][PATH_MAX];
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         if (!run_path(regression, side, run->name, paths[side], error)) return false;
+        if (run->alone[side == EXPECTED ? ACTUAL : EXPECTED]) continue;
         RegressionFile *file = &run->files[side];
         char *data = file_read(paths[side], MAX_RUN_SIZE, &file->size, error);
         if (data == NULL) return false;
@@ -131,6 +142,8 @@ static bool judge_run(const Regression *regression, RegressionRun *run, bool *fo
         free(data);
         if (pointer) return false;
     }
+    for (RegressionSide side = EXPECTED; side < SIDES; side++)
+        if (run->alone[side]) return read_run(run, paths[side], foreign, error);
     const RegressionFile *a = &run->files[EXPECTED], *b = &run->files[ACTUAL];
     bool same = a->hash == b->hash && a->size == b->size;
     return same ? read_run(run, paths[EXPECTED], foreign, error)

@@ -136,9 +136,13 @@ ChangeText region_words(const FrameChanges *changes, int region) {
     return text;
 }
 
-bool run_failed(const RegressionRun *run) { return !run->difference.equal && !run->within; }
+bool run_failed(const RegressionRun *run) {
+    return run->alone[EXPECTED] || run->alone[ACTUAL] || !(run->difference.equal || run->within);
+}
 
 const char *run_verdict(const RegressionRun *run) {
+    if (run->alone[EXPECTED]) return "missing";
+    if (run->alone[ACTUAL]) return "extra";
     return run->difference.equal ? "equal" : run->within ? "within tolerance" : "physics changed";
 }
 
@@ -244,7 +248,10 @@ RegressionText run_words(const RegressionRun *run) {
     RegressionText words = {""};
     const TrajectoryDifference *d = &run->difference;
     if (d->equal) {
-        ADD(&words, "", "equal states");
+        ADD(&words, "", "%s",
+            run->alone[EXPECTED] ? "only in the expected folder"
+            : run->alone[ACTUAL] ? "only in the actual folder"
+                                 : "equal states");
         return words;
     }
     if (d->what[0] != '\0') ADD(&words, "", "%s", d->what);
@@ -263,9 +270,14 @@ static void add_count(RegressionText *text, int count, const char *what) {
     if (count > 0) ADD(text, ", ", "%d %s %s", count, count == 1 ? "frame" : "frames", what);
 }
 
+static void add_run_count(RegressionText *text, int count, const char *what) {
+    if (count > 0) ADD(text, ", ", "%d %s %s", count, count == 1 ? "trajectory" : "trajectories", what);
+}
+
 RegressionText regression_verdict(const Regression *regression) {
     RegressionText verdict = {""};
-    bool physics = regression->physics > 0 || regression->elsewhere > 0 || regression->run_failed > 0;
+    const int *alone = regression->runs_alone, runs_changed = regression->run_failed - alone[EXPECTED] - alone[ACTUAL];
+    bool physics = regression->physics > 0 || regression->elsewhere > 0 || runs_changed > 0;
     bool renderer = regression->renderer > 0;
     if (physics || renderer)
         ADD(&verdict, ", ", "%s",
@@ -278,6 +290,8 @@ RegressionText regression_verdict(const Regression *regression) {
     if (regression->metadata_failed > 0) ADD(&verdict, ", ", "metadata changed");
     add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");
     add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "extra");
+    add_run_count(&verdict, alone[EXPECTED], "missing");
+    add_run_count(&verdict, alone[ACTUAL], "extra");
     if (verdict.text[0] == '\0') ADD(&verdict, "", "equal");
     return verdict;
 }

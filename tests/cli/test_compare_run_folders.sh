@@ -32,6 +32,27 @@ grep -q '<td class="odd">within tolerance</td>' report/report.html || fail "no v
 run 0 compare expected/box.npz actual/box.npz --tolerance 0.0031,0.021
 run 1 compare expected/box.npz actual/box.npz --tolerance 0.0031,0.019
 
+# A run that only one folder has fails, in every report; approve removes it, or adds it.
+mv actual/box.npz actual/new.npz
+compare 1 --tolerance 1.5 --report alone
+equal "runs that one folder has" "$(cat out)" "only in expected: 1 trajectory: box.npz
+only in actual: 1 trajectory: new.npz
+verdict: 1 trajectory missing, 1 trajectory extra
+report -> alone/report.html"
+grep -q '"name": "box.npz", "verdict": "missing", "failed": true' alone/results.json || fail "no missing run"
+grep -q 'tests="3" failures="2"' alone/junit.xml || fail "no failures in junit.xml"
+cp -r expected before
+run 0 approve alone
+says "0 replaced, 1 added, 1 removed"
+compare 0
+rm -r expected
+mv before expected
+mv actual/new.npz actual/box.npz
+echo text >expected/words.npz
+compare 0 --tolerance 0.0031,0.021
+says "not compared: 1 .npz file without a trajectory"
+rm expected/words.npz
+
 # A whole number is metres where there are no pictures, and channels of pixels where there are.
 compare 0 --tolerance 1
 run 0 render expected/same.npz -o frames --size 64x64 --frames 0
