@@ -102,6 +102,7 @@ void text_join(char *text, size_t size, const char *between, const char *format,
 
 /* The ending of a noun: "1 frame", "2 frames". */
 static inline const char *plural(int count) { return count == 1 ? "" : "s"; }
+static inline const char *plural_es(int count) { return count == 1 ? "" : "es"; } /* "1 launch" */
 
 /* Text of others, such as names of files, in messages: what a terminal or a log would obey becomes visible. */
 

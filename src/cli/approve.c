@@ -30,8 +30,8 @@ static const CommandSpec spec = {
         "replaced. "
         "Run it in the folder in which compare ran; a folder outside of it changes only with --expected. Exit status "
         "1: failures that the report does not show remain.\v"
-        "Example: twinbox render scenes/stack.yaml --method engine -o expected --frames 30:40\n"
-        "         twinbox render scenes/stack.yaml --method momentum -o actual --frames 30:40\n"
+        "Example: twinbox render stack --method engine -o expected --frames 30:40\n"
+        "         twinbox render stack --method momentum -o actual --frames 30:40\n"
         "         twinbox compare expected actual --report out/report\n"
         "         twinbox approve out/report --only 'frame_*'"};
 

@@ -229,8 +229,8 @@ static const CommandSpec spec = {
         "With --pages, every launch is run once more. A page has the worst launch of a method and setting beside the "
         "converged run, opened at the step with the largest error: at most two pages of each, from before the impact "
         "to the end of what the chart measures, and at most 256 MB of pages.\v"
-        "Example: twinbox chart scenes/stack.yaml scenes/pyramid_settled.yaml -o out/chart\n"
-        "         twinbox chart scenes/stack.yaml -o out/few --methods engine,momentum:k=20 --quick\n"
+        "Example: twinbox chart stack pyramid_settled -o out/chart\n"
+        "         twinbox chart stack -o out/few --methods engine,momentum:k=20 --quick\n"
         "         twinbox chart out/few/chart.csv -o out/drawn"};
 
 /* A scene and what its line says. */
@@ -298,7 +298,8 @@ static bool draw_again(const Options *given, const char *csv, Error *error) {
 static bool draw_measured(const SpeedAccuracyOptions *options, const char *csv, const SpeedAccuracyScene *scene, int i,
                           Error *error) {
     char what[96];
-    snprintf(what, sizeof what, ": %d methods and settings, %d launches", scene->contenders, scene->launches);
+    snprintf(what, sizeof what, ": %d method%s and settings, %d launch%s", scene->contenders, plural(scene->contenders),
+             scene->launches, plural_es(scene->launches));
     if (scene->striking < scene->launches)
         text_add(what, sizeof what, " of which %d strike%s a box", scene->striking, scene->striking == 1 ? "s" : "");
     const Drawn drawn = {scene->name, what, scene->timed};
@@ -354,8 +355,8 @@ static bool check_look(const SpeedAccuracyOptions *options, Error *error) {
 static void note_misses(const SpeedAccuracyScene *scene) {
     const int missed = scene->launches - scene->striking;
     if (missed > 0)
-        note_print("%s: %d of %d launches strike%s no box; the impact is scored and timed on the others", scene->name,
-                   missed, scene->launches, missed == 1 ? "s" : "");
+        note_print("%s: %d of %d launch%s strike%s no box; the impact is scored and timed on the others", scene->name,
+                   missed, scene->launches, plural_es(scene->launches), missed == 1 ? "s" : "");
 }
 
 static bool study(const SpeedAccuracyOptions *options, Error *error) {

@@ -59,9 +59,9 @@ static const CommandSpec spec = {
         "(it tries 41 at most, with the engine), and draws the first frame with the path of the bomb.\n"
         "Or judge a stored run of any engine: the verdict that simulate prints, the deepest overlap, drift and energy "
         "gained. Contacts are recomputed from the poses.\v"
-        "Example: twinbox check scenes/stack.yaml -o first.png\n"
-        "         twinbox simulate scenes/stack.yaml -o engine.npz\n"
-        "         twinbox check engine.npz --scene scenes/stack.yaml --verdict sound"};
+        "Example: twinbox check stack -o first.png\n"
+        "         twinbox simulate stack -o engine.npz\n"
+        "         twinbox check engine.npz --scene stack --verdict sound"};
 
 static void print_bodies(FILE *out, const Scene *scene) {
     double mass = 0;

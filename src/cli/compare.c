@@ -100,9 +100,9 @@ static const CommandSpec spec = {
         "Pictures are equal if every decoded pixel is. Frames are matched by name, or by the stem and the number of "
         "their names. Runs that are in both folders, and the states named in twinbox's own pictures, tell whether the "
         "physics or the renderer changed.\v"
-        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-        "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
-        "         twinbox compare engine.npz momentum.npz --scene scenes/stack.yaml --csv distance.csv\n"
+        "Example: twinbox simulate stack -o engine.npz\n"
+        "         twinbox simulate stack --method momentum:k=20 -o momentum.npz\n"
+        "         twinbox compare engine.npz momentum.npz --scene stack --csv apart.csv\n"
         "         twinbox render engine.npz -o expected --frames 30:40\n"
         "         twinbox render momentum.npz -o actual --frames 30:40\n"
         "         twinbox compare expected actual --report out/report"};

@@ -62,11 +62,11 @@ static const CommandSpec spec = {
         "Record a dataset to train on: for every touching pair in every step of every launch, positions, rotations and "
         "velocities before the solve, and what the solve changed. An interrupted recording continues where it "
         "stopped.\v"
-        "Example: twinbox dataset scenes/single.yaml scenes/stack.yaml -o pairs.npz\n"
-        "         twinbox dataset scenes/single.yaml -o impulses.npz --random 200 --inputs raw --target impulse"};
+        "Example: twinbox dataset single stack -o pairs.npz\n"
+        "         twinbox dataset single -o impulses.npz --inputs raw --target impulse"};
 
 static void print_rows(const Options *options, int64_t rows, int64_t unconverged, int launches) {
-    printf("%" PRId64 " rows of %d launches -> %s\n", rows, launches, options->output);
+    printf("%" PRId64 " rows of %d launch%s -> %s\n", rows, launches, plural_es(launches), options->output);
     if (options->dataset.labels == DATASET_BY_REFERENCE)
         printf("    steps left out, as the reference does not converge: %" PRId64 "\n", unconverged);
 }

@@ -153,11 +153,11 @@ static const CommandSpec spec = {
         "the run as an animation in Blender. Contacts are left out, but of JSON.\n"
         "With --flat, write a scene for a program that does not read YAML: gravity, time step, and all bodies and the "
         "bomb with their numbers.\v"
-        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+        "Example: twinbox simulate stack -o engine.npz\n"
         "         twinbox export engine.npz -o engine.csv\n"
         "         twinbox export engine.npz -o engine.blend.py\n"
         "         blender --python engine.blend.py\n"
-        "         twinbox export scenes/stack.yaml --flat -o stack.json"};
+        "         twinbox export stack --flat -o stack.json"};
 
 static const struct {
     const char *ending;

@@ -62,8 +62,8 @@ enum { HELP_SIZE = 5120, KINDS_MAX = 31 };
 
 /* All kinds, each with an example. */
 static void write_help(char help[HELP_SIZE]) {
-    static const char runs[] = "\vExample: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-                               "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz";
+    static const char runs[] = "\vExample: twinbox simulate stack -o engine.npz\n"
+                               "         twinbox simulate stack --method momentum:k=20 -o momentum.npz";
     const FigureKind *const *kinds = figure_kinds();
     snprintf(help, HELP_SIZE,
              "Draw a figure for a paper from stored runs (.npz). In SVG and PDF, scenes are pixels, text and lines "

@@ -42,7 +42,7 @@ static const CommandSpec spec = {
         "  0,1,0,0.51,0\n\n"
         "The other comments are scene, method, bomb and camera. What the file does not state is assumed, and "
         "printed.\v"
-        "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
+        "Example: twinbox simulate stack -o engine.npz\n"
         "         twinbox export engine.npz -o engine.csv\n"
         "         twinbox import engine.csv --dt 1/60 -o again.npz\n"
         "         ./box2d scenes/stack.yaml | twinbox import - -o box2d.npz"};

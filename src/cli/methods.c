@@ -14,7 +14,7 @@ static const Option option_table[] = {{OPTION_JSON(Options, json)}, {0}};
 static const CommandSpec spec = {
     .options = option_table,
     .help = "List the methods and their settings. A method is given as NAME or NAME:KEY=VALUE,...\v"
-            "Example: twinbox simulate scenes/stack.yaml --method engine:k=50 -o stack50.npz"};
+            "Example: twinbox simulate stack --method engine:k=50 -o stack50.npz"};
 
 static void print(void) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {

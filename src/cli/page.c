@@ -54,8 +54,8 @@ static const CommandSpec spec = {
         "and the time line alone, as the key h does: for a projector, and for <iframe src=\"stack.html#stage\"> in "
         "another page. A run is a stored trajectory (.npz). A scene (.yaml) is simulated first. With --live, a method "
         "that a page cannot run is recorded. A page takes at most 64 MB: contacts are left out if it would take more.\v"
-        "Example: twinbox page scenes/stack.yaml -o stack.html\n"
-        "         twinbox page --live scenes/stack.yaml --method engine --method interior -o live.html"};
+        "Example: twinbox page stack -o stack.html\n"
+        "         twinbox page --live stack -m engine -m interior -o live.html"};
 
 /* The file's name without its folder, which differs between machines; NULL for a run that is simulated here. */
 static const char *file_of(const char *input) {

@@ -98,8 +98,8 @@ static const CommandSpec spec = {
     .help =
         "Draw runs side by side, one panel each, with one camera. A run is a stored trajectory (.npz). A scene (.yaml) "
         "is simulated first, by default with the engine and with the pair-net that it names.\v"
-        "Example: twinbox render scenes/stack.yaml -o out/stack --video out/stack.mp4\n"
-        "         twinbox render scenes/stack.yaml --method engine --method interior -o out/both"};
+        "Example: twinbox render stack -o out/stack --video out/stack.mp4\n"
+        "         twinbox render stack --method engine --method interior -o out/both"};
 
 /* "1920x1080" */
 static bool read_size(const Option *option, const char *text, void *value, Error *error) {

@@ -233,9 +233,9 @@ static const CommandSpec spec = {
     .input = {.value = "SCENE", .needed = "a scene file is needed", OPTION_PATH(Options, scene)},
     .inputs = {1, 1, "scene"},
     .help = "Run a scene with one method and store the trajectory.\v"
-            "Example: twinbox simulate scenes/stack.yaml -o engine.npz\n"
-            "         twinbox simulate scenes/stack.yaml --method momentum:k=20 -o momentum.npz\n"
-            "         twinbox simulate scenes/stack.yaml --bomb-x 2.5 --frames 120 -o struck.npz --hash struck.csv\n"
+            "Example: twinbox simulate stack -o engine.npz\n"
+            "         twinbox simulate stack --method momentum:k=20 -o momentum.npz\n"
+            "         twinbox simulate stack --bomb-x 2.5 -o struck.npz --hash struck.csv\n"
             "The verdict tells how the run ended: settles, moves, creeps, falls, sinks, tunnels, explodes, non-finite, "
             "adapter "
             "failed; where a bomb or another body strikes: stands, falls or collapses, and how many boxes fell.\n"

@@ -69,8 +69,8 @@ static const CommandSpec spec = {
         "(largest distance of an impulse from it, N s), dissipation (largest energy that friction failed to take, J); "
         "nan: the method has no impulses. Last, to compare with the method reference: the deepest penetration that the "
         "step leads to (m), and the kinetic energy that contacts add (J; negative: take).\v"
-        "Example: twinbox solve scenes/stack.yaml --frame 41 --method engine:k=10 --method engine:k=100\n"
-        "         twinbox solve scenes/stack.yaml --frame 41 -o impact.npz\n"
+        "Example: twinbox solve stack --frame 41 -m engine:k=10 -m engine:k=100\n"
+        "         twinbox solve stack --frame 41 -o impact.npz\n"
         "         twinbox solve impact.npz --method momentum:k=20\n"
         "In Python: problem = numpy.load('impact.npz'); problem['velocity'] has shape (bodies, 2)."};
 

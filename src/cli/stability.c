@@ -196,9 +196,9 @@ static const CommandSpec spec = {
         "together take at most 256 MB.\v"
         "Example: twinbox stability -o out/stability\n"
         "         twinbox new wall.yaml --like wall\n"
-        "         twinbox stability wall.yaml --vary pairs --vary bomb_mass=1:100 -o out/wall\n"
-        "         twinbox stability scenes/stack.yaml --vary iterations --quick -o out/stack-borders\n"
-        "         twinbox stability --study stack_height --methods engine,momentum:k=20 -o out/height"};
+        "         twinbox stability wall.yaml --vary pairs --vary bomb_mass -o out/wall\n"
+        "         twinbox stability stack --vary iterations --quick -o out/borders\n"
+        "         twinbox stability --study stack_height --methods engine -o out/height"};
 
 /* Frees with free_maps(), also after a failure. */
 typedef struct CellMaps {

@@ -377,9 +377,9 @@ bool command_train(int argc, char **argv, Error *error) {
         .inputs = {0, 1, "file"},
         .help = "Train the network of a method, or its learned factors. Ctrl-C and SIGTERM stop it and keep the best "
                 "found so far.\v"
-                "Example: twinbox dataset scenes/single.yaml --bomb-x=-4:4:1 -o pairs.npz\n"
-                "         twinbox train pairs.npz -o pair-net.npz --layers 10-10-2 --optimizer lm --iterations 100\n"
-                "         twinbox train --kind scene-net scenes/stack.yaml -o scene-net.npz"};
+                "Example: twinbox dataset single --bomb-x=-4:4:1 -o pairs.npz\n"
+                "         twinbox train pairs.npz -o net.npz --layers 10-10-2 --iterations 100\n"
+                "         twinbox train --kind scene-net stack -o scene-net.npz"};
     TrainRequest request;
     if (!options_parse(&spec, argc, argv, &options, error) || !make_request(&options, &request, error) ||
         !output_check_npz(request.output, request.kind->file_kind, error) ||

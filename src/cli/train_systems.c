@@ -170,9 +170,9 @@ static bool learn(const Scene *scene, const TabulationTraining *training, const 
     bool ok = memory != NULL && tabulation_write(memory, output, error);
     if (ok && memory->launches == training->launches) ok = file_remove(training->state_path, error);
     if (ok)
-        printf("%s%d entries of %d sets of contacts, from %d launches -> %s\n",
+        printf("%s%d entries of %d sets of contacts, from %d launch%s -> %s\n",
                interrupt_requested() ? "stopped early; " : "", memory->entry_count, memory->set_count, memory->launches,
-               output);
+               plural_es(memory->launches), output);
     tabulation_destroy(memory);
     return ok;
 }

@@ -254,7 +254,7 @@ static void caption(FILE *out, const FigureSpec *spec) {
 const FigureKind figure_divergence = {
     .name = "divergence",
     .summary = "distance from the first run over time, with a band of chaotic divergence",
-    .example = "divergence engine.npz momentum.npz --scene scenes/stack.yaml -o divergence.svg",
+    .example = "divergence engine.npz momentum.npz -o divergence.svg",
     .min_runs = 2,
     .max_runs = FIGURE_RUNS_MAX,
     .takes_scene = true,

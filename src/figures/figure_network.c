@@ -513,7 +513,7 @@ static void caption(FILE *out, const FigureSpec *spec) {
 const FigureKind figure_network = {
     .name = "network",
     .summary = "layers, sizes and weights of a network's file",
-    .example = "network scenes/networks/pair-net.npz --width column -o network.pdf",
+    .example = "network scenes/networks/pair-net.npz -o network.pdf",
     .draw = draw,
     .caption = caption,
 };

@@ -229,7 +229,7 @@ static void caption(FILE *out, const FigureSpec *spec) {
 const FigureKind figure_pair = {
     .name = "narrow-phase",
     .summary = "contact of two boxes of a run: overlaps, normal, points",
-    .example = "narrow-phase engine.npz --bodies 2,11 -o narrow-phase.svg",
+    .example = "narrow-phase engine.npz --bodies 2,11 -o contact.svg",
     .min_runs = 1,
     .max_runs = 1,
     .takes_times = true,

@@ -451,7 +451,7 @@ static void strip_caption(FILE *out, const FigureSpec *spec) {
 const FigureKind figure_strip = {
     .name = "strip",
     .summary = "moments of runs: a row per run, a column per moment",
-    .example = "strip engine.npz momentum.npz --at 0.5,0.6,0.8 -o strip.pdf",
+    .example = "strip engine.npz momentum.npz --at 0.5,1 -o strip.pdf",
     .min_runs = 1,
     .max_runs = FIGURE_RUNS_MAX,
     .takes_times = true,

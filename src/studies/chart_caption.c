@@ -106,7 +106,7 @@ static void add_curves(const Caption *caption) {
         text_add(caption->text, caption->size,
                  " Ring and dotted lines: %s as shipped, with whose time and error the others are compared.",
                  shipped->name);
-    add_names(caption, chart_is_program, "a program of others, by its own clock, whose errors have the same measure.");
+    add_names(caption, chart_is_program, "an external program, by its own clock, whose errors have the same measure.");
     if (is_lost_drawn(chart))
         text_add(caption->text, caption->size, " Crosses: the method lost the scene before the impact.");
     if (has_coloured_twin(chart))

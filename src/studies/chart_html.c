@@ -168,14 +168,14 @@ static void put_scene(FILE *out, ChartHtml *html, const ChartRow *first) {
     ChartPicture picture;
     if (chart_scene_untimed(html->chart.rows, html->chart.count, first->scene)) {
         study_page_section(out, first->scene);
-        fprintf(out, ", %d launches</h2>\n", first->launches);
+        fprintf(out, ", %d launch%s</h2>\n", first->launches, plural_es(first->launches));
         fputs("<p>Without a chart: its times were measured on another processor.</p>\n", out);
     } else if (chart_gather(&chart, &html->chart, first->scene, html->csv, html->look->highlight, html->error)) {
         html->failed = !chart_colour(&chart, &html->look->colours, html->error) ||
                        !chart_picture_make(&picture, &chart, first->scene, html->look, html->error);
         if (!html->failed) {
             study_page_section(out, first->scene);
-            fprintf(out, ", %d launches</h2>\n", chart.launches);
+            fprintf(out, ", %d launch%s</h2>\n", chart.launches, plural_es(chart.launches));
             put_figure(out, html, &picture, first->scene);
             chart_picture_free(&picture);
         }

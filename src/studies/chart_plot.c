@@ -63,7 +63,7 @@ static void lay_out(ChartPicture *picture, double words) {
     }
 }
 
-/* A silenced twin has a shade of its method's colour, dashed and open; a program of others is open, too. */
+/* A silenced twin has a shade of its method's colour, dashed and open; an external program is open, too. */
 PlotStyle chart_line_style(const ChartLine *line) {
     PlotStyle style = {.symbol = METHOD_CIRCLE, .colour = GREY_LINE, .ink = CHART_GREY_INK};
     if (line->rank != CHART_COLOURED) return style;
@@ -225,7 +225,7 @@ bool chart_picture_make(ChartPicture *picture, const Chart *chart, const char *s
     char name[CHART_TEXT_SIZE], title[2 * CHART_TEXT_SIZE];
     *picture = (ChartPicture){.chart = chart, .size = look->size};
     chart_plain(name, scene);
-    snprintf(title, sizeof title, "%s, %d launches", name, chart->launches);
+    snprintf(title, sizeof title, "%s, %d launch%s", name, chart->launches, plural_es(chart->launches));
     bool whole = draw_panels(picture, title, 0);
     chart_caption(chart, title, picture->named, picture->caption, sizeof picture->caption);
     if (whole && look->words) whole = draw_words(picture, title);

@@ -36,6 +36,8 @@ for name in $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'); do
     cd "$name" || exit 1
     ln -s "$scenes" scenes
     ARGP_HELP_FMT=rmargin=400 "$twinbox" "$name" --help | sed -n '/^Example: /,/^[^ ]/ s/^\(Example:\|        \) \(twinbox .*\)/\2/p' >examples
+    "$twinbox" "$name" --help | sed -n '/^Example: /,/^[^ ]/ s/^\(Example:\|        \) \(twinbox .*\)/\2/p' >narrow
+    cmp -s examples narrow || fail "the help of $name breaks examples at 80 columns, so that they cannot be pasted: $(comm -3 examples narrow)"
     [ -s examples ] || fail "the help of $name has no example"
     grep -q "^twinbox $name\b\|^twinbox simulate" examples || fail "the examples of $name are of other commands: $(<examples)"
     while read -r line; do

@@ -130,7 +130,7 @@ for word in "ns-none", "ns-negative":
     assert all(row["us_engine"] == "" and float(row["error_mean"]) > 0 for row in find(word).values())
 assert find("die")["closed", "impact"]["error_mean"] == "" != find("good")["closed", "impact"]["error_mean"]
 PYTHON
-grep -q "Mine, .*: a program of others, by its own clock" chart/chart-stack.txt || fail "caption: $(cat chart/chart-stack.txt)"
+grep -q "Mine, .*: an external program, by its own clock" chart/chart-stack.txt || fail "caption: $(cat chart/chart-stack.txt)"
 
 # Two runs that differ are named.
 cat >tower.yaml <<'YAML'

@@ -441,7 +441,7 @@ TEST(programs_are_drawn_with_their_own_time) {
     assert_true(chart.front[0][0].us == 5);
     assert_int_equal(chart.lines[2].left_out + chart.lines[3].left_out, 2);
     free_chart(&chart, &table);
-    expect_caption(path, " Rapier: a program of others, by its own clock", NULL);
+    expect_caption(path, " Rapier: an external program, by its own clock", NULL);
     expect_caption(path, "Without time or error: exec:program=silent (1), exec:program=zero (1).", NULL);
 }
 
