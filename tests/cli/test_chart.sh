@@ -138,7 +138,7 @@ run 0 chart "$scenes/single.yaml" -o five $few
 run 0 chart "$scenes/single.yaml" -o counted $few --launches 5
 cmp -s <(without_times five/chart.csv) <(without_times counted/chart.csv) || fail "5 launches are not the quick chart's"
 run 0 chart "$scenes/single.yaml" -o swept $few --bomb-x=-2:2:2
-says "single: 1 methods and settings, 3 launches"
+says "single: 1 method and settings, 3 launches"
 printf 'x\n-2\n0\n2\n' >places.csv
 run 0 chart "$scenes/single.yaml" -o listed $few --launches places.csv
 cmp -s <(without_times swept/chart.csv) <(without_times listed/chart.csv) || fail "a sweep and a table differ"
@@ -153,9 +153,9 @@ complains "alone: error: the bomb has one launch and no family"
 sed "s|networks/|$scenes/networks/|; s|size: \[100, 20\]|size: [2000, 20]|" "$scenes/single.yaml" |
     sed '/^bodies:/a\  - {pattern: row, count: 200, spacing: [2, 0], mass: 1, size: [1, 1], position: [50, 0.5]}' >large.yaml
 run 0 chart large.yaml -o large $few
-says "large: 1 methods and settings, 4 launches"
+says "large: 1 method and settings, 4 launches"
 run 0 chart large.yaml -o large $few --launches 5
-says "large: 1 methods and settings, 5 launches"
+says "large: 1 method and settings, 5 launches"
 # A family of the scene alone decides.
 sed 's/x: 4/x: {from: 1, to: 3}/' alone.yaml >family.yaml
 run 0 chart family.yaml -o family $few --launches 2

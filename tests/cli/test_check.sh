@@ -64,7 +64,7 @@ says '"misses": {"tried": 41, "missed": 32, "x": [[-4.9'
 # What needs an impact goes on with the launches that strike, and refuses a scene without one.
 run 0 chart tower.yaml --quick --methods engine:k=10 -o chart
 complains "twinbox: note: tower: 4 of 5 launches strike no box; the impact is scored and timed on the others"
-says "tower: 1 methods and settings, 5 launches of which 1 strikes a box"
+says "tower: 1 method and settings, 5 launches of which 1 strikes a box"
 equal "times of the impact" "$(awk -F, '$4 == "closed" && $5 == "impact" && $7 > 0' chart/chart.csv | wc -l)" 1
 sed 's/{from: -5, to: 5, value: 4}/{from: 6, to: 9, value: 8}/' tower.yaml >beside.yaml
 run 0 check beside.yaml -o misses.png
