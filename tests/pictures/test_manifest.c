@@ -205,7 +205,7 @@ TEST(the_view_names_the_files_of_the_runs) {
     const json_t *panel = json_array_get(json_object_get(json_object_get(manifest, "view"), "panels"), 1);
     const json_t *names = json_object_get(panel, "runs");
     assert_int_equal(json_array_size(names), 2);
-    assert_string_equal(json_string_value(json_array_get(names, 0)), "two_boxes-pair-net_network=nets_small.npz.npz");
+    assert_string_equal(json_string_value(json_array_get(names, 0)), "two_boxes-pair-net_network=small.npz.npz");
     assert_string_equal(json_string_value(json_array_get(names, 1)), "two_boxes-engine.npz");
     json_decref(manifest);
 }
