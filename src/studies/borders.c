@@ -91,14 +91,15 @@ static const char *sign(double value) { return value < 0 ? "−" : ""; }
 
 /* "2 to 40 boxes"; without a unit "ratio 1 to 1000". */
 static void name_extent(char text[STABILITY_TEXT_SIZE], const BorderRow *row, const BorderRange *range) {
-    char parameter[STABILITY_TEXT_SIZE] = "";
+    text[0] = '\0';
     if (row->unit[0] == '\0') {
-        stability_axis_text(parameter, row->parameter, "");
-        parameter[0] = (char)tolower((unsigned char)parameter[0]);
-        text_add(parameter, sizeof parameter, " ");
+        stability_axis_text(text, row->parameter, "");
+        text[0] = (char)tolower((unsigned char)text[0]);
+        text_add(text, STABILITY_TEXT_SIZE, " ");
     }
-    snprintf(text, STABILITY_TEXT_SIZE, "%s%s%.7g to %s%.7g%s%s", parameter, sign(range->easy), fabs(range->easy),
-             sign(range->hard), fabs(range->hard), row->unit[0] != '\0' ? " " : "", row->unit);
+    text_add(text, STABILITY_TEXT_SIZE, "%s%.7g to %s%.7g", sign(range->easy), fabs(range->easy), sign(range->hard),
+             fabs(range->hard));
+    if (row->unit[0] != '\0') text_add(text, STABILITY_TEXT_SIZE, " %s", row->unit);
     chart_make_plain(text);
 }
 
