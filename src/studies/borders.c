@@ -17,7 +17,7 @@
 /* mm */
 static const double row_height = 4.4, tile_height = 3.5, heading_height = 5.5, most_column = 20, most_study = 62,
                     column_gap = 0.8, least_symbol = 2.4, symbol_width = 1.4, tick_end = 1.3, least_fail = 0.5,
-                    number_gap = 0.35, name_gap = 0.6, text_gap = 2, edge = 1, right = 3.6, head_gap = 1,
+                    number_gap = 0.35, name_gap = 0.6, text_gap = 2, edge = 1, right = 2.5, head_gap = 1,
                     most_label = 0.45 * FIGURE_PAGE_WIDTH, legend_item = 31;
 
 /* A smaller share of a range is not seen. */
@@ -218,11 +218,17 @@ static double word_width(const char *name) {
     return widest;
 }
 
-/* Names wider than a column alternate between two heights, and so have twice the room. A word that is still too long is smaller. */
+/* Names wider than a column alternate between two heights, and so have twice the room; the last one needs half a column beside
+   its own. A word that is still too long is smaller. */
 static void lay_out_names(Borders *borders) {
     double widest = 0;
     for (int i = 0; i < borders->method_count; i++) widest = fmax(widest, word_width(borders->methods[i].name));
     borders->tiers = widest > borders->column - name_gap && borders->method_count > 1 ? 2 : 1;
+    if (borders->tiers == 2) {
+        const double columns = borders->method_count + 0.5;
+        borders->column = fmin((FIGURE_PAGE_WIDTH - borders->label - edge) / columns, most_column);
+        borders->width = fmax(borders->label + borders->column * columns + edge, FIGURE_COLUMN_WIDTH);
+    }
     const double room = borders->tiers * borders->column - name_gap;
     for (int i = 0; i < borders->method_count; i++) {
         BorderMethod *method = &borders->methods[i];

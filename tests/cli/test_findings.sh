@@ -47,7 +47,8 @@ done
 cp copy/golden/findings/heldout.txt copy/out/heldout/table.md
 mkdir -p copy/out/families copy/out/paper/figures copy/golden/figures
 touch copy/out/paper/report.md copy/out/{chart,chart_net,families}/equal_time.csv copy/out/families/equal_time.png \
-    copy/out/chart/chart-pyramid_settled.png copy/out/paper/figures/factors.png copy/out/stability/map-rate_height.png
+    copy/out/chart/chart-pyramid_settled.png copy/out/paper/figures/factors.png copy/out/stability/{map-rate_height,borders}.png \
+    copy/out/buckling/borders.png
 (cd copy && scenes/findings 1 /usr/bin/false) || fail "scenes/findings"
 cmp "$sources/README.md" copy/README.md && cmp "$sources/src/studies/README.md" copy/src/studies/README.md || fail "the pages are not renewed to themselves"
 diff -r "$sources/golden/findings" copy/golden/findings || fail "other tables are kept"

@@ -14,7 +14,7 @@ done
 equal "files" "$(ls own)" "$(ls table)"
 
 # Its figure has the scene's title, the range that was given, and no row of a method that does not apply.
-for text in "Scene heavy on one, by ratio" 1000; do
+for text in "Scene heavy on one, by ratio" "ratio 1 to 1000"; do
     [ "$(grep -o ">$text<" own/borders.svg | wc -l)" = 1 ] || fail "not once in the figure: $text"
 done
 grep -q ">Heavy box on one<" table/borders.svg || fail "the title of the table's study"

@@ -81,7 +81,7 @@ TEST(captions_explain_their_words) {
               "       'scene-net: neural network for a scene; k: sweeps over all contacts per step; '\n"
               "       'warm: warm start from the previous step\\'s impulses; net=off: without its learned part.\\n', "
               "'words')\n"
-              "expect(caption('borders').split('study. ')[1], 'nncg: conjugate gradients over sweeps; '\n"
+              "expect(caption('borders').split(' first. ')[1], 'nncg: conjugate gradients over sweeps; '\n"
               "       'near: sweeps go on while contacts miss their velocity by this, m/s.\\n', 'words')\n");
 }
 
