@@ -63,7 +63,7 @@ static void add_span(BorderCell *cell, double from, double to, bool holds, int l
     if (holds) cell->held += to - from;
 }
 
-/* The same side of the method's next border in this direction; NAN: there is none. */
+/* The same side of the method's next border in this direction; NAN: none. */
 static double next_border(const CsvTable *table, const BorderRow *row, const BorderRange *range, bool holds,
                           bool down) {
     const double from = border_range_share(range, holds ? row->holds_at : row->fails_at);

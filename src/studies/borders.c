@@ -28,9 +28,9 @@ static const double title_points = 7.5, small_points = 6.5, least_size = 0.85; /
 
 static const Pen rigid_pen = {NO_COLOUR, 1, 0x000000, 1.2, NULL};
 
-#define HOLDS_COLOUR 0xA3CBE5u /* of VERDICT_CREEPS */
 #define SOFT_COLOUR 0x606060u
 
+/* Of at most so many studies the methods are rows. */
 enum { FEW_STUDIES = 3 };
 
 typedef struct BorderStudy {
@@ -355,7 +355,7 @@ static void draw_cell(const Borders *borders, int study, int method, double y) {
     for (int i = 0; i < cell.count; i++) {
         spans[i] = placed(&cell.spans[i], left, width);
         fill(borders->sketch, spans[i].from, spans[i].to, y,
-             spans[i].holds ? HOLDS_COLOUR : verdict_looks[spans[i].look].fill);
+             spans[i].holds ? verdict_looks[VERDICT_CREEPS].fill : verdict_looks[spans[i].look].fill);
     }
     const int numbered = number_border(borders->sketch, &cell, spans, y);
     for (int i = 0; i < cell.count; i++)
@@ -381,7 +381,7 @@ static void draw_heading(const Borders *borders, bool struck, double y) {
     const Pen rule = pen_line(0x909090, 0.8, NULL);
     const double top = y + heading_height / 2 - 0.6;
     sketch_line(borders->sketch, (Point){edge, top}, (Point){column_left(borders, borders->method_count), top}, &rule);
-    fill(borders->sketch, edge, edge + tile_height, y - 0.4, HOLDS_COLOUR);
+    fill(borders->sketch, edge, edge + tile_height, y - 0.4, verdict_looks[VERDICT_CREEPS].fill);
     plot_text(borders->sketch, (Point){edge + tile_height + 1.3, y - 0.4}, TEXT_LEFT, title_points,
               struck ? "as many boxes fall as with the reference" : "holds");
 }
@@ -397,7 +397,7 @@ static void draw_legend(const Borders *borders, double foot, int rows) {
     for (int sample = !borders->few; sample <= borders->rigid; sample++, next++) {
         const Point at = {edge + legend_item * (next % place.columns), place.top - LEGEND_ROW * (next / place.columns)};
         if (sample == 0)
-            fill(borders->sketch, at.x, at.x + 2.9, at.y, HOLDS_COLOUR);
+            fill(borders->sketch, at.x, at.x + 2.9, at.y, verdict_looks[VERDICT_CREEPS].fill);
         else
             sketch_line(borders->sketch, (Point){at.x + 1.4, at.y - 1.5}, (Point){at.x + 1.4, at.y + 1.5}, &rigid_pen);
         plot_text(borders->sketch, (Point){at.x + 4.2, at.y}, TEXT_LEFT, LEGEND_POINTS,
@@ -462,15 +462,13 @@ static void draw(Borders *borders) {
 
 static void write_caption(const Borders *borders, PlotPage *page) {
     WordList words = {0};
-    text_add(page->caption, sizeof page->caption,
-             "How far each method holds. A cell is the study's range, from its easy end (left) to its hard one. Blue "
-             "holds, another "
-             "colour fails in the way that its symbol shows, and where a shift of a micrometre decides it is pale. The "
-             "number "
-             "is the last value that holds, rounded. A stroke: the method does not apply; an empty cell: not in the "
-             "study. Sorted by "
-             "what holds, the reference first.%s",
-             borders->rigid ? " Ticks: rigid boxes hold up to here, in closed form." : "");
+    text_add(
+        page->caption, sizeof page->caption,
+        "How far each method holds. A cell is the study's range, from its easy end (left) to its hard one. Blue "
+        "holds, another colour fails in the way that its symbol shows, and where a shift of a micrometre decides it "
+        "is pale. The number is the last value that holds, rounded. A stroke: the method does not apply; an empty "
+        "cell: not in the study. Sorted by what holds, the reference first.%s",
+        borders->rigid ? " Ticks: rigid boxes hold up to here, in closed form." : "");
     if (borders->struck_count > 0) text_add(page->caption, sizeof page->caption, " %s", stability_struck_words);
     for (int i = 0; i < borders->study_count; i++)
         if (stability_unconverged(borders->unconverged, borders->studies[i].row->study,

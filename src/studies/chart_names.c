@@ -120,7 +120,7 @@ static Label label_of(const ChartDrawing *drawing, int line, const ChartMark *ma
 
 /* At the chief mark of a line, else at another one, the most accurate first: with what is to say of that mark, or the name alone. */
 static const ChartMark *name_mark(ChartDrawing *drawing, const ChartMark *chief, bool whole) {
-    const double farthest = 12;
+    const double farthest = 12; /* the chief mark's name may be led to it from twice as far */
     for (double far = 3; far <= farthest; far *= 2)
         for (int i = drawing->panel->count; i >= 0; i--) {
             const ChartMark *mark = i == drawing->panel->count ? chief : &drawing->panel->marks[i];

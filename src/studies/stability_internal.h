@@ -77,7 +77,7 @@ bool border_holds_throughout(const BorderCell *cell);
 enum { BORDERS_MAX_METHODS = 24, BORDERS_MAX_STUDIES = 32 };
 
 /* Writes the figure and its caption: a row for each study, struck ones last, and a column for each method that applies to one
-   of them; the caption names the others. A cell is the range of the study, with the parts that hold and those that fail,
+   of them; the caption names the others. Of up to three studies the methods are rows. A cell is the range of the study, with the parts that hold and those that fail,
    each in the colour of its verdict. Columns and rows are sorted by what holds, the reference first. The foot names where the
    reference did not converge, by unconverged.csv. ERROR_INPUT, with path:line:column: more than BORDERS_MAX_METHODS methods or
    BORDERS_MAX_STUDIES studies. */
