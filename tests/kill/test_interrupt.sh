@@ -93,8 +93,10 @@ interrupted "train, signalled twice"
 grep -q "^stopped early; .* -> kept.npz" out || fail "a training that was signalled twice: $(cat out err)"
 [ -s kept.npz ] || fail "a training that was signalled twice is lost"
 
-# Processes that draw leave a signal to the one that started them.
-setsid "$twinbox" render a.npz -o group --size 640x640 --slow 16 --hold 20 --jobs 2 >out 2>err &
+# Processes that draw leave a signal to the one that started them. They draw for seconds: a busy shell notices the second
+# picture late.
+run 0 simulate "$scenes/pyramid.yaml" --frames 600 -o long.npz
+setsid "$twinbox" render long.npz -o group --size 1920x1080 --jobs 2 >out 2>err &
 running=$!
 until [ -e group/frame_000001.png ] || ! kill -0 $running; do sleep 0.01; done 2>/dev/null
 kill -TERM -- -$running
@@ -102,8 +104,8 @@ sleep 0.05
 kill -TERM -- -$running 2>/dev/null
 interrupted "render, whose group is signalled"
 complains "render: error: stopped"
-equal "files that are not whole" "$(ls -A group | grep -cv '^frame_[0-9]*.png$\|^single-engine.npz$\|^manifest.json.part$')" 0
-rm -rf group kept.npz pairs.npz
+equal "files that are not whole" "$(ls -A group | grep -cv '^frame_[0-9]*.png$\|^pyramid-engine.npz$\|^manifest.json.part$')" 0
+rm -rf group long.npz kept.npz pairs.npz
 
 # A training that was stopped early is stored, once it has reported.
 rm -f new.npz
