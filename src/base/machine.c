@@ -197,8 +197,9 @@ static int redirect(posix_spawn_file_actions_t *actions, const int streams[3]) {
     return code;
 }
 
-/* Returns an errno, or 0. streams: its standard input, output and error. */
-static int spawn(pid_t *pid, const char *const *argv, const int streams[3], bool group) {
+/* Returns an errno, or 0. streams: its standard input, output and error. group_signals: NULL, or the signals that are blocked in
+   a process group of its own. */
+static int spawn(pid_t *pid, const char *const *argv, const int streams[3], const sigset_t *group_signals) {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     int code = posix_spawn_file_actions_init(&actions);
@@ -206,7 +207,10 @@ static int spawn(pid_t *pid, const char *const *argv, const int streams[3], bool
     code = posix_spawnattr_init(&attributes);
     if (code == 0) {
         code = redirect(&actions, streams);
-        if (code == 0 && group) code = posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+        if (code == 0 && group_signals != NULL) {
+            posix_spawnattr_setsigmask(&attributes, group_signals);
+            code = posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+        }
         /* posix_spawn's signature needs the cast; it does not write to the strings. */
         if (code == 0) code = posix_spawnp(pid, argv[0], &actions, &attributes, (char *const *)argv, environ);
         posix_spawnattr_destroy(&attributes);
@@ -218,7 +222,7 @@ static int spawn(pid_t *pid, const char *const *argv, const int streams[3], bool
 
 static bool start(Process *process, const char *const *argv, int child_input, Error *error) {
     const int output = fileno(process->output);
-    const int code = spawn(&process->pid, argv, (const int[]){child_input, output, output}, false);
+    const int code = spawn(&process->pid, argv, (const int[]){child_input, output, output}, NULL);
     if (code == 0) return true;
     return error_system(error, argv[0], "cannot be run: %s%s", strerror(code),
                         code == ENOENT ? "; is its package installed?" : "");
@@ -309,6 +313,67 @@ static void close_pair(const int ends[2]) {
         if (ends[i] >= 0) close(ends[i]);
 }
 
+/* Programs that talk, for a handler of signals: it ends them, as the process is about to end. A signal may come to any thread, so
+   one that starts a program holds its own back, and the handler waits for the others. */
+enum { TALKS_MAX = 4096 };
+static atomic_int talking[TALKS_MAX]; /* process ids; 0: free */
+static atomic_int starting;
+
+static bool remember(pid_t pid) {
+    for (int i = 0; i < TALKS_MAX; i++) {
+        int none = 0;
+        if (atomic_compare_exchange_strong(&talking[i], &none, (int)pid)) return true;
+    }
+    return false;
+}
+
+static void forget(pid_t pid) {
+    for (int i = 0; i < TALKS_MAX; i++) {
+        int own = (int)pid;
+        if (atomic_compare_exchange_strong(&talking[i], &own, 0)) return;
+    }
+}
+
+/* The group, and the program where it has left that. */
+static void kill_program(pid_t pid) {
+    kill(-pid, SIGKILL);
+    kill(pid, SIGKILL);
+}
+
+void talks_kill(void) {
+    for (int i = 0; i < 200 && atomic_load(&starting) > 0; i++) poll(NULL, 0, 5);
+    for (int i = 0; i < TALKS_MAX; i++) {
+        const pid_t pid = (pid_t)atomic_load(&talking[i]);
+        if (pid > 0) kill_program(pid);
+    }
+}
+
+/* As long as a program takes to end once it is killed. One of another user cannot be, and is left. */
+static void wait_briefly(pid_t pid) {
+    const double until = clock_seconds() + 2;
+    pid_t ended;
+    while ((ended = waitpid(pid, NULL, WNOHANG)) == 0 || (ended < 0 && errno == EINTR)) {
+        if (clock_seconds() >= until) return;
+        poll(NULL, 0, 1);
+    }
+}
+
+static int spawn_talk(pid_t *pid, const char *const *argv, const int streams[3]) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    atomic_fetch_add(&starting, 1);
+    int code = spawn(pid, argv, streams, &before);
+    if (code == 0 && !remember(*pid)) {
+        kill_program(*pid);
+        wait_briefly(*pid);
+        code = EAGAIN;
+    }
+    atomic_fetch_sub(&starting, 1);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return code;
+}
+
 bool talk_start(Talk *talk, const char *const *argv) {
     int in[2] = {-1, -1}, out[2] = {-1, -1}, complaints[2] = {-1, -1};
     *talk = (Talk){.input = -1};
@@ -317,7 +382,7 @@ bool talk_start(Talk *talk, const char *const *argv) {
                        pipe2(complaints, O_CLOEXEC) != 0
                    ? errno
                    : 0;
-    if (code == 0) code = spawn(&talk->pid, argv, (const int[]){in[1], out[1], complaints[1]}, true);
+    if (code == 0) code = spawn_talk(&talk->pid, argv, (const int[]){in[1], out[1], complaints[1]});
     if (code != 0) {
         close_pair(in);
         close_pair(out);
@@ -461,11 +526,13 @@ bool talk_is_quiet(Talk *talk) {
 }
 
 void talk_end(Talk *talk) {
-    kill(-talk->pid, SIGKILL); /* before the program is waited for: until then no other group can have this number */
-    wait_for(talk->pid);
+    /* One that cannot be killed may still end when nobody listens. */
     close(talk->input);
     close(talk->output);
     if (talk->complaints >= 0) close(talk->complaints);
+    kill_program(talk->pid); /* before it is waited for: until then nothing else can have this number */
+    forget(talk->pid);
+    wait_briefly(talk->pid);
     free(talk->unread);
     *talk = (Talk){.input = -1};
 }

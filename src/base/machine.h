@@ -116,7 +116,7 @@ bool process_finish(Process *process, char *text, size_t size, Error *error);
 void process_kill(Process *process);
 
 /* Talks with another program, which answers on its standard output, without a shell. It has a process group of its own, which
-   ends as a whole. Nothing here waits longer than `until`, by clock_seconds(), or takes more memory than it is told. */
+   ends as a whole. Nothing here but talk_end() waits longer than `until`, by clock_seconds(), or takes more memory than it is told. */
 
 enum { TALK_WHY_SIZE = 400, TALK_COMPLAINT_SIZE = 4096 };
 
@@ -145,5 +145,8 @@ char *talk_line(Talk *talk, size_t most, double until);
 /* Whether it runs, and has written nothing that was not read. */
 bool talk_is_quiet(Talk *talk);
 
-/* Kills the program and all of its process group. */
+/* Kills the program and all of its process group; waits 2 s at most for its end. */
 void talk_end(Talk *talk);
+
+/* Kills all programs that talk. A handler of signals may call it, before it ends the process. */
+void talks_kill(void);

@@ -194,7 +194,7 @@ static const Option option_table[] = {
     {"--methods", 0, "LIST",
      "Methods, separated by commas; a name alone stands for all settings that the chart has for it (default: all; "
      "methods left out are reported)",
-     OPTION_TEXT(Options, study.methods)},
+     OPTION_METHOD(Options, study.methods)},
     {"--launches", 0, "N|FILE.csv",
      "Launches to score on: N held-out launches of the scene's family (default: 40, fewer above 110 bodies), or a "
      "table with any of the "

@@ -130,7 +130,7 @@ bool time_left_estimate(const TimeLeft *left, double time, double part, double *
 /* "8 s", "6 min 40 s" or "2 h 10 min": no digits that an estimate does not have. */
 void time_left_text(double seconds, char text[TIME_LEFT_TEXT_SIZE]);
 
-/* SIGINT (Ctrl-C) and SIGTERM. Either ends the program with exit status 130 (ERROR_INTERRUPTED), in every command: at
+/* SIGINT (Ctrl-C), SIGTERM and SIGHUP. Each ends the program with exit status 130 (ERROR_INTERRUPTED), in every command: at
    once where nothing would look at a request, between two pieces of work while signals are held. Files are written
    beside their name and renamed, so that an end at once leaves no half of one. */
 
@@ -262,7 +262,7 @@ typedef struct PanelMethods {
 #define OPTION_METHODS(T, member, defaults)                                                          \
     "--method", 'm', "NAME[:KEY=VALUE,...]",                                                         \
         "Simulate the scene by this method, for a panel of its own (may be repeated; " defaults ")", \
-        OPTION_TEXTS(T, member.texts, member.count)
+        OPTION_METHOD_TEXTS(T, member.texts, member.count)
 
 /* Settings need exactly one scene among the inputs, methods one at least. After an error, panels_free frees what was loaded
    before it. */

@@ -172,6 +172,7 @@ static void on_signal(int signal_number) {
     if (atomic_load(&held) > 0 && (first || now - atomic_load(&requested_at) < SAME_REQUEST)) return;
     const ssize_t ignored = write(STDERR_FILENO, text, sizeof text - 1);
     (void)ignored;
+    talks_kill();
     _exit(ERROR_INTERRUPTED);
 }
 
@@ -180,6 +181,9 @@ void interrupt_handle(void) {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    struct sigaction hangup;
+    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN) /* nohup(1) */
+        sigaction(SIGHUP, &action, NULL);
 }
 
 void interrupt_hold(void) { atomic_fetch_add(&held, 1); }

@@ -5,6 +5,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"
+#include "methods/methods.h"
 #include "scenes/scenes.h"
 
 #include <argp.h>
@@ -119,6 +120,16 @@ bool option_texts(const Option *option, const char *text, void *value, Error *er
     if (*count == (int)option->most) return error_input(error, option->name, "can be given at most %d times", *count);
     ((const char **)value)[(*count)++] = text;
     return true;
+}
+
+bool option_method(const Option *option, const char *text, void *value, Error *error) {
+    programs_allow(text);
+    return option_text(option, text, value, error);
+}
+
+bool option_method_texts(const Option *option, const char *text, void *value, Error *error) {
+    programs_allow(text);
+    return option_texts(option, text, value, error);
 }
 
 bool option_paths(const Option *option, const char *text, void *value, Error *error) {

@@ -61,6 +61,11 @@ struct Option {
 #define OPTION_TEXTS(T, array, count)                                                                       \
     .read = option_texts, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \
     .most = sizeof((T *)NULL)->array / sizeof *((T *)NULL)->array
+/* Methods, which may be programs: those that are named here may be started (programs_allow). One or a list; or repeated. */
+#define OPTION_METHOD(T, member) .read = option_method, .at = OPTION_AT(T, member, const char *)
+#define OPTION_METHOD_TEXTS(T, array, count)                                                                       \
+    .read = option_method_texts, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \
+    .most = sizeof((T *)NULL)->array / sizeof *((T *)NULL)->array
 #define OPTION_PATHS(T, array, count)                                                                       \
     .read = option_paths, .at = OPTION_AT(T, array[0], const char *), .count_at = OPTION_AT(T, count, int), \
     .most = sizeof((T *)NULL)->array / sizeof *((T *)NULL)->array
@@ -83,7 +88,8 @@ struct Option {
         OPTION_TEXTS(T, member.texts, member.count)
 
 OptionRead option_text, option_path, option_flag, option_seed, option_range, option_int, option_float, option_double,
-    option_enum, option_flags, option_texts, option_paths, option_set, option_output, option_binary;
+    option_enum, option_flags, option_texts, option_paths, option_set, option_output, option_binary, option_method,
+    option_method_texts;
 
 typedef struct CommandSpec {
     const Option *options; /* ended by {0} */

@@ -206,7 +206,7 @@ static const Option option_table[] = {
     {"--output", 'o', "RUN", "Trajectory to write: RUN.npz, or RUN.csv for poses as text",
      OPTION_BINARY(Options, output)},
     {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method (default: engine); see twinbox methods",
-     OPTION_TEXT(Options, method)},
+     OPTION_METHOD(Options, method)},
     {"--hash", 0, "FILE", "Write frame,hash of every frame as CSV", OPTION_OUTPUT(Options, hashes)},
     {"--verdict", 0, "FILE.json", "Write the verdict with all its figures", OPTION_OUTPUT(Options, verdict)},
     {"--no-contacts", 0, NULL, "Leave the contacts out of RUN.npz; they are most of it",

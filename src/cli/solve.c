@@ -33,7 +33,7 @@ typedef struct Options {
 
 static const Option option_table[] = {
     {"--method", 'm', "NAME[:KEY=VALUE,...]", "Method to score (may be repeated)",
-     OPTION_TEXTS(Options, methods, method_count)},
+     OPTION_METHOD_TEXTS(Options, methods, method_count)},
     {"--impulses", 0, "FILE.csv",
      "Also score these impulses, in N s over the step: a table with the columns contact (its index in P.npz, from 0), "
      "normal and tangent; contacts that it omits have none",
@@ -46,7 +46,7 @@ static const Option option_table[] = {
      OPTION_FLOAT(Options, bomb_x, -SCENE_MAX_POSITION, SCENE_MAX_POSITION)},
     {OPTION_SET(Options, set)},
     {"--run-by", 0, "NAME[:KEY=VALUE,...]", "Method that runs the scene up to this step (default: engine)",
-     OPTION_TEXT(Options, run_by)},
+     OPTION_METHOD(Options, run_by)},
     {"--output", 'o', "P.npz", "Write the contact problem; without --method, nothing is solved",
      OPTION_BINARY(Options, output)},
     {0}};

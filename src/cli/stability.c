@@ -156,7 +156,7 @@ static const Option option_table[] = {
     {"--methods", 0, "LIST",
      "Methods, separated by commas; a name alone makes as many sweeps as the scene sets (default: all that the study "
      "does not report as left out)",
-     OPTION_TEXT(Options, study.methods)},
+     OPTION_METHOD(Options, study.methods)},
     {"--vary", 0, "NAME[=FROM:TO[:STEP]]",
      "Vary a parameter of SCENE, by default between its bounds, or what every scene has: iterations, dt, friction, "
      "bomb_x, bomb_y, "

@@ -26,23 +26,25 @@ typedef struct Note {
 } Note;
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static Adapter *pool; /* programs that wait for work */
-static Note *notes;   /* of all programs that were started */
-static pid_t owner;   /* a fork's end is not that of the pool */
-static int argument_count;
-static char **arguments;
+static Adapter *pool;        /* programs that wait for work */
+static Note *notes;          /* of all programs that were started */
+static pid_t owner;          /* a fork's end is not that of the pool */
+static const char **allowed; /* [allowed_count] values of options */
+static size_t allowed_count, allowed_capacity;
 
-void programs_allow(int argc, char **argv) {
-    argument_count = argc;
-    arguments = argv;
+void programs_allow(const char *methods) {
+    /* Without memory the program is not started. */
+    if (array_reserve((void **)&allowed, &allowed_capacity, allowed_count + 1, sizeof *allowed))
+        allowed[allowed_count++] = methods;
 }
 
 static bool is_allowed(const char *method, const char *program) {
     char text[ADAPTER_KEY_SIZE];
     const size_t length = (size_t)snprintf(text, sizeof text, "%s:%s", method, program);
-    for (int i = 0; i < argument_count; i++)
-        for (const char *at = strstr(arguments[i], text); at != NULL; at = strstr(at + 1, text))
-            if (at[length] == '\0' || strchr(",:", at[length]) != NULL) return true;
+    for (size_t i = 0; i < allowed_count; i++)
+        for (const char *at = strstr(allowed[i], text); at != NULL; at = strstr(at + 1, text))
+            if ((at == allowed[i] || at[-1] == ',') && (at[length] == '\0' || strchr(",:", at[length]) != NULL))
+                return true;
     return false;
 }
 
@@ -175,6 +177,13 @@ static bool check_answers(Adapter *adapter, const MethodDescription *method, con
            adapter_failed(adapter, "answers %s, which '%s:PROGRAM' takes", answers, states ? "exec" : "exec-solver");
 }
 
+static bool is_utf8(const char *text) {
+    uint32_t character;
+    for (size_t size; *text != '\0'; text += size)
+        if ((size = utf8_decode(text, strlen(text), &character)) == 0) return false;
+    return true;
+}
+
 static bool read_hello(Adapter *adapter, const MethodDescription *method, const char *line) {
     char key[32], form[16] = "json", answers[16] = "states", message[200] = "";
     ProgramName program = {"", ""};
@@ -193,6 +202,8 @@ static bool read_hello(Adapter *adapter, const MethodDescription *method, const 
     if (message[0] != '\0') return adapter_failed(adapter, "says: %s", message);
     if (number != VERSION)
         return adapter_failed(adapter, "speaks version %g of the protocol; expected version %d", number, VERSION);
+    if (!is_utf8(program.name) || !is_utf8(program.version))
+        return adapter_failed(adapter, "has a name or version that is not UTF-8: '%.60s'", line);
     if (program.name[0] == '\0' || program.version[0] == '\0' || control_in_text(program.name) != 0 ||
         control_in_text(program.version) != 0)
         return adapter_failed(adapter, "does not say its name and version: '%.60s'", line);

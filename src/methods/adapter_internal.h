@@ -31,7 +31,7 @@ bool adapter_failed(Adapter *adapter, const char *format, ...) PRINTF_LIKE(2, 3)
 /* With the start of an answer that is not understood. */
 bool adapter_not_understood(Adapter *adapter, const char *what, const char *line);
 
-/* JSON of one line, as far as answers have it. A text has no escapes. line_take_key begins with the "{" or the "," before a
+/* JSON of one line, as far as answers have it. line_take_key begins with the "{" or the "," before a
    key, and ends behind its ":"; it is false at the end of the object, and if there is no key. */
 bool line_take_text(const char **at, char *text, size_t size);
 bool line_take_number(const char **at, double *number);

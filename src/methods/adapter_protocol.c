@@ -7,6 +7,7 @@
 #include "base/machine.h"
 #include "methods/adapter_internal.h"
 
+#include <ctype.h>
 #include <locale.h>
 #include <math.h>
 #include <stdarg.h>
@@ -44,13 +45,55 @@ static bool take(const char **at, char c) {
     return true;
 }
 
+/* The four digits of "\uXXXX". */
+static bool take_unit(const char **at, uint32_t *unit) {
+    *unit = 0;
+    for (int i = 0; i < 4; i++, ++*at) {
+        static const char digits[] = "0123456789abcdef";
+        const char *digit = **at != '\0' ? strchr(digits, tolower((unsigned char)**at)) : NULL;
+        if (digit == NULL) return false;
+        *unit = *unit << 4 | (uint32_t)(digit - digits);
+    }
+    return true;
+}
+
+/* The character of an escape, behind its backslash. 0 is none, as C ends texts with it. */
+static bool take_escape(const char **at, uint32_t *character) {
+    static const char letters[] = "\"\\/bfnrt", meant[] = "\"\\/\b\f\n\r\t";
+    const char letter = **at, *found = letter != '\0' ? strchr(letters, letter) : NULL;
+    if (found != NULL) {
+        *character = (unsigned char)meant[found - letters];
+        ++*at;
+        return true;
+    }
+    uint32_t low;
+    if (letter != 'u' || (++*at, !take_unit(at, character)) || *character == 0) return false;
+    if (*character < 0xd800 || *character > 0xdfff) return true;
+    if (*character > 0xdbff || strncmp(*at, "\\u", 2) != 0) return false;
+    *at += 2;
+    if (!take_unit(at, &low) || low < 0xdc00 || low > 0xdfff) return false;
+    *character = 0x10000 + ((*character - 0xd800) << 10) + (low - 0xdc00);
+    return true;
+}
+
 bool line_take_text(const char **at, char *text, size_t size) {
+    size_t length = 0;
     if (!take(at, '"')) return false;
-    const size_t length = strcspn(*at, "\"\\");
-    if ((*at)[length] != '"' || length >= size) return false;
-    memcpy(text, *at, length);
+    for (; **at != '"';) {
+        char bytes[4] = {**at};
+        size_t count = 1;
+        uint32_t character;
+        if (*(*at)++ == '\0') return false;
+        if (bytes[0] == '\\') {
+            if (!take_escape(at, &character)) return false;
+            count = utf8_put(bytes, character);
+        }
+        if (length + count >= size) return false;
+        memcpy(text + length, bytes, count);
+        length += count;
+    }
     text[length] = '\0';
-    *at += length + 1;
+    ++*at;
     return true;
 }
 

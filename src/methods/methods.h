@@ -204,8 +204,9 @@ bool method_lacks_network(const Method *method, const Scene *scene);
 const char *method_network(const Settings *settings, const Scene *scene, const char *name, Error *error);
 
 /* Programs of the methods `exec` and `exec-solver`. Files may name methods, too: of runs that are to be repeated, of tables. So
-   only a program is started that a word of this command line names, "exec:PROGRAM". Without a call, none is. */
-void programs_allow(int argc, char **argv);
+   only a program is started that an option for methods names, "exec:PROGRAM", alone or in a list; the text must outlive the
+   methods. Without a call, none is. */
+void programs_allow(const char *methods);
 
 enum { PROGRAM_NAME_SIZE = 48 };
 

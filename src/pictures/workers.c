@@ -74,6 +74,7 @@ static bool draw_all(WorkerProcess *worker, int pipe, Error *error) {
 static void prepare_process(void) {
     signal(SIGINT, SIG_IGN);
     signal(SIGTERM, SIG_IGN);
+    signal(SIGHUP, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
 }
 

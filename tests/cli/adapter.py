@@ -47,6 +47,20 @@ if kind == "stubborn":
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     sleep_for_ever()
+if kind in ("group", "group-later"):
+    if kind == "group-later":
+        say('{"twinbox": 1, "name": "fall", "version": "1"}\n')
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    os.setpgid(0, os.getpgid(os.getppid()))
+    sleep_for_ever()
+if kind == "bytes":
+    sys.stdout.buffer.write(b'{"twinbox": 1, "name": "f\xe4ll", "version": "1"}\n')
+    sys.stdout.buffer.flush()
+    sleep_for_ever()
+if kind == "escapes":
+    say('{"error": "no \\"lib\\" in C:\\\\x\\/\\u00fc \\ud83d\\ude00"}\n')
+if kind == "lone":
+    say('{"error": "\\ud83d"}\n')
 if kind == "garbage":
     say("Loading the engine...\n")
     sleep_for_ever()

@@ -57,6 +57,11 @@ fails sleep "has not answered in time" 2
 fails close "has closed its standard output"
 fails fork "has ended (status 0)"
 fails die "has ended (status 1): ValueError: the engine has no more memory, in step 5"
+fails group "has not answered in time" 2
+fails group-later "has not answered in time" 2
+fails bytes "has a name or version that is not UTF-8"
+fails escapes 'says: no "lib" in C:\x/ü 😀'
+fails lone "its first line is not as it should be"
 fails garbage "its first line is not as it should be: 'Loading the engine...'"
 fails version "speaks version 2 of the protocol; expected version 1"
 fails flood "has written a line of more than 4096 bytes"
@@ -74,6 +79,13 @@ run 2 simulate fall.yaml --method "$(method slow),run_limit=2"
 complains "the run has taken longer than its run_limit"
 run 0 simulate fall.yaml --method "$(method crlf)"
 run 0 simulate fall.yaml --method "$(method complain),step_limit=60"
+
+# A signal ends the program, too.
+for signal in INT TERM HUP; do
+    strike $signal 130 "pgrep -f '^/usr/bin/python3 $adapter silent'" simulate fall.yaml --method "$(method silent),step_limit=1000"
+    for _ in $(seq 100); do pgrep -f "$adapter silent" >left || break; sleep 0.05; done
+    if [ -s left ]; then fail "$signal: process $(head -1 left) is left"; kill -9 $(cat left); fi
+done
 
 # Programs that cannot be run, and texts that name none.
 run 2 simulate fall.yaml --method "exec:./none"
@@ -94,6 +106,13 @@ complains "is not a contact solver"
 
 # A stored run names its method; only a program that the command line names is started.
 run 2 compare json.npz binary.npz --scene fall.yaml
+complains "is not started, as the command line does not name it"
+# Only an option for methods does: the name of a file is none.
+mkdir names
+run 0 simulate fall.yaml --method "exec:python3 $adapter json" -o "names/exec:python3 $adapter json,x.npz"
+cp binary.npz names/z.npz && cp fall.yaml names/
+(cd names && cp "../$adapter" . && exec "$twinbox" compare *.npz --scene fall.yaml) >out 2>err </dev/null
+equal "exit status with a file whose name is that of a program" $? 2
 complains "is not started, as the command line does not name it"
 
 # Studies: a failure is a verdict of its method, and two runs that differ are reported. One process serves all runs.

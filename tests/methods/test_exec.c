@@ -81,14 +81,13 @@ static void damage(Answers *answers, uint32_t *random) {
 static bool run_program(const char *name, const Answers *answers, float y, int frames, int seconds, Error *error) {
     static char method_text[300];
     static int runs;
-    static char *arguments[] = {method_text};
     Method method;
     const char *path = write_bytes(temporary_path("answers"), answers->bytes, answers->size);
     static const char program[] = "read hello; head -n 1 $1; head -c 1 >/dev/null; tail -n +2 $1\n";
     const char *shell = write_bytes(temporary_path("program"), program, strlen(program));
     /* The number gives each run a process of its own. */
     snprintf(method_text, sizeof method_text, "%s:/bin/sh %s %s %d,step_limit=%d", name, shell, path, runs++, seconds);
-    programs_allow(1, arguments);
+    programs_allow(method_text);
     char text[256];
     snprintf(text, sizeof text,
              "gravity: [0, -10]\ndt: 1/60\niterations: 10\nframes: %d\nbodies:\n"
