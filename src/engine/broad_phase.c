@@ -75,14 +75,59 @@ static void refresh(SortAndSweep *sweep, const Bounds *bounds, const bool *fixed
     }
 }
 
-/* Insertion sort: linear in a list that is almost sorted. */
-static void sort(SweptBounds *items, int count) {
+/* Insertion sort: linear in a list that is almost sorted. Ends early, with the rest as it was, after `most` moves. */
+static bool insertion_sort(SweptBounds *items, int count, size_t most, size_t *moved) {
     for (int i = 1; i < count; i++) {
         SweptBounds item = items[i];
         int at = i;
         for (; at > 0 && items[at - 1].low > item.low; at--) items[at] = items[at - 1];
         items[at] = item;
+        *moved += (size_t)(i - at);
+        if (*moved > most) return false;
     }
+    return true;
+}
+
+/* Two neighbouring runs that are sorted, into one; stable. */
+static void merge(const SweptBounds *from, int middle, int count, SweptBounds *to) {
+    for (int i = 0, left = 0, right = middle; i < count; i++)
+        to[i] = right == count || (left < middle && from[left].low <= from[right].low) ? from[left++] : from[right++];
+}
+
+/* Merge sort, for a list in any order. Both sorts are stable, so that it matters to no bit where one takes over. */
+static void merge_sort(SweptBounds *items, SweptBounds *scratch, int count, size_t *moved) {
+    SweptBounds *from = items, *to = scratch;
+    for (int length = 1; length < count; length *= 2) {
+        for (int first = 0; first < count; first += 2 * length) {
+            const int left = count - first, both = left < 2 * length ? left : 2 * length;
+            merge(from + first, both < length ? both : length, both, to + first);
+        }
+        SweptBounds *sorted = to;
+        to = from;
+        from = sorted;
+        *moved += (size_t)count;
+    }
+    if (from != items) memcpy(items, from, (size_t)count * sizeof *items);
+}
+
+/* Bodies that are no numbers have no order: how they lie then is that of insertion sort. */
+static bool all_are_numbers(const SweptBounds *items, int count) {
+    for (int i = 0; i < count; i++)
+        if (isnan(items[i].low)) return false;
+    return true;
+}
+
+static bool sort(SortAndSweep *sweep) {
+    const int few_moves = 16; /* of each item */
+    const size_t count = (size_t)sweep->count;
+    const bool ordered = all_are_numbers(sweep->sorted, sweep->count);
+    sweep->moved = 0;
+    if (insertion_sort(sweep->sorted, sweep->count, ordered ? (size_t)few_moves * count : SIZE_MAX, &sweep->moved))
+        return true;
+    if (!array_reserve((void **)&sweep->in_strip, &sweep->in_strip_capacity, count, sizeof *sweep->in_strip))
+        return false;
+    merge_sort(sweep->sorted, sweep->in_strip, sweep->count, &sweep->moved);
+    return true;
 }
 
 /* Strips of twice the average height of the bounds; a single strip if a body would be in too many. */
@@ -180,8 +225,7 @@ bool sort_and_sweep_find(SortAndSweep *sweep, PairList *list, const Bounds *boun
         return false;
     if (other_axis_is_better(sweep, bounds, count)) sweep->along_y = !sweep->along_y;
     refresh(sweep, bounds, fixed, count);
-    sort(sweep->sorted, count);
-    if (!find_overlaps(sweep) ||
+    if (!sort(sweep) || !find_overlaps(sweep) ||
         !array_reserve((void **)&list->pairs, &list->capacity, sweep->found.count, sizeof *list->pairs))
         return false;
     list->count = sweep->found.count;

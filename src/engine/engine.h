@@ -143,6 +143,7 @@ typedef struct SortAndSweep {
     SweptBounds *in_strip; /* strip by strip, in the same order; a body may be in several */
     int *starts;           /* scratch: first index of each strip in in_strip, then of each body in the list of pairs */
     PairList found;        /* strip by strip */
+    size_t moved;          /* items, by the last sort */
     size_t sorted_capacity, in_strip_capacity, starts_capacity;
 } SortAndSweep;
 
