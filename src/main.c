@@ -5,6 +5,7 @@
 #include "methods/methods.h"
 
 #include <fcntl.h>
+#include <omp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,6 +69,14 @@ static void replace_closed_streams(void) {
     }
 }
 
+/* OpenMP takes any number that the environment asks for, and an area of the stack for each. More threads than processors gain
+   nothing. */
+static void limit_threads(void) {
+    enum { ENOUGH = 256 };
+    const int processors = omp_get_num_procs(), most = processors > ENOUGH ? processors : ENOUGH;
+    if (omp_get_max_threads() > most) omp_set_num_threads(most);
+}
+
 static bool ended; /* the command */
 
 /* The words begin with the one of the command. */
@@ -96,6 +105,7 @@ int main(int argc, char **argv) {
     replace_closed_streams();
     on_exit(check_exit, &ended);
     interrupt_handle();
+    limit_threads();
     signal(SIGXFSZ, SIG_IGN); /* A file beyond the limit of sizes is an error of write(), with a message. */
     if (argc < 2) {
         print_help(stderr);

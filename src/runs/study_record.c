@@ -49,7 +49,10 @@ bool study_key_add_file(StudyKey *key, const char *path, Error *error) {
 
 bool study_key_begin(StudyKey *key, Error *error) {
     *key = (StudyKey){0};
-    if (!hash_file("/proc/self/exe", &key->program, error)) return false;
+    if (!hash_file("/proc/self/exe", &key->program, error)) {
+        error->kind = ERROR_SYSTEM; /* no input of the user's */
+        return false;
+    }
     add_hash(key, key->program);
     return true;
 }

@@ -63,7 +63,8 @@ static bool gather_looks(MapPanels *map, const CsvTable *table, int first, int e
 
 bool map_panels_gather(MapPanels *map, const CsvTable *table, int *row, Error *error) {
     int first = *row;
-    *map = (MapPanels){.first = map_cell(table, first)};
+    memset(map, 0, sizeof *map); /* a literal would lie on the stack first, where 0.4 MB may be all there is */
+    map->first = map_cell(table, first);
     while (*row < table->count && strcmp(map_cell(table, *row)->map, map->first->map) == 0) ++*row;
     return gather_values(map, table, first, *row, error) && gather_looks(map, table, first, *row, error);
 }
@@ -156,16 +157,20 @@ static bool is_at_border(const MapPanels *map, int panel, int x, int y) {
 }
 
 int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_EACH]) {
-    MapPlace found[MAP_MAX_VALUES * MAP_MAX_VALUES], first = {-1, -1};
-    int count = 0;
+    MapPlace first = {-1, -1};
+    int count = 0, seen = 0, chosen = 0;
     for (int y = 0; y < map->y_count; y++)
         for (int x = 0; x < map->x_count; x++) {
             if (first.x < 0 && fails(map, panel, x, y)) first = (MapPlace){x, y};
-            if (is_at_border(map, panel, x, y)) found[count++] = (MapPlace){x, y};
+            count += is_at_border(map, panel, x, y);
         }
-    if (count == 0 && first.x >= 0) found[count++] = first;
-    const int chosen = count < MAP_PAGES_EACH ? count : MAP_PAGES_EACH;
-    for (int i = 0; i < chosen; i++) places[i] = found[chosen > 1 ? i * (count - 1) / (chosen - 1) : 0];
+    if (count == 0 && first.x >= 0) places[chosen++] = first;
+    const int wanted = count < MAP_PAGES_EACH ? count : MAP_PAGES_EACH;
+    for (int y = 0; y < map->y_count; y++)
+        for (int x = 0; chosen < wanted && x < map->x_count; x++) {
+            if (!is_at_border(map, panel, x, y)) continue;
+            if (seen++ == (wanted > 1 ? chosen * (count - 1) / (wanted - 1) : 0)) places[chosen++] = (MapPlace){x, y};
+        }
     return chosen;
 }
 
