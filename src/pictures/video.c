@@ -262,12 +262,15 @@ static bool run_for_film(const Encoding *encoding, Error *error) {
 static bool count_frames(const char *path, int *count, Error *error) {
     Arguments arguments = {0};
     ADD(&arguments, "ffprobe", "-v", "error", "-select_streams", "v:0", "-count_frames", "-show_entries");
-    ADD(&arguments, "stream=nb_read_frames", "-of", "csv=p=0", path);
+    ADD(&arguments, "stream=nb_read_frames", "-of", "default=noprint_wrappers=1", path);
     Process ffprobe;
-    char text[256];
+    char text[8192];
     if (!process_start(&ffprobe, arguments.list, error) || !process_finish(&ffprobe, text, sizeof text, error))
         return false;
-    *count = atoi(text);
+    /* Among warnings, of its own or of the loader of programs. */
+    static const char key[] = "nb_read_frames=";
+    const char *found = strstr(text, key);
+    *count = found != NULL ? atoi(found + strlen(key)) : 0;
     return true;
 }
 

@@ -298,7 +298,7 @@ TEST(a_video_that_lacks_a_frame_is_removed) {
     }
     VideoOptions options = options_for(temporary_path("lacking.mp4"));
     pretend("ffmpeg", "#!/bin/sh\ncat >/dev/null\necho File too large >&2\n");
-    pretend("ffprobe", "#!/bin/sh\necho 8\n");
+    pretend("ffprobe", "#!/bin/sh\necho 'warning: 7 of 9' >&2\necho nb_read_frames=8\necho 'warning: 9' >&2\n");
     error = (Error){0};
     assert_false(video_encode(&options, NULL, &error));
     assert_error(error, ERROR_SYSTEM, "lacking.mp4: error: the video has 8 frames (expected 9)\nFile too large");
