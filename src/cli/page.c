@@ -62,6 +62,12 @@ static const char *file_of(const char *input) {
     return file_name_ends_with(input, ".npz") ? input + file_folder_length(input) : NULL;
 }
 
+/* As it was typed, where that means the same in another checkout; else without its folder. */
+static const char *scene_of(const char *input) {
+    const bool elsewhere = input[0] == '/' || strncmp(input, "../", 3) == 0 || strstr(input, "/../") != NULL;
+    return elsewhere ? input + file_folder_length(input) : input;
+}
+
 /* "bomb_x=2.5,height=12" */
 static void join_settings(const SceneSettings *set, char *text, size_t size) {
     text[0] = '\0';
@@ -86,7 +92,7 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
                            panels->count == 1 ? "" : "s");
     for (int i = 0; i < panels->count; i++) {
         page.files[i] = file_of(panels->inputs[i]);
-        if (page.files[i] == NULL) page.scenes[i] = panels->inputs[i];
+        if (page.files[i] == NULL) page.scenes[i] = scene_of(panels->inputs[i]);
         if (i < options->caption_count && options->captions[i][0] != '\0') page.names[i] = options->captions[i];
     }
     join_settings(&options->set, set, sizeof set);

@@ -155,13 +155,16 @@ def check_list(checks, browser, page, loaded):
 
 
 def check_command(checks, page, panels, left):
-    """The copied line runs in an empty folder, and draws so many panels; the page names what it leaves out."""
+    """The copied line runs where the scene is, which it names without its folder, and draws so many panels; the page names what
+    it leaves out."""
     page.run("document.getElementById('copy-command').click()")
     command = page.wait("navigator.clipboard.readText().then(text => text.startsWith('twinbox') && text)")
     said = page.run(TEXT, "status")
     for name in left:
         checks.true("what is left out is said", f"without {name}" in said, said)
     os.mkdir("empty")
+    for name in os.listdir(checks.scenes):
+        os.symlink(f"{checks.scenes}/{name}", f"empty/{name}")
     tools = f"{os.path.dirname(checks.program)}:{os.environ['PATH']}"
     result = subprocess.run(["bash", "-ec", command], cwd="empty", env={**os.environ, "PATH": tools}, capture_output=True, text=True)
     if checks.equal(f"exit status of {command}: {result.stderr[:200]}", result.returncode, 0):

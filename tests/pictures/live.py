@@ -6,6 +6,7 @@ import random
 import re
 import subprocess
 import sys
+import urllib.parse
 from concurrent.futures import ThreadPoolExecutor
 
 from access import check_tab, check_text, check_tree
@@ -122,7 +123,8 @@ def check_controls(checks, browser):
     page.close()
     for each in command.split(" && ")[:3]:
         words = each.replace("twinbox", checks.program, 1).split()
-        done = subprocess.run([*words, "--json"], capture_output=True, text=True, check=True)
+        checks.true("no path of the machine", checks.scenes not in each and words[2] == "stack.yaml", each)
+        done = subprocess.run([*words, "--json"], cwd=checks.scenes, capture_output=True, text=True, check=True)
         checks.true("a copied command", json.loads(done.stdout)["state"] in wanted, each)
     page = browser.open("stack.html", link[1:])
     page.wait("player.runs.length === 3")
@@ -135,6 +137,23 @@ def check_controls(checks, browser):
     checks.equal("a panel less", page.run(HASHES), wanted[1:])
     checks.quiet("controls", page)
     page.close()
+
+
+def check_shell(checks, browser):
+    """What a link brings is no command: names are checked, the rest is one word of a shell in one line."""
+    page = open_scene(checks, browser, "stack", *METHODS)
+    page.close()
+    for name in "$(touch owned)", "x\ntouch owned\n#", "a;touch owned;b":
+        for fragment in "set=" + urllib.parse.quote(name + "=1"), "methods=" + urllib.parse.quote("engine:k=3" + name):
+            page = browser.open("stack.html", fragment)
+            page.wait("!!player.setup.scene")
+            if fragment.startswith("set="):
+                checks.true(f"{name!r} is a problem", page.run(PROBLEM) != "")
+            page.run("document.getElementById('copy-command').click()")
+            command = page.wait("navigator.clipboard.readText().then(text => text.startsWith('twinbox') && text)")
+            subprocess.run(["bash", "-c", command.replace("twinbox ", "true ")], capture_output=True)
+            checks.true(f"{name!r} runs nothing", not os.path.exists("owned") and "\n" not in command, command)
+            page.close()
 
 
 def framing(path):
@@ -380,6 +399,7 @@ def main():
             browser.allow("clipboardReadWrite", "clipboardSanitizedWrite")
             check_launches(checks, browser)
             check_controls(checks, browser)
+            check_shell(checks, browser)
             check_framing(checks, browser)
             check_access(checks, browser)
             check_keyboard(checks, browser)

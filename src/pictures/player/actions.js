@@ -20,8 +20,10 @@ async function copy(text, what, but = "") {
   }
 }
 
-/* One word of a shell; one that is no option. */
-const quote = text => /^[\w./:=,+@%-]+$/.test(text) ? text : `'${text.replace(/'/g, "'\\''")}'`;
+/* One word of a shell; one that is no option. Pasted, an end of a line could begin a command of its own: no control character
+   passes, nor one that turns the direction of text. */
+const plain = text => text.replace(/[\p{Cc}\p{Cf}\p{Zl}\p{Zp}]/gu, " ");
+const quote = text => /^[\w./:=,+@%-]+$/.test(text) ? text : `'${plain(text).replace(/'/g, "'\\''")}'`;
 const word = text => quote(text.replace(/^-/, "./-"));
 const file_of = ({file, method}) => word(file ?? method.replace(/[/\0]/g, "_") + ".npz");
 
@@ -37,7 +39,7 @@ function simulation(run) {
 
 /* Beside live panels a command of its own makes each run. That leaves out files, which only the page's author has; a run of another
    launch; and programs of others, as a page must not name what a pasted line starts. */
-const is_left_out = run => data.live && (!run.made_of || run.elsewhere || run.method.startsWith("exec:"));
+const is_left_out = run => data.live && (!run.made_of || run.elsewhere || /^\s*exec/.test(run.method));
 
 ui["copy-link"].onclick = () => copy(location.href.split("#")[0] + link_text(), "Link");
 /* Options that compare leave out the runs that cannot be compared, too. */

@@ -33,7 +33,7 @@ function read_set(text) {
   link_problem = "";
   for (const part of text.split(",").filter(Boolean)) {
     const [name, value] = part.split("=");
-    if (value === undefined || value.trim() === "" || !Number.isFinite(Number(value)))
+    if (!/^\w+$/.test(name) || value === undefined || value.trim() === "" || !Number.isFinite(Number(value)))
       link_problem = `"${cut(part)}" is no setting: NAME=NUMBER is needed.`;
     else chosen.set(name, Number(value));
   }
