@@ -124,6 +124,16 @@ size = sum(os.path.getsize(f"site/{name}") for name in os.listdir("site"))
 assert size < 3e6, size
 PYTHON
 
+# The same again is the same; and what cannot be made leaves it as it was.
+sums() { (cd site && find . -type f | sort | xargs md5sum); }
+before=$(sums)
+"$make" site "$twinbox" --text article.md >made 2>err || fail "make again: $(cat err)"
+equal "the site made twice" "$(sums)" "$before"
+{ cat article.md; echo "[[figure none/none.svg | none]]"; } >broken.md
+"$make" site "$twinbox" --text broken.md >made 2>err && fail "a missing figure is accepted"
+equal "the site after a failure" "$(sums)" "$before"
+equal "folders beside it" "$(ls -d .site* 2>/dev/null)" ""
+
 # What is missing or left over ends it, with its place.
 mv site.studies/chart/chart.csv kept.csv
 touch site.studies/chart/chart.csv
