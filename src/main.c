@@ -2,7 +2,6 @@
 #define _GNU_SOURCE
 #include "base/base.h"
 #include "cli/cli.h"
-#include "methods/methods.h"
 
 #include <fcntl.h>
 #include <omp.h>
