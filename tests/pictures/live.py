@@ -303,7 +303,7 @@ def check_keyboard(checks, browser):
 
 
 def check_rubbish(checks, browser):
-    for fragment, words in (("set=x=1e999", "x=1e999"), ("set=bomb_x=NaN", "bomb_x=NaN"), ("set=<b>=1", "is not a parameter"),
+    for fragment, words in (("set=x=1e999", "x=1e999"), ("set=bomb_x=NaN", "bomb_x=NaN"), ("set=<b>=1", "is no setting"),
                             ("methods=egnine", "did you mean 'engine'"), ("methods=engine:k=0", "k: error"),
                             ("set=bomb_speed=-1", "bomb_speed must be")):
         page = browser.open("stack.html", fragment)
