@@ -112,13 +112,119 @@ PYTHON
     GREY=51 example 1 pytest --twinbox-accept
     says "the test must return a figure, an image or the path of a PNG file, not None"
     says "1 failed, 5 passed"
+    third=$(printf 'TestPictures::test_path[1/3]' | sha256sum | cut -c1-8)
+    two=$(printf 'TestPictures::test_path[2 px]' | sha256sum | cut -c1-8)
     equal "names" "$(cd expected/nested && find . -name '*.png' | LC_ALL=C sort | paste -sd' ')" \
-        "./test_more/TestPictures.test_path_1_3_.png ./test_more/TestPictures.test_path_2_px_.png ./test_more/test_image.png"
-    picture expected/nested/test_more/TestPictures.test_path_1_3_.png 52
+        "./test_more/TestPictures.test_path_1_3_-$third.png ./test_more/TestPictures.test_path_2_px_-$two.png ./test_more/test_image.png"
+    picture expected/nested/test_more/TestPictures.test_path_1_3_-$third.png 52
     picture expected/nested/test_more/test_image.png 52
     GREY=51 example 1 pytest
     says "2 failed, 4 passed"
     says "test_image.png: 400 pixels differ"
+    test_kinds
+}
+
+# Every way for a marked test to end: with a comparison, or not as passed. All pictures are accepted; then all have another grey.
+test_kinds() {
+    mkdir kinds
+    cat >kinds/conftest.py <<'PYTHON'
+import pytest
+
+class Item(pytest.Item):
+    def runtest(self):
+        pass
+
+class File(pytest.File):
+    def collect(self):
+        yield Item.from_parent(self, name="custom")
+
+def pytest_collect_file(parent, file_path):
+    if file_path.suffix == ".custom":
+        return File.from_parent(parent, path=file_path)
+
+def pytest_collection_modifyitems(items):
+    for item in items:
+        if item.name == "custom":
+            item.add_marker("twinbox_compare")
+
+# As pytest-asyncio does it.
+def pytest_pyfunc_call(pyfuncitem):
+    import asyncio, inspect
+    if inspect.iscoroutinefunction(pyfuncitem.obj):
+        asyncio.run(pyfuncitem.obj(**{name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}))
+        return True
+PYTHON
+    : >kinds/one.custom
+    cat >kinds/test_kinds.py <<PYTHON
+import os, pathlib, subprocess, unittest, pytest
+
+class Picture:
+    def save(self, path):
+        grey = f"{os.environ['GREY']} " * 3 + "255"
+        subprocess.run(["/usr/bin/python3", "$sources/tests/cli/png.py", path, "20", "20", grey], check=True)
+
+class Cases(unittest.TestCase):
+    def setUp(self):
+        self.path = pathlib.Path("made.png")
+        Picture().save(self.path)
+
+    def tearDown(self):
+        self.path.unlink()
+
+    @pytest.mark.twinbox_compare
+    def test_case(self):
+        return self.path
+
+    @pytest.mark.twinbox_compare
+    @unittest.skip("no")
+    def test_skipped(self):
+        return self.path
+
+class Coroutines(unittest.IsolatedAsyncioTestCase):
+    @pytest.mark.twinbox_compare
+    async def test_case(self):
+        return Picture()
+
+@pytest.mark.twinbox_compare
+async def test_coroutine():
+    return Picture()
+
+@pytest.mark.twinbox_compare
+@pytest.mark.parametrize("sign", ["<", ">", "a", "A", "a+b", "a*b"])
+def test_sign(sign):
+    return Picture()
+
+@pytest.mark.twinbox_compare("--help")
+def test_help():
+    return Picture()
+
+@pytest.mark.twinbox_compare(tolerance=3)
+def test_named():
+    return Picture()
+PYTHON
+    GREY=50 example 1 pytest --twinbox-accept kinds
+    says "no picture was compared"
+    says "2 failed, 10 passed, 1 skipped" # one.custom, test_named
+    equal "pictures of test_sign" "$(find expected/kinds -iname 'test_sign*.png' | tr A-Z a-z | sort -u | wc -l)" 6
+    GREY=50 example 1 pytest kinds
+    says "3 failed, 9 passed, 1 skipped"
+    says "these options compare nothing: --help"
+    GREY=51 example 1 pytest kinds
+    says "12 failed, 1 skipped"
+    cat >kinds/test_claims.py <<'PYTHON'
+import pytest
+
+@pytest.mark.twinbox_compare
+@pytest.mark.parametrize("n", ["a"])
+def test_one(n):
+    return None
+
+@pytest.mark.twinbox_compare
+def test_one_a_():
+    return None
+PYTHON
+    GREY=50 example 4 pytest kinds/test_claims.py
+    grep -q "would have the same picture" out err || fail "two tests claim one picture: $(cat out err)"
 }
 
 test_npm() {
