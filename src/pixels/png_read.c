@@ -11,6 +11,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 bool png_check_start(const uint8_t *data, size_t size, const char *path, Error *error) {
     if (size == 0) return error_input(error, path, "not a PNG file, or damaged: it is empty");
@@ -226,8 +227,6 @@ static void set_strict_limits(Decoder *decoder) {
     png_set_crc_action(decoder->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_benign_errors(decoder->png, 0);
     png_set_user_limits(decoder->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_set_chunk_malloc_max(decoder->png, MAX_TEXT_SIZE);
-    png_set_chunk_cache_max(decoder->png, MAX_TEXTS);
 }
 
 static void check_size(Decoder *decoder) {
@@ -341,12 +340,56 @@ static void expand_palette(Decoder *decoder) {
     }
 }
 
+/* The bytes that the next chunk of pixels gives. False with error set unless they go on, or end, one sound zlib stream. */
+static bool inflate_chunk(const Decoder *decoder, z_stream *z, double most, bool *ended) {
+    uint8_t scratch[1 << 14];
+    while (!*ended && z->avail_in > 0) {
+        z->next_out = scratch, z->avail_out = sizeof scratch;
+        const int status = inflate(z, Z_NO_FLUSH);
+        *ended = status == Z_STREAM_END;
+        if (status == Z_MEM_ERROR) return error_memory(decoder->error, decoder->path);
+        if ((!*ended && status != Z_OK && status != Z_BUF_ERROR) || (double)z->total_out > most)
+            return error_input(decoder->error, decoder->path, "not a PNG file, or damaged: IDAT: %s",
+                               z->msg != NULL ? z->msg : "more pixels than the header states");
+    }
+    return true;
+}
+
+/* The compressed pixels again, as libpng does not look at a checksum that is split over two chunks. What follows them is
+   padding. */
+static bool check_stream(const Decoder *decoder) {
+    z_stream z = {0};
+    Header header;
+    PngChunk chunk;
+    size_t at = PNG_SIGNATURE;
+    bool ended = false, ok = png_chunk_next(decoder->data, decoder->size, &at, &chunk) && read_header(&chunk, &header);
+    const double size = ok ? filtered_size(&header) : 0;
+    if (!ok || inflateInit(&z) != Z_OK) return error_memory(decoder->error, decoder->path);
+    while (ok && !ended && png_chunk_next(decoder->data, decoder->size, &at, &chunk)) {
+        if (!png_chunk_is(&chunk, "IDAT")) continue;
+        z.next_in = (uint8_t *)chunk.data; /* not changed */
+        z.avail_in = (uInt)chunk.length;
+        ok = inflate_chunk(decoder, &z, size, &ended);
+    }
+    if (ok && (!ended || (double)z.total_out != size))
+        ok = error_input(decoder->error, decoder->path,
+                         "not a PNG file, or damaged: IDAT: the compressed pixels do not end");
+    inflateEnd(&z);
+    return ok;
+}
+
+static void end_pixels(const Decoder *decoder) {
+    png_set_benign_errors(decoder->png, 0);
+    png_read_end(decoder->png, NULL);
+}
+
 static bool decode(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     png_structp png = decoder->png;
     set_strict_limits(decoder);
-    /* Only the chunks needed for pixels; others are not even decompressed. */
+    /* Only the chunks needed for pixels; others are not even held, and may have any size. */
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_set_chunk_malloc_max(png, 0);
     png_read_info(png, decoder->info);
     check_size(decoder);
     refuse_animation(decoder);
@@ -354,21 +397,22 @@ static bool decode(Decoder *decoder) {
     request_rgba(decoder);
     int passes = png_set_interlace_handling(png);
     png_read_update_info(png, decoder->info);
+    png_set_benign_errors(png, 1); /* padding behind the pixels; check_stream() sees the others */
     if (decoder->checked) {
         decoder->row = calloc(png_get_image_width(png, decoder->info), 8);
         if (decoder->row == NULL) return error_memory(decoder->error, decoder->path);
         for (int pass = 0; pass < passes; pass++) check_rows(decoder);
-        png_read_end(png, NULL);
-        return true;
+        end_pixels(decoder);
+        return check_stream(decoder);
     }
     decoder->image = image_create((int)png_get_image_width(png, decoder->info),
                                   (int)png_get_image_height(png, decoder->info), decoder->error);
     if (decoder->image == NULL) return false;
     if (png_get_bit_depth(png, decoder->info) == 16 && !allocate_pixels16(decoder)) return false;
     for (int pass = 0; pass < passes; pass++) read_rows(decoder);
-    png_read_end(png, NULL);
+    end_pixels(decoder);
     if (is_palette(decoder)) expand_palette(decoder);
-    return true;
+    return check_stream(decoder);
 }
 
 Image *png_libpng_decode(const uint8_t *data, size_t size, const char *path, int64_t max_pixels, Error *error) {
@@ -439,6 +483,8 @@ Image *image_read_png(const char *path, Error *error) {
 static bool decode_texts(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     set_strict_limits(decoder);
+    png_set_chunk_malloc_max(decoder->png, MAX_TEXT_SIZE);
+    png_set_chunk_cache_max(decoder->png, MAX_TEXTS);
     png_read_info(decoder->png, decoder->info);
     return !decoder->memory_short || error_memory(decoder->error, decoder->path);
 }

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* libpng refuses longer chunks where they are not pixels: MAX_TEXT_SIZE in png_read.c. */
+/* Longer chunks are not held, but for those that say how a picture displays. */
 enum { MAX_CHUNK = 1 << 16, CHUNK_HEAD = 8, IHDR_SIZE = 13, MAX_WINDOW_BITS = 15, HEADER_SIZE = 2 };
 
 static bool is_pixels(const uint8_t head[CHUNK_HEAD]) { return memcmp(head + 4, "IDAT", 4) == 0; }
@@ -66,17 +66,18 @@ typedef struct Scan {
     bool pixels, pixels_ended, ended;
 } Scan;
 
-/* The checksum of an IDAT chunk that has the next `length` bytes. */
-static bool check_pixels(PngRows *rows, size_t length) {
+/* The checksum of a chunk that is not held, of which the head is read. */
+static bool check_chunk(PngRows *rows, const uint8_t head[CHUNK_HEAD]) {
+    const bool pixels = is_pixels(head);
     const uint8_t *bytes;
     uint8_t wanted[4];
-    uint32_t checksum = libdeflate_crc32(0, "IDAT", 4);
-    for (size_t count; length > 0; length -= count, rows->source.at += count) {
-        if ((count = png_source_peek(&rows->source, length, &bytes)) == 0) return false;
+    uint32_t checksum = libdeflate_crc32(0, head + 4, 4);
+    for (size_t count, left = png_number(head); left > 0; left -= count, rows->source.at += count) {
+        if ((count = png_source_peek(&rows->source, left, &bytes)) == 0) return false;
         checksum = libdeflate_crc32(checksum, bytes, count);
-        for (size_t i = 0; i < count && rows->compressed + i < HEADER_SIZE; i++)
+        for (size_t i = 0; pixels && i < count && rows->compressed + i < HEADER_SIZE; i++)
             rows->zlib[rows->compressed + i] = bytes[i];
-        rows->compressed += count;
+        rows->compressed += pixels ? count : 0;
     }
     return png_source_take(&rows->source, wanted, sizeof wanted) && checksum == png_number(wanted);
 }
@@ -89,18 +90,17 @@ static uint8_t *add_room(PngRows *rows, size_t size) {
     return rows->rest + at;
 }
 
-static bool scan_pixels(PngRows *rows, Scan *scan, size_t length) {
+static bool scan_pixels(PngRows *rows, Scan *scan, const uint8_t head[CHUNK_HEAD]) {
     static const uint8_t empty[PNG_CHUNK_FRAME] = {0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xAF, 0x06, 0x1E};
     const PngLayout *layout = &rows->layout;
     if (scan->pixels_ended || (layout->color == PNG_PALETTE && layout->colors == 0)) return false;
-    if (length > MAX_CHUNK && length > layout->height * (rows->bytes + 1)) return false;
     if (!scan->pixels) {
         uint8_t *room = add_room(rows, sizeof empty);
         if (room == NULL) return false;
         memcpy(room, empty, sizeof empty);
     }
     scan->pixels = true;
-    return check_pixels(rows, length);
+    return check_chunk(rows, head);
 }
 
 static bool scan_chunk(PngRows *rows, Scan *scan, const PngChunk *chunk) {
@@ -110,7 +110,7 @@ static bool scan_chunk(PngRows *rows, Scan *scan, const PngChunk *chunk) {
     if (png_chunk_is(chunk, "PLTE")) return !scan->pixels && read_palette(chunk, &rows->layout);
     if (png_chunk_is(chunk, "tRNS")) return !scan->pixels && read_transparency(chunk, &rows->layout);
     bool critical = (chunk->type[0] & 0x20) == 0, animated = png_chunk_is(chunk, "acTL") && !scan->pixels;
-    return !critical && !animated && chunk->length <= MAX_CHUNK;
+    return !critical && !animated;
 }
 
 static void size_rows(PngRows *rows) {
@@ -123,18 +123,31 @@ static void size_rows(PngRows *rows) {
 static bool keep_chunk(PngRows *rows, const uint8_t head[CHUNK_HEAD], PngChunk *chunk) {
     size_t at = rows->rest_size;
     const size_t length = png_number(head);
-    uint8_t *room = length <= MAX_CHUNK ? add_room(rows, length + PNG_CHUNK_FRAME) : NULL;
+    if (length > rows->source.size) return false;
+    uint8_t *room = add_room(rows, length + PNG_CHUNK_FRAME);
     if (room == NULL) return false;
     memcpy(room, head, CHUNK_HEAD);
     return png_source_take(&rows->source, room + CHUNK_HEAD, length + PNG_CHUNK_FRAME - CHUNK_HEAD) &&
            png_chunk_next(rows->rest, rows->rest_size, &at, chunk) && png_chunk_is_sound(chunk);
 }
 
+/* A long text, a provenance, a thumbnail: nothing that matters here. */
+static bool is_ballast(const uint8_t head[CHUNK_HEAD]) {
+    const PngChunk chunk = {.type = head + 4};
+    return png_number(head) > MAX_CHUNK && png_chunk_has_name(&chunk) && (head[4] & 0x20) != 0 &&
+           !png_chunk_is(&chunk, "iCCP") && !png_chunk_is(&chunk, "eXIf") && !png_chunk_is(&chunk, "tRNS") &&
+           !png_chunk_is(&chunk, "acTL");
+}
+
 static bool scan_next(PngRows *rows, Scan *scan) {
     PngChunk chunk;
     uint8_t head[CHUNK_HEAD];
     if (!png_source_take(&rows->source, head, sizeof head)) return false;
-    if (is_pixels(head)) return scan_pixels(rows, scan, png_number(head));
+    if (is_pixels(head)) return scan_pixels(rows, scan, head);
+    if (is_ballast(head)) {
+        scan->pixels_ended = scan->pixels;
+        return check_chunk(rows, head);
+    }
     return keep_chunk(rows, head, &chunk) && scan_chunk(rows, scan, &chunk);
 }
 
@@ -320,6 +333,10 @@ bool png_rows_read_parted(PngRows *rows, const uint8_t *from, uint8_t *to, size_
 bool png_rows_end(PngRows *rows) {
     uint8_t extra;
     const bool more = png_rows_read(rows, &extra, 1);
-    rows->damaged = more || !rows->ended || has_left(rows->stream) || feed(rows) || !png_source_end(&rows->source);
+    while (rows->twin != NULL && !more) { /* the padding behind the stream, until the files part */
+        rows->stream->z.avail_in = 0;
+        (void)feed(rows);
+    }
+    rows->damaged = more || !rows->ended || !png_source_end(&rows->source);
     return !rows->damaged;
 }
