@@ -17,15 +17,15 @@
    malloc() fail, because it ignores a failure to lengthen a token and then runs past the end of its buffers. */
 typedef struct JsonMemory {
     jmp_buf full;
-    size_t used; /* blocks */
-    max_align_t blocks[JSON_VALUE_MEMORY / sizeof(max_align_t)];
+    size_t used, room; /* blocks */
+    max_align_t blocks[];
 } JsonMemory;
 
 /* Of the value that is being read: jansson's allocator has no context argument. */
 static JsonMemory *current;
 
 static void *memory_take(size_t size) {
-    size_t left = sizeof current->blocks / sizeof *current->blocks - current->used;
+    size_t left = current->room - current->used;
     if (size > left * sizeof *current->blocks) longjmp(current->full, 1);
     void *block = &current->blocks[current->used];
     current->used += (size + sizeof *current->blocks - 1) / sizeof *current->blocks;
@@ -96,13 +96,15 @@ const json_t *json_read_value(JsonReader *reader, Error *error) {
     json_t *value;
     json_error_t failure;
     skip_space(reader);
-    size_t left = (size_t)(reader->end - reader->at), size = left < JSON_VALUE_SIZE ? left : JSON_VALUE_SIZE;
+    size_t left = (size_t)(reader->end - reader->at), size = left < reader->most ? left : reader->most;
     if (!load(reader->memory, reader->at, size, &value, &failure))
-        return json_read_error(reader, error, "a value must take at most %d bytes of memory", JSON_VALUE_MEMORY), NULL;
+        return json_read_error(reader, error, "a value must take at most %zu bytes of memory",
+                               reader->memory->room * sizeof *reader->memory->blocks),
+               NULL;
     if (value != NULL)
         advance(reader, (size_t)failure.position);
     else if (size < left && (size_t)failure.position + 4 > size) /* or in the middle of a character of 4 bytes */
-        json_read_error(reader, error, "a value must have at most %d bytes", JSON_VALUE_SIZE);
+        json_read_error(reader, error, "a value must have at most %zu bytes", reader->most);
     else
         set_error(reader, &failure, error);
     return value;
@@ -125,18 +127,25 @@ bool json_read_end(JsonReader *reader, Error *error) {
     return reader->at == reader->end || json_read_error(reader, error, "end of file expected");
 }
 
-bool json_read_text(JsonReader *reader, const char *name, const char *text, size_t size, Error *error) {
-    *reader = (JsonReader){.path = name, .at = text, .end = text + size};
+static bool begin(JsonReader *reader, const char *name, const char *text, size_t size, size_t most, size_t memory,
+                  Error *error) {
+    *reader = (JsonReader){.path = name, .at = text, .end = text + size, .most = most};
     reader->line = reader->column = reader->value_line = reader->value_column = 1;
-    reader->memory = malloc(sizeof *reader->memory);
-    return reader->memory != NULL || error_memory(error, name);
+    reader->memory = malloc(sizeof *reader->memory + memory);
+    if (reader->memory == NULL) return error_memory(error, name);
+    reader->memory->room = memory / sizeof *reader->memory->blocks;
+    return true;
+}
+
+bool json_read_text(JsonReader *reader, const char *name, const char *text, size_t size, Error *error) {
+    return begin(reader, name, text, size, size, JSON_VALUE_MEMORY + JSON_TEXT_TIMES * size, error);
 }
 
 bool json_read_open(JsonReader *reader, const char *path, size_t max_size, Error *error) {
     size_t size;
     char *text = file_read(path, max_size, &size, error);
     if (text == NULL) return false;
-    if (json_read_text(reader, path, text, size, error)) return reader->text = text, true;
+    if (begin(reader, path, text, size, JSON_VALUE_SIZE, JSON_VALUE_MEMORY, error)) return reader->text = text, true;
     free(text);
     return false;
 }

@@ -18,13 +18,14 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* Bytes of one value in the file, and in memory. */
-enum { JSON_VALUE_SIZE = 1 << 16, JSON_VALUE_MEMORY = 1 << 20 };
+/* Bytes of one value in a file, and in memory; of text in memory, a value may have all bytes, and so many times these more. */
+enum { JSON_VALUE_SIZE = 1 << 16, JSON_VALUE_MEMORY = 1 << 20, JSON_TEXT_TIMES = 32 };
 
 typedef struct JsonReader {
     const char *path; /* as given; not owned */
     char *text;
     const char *at, *end;         /* unread text */
+    size_t most;                  /* bytes of a value */
     int line, column;             /* of `at`, from 1; columns in characters */
     int value_line, value_column; /* where the last value begins */
     struct JsonMemory *memory;    /* of the last value */

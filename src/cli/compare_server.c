@@ -13,12 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { REQUEST_SIZE = JSON_VALUE_SIZE, FILE_SIZE = 100 << 20 /* bytes, as in odiff */, REGIONS_MAX = 4096 };
+enum { REQUEST_SIZE = 1 << 19, FILE_SIZE = 100 << 20 /* bytes, as in odiff */, REGIONS_MAX = 4096 };
 
 static const char name[] = "request";
 
 typedef struct Request {
-    const json_t *id; /* NULL: unknown */
+    bool has_id;
+    int64_t id;
+    bool lost; /* how many bytes follow it is not known */
     const char *paths[2], *output;
     uint8_t *data[2];
     size_t sizes[2];
@@ -59,7 +61,7 @@ static void print_answer(FILE *out, const void *context) {
     const Answer *answer = context;
     JsonWriter json = {.out = out};
     json_begin_object(&json, NULL, JSON_ONE_LINE);
-    if (answer->request->id != NULL) json_put_int(&json, "requestId", json_integer_value(answer->request->id));
+    if (answer->request->has_id) json_put_int(&json, "requestId", answer->request->id);
     if (answer->kind == ANSWER_READY) json_put_bool(&json, "ready", true);
     if (answer->kind == ANSWER_ERROR) json_put_text(&json, "error", answer->error->message);
     if (answer->kind >= ANSWER_MATCH) json_put_bool(&json, "match", answer->kind == ANSWER_MATCH);
@@ -186,7 +188,8 @@ static bool load_buffers(const json_t *json, Request *request, Error *error) {
     int64_t sizes[2];
     for (int i = 0; i < 2; i++) {
         sizes[i] = json_integer_value(json_object_get(json, keys[i]));
-        if (sizes[i] <= 0) return error_input(error, name, "%s must be a whole number from 1", keys[i]);
+        request->lost = sizes[i] <= 0;
+        if (request->lost) return error_input(error, name, "%s must be a whole number from 1", keys[i]);
     }
     for (int i = 0; i < 2; i++) {
         const char *kind = json_string_value(json_object_get(json, kinds[i]));
@@ -235,34 +238,63 @@ static bool compare_files(Request *request, Answer *answer, Error *error) {
 static bool answer_request(const json_t *json, Request *request, Answer *answer, Error *error) {
     const char *kind = json_string_value(json_object_get(json, "type"));
     const bool buffers = kind != NULL && strcmp(kind, "buffer") == 0;
-    if (json_is_integer(json_object_get(json, "requestId"))) request->id = json_object_get(json, "requestId");
+    const json_t *id = json_object_get(json, "requestId");
+    request->has_id = json_is_integer(id);
+    request->id = json_integer_value(id);
     return (buffers ? load_buffers(json, request, error) : load_files(json, request, error)) &&
-           (request->id != NULL || error_input(error, name, "requestId must be a whole number")) &&
+           (request->has_id || error_input(error, name, "requestId must be a whole number")) &&
            read_path(json, "output", &request->output, error) && read_options(find(json, "options"), request, error) &&
            compare_files(request, answer, error);
 }
 
-/* Answers one line; false with error set if nobody can read the answer. */
+/* Of a line that is no request: its number, for which a client waits, and whether files may follow it. */
+static void guess(const char *line, bool whole, Request *request) {
+    static const char key[] = "\"requestId\"";
+    const char *at = strstr(line, key), *rest;
+    request->lost = !whole || strstr(line, "\"buffer\"") != NULL;
+    if (at == NULL || (at > line && at[-1] == '\\')) return;
+    at += sizeof key - 1;
+    at += strspn(at, " \t");
+    if (*at != ':') return;
+    at += 1 + strspn(at + 1, " \t");
+    request->has_id =
+        parse_leading_int(at, INT64_MIN, INT64_MAX, &request->id, &rest) && strchr(" \t\r,}", *rest) != NULL;
+}
+
+/* line[size] is 0. */
+static void read_request(const char *line, size_t size, bool whole, JsonReader *reader, Request *request,
+                         Answer *answer, Error *error) {
+    const json_t *json = NULL;
+    if (!whole)
+        error_input(error, name, "must have at most %d bytes", REQUEST_SIZE);
+    else if (json_read_text(reader, name, line, size, error) && (json = json_read_value(reader, error)) != NULL &&
+             !json_read_end(reader, error))
+        json = NULL;
+    if (json != NULL)
+        answer_request(json, request, answer, error);
+    else
+        guess(line, whole, request);
+}
+
+/* Answers one line. False with error set if nobody can read the answer, or if files follow whose end is not known: their bytes
+   are not requests. */
 static bool serve(const char *line, size_t size, bool whole, Request *request, Error *error) {
     Error failure = {0};
     JsonReader reader = {.path = name};
     Answer answer = {.request = request, .error = &failure};
-    *request = (Request){.id = NULL};
-    if (!whole)
-        error_input(&failure, name, "must have at most %d bytes", REQUEST_SIZE);
-    else if (json_read_text(&reader, name, line, size, &failure)) {
-        const json_t *json = json_read_value(&reader, &failure);
-        if (json != NULL && json_read_end(&reader, &failure)) answer_request(json, request, &answer, &failure);
-    }
+    *request = (Request){.id = 0};
+    read_request(line, size, whole, &reader, request, &answer, &failure);
     if (failure.kind != ERROR_NONE) answer.kind = ANSWER_ERROR;
     const bool sent = send(&answer, error);
     json_read_close(&reader);
     for (int i = 0; i < 2; i++) free(request->data[i]);
     odiff_difference_free(&answer.difference);
+    if (sent && request->lost)
+        return error_input(error, name, "how many bytes follow it is not known: the server ends");
     return sent;
 }
 
-/* The next line without its end, cut to `size`; false at the end of the input. */
+/* The next line without its end, cut to `size` and ended by 0; false at the end of the input. */
 static bool read_line(char *line, size_t size, size_t *length, bool *whole) {
     int c = getchar();
     *length = 0, *whole = true;
@@ -272,16 +304,17 @@ static bool read_line(char *line, size_t size, size_t *length, bool *whole) {
             line[(*length)++] = (char)c;
         else
             *whole = false;
+    line[*length] = '\0';
     return true;
 }
 
 bool compare_serve(Error *error) {
-    static char line[REQUEST_SIZE];
+    static char line[REQUEST_SIZE + 1];
     static Request request;
     size_t length;
     bool whole;
     bool ok = send(&(Answer){.kind = ANSWER_READY, .request = &request}, error);
-    while (ok && read_line(line, sizeof line, &length, &whole))
+    while (ok && read_line(line, REQUEST_SIZE, &length, &whole))
         ok = length == 0 || serve(line, length, whole, &request, error);
     return ok;
 }

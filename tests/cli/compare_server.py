@@ -2,6 +2,7 @@
 # compare_server.py TWINBOX: asks `twinbox compare --server` as a client of odiff does, in an empty folder. Writes a.png, b.png
 # and wide.png, which compare_server.js compares, too.
 import json
+import os
 import random
 import struct
 import subprocess
@@ -148,11 +149,19 @@ equal("pale without a share of the picture", server.buffers(open("pale.png", "rb
 # What is wrong gets an answer, and the next request its own.
 wrong = [
     (b"\n{}\n", "base is missing"), (b"[1]\n", "base is missing"), (b"{\n", "request:1:"), (b"\xff\0\n", "request:1:"),
-    (b'{"base":"a.png","compare":"a.png"}\n', "requestId must be"), (b"x" * 100000 + b"\n", "must have at most 65536 bytes"),
+    (b'{"base":"a.png","compare":"a.png"}\n', "requestId must be"), (b"x" * 100000 + b"\n", "request:1:"),
     (b'{"requestId":1.5,"base":"a.png","compare":"a.png"}\n', "requestId must be")]
 for text, message in wrong:
     answer = server.say(text)
     equal(f"{text[:30]}: {answer}", message in answer.get("error", "") and "requestId" not in answer, True)
+for text, number in ((b'{"requestId": 7, "base": }\n', 7), (b'{"base":"a.png" "requestId":-3}\n', -3), (b'{"requestId":5.5,}\n', None),
+                     (b'{"base":"\\"requestId\\":4"\n', None), (b'{"requestId":"8",}\n', None)):
+    answer = server.say(text)
+    equal(f"the requestId of {text}", (answer.get("requestId"), "request:1:" in answer["error"]), (number, True))
+many = [{"x1": 0, "y1": 0, "x2": 1000 + i % 9, "y2": 1000} for i in range(4096)]
+equal("4,096 regions", server.files("a.png", "b.png", ignoreRegions=many), {"match": True})
+answer = server.files("a.png", "b.png", ignoreRegions=many + many[:1])
+equal("one more", "ignoreRegions must be an array of at most 4096" in answer.get("error", ""), True)
 for request, message in (
         ({"base": "a.png"}, "compare is missing"), ({"base": 1, "compare": "a.png"}, "base must be a text"),
         ({"base": "-", "compare": "a.png"}, "not '-'"), ({"base": "none.png", "compare": "a.png"}, "none.png: error: "),
@@ -191,5 +200,18 @@ server.process.stdin.write(b'{"requestId":99,"base":"a.png","compare":"a.png"}')
 server.process.stdin.close()
 equal("the last line", server.read(), {"requestId": 99, "match": True})
 equal("exit status", server.process.wait(), 0)
+# Where it is not known how many bytes follow, none of them is a request: a picture may have a line that looks like one.
+smuggled = json.dumps({"requestId": 5, "base": "a.png", "compare": "b.png", "output": "smuggled.png"}).encode() + b"\n"
+def lengths(base, compare):
+    return json.dumps({"requestId": 1, "type": "buffer", "baseLength": base, "baseFormat": "png", "compareLength": compare,
+                       "compareFormat": "png"}).encode()
+for line in (lengths(0, 9), lengths(9, 0), lengths(-1, 9), lengths(1.5, 9), lengths("9", 9), lengths(None, 9), lengths(9, True),
+             lengths(9, 9)[:-1], lengths(10**30, 9), b'{"requestId":1,"type":"buffer"}',
+             b'{"requestId":1,"a":"' + b"x" * (1 << 19) + b'","type":"buffer"}'):
+    done = subprocess.run([sys.argv[1], "compare", "--server"], input=line + b"\n\x89PNG\n" + smuggled, capture_output=True)
+    answers = [json.loads(text) for text in done.stdout.splitlines()]
+    equal(f"answers to {line[:90]}", (len(answers), answers[-1]["requestId"], "error" in answers[-1]), (2, 1, True))
+    equal("its end", (done.returncode, b"the server ends" in done.stderr), (2, True))
+equal("no file is written", os.path.exists("smuggled.png"), False)
 print(f"{checks} checks, {failures} failures")
 sys.exit(failures > 0)
