@@ -50,7 +50,7 @@ typedef struct SequencePair {
 SequencePair *image_sequence_pair(const ImageSequence *a, const ImageSequence *b, int *count, Error *error);
 int sequence_compare_stems(const SequenceFrame *x, const SequenceFrame *y);
 
-/* Whether a name is UTF-8 without control characters. */
+/* Whether a name is UTF-8 without characters that a terminal obeys (control_in_text()). */
 bool name_is_text(const char *name);
 
 /* Comparison of two pictures, pixel by pixel. */

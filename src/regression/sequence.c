@@ -13,13 +13,14 @@
 #include <sys/stat.h>
 
 bool name_is_text(const char *name) {
+    const char *start = name;
     size_t length, left = strlen(name);
     for (; left > 0; name += length, left -= length) {
         uint32_t character;
         length = utf8_decode(name, left, &character);
-        if (length == 0 || character < 0x20 || (character >= 0x7F && character < 0xA0)) return false;
+        if (length == 0) return false;
     }
-    return true;
+    return control_in_text(start) == 0;
 }
 
 static bool is_png(const char *name) {
@@ -42,9 +43,13 @@ static void read_name(SequenceFrame *frame) {
 /* `before` is the path before the name, including the slash. */
 static bool add_frame(ImageSequence *sequence, size_t *capacity, const char *before, const char *name, Error *error) {
     size_t size = strlen(before) + strlen(name) + 1;
-    if (!name_is_text(name))
-        return error_input(error, before, "a file name in it is not UTF-8 or has control characters");
     char *path = malloc(size);
+    const bool text = name_is_text(name);
+    if (path != NULL && !text) {
+        snprintf(path, size, "%s%s", before, name);
+        error_input(error, path, "its name is not UTF-8, or has characters that a terminal obeys; rename it");
+        return free(path), false;
+    }
     if (path == NULL ||
         !array_reserve((void **)&sequence->frames, capacity, (size_t)sequence->count + 1, sizeof *sequence->frames)) {
         free(path);

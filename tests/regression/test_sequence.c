@@ -137,8 +137,9 @@ static void refuse(const char *path, const char *text) {
 }
 
 TEST(doubtful_folders_are_refused) {
-    refuse(folder_of("bytes", "frame_\xFF.png"), "is not UTF-8 or has control characters");
-    refuse(folder_of("line", "frame_\x01.png"), "is not UTF-8 or has control characters");
+    refuse(folder_of("bytes", "frame_\xFF.png"), "/frame_\\xff.png: error: its name is not UTF-8");
+    refuse(folder_of("line", "frame_\x01.png"), "/frame_\\x01.png: error: its name");
+    refuse(folder_of("bidi", "frame_\u202Egnp.png"), "/frame_\\u202egnp.png: error: its name");
     refuse(temporary_path("nowhere"), "nowhere: error: cannot be read");
     int count;
     ImageSequence *folder = opened(folder_of("folder", "1.png")), *file = opened(temporary_path("folder/1.png"));
@@ -170,7 +171,7 @@ TEST(pictures_in_subfolders_are_counted) {
 TEST(names_are_utf8_without_control_characters) {
     static const char *const good[] = {"frame_1.png", "\xC3\xA9", "\xE4\xBD\xA0", "\xF0\x9F\x98\x80", "a b"};
     static const char *const bad[] = {"\n",       "\x7F", "\xC2\x85", "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80",
-                                      "\xE4\xBD", "\x80"};
+                                      "\xE4\xBD", "\x80", "a\u202Eb"};
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) assert_true(name_is_text(good[i]));
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) assert_false(name_is_text(bad[i]));
 }

@@ -111,7 +111,7 @@ function list() {
   if (listed.length > 0) go(same >= 0 ? same : after >= 0 ? after : listed.length - 1);
   else {
     for (const id of ["name", "frame-verdict", "figures", "place"]) get(id).textContent = "";
-    say("No frame failed. Select \"Show all frames\" to see the others.");
+    say("No frame failed. Select \"Show all\" to see the others.");
     turns++;
     get("sheet").replaceChildren();
     get("regions-part").hidden = true;
