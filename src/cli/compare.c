@@ -287,6 +287,7 @@ static bool compare_pictures(const CompareOptions *options, Error *error) {
     if (error->kind == ERROR_NONE && options->report != NULL && !report(&regression, options, error)) ok = false;
     if (error->kind == ERROR_NONE && options->json && !compare_json_pictures(&regression, error)) ok = false;
     if (error->kind == ERROR_NONE && !annotate(options, &regression, error)) ok = false;
+    if (error->kind == ERROR_NONE && !regression_was_read(&regression, error)) ok = false;
     regression_free(&regression);
     return ok;
 }

@@ -33,6 +33,15 @@ static void print_names(const Regression *regression, PixelVerdict verdict, cons
     printf(count > NAMED ? " ...\n" : "\n");
 }
 
+/* Pictures that cannot be read, but for the first, which is the error that ends the command. */
+static void print_unread(const Regression *regression) {
+    enum { SHOWN = 50 };
+    int count = 0;
+    for (int i = 0; i < regression->count && count < SHOWN; i++)
+        if (regression->frames[i].pixels == PIXELS_UNREAD && count++ > 0)
+            printf("not comparable: %s\n", regression->frames[i].read_error);
+}
+
 /* The trajectories that only this folder has. */
 static void print_runs_alone(const Regression *regression, RegressionSide side) {
     enum { NAMED = 10 };
@@ -95,7 +104,7 @@ static void print_causes(const Regression *regression) {
 static void print_counts(const Regression *regression) {
     const int *by = regression->by_verdict, alone = regression->runs_alone[EXPECTED] + regression->runs_alone[ACTUAL];
     const int runs = regression->run_count - alone, run_failed = regression->run_failed - alone;
-    int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA];
+    int compared = regression->count - by[PIXELS_MISSING] - by[PIXELS_EXTRA] - by[PIXELS_UNREAD];
     int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
     if (different > 0) printf("%d of %d frame%s %s", different, compared, plural(compared), differ(different));
     if (different > 0 && run_failed > 0) printf(", ");
@@ -127,6 +136,7 @@ static bool print_difference(const Regression *regression, Error *error) {
     print_names(regression, PIXELS_MISSING, regression->sequences[EXPECTED]->folder);
     print_names(regression, PIXELS_EXTRA, regression->sequences[ACTUAL]->folder);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) print_runs_alone(regression, side);
+    print_unread(regression);
     print_first(regression);
     if (!print_cases(regression, error)) return false;
     print_causes(regression);

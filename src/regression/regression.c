@@ -283,20 +283,27 @@ static bool compare_accepted(Regression *regression, RegressionFrame *frame, Err
     return true;
 }
 
-/* If a frame cannot be read, the others are still compared: the reported error must not depend on the threads. */
+/* If a frame cannot be read, the others are still compared. */
 static bool compare_frame(void *context, int i, Error *error) {
     Regression *regression = context;
     RegressionFrame *frame = &regression->frames[i];
+    RegressionFrame unread = *frame;
     const double begun = clock_seconds();
     Error read_error = {0};
     bool ok = compare_accepted(regression, frame, &read_error);
     frame->seconds = clock_seconds() - begun;
-    if (!ok && read_error.kind == ERROR_INPUT && (frame->read_error = strdup(read_error.message)) != NULL) return true;
+    if (!ok && read_error.kind == ERROR_INPUT && (unread.read_error = strdup(read_error.message)) != NULL) {
+        unread.pixels = PIXELS_UNREAD;
+        unread.seconds = frame->seconds;
+        free(frame->changes);
+        *frame = unread;
+        return true;
+    }
     if (!ok) *error = read_error;
     return ok;
 }
 
-static bool report_read_errors(const Regression *regression, Error *error) {
+bool regression_was_read(const Regression *regression, Error *error) {
     int first = -1, count = 0;
     for (int i = regression->count - 1; i >= 0; i--)
         if (regression->frames[i].read_error != NULL) first = i, count++;
@@ -460,7 +467,7 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
     poses->given = poses->given && (regression->count == 0 || (options->tolerance.given & LIMIT_TOLERANCE) == 0);
     ok = ok && regression_find_runs(regression, error) && refuse_empty(regression, error) &&
          regression_read_rules(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
-         report_read_errors(regression, error) && judge_sequences(regression, error);
+         judge_sequences(regression, error);
     if (ok) count(regression);
     ok = ok && regression_measure_first(regression, error) && regression_find_causes(regression, error);
     regression->seconds = clock_seconds() - begun;

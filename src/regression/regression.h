@@ -127,7 +127,9 @@ typedef enum PixelVerdict {
     PIXELS_DIFFER,
     PIXELS_RESIZED, /* the difference is that of the overlap */
     PIXELS_MISSING, /* no actual picture */
-    PIXELS_EXTRA    /* no expected picture */
+    PIXELS_EXTRA,   /* no expected picture */
+    PIXELS_UNREAD,  /* a picture cannot be read, or its masks hide everything */
+    PIXEL_VERDICTS
 } PixelVerdict;
 
 /* A frame's picture may depend on the whole run, through the camera or a scale. STATES_DIFFER_ELSEWHERE: states are
@@ -174,7 +176,7 @@ typedef struct RegressionFrame {
     FrameChanges *changes; /* of different pixels; else NULL */
     bool shown;            /* in the report */
     double seconds;        /* that its comparison took, wall time */
-    char *read_error;      /* why a picture could not be read; makes regression_run() fail */
+    char *read_error;      /* of PIXELS_UNREAD: why; then no other member but the files' names says anything */
 } RegressionFrame;
 
 /* A trajectory that is in both folders. */
@@ -200,7 +202,7 @@ typedef struct Regression {
     RegressionFrame *frames;                  /* by stem, then number */
     RegressionRun *runs;                      /* by name */
     int failed;                               /* frames */
-    int by_verdict[6];                        /* frames, by PixelVerdict */
+    int by_verdict[PIXEL_VERDICTS];           /* frames */
     int renderer, physics, unknown;           /* frames by cause of the difference */
     int view, elsewhere;                      /* the same: the camera differs; the run does, but not in this frame */
     int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
@@ -219,13 +221,16 @@ typedef struct Regression {
 } Regression;
 
 /* Compares two folders, or two files, with all threads. Identical files are checked (pixels/png.h), but not decoded.
-   False with error set if a file cannot be read (the first by the order of frames), if masks hide all its pixels, or if
-   progress stops the comparison; then nothing needs to be freed. */
+   Frames with a picture that cannot be read get this verdict, and the others theirs. False with error set if a folder or a run cannot
+   be read, or if progress stops the comparison; then nothing needs to be freed. */
 bool regression_run(Regression *regression, const char *expected, const char *actual, const RegressionOptions *options,
                     const Progress *progress, Error *error);
 void regression_free(Regression *regression);
 
 bool regression_passed(const Regression *regression);
+
+/* False with error set if frames could not be compared: the first by their order, and how many more. */
+bool regression_was_read(const Regression *regression, Error *error);
 bool frame_failed(const RegressionFrame *frame);
 bool run_failed(const RegressionRun *run);
 const char *

@@ -128,6 +128,7 @@ static bool make_batch(Batch *batch, size_t *left, const Progress *progress, Err
 
 /* First failures, then frames within tolerance. */
 static bool is_wanted(const RegressionFrame *frame, bool failed) {
+    if (frame->pixels == PIXELS_UNREAD) return false;
     return failed ? frame_failed(frame) : !frame_failed(frame) && frame->pixels == PIXELS_WITHIN;
 }
 

@@ -495,11 +495,12 @@ static void write_limits(JsonWriter *json, const Regression *regression) {
 
 static void write_counts(JsonWriter *json, const Regression *regression) {
     static const char *const keys[] = {
-        [PIXELS_EQUAL] = "equal",     [PIXELS_WITHIN] = "within_tolerance", [PIXELS_DIFFER] = "different",
-        [PIXELS_RESIZED] = "resized", [PIXELS_MISSING] = "missing",         [PIXELS_EXTRA] = "extra"};
+        [PIXELS_EQUAL] = "equal",          [PIXELS_WITHIN] = "within_tolerance", [PIXELS_DIFFER] = "different",
+        [PIXELS_RESIZED] = "resized",      [PIXELS_MISSING] = "missing",         [PIXELS_EXTRA] = "extra",
+        [PIXELS_UNREAD] = "not_comparable"};
     json_begin_object(json, "counts", JSON_ONE_LINE);
     json_put_int(json, "frames", regression->count);
-    for (int i = 0; i <= PIXELS_EXTRA; i++) json_put_int(json, keys[i], regression->by_verdict[i]);
+    for (int i = 0; i < PIXEL_VERDICTS; i++) json_put_int(json, keys[i], regression->by_verdict[i]);
     json_put_int(json, "trajectories", regression->run_count);
     json_put_int(json, "trajectories_within_tolerance", regression->run_within);
     json_put_int(json, "trajectories_different", regression->run_failed);

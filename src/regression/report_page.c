@@ -83,6 +83,7 @@ static void write_counts(FILE *file, const Regression *regression) {
     write_count(file, regression->unknown, "bad", "pictures differ");
     write_count(file, by[PIXELS_MISSING], "bad", "missing");
     write_count(file, by[PIXELS_EXTRA], "bad", "extra");
+    write_count(file, by[PIXELS_UNREAD], "bad", "not comparable");
     write_count(file, regression->metadata_failed, "bad", "metadata changed");
     write_count(file, by[PIXELS_WITHIN], "odd", "within tolerance");
     write_count(file, by[PIXELS_EQUAL], "good", "equal pixels");

@@ -154,6 +154,8 @@ const char *frame_verdict(const RegressionFrame *frame) {
     switch (frame->pixels) {
     case PIXELS_MISSING: return "missing";
     case PIXELS_EXTRA: return "extra";
+    case PIXEL_VERDICTS:
+    case PIXELS_UNREAD: return "not comparable";
     case PIXELS_DIFFER:
     case PIXELS_RESIZED:
         if (frame->states == STATES_DIFFER) return "physics changed";
@@ -203,6 +205,8 @@ RegressionText frame_words(const RegressionFrame *frame) {
     switch (frame->pixels) {
     case PIXELS_MISSING: ADD(&words, "", "no actual picture"); break;
     case PIXELS_EXTRA: ADD(&words, "", "no expected picture"); break;
+    case PIXEL_VERDICTS:
+    case PIXELS_UNREAD: ADD(&words, "", "%s", frame->read_error); break;
     case PIXELS_RESIZED:
         ADD(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
         if (frame->sizes_alone) break;
@@ -290,6 +294,7 @@ RegressionText regression_verdict(const Regression *regression) {
     if (regression->metadata_failed > 0) ADD(&verdict, ", ", "metadata changed");
     add_count(&verdict, regression->by_verdict[PIXELS_MISSING], "missing");
     add_count(&verdict, regression->by_verdict[PIXELS_EXTRA], "extra");
+    add_count(&verdict, regression->by_verdict[PIXELS_UNREAD], "not comparable");
     add_run_count(&verdict, alone[EXPECTED], "missing");
     add_run_count(&verdict, alone[ACTUAL], "extra");
     if (verdict.text[0] == '\0') ADD(&verdict, "", "equal");

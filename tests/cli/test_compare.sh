@@ -51,6 +51,28 @@ head -c 200 one/frame_000001.png >two/frame_000002.png
 run 2 compare one two
 complains "two/frame_000001.png"
 complains "(further frames that cannot be compared: 1)"
+says "not comparable: two/frame_000002.png: error: "
+says "only in two: 1 frame: frame_000007.png"
+says "verdict: 1 frame missing, 1 frame extra, 2 frames not comparable"
+
+# What cannot be read hides nothing: all others are compared and reported, and it is not approved.
+mkdir good bad
+for name in a b c; do /usr/bin/python3 "$tests/png.py" good/$name.png 20 10 "9 9 9 255"; done
+cp good/a.png bad
+/usr/bin/python3 "$tests/png.py" bad/b.png 20 10 "99 9 9 255"
+head -c 60 good/c.png >bad/c.png
+run 2 compare good bad --report unread
+says "differs: b.png: 200 pixels differ"
+says "1 of 2 frames differs"
+complains "bad/c.png: error: not a PNG file, or damaged"
+grep -q '"name": "c.png", "verdict": "not comparable", "failed": true, "shown": false' unread/results.json || fail "c.png is not in the results"
+grep -q '"different": 1, .*"not_comparable": 1' unread/results.json || fail "counts: $(grep counts unread/results.json)"
+for file in report.html junit.xml results.tap; do grep -q 'c\.png' unread/$file || fail "c.png is not in $file"; done
+cp good/c.png kept.png
+run 1 approve unread # b.png is, c.png is not
+equal "an expected picture whose actual one cannot be read" "$(md5sum <good/c.png)" "$(md5sum <kept.png)"
+run 2 compare good bad
+complains "bad/c.png"
 
 # Pictures of other programs: no states, other names, other depths.
 png() { /usr/bin/python3 "$tests/png.py" "$@"; }
