@@ -21,10 +21,12 @@ typedef struct Verdict {
 
 /* Of the squared difference: what a movement explains, and where it looks like noise; what either picture must show. */
 static const double MOVED = 0.7, CERTAIN = 0.9, BOTH = 0.15;
+static const double TRACE =
+    0.02; /* the same if a movement explains all: one side of a gradient is nearly that of its ground */
 
 /* Whether something of these patches appears and something vanishes. Where content leaves, the difference has the other sign than
    where it arrives; a box that grew on one side has one sign. */
-static bool shows_both(const Patch *const *patches, int count) {
+static bool shows_both(const Patch *const *patches, int count, double least) {
     enum { EVIDENCE = 12 }; /* pixels; fewer fit to many offsets by chance */
     double energy[DOT_KINDS] = {0}, total = 0, rise = 0, fall = 0;
     int dots = 0;
@@ -35,8 +37,8 @@ static bool shows_both(const Patch *const *patches, int count) {
     }
     if (dots < EVIDENCE) return false;
     const double either = (energy[DOT_CHANGES] + energy[DOT_EDGE]) / 2;
-    return energy[DOT_APPEARS] + either >= BOTH * total && energy[DOT_VANISHES] + either >= BOTH * total &&
-           fmin(rise, fall) >= BOTH * (rise + fall);
+    return energy[DOT_APPEARS] + either >= least * total && energy[DOT_VANISHES] + either >= least * total &&
+           fmin(rise, fall) >= least * (rise + fall);
 }
 
 static ChangeKind kind_of_patch(const Patch *patch) {
@@ -56,10 +58,9 @@ static bool judge_region(const Image *const pictures[2], const uint8_t *masked, 
     const Patch *patch = verdict->patch = patch_create(pictures, masked, region, error);
     if (patch == NULL) return false;
     const bool noise = scattered || traits_are_noise(&patch->traits);
-    if (!scattered && shows_both(&patch, 1)) verdict->motion = content_motion(&patch, 1, hint);
-    verdict->kind = verdict->motion.explained >= (noise ? CERTAIN : MOVED) ? CHANGE_MOVED
-                    : noise                                                ? CHANGE_NOISE
-                                                                           : kind_of_patch(patch);
+    if (!scattered && shows_both(&patch, 1, TRACE)) verdict->motion = content_motion(&patch, 1, hint);
+    const double enough = noise ? CERTAIN : shows_both(&patch, 1, BOTH) ? MOVED : MOTION_EXACT;
+    verdict->kind = verdict->motion.explained >= enough ? CHANGE_MOVED : noise ? CHANGE_NOISE : kind_of_patch(patch);
     return true;
 }
 
@@ -84,7 +85,7 @@ static void join_pairs(Verdict *verdicts, int count) {
     for (int i = 0; i < count; i++)
         for (int j = 0; j < count; j++) {
             const Patch *patches[2] = {verdicts[i].patch, verdicts[j].patch};
-            if (i == j || !may_join(&verdicts[i], &verdicts[j]) || !shows_both(patches, 2)) continue;
+            if (i == j || !may_join(&verdicts[i], &verdicts[j]) || !shows_both(patches, 2, BOTH)) continue;
             const Verdict *known = verdicts[i].kind == CHANGE_MOVED ? &verdicts[i] : &verdicts[j];
             const Motion motion = content_motion(patches, 2, &known->motion);
             if (motion.explained < MOVED) continue;
@@ -167,13 +168,16 @@ static void add_change(FrameChanges *changes, const Verdict *verdict, int region
 /* Names the regions by their surroundings. */
 static bool name_regions(const Image *const pictures[2], const uint8_t *masked, FrameChanges *changes, Error *error) {
     Verdict verdicts[IMAGE_REGIONS_MAX] = {0};
-    Motion hint = {0};
+    enum { MANY = 4 };
+    Motion hint = {0}, shift = {0};
     int regions[IMAGE_REGIONS_MAX], count = 0;
     /* Many regions, and all of few pixels. */
     const bool scattered = changes->regions.count > 4 * IMAGE_REGIONS_MAX && changes->regions.list[0].pixels <= 16;
-    bool ok = true;
+    bool ok = scattered || changes->regions.kept < MANY || content_lines_shift(pictures[0], pictures[1], &shift, error);
+    const bool shifted = shift.right != 0 || shift.down != 0;
     for (int i = 0; ok && i < changes->regions.kept; i++) {
         if (changes->region_change[i] >= 0) continue;
+        if (shifted) hint = shift;
         ok = judge_region(pictures, masked, &changes->regions.list[i], scattered, &hint, &verdicts[count], error);
         if (verdicts[count].kind == CHANGE_MOVED) hint = verdicts[count].motion;
         regions[count++] = i;

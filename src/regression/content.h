@@ -130,6 +130,12 @@ typedef struct Motion {
     double explained; /* share of the squared difference */
 } Motion;
 
-/* The offset that explains most of one region, or of two: the one that something left, and the one where it arrived. `hint` is
-   tried as well. */
+/* The offset that explains most of one region, or of two: the one that something left, and the one where it arrived. Of several
+   that explain all, the smallest: an even thing that moved by less than its size looks the same moved farther. `hint` is tried
+   as well. */
+static const double MOTION_EXACT = 0.999; /* explains all */
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint);
+
+/* The distance that most rows or columns that differ have moved, such as those below a banner; 0, 0 if they do not agree. False with
+   error set if out of memory. */
+bool content_lines_shift(const Image *expected, const Image *actual, Motion *shift, Error *error);

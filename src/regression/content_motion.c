@@ -12,6 +12,7 @@ enum { CHANNELS = 4, NEAR = 3, STARTS_MAX = 80, DESCENTS = 3, STEPS_MAX = 40, PR
 typedef struct Search {
     const Patch *const *patches;
     int patch_count;
+    Motion edges; /* the shift of the edges; 0, 0: not known */
     int starts;
     Motion start[STARTS_MAX];
 } Search;
@@ -63,15 +64,6 @@ static void add_start(Search *search, double right, double down) {
     search->start[search->starts++] = start;
 }
 
-/* Corners of what was there and of what is there now. */
-static void add_corners(Search *search) {
-    const ViewRect a = search->patches[0]->box[0], b = search->patches[search->patch_count - 1]->box[1];
-    if (a.right < a.left || b.right < b.left) return;
-    const int right[2] = {b.left - a.left, b.right - a.right}, down[2] = {b.top - a.top, b.bottom - a.bottom};
-    for (int i = 0; i < 4; i++) add_start(search, right[i % 2], down[i / 2]);
-    for (int i = 0; i < 2; i++) add_start(search, right[i], 0), add_start(search, 0, down[i]);
-}
-
 /* The shift of one profile that is most like the other. */
 static int best_shift(const double *a, const double *b, int count) {
     double least = INFINITY;
@@ -90,15 +82,47 @@ static int best_shift(const double *a, const double *b, int count) {
     return best;
 }
 
-static void add_profiles(Search *search) {
+/* By column or by row of a region: how much the pixels differ from those before. */
+static void edge_profile(const Image *image, const ImageRegion *region, bool by_row, int count, double *profile) {
+    enum { SAMPLES = 256 }; /* of a line */
+    const int length = by_row ? region->right - region->left : region->bottom - region->top;
+    for (int i = 0; i < count; i++) {
+        profile[i] = 0;
+        for (int k = 0; k < length; k += length / SAMPLES + 1) {
+            const int x = region->left + (by_row ? k : i), y = region->top + (by_row ? i : k);
+            for (int c = 0; c < CHANNELS; c++)
+                profile[i] += abs(level_at(image, x, y, c) - level_at(image, x - !by_row, y - by_row, c));
+        }
+    }
+}
+
+/* The shift of the edges: inside an even thing that moved by a part of its size, nothing differs. */
+static int edge_shift(const Patch *patch, bool by_row) {
+    double profiles[2][PROFILE_MAX];
+    const ImageRegion *region = &patch->region;
+    const int count = by_row ? region->bottom - region->top : region->right - region->left;
+    for (int i = 0; i < 2; i++) edge_profile(patch->pictures[i], region, by_row, count, profiles[i]);
+    return best_shift(profiles[0], profiles[1], count);
+}
+
+/* Between the sides of what was there and of what is there now, between their profiles, and their edges: each way across with each way down. */
+static void add_sides(Search *search) {
     const Patch *patch = search->patches[0];
+    const ViewRect a = patch->box[0], b = search->patches[search->patch_count - 1]->box[1];
     const int width = patch->region.right - patch->region.left, height = patch->region.bottom - patch->region.top;
-    if (search->patch_count > 1 || width > PROFILE_MAX || height > PROFILE_MAX) return;
-    const int right = best_shift(patch->mass[0][0], patch->mass[1][0], width);
-    const int down = best_shift(patch->mass[0][1], patch->mass[1][1], height);
-    add_start(search, right, down);
-    add_start(search, right, 0);
-    add_start(search, 0, down);
+    int right[5] = {0}, down[5] = {0};
+    if (a.right >= a.left && b.right >= b.left) {
+        right[1] = b.left - a.left, right[2] = b.right - a.right;
+        down[1] = b.top - a.top, down[2] = b.bottom - a.bottom;
+    }
+    if (search->patch_count == 1 && width <= PROFILE_MAX && height <= PROFILE_MAX) {
+        right[3] = best_shift(patch->mass[0][0], patch->mass[1][0], width);
+        down[3] = best_shift(patch->mass[0][1], patch->mass[1][1], height);
+        right[4] = edge_shift(patch, false);
+        down[4] = edge_shift(patch, true);
+        search->edges = (Motion){right[4], down[4], 0};
+    }
+    for (int i = 0; i < 25; i++) add_start(search, right[i % 5], down[i / 5]);
 }
 
 /* To a neighbour while that explains more. */
@@ -197,6 +221,7 @@ static bool has_partners(const Search *search, const Motion *motion) {
     enum { NEARBY = 1, SHARE = 10 };
     const int right = (int)rint(motion->right), down = (int)rint(motion->down);
     if ((abs(right) <= NEARBY && abs(down) <= NEARBY) || search->patch_count > 1) return true;
+    if (right == (int)search->edges.right && down == (int)search->edges.down) return true;
     int all = 0, found = 0;
     for (int i = 0; i < search->patch_count; i++)
         for (int k = 0; k < search->patches[i]->count; k++, all++)
@@ -204,12 +229,28 @@ static bool has_partners(const Search *search, const Motion *motion) {
     return found * SHARE >= all;
 }
 
+/* The smallest offset towards this one that explains as much, by steps that halve: of an even area, all larger ones do. */
+static Motion shrunk(const Search *search, Motion found) {
+    enum { LONGEST = 1 << 11 };
+    for (int step = LONGEST; step > 0; step /= 2)
+        for (int axis = 0; axis < 2; axis++)
+            for (;;) {
+                Motion tried = found;
+                double *along = axis == 0 ? &tried.right : &tried.down;
+                if (fabs(*along) < step) break;
+                *along -= copysign(step, *along);
+                judge(search, &tried);
+                if (tried.explained < found.explained || !has_partners(search, &tried)) break;
+                found = tried;
+            }
+    return found;
+}
+
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint) {
-    static const double EXACT = 0.999, HOPELESS = 0.1;
+    static const double EXACT = MOTION_EXACT, HOPELESS = 0.1;
     Search search = {.patches = patches, .patch_count = count};
     add_start(&search, hint->right, hint->down);
-    add_corners(&search);
-    add_profiles(&search);
+    add_sides(&search);
     for (int k = 0; k < (2 * NEAR + 1) * (2 * NEAR + 1); k++)
         add_start(&search, k % (2 * NEAR + 1) - NEAR, k / (2 * NEAR + 1) - NEAR);
     qsort(search.start, (size_t)search.starts, sizeof *search.start, by_explained);
@@ -218,6 +259,7 @@ Motion content_motion(const Patch *const *patches, int count, const Motion *hint
         Motion found = search.start[i];
         if (found.explained < HOPELESS) break;
         descend(&search, &found);
+        found = shrunk(&search, found);
         if (found.explained < EXACT) found = refined(&search, found);
         if (found.explained > best.explained && has_partners(&search, &found)) best = found;
     }

@@ -139,11 +139,14 @@ static void add_mass(const Ground *ground, Patch *patch, int x, int y, size_t pl
     }
 }
 
-/* All differing pixels count in the sums, and every n-th becomes a dot. */
+/* All differing pixels count in the sums, and some become dots: by multiples of the golden ratio, since every n-th pixel would lie in
+   few columns of a box. */
 static void add_dots(const Ground *ground, Patch *patch) {
     const ImageRegion *region = &patch->region;
-    const int64_t stride = region->pixels / DOTS_MAX + 1;
-    int64_t number = 0;
+    const uint32_t golden = 0x9E3779B9u;
+    const uint64_t limit =
+        ((uint64_t)DOTS_MAX << 32) / (uint64_t)(region->pixels > DOTS_MAX ? region->pixels : DOTS_MAX);
+    uint32_t number = 0;
     for (int y = region->top; y < region->bottom; y++)
         for (int x = region->left; x < region->right; x++) {
             const size_t place = place_of(ground, x, y);
@@ -152,7 +155,8 @@ static void add_dots(const Ground *ground, Patch *patch) {
             if (kind != DOT_APPEARS) extend(&patch->box[0], x, y);
             if (kind != DOT_VANISHES) extend(&patch->box[1], x, y);
             add_mass(ground, patch, x, y, place);
-            if (number++ % stride != 0 || patch->count == DOTS_MAX) continue;
+            number += golden;
+            if (number >= limit || patch->count == DOTS_MAX) continue;
             patch->dots[patch->count++] = (Dot){x, y, kind};
             add_energy(ground, patch, pixel_of(ground, x, y), kind);
         }

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Things of several textures, moved by 1 to 40 pixels in eight directions: told by how much, or unsure where no eye could tell. */
+#include "made.h"
+
+#include "pixels/png.h"
+#include "regression/compare.h"
+#include "regression/content.h"
+#include "regression/internal.h"
+
+#include <math.h>
+
+enum { WIDTH = 240, HEIGHT = 200, LEFT = 90, TOP = 80, ACROSS = 60, DOWN = 40, FAR = 40 };
+
+typedef int Texture(int x, int y); /* a level, of a pixel of the thing */
+
+static int even(int x, int y) { return (void)x, (void)y, 40; }
+static int along(int x, int y) { return (void)y, 3 * x; }
+static int across(int x, int y) { return (void)x, 200 - 4 * y; }
+static int frame(int x, int y) { return x < 2 || y < 2 || x >= ACROSS - 2 || y >= DOWN - 2 ? 0 : 190; }
+static int noise(int x, int y) {
+    const uint32_t mixed = ((uint32_t)(x + 1) * 2654435761U ^ (uint32_t)(y + 7) * 2246822519U) * 3266489917U;
+    return (int)(mixed >> 25);
+}
+
+static Image *page(Texture *texture, int right, int down) {
+    Image *image = image_sized(WIDTH, HEIGHT);
+    memset(image->pixels, 255, (size_t)4 * WIDTH * HEIGHT);
+    for (int y = 0; y < DOWN; y++)
+        for (int x = 0; x < ACROSS; x++)
+            memset(image->pixels + 4 * ((TOP + down + y) * WIDTH + LEFT + right + x), texture(x, y), 3);
+    return image;
+}
+
+/* Destroys both. */
+static FrameChanges changes_of(Image *a, Image *b) {
+    FrameChanges changes = {.count = 0};
+    ImageDifference difference;
+    Error error = {0};
+    memset(changes.region_change, -1, sizeof changes.region_change);
+    image_compare(a, b, &difference);
+    assert_ok(image_regions_find(a, b, NULL, &difference, &changes.regions, &error), error);
+    assert_ok(content_name(a, b, NULL, &difference, &changes, &error), error);
+    image_destroy(a);
+    image_destroy(b);
+    return changes;
+}
+
+/* Whether all regions moved by this. *wrong: one is said to have moved by something else. */
+static bool moved_by(const FrameChanges *changes, int right, int down, bool *wrong) {
+    bool all = changes->regions.kept > 0;
+    for (int k = 0; k < changes->regions.kept; k++) {
+        const Change *change = &changes->list[changes->region_change[k]];
+        const bool moved = change->kind == CHANGE_MOVED;
+        const bool here = moved && fabs(change->right - right) < 0.1 && fabs(change->up + down) < 0.1;
+        all = all && here;
+        *wrong = *wrong || (moved && !here);
+    }
+    return all;
+}
+
+/* The others are a gradient's: its lightest side moved by up to three pixels, which differs little from its ground. */
+TEST(things_move_by_what_they_moved) {
+    static Texture *const textures[] = {even, along, across, frame, noise};
+    static const int steps[][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+    enum {
+        TEXTURES = sizeof textures / sizeof textures[0],
+        DIRECTIONS = sizeof steps / sizeof steps[0],
+        AT_LEAST = 98
+    };
+    int all = 0, right = 0;
+    for (int i = 0; i < TEXTURES * DIRECTIONS; i++)
+        for (int far = 1; far <= FAR; far++, all++) {
+            const int x = far * steps[i % DIRECTIONS][0], y = far * steps[i % DIRECTIONS][1];
+            Texture *texture = textures[i / DIRECTIONS];
+            const FrameChanges changes = changes_of(page(texture, 0, 0), page(texture, x, y));
+            bool wrong = false;
+            right += moved_by(&changes, x, y, &wrong);
+            if (wrong)
+                fail_msg("texture %d that moved by (%d, %d) is said to have moved by something else", i / DIRECTIONS, x,
+                         y);
+        }
+    if (100 * right < AT_LEAST * all) fail_msg("%d of %d are right", right, all);
+}
+
+/* Lines of random letters. */
+static void write_lines(Image *image, int from, int left) {
+    for (int y = from, line = 0; y < HEIGHT; y++, line++)
+        for (int x = left; x < WIDTH - 20 && line % 10 < 6; x++) {
+            const bool ink = noise((x - left) / 2 + line / 10 * 977, line) > 90;
+            memset(image->pixels + 4 * (y * WIDTH + x), ink ? 0 : 255, 3);
+        }
+}
+
+/* What follows a banner, or stands beside a new column, has moved by its size. */
+TEST(what_follows_something_new_moves) {
+    for (int turned = 0; turned < 2; turned++)
+        for (int size = 7; size <= 47; size += 20) {
+            Image *a = image_sized(WIDTH, HEIGHT), *b = image_sized(WIDTH, HEIGHT);
+            memset(a->pixels, 255, (size_t)4 * WIDTH * HEIGHT);
+            memset(b->pixels, 255, (size_t)4 * WIDTH * HEIGHT);
+            write_lines(a, 10, 10);
+            write_lines(b, turned ? 10 : 10 + size, turned ? 10 + size : 10);
+            const FrameChanges changes = changes_of(a, b);
+            int64_t moved = 0, all = 0;
+            for (int k = 0; k < changes.regions.kept; k++) {
+                const int64_t pixels = changes.regions.list[k].pixels;
+                const Change *change = &changes.list[changes.region_change[k]];
+                const bool right = fabs(change->right - turned * size) < 0.1,
+                           down = fabs(change->up + (1 - turned) * size) < 0.1;
+                moved += change->kind == CHANGE_MOVED && right && down ? pixels : 0, all += pixels;
+            }
+            if (10 * moved < 7 * all)
+                fail_msg("turned %d, size %d: %lld of %lld pixels", turned, size, (long long)moved, (long long)all);
+        }
+}
+
+RUN_TESTS(NULL, NULL)
