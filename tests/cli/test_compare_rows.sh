@@ -106,8 +106,8 @@ done <<'CASES'
 1 a opaque 100000000 pixels differ
 2 a sum incorrect data check
 2 a short Not enough image data
-2 a long Too much image data
+2 a long more pixels than the header states
 2 a few too few bytes for its pixels
-2 a interlaced Too much image data
+2 a interlaced more pixels than the header states
 CASES
 finish
