@@ -59,7 +59,7 @@ static bool judge_region(const Image *const pictures[2], const uint8_t *masked, 
     if (patch == NULL) return false;
     const bool noise = scattered || traits_are_noise(&patch->traits);
     if (!scattered && shows_both(&patch, 1, TRACE)) verdict->motion = content_motion(&patch, 1, hint);
-    const double enough = noise ? CERTAIN : shows_both(&patch, 1, BOTH) ? MOVED : MOTION_EXACT;
+    const double enough = !shows_both(&patch, 1, BOTH) ? MOTION_EXACT : noise ? CERTAIN : MOVED;
     verdict->kind = verdict->motion.explained >= enough ? CHANGE_MOVED : noise ? CHANGE_NOISE : kind_of_patch(patch);
     return true;
 }
