@@ -145,19 +145,12 @@ uint8_t *difference_picture(const Image *expected, const Image *actual, const ui
 IndexedPng *heat_picture(int width, int height, Error *error);
 FlipSink heat_picture_sink(IndexedPng *picture);
 
-/* A box as twinbox draws it (shaders/shape.frag): fill, an outline inside the edge, a band along the local top. Edges are
-   smoothed over one pixel by the distance of the pixel's centre. Pixels, y down. */
-
-enum { BOX_OUTSIDE, BOX_LINE, BOX_FILL, BOX_BAND, BOX_PARTS };
+/* A box as twinbox draws it. Pixels, y down. */
 
 typedef struct BoxModel {
     double x, y;         /* centre */
     double cosine, sine; /* of the angle, counter-clockwise on the screen */
     double half_width, half_height;
-    double line;   /* width of the outline; 0: none */
-    double band;   /* from the top edge to the band's lower end; 0: none */
-    double radius; /* of the corners */
-    bool target;   /* a bomb: its middle shows a target, which this model lacks */
 } BoxModel;
 
 /* Signed distance of a point from the edge, negative inside. */
@@ -165,30 +158,6 @@ double box_distance(const BoxModel *box, double x, double y);
 
 /* The bounds of the box and a margin, as left, top, right, bottom. */
 void box_bounds(const BoxModel *box, double margin, double bounds[4]);
-
-/* What happened to one drawn box between two pictures, from the pixels alone. Its pose in the first picture is known; line
-   width and colours are fitted to it. Then three explanations are fitted to the difference of the pictures: the box moved
-   or turned, its colours changed, its line width changed. The one that leaves the least squared difference wins. */
-
-enum { FIT_PIXELS_MAX = 8000, MOVEMENT_STARTS_MAX = 8 };
-
-/* A pixel near the box; colours are 0..255. */
-typedef struct FitPixel {
-    double x, y;                     /* centre */
-    double before[3], difference[3]; /* colour in the first picture; second minus first */
-    double behind[3];                /* what a box that moves away uncovers, as far as known */
-} FitPixel;
-
-typedef struct FitPixels {
-    int count;
-    FitPixel list[FIT_PIXELS_MAX];
-} FitPixels;
-
-typedef struct BodyFit {
-    ChangeKind kind;         /* CHANGE_OTHER: no explanation leaves less than half of the squared difference */
-    double right, up, turn;  /* of CHANGE_MOVED, as in Change */
-    double total, explained; /* squared differences */
-} BodyFit;
 
 /* Names what differs between two of twinbox's own pictures: bodies, captions, axes. */
 
@@ -222,7 +191,7 @@ typedef struct Naming {
     FrameChanges *changes;
 } Naming;
 
-/* One panel for naming: its bodies as drawn, and what its pixels tell of one of them. */
+/* One panel for naming: its bodies as drawn. */
 
 /* A body as drawn in a panel. */
 typedef struct Drawn {
@@ -231,7 +200,6 @@ typedef struct Drawn {
     BoxModel box[2]; /* expected, actual */
     double moved;    /* pixels, of the corner that the states move farthest; infinite if it exists on one side only */
     int64_t pixels;  /* unknown ones on it */
-    bool tried;
 } Drawn;
 
 typedef struct Panel {
@@ -241,7 +209,6 @@ typedef struct Panel {
     const Trajectory *runs[2];
     int count;
     Drawn *bodies; /* [count], in the order of drawing */
-    FitPixels *pixels;
 } Panel;
 
 /* The order of drawing. */
@@ -254,12 +221,6 @@ bool panel_open(Panel *panel, Naming *naming, int number, bool *usable, Error *e
 void panel_close(Panel *panel);
 
 size_t panel_pixel(const Panel *panel, int x, int y);
-
-/* Fills the pixels of the panel with those that tell what happened to a body, near it or within `changed`. */
-void panel_collect(Panel *panel, int body, ViewRect changed);
-
-/* Explains the unknown pixels, which are within `changed`, by a change of one body. */
-BodyFit panel_fit(Panel *panel, int body, ViewRect changed);
 
 /* The fixed parts of report.html (src/regression/page), embedded in the binary by base/tools/embed.cmake. */
 

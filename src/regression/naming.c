@@ -113,7 +113,7 @@ static bool names_better(const FrameChanges *changes, const int64_t *pixels, int
 
 static const double SEEN = 0.01;  /* pixels; the states of a body that moved less explain no pixel */
 static const double AROUND = 1.5; /* pixels beyond its edge that a body may change */
-enum { FITS = 4, CANDIDATES = 4, SINGLE = 6 };
+enum { SINGLE = 6, CHANGED = 4 };
 
 static Change change_of(const Panel *panel, const Drawn *body, ChangeKind kind) {
     const Trajectory *run = panel->runs[0];
@@ -125,21 +125,6 @@ static Change change_of(const Panel *panel, const Drawn *body, ChangeKind kind) 
                             : fixed == 1          ? SUBJECT_GROUND
                                                   : SUBJECT_FIXED;
     return (Change){.subject = subject, .kind = kind, .panel = panel->number + 1, .body = body->index};
-}
-
-/* The bounds of the panel's unknown pixels; empty if there are none. */
-static ViewRect unknown_of(const Panel *panel) {
-    const ViewRect rect = panel->view->rect;
-    ViewRect found = {rect.right, rect.bottom, rect.left, rect.top};
-    for (int y = rect.top; y < rect.bottom; y++)
-        for (int x = rect.left; x < rect.right; x++) {
-            if (panel->naming->owners[panel_pixel(panel, x, y)] != OWNER_UNKNOWN) continue;
-            if (x < found.left) found.left = x;
-            if (x >= found.right) found.right = x + 1;
-            if (y < found.top) found.top = y;
-            if (y >= found.bottom) found.bottom = y + 1;
-        }
-    return found;
 }
 
 static int by_movement(const void *a, const void *b) {
@@ -209,44 +194,19 @@ static void count_unknown(Panel *panel) {
         }
 }
 
-/* The body not yet tried with the most unknown pixels, or -1. */
-static int next_candidate(const Panel *panel) {
-    int best = -1;
-    for (int i = 0; i < panel->count; i++) {
-        if (panel->bodies[i].tried || panel->bodies[i].pixels == 0) continue;
-        if (best < 0 || panel->bodies[i].pixels > panel->bodies[best].pixels) best = i;
-    }
-    return best;
-}
-
-/* Names the body whose change explains most. False if no body has unknown pixels. */
-static bool name_best(Panel *panel) {
-    BodyFit best = {.explained = -1};
-    int body = -1;
-    const ViewRect changed = unknown_of(panel);
+/* The body with the most unknown pixels, by itself: those around it are its edge, also where it lies on others. False if there is
+   none, or no room. */
+static bool name_most(Panel *panel) {
+    int most = 0, change;
     count_unknown(panel);
-    for (int i = 0; i < panel->count; i++) panel->bodies[i].tried = false;
-    for (int tried = 0, at; tried < CANDIDATES && (at = next_candidate(panel)) >= 0; tried++) {
-        panel->bodies[at].tried = true;
-        BodyFit found = panel_fit(panel, at, changed);
-        if (body >= 0 && found.explained <= best.explained) continue;
-        best = found, body = at;
-    }
-    if (body < 0) return false;
-    Drawn drawn = panel->bodies[body];
-    Change change = change_of(panel, &drawn, best.kind);
-    change.right = best.right, change.up = best.up, change.turn = best.turn;
-    /* Changes that the fit does not see are inside the body: its colours, or a bomb's target. */
-    if (best.total <= 0) change.kind = CHANGE_COLOUR;
-    drawn.exists[1] = true;
-    drawn.box[1] = drawn.box[0];
-    drawn.box[1].x += best.right, drawn.box[1].y -= best.up;
-    drawn.box[1].cosine = cos(best.turn) * drawn.box[0].cosine - sin(best.turn) * drawn.box[0].sine;
-    drawn.box[1].sine = sin(best.turn) * drawn.box[0].cosine + cos(best.turn) * drawn.box[0].sine;
-    int added = add_change(panel->naming, &change);
-    bool took = added >= 0 && take_body(panel, &drawn, added) > 0;
-    drop_empty(panel->naming, added);
-    return took;
+    for (int i = 1; i < panel->count; i++)
+        if (panel->bodies[i].pixels > panel->bodies[most].pixels) most = i;
+    if (panel->count == 0 || panel->bodies[most].pixels == 0) return false;
+    const Change changed = change_of(panel, &panel->bodies[most], CHANGE_OTHER);
+    if ((change = add_change(panel->naming, &changed)) < 0) return false;
+    take_box(panel->naming, panel->view->rect, &panel->bodies[most].box[0], AROUND, change);
+    drop_empty(panel->naming, change);
+    return true;
 }
 
 /* Bodies that still have unknown pixels: their number, or the only one. */
@@ -271,7 +231,7 @@ static bool name_bodies(Naming *naming, int number, Error *error) {
     bool usable = false,
          ok = panel_open(&panel, naming, number, &usable, error) && (!usable || name_moved(&panel, error));
     if (ok && usable) {
-        for (int i = 0; i < FITS && name_best(&panel); i++) {
+        for (int i = 0; i < CHANGED && name_most(&panel); i++) {
         }
         name_others(&panel);
     }

@@ -32,7 +32,6 @@ typedef enum ChangeKind {
     CHANGE_OTHER, /* none of the following */
     CHANGE_MOVED,
     CHANGE_COLOUR,
-    CHANGE_LINE_WIDTH,
     CHANGE_APPEARED,
     CHANGE_DISAPPEARED,
     CHANGE_REPLACED, /* by other content */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A panel of a picture as naming sees it: its bodies as drawn, what is on top, and the pixels that tell of one body. */
+/* A panel of a picture as naming sees it: its bodies as drawn, and what is on top. */
 #include "base/base.h"
 #include "regression/compare.h"
 #include "regression/internal.h"
@@ -12,6 +12,26 @@
 
 enum { PAINTED_MAX = 64 /* times the panel, by all bodies */ };
 
+/* Position from the centre along the local axes; `up` along the local top. */
+static void to_local(const BoxModel *box, double x, double y, double *along, double *up) {
+    *along = box->cosine * (x - box->x) - box->sine * (y - box->y);
+    *up = -box->sine * (x - box->x) - box->cosine * (y - box->y);
+}
+
+double box_distance(const BoxModel *box, double x, double y) {
+    double along, up;
+    to_local(box, x, y, &along, &up);
+    const double side = fabs(along) - box->half_width, end = fabs(up) - box->half_height;
+    return side > 0 && end > 0 ? sqrt(side * side + end * end) : fmax(side, end);
+}
+
+void box_bounds(const BoxModel *box, double margin, double bounds[4]) {
+    double cosine = fabs(box->cosine), sine = fabs(box->sine);
+    double x = cosine * box->half_width + sine * box->half_height + margin;
+    double y = sine * box->half_width + cosine * box->half_height + margin;
+    bounds[0] = box->x - x, bounds[1] = box->y - y, bounds[2] = box->x + x, bounds[3] = box->y + y;
+}
+
 static bool place(const Panel *panel, const Trajectory *run, int body, BoxModel *box) {
     int frame = panel->naming->scene->frame < run->frames ? panel->naming->scene->frame : run->frames - 1;
     if (body >= run->bodies || !trajectory_has(run, frame, body)) return false;
@@ -23,8 +43,7 @@ static bool place(const Panel *panel, const Trajectory *run, int body, BoxModel 
                       .cosine = cos(angle),
                       .sine = sin(angle),
                       .half_width = scale * (double)run->size[body].x / 2,
-                      .half_height = scale * (double)run->size[body].y / 2,
-                      .target = body == run->bomb};
+                      .half_height = scale * (double)run->size[body].y / 2};
     return true;
 }
 
@@ -115,113 +134,10 @@ bool panel_open(Panel *panel, Naming *naming, int number, bool *usable, Error *e
     *panel = (Panel){naming, number, &naming->scene->view->panels[number],
                      .runs = {naming->scene->runs[number][0], naming->scene->runs[number][1]}};
     panel->bodies = calloc((size_t)panel->runs[0]->bodies + 1, sizeof *panel->bodies);
-    panel->pixels = malloc(sizeof *panel->pixels);
-    if (panel->bodies == NULL || panel->pixels == NULL) return error_memory(error, "regions");
+    if (panel->bodies == NULL) return error_memory(error, "regions");
     for (BodyLayer layer = LAYER_STATIC; layer < LAYERS; layer++) add_layer(panel, layer);
     *usable = paint_tops(panel);
     return true;
 }
 
-void panel_close(Panel *panel) {
-    free(panel->bodies);
-    free(panel->pixels);
-}
-
-/* Which pixels tell what happened to a body. */
-
-static const double NEAR = 1.5; /* pixels beyond its edge where other bodies hide what is behind it */
-static const double REACH = 3;  /* pixels beyond its edge that a fit takes in any case */
-
-static void colour_at(const Image *image, size_t pixel, double colour[3]) {
-    for (int c = 0; c < 3; c++) colour[c] = image->pixels[4 * pixel + (size_t)c];
-}
-
-/* The panel's most frequent colour near a body, where no body is. */
-static void find_background(const Panel *panel, ViewRect rect, double colour[3]) {
-    const Image *image = panel->naming->pictures[0];
-    int64_t votes = 0;
-    memset(colour, 0, 3 * sizeof *colour);
-    for (int y = rect.top; y < rect.bottom; y++)
-        for (int x = rect.left; x < rect.right; x++) {
-            size_t pixel = panel_pixel(panel, x, y);
-            double here[3];
-            if (panel->naming->tops[pixel] >= 0) continue;
-            colour_at(image, pixel, here);
-            bool same = here[0] == colour[0] && here[1] == colour[1] && here[2] == colour[2];
-            if (votes == 0) memcpy(colour, here, sizeof here);
-            votes += same || votes == 0 ? 1 : -1;
-        }
-}
-
-/* True if another body is within a pixel: what the body's smoothed edge is drawn over is then not known. */
-static bool is_crowded(const Panel *panel, int x, int y, int self) {
-    const ViewRect rect = panel->view->rect;
-    for (int v = y - 1; v <= y + 1; v++)
-        for (int u = x - 1; u <= x + 1; u++) {
-            if (u < rect.left || v < rect.top || u >= rect.right || v >= rect.bottom) continue;
-            int top = panel->naming->tops[panel_pixel(panel, u, v)];
-            if (top >= 0 && top != self) return true;
-        }
-    return false;
-}
-
-/* What is behind the smoothed edge at a pixel: the nearest pixel outside. */
-static void behind_edge(const Panel *panel, const BoxModel *box, int x, int y, double colour[3]) {
-    const ViewRect rect = panel->view->rect;
-    double farthest = 0.5;
-    for (int i = 0; i < 9; i++) {
-        int u = x + i % 3 - 1, v = y + i / 3 - 1;
-        double distance = box_distance(box, u + 0.5, v + 0.5);
-        if (distance < farthest || u < rect.left || v < rect.top || u >= rect.right || v >= rect.bottom) continue;
-        farthest = distance;
-        colour_at(panel->naming->pictures[0], panel_pixel(panel, u, v), colour);
-    }
-}
-
-/* Adds the pixel to those of a fit unless it says nothing about the body. */
-static void add_pixel(Panel *panel, int self, int x, int y, const double background[3]) {
-    const Naming *naming = panel->naming;
-    const BoxModel *box = &panel->bodies[self].box[0];
-    size_t at = panel_pixel(panel, x, y);
-    double distance = box_distance(box, x + 0.5, y + 0.5), after[3];
-    if (naming->tops[at] > self) return; /* a body drawn later hides it */
-    if (distance > REACH && naming->owners[at] == OWNER_NONE) return;
-    if (distance > -0.5 && distance < NEAR && is_crowded(panel, x, y, self)) return;
-    FitPixel *pixel = &panel->pixels->list[panel->pixels->count++];
-    *pixel = (FitPixel){.x = x + 0.5, .y = y + 0.5};
-    colour_at(naming->pictures[0], at, pixel->before);
-    colour_at(naming->pictures[1], at, after);
-    bool masked = naming->owners[at] != OWNER_UNKNOWN; /* equal, or changed by something else */
-    for (int c = 0; c < 3; c++) pixel->difference[c] = masked ? 0 : after[c] - pixel->before[c];
-    memcpy(pixel->behind, background, sizeof pixel->behind);
-    if (distance >= 0.5)
-        memcpy(pixel->behind, pixel->before, sizeof pixel->behind);
-    else if (distance > -0.5)
-        behind_edge(panel, box, x, y, pixel->behind);
-}
-
-/* Far inside, boxes are of one colour. */
-static double depth_of(const BoxModel *box) { return fmax(0.5 * fmin(box->half_width, box->half_height), 8); }
-
-static ViewRect join(ViewRect a, ViewRect b) {
-    return (ViewRect){a.left < b.left ? a.left : b.left, a.top < b.top ? a.top : b.top,
-                      a.right > b.right ? a.right : b.right, a.bottom > b.bottom ? a.bottom : b.bottom};
-}
-
-/* Takes every n-th row if there are too many pixels. */
-void panel_collect(Panel *panel, int self, ViewRect changed) {
-    const BoxModel *box = &panel->bodies[self].box[0];
-    const ViewRect rect = join(changed, panel_bounds(panel, box, REACH));
-    double depth = depth_of(box), background[3];
-    find_background(panel, rect, background);
-    for (int stride = 1;; stride *= 2) {
-        bool full = false;
-        panel->pixels->count = 0;
-        for (int y = rect.top; y < rect.bottom && !full; y++)
-            for (int x = rect.left + y % stride; x < rect.right && !full; x += stride) {
-                full = panel->pixels->count == FIT_PIXELS_MAX;
-                if (!full && box_distance(box, x + 0.5, y + 0.5) >= -depth) add_pixel(panel, self, x, y, background);
-            }
-        if (!full) return;
-    }
-}
+void panel_close(Panel *panel) { free(panel->bodies); }

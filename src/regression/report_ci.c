@@ -419,9 +419,9 @@ static double rounded(double flip) {
 /* Of a region that has a name. */
 static void write_change(JsonWriter *json, const FrameChanges *changes, int region) {
     static const char *const kinds[] = {
-        [CHANGE_OTHER] = "other",       [CHANGE_MOVED] = "moved",    [CHANGE_COLOUR] = "recoloured",
-        [CHANGE_LINE_WIDTH] = "width",  [CHANGE_APPEARED] = "added", [CHANGE_DISAPPEARED] = "removed",
-        [CHANGE_REPLACED] = "replaced", [CHANGE_NOISE] = "noise",    [CHANGE_UNSURE] = "unsure"};
+        [CHANGE_OTHER] = "other",    [CHANGE_MOVED] = "moved",         [CHANGE_COLOUR] = "recoloured",
+        [CHANGE_APPEARED] = "added", [CHANGE_DISAPPEARED] = "removed", [CHANGE_REPLACED] = "replaced",
+        [CHANGE_NOISE] = "noise",    [CHANGE_UNSURE] = "unsure"};
     if (changes->region_change[region] < 0) return;
     const Change *change = &changes->list[changes->region_change[region]];
     json_put_text(json, "kind", kinds[change->kind]);

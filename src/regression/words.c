@@ -71,10 +71,8 @@ static void add_amount(ChangeText *text, const Change *change) {
 }
 
 static void add_kind(ChangeText *text, const Change *change) {
-    static const char *const kinds[] = {[CHANGE_COLOUR] = ": colour",
-                                        [CHANGE_LINE_WIDTH] = ": line width",
-                                        [CHANGE_APPEARED] = " only in the actual run",
-                                        [CHANGE_DISAPPEARED] = " only in the expected run"};
+    static const char *const kinds[] = {
+        [CHANGE_APPEARED] = " only in the actual run", [CHANGE_DISAPPEARED] = " only in the expected run"};
     if (change->kind == CHANGE_OTHER)
         text_add(text->text, sizeof text->text, "%s", change->subject <= SUBJECT_BODIES ? " changed" : "");
     else
