@@ -177,6 +177,13 @@ size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines
     return length;
 }
 
+bool text_is_utf8(const char *text) {
+    uint32_t character;
+    for (size_t length; *text != '\0'; text += length)
+        if ((length = utf8_decode(text, strnlen(text, 4), &character)) == 0) return false;
+    return true;
+}
+
 unsigned control_in_text(const char *text) {
     while (*text != '\0') {
         const uint32_t c = utf8_next(&text);

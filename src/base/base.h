@@ -113,6 +113,8 @@ typedef enum VisibleLines { VISIBLE_ONE_LINE, VISIBLE_LINES } VisibleLines;
    middle: "begin...end". Returns the length. */
 size_t visible_text(char *out, size_t size, const char *text, VisibleLines lines);
 
+bool text_is_utf8(const char *text);
+
 /* The first character of the text that a terminal or a page would obey: a control character (C0, DEL, C1, which includes ends
    of lines), or one that turns the direction of text; 0 without one. */
 unsigned control_in_text(const char *text);

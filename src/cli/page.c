@@ -57,11 +57,6 @@ static const CommandSpec spec = {
         "Example: twinbox page stack -o stack.html\n"
         "         twinbox page --live stack -m engine -m interior -o live.html"};
 
-/* The file's name without its folder, which differs between machines; NULL for a run that is simulated here. */
-static const char *file_of(const char *input) {
-    return file_name_ends_with(input, ".npz") ? input + file_folder_length(input) : NULL;
-}
-
 /* As it was typed, where that means the same in another checkout; else without its folder. */
 static const char *scene_of(const char *input) {
     const bool elsewhere = input[0] == '/' || strncmp(input, "../", 3) == 0 || strstr(input, "/../") != NULL;
@@ -91,8 +86,11 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
         return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, panels->count,
                            panels->count == 1 ? "" : "s");
     for (int i = 0; i < panels->count; i++) {
-        page.files[i] = file_of(panels->inputs[i]);
-        if (page.files[i] == NULL) page.scenes[i] = scene_of(panels->inputs[i]);
+        const char *input = panels->inputs[i];
+        if (file_name_ends_with(input, ".npz"))
+            page.files[i] = input + file_folder_length(input); /* folders differ between machines */
+        else
+            page.scenes[i] = scene_of(input);
         if (i < options->caption_count && options->captions[i][0] != '\0') page.names[i] = options->captions[i];
     }
     join_settings(&options->set, set, sizeof set);
@@ -108,7 +106,7 @@ static bool write_page(const Options *options, const Panels *panels, const Playe
 static const char *find_scene(const Options *options, Error *error) {
     const char *scene = NULL;
     for (int i = 0; i < options->input_count; i++) {
-        if (file_of(options->inputs[i]) != NULL) continue;
+        if (file_name_ends_with(options->inputs[i], ".npz")) continue;
         if (scene != NULL) {
             error_input(error, "--live", "needs one scene (got %s and %s)", scene, options->inputs[i]);
             return NULL;

@@ -75,7 +75,8 @@ static void refresh(SortAndSweep *sweep, const Bounds *bounds, const bool *fixed
     }
 }
 
-/* Insertion sort: linear in a list that is almost sorted. Ends early, with the rest as it was, after `most` moves. */
+/* Insertion sort: linear in a list that is almost sorted. Ends early, with the rest as it was, after `most` moves; called again, it
+   goes on there, as what is sorted makes no moves. */
 static bool insertion_sort(SweptBounds *items, int count, size_t most, size_t *moved) {
     for (int i = 1; i < count; i++) {
         SweptBounds item = items[i];
@@ -120,10 +121,10 @@ static bool all_are_numbers(const SweptBounds *items, int count) {
 static bool sort(SortAndSweep *sweep) {
     const int few_moves = 16; /* of each item */
     const size_t count = (size_t)sweep->count;
-    const bool ordered = all_are_numbers(sweep->sorted, sweep->count);
     sweep->moved = 0;
-    if (insertion_sort(sweep->sorted, sweep->count, ordered ? (size_t)few_moves * count : SIZE_MAX, &sweep->moved))
-        return true;
+    if (insertion_sort(sweep->sorted, sweep->count, (size_t)few_moves * count, &sweep->moved)) return true;
+    if (!all_are_numbers(sweep->sorted, sweep->count))
+        return insertion_sort(sweep->sorted, sweep->count, SIZE_MAX, &sweep->moved);
     if (!array_reserve((void **)&sweep->in_strip, &sweep->in_strip_capacity, count, sizeof *sweep->in_strip))
         return false;
     merge_sort(sweep->sorted, sweep->in_strip, sweep->count, &sweep->moved);

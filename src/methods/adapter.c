@@ -177,13 +177,6 @@ static bool check_answers(Adapter *adapter, const MethodDescription *method, con
            adapter_failed(adapter, "answers %s, which '%s:PROGRAM' takes", answers, states ? "exec" : "exec-solver");
 }
 
-static bool is_utf8(const char *text) {
-    uint32_t character;
-    for (size_t size; *text != '\0'; text += size)
-        if ((size = utf8_decode(text, strlen(text), &character)) == 0) return false;
-    return true;
-}
-
 static bool read_hello(Adapter *adapter, const MethodDescription *method, const char *line) {
     char key[32], form[16] = "json", answers[16] = "states", message[200] = "";
     ProgramName program = {"", ""};
@@ -202,7 +195,7 @@ static bool read_hello(Adapter *adapter, const MethodDescription *method, const 
     if (message[0] != '\0') return adapter_failed(adapter, "says: %s", message);
     if (number != VERSION)
         return adapter_failed(adapter, "speaks version %g of the protocol; expected version %d", number, VERSION);
-    if (!is_utf8(program.name) || !is_utf8(program.version))
+    if (!text_is_utf8(program.name) || !text_is_utf8(program.version))
         return adapter_failed(adapter, "has a name or version that is not UTF-8: '%.60s'", line);
     if (program.name[0] == '\0' || program.version[0] == '\0' || control_in_text(program.name) != 0 ||
         control_in_text(program.version) != 0)

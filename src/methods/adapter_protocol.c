@@ -57,7 +57,7 @@ static bool take_unit(const char **at, uint32_t *unit) {
     return true;
 }
 
-/* The character of an escape, behind its backslash. 0 is none, as C ends texts with it. */
+/* The character of an escape, behind its backslash. Not 0, which ends texts in C. */
 static bool take_escape(const char **at, uint32_t *character) {
     static const char letters[] = "\"\\/bfnrt", meant[] = "\"\\/\b\f\n\r\t";
     const char letter = **at, *found = letter != '\0' ? strchr(letters, letter) : NULL;

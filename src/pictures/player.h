@@ -22,15 +22,14 @@ typedef struct PlayerLive {
 } PlayerLive;
 
 typedef struct PlayerOptions {
-    int first, last;                      /* frames of the runs, inclusive; last -1: to the end */
-    int every;                            /* shows every n-th of these frames; 0, 1: all */
-    int64_t most_bytes;                   /* of the page; 0: PLAYER_MAX_BYTES */
-    const char *title;                    /* NULL: the scene of the first run */
-    const char *files[RENDER_PANELS_MAX]; /* where the runs are, for the command that the page copies; NULL: unknown */
-    const char *scenes
-        [RENDER_PANELS_MAX]; /* of runs that have no file: for their command, without a path of the machine; NULL */
-    const char *set;         /* settings of these scenes: "name=value,name=value"; "", NULL: none */
-    const char *names[RENDER_PANELS_MAX]; /* of runs; NULL: the method */
+    int first, last;                       /* frames of the runs, inclusive; last -1: to the end */
+    int every;                             /* shows every n-th of these frames; 0, 1: all */
+    int64_t most_bytes;                    /* of the page; 0: PLAYER_MAX_BYTES */
+    const char *title;                     /* NULL: the scene of the first run */
+    const char *files[RENDER_PANELS_MAX];  /* where the runs are, for the command that the page copies; NULL: unknown */
+    const char *scenes[RENDER_PANELS_MAX]; /* the same of runs without files: no path of the machine; NULL */
+    const char *set;                       /* settings of these scenes: "name=value,name=value"; "", NULL: none */
+    const char *names[RENDER_PANELS_MAX];  /* of runs; NULL: the method */
     ColourChoices colours;
     const PlayerLive *live; /* NULL: all runs are recorded */
     /* The description of a run's method ("engine:k=20"). NULL, or returns NULL: the method has no description. */

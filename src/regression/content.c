@@ -19,10 +19,9 @@ typedef struct Verdict {
     Patch *patch;
 } Verdict;
 
-/* Of the squared difference: what a movement explains, and where it looks like noise; what either picture must show. */
-static const double MOVED = 0.7, CERTAIN = 0.9, BOTH = 0.15;
-static const double TRACE =
-    0.02; /* the same if a movement explains all: one side of a gradient is nearly that of its ground */
+/* Of the squared difference: what a movement explains, and where it looks like noise; what either picture must show, and if a
+   movement explains all: one side of a gradient has nearly the colour of its ground. */
+static const double MOVED = 0.7, CERTAIN = 0.9, BOTH = 0.15, TRACE = 0.02;
 
 /* Whether something of these patches appears and something vanishes. Where content leaves, the difference has the other sign than
    where it arrives; a box that grew on one side has one sign. */

@@ -136,6 +136,6 @@ typedef struct Motion {
 static const double MOTION_EXACT = 0.999; /* explains all */
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint);
 
-/* The distance that most rows or columns that differ have moved, such as those below a banner; 0, 0 if they do not agree. False with
-   error set if out of memory. */
+/* How far most of the differing rows or columns have moved, such as those below a banner; 0, 0 if they do not agree. The pictures
+   have one size. ERROR_MEMORY. */
 bool content_lines_shift(const Image *expected, const Image *actual, Motion *shift, Error *error);

@@ -74,7 +74,7 @@ static int agreed_shift(Line *expected, const Line *actual, int count, int *vote
 
 bool content_lines_shift(const Image *expected, const Image *actual, Motion *shift, Error *error) {
     const size_t most = (size_t)(expected->width > expected->height ? expected->width : expected->height);
-    Line *lines = malloc(3 * most * sizeof *lines);
+    Line *lines = calloc(3 * most, sizeof *lines);
     int *votes = malloc((2 * most + 1) * sizeof *votes);
     const bool ok = (lines != NULL && votes != NULL) || error_memory(error, "regions");
     *shift = (Motion){0, 0, 0};

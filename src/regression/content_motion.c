@@ -105,7 +105,8 @@ static int edge_shift(const Patch *patch, bool by_row) {
     return best_shift(profiles[0], profiles[1], count);
 }
 
-/* Between the sides of what was there and of what is there now, between their profiles, and their edges: each way across with each way down. */
+/* Shifts of the sides of what was there to those of what is there now, of its profiles, and of its edges. Each shift to the right
+   is tried with each one down. */
 static void add_sides(Search *search) {
     const Patch *patch = search->patches[0];
     const ViewRect a = patch->box[0], b = search->patches[search->patch_count - 1]->box[1];

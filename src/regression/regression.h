@@ -128,9 +128,10 @@ typedef enum PixelVerdict {
     PIXELS_RESIZED, /* the difference is that of the overlap */
     PIXELS_MISSING, /* no actual picture */
     PIXELS_EXTRA,   /* no expected picture */
-    PIXELS_UNREAD,  /* a picture cannot be read, or its masks hide everything */
-    PIXEL_VERDICTS
+    PIXELS_UNREAD   /* a picture cannot be read, or its masks hide everything */
 } PixelVerdict;
+
+enum { PIXEL_VERDICTS = PIXELS_UNREAD + 1 };
 
 /* A frame's picture may depend on the whole run, through the camera or a scale. STATES_DIFFER_ELSEWHERE: states are
    equal in this frame but not in the whole run, and no frame of the sequence has equal states and equal pixels; a

@@ -12,16 +12,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-bool name_is_text(const char *name) {
-    const char *start = name;
-    size_t length, left = strlen(name);
-    for (; left > 0; name += length, left -= length) {
-        uint32_t character;
-        length = utf8_decode(name, left, &character);
-        if (length == 0) return false;
-    }
-    return control_in_text(start) == 0;
-}
+bool name_is_text(const char *name) { return text_is_utf8(name) && control_in_text(name) == 0; }
 
 static bool is_png(const char *name) {
     const char *ending = strrchr(name, '.');

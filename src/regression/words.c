@@ -70,13 +70,13 @@ static void add_amount(ChangeText *text, const Change *change) {
     if (!has_right && !has_up && !turns) text_add(text->text, sizeof text->text, "moved less than 0.01 px");
 }
 
+/* Of a body or another part of a frame. */
 static void add_kind(ChangeText *text, const Change *change) {
-    static const char *const kinds[] = {
-        [CHANGE_APPEARED] = " only in the actual run", [CHANGE_DISAPPEARED] = " only in the expected run"};
-    if (change->kind == CHANGE_OTHER)
-        text_add(text->text, sizeof text->text, "%s", change->subject <= SUBJECT_BODIES ? " changed" : "");
-    else
-        text_add(text->text, sizeof text->text, "%s", kinds[change->kind]);
+    const char *kind = change->kind == CHANGE_APPEARED      ? " only in the actual run"
+                       : change->kind == CHANGE_DISAPPEARED ? " only in the expected run"
+                       : change->subject <= SUBJECT_BODIES  ? " changed"
+                                                            : "";
+    text_add(text->text, sizeof text->text, "%s", kind);
 }
 
 /* Of content of which nothing is known. */
@@ -152,7 +152,6 @@ const char *frame_verdict(const RegressionFrame *frame) {
     switch (frame->pixels) {
     case PIXELS_MISSING: return "missing";
     case PIXELS_EXTRA: return "extra";
-    case PIXEL_VERDICTS:
     case PIXELS_UNREAD: return "not comparable";
     case PIXELS_DIFFER:
     case PIXELS_RESIZED:
@@ -203,7 +202,6 @@ RegressionText frame_words(const RegressionFrame *frame) {
     switch (frame->pixels) {
     case PIXELS_MISSING: ADD(&words, "", "no actual picture"); break;
     case PIXELS_EXTRA: ADD(&words, "", "no expected picture"); break;
-    case PIXEL_VERDICTS:
     case PIXELS_UNREAD: ADD(&words, "", "%s", frame->read_error); break;
     case PIXELS_RESIZED:
         ADD(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);

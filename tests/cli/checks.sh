@@ -89,6 +89,20 @@ run_undrawn() {
     rmdir "$1"
 }
 
+# make_tower: tower.yaml, a stack whose height is a parameter.
+make_tower() {
+    cat >tower.yaml <<'YAML'
+parameters: {height: {from: 1, to: 4, value: 2, whole: on}}
+gravity: [0, -10]
+dt: 1/60
+iterations: 10
+frames: 60
+bodies:
+  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}
+  - {pattern: stack, count: $height, size: [1, 1], mass: 1, position: [0, 0.5], spacing: [0, 1], friction: 0.2}
+YAML
+}
+
 finish() {
     echo "$checks checks, $failures failed"
     [ $checks -gt 0 ] && [ $failures -eq 0 ]

@@ -122,16 +122,7 @@ echo started >>starts
 exec /usr/bin/python3 $adapter "$1"
 SH
 chmod +x counted
-cat >tower.yaml <<'YAML'
-parameters: {height: {from: 1, to: 4, value: 2, whole: on}}
-gravity: [0, -10]
-dt: 1/60
-iterations: 10
-frames: 60
-bodies:
-  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}
-  - {pattern: stack, count: $height, size: [1, 1], mass: 1, position: [0, 0.5], spacing: [0, 1], friction: 0.2}
-YAML
+make_tower
 OMP_NUM_THREADS=1 run 0 stability tower.yaml --vary height=1:4 --quick -o study \
     --methods "engine,exec:./counted json,name=Fall,$(method random),$(method die),exec:./none"
 says "Fall"

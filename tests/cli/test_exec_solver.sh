@@ -133,16 +133,7 @@ PYTHON
 grep -q "Mine, .*: an external program, by its own clock" chart/chart-stack.txt || fail "caption: $(cat chart/chart-stack.txt)"
 
 # Two runs that differ are named.
-cat >tower.yaml <<'YAML'
-parameters: {height: {from: 1, to: 3, value: 2, whole: on}}
-gravity: [0, -10]
-dt: 1/60
-iterations: 10
-frames: 60
-bodies:
-  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}
-  - {pattern: stack, count: $height, size: [1, 1], mass: 1, position: [0, 0.5], spacing: [0, 1], friction: 0.2}
-YAML
+make_tower
 run 0 stability tower.yaml --vary height=1:3 --quick -o study --methods "$sweeps,k=10,name=Mine,$(method random),name=Dice"
 says "Mine is sweeps 1"
 says "not deterministic: two runs at"

@@ -5,16 +5,7 @@
 
 few="--scenes $scenes --study bomb_speed --study heavy_on_one --study tilted_stack --methods engine:k=4,engine:k=10,warm=off,scene-net"
 # On a small stack; and without /proc, where that can be tried.
-cat >tower.yaml <<'YAML'
-parameters: {height: {from: 1, to: 4, value: 2, whole: on}}
-gravity: [0, -10]
-dt: 1/60
-iterations: 10
-frames: 60
-bodies:
-  - {static: true, size: [100, 20], position: [0, -10], friction: 0.2}
-  - {pattern: stack, count: $height, size: [1, 1], mass: 1, position: [0, 0.5], spacing: [0, 1], friction: 0.2}
-YAML
+make_tower
 tower="stability tower.yaml --vary height=1:4 --quick --methods engine -o tower"
 if ! sanitized; then
     (ulimit -s 512 && "$twinbox" $tower) >out 2>err </dev/null

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What happened in pictures of which nothing else is known. Each is drawn from seeds, so the right name is known: glyphs of
    random pixels and discs with exact coverage, on plain, shaded and patterned ground. */
+#include "content_changes.h"
 #include "made.h"
-
-#include "pixels/png.h"
-#include "regression/compare.h"
-#include "regression/content.h"
-#include "regression/internal.h"
 
 #include <math.h>
 
@@ -65,21 +61,6 @@ static void fill(Image *image, int left, int top, int right, int bottom, const u
 }
 
 static const uint8_t black[3] = {20, 20, 20}, blue[3] = {0, 114, 178}, red[3] = {214, 39, 40};
-
-/* Destroys both. */
-static FrameChanges changes_of(Image *a, Image *b) {
-    FrameChanges changes = {.count = 0};
-    ImageDifference difference;
-    Error error = {0};
-    memset(changes.region_change, -1, sizeof changes.region_change);
-    image_compare(a, b, &difference);
-    assert_true(difference.pixels > 0);
-    assert_ok(image_regions_find(a, b, NULL, &difference, &changes.regions, &error), error);
-    assert_ok(content_name(a, b, NULL, &difference, &changes, &error), error);
-    image_destroy(a);
-    image_destroy(b);
-    return changes;
-}
 
 static ChangeKind kind_of(Image *a, Image *b) {
     const FrameChanges changes = changes_of(a, b);

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Things of several textures, moved by 1 to 40 pixels in eight directions: told by how much, or unsure where no eye could tell. */
+#include "content_changes.h"
 #include "made.h"
-
-#include "pixels/png.h"
-#include "regression/compare.h"
-#include "regression/content.h"
-#include "regression/internal.h"
 
 #include <math.h>
 
@@ -29,20 +25,6 @@ static Image *page(Texture *texture, int right, int down) {
         for (int x = 0; x < ACROSS; x++)
             memset(image->pixels + 4 * ((TOP + down + y) * WIDTH + LEFT + right + x), texture(x, y), 3);
     return image;
-}
-
-/* Destroys both. */
-static FrameChanges changes_of(Image *a, Image *b) {
-    FrameChanges changes = {.count = 0};
-    ImageDifference difference;
-    Error error = {0};
-    memset(changes.region_change, -1, sizeof changes.region_change);
-    image_compare(a, b, &difference);
-    assert_ok(image_regions_find(a, b, NULL, &difference, &changes.regions, &error), error);
-    assert_ok(content_name(a, b, NULL, &difference, &changes, &error), error);
-    image_destroy(a);
-    image_destroy(b);
-    return changes;
 }
 
 /* Whether all regions moved by this. *wrong: one is said to have moved by something else. */
