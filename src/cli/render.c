@@ -74,7 +74,8 @@ static const Option option_table[] = {
      "Any of ghosts (outlines of the first run), distance (colours), trails, contacts, impulses, velocities (arrows), "
      "timeline (distance from the first run over time), separated by commas",
      OPTION_FLAGS(Options, render.look.show, look_show_names)},
-    {"--labels", 0, "KIND", "In boxes that are large enough: mass (kg), number (of the body), or none (default)",
+    {"--labels", 0, "KIND",
+     "In boxes that are large enough: mass (kg), number (of the body), name (the scene's key), or none (default)",
      OPTION_ENUM(Options, render.look.labels, look_labels_names)},
     {"--camera", 0, "KIND|X,Y,W,H",
      "fit: fixed, on what stands and what strikes it (default); bomb: follows the bomb; divergence: zooms in where the "

@@ -144,6 +144,7 @@ int live_bodies(const LiveRun *run) { return run->trajectory->bodies; }
 int live_bomb(const LiveRun *run) { return run->trajectory->bomb; }
 const float *live_sizes(const LiveRun *run) { return &run->trajectory->size->x; }
 const float *live_masses(const LiveRun *run) { return run->trajectory->mass; }
+const BodyName *live_names(const LiveRun *run) { return run->trajectory->name; }
 const uint8_t *live_fixed(const LiveRun *run) { return run->trajectory->fixed; }
 const float *live_positions(const LiveRun *run) { return &run->trajectory->position->x; }
 const float *live_angles(const LiveRun *run) { return run->trajectory->angle; }

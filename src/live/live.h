@@ -107,9 +107,10 @@ LIVE_EXPORT(live_frames) int live_frames(const LiveRun *run);
 LIVE_EXPORT(live_bodies) int live_bodies(const LiveRun *run);
 LIVE_EXPORT(live_bomb) int live_bomb(const LiveRun *run);
 
-/* [bodies] width and height, m; kg; 1: static. */
+/* [bodies] width and height, m; kg; names of 32 bytes, with zeros behind them, or NULL if no body has one; 1: static. */
 LIVE_EXPORT(live_sizes) const float *live_sizes(const LiveRun *run);
 LIVE_EXPORT(live_masses) const float *live_masses(const LiveRun *run);
+LIVE_EXPORT(live_names) const BodyName *live_names(const LiveRun *run);
 LIVE_EXPORT(live_fixed) const uint8_t *live_fixed(const LiveRun *run);
 
 /* [frames, bodies] x and y, m; rad; x and y, m/s; rad/s. NaN in frames to come, and for a body that does not exist. */

@@ -87,12 +87,16 @@ static Shape body_shape(const Picture *picture, int panel, int run, Moment momen
     return shape;
 }
 
-/* Text in a box: up to three digits of a mass, as the page's script writes numbers. */
+/* Text in a box: a name, or up to three digits of a mass, as the page's script writes numbers. */
 static void label_text(const Picture *picture, int run, int body, char *text, size_t size) {
     const double mass = (double)picture->runs[run]->mass[body];
     char rounded[32];
     if (picture->look.labels == LOOK_NUMBERS) {
         snprintf(text, size, "%d", body);
+        return;
+    }
+    if (picture->look.labels == LOOK_NAMES) {
+        snprintf(text, size, "%s", picture->runs[run]->name[body].text);
         return;
     }
     snprintf(rounded, sizeof rounded, "%.2e", mass);
@@ -111,13 +115,20 @@ static bool is_light(uint32_t color) {
     return RED_LIGHT * red * red + GREEN_LIGHT * green * green + BLUE_LIGHT * blue * blue > LABEL_DARK_FROM;
 }
 
+/* Width / size of the letters: digits take the same room whatever they are, letters of a name what they need. */
+static double label_ems(const Picture *picture, const char *text) {
+    if (picture->look.labels != LOOK_NAMES) return LABEL_EMS * fmax((double)strlen(text), LABEL_DIGITS);
+    const Font font = font_pick(FONT_SEMIBOLD, LABEL_MEASURED);
+    return fmax(font_width(&font, text) / (double)font.pixels, LABEL_EMS * LABEL_DIGITS);
+}
+
 /* Whether the label of a box of this shape is drawn: if it is large enough to be read, and inside the panel. */
 static bool draw_label(const Picture *picture, int panel, int run, int body, const Shape *shape, Drawing *drawing) {
     if (picture->look.labels == LOOK_NO_LABELS || picture->runs[run]->fixed[body]) return false;
     char text[64];
     label_text(picture, run, body, text, sizeof text);
-    const double ems = LABEL_EMS * fmax((double)strlen(text), LABEL_DIGITS),
-                 side = 2 * fmin(shape->half_width, shape->half_height);
+    if (text[0] == '\0') return false; /* no name */
+    const double ems = label_ems(picture, text), side = 2 * fmin(shape->half_width, shape->half_height);
     const double most = LABEL_CIRCLE * side / sqrt(ems * ems + LABEL_CAP * LABEL_CAP);
     const Rect *rect = &picture->layout.panels[panel];
     if (!(most >= LABEL_LEAST) || !(shape->x > rect->left && shape->x < rect->right) ||

@@ -45,8 +45,8 @@ typedef enum LookCamera {
 
 typedef enum LookTheme { LOOK_LIGHT, LOOK_DARK } LookTheme;
 
-/* What stands in boxes that move and are large enough: nothing, the number of the body, its mass in kg. */
-typedef enum LookLabels { LOOK_NO_LABELS, LOOK_NUMBERS, LOOK_MASSES } LookLabels;
+/* What stands in boxes that move and are large enough: nothing, the number of the body, its mass in kg, its name. */
+typedef enum LookLabels { LOOK_NO_LABELS, LOOK_NUMBERS, LOOK_MASSES, LOOK_NAMES } LookLabels;
 
 /* Bits of `show`. */
 enum {

@@ -194,6 +194,7 @@ static void put_run_data(JsonWriter *json, const Player *player, int index) {
     json_put_int(json, "frames", run->frames);
     json_put_int(json, "chunks", run->chunks);
     json_put_bool(json, "masses", trajectory_has_masses(trajectory));
+    json_put_bool(json, "names", trajectory->name != NULL);
     json_put_bool(json, "velocities", !trajectory->no_velocities);
     json_put_bool(json, "contacts", run->contacts != NULL || player_run_is_live(player, index));
     json_put_text(json, "live", player->options->live != NULL ? player->options->live->methods[index] : NULL);
@@ -332,6 +333,8 @@ static void put_run(FILE *file, const Player *player, int index) {
     put_packed(file, id, trajectory->fixed, bodies * sizeof *trajectory->fixed);
     snprintf(id, sizeof id, "mass%d", index);
     if (trajectory_has_masses(trajectory)) put_packed(file, id, trajectory->mass, bodies * sizeof *trajectory->mass);
+    snprintf(id, sizeof id, "name%d", index);
+    if (trajectory->name != NULL) put_packed(file, id, trajectory->name, bodies * sizeof *trajectory->name);
     if (player_run_is_live(player, index)) return;
     snprintf(id, sizeof id, "hashes%d", index);
     put_packed(file, id, run->hashes, frames * sizeof *run->hashes);

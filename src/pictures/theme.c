@@ -15,7 +15,7 @@
 const char *const look_compare_names[] = {"split", "overlay", "difference", NULL};
 const char *const look_camera_names[] = {"fit", "bomb", "divergence", NULL};
 const char *const look_theme_names[] = {"light", "dark", NULL};
-const char *const look_labels_names[] = {"none", "number", "mass", NULL};
+const char *const look_labels_names[] = {"none", "number", "mass", "name", NULL};
 const char *const look_show_names[] = {"ghosts",   "distance",   "trails",   "contacts",
                                        "impulses", "velocities", "timeline", NULL};
 
@@ -38,6 +38,10 @@ static bool check_known(const RenderLook *look, const Trajectory *const *runs, i
             return error_input(error, "render",
                                "masses cannot be shown: run %d (%s) does not have them; simulate it again", i + 1,
                                runs[i]->method);
+        if (look->labels == LOOK_NAMES && runs[i]->name == NULL)
+            return error_input(error, "render",
+                               "names cannot be shown: no body of run %d (%s) has one; the scene's key 'name' gives it",
+                               i + 1, runs[i]->method);
         if ((look->show & (LOOK_CONTACTS | LOOK_IMPULSES)) != 0 && runs[i]->no_contacts)
             return error_input(error, "render", "'%s' cannot be shown: run %d (%s) has no contacts",
                                look->show & LOOK_CONTACTS ? "contacts" : "impulses", i + 1, runs[i]->method);
@@ -245,8 +249,10 @@ static void add_heads(Row *row) {
 }
 
 static void add_labels(Row *row) {
-    add_text(row, row->picture->look.labels == LOOK_MASSES ? "in boxes that are large enough: mass, kg"
-                                                           : "in boxes that are large enough: number of the body");
+    static const char *const words[] = {
+        [LOOK_NUMBERS] = "number of the body", [LOOK_MASSES] = "mass, kg", [LOOK_NAMES] = "name"};
+    add_text(row, "in boxes that are large enough: ");
+    add_text(row, words[row->picture->look.labels]);
     end_entry(row);
 }
 

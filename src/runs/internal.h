@@ -74,6 +74,7 @@ enum {
     ARRAY_SIZE,
     ARRAY_FIXED,
     ARRAY_MASS,
+    ARRAY_BODY_NAME,
     ARRAY_POSITION, /* these grow with the run */
     ARRAY_ANGLE,
     ARRAY_VELOCITY,

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static void describe_body(Trajectory *trajectory, int body, const BodyDef *def) {
     trajectory->size[body] = def->size;
@@ -29,6 +30,13 @@ Trajectory *trajectory_of_scene(const Scene *scene, const Method *method, int fr
     trajectory->camera_center = scene->camera_center;
     trajectory->camera_size = scene->camera_size;
     for (int i = 0; i < scene->body_count; i++) describe_body(trajectory, i, &scene->bodies[i]);
+    if (scene->names != NULL) {
+        if (!trajectory_make_names(trajectory, error)) {
+            trajectory_destroy(trajectory);
+            return NULL;
+        }
+        memcpy(trajectory->name, scene->names, (size_t)scene->body_count * sizeof *scene->names);
+    }
     trajectory->bomb = bomb ? scene->body_count : -1;
     if (bomb) describe_body(trajectory, trajectory->bomb, &scene->bomb.body);
     return trajectory;

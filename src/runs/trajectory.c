@@ -59,6 +59,7 @@ void trajectory_destroy(Trajectory *t) {
     if (t == NULL) return;
     free(t->size);
     free(t->mass);
+    free(t->name);
     free(t->fixed);
     free(t->position);
     free(t->angle);
@@ -67,6 +68,11 @@ void trajectory_destroy(Trajectory *t) {
     free(t->contact_start);
     free(t->contacts);
     free(t);
+}
+
+bool trajectory_make_names(Trajectory *t, Error *error) {
+    t->name = zeros((size_t)t->bodies, sizeof *t->name);
+    return t->name != NULL || error_memory(error, "trajectory");
 }
 
 void trajectory_judge(Trajectory *t, const char *words, int frame, int body) {
@@ -169,6 +175,8 @@ Trajectory *trajectory_every(const Trajectory *from, int step, Error *error) {
     if (to == NULL) return NULL;
     copy_head(to, from, step);
     bool ok = true;
+    if (from->name != NULL && (ok = trajectory_make_names(to, error)))
+        memcpy(to->name, from->name, (size_t)from->bodies * sizeof *to->name);
     for (int frame = 0; frame < to->frames; frame++) {
         copy_frame(to, frame, from, frame * step);
         for (int64_t i = from->contact_start[frame * step]; ok && i < from->contact_start[frame * step + 1]; i++)
@@ -244,6 +252,7 @@ uint64_t trajectory_hash(const Trajectory *run) {
     size_t bodies = (size_t)run->bodies, poses = bodies * (size_t)run->frames;
     uint64_t hash = add(0, run->size, bodies * sizeof *run->size);
     hash = add(hash, run->fixed, bodies * sizeof *run->fixed);
+    if (run->name != NULL) hash = add(hash, run->name, bodies * sizeof *run->name);
     hash = add(hash, &run->camera_center, sizeof run->camera_center);
     hash = add(hash, &run->camera_size, sizeof run->camera_size);
     hash = add(hash, run->position, poses * sizeof *run->position);

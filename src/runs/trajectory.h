@@ -5,6 +5,7 @@
 #pragma once
 #include "base/base.h"
 #include "engine/engine.h"
+#include "scenes/scenes.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -37,6 +38,7 @@ typedef struct Trajectory {
     Vec2 camera_size;                   /* m, width and height; 0, 0: chosen by the renderer */
     Vec2 *size;                         /* [N] full width and height, m */
     float *mass;                        /* [N] kg; NaN, in all or none: unknown; of static ones: any */
+    BodyName *name;                     /* [N]; NULL: no body has a name */
     uint8_t *fixed;                     /* [N] 1: static */
     Vec2 *position;                     /* [T, N]; NaN while the body does not exist, as in the next three */
     float *angle;                       /* [T, N] */
@@ -68,6 +70,9 @@ bool trajectory_has(const Trajectory *trajectory, int frame, int body);
 /* Whether the masses of all bodies that are not static are known. */
 bool trajectory_has_masses(const Trajectory *trajectory);
 
+/* Makes room for names, all empty. False with error set. */
+bool trajectory_make_names(Trajectory *trajectory, Error *error);
+
 /* Bytes of all arrays in a file. */
 double trajectory_bytes(const Trajectory *trajectory);
 
@@ -94,7 +99,8 @@ int trajectory_impact(const Trajectory *trajectory);
    index: the hash of the reference trajectories. */
 uint64_t trajectory_frame_hash(const Trajectory *trajectory, int frame);
 
-/* XXH3 over all that a picture can show: bodies, view, states and contacts of all frames; names do not count. */
+/* XXH3 over all that a picture can show: bodies and their names, view, states and contacts of all frames; the names of scene
+   and method do not count. */
 uint64_t trajectory_hash(const Trajectory *trajectory);
 
 /* A copy with every step'th frame from frame 0 on, dt multiplied by step, and the contacts of the steps that end in
@@ -102,9 +108,10 @@ uint64_t trajectory_hash(const Trajectory *trajectory);
 Trajectory *trajectory_every(const Trajectory *trajectory, int step, Error *error);
 
 /* .npz: version, scene, method, scene_hash, iterations, dt, bomb, camera[2,2], size[N,2], fixed[N], mass[N],
-   position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1], contact_bodies[C,2],
-   contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], program, verdict, verdict_frame,
-   verdict_body. Without the masses, the velocities, the contacts, the program or the verdict where they are unknown. */
+   body_name[N,32], position[T,N,2], angle[T,N], velocity[T,N,2], angular_velocity[T,N], contact_start[T+1],
+   contact_bodies[C,2], contact_feature[C], contact_point[C,2], contact_normal[C,2], contact_impulse[C,2], program, verdict,
+   verdict_frame, verdict_body. Without the masses, the names, the velocities, the contacts, the program or the verdict where they are
+   unknown. */
 bool trajectory_write(const Trajectory *trajectory, const char *path, Error *error);
 
 /* Of other programs' files only position, angle, size and dt are needed; README.md states what the absence of the others
@@ -112,8 +119,8 @@ bool trajectory_write(const Trajectory *trajectory, const char *path, Error *err
    NULL with error set (ERROR_INPUT, naming the file) for a file that is damaged, of another version or inconsistent:
    an array whose name looks like a mistyped one,
    shapes that do not match, contacts out of range or of bodies that did not exist before the step, infinite poses, a
-   body that reappears after it was removed, a static body that is removed, dt or a size not positive, a verdict on a frame
-   or body that the run does not have. */
+   name that cannot be shown, a body that reappears after it was removed, a static body that is removed, dt or a size not
+   positive, a verdict on a frame or body that the run does not have. */
 Trajectory *trajectory_read(const char *path, Error *error);
 
 /* False with error set, naming `path`, if a trajectory from outside is inconsistent (trajectory_read). */

@@ -23,6 +23,19 @@ static bool check_verdict(const Trajectory *t, const char *path, Error *error) {
            error_input(error, path, "the verdict is on body %d of %d", t->verdict_body, t->bodies);
 }
 
+/* Their bytes come from a file: they need not end, nor be UTF-8. */
+static bool check_names_of_bodies(const Trajectory *t, const char *path, Error *error) {
+    for (int body = 0; t->name != NULL && body < t->bodies; body++) {
+        const char *text = t->name[body].text;
+        if (memchr(text, '\0', sizeof t->name[body].text) == NULL)
+            return error_input(error, path, "body %d: its name must have at most %d bytes, and a 0 behind them", body,
+                               SCENE_BODY_NAME_SIZE - 1);
+        if (!text_is_utf8(text) || control_in_text(text) != 0)
+            return error_input(error, path, "body %d: its name must be UTF-8 without control characters", body);
+    }
+    return true;
+}
+
 static bool check_head(const Trajectory *t, const char *path, Error *error) {
     if (!isfinite(t->dt) || !(t->dt > 0))
         return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)t->dt);
@@ -30,6 +43,7 @@ static bool check_head(const Trajectory *t, const char *path, Error *error) {
         return error_input(error, path, "the number of iterations must not be negative (got %d)", t->iterations);
     if (t->bomb < -1 || t->bomb >= t->bodies)
         return error_input(error, path, "the bomb is body %d of %d", t->bomb, t->bodies);
+    if (!check_names_of_bodies(t, path, error)) return false;
     if (!finite(t->camera_center) || !finite(t->camera_size) || t->camera_size.x < 0 || t->camera_size.y < 0)
         return error_input(error, path, "the camera's window must be finite and not negative");
     for (int body = 0; body < t->bodies; body++) {
@@ -211,6 +225,7 @@ const RunArray run_arrays[RUN_ARRAYS] = {
     {"size", NPZ_FLOAT32, 2, {OF_BODIES, 2}, GROUP_NONE, {"box_size", "dimensions", "extent", "extents"}},
     {"fixed", NPZ_UINT8, 1, {OF_BODIES}, GROUP_NONE, {"is_static", "static"}},
     {"mass", NPZ_FLOAT32, 1, {OF_BODIES}, GROUP_NONE, {NULL}},
+    {"body_name", NPZ_UINT8, 2, {OF_BODIES, SCENE_BODY_NAME_SIZE}, GROUP_NONE, {NULL}},
     {"position",
      NPZ_FLOAT32,
      3,
@@ -433,6 +448,11 @@ static bool read_masses(Trajectory *t, NpzFile *file, const char *path, Error *e
     return t->mass != NULL || error_memory(error, path);
 }
 
+static bool read_names_of_bodies(Trajectory *t, NpzFile *file, Error *error) {
+    const int64_t shape[] = {t->bodies, SCENE_BODY_NAME_SIZE};
+    return !npz_has(file, "body_name") || (t->name = npz_read(file, "body_name", NPZ_UINT8, 2, shape, error)) != NULL;
+}
+
 /* Both, or NaN. */
 static bool read_velocities(Trajectory *t, NpzFile *file, const char *path, Error *error) {
     const int64_t vectors[] = {t->frames, t->bodies, 2};
@@ -456,7 +476,7 @@ static bool read_poses(Trajectory *t, NpzFile *file, const char *path, Error *er
            (t->position = npz_read(file, "position", NPZ_FLOAT32, 3, vectors, error)) != NULL &&
            (t->angle = npz_read(file, "angle", NPZ_FLOAT32, 2, vectors, error)) != NULL &&
            read_fixed(t, file, path, error) && read_masses(t, file, path, error) &&
-           read_velocities(t, file, path, error);
+           read_names_of_bodies(t, file, error) && read_velocities(t, file, path, error);
 }
 
 /* Files have one array per quantity. Each is freed before the next is read. */

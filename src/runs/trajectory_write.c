@@ -65,7 +65,8 @@ static bool begin_npz(TrajectoryStream *stream, Error *error) {
                                                [ARRAY_CAMERA] = &head->camera_center,
                                                [ARRAY_SIZE] = head->size,
                                                [ARRAY_FIXED] = head->fixed,
-                                               [ARRAY_MASS] = trajectory_has_masses(head) ? head->mass : NULL};
+                                               [ARRAY_MASS] = trajectory_has_masses(head) ? head->mass : NULL,
+                                               [ARRAY_BODY_NAME] = head->name};
     stream->npz = npz_stream_create(stream->path, RUN_ARRAYS, error);
     if (stream->npz == NULL) return false;
     for (int i = 0; i < RUN_ARRAYS; i++) stream->array[i] = -1;

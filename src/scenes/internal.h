@@ -34,6 +34,7 @@ typedef struct Pattern {
     Vec2 spacing;            /* m */
     int until;               /* the step after which a single body is removed; 0: never */
     BodyDef first;           /* the first body; the others differ from it by their position only */
+    BodyName name;           /* of each; may be empty */
 } Pattern;
 
 /* Ended by NULL. */

@@ -87,6 +87,15 @@ bool field_int(const YamlTree *tree, int node, const Field *field, void *member,
 
 /* Reads the list of bodies: single bodies and patterns. */
 
+static bool field_body_name(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    const char *text = is_scalar(tree, node) ? yaml_text(tree, node) : "";
+    if (text[0] == '\0' || strlen(text) >= SCENE_BODY_NAME_SIZE || control_in_text(text) != 0)
+        return yaml_error(tree, node, error, "%s must be a text of 1 to %d bytes without control characters (got %s)",
+                          field->key, SCENE_BODY_NAME_SIZE - 1, yaml_show(tree, node).text);
+    strcpy(((BodyName *)member)->text, text);
+    return true;
+}
+
 static bool field_pattern(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     bool scalar = tree->nodes[node].kind == YAML_SCALAR;
     for (const PatternKind *const *kind = pattern_kinds; scalar && *kind != NULL; kind++) {
@@ -101,7 +110,7 @@ static bool field_pattern(const YamlTree *tree, int node, const Field *field, vo
 static const Range range_count = {1, SCENE_MAX_BODIES, ""};
 static const Range range_until = {1, SCENE_MAX_FRAMES, ""};
 
-enum { SIZE, STATIC, MASS, POSITION, ANGLE, VELOCITY, SPIN, UNTIL, FRICTION, PATTERN, COUNT, SPACING };
+enum { SIZE, STATIC, MASS, POSITION, ANGLE, VELOCITY, SPIN, UNTIL, FRICTION, NAME, PATTERN, COUNT, SPACING };
 
 static const Field body_fields[] = {
     [SIZE] = {"size", field_vector, offsetof(Pattern, first.size), &range_size, true},
@@ -113,6 +122,7 @@ static const Field body_fields[] = {
     [SPIN] = {"spin", field_number, offsetof(Pattern, first.angular_velocity), &range_spin, false},
     [UNTIL] = {"until", field_int, offsetof(Pattern, until), &range_until, false},
     [FRICTION] = {"friction", field_number, offsetof(Pattern, first.friction), &range_friction, false},
+    [NAME] = {"name", field_body_name, offsetof(Pattern, name), NULL, false},
     [PATTERN] = {"pattern", field_pattern, offsetof(Pattern, kind), NULL, false},
     [COUNT] = {"count", field_int, offsetof(Pattern, count), &range_count, false},
     [SPACING] = {"spacing", field_vector, offsetof(Pattern, spacing), &range_position, false},
@@ -144,6 +154,17 @@ static bool read_entry(const YamlTree *tree, int node, Pattern *pattern, int *no
            check_keys(tree, node, pattern, nodes, error);
 }
 
+/* Appends the names of the bodies from `first` on; the scene's array begins with its first name. */
+static bool add_names(const YamlTree *tree, const Pattern *pattern, Scene *scene, int first, Error *error) {
+    if (scene->names == NULL && pattern->name.text[0] == '\0') return true;
+    BodyName *names = realloc(scene->names, (size_t)scene->body_count * sizeof *names);
+    if (names == NULL) return error_memory(error, tree->source.path);
+    if (scene->names == NULL) memset(names, 0, (size_t)first * sizeof *names);
+    scene->names = names;
+    for (int i = first; i < scene->body_count; i++) names[i] = pattern->name;
+    return true;
+}
+
 static bool within(float value) { return fabsf(value) <= range_position.maximum; }
 
 /* Appends the entry's bodies. `place` is the node for errors: too many bodies, or too far away. */
@@ -164,7 +185,7 @@ static bool add_bodies(const YamlTree *tree, int place, const Pattern *pattern, 
                               (double)body.position.x, (double)body.position.y, (double)range_position.maximum);
         scene->bodies[scene->body_count++] = body;
     }
-    return true;
+    return add_names(tree, pattern, scene, scene->body_count - (int)count, error);
 }
 
 bool field_bodies(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -465,5 +486,6 @@ Scene *scene_read_with(const char *path, const SceneSetting *settings, int count
 void scene_destroy(Scene *scene) {
     if (scene == NULL) return;
     free(scene->bodies);
+    free(scene->names);
     free(scene);
 }

@@ -34,6 +34,7 @@ enum {
     SCENE_MAX_NETWORKS = 16,
     SCENE_MAX_PARAMETERS = 4,
     SCENE_PARAMETER_SIZE = 32, /* of a parameter's name and of its unit, with the NUL */
+    SCENE_BODY_NAME_SIZE = 32, /* of a body's name, with the NUL */
     SCENE_IMPACT_FRAMES = 6    /* default of a file */
 };
 
@@ -85,6 +86,11 @@ typedef struct SceneParameter {
    bomb_mass and bomb_speed. A parameter of the scene with such a name goes before. */
 enum { SCENE_COMMON_MAX = 7 };
 
+/* The name of a body in pictures, UTF-8; empty: it has none. */
+typedef struct BodyName {
+    char text[SCENE_BODY_NAME_SIZE];
+} BodyName;
+
 /* A value for a parameter, instead of the file's. */
 typedef struct SceneSetting {
     char name[SCENE_PARAMETER_SIZE];
@@ -112,6 +118,7 @@ typedef struct Scene {
     Vec2 camera_center, camera_size; /* m; size 0, 0: fitted to the run */
     int body_count;
     BodyDef *bodies;       /* [body_count], patterns written out, in the order of the file */
+    BodyName *names;       /* [body_count]; NULL: no body has a name */
     bool overlaps_allowed; /* bodies may start inside one another by more than SCENE_OVERLAP */
     int last_body_until;   /* the last body is removed after this step; 0: never. 0 with a bomb */
     SceneBomb bomb;
@@ -157,7 +164,7 @@ BodyDef scene_bomb_body(const Scene *scene);
 bool scene_add_bomb(const Scene *scene, World *world, Error *error);
 
 /* XXH3 of everything that determines a run: equal physics, equal hash. Gravity, dt, iterations, switches, bodies (and
-   when the last is removed) and bomb (with its start velocity) count; name, frames, camera, networks, impact_frames,
+   when the last is removed) and bomb (with its start velocity) count; names, frames, camera, networks, impact_frames,
    overlaps and parameters do not. */
 uint64_t scene_hash(const Scene *scene);
 

@@ -218,7 +218,33 @@ def check_labels(checks, browser):
     checks.twinbox("page", "massless.npz", "-o", "massless.html")
     page = browser.open("massless.html", "labels=mass")
     checks.equal("no masses, no labels", page.run("player.view.labels"), "none")
-    checks.true("the choice is disabled", page.run("[...document.getElementById('labels').options].pop().disabled"))
+    checks.true("the choice is disabled", page.run("[...document.getElementById('labels').options].find(each => each.value === 'mass').disabled"))
+    page.close()
+
+
+def check_names(checks, browser):
+    """Names of bodies, of a stored run and of a live one."""
+    with open("named.yaml", "w", encoding="utf-8") as file:
+        file.write("{gravity: [0, -10], dt: 1/60, iterations: 10, frames: 60, bodies: [{static: true, size: [9, 1], position: [0, 0]},"
+                   "{mass: 1, size: [1, 1], position: [0, 1], name: M\u00e4x}, {mass: 1, size: [1, 1], position: [2, 1]}]}")
+    checks.twinbox("simulate", "named.yaml", "-o", "named.npz")
+    checks.twinbox("page", "named.npz", "-o", "named.html")
+    checks.twinbox("page", "--live", "named.yaml", "-o", "named-live.html")
+    for file in "named.html", "named-live.html":
+        page = browser.open(file, "labels=name&body=1")
+        page.settle()
+        checks.equal(f"names in {file}", page.run("[player.view.labels, ...player.runs[0].named]"), ["name", "", "M\u00e4x", ""])
+        checks.true(f"name of the pinned body in {file}",
+                    page.run("document.getElementById('named').textContent").startswith("Body 1, M\u00e4x, in "))
+        drawn = "(player.draw(), stage.toDataURL())"
+        with_names = page.run(drawn)
+        page.run("player.change({labels: 'none'})")
+        page.settle()
+        checks.true(f"{file}: names are drawn", page.run(drawn) != with_names)
+        checks.quiet(file, page)
+        page.close()
+    page = browser.open("three.html", "labels=name")
+    checks.equal("no names, no labels", page.run("player.view.labels"), "none")
     page.close()
 
 
@@ -266,6 +292,7 @@ def main():
         check_stage(checks, browser)
         check_embedded(checks, browser)
         check_labels(checks, browser)
+        check_names(checks, browser)
         check_time(checks, browser)
         check_touch(checks, browser)
 

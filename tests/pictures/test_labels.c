@@ -13,6 +13,9 @@ static Picture picture_of(double metres, LookLabels labels) {
     const RenderOptions options = {
         .width = 1280, .height = 720, .look = {.labels = labels, .view = {0, 1.5F, metres, metres / 2}}};
     memcpy(runs[0]->mass, masses, sizeof masses);
+    if (runs[0]->name == NULL) assert_ok(trajectory_make_names(runs[0], &error), error);
+    strcpy(runs[0]->name[FIRST_BOX].text, "Gewölbe");
+    strcpy(runs[0]->name[BOMB_BODY].text, "WW");
     assert_ok(picture_plan(&picture, panels, 1, 1280, 720, &error), error);
     assert_ok(picture_apply_options(&picture, &options, &error), error);
     return picture;
@@ -43,7 +46,7 @@ static double reach(const Picture *picture, int body, const Drawing *drawing) {
 
 TEST_WITH(a_label_is_in_the_circle_that_turning_boxes_share, make, destroy) {
     for (double metres = 8; metres < 60; metres *= 1.3)
-        for (LookLabels labels = LOOK_NUMBERS; labels <= LOOK_MASSES; labels++) {
+        for (LookLabels labels = LOOK_NUMBERS; labels <= LOOK_NAMES; labels++) {
             const Picture picture = picture_of(metres, labels);
             for (int body = FIRST_BOX; body < RUN_BODIES; body++) {
                 Drawing drawing = draw(&picture, body);
@@ -72,6 +75,16 @@ TEST_WITH(labels_scale_with_their_boxes_and_small_ones_are_left_out, make, destr
 TEST_WITH(masses_have_three_digits, make, destroy) {
     static const size_t glyphs[RUN_BODIES] = {0, strlen("1230"), strlen("0.25"), strlen("150")};
     const Picture picture = picture_of(8, LOOK_MASSES);
+    for (int body = 0; body < RUN_BODIES; body++) {
+        Drawing drawing = draw(&picture, body);
+        assert_int_equal(drawing.glyph_count, glyphs[body]);
+        drawing_free(&drawing);
+    }
+}
+
+TEST_WITH(a_name_is_its_letters_and_a_body_without_has_no_label, make, destroy) {
+    static const size_t glyphs[RUN_BODIES] = {0, strlen("Gewoelbe") - 1, 0, strlen("WW")};
+    const Picture picture = picture_of(8, LOOK_NAMES);
     for (int body = 0; body < RUN_BODIES; body++) {
         Drawing drawing = draw(&picture, body);
         assert_int_equal(drawing.glyph_count, glyphs[body]);
@@ -152,6 +165,14 @@ TEST_WITH(unknown_masses_are_refused, make, destroy) {
     assert_ok(picture_plan(&picture, panels, 2, 1280, 720, &error), error);
     assert_false(picture_apply_options(&picture, &options, &error));
     assert_error(error, ERROR_INPUT, "masses cannot be shown: run 1 (engine) does not have them");
+}
+
+TEST_WITH(names_that_no_body_has_are_refused, make, destroy) {
+    Picture picture;
+    const RenderOptions options = {.width = 1280, .height = 720, .look = {.labels = LOOK_NAMES}};
+    assert_ok(picture_plan(&picture, panels, 2, 1280, 720, &error), error);
+    assert_false(picture_apply_options(&picture, &options, &error));
+    assert_error(error, ERROR_INPUT, "names cannot be shown: no body of run 1 (engine) has one");
 }
 
 RUN_TESTS(NULL, NULL)

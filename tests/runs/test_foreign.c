@@ -132,6 +132,25 @@ TEST(wrong_names_are_suggested) {
     expect_refused("a['omega'] = a['angle']", "did you mean 'angular_velocity'?");
 }
 
+TEST(names_of_bodies_are_read_and_written_and_kept_by_every) {
+    Trajectory *t = read_changed("run.npz", "n = a['body_name'] = np.zeros((3, 32), 'u1'); n[1, :3] = list(b'ram')");
+    const char *path = temporary_path("names.npz");
+    assert_ok(trajectory_write(t, path, &error), error);
+    Trajectory *again = trajectory_read(path, &error), *half = trajectory_every(t, 2, &error);
+    assert_ok(again != NULL && half != NULL, error);
+    for (int i = 0; i < 3; i++) {
+        assert_string_equal(again->name[i].text, i == 1 ? "ram" : "");
+        assert_string_equal(half->name[i].text, i == 1 ? "ram" : "");
+    }
+    const uint64_t hash = trajectory_hash(t);
+    assert_true(trajectory_hash(again) == hash);
+    again->name[1].text[0] = 'd'; /* a picture can show it */
+    assert_true(trajectory_hash(again) != hash);
+    trajectory_destroy(t);
+    trajectory_destroy(again);
+    trajectory_destroy(half);
+}
+
 /* A near name is no mistake where the right one is there; a far one never is. */
 TEST(other_arrays_are_ignored) {
     Trajectory *t = read_changed("run.npz", "a.update(sizes=[1], mass=[1, 2, 3], box=1, time=[0, 1], colour='red',\n"
@@ -158,6 +177,8 @@ TEST(what_is_needed_is_told) {
     expect_refused("a['version'] = 2", "trajectory of version 2; expected version 1");
 }
 
+#define NAMES "n = a['body_name'] = np.zeros((3, 32), 'u1'); "
+
 TEST(values_are_checked_as_ever) {
     expect_refused("a['position'][1, 1, 0] = 1e39", "array 'position': item [1, 1, 0] is 9.99");
     expect_refused("a['position'][1, 1, 0] = np.nan", "frame 1, body 1: position and angle are not all finite");
@@ -172,6 +193,12 @@ TEST(values_are_checked_as_ever) {
     expect_refused("a['size'][0] = 0", "body 0: its size must be finite and greater than 0 (got 0 x 0)");
     expect_refused("a['bomb'] = 3", "the bomb is body 3 of 3");
     expect_refused("a['dt'] = 1e-50", "dt must be finite and greater than 0");
+    expect_refused(NAMES "n[1] = 65", "body 1: its name must have at most 31 bytes, and a 0 behind them");
+    expect_refused(NAMES "n[1, 0] = 27", "body 1: its name must be UTF-8 without control characters");
+    expect_refused(NAMES "n[2, 0] = 0xff", "body 2: its name must be UTF-8 without control characters");
+    expect_refused(NAMES "n[0, :3] = list('\\u202e'.encode())", "body 0: its name must be UTF-8 without control");
+    expect_refused(NAMES "a['body_name'] = n[1:]", "array 'body_name' has shape (2, 32); expected (3, 32)");
+    expect_refused("a['body_name'] = ['a', 'b', 'c']", "an array of texts");
     expect_refused("a['scene'] = 5", "array 'scene' is int64 of 0 dimensions; expected text of 0");
 }
 

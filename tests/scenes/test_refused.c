@@ -95,6 +95,26 @@ static const Refused bodies[] = {
      "6:68: error: body 3 of the pattern is at (0, 1.5e+06), beyond 1e+06 m"},
 };
 
+#define TEXT_31 "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
+#define NAME_IS "6:53: error: name must be a text of 1 to 31 bytes without control characters "
+
+static const Refused names[] = {
+    {BODY(BOX ", name: " TEXT_31), NULL},
+    {BODY(BOX ", name: 7"), NULL},
+    {BODY(BOX ", name: " TEXT_31 "a"), NAME_IS "(got " TEXT_31 "a)"},
+    {BODY(BOX ", name: " TEXT_31 "\xc3\xa4"), NAME_IS "(got " TEXT_31 "\xc3\xa4)"},
+    {BODY(BOX ", name: \"\""),
+     "6:54: error: name must be a text of 1 to 31 bytes without control characters (got nothing)"},
+    {BODY(BOX ", name: [a]"), NAME_IS "(got a list)"},
+    {BODY(BOX ", name: {a: b}"), NAME_IS "(got a mapping)"},
+    {BODY(BOX ", name: \"a\\nb\""),
+     "6:54: error: name must be a text of 1 to 31 bytes without control characters (got a?b)"},
+    {BODY(BOX ", name: a\xe2\x80\xae"
+              "b"),
+     NAME_IS "(got a?b)"},
+    {BODY(BOX ", name: a, name: b"), "6:56: error: key 'name' is given twice"},
+};
+
 static const Refused untils[] = {
     {BODY(BOX ", until: 300"), NULL},
     {BODY(BOX ", until: 0"), "6:54: error: until must be a whole number from 1 to 1000000 (got 0)"},
@@ -198,6 +218,7 @@ static const Refused yaml[] = {
 TEST(keys_are_checked) { CHECK_TABLE(keys); }
 TEST(numbers_are_checked) { CHECK_TABLE(numbers); }
 TEST(bodies_are_checked) { CHECK_TABLE(bodies); }
+TEST(names_are_checked) { CHECK_TABLE(names); }
 TEST(untils_are_checked) { CHECK_TABLE(untils); }
 TEST(bombs_are_checked) { CHECK_TABLE(bombs); }
 TEST(families_are_checked) { CHECK_TABLE(families); }

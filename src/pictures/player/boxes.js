@@ -75,12 +75,20 @@ function stroke_box(w, h, thickness, colour, outside = 0) {
   pen.stroke();
 }
 
+/* Width / size of the letters: digits take the same room whatever they are, letters of a name what they need. */
+function label_ems(text) {
+  if (view.labels !== "name") return LABEL_EMS * max(text.length, LABEL_DIGITS);
+  const font = font_of(600, LABEL_MEASURED);
+  return max(text_width(font, text) / font.em, LABEL_EMS * LABEL_DIGITS);
+}
+
 /* The label of a body, where it has one: with place and colour. */
 function box_label(run, body) {
-  const {fixed, size, mass} = runs[run], {left, top, width, height} = here;
+  const {fixed, size, mass, named} = runs[run], {left, top, width, height} = here;
   if (view.labels === "none" || fixed[body] || !exists(run, now, body)) return null;
-  const text = String(view.labels === "mass" ? Number(mass[body].toPrecision(3)) : body);
-  const most = LABEL_CIRCLE * eye.scale * min(...size[body]) / hypot(LABEL_EMS * max(text.length, LABEL_DIGITS), LABEL_CAP);
+  const text = view.labels === "name" ? named[body] : String(view.labels === "mass" ? Number(mass[body].toPrecision(3)) : body);
+  if (text === "") return null;
+  const most = LABEL_CIRCLE * eye.scale * min(...size[body]) / hypot(label_ems(text), LABEL_CAP);
   if (!(most >= LABEL_LEAST)) return null;
   const font = font_of(600, most), wide = text_width(font, text), high = ceil(LABEL_CAP * font.em);
   const {x, y} = place(pose(run, now, body)), start = rint(x - wide / 2), baseline = rint(y + high / 2);

@@ -19,11 +19,16 @@ function make_states(run, frames, bodies) {
 
 const pairs = numbers => Array.from({length: numbers.length / 2}, (_, i) => [numbers[2 * i], numbers[2 * i + 1]]);
 
+/* Names of 32 bytes with zeros behind them; empty: the body has none. */
+const names_in = bytes => Array.from({length: bytes.length / 32}, (_, body) =>
+  new TextDecoder().decode(bytes.subarray(32 * body, 32 * body + 32)).split("\0")[0]);
+
 /* A live run (live.js) has a method, and its states are computed. `stored`: the run's number in the page's elements, whatever its
    panel; checked, wrong: of its frames. */
 const runs = data.runs.map((run, index) => Object.assign(make_states(run, run.frames, run.bodies), {
   index, stored: index, checked: 0, wrong: 0, size: pairs(new Float32Array(packed("size" + index).buffer)),
   fixed: Array.from(packed("fixed" + index), Boolean), reached: -1,
+  named: run.names && names_in(packed("name" + index)),
   mass: run.masses && new Float32Array(packed("mass" + index).buffer),
   distances: run.live ? new Float32Array(run.frames) : new Float32Array(packed("distances" + index).buffer),
   hashes: run.live ? null : new DataView(packed("hashes" + index).buffer),

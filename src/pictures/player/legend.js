@@ -24,7 +24,7 @@ function entries() {
     found.push(scale);
   }
   if (view.labels !== "none")
-    found.push(["in boxes that are large enough: " + (view.labels === "mass" ? "mass, kg" : "number of the body")]);
+    found.push(["in boxes that are large enough: " + {mass: "mass, kg", number: "number of the body", name: "name"}[view.labels]]);
   if (shows("trails"))
     add(2 * em, (x, y) => {
       for (let i = 0, n = LEGEND_TRAIL_PARTS; i < n; i++)

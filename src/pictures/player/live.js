@@ -207,8 +207,7 @@ function take_part(run, part) {
     if (part.first !== 0) return; /* the rest of a launch that is not shown any more */
     into = run.next = make_states({shown: part.id, reached: -1}, part.frames, part.bodies);
     Object.assign(into, {size: pairs(part.sizes), fixed: Array.from(part.fixed, Boolean), mass: part.masses,
-      bomb: part.bomb,
-      ...part.scene, contacts: part.recorded, distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: ""});
+      named: part.named, bomb: part.bomb, ...part.scene, contacts: part.recorded, distances: new Float32Array(part.frames).fill(NaN), verdict: null, hash: ""});
   }
   copy_part(into, part);
   into.framing = part.framing ?? into.framing;

@@ -50,8 +50,8 @@ function body_tables({run, body}) {
 }
 
 function show_body() {
-  const pinned = view.body >= 0, hit = pinned ? view : under();
-  tell(ui.named, hit ? `Body ${hit.body} in ${names[hit.run]}${pinned ? ", pinned" : ""}` : "Body");
+  const pinned = view.body >= 0, hit = pinned ? view : under(), name = hit && runs[hit.run].named?.[hit.body];
+  tell(ui.named, hit ? `Body ${hit.body}${name ? `, ${name},` : ""} in ${names[hit.run]}${pinned ? ", pinned" : ""}` : "Body");
   ui.unpin.disabled = ui.follow.disabled = !pinned;
   ui.follow.checked = view.camera.kind === "body";
   ui.values.replaceChildren(...!hit ? ["Point at a body to measure it."]

@@ -1,6 +1,6 @@
 /* The state of the page, its elements and its colours. */
 const COMPARES = ["split", "overlay", "difference"], THEMES = ["auto", "light", "dark"], FIT = {kind: "fit"};
-const LABELLINGS = ["none", "number", "mass"];
+const LABELLINGS = ["none", "number", "mass", "name"];
 const SHOWS = ["ghosts", "distance", "trails", "contacts", "impulses", "velocities"];
 const PARTS = {split: "", overlay: "ghosts", difference: "ghosts distance"}; /* which are no choice there */
 const view = {
@@ -72,9 +72,9 @@ function apply_theme() {
 
 /* Why a look cannot be had; "" if it can. */
 function refused(look) {
-  const need = {impulses: "contacts", mass: "masses"}[look] ?? look, lacking = runs.findIndex(run => run[need] === false);
+  const need = {impulses: "contacts", mass: "masses", name: "names"}[look] ?? look, lacking = runs.findIndex(run => run[need] === false);
   if (lacking >= 0) return `${names[lacking]} has no ${need}`;
-  const compares = !/split|trails|contacts|velocities|none|number|masses/.test(need);
+  const compares = !/split|trails|contacts|velocities|none|number|masses|names/.test(need);
   return compares && others.length === 0 ? "no run compares with the first" : "";
 }
 

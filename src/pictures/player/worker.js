@@ -11,6 +11,9 @@ function panel_worker() {
     return new TextDecoder().decode(bytes.slice(at, bytes.indexOf(0, at)));
   };
 
+  const NAME = 32; /* bytes */
+  const names_of = (at, count) => at === 0 ? null : Array.from({length: count}, (_, body) => text(at + NAME * body));
+
   function put(bytes) {
     const at = live.live_reserve(bytes.length);
     if (at === 0) throw new Error("out of memory");
@@ -41,6 +44,7 @@ function panel_worker() {
     const part = {
       id, first, last, bodies, scene: about, recorded: contacts === 1, frames: live.live_frames(run), bomb: live.live_bomb(run), ended,
       sizes: copy(Float32Array, live.live_sizes(run), 0, 2 * bodies), fixed: copy(Uint8Array, live.live_fixed(run), 0, bodies),
+      named: names_of(live.live_names(run), bodies),
       masses: copy(Float32Array, live.live_masses(run), 0, bodies),
       positions: copy(Float32Array, live.live_positions(run), 2 * at, 2 * count),
       angles: copy(Float32Array, live.live_angles(run), at, count),
