@@ -14,7 +14,9 @@ static const Option option_table[] = {{OPTION_JSON(Options, json)}, {0}};
 static const CommandSpec spec = {
     .options = option_table,
     .help = "List the methods and their settings. A method is given as NAME or NAME:KEY=VALUE,...\v"
-            "Example: twinbox simulate stack --method engine:k=50 -o stack50.npz"};
+            "Example: twinbox simulate stack --method engine:k=50 -o stack50.npz\n"
+            "An installed program finds its networks in any folder:\n"
+            "network=scenes/networks/NAME.npz"};
 
 static void print(void) {
     for (const MethodKind *kind = method_kinds; kind->description != NULL; kind++) {

@@ -217,6 +217,27 @@ const char *installed_path(const char *path) {
     return found->path;
 }
 
+const char *installed_network(const char *method) {
+    static const char key[] = "network=";
+    const char *value = strstr(method, key);
+    if (value == NULL || (value > method && value[-1] != ':' && value[-1] != ',')) return method;
+    char path[PATH_SIZE];
+    value += strlen(key);
+    const int length = (int)strcspn(value, ",");
+    Error ignored = {0};
+    if (!file_path(path, sizeof path, &ignored, "%.*s", length, value)) return method;
+    const char *found = installed_path(path);
+    Found *text = found != path ? malloc(sizeof *text) : NULL;
+    if (text == NULL || !file_path(text->path, sizeof text->path, &ignored, "%.*s%s%s", (int)(value - method), method,
+                                   found, value + length)) {
+        free(text);
+        return method;
+    }
+    text->next = all_found;
+    all_found = text;
+    return text->path;
+}
+
 static bool is_scene(const char *name) {
     const char *ending = strrchr(name, '.');
     return ending != NULL && strcmp(ending, ".yaml") == 0;

@@ -111,16 +111,14 @@ static const char *sweeps_of_scene(Settings *all, const Trajectory *run) {
 
 void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
     const MethodDescription *method = method_describe(run->method);
-    const RunName shown = run_name(spec, run);
-    char name[TRAJECTORY_NAME_SIZE];
+    const RunName shown = run_name(spec, run), name = run_method_name(spec, run);
     Settings all;
-    method_name(name, sizeof name, run->method);
-    const bool own = strcmp(shown.text, name) != 0, described = method != NULL && method->caption != NULL;
+    const bool own = strcmp(shown.text, name.text) != 0, described = method != NULL && method->caption != NULL;
     if (own) {
         latex_text(out, shown.text);
         fputs(" (", out);
     }
-    latex_code(out, name);
+    latex_code(out, name.text);
     if (described) {
         fputs(own ? ", " : " (", out);
         latex_text(out, method->caption);

@@ -120,11 +120,12 @@ void run_cells_frame(const RunCells *cells, Sketch *sketch, Point low);
 #define PAGE_EDGE 0.2   /* mm: margin of the page, half a frame's line */
 #define SMALL_TYPE 0.85 /* size of small texts / the figure's font size */
 
-/* The caption of one of the figure's runs, or the name of its method (methods/methods.h). */
+/* The caption of one of the figure's runs, or the name of its method among theirs (methods/methods.h). */
 typedef struct RunName {
     char text[CAPTION_TEXT_SIZE];
 } RunName;
 RunName run_name(const FigureSpec *spec, const Trajectory *run);
+RunName run_method_name(const FigureSpec *spec, const Trajectory *run);
 
 /* The runs' colours, FIGURE_RUNS_MAX of them. */
 bool run_colours(const FigureSpec *spec, RunColours *colours, Error *error);

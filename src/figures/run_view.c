@@ -12,6 +12,7 @@
 #include "pixels/type.h"
 #include "runs/trajectory.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -374,14 +375,26 @@ void flow_text(Flow *flow, Sketch *sketch, uint32_t ink, const WrappedText *text
     if (sketch != NULL) draw_wrapped(sketch, at, ink, text);
 }
 
+static int index_of(const FigureSpec *spec, const Trajectory *run) {
+    int i = 0;
+    while (i < spec->run_count - 1 && spec->runs[i] != run) i++;
+    assert(spec->runs[i] == run);
+    return i;
+}
+
+RunName run_method_name(const FigureSpec *spec, const Trajectory *run) {
+    RunName name;
+    const char *methods[FIGURE_RUNS_MAX];
+    for (int i = 0; i < spec->run_count; i++) methods[i] = spec->runs[i]->method;
+    method_name_among(name.text, sizeof name.text, methods, spec->run_count, index_of(spec, run));
+    return name;
+}
+
 RunName run_name(const FigureSpec *spec, const Trajectory *run) {
     RunName name;
-    for (int i = 0; i < spec->run_count; i++) {
-        if (spec->runs[i] != run || spec->captions[i] == NULL || spec->captions[i][0] == '\0') continue;
-        snprintf(name.text, sizeof name.text, "%s", spec->captions[i]);
-        return name;
-    }
-    method_name(name.text, sizeof name.text, run->method);
+    const char *caption = spec->captions[index_of(spec, run)];
+    if (caption == NULL || caption[0] == '\0') return run_method_name(spec, run);
+    snprintf(name.text, sizeof name.text, "%s", caption);
     return name;
 }
 

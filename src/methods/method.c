@@ -33,6 +33,30 @@ size_t method_name(char *name, size_t size, const char *text) {
     return used < size ? used : size - 1;
 }
 
+/* Copies a method's text without the setting `network`. */
+static void leave_out_network(char out[METHOD_TEXT_SIZE], const char *text) {
+    static const char key[] = "network=";
+    const MethodDescription *method = method_describe(text);
+    const char *at = method != NULL && !method->external ? strstr(text, key) : NULL;
+    snprintf(out, METHOD_TEXT_SIZE, "%s", text);
+    if (at == NULL || at == text || (at[-1] != ':' && at[-1] != ',')) return;
+    const char *end = at + strcspn(at, ",");
+    /* One of the two separators goes with it: the one before, unless this is that of the name and settings follow. */
+    const int kept = (int)(at - text) - (*end == '\0' || at[-1] == ',');
+    snprintf(out, METHOD_TEXT_SIZE, "%.*s%s", kept, text, at[-1] == ':' && *end == ',' ? end + 1 : end);
+}
+
+size_t method_name_among(char *name, size_t size, const char *const *methods, int count, int index) {
+    char own[METHOD_TEXT_SIZE], other[METHOD_TEXT_SIZE];
+    leave_out_network(own, methods[index]);
+    for (int i = 0; i < count; i++) {
+        if (strcmp(methods[i], methods[index]) == 0) continue;
+        leave_out_network(other, methods[i]);
+        if (strcmp(own, other) == 0) return method_name(name, size, methods[index]);
+    }
+    return method_name(name, size, own);
+}
+
 size_t method_name_head(const char *name) { return strcspn(name, ":"); }
 
 /* The method in `name` or `name:key=value,...`, or NULL. */

@@ -96,7 +96,9 @@ void caption_method(const Picture *picture, int run, char name[CAPTION_TEXT_SIZE
         note[0] = '\0';
         return;
     }
-    method_name(name, CAPTION_TEXT_SIZE, picture->runs[run]->method);
+    const char *methods[RENDER_PANELS_MAX];
+    for (int i = 0; i < picture->count; i++) methods[i] = picture->runs[i]->method;
+    method_name_among(name, CAPTION_TEXT_SIZE, methods, picture->count, run);
     snprintf(note, CAPTION_TEXT_SIZE, "%s", method != NULL && method->caption != NULL ? method->caption : "");
 }
 

@@ -37,6 +37,11 @@ for name in stack scenes/stack.yaml; do
 done
 run 0 simulate arch --frames 1
 says "arch by engine: 1 steps"
+# A network by its path in the repository; one that is nowhere is named.
+run 0 simulate stack --method pair-net:network=scenes/networks/pair-net.npz --hash run.hash
+cmp -s run.hash ../built.hash || fail "scenes/networks/pair-net.npz is another network"
+run 2 simulate stack --method pair-net:network=scenes/networks/none.npz
+complains "scenes/networks/none.npz: error: cannot open"
 run 2 simulate no_such_scene
 complains "no_such_scene: error: cannot open"
 (cd "$sources" && "$built" simulate stack --method pair-net --hash "$folder/named.hash" >/dev/null)

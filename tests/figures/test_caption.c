@@ -84,7 +84,7 @@ static FigureSpec at_times(int count, double first, double second, double third)
 TEST(a_strip_names_times_and_rows) {
     assert_caption("strip", at_times(3, 0.1, 0.25, 1),
                    "The " SCENE " at 0.1, 0.25 and 1~s, a column each. Rows from top to bottom: " ENGINE ", " MOMENTUM
-                   " and \\texttt{pair-net:network=my\\_net.npz} (neural network for pairs).");
+                   " and \\texttt{pair-net} (neural network for pairs).");
     FigureSpec named = at_times(1, 0.1, 0.25, 1);
     named.captions[0] = "Ours & 1_st";
     assert_caption("strip", named,

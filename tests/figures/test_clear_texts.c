@@ -112,7 +112,7 @@ TEST(pairs_of_boxes) {
 /* Nothing is shortened, whatever runs are called. */
 TEST(long_names) {
     Trajectory *runs[] = {read_run("stack", "engine"), read_run("stack", "pair-net")};
-    strcpy(runs[1]->method, "pair-net:network=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz");
+    strcpy(runs[1]->method, "pair-net:weights=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz");
     for (int i = 0; figure_kinds()[i] != NULL; i++) {
         const FigureKind *kind = figure_kinds()[i];
         if (kind->max_runs == 0) continue;

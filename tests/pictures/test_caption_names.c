@@ -57,7 +57,7 @@ static int count_names(int count, int width, int height, const RenderLook *look,
     int found = 0;
     for (int run = 0; run < count; run++) {
         char name[CAPTION_TEXT_SIZE];
-        method_name(name, sizeof name, methods[run]);
+        method_name_among(name, sizeof name, methods, count, run);
         if (!whole) name[method_name_head(name)] = '\0';
         const bool there = has_name(&drawing, &picture.layout, name);
         if (!there) print_error("%d runs, %d x %d: no %s\n", count, width, height, name);

@@ -149,9 +149,10 @@ const weigh = text => text_width({css: "600 100px Inter, system-ui, sans-serif"}
 
 function describe_run(run) {
   const method = data.live.methods.find(({name}) => name === run.live.split(":")[0]);
-  Object.assign(run, {method: run.live, name: run.live, ems: run.live === method?.name ? method.ems : weigh(run.live),
+  const name = run.live.replace(/network=[^,]*\//, "network="); /* without its folders */
+  Object.assign(run, {method: run.live, name, ems: name === method?.name ? method.ems : weigh(name),
     note: method?.note ?? "", note_ems: method?.note_ems ?? 0, file: null},
-    run.given?.live === run.live ? run.given : {}); /* the caption of its author */
+    run.given?.live === run.live ? run.given : {}); /* as the page was written */
 }
 
 /* All runs that have arrived are shown, together if they can. */
@@ -240,7 +241,7 @@ function begin_live() {
   if (!data.live) return;
   for (const run of live_runs()) {
     const {live, name, ems, note, note_ems} = run;
-    if (run.caption !== null) run.given = {live, name, ems, note, note_ems};
+    run.given = {live, name, ems, note, note_ems};
   }
   for (const run of recorded) Object.assign(run, {name: run.name + " (recorded)", ems: weigh(run.name + " (recorded)")});
   on_checked.push(take_stock);
