@@ -209,7 +209,7 @@ static const Option option_table[] = {
     {"--highlight", 0, "NAME,...", "Methods to draw in colour, beside the engine, interior and the strongest rival",
      OPTION_TEXT(Options, study.look.highlight)},
     {"--size", 0, "page|column|slide",
-     "178 x 92 mm, two columns of a paper; 85 x 144 mm, one column; or 160 x 90 mm, 16:9 (default: page)",
+     "174 x 92 mm, two columns of a paper; 85 x 144 mm, one column; or 160 x 90 mm, 16:9 (default: page)",
      OPTION_READ(read_size, Options, study.look.size)},
     {OPTION_COLOUR(Options, study.look.colours)},
     {"--words", 0, NULL, "Also write the caption below the picture", OPTION_FLAG(Options, study.look.words)},

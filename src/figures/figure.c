@@ -122,6 +122,8 @@ void caption_run(FILE *out, const FigureSpec *spec, const Trajectory *run) {
     if (described) {
         fputs(own ? ", " : " (", out);
         latex_text(out, method->caption);
+        if (run->program[0] != '\0') fputs(": ", out);
+        latex_text(out, run->program);
         const char *sweeps = sweeps_of_scene(&all, run);
         if (sweeps != NULL) fprintf(out, ", \\texttt{k=%s}", sweeps);
     }

@@ -162,7 +162,7 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
 const SteppingKind stepping_exec = {
     .description = {.name = "exec",
                     .summary = "another program, such as a real engine: exec:PROGRAM WORD...,KEY=VALUE,...",
-                    .caption = "another program",
+                    .caption = "external program",
                     .settings = settings,
                     .own_settings = "",
                     .external = true,

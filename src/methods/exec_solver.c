@@ -94,7 +94,7 @@ static int64_t reported(const void *state) { return ((const ExecSolver *)state)-
 const ContactSolverKind solver_exec_solver = {
     .description = {.name = "exec-solver",
                     .summary = "another program solves each step's contacts: exec-solver:PROGRAM WORD...,KEY=VALUE,...",
-                    .caption = "a solver of others",
+                    .caption = "external solver",
                     .settings = settings,
                     .own_settings = "",
                     .external = true,

@@ -99,7 +99,9 @@ void caption_method(const Picture *picture, int run, char name[CAPTION_TEXT_SIZE
     const char *methods[RENDER_PANELS_MAX];
     for (int i = 0; i < picture->count; i++) methods[i] = picture->runs[i]->method;
     method_name_among(name, CAPTION_TEXT_SIZE, methods, picture->count, run);
-    snprintf(note, CAPTION_TEXT_SIZE, "%s", method != NULL && method->caption != NULL ? method->caption : "");
+    const char *what = method != NULL && method->caption != NULL ? method->caption : "";
+    const char *program = picture->runs[run]->program; /* "external solver: sweeps 1" */
+    snprintf(note, CAPTION_TEXT_SIZE, "%s%s%s", what, what[0] != '\0' && program[0] != '\0' ? ": " : "", program);
 }
 
 /* The last part, the method's description, is the one that gets cut short. */

@@ -343,7 +343,7 @@ typedef struct SceneSolves {
 
 /* How a chart is drawn. */
 
-/* 178 x 92 mm, two columns of a paper; 85 x 144 mm, one column, a panel above the other; 160 x 90 mm, 16:9. */
+/* 174 x 92 mm, two columns of a paper; 85 x 144 mm, one column, a panel above the other; 160 x 90 mm, 16:9. */
 typedef enum ChartSize { CHART_PAGE, CHART_COLUMN, CHART_SLIDE } ChartSize;
 
 typedef struct ChartLook {

@@ -30,8 +30,9 @@
 static const struct {
     double width, height, gap, row_gap;
     int columns;
-} pages[] = {
-    [CHART_PAGE] = {178, 92, 8, 0, 2}, [CHART_COLUMN] = {85, 144, 0, 15, 1}, [CHART_SLIDE] = {160, 90, 8, 0, 2}};
+} pages[] = {[CHART_PAGE] = {FIGURE_PAGE_WIDTH, 92, 8, 0, 2},
+             [CHART_COLUMN] = {FIGURE_COLUMN_WIDTH, 144, 0, 15, 1},
+             [CHART_SLIDE] = {160, 90, 8, 0, 2}};
 
 const char *const chart_panel_titles[CHART_PANELS] = {"At the impact", "In the 60 frames after it"};
 
