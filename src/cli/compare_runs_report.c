@@ -179,14 +179,21 @@ static const char *cause_of(const RunComparison *c) {
     return c->passed ? (c->parting.first.frame < 0 ? "equal" : "within tolerance") : "physics changed";
 }
 
+/* Where the page of both runs opens: where they exceed the tolerance, if they do. */
+static const PartedBody *shown_difference(const RunComparison *c) {
+    return c->options->poses.given && c->parting.beyond.frame >= 0 ? &c->parting.beyond : &c->parting.first;
+}
+
 static void write_page(FILE *out, const void *context) {
     const RunComparison *c = context;
     char moment[PLAYER_LINK_SIZE];
-    const PartedBody *first = &c->parting.first;
+    const PartedBody *shown = shown_difference(c);
     house_page_begin(out, "Comparison of two runs", "pre{white-space:pre-wrap}");
     html_print(out, "<main>\n<h1>Comparison of two runs: %s</h1>\n<pre>%s</pre>\n", cause_of(c), c->text);
-    player_link(moment, first->frame > 0 ? first->frame * (double)c->runs[0]->dt : 0, first->body);
-    if (c->has_page) fprintf(out, "<p><a href=\"run.html%s\">Both runs, at the first difference</a></p>\n", moment);
+    player_link(moment, shown->frame > 0 ? shown->frame * (double)c->runs[0]->dt : 0, shown->body);
+    if (c->has_page)
+        fprintf(out, "<p><a href=\"run.html%s\">Both runs, at the first difference%s</a></p>\n", moment,
+                shown != &c->parting.first ? " beyond the tolerance" : "");
     fputs("</main>\n", out);
     house_page_end(out);
 }
@@ -234,10 +241,10 @@ static void write_results(FILE *out, const void *context) {
     json_end(&json);
 }
 
-/* All frames of runs that are not long, else those around the first difference. */
+/* All frames of runs that are not long, else those around the difference at which the page opens. */
 static void choose_frames(const RunComparison *c, PlayerOptions *options) {
     enum { STATES_MAX = 200000, BEFORE = 60 };
-    const int first = c->parting.first.frame, frames = c->parting.frames;
+    const int first = shown_difference(c)->frame, frames = c->parting.frames;
     const int room = STATES_MAX / (c->runs[0]->bodies + 1) + BEFORE + 1;
     if (frames <= room) return;
     options->first = first > BEFORE ? first - BEFORE : 0;

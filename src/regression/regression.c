@@ -3,6 +3,7 @@
 #include "regression/regression.h"
 
 #include "base/base.h"
+#include "base/file.h"
 #include "base/machine.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
@@ -433,14 +434,29 @@ static bool pair_frames(Regression *regression, Error *error) {
     return true;
 }
 
+static bool is_any(const char *name) { return (void)name, true; }
+
+static bool is_empty(const char *folder) {
+    FolderList files;
+    Error ignored = {0};
+    if (!folder_list(&files, folder, is_any, true, &ignored)) return false;
+    const bool empty = files.count == 0;
+    folder_list_free(&files);
+    return empty;
+}
+
 /* A folder without pictures is an error, not a difference, unless neither has any and trajectories are compared. */
 static bool refuse_empty(const Regression *regression, Error *error) {
     bool runs_alone = regression->count == 0 && regression->run_count > 0;
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
         const ImageSequence *sequence = regression->sequences[side];
-        if (sequence->count == 0 && !runs_alone)
-            return error_input(error, sequence->folder, "no PNG files (such as frame_000000.png) in this folder%s",
-                               sequence->skipped > 0 ? ", only in its subfolders" : "");
+        if (sequence->count > 0 || runs_alone) continue;
+        const char *pictures = side == EXPECTED ? "expected" : "actual";
+        if (is_empty(sequence->folder))
+            return error_input(error, sequence->folder, "the folder of the %s pictures is empty", pictures);
+        return error_input(error, sequence->folder,
+                           "the folder of the %s pictures has no PNG files (such as frame_000000.png)%s", pictures,
+                           sequence->skipped > 0 ? ", only its subfolders do" : "");
     }
     return true;
 }

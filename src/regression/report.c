@@ -225,14 +225,17 @@ typedef struct Writing {
 
 static bool write_page(Writing *writing, int index, const Trajectory *const runs[SIDES], Error *error) {
     char name[REPORT_RUN_SIZE], path[PATH_MAX], moment[PLAYER_LINK_SIZE];
-    const TrajectoryDifference *difference = &writing->regression->runs[index].difference;
-    const PlayerOptions options = choose_frames(runs, difference->frame);
+    const RegressionRun *run = &writing->regression->runs[index];
+    const bool beyond = run->beyond.frame >= 0; /* what fails, where a tolerance lets smaller differences pass */
+    const int frame = beyond ? run->beyond.frame : run->difference.frame;
+    const PlayerOptions options = choose_frames(runs, frame);
     PlayerResult result;
     name_page(name, writing->regression, index);
     if (!file_path(path, sizeof path, error, "%s/%s", writing->folder, name) ||
         !player_write(runs, SIDES, &options, path, &result, error))
         return false;
-    player_link(moment, difference->frame > 0 ? difference->frame * (double)runs[EXPECTED]->dt : 0, difference->body);
+    player_link(moment, frame > 0 ? frame * (double)runs[EXPECTED]->dt : 0,
+                beyond ? run->beyond.body : run->difference.body);
     snprintf(writing->runs->links[index], sizeof writing->runs->links[index], "%s%s", name, moment);
     writing->left = (size_t)result.bytes < writing->left ? writing->left - (size_t)result.bytes : 0;
     return true;
@@ -261,7 +264,8 @@ static bool show_runs(Writing *writing, const Progress *progress, Error *error) 
     return true;
 }
 
-/* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference.
+/* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference
+   beyond the tolerance, or at the first one.
    ERROR_INPUT if a run has changed since the comparison. The caller frees runs->links, also on failure. */
 static bool write_run_pages(ReportRuns *runs, const Regression *regression, const char *folder, size_t max_bytes,
                             const Progress *progress, Error *error) {

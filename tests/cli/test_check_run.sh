@@ -113,7 +113,7 @@ says "not compared: the verdict, \""
 says "report -> report/report.html"
 equal "files" "$(ls report | tr '\n' ' ')" "junit.xml report.html results.json results.tap run.html "
 /usr/bin/python3 - <<'PYTHON' || fail "the files of a report"
-import json, xml.etree.ElementTree as tree
+import json, re, xml.etree.ElementTree as tree
 suite = tree.parse("report/junit.xml").getroot()
 assert suite.get("tests") == "1" and suite.get("failures") == "1"
 assert suite[0].get("name") == "momentum.npz" and "cause of the first difference: solver" in suite[0][0].get("message")
@@ -121,7 +121,10 @@ results = json.load(open("report/results.json"))
 assert not results["passed"] and results["tolerance_angle"] == 0.001 and results["frames_equal"] == 4
 assert [other["what"] for other in results["not_compared"]] == ["verdict"]
 assert "not ok 1 - runs: physics changed" in open("report/results.tap").read()
-assert "run.html#t=" in open("report/report.html").read()
+link = re.search(r"run\.html#t=([\d.]+)&body=(\d+)", open("report/report.html").read())
+beyond = results["beyond"]
+assert beyond["frame"] > results["first"]["frame"]
+assert abs(float(link[1]) * 60 - beyond["frame"]) < 0.1 and int(link[2]) == beyond["body"], (link[0], beyond)
 PYTHON
 run 0 compare struck.npz momentum.npz --tolerance 100,100 --report passed
 says "equal within the tolerance of 100 m and 100 rad: 101 frames of 12 bodies; 4 of them in every bit"

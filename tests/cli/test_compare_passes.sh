@@ -107,10 +107,15 @@ run 1 compare a b
 says "only in b: 1 frame: new/home.png"
 rm a/home.png b/home.png
 run 2 compare a b --no-recursive
-complains "a: error: no PNG files (such as frame_000000.png) in this folder, only in its subfolders"
+complains "a: error: the folder of the expected pictures has no PNG files (such as frame_000000.png), only its subfolders do"
 rm -r a/sub
 run 2 compare a b
-complains "a: error: no PNG files"
+complains "a: error: the folder of the expected pictures is empty"
+run 2 compare b a
+complains "a: error: the folder of the actual pictures is empty"
+echo text >a/notes.txt
+run 2 compare b a
+complains "a: error: the folder of the actual pictures has no PNG files (such as frame_000000.png)"
 run 0 simulate "$scenes/single.yaml" --frames 3 -o one.npz
 cp one.npz a
 run 2 compare a b # trajectories do not replace pictures

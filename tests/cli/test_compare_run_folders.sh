@@ -3,13 +3,14 @@
 # twinbox compare on folders of runs: with the tolerance of two runs, in metres and radians.
 . "$(dirname "$0")/checks.sh"
 
-# A box that stands, and the same run with each pose of a frame moved by 3 mm and turned by 0.02 rad.
+# A box that stands, and the same run with a pose moved by 1 mm and a later one moved by 3 mm and turned by 0.02 rad.
 mkdir expected actual
 run 0 simulate "$scenes/single.yaml" --frames 20 --no-bomb -o expected/same.npz
 cp expected/same.npz actual
 run 0 export expected/same.npz -o poses.csv
 run 0 import poses.csv -o expected/box.npz
-awk -F, -v OFS=, '/^[0-9]+,1,/ && $1 == 12 { $3 += 0.003; $5 += 0.02 } { print }' poses.csv >moved.csv
+awk -F, -v OFS=, '/^[0-9]+,1,/ && $1 == 12 { $3 += 0.003; $5 += 0.02 }
+                    /^[0-9]+,1,/ && $1 == 6 { $3 += 0.001 } { print }' poses.csv >moved.csv
 grep -q '^frame,body,x,y,angle' poses.csv || fail "other columns: $(grep -m1 body poses.csv)"
 ! cmp -s poses.csv moved.csv || fail "no pose is moved"
 run 0 import moved.csv -o actual/box.npz
@@ -21,6 +22,11 @@ compare 1 --tolerance 0.0029
 says "physics changed first in box.npz: beyond the tolerance from frame 12, body 1: 0.003"
 compare 0 --tolerance 0.0031
 says "passed: 0 frames, 2 trajectories, 1 of them not equal, but within tolerance"
+# The page of both runs opens where they exceed the tolerance.
+compare 1 --tolerance 0.0029 --report beyond
+grep -q 'html#t=0.2&amp;body=1"' beyond/report.html || fail "the link: $(grep -o 'href="[^"]*#t=[^"]*"' beyond/report.html)"
+compare 1 --report any
+grep -q 'html#t=0.1&amp;body=1"' any/report.html || fail "the link: $(grep -o 'href="[^"]*#t=[^"]*"' any/report.html)"
 compare 1 --tolerance 0.0031,0.019
 says "beyond the tolerance from frame 12, body 1"
 compare 0 --tolerance 0.0031,0.021 --report report
