@@ -11,7 +11,8 @@
 #include <string.h>
 
 /* In units of the picture's shorter side, as in picture.c. */
-static const double HEAD = 0.075, HEAD_LINE = 0.095, SUBHEAD = 0.036, ROW = 0.036, CELL = 0.030, LINE = 0.072;
+static const double HEAD = 0.075, HEAD_LINE = 0.095, SUBHEAD = 0.036, ROW = 0.036, CELL = 0.030, LINE = 0.072,
+                    NOTES_DROP = 0.034;
 static const double WIDTH = 0.78; /* relative to the picture's width */
 
 typedef struct Card {
@@ -62,15 +63,31 @@ static void draw_rule(const Card *card, int baseline) {
                      card->picture->theme->grid_strong);
 }
 
+/* A name is on one line in the larger font, or in the smaller one on as many as it needs, around the baseline. Returns the x
+   where its longest line ends. */
+static int add_name(const Card *card, const char *name, int x, int baseline, int right) {
+    const Font *small = &card->picture->layout.axis;
+    const uint32_t ink = card->picture->theme->ink;
+    if (font_width(&card->row, name) <= right - x) return font_add(card->drawing, &card->row, name, x, baseline, ink);
+    const TextLines text = text_lines(small, name, right - x, right - x);
+    const int lines = text.count < TEXT_LINES_MAX ? text.count : TEXT_LINES_MAX, pitch = small->pixels * 5 / 4;
+    int end = x;
+    for (int i = 0; i < lines; i++) {
+        const int line = baseline - (lines - 1) * pitch / 2 + i * pitch;
+        const int line_end = font_add_fitting(card->drawing, small, text.lines[i], x, line, right - x, ink);
+        if (line_end > end) end = line_end;
+    }
+    return end;
+}
+
+static int names_left(const Card *card) { return card->left + card->row.pixels * 3 / 4 + card->row.pixels / 2; }
+
 /* Adds swatch and name; returns the x where the name ends. */
-static int add_method(const Card *card, int run, int baseline, int right, char note[CAPTION_TEXT_SIZE]) {
-    char title[CAPTION_TEXT_SIZE];
-    bool hollow = card->picture->look.compare == LOOK_OVERLAY && run > 0;
-    caption_method(card->picture, run, title, note);
-    int pixels = card->row.glyphs != NULL ? card->row.pixels : (int)(ROW * card->unit) + 4;
-    int x = body_draw_swatch(card->picture, run, hollow, card->left, baseline, pixels, card->drawing);
-    x += card->row.pixels / 2;
-    return caption_name_draw(card->picture, &card->row, title, x, baseline, right - x, card->drawing);
+static int add_method(const Card *card, int run, const char *name, int baseline, int right) {
+    const bool hollow = card->picture->look.compare == LOOK_OVERLAY && run > 0;
+    const int pixels = card->row.glyphs != NULL ? card->row.pixels : (int)(ROW * card->unit) + 4;
+    body_draw_swatch(card->picture, run, hollow, card->left, baseline, pixels, card->drawing);
+    return add_name(card, name, names_left(card), baseline, right);
 }
 
 TextLines card_head(const Picture *picture, MomentKind kind) {
@@ -94,18 +111,28 @@ static int draw_head(const Card *card, MomentKind kind) {
     return last;
 }
 
+/* Whether there is no room for a run's notes beside its name. */
+static bool notes_below(const Card *card, const char *name, const char *notes) {
+    const int x = names_left(card) + font_width(&card->row, name) + card->row.pixels / 2;
+    return font_width(&card->picture->layout.axis, notes) > card->right - x;
+}
+
 static void draw_title(const Card *card) {
     const Picture *picture = card->picture;
     const Theme *theme = picture->theme;
-    char note[CAPTION_TEXT_SIZE], text[4 * CAPTION_TEXT_SIZE];
+    char name[CAPTION_TEXT_SIZE], note[CAPTION_TEXT_SIZE], text[4 * CAPTION_TEXT_SIZE];
     const int first = draw_head(card, MOMENT_TITLE);
     snprintf(text, sizeof text, "scene %s, %.3g s", picture->runs[0]->scene,
              (picture->frames - 1) * (double)picture->runs[0]->dt);
     add(card, &card->subhead, text, card->left, first + (int)rint(0.055 * card->unit), card->right, theme->ink_soft);
     for (int run = 0; run < picture->count; run++) {
         int baseline = row_baseline(card, first, run) + (int)rint(0.03 * card->unit);
-        int x = add_method(card, run, baseline, card->right, note) + card->row.pixels / 2;
+        caption_method(picture, run, name, note);
         caption_notes(picture, run, note, text, sizeof text);
+        const bool below = notes_below(card, name, text);
+        if (below) baseline -= (int)rint(NOTES_DROP * card->unit / 2);
+        int x = add_method(card, run, name, baseline, card->right) + card->row.pixels / 2;
+        if (below) x = names_left(card), baseline += (int)rint(NOTES_DROP * card->unit);
         const bool fits = font_width(&card->cell, text) <= card->right - x;
         add(card, fits ? &card->cell : &picture->layout.axis, text, x, baseline, card->right, theme->ink_soft);
     }
@@ -194,7 +221,8 @@ static void draw_end(const Card *card) {
     draw_rule(card, baseline + (int)rint(0.02 * card->unit));
     for (int run = 0; run < picture->count; run++) {
         baseline = row_baseline(card, first, run) + (int)rint(0.02 * card->unit);
-        add_method(card, run, baseline, run != base ? columns[0] - column : card->right, note);
+        caption_method(picture, run, title, note);
+        add_method(card, run, title, baseline, run != base ? columns[0] - column : card->right);
         if (run != base) draw_distances(card, run, baseline, columns);
     }
 }
@@ -413,29 +441,50 @@ static void draw_overlay(const Picture *picture, Moment moment, const Rect *rect
         int x = draw_swatch(picture, run, rect->left + lefts[run], line, drawing);
         caption_method(picture, run, name, note);
         notes_of(picture, run, text);
-        x = caption_name_draw(picture, &layout->title, name, x, line, rect->right - x, drawing) + gap;
+        const int room = rect->right - x - distance_width(picture, run);
+        x = caption_name_draw(picture, &layout->title, name, x, line, room, drawing) + gap;
         if (run > 0) {
             const CaptionItem distance = caption_distance_item("distance ", picture_run_distance(picture, run, moment));
             caption_item_draw(picture, &layout->method, &distance, x, line, drawing);
             x += distance_width(picture, run);
         }
-        if (notes) font_add(drawing, &layout->method, text, x, line, picture->theme->ink_soft);
+        if (notes && font_width(&layout->method, text) <= rect->right - x)
+            font_add(drawing, &layout->method, text, x, line, picture->theme->ink_soft);
     }
 }
 
-/* At the right of a line, where it begins, if there is room; otherwise in the panel's upper right corner, on its colour: what
-   cannot be seen must be stated. */
-static void draw_state(const Picture *picture, const Rect *panel, const char *text, int left, int right, int baseline,
-                       Drawing *drawing) {
-    const Font *font = &picture->layout.method, *small = &picture->layout.axis;
-    if (font_width(font, text) <= right - left) {
-        font_add(drawing, font, text, right - font_width(font, text), baseline, picture->theme->ink_soft);
+/* In the panel's upper right corner, on its colour: what cannot be seen must be stated. */
+static void draw_state_inside(const Picture *picture, const Rect *panel, const char *text, Drawing *drawing) {
+    const Font *small = &picture->layout.axis;
+    const int inset = small->pixels / 2, width = font_width(small, text), x = panel->right - inset - width;
+    const double half_width = width / 2.0 + 2, half_height = small->pixels / 2.0 + 2;
+    const Shape ground = {.x = x - 2 + half_width,
+                          .y = panel->top + inset + half_height,
+                          .half_width = half_width,
+                          .half_height = half_height,
+                          .cosine = 1,
+                          .fill = picture->theme->panel};
+    drawing_add_shape(drawing, &ground, panel); /* above the boxes, as shapes are */
+    font_add(drawing, small, text, x, panel->top + inset + small->pixels, picture->theme->ink_soft);
+}
+
+/* The part of a line that is free. */
+typedef struct Line {
+    int left, right, baseline;
+} Line;
+
+/* At the right of the first line with room. */
+static void draw_state(const Picture *picture, int panel, Moment moment, const Line lines[2], Drawing *drawing) {
+    const Font *font = &picture->layout.method;
+    const State state = describe_state(picture, panel, moment);
+    const int width = font_width(font, state.text);
+    if (state.text[0] == '\0') return;
+    for (int i = 0; i < 2; i++) {
+        if (width > lines[i].right - lines[i].left) continue;
+        font_add(drawing, font, state.text, lines[i].right - width, lines[i].baseline, picture->theme->ink_soft);
         return;
     }
-    const int inset = small->pixels / 2, width = font_width(small, text), x = panel->right - inset - width;
-    const Rect ground = {x - 2, panel->top + inset, x + width + 2, panel->top + inset + small->pixels + 4};
-    drawing_add_rect(drawing, ground, picture->theme->panel);
-    font_add(drawing, small, text, x, panel->top + inset + small->pixels, picture->theme->ink_soft);
+    draw_state_inside(picture, &picture->layout.panels[panel], state.text, drawing);
 }
 
 void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *drawing) {
@@ -451,36 +500,31 @@ void caption_panel(const Picture *picture, int panel, Moment moment, Drawing *dr
     const Notes notes = place_notes(picture);
     const Name name = lay_out_name(picture, run);
     const int x = draw_swatch(picture, run, rect->left, baseline, drawing);
-    int left = rect->left + name_width(picture, run, &name), last = baseline;
+    int last = baseline;
     for (int i = 0; i < name.text.count && i < TEXT_LINES_MAX; i++) {
         last = baseline + i * layout->caption_pitch;
         font_add_fitting(drawing, name.font, name.text.lines[i], x, last, rect->right - x, picture->theme->ink);
     }
+    const bool below = distances_below(picture);
+    Line beside = {rect->left + name_width(picture, run, &name), rect->right, baseline},
+         lowest = {below ? x : rect->right, rect->right, rect->top - layout->title_rise};
     if (notes.font != NULL) {
         char text[4 * CAPTION_TEXT_SIZE];
         notes_of(picture, run, text);
-        const int end = font_add(drawing, notes.font, text, notes.beside ? left : x,
+        const int end = font_add(drawing, notes.font, text, notes.beside ? beside.left : x,
                                  notes.beside ? last : last + layout->caption_pitch, picture->theme->ink_soft);
-        if (notes.beside) left = end + layout->title.pixels / 2;
+        if (notes.beside) beside.left = end + layout->title.pixels / 2;
     }
-    int right = rect->right, line = baseline;
-    const bool below = distances_below(picture);
-    int free = left;
-    if (below) line = rect->top - layout->title_rise, free = x;
     if (has_distance(picture, run)) {
         const CaptionItem item = caption_distance_item("distance ", picture_run_distance(picture, run, moment));
         const int width = caption_item_width(&layout->method, &item);
-        if (width <= right - rect->left)
-            caption_item_draw(picture, &layout->method, &item, below ? free : right - width, line, drawing);
+        if (width <= rect->right - rect->left)
+            caption_item_draw(picture, &layout->method, &item, below ? x : rect->right - width,
+                              below ? lowest.baseline : baseline, drawing);
         if (below)
-            free += distance_width(picture, run);
+            lowest.left += distance_width(picture, run);
         else
-            right -= distance_width(picture, run);
+            beside.right -= distance_width(picture, run);
     }
-    const State state = describe_state(picture, panel, moment);
-    if (state.text[0] == '\0') return;
-    if (below && font_width(&layout->method, state.text) > right - left)
-        draw_state(picture, rect, state.text, free, right, line, drawing);
-    else
-        draw_state(picture, rect, state.text, left, right, baseline, drawing);
+    draw_state(picture, panel, moment, (const Line[]){beside, lowest}, drawing);
 }

@@ -183,7 +183,8 @@ int caption_fair_width(const int *widths, int count, int room);
 void caption_title(const Picture *picture, char title[CAPTION_TEXT_SIZE]);
 
 /* The name of a run's method (methods/methods.h) and what it is: "engine" and "physics engine, sequential impulses"; of an
-   external one with what its program calls itself. The second may be empty. Or the caption that the options set for the run, without a second. */
+   external one with what its program calls itself. The second may be empty. Or the caption that the options set for the
+   run, without a second. */
 void caption_method(const Picture *picture, int run, char name[CAPTION_TEXT_SIZE], char note[CAPTION_TEXT_SIZE]);
 
 /* Text after the name: the options' note, the cost and what the method is. */

@@ -93,9 +93,10 @@ Layout layout_make(int width, int height, int panels, int columns, LayoutRows ro
     layout.right = width - margin;
     layout.header_baseline = margin + pixels(HEADER_RISE * unit);
     layout.title_rise = pixels(TITLE_RISE * unit);
-    layout.axis_drop = pixels(AXIS_DROP * unit);
     layout.tick = text ? pixels(AXIS_TICK * unit) : 0;
     layout.hairline = unit < 1500 ? 1 : pixels(unit / 1080);
+    layout.axis_drop =
+        pixels(fmax(AXIS_DROP * unit, layout.hairline + layout.tick + ceil(LABEL_CAP * layout.axis.pixels)));
     int gutter = text ? font_width(&layout.axis, "-50") + 2 * layout.tick : 0;
     layout.caption_lines = rows.caption;
     layout.caption_pitch = text ? pixels(fmax(CAPTION_PITCH * unit, CAPTION_PITCH_EMS * layout.title.pixels)) : 0;
@@ -297,8 +298,8 @@ static void draw_panels(const Picture *picture, Moment moment, Drawing *drawing)
     drawing->static_shapes = drawing->shape_count;
     caption_header(picture, moment, drawing);
     for (int i = 0; i < picture->panel_count; i++) {
-        caption_panel(picture, i, moment, drawing);
         panel_draw_moving(picture, i, moment, drawing);
+        caption_panel(picture, i, moment, drawing);
     }
     timeline_draw_moving(picture, moment, drawing);
 }
