@@ -73,20 +73,26 @@ static void write_count(FILE *file, int count, const char *look, const char *wha
     if (count > 0) fprintf(file, "<li class=\"%s\"><b>%d</b> %s</li>\n", look, count, what);
 }
 
+static void write_frames(FILE *file, int count, const char *look, const char *what) {
+    char words[64];
+    snprintf(words, sizeof words, "%s: %s", count == 1 ? "frame" : "frames", what);
+    write_count(file, count, look, words);
+}
+
 static void write_counts(FILE *file, const Regression *regression) {
     const int *by = regression->by_verdict;
     fputs("<ul class=\"counts\" aria-label=\"Frames by verdict\">\n", file);
-    write_count(file, regression->renderer, "bad", "renderer changed");
-    write_count(file, regression->physics, "bad", "physics changed");
-    write_count(file, regression->view, "bad", "view changed");
-    write_count(file, regression->elsewhere, "bad", "run changed");
-    write_count(file, regression->unknown, "bad", "pictures differ");
-    write_count(file, by[PIXELS_MISSING], "bad", "missing");
-    write_count(file, by[PIXELS_EXTRA], "bad", "extra");
-    write_count(file, by[PIXELS_UNREAD], "bad", "not comparable");
-    write_count(file, regression->metadata_failed, "bad", "metadata changed");
-    write_count(file, by[PIXELS_WITHIN], "odd", "within tolerance");
-    write_count(file, by[PIXELS_EQUAL], "good", "equal pixels");
+    write_frames(file, regression->renderer, "bad", "renderer changed");
+    write_frames(file, regression->physics, "bad", "physics changed");
+    write_frames(file, regression->view, "bad", "view changed");
+    write_frames(file, regression->elsewhere, "bad", "run changed");
+    write_frames(file, regression->unknown, "bad", "pictures differ");
+    write_frames(file, by[PIXELS_MISSING], "bad", "missing");
+    write_frames(file, by[PIXELS_EXTRA], "bad", "extra");
+    write_frames(file, by[PIXELS_UNREAD], "bad", "not comparable");
+    write_frames(file, regression->metadata_failed, "bad", "metadata changed");
+    write_frames(file, by[PIXELS_WITHIN], "odd", "within tolerance");
+    write_frames(file, by[PIXELS_EQUAL], "good", "equal pixels");
     write_count(file, regression->run_failed, "bad",
                 regression->run_failed == 1 ? "trajectory differs" : "trajectories differ");
     write_count(file, regression->run_within, "odd",
@@ -226,9 +232,12 @@ static void write_approval(FILE *file, const Report *report) {
         write_code(file, " --expected ");
         write_code(file, expected);
     }
-    fputs(" replaces the expected files by the actual ones; with <code>--only 'stack_*'</code>, only files of matching "
-          "names.</p></section>\n",
+    fputs(report->regression->count + report->regression->run_count > 1
+              ? " replaces the expected files by the actual ones; with <code>--only 'stack_*'</code>, only files of "
+                "matching names."
+              : " replaces the expected file by the actual one.",
           file);
+    fputs("</p></section>\n", file);
 }
 
 static void write_pictures(FILE *file, const ReportPictures *pictures) {

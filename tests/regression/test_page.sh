@@ -213,6 +213,22 @@ if command -v chromium >/dev/null; then
     browse report/report.html
     says "title: twinbox compare: equal"
     says "rows: 0"
+
+    # Of one picture there is nothing to choose, but of several there is.
+    cat >probe.html <<'PROBE'
+<pre id="seen" hidden></pre>
+<script>
+document.getElementById("seen").textContent =
+  ["BEGIN", "hidden: " + ["list", "scrub"].map(id => document.getElementById(id).hidden), "END"].join("\n");
+</script>
+PROBE
+    run 1 compare "expected</script>/frame_000001.png" actual/frame_000001.png --report report
+    browse report/report.html
+    says "hidden: true,true"
+    grep -q "<b>1</b> frame: physics changed" report/report.html || fail "the count of one frame"
+    run 1 compare "expected</script>" actual --report report
+    browse report/report.html
+    says "hidden: false,false"
 else
     fail "chromium is not installed; tests/setup chromium does that"
 fi

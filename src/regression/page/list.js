@@ -106,6 +106,9 @@ function list() {
   get("all").checked = all;
   get("sort").value = order;
   get("viewer-part").hidden = data.frames.length === 0;
+  const alone = data.frames.length === 1 && listed.length === 1; /* there is nothing to choose from */
+  get("list").hidden = get("scrub").hidden = alone;
+  get("viewer").classList.toggle("alone", alone);
   at = -1;
   const same = listed.indexOf(index), after = order === "name" && index >= 0 ? listed.findIndex(i => i >= index) : 0;
   if (listed.length > 0) go(same >= 0 ? same : after >= 0 ? after : listed.length - 1);
