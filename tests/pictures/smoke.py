@@ -51,7 +51,6 @@ def main():
                 found, wanted = browser.run(COLOURS.replace("PLACE", f"[{panel}, 16, 5]"))
                 checks.equal(f"the colour of a box in panel {panel}", found, wanted)
             browser.press(" ")
-            browser.wait("player.view.playing")
             browser.wait("player.view.frame === 40 && !player.view.playing")
             browser.press("?")
             browser.wait("document.getElementById('help').open")
