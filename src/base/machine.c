@@ -75,26 +75,23 @@ static int threads_for(int count) {
 }
 
 bool parallel_for(const ParallelWork *work, int count, const char *what, const Progress *progress, Error *error) {
-    atomic_int done = 0;
-    atomic_bool stopped = false;
+    atomic_int done = 0, end = count; /* pieces from `end` on are not begun */
+    int failed = count;
 #pragma omp parallel for schedule(dynamic) num_threads(threads_for(count))
     for (int i = 0; i < count; i++) {
-        if (atomic_load(&stopped)) continue;
+        if (i >= atomic_load(&end)) continue;
         Error failure = {0};
-        bool ok = work->piece(work->context, i, &failure);
+        const bool ok = work->piece(work->context, i, &failure);
 #pragma omp critical
-        {
-            if (ok)
-                ok = progress_report(progress, atomic_fetch_add(&done, 1) + 1, count);
-            else if (error->kind == ERROR_NONE)
-                *error = failure;
-        }
-        if (!ok) atomic_store(&stopped, true);
+        if (!ok) {
+            if (i < failed) *error = failure, failed = i;
+            if (i < atomic_load(&end)) atomic_store(&end, i);
+        } else if (!progress_report(progress, atomic_fetch_add(&done, 1) + 1, count))
+            atomic_store(&end, 0);
     }
-    if (!atomic_load(&stopped)) return true;
-    return error->kind == ERROR_NONE
-               ? error_interrupted(error, what, "stopped after %d of %d", atomic_load(&done), count)
-               : false;
+    if (failed < count) return false;
+    return atomic_load(&end) == count ||
+           error_interrupted(error, what, "stopped after %d of %d", atomic_load(&done), count);
 }
 
 static double read_clock(clockid_t clock) {

@@ -56,13 +56,13 @@ static inline void progress_next_stage(ProgressStage *stage, double share) {
 /* Runs many independent pieces of work on all threads (OpenMP). */
 
 typedef struct ParallelWork {
-    /* Does piece i; called from several threads at once. False with error set stops the rest. */
+    /* Does piece i; called from several threads at once. False with error set stops those behind it. */
     bool (*piece)(void *context, int i, Error *error);
     void *context;
 } ParallelWork;
 
-/* Does pieces 0 .. count - 1 in any order and reports each to progress. False with the first error, or with "what:
-   error: stopped after ..." if progress requests a stop. */
+/* Does pieces 0 .. count - 1 in any order and reports each to progress. False with the error of the least piece that
+   fails, for any number of threads, or with "what: error: stopped after ..." if progress requests a stop. */
 bool parallel_for(const ParallelWork *work, int count, const char *what, const Progress *progress, Error *error);
 
 /* Seconds of a clock that never steps back. */

@@ -32,6 +32,23 @@ TEST(an_error_stops_the_rest) {
     for (int i = 0; i < PIECES; i++) assert_true(done[i] <= 1);
 }
 
+/* Piece 0 fails after another, which another thread does meanwhile. */
+static bool fail_backwards(void *context, int i, Error *error) {
+    atomic_int *failed = context;
+    while (i == 0 && omp_get_num_threads() > 1 && atomic_load(failed) == 0) continue;
+    atomic_fetch_add(failed, 1);
+    return error_input(error, "piece", "number %d", i);
+}
+
+TEST(the_error_is_that_of_the_least_piece) {
+    for (int i = 0; i < 10; i++) {
+        atomic_int failed = 0;
+        error = (Error){0};
+        assert_refused(parallel_for(&(ParallelWork){fail_backwards, &failed}, PIECES, "test", NULL, &error),
+                       "piece: error: number 0");
+    }
+}
+
 static bool stop_at_ten(void *context, double done, double total) {
     assert_true(total == PIECES);
     return done < *(const double *)context;
