@@ -68,19 +68,27 @@ bool option_seed(const Option *option, const char *text, void *value, Error *err
     return true;
 }
 
+/* Whether the text is a number, and that number within the bounds; else error is set. */
+static bool check_number(const Option *option, const char *text, bool is_number, double parsed, Error *error) {
+    return (is_number && parsed >= option->least && parsed <= option->most) ||
+           error_input(error, option->name, "'%.64s' is not a number from %g to %g", text, option->least, option->most);
+}
+
 bool option_float(const Option *option, const char *text, void *value, Error *error) {
-    float parsed;
-    if (!parse_float(text, &parsed) || (double)parsed < option->least || (double)parsed > option->most)
-        return error_input(error, option->name, "'%.64s' is not a number from %g to %g", text, option->least,
-                           option->most);
+    float parsed = 0;
+    const bool is_number = parse_float(text, &parsed);
+    if (!check_number(option, text, is_number, (double)parsed, error)) return false;
     *(float *)value = parsed;
     return true;
 }
 
 bool option_double(const Option *option, const char *text, void *value, Error *error) {
-    float parsed = 0;
-    if (!option_float(option, text, &parsed, error)) return false;
-    *(double *)value = (double)parsed;
+    const char *rest;
+    double parsed = 0, divisor = 1;
+    const bool is_number = parse_leading_double(text, &parsed, &rest) &&
+                           (*rest == '\0' || (*rest == '/' && parse_double(rest + 1, &divisor) && divisor != 0));
+    if (!check_number(option, text, is_number, parsed / divisor, error)) return false;
+    *(double *)value = parsed / divisor;
     return true;
 }
 

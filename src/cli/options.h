@@ -48,7 +48,7 @@ struct Option {
     .read = option_int, .at = OPTION_AT(T, member, int), .least = (minimum), .most = (maximum)
 #define OPTION_FLOAT(T, member, minimum, maximum) \
     .read = option_float, .at = OPTION_AT(T, member, float), .least = (double)(minimum), .most = (double)(maximum)
-/* A double; its value is rounded to float. */
+/* A decimal number, or a fraction of two such as 30000/1001. */
 #define OPTION_DOUBLE(T, member, minimum, maximum) \
     .read = option_double, .at = OPTION_AT(T, member, double), .least = (minimum), .most = (maximum)
 /* An enum without negative values, from a list of names that ends with NULL. */
