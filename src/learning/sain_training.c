@@ -12,6 +12,7 @@
 #include "methods/reference.h"
 #include "methods/relation_view.h"
 #include "methods/solvers.h"
+#include "runs/runs.h"
 #include "scenes/scenes.h"
 
 #include <stdlib.h>
@@ -98,6 +99,7 @@ typedef struct Run {
     ImpactProblems *problems;
     Reference reference;
     PhaseTracker tracker;
+    bool driven; /* by a network, which may fail: the run ends there */
 } Run;
 
 static bool keep(Run *run, const ContactProblem *problem, int frame, Error *error) {
@@ -122,7 +124,7 @@ static bool run_world(Run *run, const Scene *scene, World *world, const ContactS
     for (int frame = 1; frame <= scene->frames && !is_over(run, frame); frame++) {
         Error failure = {0};
         if (!world_step(world, solver->kind->solve, solver->state, scene->dt, &failure))
-            return failure.failure != FAILURE_NONE || (*error = failure, false);
+            return (run->driven && failure.failure != FAILURE_NONE) || (*error = failure, false);
         if (!keep(run, world_problem(world), frame, error)) return false;
         if (frame == scene->bomb.frame && !scene_add_bomb(scene, world, error)) return false;
     }
@@ -139,7 +141,9 @@ static bool piece(void *context, int i, Error *error) {
     const Runs *runs = context;
     const Scene launched = launch_scene(runs->scene, &runs->launches[i]);
     ContactSolver solver = {0};
-    Run run = {.problems = &runs->of[i], .tracker = {.impact_frames = launched.bomb.impact_frames}};
+    Run run = {.problems = &runs->of[i],
+               .tracker = {.impact_frames = launched.bomb.impact_frames},
+               .driven = runs->from->driver != NULL};
     World *world = scene_world(&launched, error);
     const bool ok = world != NULL && make_solver(runs->from->driver, i, &solver, error) &&
                     run_world(&run, &launched, world, &solver, error);
@@ -153,10 +157,10 @@ static bool piece(void *context, int i, Error *error) {
 static bool choose_launches(const Runs *runs, Error *error) {
     const RelationLaunches *from = runs->from;
     const int all = from->rounds * from->launches;
-    const bool ok =
-        (from->held_out ? launches_for_scoring : launches_for_training)(runs->scene, all, runs->launches, error);
-    for (int i = 0; ok && i < from->launches; i++) runs->launches[i] = runs->launches[i * from->rounds + from->round];
-    return ok;
+    if (!(from->held_out ? launches_for_scoring : launches_for_training)(runs->scene, all, runs->launches, error))
+        return false;
+    for (int i = 0; i < from->launches; i++) runs->launches[i] = runs->launches[i * from->rounds + from->round];
+    return launches_check(runs->scene, runs->launches, from->launches, error);
 }
 
 /* Appends to the problems in the order of launches and frames, for any number of threads. */
@@ -319,15 +323,14 @@ static bool begin(Trainer *trainer, Error *error) {
     for (int f = 0; f < RELATION_FORMS; f++)
         if (!relation_network_create(&trainer->networks->forms[f], error)) return false;
     trainer->weights = relation_weight_count(&trainer->networks->forms[0]);
-    if (!fit_begin(fit, (int64_t)set_at(trainer, RELATION_FORMS, 0), &found, error) ||
-        (!found && !begin_stage(trainer, 0, error)))
-        return false;
+    if (!fit_begin(fit, (int64_t)set_at(trainer, RELATION_FORMS, 0), &found, error)) return false;
     const int stages = RELATION_FORMS * trainer->training->rounds;
     if (fit->stage >= stages || fit->adam.steps > trainer->training->steps)
         return error_input(error, fit->path, "stage %d, step %lld is not one of this training", (int)fit->stage,
                            (long long)fit->adam.steps);
     progress_next_stage(&fit->share, 0.05);
-    return record_first(trainer, error);
+    return record_first(trainer, error) &&
+           (found || begin_stage(trainer, 0, error)); /* a refused launch leaves no state */
 }
 
 /* A form whose training is over before this run: its network follows from samples and weights. */

@@ -139,7 +139,8 @@ typedef struct RelationLaunches {
 } RelationLaunches;
 
 /* Appends to the problems. Omits those whose reference does not converge (to 1e-6 m/s), and counts them. A launch ends
-   60 frames after its impact, or if its state becomes NaN or infinite. ERROR_INPUT: a scene's bomb has no family of launches. */
+   60 frames after its impact, or where the driver's network makes its state NaN or infinite. ERROR_INPUT: a scene's bomb
+   has no family of launches, a launch starts inside a body, or a step without a driver fails. */
 bool relation_launches_record(const RelationLaunches *launches, ImpactProblems *problems, const Progress *progress,
                               Error *error);
 

@@ -40,6 +40,7 @@ refused chart wall.yaml --quick --bomb-x=-1:1:1 -o chart
 complains "launch 1 at x = -1 m"
 refused train --kind scene-net wall.yaml --launches 16 -o net.npz
 refused train --kind hybrid wall.yaml --launches 16 -o memory.npz
+refused train --kind sain wall.yaml --launches 16 -o sain.npz
 run 2 simulate wall.yaml --set high=0.5 -o run.npz
 complains "wall.yaml:7:5: error: body 2 starts 0.3 m inside body 1 (line 7), more than the slop of 0.01 m"
 

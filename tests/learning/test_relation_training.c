@@ -6,6 +6,8 @@
 #include "learning/scene_training.h"
 #include "methods/reference.h"
 
+#include <math.h>
+
 static Scene *scene;
 
 static bool train(void *context, const char *path, const Progress *progress, Error *error) {
@@ -67,6 +69,18 @@ TEST(problems_without_a_solution_are_left_out_and_counted) {
     relation_samples_free(&samples);
     impact_problems_free(&problems);
     reference_free(&reference);
+    scene_destroy(scene);
+}
+
+/* Only a network that is being trained may fail. */
+TEST(a_failed_step_of_the_engine_is_refused) {
+    scene = scene_named("single");
+    scene->gravity.y = -INFINITY;
+    scene->overlaps_allowed = true; /* the launches are not tried before */
+    const RelationLaunches launches = {.scenes = &scene, .scene_count = 1, .launches = 1, .rounds = 1};
+    ImpactProblems problems = {.unconverged = 0};
+    assert_refused(relation_launches_record(&launches, &problems, NULL, &error), "NaN or infinite");
+    impact_problems_free(&problems);
     scene_destroy(scene);
 }
 
