@@ -275,6 +275,7 @@ for number, line in enumerate(lines):
 assert count == 2
 PYTHON
     grep -q 'uses: ./twinbox/golden/action$' "$sources/golden/action/README.md" || fail "the page uses another folder"
+    mkdir -p temporary
     picture expected/home.png 50
     picture actual/home.png 50
     action 0 ""
@@ -284,6 +285,12 @@ PYTHON
     grep -q 'home.png' summary || fail "no row in the summary: $(cat summary)"
     [ -s twinbox-report/report.html ] || fail "no report"
     action 0 "--tolerance 1"
+    # Options are split at spaces, unless quoted; no pattern becomes the names of files.
+    /usr/bin/python3 "$sources/tests/cli/png.py" "the mask.png" 20 20 "0 0 0 255" 3 4 "255 255 255 255"
+    action 0 '--tolerance 1 --mask "the mask.png"'
+    action 2 '--mask the*mask.png'
+    action 1 '--mask "the mask.png'
+    grep -q "unmatched double quote" err || fail "an open quote: $(cat err)"
     # Without twinbox, what is built is on the path of the next step.
     for stub in apt-get sudo cmake; do
         printf '#!/bin/sh\necho %s "$@" >>"%s/calls"\n[ %s != sudo ] || "$@"\n' $stub "$folder" $stub >bin/$stub
