@@ -334,6 +334,9 @@ bool command_check(int argc, char **argv, Error *error) {
     Options options = {.run = {.max_overlap = NAN, .max_drift = NAN, .max_gain = NAN}};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (file_name_ends_with(options.scene, ".npz")) return check_stored(&options, error);
+    if (file_name_ends_with(options.scene, ".npy"))
+        return error_input(error, options.scene,
+                           "is one array of NumPy; a run is a .npz, of at least position, angle, size and dt");
     if (gives_limits(&options))
         return error_input(error, options.scene,
                            "is a scene; --scene, --set, --skin, --verdict and limits apply to runs");

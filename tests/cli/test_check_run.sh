@@ -46,6 +46,9 @@ run 2 check "$scenes/stack.yaml" --verdict holds
 complains "is a scene"
 run 2 check struck.npz -o picture.png
 complains "applies to scenes only"
+: >positions.npy
+run 2 check positions.npy
+complains "positions.npy: error: is one array of NumPy; a run is a .npz"
 
 # An engine that keeps boxes 15 mm apart: the same run explodes without its skin, one that really explodes does with it.
 /usr/bin/python3 - <<'PYTHON'
