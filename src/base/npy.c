@@ -21,7 +21,8 @@ static const struct {
     [NPZ_FLOAT32] = {"<f4", "float32", 4}, [NPZ_FLOAT64] = {"<f8", "float64", 8}, [NPZ_INT32] = {"<i4", "int32", 4},
     [NPZ_UINT32] = {"<u4", "uint32", 4},   [NPZ_INT64] = {"<i8", "int64", 8},     [NPZ_UINT64] = {"<u8", "uint64", 8},
     [NPZ_UINT8] = {"|u1", "uint8", 1},     [NPZ_INT8] = {"|i1", "int8", 1},       [NPZ_INT16] = {"<i2", "int16", 2},
-    [NPZ_UINT16] = {"<u2", "uint16", 2},   [NPZ_BOOL] = {"|b1", "bool", 1},       [NPZ_TEXT] = {"<U", "text", 4},
+    [NPZ_UINT16] = {"<u2", "uint16", 2},   [NPZ_FLOAT16] = {"<f2", "float16", 2}, [NPZ_BOOL] = {"|b1", "bool", 1},
+    [NPZ_TEXT] = {"<U", "text", 4},
 };
 
 static const char MAGIC[] = "\x93NUMPY";
@@ -111,21 +112,27 @@ static bool take_type(const char **text, NpyHead *head) {
     return false;
 }
 
-/* "()", "(3,)", "(3, 2)" */
+/* "()", "(3,)", "(3, 2)". Counts all dimensions; head->shape has the first ones. */
 static bool take_shape(const char **text, NpyHead *head) {
     if (take(text, "()")) return true;
     if (!take(text, "(")) return false;
     do {
-        if (head->rank == NPZ_MAX_RANK || !take_number(text, &head->shape[head->rank++])) return false;
+        int64_t size;
+        if (!take_number(text, &size)) return false;
+        if (head->rank < NPZ_MAX_RANK) head->shape[head->rank] = size;
+        head->rank++;
     } while (take(text, ", "));
     return (head->rank > 1 || take(text, ",")) && take(text, ")");
 }
 
 /* Reads the dictionary and the blanks up to the line feed. */
 static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_REASON_SIZE]) {
-    if (!take(&text, "{'descr': '")) return refuse(reason, "not a plain array (or not .npy)");
+    head->is_foreign = take(&text, "{'descr': [");
+    if (head->is_foreign) return refuse(reason, "not a plain array");
+    if (!take(&text, "{'descr': '")) return refuse(reason, "with a damaged header");
     const char *type = text;
     if (!take_type(&text, head) || *text != '\'') {
+        head->is_foreign = true;
         int length = (int)strspn(type, "<>|=?abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789[]");
         return refuse(reason, "of the unsupported type '%.*s'", length < 32 ? length : 32, type);
     }
@@ -133,10 +140,12 @@ static bool parse_dictionary(NpyHead *head, const char *text, char reason[NPY_RE
     head->fortran = take(&text, "True");
     if ((!head->fortran && !take(&text, "False")) || !take(&text, ", 'shape': ") || !take_shape(&text, head) ||
         !take(&text, ", }"))
-        return refuse(reason, "with a damaged header, or of more than %d dimensions", NPZ_MAX_RANK);
+        return refuse(reason, "with a damaged header");
     text += strspn(text, " ");
     if (strcmp(text, "\n") != 0) return refuse(reason, "with a damaged header");
-    if (head->type == NPZ_TEXT && head->rank > 0) return refuse(reason, "an array of texts; expected a single text");
+    head->is_foreign = head->rank > NPZ_MAX_RANK || (head->type == NPZ_TEXT && head->rank > 0);
+    if (head->rank > NPZ_MAX_RANK) return refuse(reason, "of more than %d dimensions", NPZ_MAX_RANK);
+    if (head->is_foreign) return refuse(reason, "an array of texts; expected a single text");
     return npy_measure(head) || refuse(reason, "larger than 2 GiB");
 }
 
@@ -184,8 +193,20 @@ void npy_swap(const NpyHead *head, void *data) {
         return (Number)loaded_;                 \
     } while (0)
 
+/* IEEE 754 binary16: 5 bits of exponent, 10 of fraction. */
+static Number load_half(const void *item) {
+    uint16_t bits;
+    memcpy(&bits, item, sizeof bits);
+    const int exponent = bits >> 10 & 31, fraction = bits & 1023;
+    const double size = exponent == 31  ? (fraction != 0 ? (double)NAN : (double)INFINITY)
+                        : exponent == 0 ? ldexp(fraction, -24)
+                                        : ldexp(1024 + fraction, exponent - 25);
+    return (Number)copysign(size, bits >> 15 ? -1 : 1);
+}
+
 static Number load(NpzType type, const void *item) {
     switch (type) {
+    case NPZ_FLOAT16: return load_half(item);
     case NPZ_FLOAT32: LOAD(float);
     case NPZ_FLOAT64: LOAD(double);
     case NPZ_INT8: LOAD(int8_t);

@@ -15,6 +15,7 @@ enum { NPZ_MAX_ARRAYS = 256, NPZ_NAME_SIZE = 64 };
 typedef struct StoredArray {
     char name[NPZ_NAME_SIZE]; /* without .npy */
     NpyHead head;
+    char reason[NPY_REASON_SIZE]; /* why it cannot be read, if head.is_foreign */
 } StoredArray;
 
 struct NpzFile {
@@ -48,11 +49,11 @@ static bool take_name(NpzFile *file, const char *member, char name[NPZ_NAME_SIZE
 }
 
 static bool read_head(NpzFile *file, int64_t index, StoredArray *array, uint64_t declared, Error *error) {
-    char text[NPY_HEAD_MAX], reason[NPY_REASON_SIZE];
+    char text[NPY_HEAD_MAX];
     const int64_t size = npz_archive_begin(file->archive, index, array->name, text, sizeof text, error);
     if (size < 0) return false;
-    if (!npy_parse_head(&array->head, text, (size_t)size, reason))
-        return error_input(error, file->path, "'%s' is %s", array->name, reason);
+    if (!npy_parse_head(&array->head, text, (size_t)size, array->reason))
+        return array->head.is_foreign || error_input(error, file->path, "'%s' is %s", array->name, array->reason);
     const uint64_t whole = array->head.head_size + array->head.data_size;
     return whole == declared ||
            error_input(error, file->path, "array '%s' is damaged: %" PRIu64 " bytes instead of %" PRIu64, array->name,
@@ -139,6 +140,10 @@ static const StoredArray *find_of(const NpzFile *file, const char *name, NpzType
         return NULL;
     }
     const NpyHead *head = &array->head;
+    if (head->is_foreign) {
+        error_input(error, file->path, "'%s' is %s", name, array->reason);
+        return NULL;
+    }
     if (is_stored_as(head, type, rank) || (file->converts && is_convertible(head, type, rank))) return array;
     error_input(error, file->path, "array '%s' is %s of %d dimensions%s%s; expected %s of %d", name,
                 npy_type_name(head->type), head->rank, head->big_endian ? ", big-endian" : "",

@@ -17,6 +17,7 @@ typedef enum NpzType {
     NPZ_INT8,
     NPZ_INT16,
     NPZ_UINT16,
+    NPZ_FLOAT16,
     NPZ_BOOL,
     NPZ_TEXT
 } NpzType;
@@ -38,8 +39,9 @@ bool npz_write(const char *path, const NpzArray *arrays, size_t count, Error *er
 typedef struct NpzFile NpzFile;
 
 /* Opens an archive and reads the headers of its arrays (no data yet). NULL with error set ("path: error: ...") if it is
-   not an archive, is truncated, holds a member that is not a .npy of the types above, a name twice, or more than its
-   budget. */
+   not an archive, is truncated, holds a member that is not a .npy, a damaged header, a name twice, or more than its
+   budget. An array of a kind that NumPy can store and this library not read (strings, objects, structures, more than
+   NPZ_MAX_RANK dimensions) is refused where it is read. */
 NpzFile *npz_open(const char *path, Error *error);
 void npz_close(NpzFile *file);
 
@@ -149,6 +151,7 @@ enum { NPY_HEAD_MAX = 512, NPY_REASON_SIZE = 128 };
 typedef struct NpyHead {
     NpzType type;
     bool big_endian, fortran; /* in files of other programs; fortran: the first index runs fastest */
+    bool is_foreign;          /* of a kind that cannot be read; the rest is unknown */
     int rank;
     int64_t shape[NPZ_MAX_RANK];
     int64_t characters; /* of NPZ_TEXT, 4 bytes each */
@@ -165,7 +168,8 @@ bool npy_measure(NpyHead *head);
 /* Writes the header to text and sets head_size. */
 void npy_write_head(NpyHead *head, char text[NPY_HEAD_MAX]);
 
-/* Parses the first `size` bytes of a member; accepts only the form that NumPy writes. False with a reason. */
+/* Parses the first `size` bytes of a member; accepts only the form that NumPy writes. False with a reason:
+   the header is damaged, or head->is_foreign. */
 bool npy_parse_head(NpyHead *head, const char *text, size_t size, char reason[NPY_REASON_SIZE]);
 
 /* Number of items; of a text, its characters. */

@@ -31,7 +31,7 @@ static void expect(const char *expression, NpzType type, int rank, const int64_t
 static NpzFile *make_all(void) {
     const char *path = temporary_path("types.npz");
     run_python("import sys, numpy as np\n"
-               "types = 'f4 f8 i1 i2 i4 i8 u1 u2 u4 u8'.split()\n"
+               "types = 'f2 f4 f8 i1 i2 i4 i8 u1 u2 u4 u8'.split()\n"
                "arrays = {side + t: np.array([0, 1, 100], ('<' if side == 'l' else '>') + t) for t in types for side "
                "in 'lb'}\n"
                "np.savez(sys.argv[1], bool=[False, True, True], **arrays)\n",
@@ -69,7 +69,7 @@ TEST(numbers_of_any_type_become_the_type_that_is_read) {
         expect_in(file, name, NPZ_UINT32, u4, sizeof u4);
         expect_in(file, name, NPZ_UINT64, u8, sizeof u8);
     }
-    assert_int_equal(count, 21);
+    assert_int_equal(count, 23);
     expect_in(file, "bool", NPZ_UINT8, (const uint8_t[]){0, 1, 1}, 3);
     npz_close(file);
 }
@@ -83,6 +83,10 @@ TEST(numbers_are_rounded_once) {
     expect("np.array([0, 2**64 - 1], 'u8')", NPZ_UINT64, 1, two, (const uint64_t[]){0, UINT64_MAX}, 16);
     expect("np.array([-128, 127], 'i1')", NPZ_INT32, 1, two, (const int32_t[]){-128, 127}, 8);
     expect("np.array([-1e30, 5e-324])", NPZ_FLOAT32, 1, two, (const float[]){-1e30F, 0}, 8);
+    expect("np.array([1/3, -65504, 2**-24, -0., 6e-5], 'f2')", NPZ_FLOAT32, 1, (const int64_t[]){5},
+           (const float[]){0.333251953125F, -65504, 0x1p-24F, -0.0F, 1007 * 0x1p-24F}, 20);
+    expect("np.array([np.inf, -np.inf], 'f2')", NPZ_FLOAT64, 1, two,
+           (const double[]){(double)INFINITY, (double)-INFINITY}, 16);
     /* To even: the float below and the float above are equally near. */
     expect("np.array([16777217, 16777219])", NPZ_FLOAT32, 1, two, (const float[]){16777216, 16777220}, 8);
 }

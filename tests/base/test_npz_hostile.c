@@ -22,8 +22,8 @@ static void expect_refused(const char *path, const char *reason) {
     assert_refused(npz_open(path, &error), path, reason);
 }
 
-/* An array with this dictionary and data_size bytes of data. */
-static void expect_head_refused(const char *dictionary, size_t data_size, const char *reason) {
+/* A file of one array with this dictionary and data_size bytes of data. */
+static const char *write_head(const char *dictionary, size_t data_size) {
     const char *path = temporary_path("head.npz");
     char *member = calloc(1, 10 + strlen(dictionary) + data_size);
     memcpy(member, "\x93NUMPY\1\0", 8);
@@ -32,10 +32,30 @@ static void expect_head_refused(const char *dictionary, size_t data_size, const 
     memcpy(member + 10, dictionary, strlen(dictionary));
     write_member(path, "array.npy", member, 10 + strlen(dictionary) + data_size, ZIP_CM_STORE);
     free(member);
+    return path;
+}
+
+static void expect_head_refused(const char *dictionary, size_t data_size, const char *reason) {
+    const char *path = write_head(dictionary, data_size);
     if (reason == NULL)
         npz_close(npz_of(path));
     else
         expect_refused(path, reason);
+}
+
+/* What NumPy can write makes no other array of the file unreadable. */
+static void expect_foreign(const char *dictionary, size_t data_size, const char *reason) {
+    const char *path = write_head(dictionary, data_size);
+    NpzFile *file = npz_of(path);
+    npz_convert(file);
+    assert_true(npz_has(file, "array"));
+    for (NpzType type = NPZ_FLOAT32; type <= NPZ_TEXT; type++)
+        for (int rank = 0; rank <= NPZ_MAX_RANK; rank++) {
+            int64_t shape[NPZ_MAX_RANK];
+            Error error = {0};
+            assert_refused(npz_shape(file, "array", type, rank, shape, &error), path, "'array' is ", reason);
+        }
+    npz_close(file);
 }
 
 #define HEAD(type, order, shape) "{'descr': '" type "', 'fortran_order': " order ", 'shape': " shape ", }\n"
@@ -47,24 +67,29 @@ TEST(heads_are_read_strictly) {
     expect_head_refused(HEAD("<U3", "False", "()"), 12, NULL);
     expect_head_refused(HEAD("<f4", "True", "(3, 2)"), 24, NULL);
     expect_head_refused(HEAD(">f4", "False", "(3, 2)"), 24, NULL);
-    expect_head_refused(HEAD(">f2", "False", "(3, 2)"), 12, "of the unsupported type '>f2'");
-    expect_head_refused(HEAD(">u1", "False", "(3, 2)"), 6, "of the unsupported type '>u1'");
-    expect_head_refused(HEAD("=f4", "False", "(3, 2)"), 24, "of the unsupported type '=f4'");
-    expect_head_refused(HEAD("<f2", "False", "(3, 2)"), 12, "of the unsupported type '<f2'");
-    expect_head_refused(HEAD("|O", "False", "(3, 2)"), 24, "of the unsupported type '|O'");
-    expect_head_refused(HEAD("\33[2J", "False", "(3, 2)"), 24, "of the unsupported type ''");
-    expect_head_refused(HEAD("<U2", "False", "(3,)"), 24, "an array of texts");
-    expect_head_refused("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (3,), }\n", 12,
-                        "not a plain array");
-    static const char *const damaged[] = {"(3)",     "(3,2)",   "(,)", "(3, )",           "(3, 2,)",
-                                          "(-3, 2)", "(3, 2",   "3",   "(1, 1, 1, 1, 6)", "(99999999999999999999,)",
-                                          "( 3, 2)", "(3, 2) x"};
+    expect_head_refused(HEAD("<f2", "False", "(3, 2)"), 12, NULL);
+    expect_head_refused(HEAD(">f2", "False", "(3, 2)"), 12, NULL);
+    static const char *const damaged[] = {
+        "(3)",     "(3,2)",   "(,)", "(3, )", "(3, 2,)", "(-3, 2)", "(3, 2", "3", "(99999999999999999999,)",
+        "( 3, 2)", "(3, 2) x"};
     for (size_t i = 0; i < sizeof damaged / sizeof damaged[0]; i++) {
         char head[200];
         snprintf(head, sizeof head, HEAD("<f4", "False", "%s"), damaged[i]);
         expect_head_refused(head, 24, "damaged head");
     }
     expect_head_refused(HEAD("<f4", "Maybe", "(3, 2)"), 24, "damaged head");
+    expect_head_refused("{'shape': (3, 2), }\n", 24, "damaged head");
+}
+
+TEST(arrays_of_other_kinds_are_refused_where_they_are_read) {
+    expect_foreign(HEAD(">u1", "False", "(3, 2)"), 6, "of the unsupported type '>u1'");
+    expect_foreign(HEAD("=f4", "False", "(3, 2)"), 24, "of the unsupported type '=f4'");
+    expect_foreign(HEAD("|O", "False", "(3, 2)"), 99, "of the unsupported type '|O'");
+    expect_foreign(HEAD("|S7", "False", "(3, 2)"), 42, "of the unsupported type '|S7'");
+    expect_foreign(HEAD("\33[2J", "False", "(3, 2)"), 24, "of the unsupported type ''");
+    expect_foreign(HEAD("<U2", "False", "(3,)"), 24, "an array of texts");
+    expect_foreign(HEAD("<f4", "False", "(1, 1, 1, 1, 6)"), 24, "of more than 4 dimensions");
+    expect_foreign("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (3,), }\n", 12, "not a plain array");
 }
 
 TEST(sizes_must_agree_before_anything_is_inflated) {

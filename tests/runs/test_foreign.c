@@ -157,6 +157,19 @@ TEST(other_arrays_are_ignored) {
                                             "         friction=0.5, names='a b', kind=[1, 2, 3])");
     assert_int_equal(t->bodies, 3);
     trajectory_destroy(t);
+    t = read_changed("run.npz", "a.update(labels=['a', 'b'], notes=np.array([None, {}]), half=np.zeros(3, 'f2'),\n"
+                                "         cube=np.zeros((1, 1, 1, 1, 2)), table=np.zeros(3, [('x', 'f4')]), z=1j)");
+    assert_int_equal(t->bodies, 3);
+    trajectory_destroy(t);
+    expect_refused("a['velocity'] = a['position'] * 1j; a['angular_velocity'] = a['angle']",
+                   "'velocity' is of the unsupported type '<c16'");
+}
+
+/* -1/3 and 1/3 in 11 bits. */
+TEST(positions_of_16_bits_are_converted) {
+    Trajectory *t = read_changed("run.npz", "a['position'] = (a['position'] * 0 + [-1/3, 1/3]).astype('f2')");
+    assert_true(t->position[0].x == -0.333251953125F && t->position[0].y == 0.333251953125F);
+    trajectory_destroy(t);
 }
 
 TEST(what_is_needed_is_told) {
