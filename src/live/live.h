@@ -51,8 +51,6 @@
     SOLVER(pair_net)                     \
     SOLVER(contact_net)                  \
     SOLVER(scene_net)                    \
-    SOLVER(constant)                     \
-    SOLVER(relu_net)                     \
     SOLVER(sain)                         \
     SOLVER(hybrid)                       \
     STEPPING(gns)                        \

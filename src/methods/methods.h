@@ -81,10 +81,8 @@ typedef struct ContactSolver {
     SOLVER(pair_net)              \
     SOLVER(contact_net)           \
     SOLVER(scene_net)             \
-    SOLVER(constant)              \
     STEPPING(playback)            \
     SOLVER(reference)             \
-    SOLVER(relu_net)              \
     STEPPING(soft_step)           \
     STEPPING(avbd)                \
     SOLVER(interior)              \

@@ -221,12 +221,12 @@ const float *pair_network_predict(PairNetwork *pair, const ContactProblem *probl
 void pair_network_predict_one(PairNetwork *pair, const ContactProblem *problem, const PairMoment *now, int first,
                               float *outputs);
 
-/* The common part of pair-net, contact-net and constant, which accept different networks. */
+/* The common part of pair-net and contact-net, which accept different networks. */
 
 typedef struct PairSolver {
     PairNetwork network;
     int sweep_count;  /* for TARGET_IMPULSE */
-    bool predicts;    /* false: the network's `constant` */
+    bool predicts;    /* false: the mean of its training data */
     int *pair_counts; /* [body_count] number of pairs of each body */
     size_t count_capacity;
 } PairSolver;

@@ -57,8 +57,9 @@ static bool add_networks(Rating *rating, const char *path, Error *error) {
     const PairTarget target = rating->network.target;
     /* Such a network would need the impulses at points and does not predict them. */
     if (target == TARGET_IMPULSE && pair_views[rating->network.view].by_contact) return true;
-    return add_network(rating, RATE_NETWORK, target == TARGET_POINTS ? "contact-net" : "pair-net", path, error) &&
-           add_network(rating, RATE_CONSTANT, "constant", path, error);
+    const bool points = target == TARGET_POINTS;
+    return add_network(rating, RATE_NETWORK, points ? "contact-net" : "pair-net", path, error) &&
+           add_network(rating, RATE_CONSTANT, points ? "contact-net:net=off" : "pair-net:net=off", path, error);
 }
 
 static bool begin(Rating *rating, const char *path, const Sampling *sampling, Error *error) {

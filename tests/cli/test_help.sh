@@ -81,7 +81,6 @@ run 0 methods
 says "engine"
 says "pair-net"
 says "contact-net"
-says "constant"
 says "k:"
 says "network:"
 says "Without its learned part: scene-net:net=off, with the same settings otherwise."

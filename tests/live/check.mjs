@@ -10,12 +10,12 @@ import {load} from './live.mjs';
 const [path, twinbox, pack, launches] = process.argv.slice(2);
 const solvers = ['engine', 'engine:k=4,warm=off', 'momentum', 'interior', 'interior:near=0.02', 'soft-step', 'soft-step:keep=0.05', 'engine:keep=0.02',
   'avbd', 'nncg', 'substepping', 'reference', 'closed-form', 'admm'];
-const networks = ['pair-net', 'contact-net', 'constant', 'sain', 'hybrid', 'gns', 'subspace'];
+const networks = ['pair-net', 'contact-net', 'pair-net:net=off', 'sain', 'hybrid', 'gns', 'subspace'];
 const scenes = [
   {file: 'scenes/single.yaml', methods: [...solvers, ...networks]},
   {file: 'scenes/stack.yaml', methods: [...solvers, ...networks, 'scene-net:network=scenes/networks/scene-stack.npz']},
   {file: 'scenes/pyramid.yaml', methods: [...solvers, ...networks]},
-  {file: 'scenes/pyramid_settled.yaml', methods: ['engine', 'scene-net', 'hybrid', 'subspace', 'relu-net']},
+  {file: 'scenes/pyramid_settled.yaml', methods: ['engine', 'scene-net', 'hybrid', 'subspace']},
   {file: 'scenes/families/gate.yaml', methods: solvers},
   {file: 'scenes/families/wall_85.yaml', methods: solvers},
   {file: 'scenes/stability/stack_height.yaml', methods: solvers, parameter: ['height', 2, 30]},

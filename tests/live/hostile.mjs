@@ -61,7 +61,7 @@ refused(() => begin(settled, 'dt=1e-5'), 'out of memory');
 refused(() => live.json('live_describe', stack, 'iterations=0.5'), 'iterations must be a whole number');
 
 const method_names = live.json('live_methods').map(method => method.name);
-expect(method_names.join() === PLAIN + ',pair-net,contact-net,scene-net,constant,relu-net,sain,hybrid,gns,subspace', method_names.join());
+expect(method_names.join() === PLAIN + ',pair-net,contact-net,scene-net,sain,hybrid,gns,subspace', method_names.join());
 const {parameters, bomb} = live.json('live_describe', height, 'height=7');
 expect(parameters.find(each => each.name === 'height').value === 7, 'a setting is described');
 expect(bomb === null, 'a scene without a bomb is described');

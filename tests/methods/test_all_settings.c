@@ -80,11 +80,15 @@ TEST(bounds_are_these) {
     static const struct {
         const char *method, *key;
         double least, most;
-    } bounds[] = {{"engine", "k", 1, SWEEPS_MAX},    {"momentum", "k", 1, SWEEPS_MAX},
-                  {"relu-net", "k", 1, SWEEPS_MAX},  {"interior", "near", 1e-9, 1e6},
-                  {"avbd", "k", 1, 10000},           {"avbd", "alpha", 0, 1},
-                  {"avbd", "gamma", 0, 1},           {"soft-step", "substeps", 1, 1000},
-                  {"soft-step", "hertz", 0.01, 1e4}, {"playback", "launches", 1, 10000}};
+    } bounds[] = {{"engine", "k", 1, SWEEPS_MAX},
+                  {"momentum", "k", 1, SWEEPS_MAX},
+                  {"interior", "near", 1e-9, 1e6},
+                  {"avbd", "k", 1, 10000},
+                  {"avbd", "alpha", 0, 1},
+                  {"avbd", "gamma", 0, 1},
+                  {"soft-step", "substeps", 1, 1000},
+                  {"soft-step", "hertz", 0.01, 1e4},
+                  {"playback", "launches", 1, 10000}};
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
         const SettingSpec *spec = method_describe(bounds[i].method)->settings;
         while (strcmp(spec->key, bounds[i].key) != 0) spec++;

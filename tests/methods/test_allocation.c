@@ -33,8 +33,8 @@ static void steps_allocate_nothing_by(const ContactSolverKind *kind, const char 
 
 TEST(a_settled_pyramid_steps_without_allocating) {
     static const ContactSolverKind *const by_rule[] = {&solver_engine, &solver_momentum, &solver_nncg, &solver_admm},
-                                          *const others[] = {&solver_relu_net, &solver_interior, &solver_hybrid,
-                                                             &solver_reference, &solver_closed_form};
+                                          *const others[] = {&solver_interior, &solver_hybrid, &solver_reference,
+                                                             &solver_closed_form};
     for (size_t i = 0; i < sizeof by_rule / sizeof *by_rule; i++) {
         steps_allocate_nothing_by(by_rule[i], "");
         steps_allocate_nothing_by(by_rule[i], "k=7,near=1e-4");

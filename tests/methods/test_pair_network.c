@@ -28,7 +28,7 @@ TEST(texts_that_do_not_fit_each_other_are_refused) {
                            "the target points and the inputs relative; it needs those of contact or neighbours");
     network = make_pair_network(PAIR_NEIGHBOURS, TARGET_PAIR, 6);
     strcpy(network->target, "impulse");
-    assert_network_refused(&solver_constant, write_pair_network(network),
+    assert_network_refused(&solver_pair_net, write_pair_network(network),
                            "the inputs neighbours, which change at every");
 }
 
@@ -43,7 +43,6 @@ TEST(other_methods_networks_are_refused) {
         "the network has the target net, which is for pair-net; contact-net needs the target points");
     assert_refused(solver_pair_net.create(&(Settings){0}, &error),
                    "pair-net: error: the scene names no network for it: use pair-net:network=FILE");
-    assert_refused(solver_constant.create(&(Settings){0}, &error), "constant: error: the scene names no network");
     assert_refused(solver_contact_net.create(&(Settings){0}, &error), "contact-net: error: the scene names no network");
 }
 

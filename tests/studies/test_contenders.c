@@ -18,11 +18,11 @@ static void assert_contender(const ContenderList *list, int i, const char *name,
 }
 
 TEST(a_comma_separates_methods_or_settings) {
-    ContenderList list = parse("engine:k=3,warm=off,momentum:k=20,constant,engine:k=3");
+    ContenderList list = parse("engine:k=3,warm=off,momentum:k=20,reference,engine:k=3");
     assert_int_equal(list.count, 4);
     assert_contender(&list, 0, "engine", "k=3,warm=off");
     assert_contender(&list, 1, "momentum", "k=20");
-    assert_contender(&list, 2, "constant", "");
+    assert_contender(&list, 2, "reference", "");
     assert_contender(&list, 3, "engine", "k=3");
     assert_string_equal(list.items[0].method.text, "engine:k=3,warm=off");
     contenders_free(&list);

@@ -71,7 +71,8 @@ TEST(methods_rank_as_expected_on_frozen_steps) {
     double by10 = frozen_error(&list, scene, "engine:k=10"), by100 = frozen_error(&list, scene, "engine:k=100");
     double by1000 = frozen_error(&list, scene, "engine:k=1000"),
            cold = frozen_error(&list, scene, "engine:k=10,warm=off");
-    double constant = frozen_error(&list, scene, "constant"), reference = frozen_error(&list, scene, "reference");
+    double constant = frozen_error(&list, scene, "pair-net:net=off"),
+           reference = frozen_error(&list, scene, "reference");
     assert_true(by1000 < by100 && by100 < by10 && by10 < constant);
     assert_true(by10 != cold);
     assert_true(reference < 1e-5);
