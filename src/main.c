@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Finds the command, runs it, and makes an exit status of its error. */
 #define _GNU_SOURCE
 #include "base/base.h"
 #include "cli/cli.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Hashes of states (FNV-1a) and of files (xxHash). */
 #include "base/hash.h"
 
 /* The same values with the widest vectors of the processor, in half the time. */

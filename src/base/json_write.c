@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes JSON, value by value. */
 #include "base/json_write.h"
 
 #include "base/base.h"

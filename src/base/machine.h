@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The machine and the process: cores, clocks, memory, programs that are run, progress of long work. */
+/* The machine and the process: memory, clocks, work on all threads or on a second one, its progress, and programs that are
+   run. */
 #pragma once
 #include "base/base.h"
 

@@ -29,7 +29,7 @@ enum { OWNER_SIZE = 48 };
 
 static char machine[9];
 
-/* Names of machines may be equal, as those of copies of one are; this is drawn when a kernel starts. */
+/* Random, drawn when a kernel starts: copies of a machine have equal names. */
 static void read_boot_id(char *text, size_t size) {
     const int file = open("/proc/sys/kernel/random/boot_id", O_RDONLY | O_CLOEXEC);
     if (file < 0) return;

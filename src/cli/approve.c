@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox approve: new pictures become the expected ones. */
 #include "base/base.h"
 #include "cli/options.h"
 #include "regression/report.h"

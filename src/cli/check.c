@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox check: validates a scene and draws its first frame, or judges a stored run. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox compare: its options, and whether it compares pictures or runs. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"

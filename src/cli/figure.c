@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox figure: the kinds of figures, and their options. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox import: a run from CSV becomes .npz, with a verdict. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

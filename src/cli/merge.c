@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox merge: runs the command of a record once more, which finds all pieces done by its shards. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox methods: lists the registry. */
 #include "base/base.h"
 #include "base/json.h"
 #include "cli/cli.h"

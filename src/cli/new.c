@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox new: writes a template of a scene. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

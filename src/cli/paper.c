@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox paper: the study of the paper, its figures and its report. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox render: frames and films of runs or scenes. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Two boxes: how deep they overlap, where along x they would, and the manifold where they touch. */
 #include "engine/engine.h"
 
 #include <float.h>

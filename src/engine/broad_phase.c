@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The broad phase: pairs of bounds that overlap, by sort and sweep or by comparing all. */
 #include "base/base.h"
 #include "engine/engine.h"
 

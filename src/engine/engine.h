@@ -345,7 +345,7 @@ typedef struct Body {
 /* The mutable state of a simulation: bodies, the contacts that persist between them, and the step.
 
    Collision detection, then gravity, then the contact problem with its warm start, then a contact solver, then
-   integration (semi-implicit Euler): the loop of Box2D-Lite (Catto 2006), with the same bits (tests/reference). */
+   integration (semi-implicit Euler): the loop of Box2D-Lite (Catto 2006), with the same bits (tests/runs/test_reference.c). */
 
 typedef struct WorldDef {
     Vec2 gravity;             /* m/s^2 */

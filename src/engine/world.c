@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The world: its bodies, and the step from contacts to new states. */
 #include "base/base.h"
 #include "engine/engine.h"
 

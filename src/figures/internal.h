@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the figures of this room share: drawings of networks and contacts, places of labels, objects of PDF, the
-   rasteriser. */
+/* What the figures of this room share: texts in lines, rows of items, and frames of runs in cells. */
 #pragma once
 #include "base/base.h"
 #include "figures/figure.h"

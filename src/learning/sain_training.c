@@ -153,7 +153,7 @@ static bool piece(void *context, int i, Error *error) {
     return ok;
 }
 
-/* Launches rise along the family: a round takes every so manieth, so that each covers the family. */
+/* Launches rise along the family: a round takes one in `rounds`, so that each covers the family. */
 static bool choose_launches(const Runs *runs, Error *error) {
     const RelationLaunches *from = runs->from;
     const int all = from->rounds * from->launches;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The order in which a sparse factorization eliminates blocks: by exact degrees if few, else by approximate ones. */
 #include "methods/block_order.h"
 
 #include "base/base.h"

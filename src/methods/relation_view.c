@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What sain sees of a step: the touched bodies, and a row of inputs for each body that touches one. */
 #include "methods/relation_view.h"
 
 #include "base/base.h"

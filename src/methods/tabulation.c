@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The memory of hybrid: sets of contacts, their entries, and the search among them. */
 #include "methods/tabulation.h"
 
 #include "base/base.h"

@@ -33,7 +33,7 @@ typedef struct HtmlPage {
    missing or damaged. */
 bool html_page_write(const HtmlPage *page, FILE *out, Error *error);
 
-/* report.md.in and report.css, built into the program (paper/sources.cmake). Each ends in a 0. */
+/* report.md.in and report.css, built into the program (CMakeLists.txt). Each ends in a 0. */
 
 extern const unsigned char paper_report_md_in[], paper_report_css[];
 

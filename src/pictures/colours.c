@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The colours and symbols of methods, of their settings, and of names without a colour of their own. */
 #include "pictures/colours.h"
 
 #include "base/hash.h"

@@ -157,7 +157,7 @@ static bool all_have_tics(const Picture *picture, const Lines *lines, Steps step
     return strong < MIN_TICS && lines->spacing > NUMBER_SPACING * picture->layout.axis.pixels;
 }
 
-/* Every how manieth line with a tic has a number: 1, 2, 5, 10, ... until numbers of this many pixels have room. */
+/* One line in how many has a number beside its tic: 1, 2, 5, 10, ... until numbers of this many pixels have room. */
 static double numbered(const Lines *lines, double tic, int room) {
     static const double steps[] = {1, 2, 5};
     double power = 1;

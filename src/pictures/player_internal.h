@@ -60,7 +60,7 @@ static inline float player_dt(const PlayerFrames *frames, const Trajectory *run)
     return run->dt * (float)frames->every;
 }
 
-/* The contacts of some stored frames of a run, rounded; page/codec.js is the decoder. Those of a frame are of the step that
+/* The contacts of some stored frames of a run, rounded; player/codec.js is the decoder. Those of a frame are of the step that
    follows from its poses; of the last frame, of its own step.
 
    A number per frame: of contacts. Then columns with a number per contact: bodies a and b, feature; and, as differences

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The states of some stored frames of a run, without loss; page/codec.js is the decoder.
+/* The states of some stored frames of a run, without loss; player/codec.js is the decoder.
 
    For vx, vy, omega, x, y, angle in turn: each body's values in the order of frames, as the difference of the float's bits
    from those of a prediction. That of a velocity is its value in the frame before. That of a pose is the one that a step

@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Pictures in memory and as PNG (libpng). RGBA, 8 bits, top row first. */
+/* Pictures in memory and as PNG. RGBA, 8 bits, top row first. */
 
 typedef struct Image {
     int width, height;  /* pixels */

@@ -366,8 +366,8 @@ static void give_next(Scan *scan, int slot) {
     if (scan->files > 1 && count > 0) give(scan, slot, count);
 }
 
-/* Waits for the rows of the second file, in `slot`, and decompresses those of the first. *same: they are equal, and so are those
-   above: then the first file's are not stored if they have not been read apart. */
+/* Decompresses the rows of the first file, and waits for those of the second, in `slot`. *same: these rows of both are equal,
+   and so are all above. The first file's are then not stored, unless the two were read apart before. */
 static bool decompress_band(Scan *scan, int slot, bool *same) {
     Side *first = &scan->sides[0], *second = &scan->sides[1];
     const size_t size = (size_t)scan->count * (first->rows->bytes + 1);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Where two runs part: the growth of their distance, and chaos, measured with a shifted run. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"

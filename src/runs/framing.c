@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The part of the world that pictures of a run show. */
 #include "runs/framing.h"
 
 #include "base/base.h"

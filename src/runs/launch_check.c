@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Refuses launches whose bomb would start inside a body, and finds those that strike nothing. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

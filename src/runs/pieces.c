@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Work in pieces: their files, their locks, and the pieces that a shard does. */
 #include "runs/pieces.h"
 
 #include "base/base.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What is said of pieces: the missing ones, the plan of shards, and its estimate. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The arrays that a problem file holds for bodies and contacts. */
+/* Reads and writes contact problems: files, and the bytes that shards leave. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"

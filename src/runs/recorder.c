@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Records a run while it is stepped, and writes it in parts by a second thread. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"

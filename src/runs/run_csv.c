@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Makes a run of the rows of a CSV file, which run_import.c reads. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"

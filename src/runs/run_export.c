@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Writes a run as JSON, or for Blender. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The text of a run in CSV: its head (comments with sizes and names), and its rows. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "engine/engine.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Whole runs: a scene stepped to its end, observed or recorded. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"

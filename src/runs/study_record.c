@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What identifies a study (its key), which shard this process does, and the record of both (run.json). */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"

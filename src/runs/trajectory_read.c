@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What must hold for a run from an untrusted file. */
+/* Reads runs from .npz, of whatever program, checks what must hold for them, and finds where two differ. */
 #include "base/base.h"
 #include "base/npz.h"
 #include "engine/engine.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Watches a run and decides how it ended. */
 #include "runs/verdict.h"
 
 #include "base/base.h"

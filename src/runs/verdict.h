@@ -341,7 +341,7 @@ bool verdict_watch_begin(VerdictWatch *watch, const VerdictRun *run, const Body 
    that of all added bodies. It exceeds (c) by more than VERDICT_ENERGY_SHARE, or (a) by more than VERDICT_REGAIN_SHARE,
    of the available energy, which includes the kinetic energy of the start and of added bodies. If bodies overlap at the
    start, (a) and (c) begin with the peak of the first second. Compared with the verdicts beside converged runs:
-   `verdict_alone` in tests/stability.
+   tests/studies/test_verdict_alone.c.
 
    What gravity does in a step, m (g dt)^2 / 2, is no explosion, however little energy is available. Of another engine
    every bound is higher by it: Chipmunk moves bodies before it changes velocities, and so states both half a step

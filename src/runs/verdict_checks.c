@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The checks of a step of which a verdict is made: finite, depth, falls, energy. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Numbers of scenes: expressions with parameters, and their values from outside. */
 #include "base/base.h"
 #include "base/yaml.h"
 #include "scenes/internal.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Scenes once read: overlaps at the start, launches, tables of them. */
 #include "base/base.h"
 #include "base/csv.h"
 #include "base/yaml.h"

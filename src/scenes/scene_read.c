@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The key `bomb` of a scene. */
+/* Reads a scene from YAML: all its keys. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/yaml.h"

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Build-time tool: rasterises the fonts (FreeType, unhinted) at a set of sizes and prints the bitmaps and
+   metrics as C (pixels/gl.h). Usage: make_atlas REGULAR.otf SEMIBOLD.otf OUTPUT.c */
 #include "pixels/gl.h"
 
 #include <ft2build.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Build-time tool: rasterises the fonts (FreeType, unhinted) at a set of sizes and prints the bitmaps and
-   metrics as C (pixels/gl.h). Usage: make_atlas REGULAR.otf SEMIBOLD.otf OUTPUT.c */
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
 
