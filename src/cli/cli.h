@@ -29,7 +29,7 @@
     COMMAND(render, "draw runs side by side as PNG frames and videos", "Look")               \
     COMMAND(page, "write a page that plays runs side by side in a browser", NULL)            \
     COMMAND(figure, "draw a figure for a paper from runs", NULL)                             \
-    COMMAND(export, "write a run as CSV, JSON or a script for Blender", NULL)                \
+    COMMAND(export, "write a run as CSV or JSON", NULL)                                      \
     COMMAND(compare, "find where and why two runs, or two PNG sequences, differ", "Compare") \
     COMMAND(approve, "accept the changes that a report of compare shows", NULL)              \
     COMMAND(chart, "measure speed against accuracy for every method", "Measure")             \

@@ -137,7 +137,7 @@ typedef struct Options {
 } Options;
 
 static const Option option_table[] = {
-    {"--output", 'o', "FILE", "File to write; its ending states the format: .csv, .json or .blend.py",
+    {"--output", 'o', "FILE", "File to write; its ending states the format: .csv or .json",
      OPTION_OUTPUT(Options, output), .needed = "-o FILE is needed"},
     {"--flat", 0, NULL, "The input is a scene: write its bodies as JSON, patterns and parameters written out",
      OPTION_FLAG(Options, flat)},
@@ -149,20 +149,17 @@ static const CommandSpec spec = {
     .input = {.value = "RUN", .needed = "a run (.npz), or a scene with --flat, is needed", OPTION_PATH(Options, input)},
     .inputs = {1, 1, "run"},
     .help =
-        "Write a run for other programs: as CSV, which twinbox import reads back; as JSON; or as a script that builds "
-        "the run as an animation in Blender. Contacts are left out, but of JSON.\n"
+        "Write a run for other programs: as CSV, which twinbox import reads back, without contacts; or as JSON.\n"
         "With --flat, write a scene for a program that does not read YAML: gravity, time step, and all bodies and the "
         "bomb with their numbers.\v"
         "Example: twinbox simulate stack -o engine.npz\n"
         "         twinbox export engine.npz -o engine.csv\n"
-        "         twinbox export engine.npz -o engine.blend.py\n"
-        "         blender --python engine.blend.py\n"
         "         twinbox export stack --flat -o stack.json"};
 
 static const struct {
     const char *ending;
     bool (*write)(const Trajectory *run, const char *path, Error *error);
-} formats[] = {{".csv", csv_run_write}, {".json", json_run_write}, {".blend.py", blender_run_write}};
+} formats[] = {{".csv", csv_run_write}, {".json", json_run_write}};
 enum { FORMATS = sizeof formats / sizeof *formats };
 
 /* -1: none has this ending. */
@@ -191,7 +188,7 @@ bool command_export(int argc, char **argv, Error *error) {
     if (options.flat) return export_scene(&options, error);
     if (options.set.count > 0) return error_input(error, "--set", "is for a scene: --flat is needed");
     const int format = find_format(options.output);
-    if (format < 0) return error_input(error, options.output, "the name must end in .csv, .json or .blend.py");
+    if (format < 0) return error_input(error, options.output, "the name must end in .csv or .json");
     Trajectory *run = trajectory_read(options.input, error);
     bool ok = run != NULL && formats[format].write(run, options.output, error);
     if (ok)

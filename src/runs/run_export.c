@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Writes a run as JSON, or for Blender. */
+/* Writes a run, or a scene with all its numbers, as JSON. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
@@ -9,7 +9,6 @@
 #include "scenes/scenes.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Nine digits are enough for a float; all digits of its double would be twice as long. */
 static void put_float(JsonWriter *json, const char *key, float value) {
@@ -85,8 +84,8 @@ static void put_contacts(JsonWriter *json, const Trajectory *run, int frame) {
     json_end(json);
 }
 
-/* Prints the object. */
-static void json_run_print(FILE *out, const Trajectory *run, bool contacts) {
+static void json_run_print(FILE *out, const void *context) {
+    const Trajectory *run = context;
     JsonWriter json = {.out = out};
     json_begin_object(&json, NULL, JSON_LINES);
     put_head(&json, run);
@@ -97,17 +96,15 @@ static void json_run_print(FILE *out, const Trajectory *run, bool contacts) {
         json_begin_array(&json, "states", JSON_ONE_LINE);
         for (int body = 0; body < run->bodies; body++) put_state(&json, run, frame, body);
         json_end(&json);
-        if (contacts && !run->no_contacts) put_contacts(&json, run, frame);
+        if (!run->no_contacts) put_contacts(&json, run, frame);
         json_end(&json);
     }
     json_end(&json);
     json_end(&json);
 }
 
-static void json_run_print_run(FILE *out, const void *context) { json_run_print(out, context, true); }
-
 bool json_run_write(const Trajectory *run, const char *path, Error *error) {
-    return file_write_text(path, json_run_print_run, run, error);
+    return file_write_text(path, json_run_print, run, error);
 }
 
 static void put_body(JsonWriter *json, const char *key, const BodyDef *body, int frame) {
@@ -147,20 +144,4 @@ static void scene_flat_print(FILE *out, const void *context) {
 
 bool scene_flat_write(const Scene *scene, const char *path, Error *error) {
     return file_write_text(path, scene_flat_print, scene, error);
-}
-
-/* The script, embedded: x stays, y becomes Blender's z, and the view is along its y. A body is hidden while it is absent. */
-extern const char blender_py[];
-
-/* The run takes the place of a word of the script. */
-static void blender_run_print_run(FILE *out, const void *context) {
-    static const char word[] = "RUN_AS_JSON";
-    const char *place = strstr(blender_py, word);
-    fwrite(blender_py, 1, (size_t)(place - blender_py), out);
-    json_run_print(out, context, false);
-    fputs(place + strlen(word), out);
-}
-
-bool blender_run_write(const Trajectory *run, const char *path, Error *error) {
-    return file_write_text(path, blender_run_print_run, run, error);
 }

@@ -167,10 +167,6 @@ double trajectory_distance(const Trajectory *a, const Trajectory *b, int frame);
 /* One object, without what is unknown: README.md lists its keys. */
 bool json_run_write(const Trajectory *run, const char *path, Error *error);
 
-/* A Python script that builds the run in Blender: a box per body, with a key for each frame. It has the same object as text,
-   without contacts. */
-bool blender_run_write(const Trajectory *run, const char *path, Error *error);
-
 /* Names of runs from files, and the file names of runs that are stored beside the pictures of them. */
 
 enum { TRAJECTORY_FILE_NAME_SIZE = 2 * TRAJECTORY_NAME_SIZE + 24 };

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs from elsewhere and for elsewhere: import reads CSV, export writes CSV, JSON and a script for Blender.
+# Runs from elsewhere and for elsewhere: import reads CSV, export writes CSV and JSON.
 . "$(dirname "$0")/checks.sh"
 python() { /usr/bin/python3 "$@" || fail "python: $*"; }
 
@@ -85,7 +85,7 @@ END
 run 2 import ours.csv -o ours.txt
 complains "the name of a run must end in .npz"
 run 2 export ours.npz -o ours.txt
-complains "ours.txt: error: the name must end in .csv, .json or .blend.py"
+complains "ours.txt: error: the name must end in .csv or .json"
 run 2 export ours.csv -o ours.json
 complains "ours.csv: error: "
 [ ! -e ours.json ] || fail "a refused file was exported"
@@ -93,7 +93,6 @@ complains "ours.csv: error: "
 # JSON has the same numbers, and contacts.
 run 0 export ours.npz -o ours.json
 run 0 export rows.npz -o rows.json
-run 0 export ours.npz -o ours.blend.py
 python - <<'PYTHON'
 import json
 import numpy as np
@@ -115,7 +114,7 @@ rows = json.load(open("rows.json"))
 assert "scene_hash" not in rows and "bomb" not in rows and "contacts" not in rows["frames"][1]
 PYTHON
 
-# Unknown velocities, an absent body, and names that would end a string of a script.
+# Unknown velocities, an absent body, and names with quotes.
 python - <<'PYTHON'
 import numpy as np
 position, angle = np.zeros((3, 2, 2)), np.zeros((3, 2))
@@ -124,45 +123,16 @@ np.savez("odd.npz", position=position, angle=angle, size=[[1, 1], [1, 1]], dt=0.
          scene='"""\\"); quit(1)', method="'''\\")
 PYTHON
 run 0 export odd.npz -o odd.json
-run 0 export odd.npz -o odd.blend.py
 run 0 export odd.npz -o odd.csv
 run 0 import odd.csv -o odd_back.npz
 run 0 compare odd.npz odd_back.npz
 python - <<'PYTHON'
-import ast, json
+import json
 odd = json.load(open("odd.json"))
 assert odd["scene"] == '"""\\"); quit(1)' and odd["method"] == "'''\\"
 assert odd["frames"][0]["states"] == [[0, 2, 0], None] and "contacts" not in odd["frames"][0]
-for path in "ours.blend.py", "odd.blend.py":
-    calls = [node for node in ast.walk(ast.parse(open(path).read())) if isinstance(node, ast.Call)]
-    loads = [call for call in calls if getattr(call.func, "attr", "") == "loads"]
-    run = json.loads(ast.literal_eval(loads[0].args[0]))
-    assert run["format"] == "twinbox run" and "contacts" not in run["frames"][0], path
-    assert not [call for call in calls if getattr(call.func, "id", "") == "quit"], path
 PYTHON
 
-# Blender builds it, where it is installed.
-if command -v blender >/dev/null; then
-    cat >check.py <<'PYTHON'
-import bpy, json, math, sys
-run = json.load(open("ours.json"))
-scene = bpy.context.scene
-ok = scene.frame_end == 90 and abs(scene.render.fps / scene.render.fps_base - 60) < 1e-4
-for frame in range(0, 91, 15):
-    scene.frame_set(frame)
-    for i, (x, y, angle, *_) in enumerate(run["frames"][frame]["states"]):
-        box = bpy.data.objects[f"body {i}"]
-        found = (box.location.x, box.location.y, box.location.z, -box.rotation_euler.y)
-        ok = ok and all(math.isclose(p, q, abs_tol=1e-6, rel_tol=1e-6) for p, q in zip(found, (x, 0, y, angle)))
-        ok = ok and all(math.isclose(p, q, rel_tol=1e-6) for p, q in zip(box.dimensions.xz, run["bodies"][i]["size"]))
-print("as in the run" if ok else "not as in the run")
-PYTHON
-    HOME=$folder blender --background --factory-startup --python-exit-code 1 --python ours.blend.py --python check.py \
-        >out 2>err || fail "blender: $(tail -3 err)"
-    says "as in the run"
-else
-    echo "blender is not installed: only the syntax of its script is tested"
-fi
 run 0 export ours.npz -o ours.json
 run 2 import ours.json -o refused.npz
 complains "ours.json: error: is JSON, and only CSV can be imported; 'twinbox export RUN.npz -o RUN.csv' writes it"

@@ -56,7 +56,6 @@ SHORT = [
     Case("simulate-net", f"simulate {TINY} -m pair-net -o run.npz", "run.npz=b.npz"),
     Case("export-csv", "export a.npz -o out.csv", "a.npz out.csv=a.csv"),
     Case("export-json", "export a.npz -o out.json", "a.npz out.json=a.csv"),
-    Case("export-blender", "export a.npz -o out.blend.py", "a.npz out.blend.py=a.csv"),
     Case("import", "import a.csv -o out.npz", "a.csv out.npz=b.npz"),
     Case("compare-runs", "compare a.npz b.npz --csv out.csv", "a.npz b.npz out.csv=a.csv"),
     Case("compare-equal", "compare expected equal", "expected equal"),
