@@ -49,10 +49,11 @@ static const Option option_table[] = {
     {.help = "Pictures:"},
     {"--fuzzy", 0, "MAX,SHARE",
      "Pass frames in which no channel differs by more than MAX (0 to 255) and at most this SHARE (0 to 1) of the "
-     "pixels differs",
+     "pixels differs, or a number of pixels: MAX,20px",
      OPTION_READ(read_fuzzy, CompareOptions, tolerance)},
     {"--beyond", 0, "SHARE",
-     "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than --tolerance",
+     "Pass frames in which at most this SHARE (0 to 1) of the pixels differs by more than --tolerance, or a number of "
+     "pixels: 20px",
      OPTION_READ(read_beyond, CompareOptions, tolerance)},
     {"--flip", 0, "[p99=]MAX",
      "Pass frames whose FLIP is at most MAX (0 to 1) on average, or at its 99th percentile (may be repeated); "
@@ -128,28 +129,23 @@ static bool read_mask(const Option *option, const char *text, void *value, Error
     return error_input(error, option->name, "'%s' is neither a PNG file nor X,Y,W,H with W and H from 1", text);
 }
 
-static bool parse_share(const char *text, double *share) {
-    return parse_double(text, share) && *share >= 0 && *share <= 1;
-}
-
 static bool read_fuzzy(const Option *option, const char *text, void *value, Error *error) {
     Tolerance *tolerance = value;
     const char *rest;
     int64_t difference;
-    double share;
-    if (!parse_leading_int(text, 0, 255, &difference, &rest) || *rest != ',' || !parse_share(rest + 1, &share))
-        return error_input(error, option->name, "'%s' is not MAX,SHARE with MAX from 0 to 255 and SHARE from 0 to 1",
-                           text);
+    if (!parse_leading_int(text, 0, 255, &difference, &rest) || *rest != ',' ||
+        !pixel_limit_parse(&tolerance->share, rest + 1))
+        return error_input(error, option->name,
+                           "'%s' is not MAX,SHARE with MAX from 0 to 255 and SHARE " PIXEL_LIMIT_FORM, text);
     tolerance->given |= LIMIT_FUZZY;
     tolerance->fuzzy = (int)difference;
-    tolerance->share = share;
     return true;
 }
 
 static bool read_beyond(const Option *option, const char *text, void *value, Error *error) {
     Tolerance *tolerance = value;
-    if (!parse_share(text, &tolerance->beyond))
-        return error_input(error, option->name, "'%s' is not a share from 0 to 1", text);
+    if (!pixel_limit_parse(&tolerance->beyond, text))
+        return error_input(error, option->name, "'%s' is not " PIXEL_LIMIT_FORM, text);
     tolerance->given |= LIMIT_BEYOND;
     return true;
 }

@@ -57,6 +57,9 @@ bool regression_may_hide_all(const Regression *regression, const RegressionFrame
 bool regression_ignore(const Regression *regression, const RegressionFrame *frame, Image *expected, Image *actual,
                        uint8_t **masked, Error *error);
 
+/* Whether the sizes of its pictures are equal, or differ as its limits allow. */
+bool regression_accepts_size(const Regression *regression, const RegressionFrame *frame);
+
 /* Compares the pictures of regression_ignore(): sets the frame's difference, which is not equal for other sizes. */
 void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
                         const Image *actual, const uint8_t *masked);

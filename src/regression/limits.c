@@ -22,6 +22,11 @@ void tolerance_override(Tolerance *tolerance, const Tolerance *over) {
     if (given(over, LIMIT_FLIP_P99)) tolerance->flip_p99 = over->flip_p99;
     if (given(over, LIMIT_ANTIALIAS)) tolerance->antialias = over->antialias;
     if (given(over, LIMIT_SHIFT)) tolerance->shift = over->shift;
+    if (given(over, LIMIT_SIZE)) tolerance->size = over->size;
+}
+
+static bool is_within(int64_t pixels, const PixelLimit *limit, double counted) {
+    return (double)pixels <= (limit->number ? limit->most : limit->most * counted);
 }
 
 bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *difference, const FlipSummary *flip) {
@@ -29,9 +34,9 @@ bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *differen
     if (difference->pixels == 0) return true;
     if (!given(tolerance, LIMIT_FUZZY | LIMIT_TOLERANCE | LIMIT_BEYOND | LIMITS_FLIP)) return false;
     if (given(tolerance, LIMIT_FUZZY) &&
-        (difference->largest > tolerance->fuzzy || (double)difference->pixels > tolerance->share * counted))
+        (difference->largest > tolerance->fuzzy || !is_within(difference->pixels, &tolerance->share, counted)))
         return false;
-    if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND) && (double)difference->beyond > tolerance->beyond * counted)
+    if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND) && !is_within(difference->beyond, &tolerance->beyond, counted))
         return false;
     /* FLIP sees 8 bits: a limit of 0 also means what lies below them. */
     const bool none = tolerance->flip_mean <= 0,
@@ -42,19 +47,42 @@ bool tolerance_holds(const Tolerance *tolerance, const ImageDifference *differen
 
 #define ADD(...) text_join(words.text, sizeof words.text, ", ", __VA_ARGS__)
 
+static ToleranceText pixel_limit_words(const PixelLimit *limit) {
+    ToleranceText words = {""};
+    if (limit->number)
+        ADD("%.0f %s", limit->most, limit->most == 1 ? "pixel" : "pixels");
+    else
+        ADD("%g%% of the pixels", 100 * limit->most);
+    return words;
+}
+
 ToleranceText tolerance_words(const Tolerance *tolerance) {
     ToleranceText words = {""};
     if (given(tolerance, LIMIT_FUZZY))
-        ADD("differences of at most %d in at most %g%% of the pixels", tolerance->fuzzy, 100 * tolerance->share);
+        ADD("differences of at most %d in at most %s", tolerance->fuzzy, pixel_limit_words(&tolerance->share).text);
     if (given(tolerance, LIMIT_TOLERANCE | LIMIT_BEYOND))
-        ADD("differences above %d in at most %g%% of the pixels", tolerance->tolerance, 100 * tolerance->beyond);
+        ADD("differences above %d in at most %s", tolerance->tolerance, pixel_limit_words(&tolerance->beyond).text);
     if (given(tolerance, LIMIT_FLIP_MEAN)) ADD("mean FLIP of at most %g", tolerance->flip_mean);
     if (given(tolerance, LIMIT_FLIP_P99)) ADD("99th percentile of FLIP of at most %g", tolerance->flip_p99);
     if (tolerance->antialias) ADD("edges may move within a pixel");
     if (tolerance->shift > 0)
         ADD("content may move by %d %s", tolerance->shift, tolerance->shift == 1 ? "pixel" : "pixels");
+    if (tolerance->size > 0)
+        ADD("sizes may differ by %d %s", tolerance->size, tolerance->size == 1 ? "pixel" : "pixels");
     if (words.text[0] == '\0') ADD("none");
     return words;
+}
+
+bool pixel_limit_parse(PixelLimit *limit, const char *text) {
+    int64_t pixels;
+    const char *rest;
+    if (parse_leading_int(text, 0, INT64_MAX, &pixels, &rest) && strcmp(rest, "px") == 0)
+        *limit = (PixelLimit){(double)pixels, true};
+    else if (parse_double(text, &limit->most) && limit->most >= 0 && limit->most <= 1)
+        limit->number = false;
+    else
+        return false;
+    return true;
 }
 
 bool tolerance_parse_flip(Tolerance *tolerance, const char *text) {
@@ -185,9 +213,14 @@ bool regression_ignore(const Regression *regression, const RegressionFrame *fram
     return false;
 }
 
-static bool same_size(const RegressionFrame *frame) {
+/* Whether width and height differ by at most this. */
+static bool near_size(const RegressionFrame *frame, int most) {
     const RegressionFile *a = &frame->files[EXPECTED], *b = &frame->files[ACTUAL];
-    return a->width == b->width && a->height == b->height;
+    return abs(a->width - b->width) <= most && abs(a->height - b->height) <= most;
+}
+
+bool regression_accepts_size(const Regression *regression, const RegressionFrame *frame) {
+    return near_size(frame, regression_tolerance(regression, frame).size);
 }
 
 void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
@@ -195,7 +228,7 @@ void regression_compare(const Regression *regression, RegressionFrame *frame, co
     ImageDifference *difference = &frame->difference;
     int tolerance = regression_tolerance(regression, frame).tolerance;
     image_compare_masked(expected, actual, masked, tolerance, difference);
-    difference->same_size = same_size(frame);
+    difference->same_size = near_size(frame, 0);
     difference->equal = difference->equal && difference->same_size;
 }
 
@@ -212,10 +245,10 @@ bool regression_decide(const Regression *regression, RegressionFrame *frame, con
                        const uint8_t *masked, Error *error) {
     const ImageDifference *difference = &frame->difference;
     Tolerance tolerance = regression_tolerance(regression, frame);
-    if (!difference->same_size)
+    if (!difference->same_size && !regression_accepts_size(regression, frame))
         frame->pixels = PIXELS_RESIZED;
     else if (difference->pixels == 0)
-        frame->pixels = difference->moved > 0 ? PIXELS_WITHIN : PIXELS_EQUAL;
+        frame->pixels = difference->moved > 0 || !difference->same_size ? PIXELS_WITHIN : PIXELS_EQUAL;
     else if ((tolerance.given & LIMITS_FLIP) != 0 && !measure(frame, expected, actual, masked, error))
         return false;
     else

@@ -11,7 +11,7 @@
 
 /* How far a picture may differ and still pass. Nothing given: every pixel must be equal. */
 
-enum { SHIFT_MAX = 8 };
+enum { FEW_PIXELS_MAX = 8 }; /* of `shift` and `size` */
 
 /* Bits of Tolerance.given. */
 typedef enum ToleranceLimit {
@@ -22,19 +22,32 @@ typedef enum ToleranceLimit {
     LIMIT_FLIP_P99 = 1 << 4,
     LIMIT_ANTIALIAS = 1 << 5,
     LIMIT_SHIFT = 1 << 6,
+    LIMIT_SIZE = 1 << 7,
     LIMITS_FLIP = LIMIT_FLIP_MEAN | LIMIT_FLIP_P99
 } ToleranceLimit;
+
+/* How many pixels may differ: a share of those that count, 0..1, or a number. A share passes in a long page what it does not pass in
+   a small picture; a number is for marks of one size. */
+typedef struct PixelLimit {
+    double most;
+    bool number;
+} PixelLimit;
+
+/* "0.01", a share, or "20px". False for anything else. */
+bool pixel_limit_parse(PixelLimit *limit, const char *text);
+#define PIXEL_LIMIT_FORM "a share from 0 to 1 or a number of pixels, such as 20px"
 
 /* All that is given must hold. Members that are not given are 0. */
 typedef struct Tolerance {
     unsigned given;
     int fuzzy;                  /* largest difference of a channel, 0..255 */
-    double share;               /* largest share of pixels that differ, 0..1; given with fuzzy */
+    PixelLimit share;           /* of pixels that differ; given with fuzzy */
     int tolerance;              /* pixels that differ by at most this, 0..255, count as equal */
-    double beyond;              /* largest share of pixels that differ by more than `tolerance` */
+    PixelLimit beyond;          /* of pixels that differ by more than `tolerance` */
     double flip_mean, flip_p99; /* largest FLIP: mean, 99th percentile (regression/flip.h) */
     bool antialias;             /* ignore pixels along edges (regression/internal.h) */
-    int shift;                  /* pixels that content may move by, 0..SHIFT_MAX (regression/internal.h) */
+    int shift;                  /* pixels that content may move by, 0..FEW_PIXELS_MAX (regression/internal.h) */
+    int size; /* by this much, 0..FEW_PIXELS_MAX, width and height may differ: the overlap is judged */
 } Tolerance;
 
 /* Replaces in *tolerance what `over` gives. */
@@ -57,11 +70,12 @@ bool tolerance_parse_flip(Tolerance *tolerance, const char *text);
      rules:
        - files: "stack_*"        # a glob of names, with their folder if they have one; * also stands for /
          tolerance: 3            # as the options of compare of these names
-         beyond: 0.001
+         beyond: 0.001           # or a number of pixels: 20px
          fuzzy: [2, 0.01]
          flip: 0.01              # or: flip: {mean: 0.01, p99: 0.1}
          antialias: on
          shift: 1
+         size: 1                 # by this much, width and height may differ
          masks:
            - rectangle: [0, 0, 320, 20]
            - picture: clock.png  # beside this file

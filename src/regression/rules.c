@@ -138,9 +138,9 @@ static bool read_level(const YamlTree *tree, int node, const char *what, int *le
     return true;
 }
 
-static bool read_share(const YamlTree *tree, int node, const char *what, double *share, Error *error) {
-    return (parse_double(text_of(tree, node), share) && *share >= 0 && *share <= 1) ||
-           yaml_error(tree, node, error, "%s must be from 0 to 1 (got %s)", what, yaml_show(tree, node).text);
+static bool read_pixel_limit(const YamlTree *tree, int node, const char *what, PixelLimit *limit, Error *error) {
+    return pixel_limit_parse(limit, text_of(tree, node)) ||
+           yaml_error(tree, node, error, "%s must be " PIXEL_LIMIT_FORM " (got %s)", what, yaml_show(tree, node).text);
 }
 
 static bool read_tolerance(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -157,20 +157,22 @@ static bool read_fuzzy(const YamlTree *tree, int node, const Field *field, void 
                           list->kind == YAML_SEQUENCE ? "another number of them" : yaml_show(tree, node).text);
     tolerance->given |= LIMIT_FUZZY;
     return read_level(tree, node + 1, field->key, &tolerance->fuzzy, error) &&
-           read_share(tree, tree->nodes[node + 1].end, field->key, &tolerance->share, error);
+           read_pixel_limit(tree, tree->nodes[node + 1].end, field->key, &tolerance->share, error);
 }
 
 static bool read_beyond(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
     tolerance->given |= LIMIT_BEYOND;
-    return read_share(tree, node, field->key, &tolerance->beyond, error);
+    return read_pixel_limit(tree, node, field->key, &tolerance->beyond, error);
 }
 
 static bool read_flip_limit(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
     const bool p99 = strcmp(field->key, "p99") == 0;
+    double *limit = p99 ? &tolerance->flip_p99 : &tolerance->flip_mean;
     tolerance->given |= p99 ? LIMIT_FLIP_P99 : LIMIT_FLIP_MEAN;
-    return read_share(tree, node, field->key, p99 ? &tolerance->flip_p99 : &tolerance->flip_mean, error);
+    return (parse_double(text_of(tree, node), limit) && *limit >= 0 && *limit <= 1) ||
+           yaml_error(tree, node, error, "%s must be from 0 to 1 (got %s)", field->key, yaml_show(tree, node).text);
 }
 
 static bool read_flip(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -189,15 +191,25 @@ static bool read_antialias(const YamlTree *tree, int node, const Field *field, v
     return field_switch(tree, node, field, &tolerance->antialias, error);
 }
 
+static bool read_few(const YamlTree *tree, int node, const Field *field, int *pixels, Error *error) {
+    int64_t value;
+    if (!parse_int(text_of(tree, node), 0, FEW_PIXELS_MAX, &value))
+        return yaml_error(tree, node, error, "%s must be a whole number of pixels from 0 to %d (got %s)", field->key,
+                          FEW_PIXELS_MAX, yaml_show(tree, node).text);
+    *pixels = (int)value;
+    return true;
+}
+
 static bool read_shift(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
-    int64_t value;
-    if (!parse_int(text_of(tree, node), 0, SHIFT_MAX, &value))
-        return yaml_error(tree, node, error, "%s must be a whole number of pixels from 0 to %d (got %s)", field->key,
-                          SHIFT_MAX, yaml_show(tree, node).text);
     tolerance->given |= LIMIT_SHIFT;
-    tolerance->shift = (int)value;
-    return true;
+    return read_few(tree, node, field, &tolerance->shift, error);
+}
+
+static bool read_size(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+    Tolerance *tolerance = member;
+    tolerance->given |= LIMIT_SIZE;
+    return read_few(tree, node, field, &tolerance->size, error);
 }
 
 static bool read_rectangle(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -273,11 +285,13 @@ static bool read_masks(const YamlTree *tree, int node, const Field *field, void 
     return true;
 }
 
+static bool is_all(const PixelLimit *limit) { return !limit->number && limit->most >= 1; }
+
 /* What would pass any picture is a mistake. */
 static bool check_limits(const YamlTree *tree, int node, const Rule *rule, Error *error) {
     const Tolerance *limits = &rule->tolerance;
     const unsigned local = LIMIT_TOLERANCE | LIMIT_ANTIALIAS | LIMIT_SHIFT;
-    if (limits->tolerance == 255 || limits->beyond >= 1 || (limits->fuzzy == 255 && limits->share >= 1) ||
+    if (limits->tolerance == 255 || is_all(&limits->beyond) || (limits->fuzzy == 255 && is_all(&limits->share)) ||
         limits->flip_mean >= 1 || limits->flip_p99 >= 1)
         return yaml_error(tree, node, error, "a limit of this rule ignores every difference");
     if (rule->region.count > 0 && (limits->given & ~local) != 0)
@@ -297,6 +311,7 @@ static bool read_rule(const YamlTree *tree, int node, Rule *rule, Error *error) 
                                    {"flip", read_flip, TOLERANCE, NULL, false},
                                    {"antialias", read_antialias, TOLERANCE, NULL, false},
                                    {"shift", read_shift, TOLERANCE, NULL, false},
+                                   {"size", read_size, TOLERANCE, NULL, false},
                                    {"region", read_rectangle, offsetof(Rule, region), NULL, false},
                                    {"masks", read_masks, offsetof(Rule, mask), NULL, false},
                                    {NULL, NULL, 0, NULL, false}};

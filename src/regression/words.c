@@ -203,15 +203,15 @@ RegressionText frame_words(const RegressionFrame *frame) {
     case PIXELS_MISSING: ADD(&words, "", "no actual picture"); break;
     case PIXELS_EXTRA: ADD(&words, "", "no expected picture"); break;
     case PIXELS_UNREAD: ADD(&words, "", "%s", frame->read_error); break;
-    case PIXELS_RESIZED:
-        ADD(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
-        if (frame->sizes_alone) break;
-        ADD(&words, "; ", "overlap: ");
-        add_difference(&words, difference);
-        break;
     case PIXELS_EQUAL: ADD(&words, "", "equal pixels"); break;
     case PIXELS_WITHIN:
-    case PIXELS_DIFFER: add_difference(&words, difference);
+    case PIXELS_DIFFER:
+    case PIXELS_RESIZED:
+        if (!difference->same_size)
+            ADD(&words, "", "sizes differ: %d x %d and %d x %d pixels", a->width, a->height, b->width, b->height);
+        if (frame->sizes_alone) break;
+        if (!difference->same_size) ADD(&words, "; ", "overlap: ");
+        add_difference(&words, difference);
     }
     if (frame->panel > 0) ADD(&words, ", ", "states differ in panel %d", frame->panel);
     if (frame->other_view && frame->states != STATES_DIFFER)

@@ -20,11 +20,13 @@ png a/x.png 50 20 100
 png b/x.png 50 20 100 3 3 10 102 3 5 5 130
 run 1 compare a b
 says "x.png: 15 pixels differ (1.5%) by at most 30, first at (3, 3)"
-for passing in "--tolerance 30" "--tolerance 29 --beyond 0.005" "--tolerance 2 --beyond 0.005" "--beyond 0.015"; do
+for passing in "--tolerance 30" "--tolerance 29 --beyond 0.005" "--tolerance 2 --beyond 0.005" "--beyond 0.015" \
+    "--beyond 15px" "--tolerance 2 --beyond 5px" "--fuzzy 30,15px"; do
     run 0 compare a b $passing
     says "not equal, but within tolerance"
 done
-for failing in "--tolerance 29" "--tolerance 2 --beyond 0.0049" "--tolerance 1 --beyond 0.005" "--beyond 0.0149"; do
+for failing in "--tolerance 29" "--tolerance 2 --beyond 0.0049" "--tolerance 1 --beyond 0.005" "--beyond 0.0149" \
+    "--beyond 14px" "--tolerance 2 --beyond 4px" "--fuzzy 30,14px" "--fuzzy 29,15px" "--beyond 1 --fuzzy 255,14px"; do
     run 1 compare a b $failing
 done
 # Every limit must hold.
@@ -33,8 +35,28 @@ run 1 compare a b --tolerance 2 --beyond 0.005 --fuzzy 29,0.015
 run 1 compare a b --tolerance 1 --beyond 0.005 --fuzzy 30,0.015
 run 2 compare a b --tolerance 256
 complains "--tolerance: error: '256' is not a whole number from 0 to 255"
-run 2 compare a b --beyond 2
-complains "--beyond: error: '2' is not a share from 0 to 1"
+for wrong in 2 15 -1px 1.5px px "15 px" 15pxx; do
+    run 2 compare a b --beyond "$wrong"
+    complains "--beyond: error: '$wrong' is not a share from 0 to 1 or a number of pixels, such as 20px"
+done
+run 2 compare a b --fuzzy 2,2
+complains "--fuzzy: error: '2,2' is not MAX,SHARE with MAX from 0 to 255 and SHARE a share from 0 to 1 or a number of pixels"
+
+# A share passes in a long page what it does not pass in a small picture; a number of pixels says the same of both.
+mkdir page badge
+png page/long.png 50 400 100
+png page/small.png 50 20 100
+png badge/long.png 50 400 100 3 3 10 130
+png badge/small.png 50 20 100 3 3 10 130
+run 1 compare page badge --beyond 0.001
+says "1 of 2 frames differs"
+run 1 compare page badge --beyond 9px
+says "2 of 2 frames differ"
+run 0 compare page badge --beyond 10px
+echo 'rules: [{files: "*", beyond: 10px}, {files: small.png, beyond: 9px}]' >rules.yaml
+run 1 compare page badge --rules rules.yaml
+says "differs: small.png: 10 pixels differ (1%)"
+says "1 of 2 frames differs"
 run 2 compare a b --flip p50=0.1
 complains "--flip: error: 'p50=0.1' is not MAX, mean=MAX or p99=MAX"
 
@@ -176,6 +198,31 @@ run 1 compare a b --mask 12,3,38,1
 says "overlap: 9 pixels differ"
 run 1 compare a b --mask 0,0,50,4
 says "overlap: equal pixels"
+
+# One more row or column, with a rule: what both have is compared, by the limits.
+larger() {
+    png c/x.png "$1" "$2" 100
+    png d/x.png "$3" "$4" 100 3 3 10 102 $([ "$4" -le "$2" ] || echo 3 "$2" 10 0) # what only one has is not judged
+    run "$5" compare c d "${@:6}"
+}
+mkdir c d
+echo 'rules: [{files: "*", size: 1, tolerance: 2}]' >c/compare.yaml
+for sizes in "50 20 50 21" "50 21 50 20" "50 20 51 20" "50 20 49 21"; do
+    larger $sizes 0 --report sizes
+    says "passed: 1 frame, 1 of them not equal, but within tolerance"
+    grep -q "sizes differ: 50 x 2[01] and [45][019] x 2[01] pixels; overlap: 10 pixels differ" sizes/results.json ||
+        fail "the report does not tell the sizes $sizes"
+done
+larger 50 20 50 21 1 --tolerance 1
+says "differs: x.png: sizes differ: 50 x 20 and 50 x 21 pixels; overlap: 10 pixels differ (1%) by at most 2"
+larger 50 20 50 22 1
+says "differs: x.png: sizes differ: 50 x 20 and 50 x 22 pixels"
+larger 50 20 50 21 2 --mask 0,0,50,20
+complains "c/x.png: error: the masks hide all its pixels"
+echo 'rules: [{files: "*", size: 1}]' >c/compare.yaml
+larger 50 20 50 21 1
+larger 50 20 50 21 0 --mask 3,3,10,1
+
 # A plot is drawn for frames of a sequence only.
 film() {
     mkdir -p film.a film.b

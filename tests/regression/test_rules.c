@@ -32,9 +32,17 @@ TEST(mistakes_are_refused_with_their_place) {
         {"rules:\n  - {files: a, tolerance: 1, tolerance: 2}\n", ":2:30: error: key 'tolerance' is given twice"},
         {"rules:\n  - {files: a, tolerance: 256}\n",
          ":2:27: error: tolerance must be a whole number from 0 to 255 (got 256)"},
-        {"rules:\n  - {files: a, beyond: 1.5}\n", ":2:24: error: beyond must be from 0 to 1 (got 1.5)"},
+        {"rules:\n  - {files: a, beyond: 1.5}\n",
+         ":2:24: error: beyond must be a share from 0 to 1 or a number of pixels, such as 20px (got 1.5)"},
+        {"rules:\n  - {files: a, beyond: 1.5px}\n", ":2:24: error: beyond must be a share"},
+        {"rules:\n  - {files: a, beyond: -1px}\n", ":2:24: error: beyond must be a share"},
+        {"rules:\n  - {files: a, beyond: px}\n", ":2:24: error: beyond must be a share"},
         {"rules:\n  - {files: a, fuzzy: 2}\n", ":2:23: error: fuzzy must be a list of two numbers, such as [2, 0.01]"},
-        {"rules:\n  - {files: a, fuzzy: [2, 7]}\n", ":2:27: error: fuzzy must be from 0 to 1 (got 7)"},
+        {"rules:\n  - {files: a, fuzzy: [2, 7]}\n", ":2:27: error: fuzzy must be a share from 0 to 1 or"},
+        {"rules:\n  - {files: a, size: 9}\n",
+         ":2:22: error: size must be a whole number of pixels from 0 to 8 (got 9)"},
+        {"rules:\n  - {files: a, size: 1, region: [0, 0, 1, 1]}\n",
+         ":2:5: error: a rule with a region must have no limits but tolerance, antialias and shift"},
         {"rules:\n  - {files: a, flip: much}\n", ":2:22: error: flip must be from 0 to 1 (got much)"},
         {"rules:\n  - {files: a, flip: {p98: 1}}\n",
          ":2:23: error: 'p98' is not a key of a limit of FLIP; did you mean 'p99'?"},
@@ -102,7 +110,8 @@ static const char text[] = "rules:\n"
                            "    antialias: off\n"
                            "    flip: {p99: 0.25}\n"
                            "    masks: [{rectangle: [1, 0, 1, 1]}]\n"
-                           "  - {files: sub/a.png, fuzzy: [9, 0.1], masks: [{colour: \"#0aFF00\"}]}\n";
+                           "  - {files: sub/a.png, fuzzy: [9, 0.1], masks: [{colour: \"#0aFF00\"}]}\n"
+                           "  - {files: sub/c.png, beyond: 20px, fuzzy: [9, 1px], size: 1}\n";
 
 TEST(later_rules_replace_limits) {
     Rules *rules = read_text(text, &error);
@@ -110,13 +119,18 @@ TEST(later_rules_replace_limits) {
     Tolerance a = {0}, b = {0};
     rules_override(rules, "b.png", &a);
     assert_int_equal(a.given, LIMIT_TOLERANCE | LIMIT_BEYOND | LIMIT_ANTIALIAS);
-    assert_true(a.tolerance == 2 && a.beyond == 0.5 && a.antialias);
+    assert_true(a.tolerance == 2 && a.beyond.most == 0.5 && a.antialias);
     rules_override(rules, "sub/a.png", &b);
-    assert_true(b.tolerance == 7 && b.beyond == 0.5 && !b.antialias && b.flip_p99 == 0.25);
-    assert_true(b.fuzzy == 9 && b.share == 0.1);
+    assert_true(b.tolerance == 7 && b.beyond.most == 0.5 && !b.antialias && b.flip_p99 == 0.25);
+    assert_true(b.fuzzy == 9 && b.share.most == 0.1);
     assert_string_equal(tolerance_words(&b).text,
                         "differences of at most 9 in at most 10% of the pixels, differences above 7 in at most 50% of "
                         "the pixels, 99th percentile of FLIP of at most 0.25");
+    Tolerance c = {0};
+    rules_override(rules, "sub/c.png", &c);
+    assert_string_equal(tolerance_words(&c).text,
+                        "differences of at most 9 in at most 1 pixel, differences above 7 in at most 20 pixels, 99th "
+                        "percentile of FLIP of at most 0.25, sizes may differ by 1 pixel");
     rules_destroy(rules);
 }
 
@@ -136,9 +150,9 @@ TEST(all_masks_count) {
 }
 
 TEST(a_rule_without_files_is_refused) {
-    static const char *const names[] = {"b.png", "sub/a.png"}, *const other[] = {"b.png", "sub/c.png"};
+    static const char *const names[] = {"b.png", "sub/a.png", "sub/c.png"}, *const other[] = {"b.png", "sub/b.png"};
     Rules *rules = read_text(text, &error);
-    assert_ok(rules_check_names(rules, names, 2, &error), error);
+    assert_ok(rules_check_names(rules, names, 3, &error), error);
     assert_refused(rules_check_names(rules, other, 2, &error),
                    ":8:13: error: no picture has a name that matches 'sub/a.png'\n");
     rules_destroy(rules);
@@ -154,19 +168,23 @@ TEST(every_limit_that_is_given_must_hold) {
     } table[] = {
         {{0}, false},
         {{.given = LIMIT_ANTIALIAS, .antialias = true}, false},
-        {{.given = LIMIT_FUZZY, .fuzzy = 40, .share = 0.1}, true},
-        {{.given = LIMIT_FUZZY, .fuzzy = 39, .share = 0.1}, false},
-        {{.given = LIMIT_FUZZY, .fuzzy = 40, .share = 0.09}, false},
+        {{.given = LIMIT_FUZZY, .fuzzy = 40, .share = {.most = 0.1}}, true},
+        {{.given = LIMIT_FUZZY, .fuzzy = 39, .share = {.most = 0.1}}, false},
+        {{.given = LIMIT_FUZZY, .fuzzy = 40, .share = {.most = 0.09}}, false},
+        {{.given = LIMIT_FUZZY, .fuzzy = 40, .share = {10, true}}, true},
+        {{.given = LIMIT_FUZZY, .fuzzy = 40, .share = {9, true}}, false},
+        {{.given = LIMIT_BEYOND, .beyond = {2, true}}, true},
+        {{.given = LIMIT_BEYOND, .beyond = {1, true}}, false},
         {{.given = LIMIT_TOLERANCE, .tolerance = 20}, false},
-        {{.given = LIMIT_TOLERANCE | LIMIT_BEYOND, .tolerance = 20, .beyond = 0.02}, true},
-        {{.given = LIMIT_TOLERANCE | LIMIT_BEYOND, .tolerance = 20, .beyond = 0.01}, false},
+        {{.given = LIMIT_TOLERANCE | LIMIT_BEYOND, .tolerance = 20, .beyond = {.most = 0.02}}, true},
+        {{.given = LIMIT_TOLERANCE | LIMIT_BEYOND, .tolerance = 20, .beyond = {.most = 0.01}}, false},
         {{.given = LIMIT_FLIP_MEAN, .flip_mean = 0.02}, true},
         {{.given = LIMIT_FLIP_MEAN, .flip_mean = 0.01}, false},
         {{.given = LIMIT_FLIP_P99, .flip_p99 = 0.3}, true},
         {{.given = LIMIT_FLIP_P99, .flip_p99 = 0.2}, false},
         {{.given = LIMITS_FLIP, .flip_mean = 0.02, .flip_p99 = 0.2}, false},
-        {{.given = LIMIT_FLIP_MEAN | LIMIT_FUZZY, .flip_mean = 0.02, .fuzzy = 39, .share = 1}, false},
-        {{.given = LIMIT_FLIP_MEAN | LIMIT_BEYOND, .flip_mean = 0.02, .beyond = 0.01}, false},
+        {{.given = LIMIT_FLIP_MEAN | LIMIT_FUZZY, .flip_mean = 0.02, .fuzzy = 39, .share = {.most = 1}}, false},
+        {{.given = LIMIT_FLIP_MEAN | LIMIT_BEYOND, .flip_mean = 0.02, .beyond = {.most = 0.01}}, false},
     };
     for (size_t i = 0; i < sizeof table / sizeof *table; i++)
         if (tolerance_holds(&table[i].tolerance, &difference, &flip) != table[i].holds) fail_msg("row %zu", i);

@@ -166,7 +166,7 @@ static Image *framed(int x, int y) {
 }
 
 TEST(a_whole_chart_may_move) {
-    for (int reach = 1; reach <= SHIFT_MAX; reach++) {
+    for (int reach = 1; reach <= FEW_PIXELS_MAX; reach++) {
         Image *a = framed(0, 0), *b = framed(reach, -reach);
         uint8_t *masked = calloc((size_t)a->width * (size_t)a->height, 1);
         ImageDifference difference;
@@ -189,7 +189,7 @@ TEST(noise_is_no_movement) {
         a->pixels[i] = (uint8_t)(random >> 24);
         b->pixels[i] = (uint8_t)(random >> 16);
     }
-    assert_int_equal(difference_of(a, b, SHIFT_MAX, 0).moved, 0);
+    assert_int_equal(difference_of(a, b, FEW_PIXELS_MAX, 0).moved, 0);
     image_destroy(a);
     image_destroy(b);
 }
