@@ -9,16 +9,20 @@
 
 typedef struct Options {
     const char *report, *expected, *only;
+    bool partial, remove;
 } Options;
 
-static const Option option_table[] = {{"--expected", 0, "DIR",
-                                       "The folder to change (default: the one that the report names, which must be "
-                                       "below the current directory)",
-                                       OPTION_TEXT(Options, expected)},
-                                      {"--only", 0, "GLOB",
-                                       "Only files whose names match, such as 'stack_*' (default: all that failed)",
-                                       OPTION_TEXT(Options, only)},
-                                      {0}};
+static const Option option_table[] = {
+    {"--expected", 0, "DIR",
+     "The folder to change (default: the one that the report names, which must be "
+     "below the current directory)",
+     OPTION_TEXT(Options, expected)},
+    {"--only", 0, "GLOB", "Only files whose names match, such as 'stack_*' (default: all that failed)",
+     OPTION_TEXT(Options, only)},
+    {"--partial", 0, NULL, "Keep expected files that have no actual one, after a run that did not draw all",
+     OPTION_FLAG(Options, partial)},
+    {"--remove", 0, NULL, "Remove expected files that have no actual one", OPTION_FLAG(Options, remove)},
+    {0}};
 
 static const CommandSpec spec = {
     .options = option_table,
@@ -26,8 +30,10 @@ static const CommandSpec spec = {
     .inputs = {1, 1, "report"},
     .help =
         "Accept the changes that a report of twinbox compare (--report REPORT) shows: actual files replace the "
-        "expected files that failed, new files are added, missing files are removed. If a selected file has changed "
-        "since the report was written, nothing is changed. Of several accepted pictures, that in the report is "
+        "expected files that failed, and new files are added. Nothing is changed if a selected file has changed since "
+        "the "
+        "report was written, or if expected files have no actual one and neither --partial nor --remove tells what "
+        "becomes of them. Of several accepted pictures, that in the report is "
         "replaced. "
         "Run it in the folder in which compare ran; a folder outside of it changes only with --expected. Exit status "
         "1: failures that the report does not show remain.\v"
@@ -46,10 +52,18 @@ bool command_approve(int argc, char **argv, Error *error) {
     Options options = {0};
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     Approval approval;
-    const ApprovalRequest request = {options.report, options.expected, options.only, print_change};
+    if (options.partial && options.remove) return error_input(error, "--remove", "cannot be combined with --partial");
+    const ApprovalRequest request = {.report = options.report,
+                                     .expected = options.expected,
+                                     .only = options.only,
+                                     .missing = options.partial  ? MISSING_KEPT
+                                                : options.remove ? MISSING_REMOVED
+                                                                 : MISSING_REFUSED,
+                                     .on_change = print_change};
     if (!approve(&request, &approval, error)) return false;
     printf("%d replaced, %d added, %d removed", approval.replaced, approval.added, approval.removed);
     if (approval.already > 0) printf(", %d already accepted", approval.already);
+    if (approval.kept > 0) printf(", %d kept without an actual file", approval.kept);
     if (approval.not_selected > 0) printf(", %d not selected", approval.not_selected);
     if (approval.not_shown > 0) printf(", %d not shown: compare again with a larger --report-size", approval.not_shown);
     printf("\n");

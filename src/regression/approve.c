@@ -423,28 +423,49 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
     return ok;
 }
 
-static bool is_selected(const ApprovalItem *item, const char *only, Approval *approval) {
+static bool is_selected(const ApprovalItem *item, const ApprovalRequest *request, Approval *approval) {
+    const char *only = request->only;
     bool matches = only == NULL || fnmatch(only, target_of(item), 0) == 0 ||
                    fnmatch(only, item->actual.name, 0) == 0; /* home.png, where home.1.png is replaced */
+    bool kept = matches && request->missing == MISSING_KEPT && item->actual.name[0] == '\0';
     approval->not_selected += !matches;
-    approval->not_shown += matches && !item->shown;
-    return matches && item->shown;
+    approval->kept += kept;
+    approval->not_shown += matches && !kept && !item->shown;
+    return matches && !kept && item->shown;
 }
 
-static bool approve_list(const ApprovalList *list, const Folders *folders, const char *only,
-                         void (*on_change)(const char *what, const char *path), Approval *approval, Error *error) {
+/* Nobody knows here whether what is missing is gone, or was only not drawn this time. */
+static bool refuse_removal(const ApprovalList *list, const Action *actions, const char *report, Error *error) {
+    enum { NAMED = 5 };
+    char names[1024] = "";
+    int count = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        if (actions[i] != ACTION_REMOVE) continue;
+        if (count++ < NAMED) text_join(names, sizeof names, ", ", "%.100s", target_of(&list->items[i]));
+    }
+    if (count > NAMED) text_join(names, sizeof names, ", ", "and %d more", count - NAMED);
+    return count == 0 || error_input(error, report,
+                                     "%d expected file%s no actual one: %s; --partial keeps, --remove removes "
+                                     "such files",
+                                     count, count == 1 ? " has" : "s have", names);
+}
+
+static bool approve_list(const ApprovalList *list, const Folders *folders, const ApprovalRequest *request,
+                         Approval *approval, Error *error) {
+    const char *only = request->only;
     Action *actions = calloc(list->count + 1, sizeof *actions);
     if (actions == NULL) return error_memory(error, "approve");
     bool ok = true;
     for (size_t i = 0; ok && i < list->count; i++) {
         actions[i] = ACTION_NOT_SELECTED;
-        if (is_selected(&list->items[i], only, approval)) ok = decide(folders, &list->items[i], &actions[i], error);
+        if (is_selected(&list->items[i], request, approval)) ok = decide(folders, &list->items[i], &actions[i], error);
     }
     if (ok && only != NULL && list->count > 0 && approval->not_selected == (int)list->count)
         ok = error_input(error, "--only", "'%s' matches none of the %zu files that failed", only, list->count);
+    if (ok && request->missing == MISSING_REFUSED) ok = refuse_removal(list, actions, request->report, error);
     for (size_t i = 0; ok && i < list->count; i++)
         if (actions[i] != ACTION_NOT_SELECTED)
-            ok = apply(folders, &list->items[i], actions[i], on_change, approval, error);
+            ok = apply(folders, &list->items[i], actions[i], request->on_change, approval, error);
     free(actions);
     return ok;
 }
@@ -458,7 +479,7 @@ static bool approve_in_folders(const ApprovalRequest *request, const ApprovalLis
         return false;
     bool ok = root_open(&folders.actual, list->actual, error);
     if (ok) {
-        ok = approve_list(list, &folders, request->only, request->on_change, approval, error);
+        ok = approve_list(list, &folders, request, approval, error);
         root_close(&folders.actual);
     }
     root_close(&folders.expected);

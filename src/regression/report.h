@@ -13,19 +13,24 @@
 typedef struct Approval {
     int replaced, added, removed; /* files of the expected folder */
     int already;                  /* approved earlier */
+    int kept;                     /* expected files without an actual one: MISSING_KEPT */
     int not_shown;                /* failures whose pictures the report omitted; not approved */
     int not_selected;             /* failures whose names do not match */
 } Approval;
+
+/* What becomes of expected files that have no actual one: a test may be gone, or the run may have drawn only some. */
+typedef enum ApprovalMissing { MISSING_REFUSED, MISSING_KEPT, MISSING_REMOVED } ApprovalMissing;
 
 typedef struct ApprovalRequest {
     const char *report;   /* folder of results.json */
     const char *expected; /* the folder to change; NULL: the one that results.json names, below the current directory */
     const char *only;     /* a glob (fnmatch) of file names; NULL: all */
+    ApprovalMissing missing;
     void (*on_change)(const char *what, const char *path); /* after each file: "replaced", "added" or "removed" */
 } ApprovalRequest;
 
-/* Replaces the expected files of failures by the actual ones, in the folder that results.json names, and removes
-   expected files whose actual file is missing.
+/* Replaces the expected files of failures by the actual ones, in the folder that results.json names, and removes expected files
+   whose actual file is missing, if the request says so: ERROR_INPUT, and nothing is changed, if it says nothing.
 
    Everything is checked before anything is written: names must be plain names of .png and .npz files, and both files
    must be regular files with the hashes in the report; otherwise ERROR_INPUT. Files are written atomically, in folders

@@ -237,6 +237,10 @@ static void write_approval(FILE *file, const Report *report) {
                 "matching names."
               : " replaces the expected file by the actual one.",
           file);
+    if (report->regression->by_verdict[PIXELS_MISSING] + report->regression->runs_alone[EXPECTED] > 0)
+        fputs(" Expected files that have no actual one are kept with <code>--partial</code>, removed with "
+              "<code>--remove</code>.",
+              file);
     fputs("</p></section>\n", file);
 }
 

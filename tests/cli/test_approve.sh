@@ -18,8 +18,34 @@ restart() {
 # The sums of all files below a folder.
 sums() { (cd "$1" && find . -type f -o -type l | sort | xargs cksum); }
 
+# An expected file without an actual one may be gone, or not drawn: nothing is changed until the user tells which.
 restart
-run 0 approve report
+before=$(sums expected)
+run 2 approve report
+complains "report: error: 1 expected file has no actual one: frame_000000.png; --partial keeps, --remove removes such files"
+equal "nothing is written" "$(sums expected)" "$before"
+run 2 approve report --partial --remove
+complains "--remove: error: cannot be combined with --partial"
+run 0 approve report --partial
+says "5 replaced, 1 added, 0 removed, 1 kept without an actual file"
+cmp -s expected/frame_000000.png expected.kept/frame_000000.png || fail "--partial did not keep frame 0"
+run 1 compare expected actual
+says "verdict: 1 frame missing"
+mkdir some
+cp actual/frame_000002.png some
+restart
+run 1 compare expected.kept some --report partial
+run 2 approve partial
+complains "4 expected files have no actual one: frame_000000.png, frame_000001.png, frame_000003.png, frame_000004.png; "
+run 2 approve partial --only 'frame_00000[12].png' # a glob may also match what was not drawn
+complains "1 expected file has no actual one: frame_000001.png; "
+run 0 approve partial --only frame_000002.png --expected expected
+says "1 replaced, 0 added, 0 removed"
+equal "files after a partial run" "$(ls expected)" "$(ls expected.kept)"
+grep -q "<code>--partial</code>" partial/report.html || fail "the page does not tell of --partial"
+
+restart
+run 0 approve report --remove
 says "replaced expected/frame_000001.png"
 says "added expected/frame_000005.png"
 says "removed expected/frame_000000.png"

@@ -288,7 +288,7 @@ cp second.png a/home.1.png
 rm b/home.png
 run 1 compare a b --report report
 says "3 frames missing"
-run 0 approve report
+run 0 approve report --remove
 says "0 replaced, 0 added, 3 removed"
 run 0 compare a b
 

@@ -48,7 +48,9 @@ report -> alone/report.html"
 grep -q '"name": "box.npz", "verdict": "missing", "failed": true' alone/results.json || fail "no missing run"
 grep -q 'tests="3" failures="2"' alone/junit.xml || fail "no failures in junit.xml"
 cp -r expected before
-run 0 approve alone
+run 2 approve alone
+complains "1 expected file has no actual one: box.npz"
+run 0 approve alone --remove
 says "0 replaced, 1 added, 1 removed"
 compare 0
 rm -r expected
