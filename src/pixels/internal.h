@@ -17,6 +17,10 @@
 
 static const uint8_t png_signature[PNG_SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
 enum { PNG_GREY = 0, PNG_RGB = 2, PNG_PALETTE = 3, PNG_GREY_ALPHA = 4, PNG_RGB_ALPHA = 6 };
+
+/* An empty chunk of pixels. */
+static const uint8_t png_no_pixels[PNG_CHUNK_FRAME] = {0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xAF, 0x06, 0x1E};
+
 static const int png_channels[] = {
     [PNG_GREY] = 1, [PNG_RGB] = 3, [PNG_PALETTE] = 1, [PNG_GREY_ALPHA] = 2, [PNG_RGB_ALPHA] = 4};
 enum { PNG_BEST_RATIO = 1032 }; /* deflate shrinks 258 bytes to no less than two bits (RFC 1951, 3.2.5) */

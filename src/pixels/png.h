@@ -3,6 +3,7 @@
 #pragma once
 #include "base/base.h"
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -62,8 +63,9 @@ typedef struct RowSink {
     /* The rows in their places; a == b: they are equal, or there is one file. */
     void (*row)(void *context, int y, const uint8_t *a, const uint8_t *b);
     void *context;
-    bool all; /* also rows that are equal, far from others */
+    int around; /* of rows that are equal, at least those this near to one that differs; ROWS_ALL */
 } RowSink;
+enum { ROWS_ALL = INT_MAX };
 
 /* A file to compare. A common one, of at most 8 bits per sample and not interlaced, is read in pieces, in little memory. */
 typedef struct PngFile {

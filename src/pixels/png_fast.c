@@ -249,7 +249,7 @@ enum { SLACK = 16 /* vectors read and write beyond a row */ };
 typedef struct Side {
     PngRows *rows;
     uint8_t *filtered[2]; /* [band, 1 + bytes], in turns */
-    uint8_t *above;       /* [bytes] the last row of the band before; behind it: */
+    uint8_t *above;       /* [kept, bytes] the last rows before the band; behind them: */
     uint8_t *band;        /* [band, bytes] unfiltered */
     uint8_t *memory;
     bool failed; /* a colour is not in the palette: while the second thread may set rows->damaged */
@@ -265,6 +265,8 @@ typedef struct Scan {
     Side sides[2];
     int files, band; /* files; rows of a band */
     int top, count;  /* of the band in work */
+    int kept;        /* rows above the band, of which unfiltering needs one */
+    int next, since; /* the row after the last one that was given; equal rows since one that differs */
     bool alike;      /* the layouts are the same, so that equal bytes are equal pixels */
     bool equal;      /* the last row */
     bool joined;     /* the compressed bytes are the same up to the band in work */
@@ -273,13 +275,15 @@ typedef struct Scan {
     Task task;              /* the one that the second thread has, also where the scan fails */
 } Scan;
 
-static bool side_start(Side *side, int band, bool second) {
+enum { FAR_AWAY = ROWS_ALL - 1 }; /* from a row that differs */
+
+static bool side_start(Side *side, int band, int kept, bool second) {
     const size_t bytes = side->rows->bytes, stored = (size_t)band * (bytes + 1) + SLACK,
-                 all = ((size_t)band + 1) * bytes;
+                 all = (size_t)(band + kept) * bytes;
     side->memory = calloc((second ? 2 : 1) * stored + all + SLACK, 1);
     if (side->memory == NULL) return false;
     side->above = side->memory;
-    side->band = side->above + bytes;
+    side->band = side->above + (size_t)kept * bytes;
     side->filtered[0] = side->memory + all + SLACK;
     side->filtered[1] = side->filtered[0] + (second ? stored : 0);
     return png_rows_start(side->rows);
@@ -332,27 +336,39 @@ static bool expand(Scan *scan, int side, int y, const uint8_t *row, uint8_t **rg
     return *rgba != NULL && !from->failed;
 }
 
-/* Hands the rows of the band to the sink. same: those of both files are equal. */
-static bool deliver(Scan *scan, bool same) {
+/* Hands a row of the band, or one above it, to the sink. same: it is equal in both files. */
+static bool deliver_row(Scan *scan, int y, bool same) {
     const Side *first = &scan->sides[0], *second = &scan->sides[1];
-    const RowSink *sink = scan->sink;
+    const ptrdiff_t bytes = (ptrdiff_t)first->rows->bytes;
+    const uint8_t *a = first->band + y * bytes, *b = same ? a : second->band + y * (ptrdiff_t)second->rows->bytes;
+    uint8_t *rgba = NULL, *other = NULL;
+    scan->equal = same || (scan->alike && memcmp(a, b, (size_t)bytes) == 0);
+    if (!expand(scan, 0, y, a, &rgba) || (!scan->equal && !expand(scan, 1, y, b, &other))) return false;
+    if (other != NULL && !scan->alike) scan->equal = memcmp(rgba, other, 4 * (size_t)first->rows->layout.width) == 0;
+    scan->sink->row(scan->sink->context, scan->top + y, rgba, scan->equal ? rgba : other);
+    scan->next = scan->top + y + 1;
+    return true;
+}
+
+/* Hands the rows of the band to the sink, and before rows that may differ, those above that it wants. same: those of both files are
+   equal. */
+static bool deliver(Scan *scan, bool same) {
+    const int around = scan->sink->around, left_out = scan->top - scan->next;
+    for (int y = same ? 0 : left_out < scan->kept ? -left_out : -scan->kept; y < 0; y++)
+        if (around > 0 && !deliver_row(scan, y, true)) return false;
     for (int y = 0; y < scan->count; y++) {
-        const uint8_t *a = first->band + (size_t)y * first->rows->bytes,
-                      *b = same ? a : second->band + (size_t)y * second->rows->bytes;
-        uint8_t *rgba = NULL, *other = NULL;
-        scan->equal = same || (scan->alike && memcmp(a, b, first->rows->bytes) == 0);
-        bool wanted = !same || sink->all || first->rows->layout.color == PNG_PALETTE;
-        if (wanted && !expand(scan, 0, y, a, &rgba)) return false;
-        if (!scan->equal && !expand(scan, 1, y, b, &other)) return false;
-        if (rgba != NULL && other != NULL && !scan->alike)
-            scan->equal = memcmp(rgba, other, 4 * (size_t)first->rows->layout.width) == 0;
-        if (wanted) sink->row(sink->context, scan->top + y, rgba, scan->equal ? rgba : other);
+        const bool wanted = !same || scan->since < around || scan->sides[0].rows->layout.color == PNG_PALETTE;
+        if (wanted && !deliver_row(scan, y, same)) return false;
+        scan->equal |= same;
+        scan->since = !scan->equal ? 0 : scan->since < FAR_AWAY ? scan->since + 1 : FAR_AWAY;
     }
     return true;
 }
 
-static void keep_last(Side *side, const Side *from, int count) {
-    memcpy(side->above, from->band + (size_t)(count - 1) * from->rows->bytes, from->rows->bytes);
+/* The last rows of the band and above it. */
+static void keep_last(const Scan *scan, Side *side, const Side *from) {
+    const size_t bytes = from->rows->bytes;
+    memmove(side->above, from->above + (size_t)scan->count * bytes, (size_t)scan->kept * bytes);
 }
 
 static int rows_from(const Scan *scan, int top) {
@@ -396,8 +412,8 @@ static bool scan_band(Scan *scan, int slot) {
     if (first->rows->damaged || (!same && second->rows->damaged)) return false;
     if (!same) give_next(scan, 1 - slot);
     if (!deliver(scan, same)) return false;
-    keep_last(first, first, scan->count);
-    if (scan->files > 1) keep_last(second, same ? first : second, scan->count);
+    if (scan->files > 1) keep_last(scan, second, same ? first : second);
+    keep_last(scan, first, first);
     return true;
 }
 
@@ -427,7 +443,7 @@ static bool start(Scan *scan, size_t band, bool threads) {
     scan->alike = scan->files == 1 || same_layout(layout, other);
     scan->band = fit < 1 ? 1 : fit < layout->height ? (int)fit : (int)layout->height;
     for (int i = 0; i < scan->files; i++)
-        if (!side_start(&sides[i], scan->band, i > 0)) return false;
+        if (!side_start(&sides[i], scan->band, scan->kept, i > 0)) return false;
     scan->joined = scan->files > 1 && scan->alike;
     if (scan->joined) sides[1].rows->twin = sides[0].rows;
     if (threads && scan->files > 1 && scan->band < (int)layout->height)
@@ -436,7 +452,9 @@ static bool start(Scan *scan, size_t band, bool threads) {
 }
 
 bool png_fast_scan_rows(PngRows *const rows[], int files, size_t band, bool threads, const RowSink *sink) {
-    Scan scan = {.files = files, .equal = true, .sink = sink};
+    const int around = sink->around;
+    Scan scan = {.files = files, .equal = true, .sink = sink, .since = FAR_AWAY};
+    scan.kept = around > 1 && around < ROWS_ALL ? around : 1; /* none is left out of all */
     for (int i = 0; i < 2; i++) scan.sides[i].rows = rows[i < files ? i : 0];
     const bool ok = start(&scan, band, threads) && scan_bands(&scan);
     background_stop(scan.background);
@@ -491,7 +509,7 @@ static void keep_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
 }
 
 static bool decode(const uint8_t *const data[], const size_t sizes[], int files, int64_t max_pixels, Image *images[2]) {
-    const RowSink sink = {begin_images, place_in_image, keep_row, images, true};
+    const RowSink sink = {begin_images, place_in_image, keep_row, images, ROWS_ALL};
     images[0] = images[1] = NULL;
     if (png_fast_scan(data, sizes, files, max_pixels, PNG_BAND, false, &sink)) return true;
     image_destroy_pair(images);
@@ -530,7 +548,7 @@ static void drop_row(void *context, int y, const uint8_t *a, const uint8_t *b) {
 
 bool png_fast_check_rows(PngRows *rows) {
     uint8_t *row = NULL;
-    const RowSink sink = {begin_row, place_in_row, drop_row, &row, false};
+    const RowSink sink = {begin_row, place_in_row, drop_row, &row, 0};
     bool ok = png_fast_scan_rows(&rows, 1, PNG_BAND, false, &sink);
     free(row);
     return ok;

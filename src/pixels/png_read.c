@@ -166,7 +166,7 @@ void png_memory_release(png_structp png, png_voidp block) {
     free(block);
 }
 
-enum { MAX_TEXT_SIZE = 1 << 16, MAX_TEXTS = 64 };
+enum { MAX_TEXT_SIZE = 1 << 16 };
 
 /* Everything that decoding modifies is in this struct, as longjmp would clobber locals. */
 typedef struct Decoder {
@@ -484,30 +484,56 @@ static bool decode_texts(Decoder *decoder) {
     if (setjmp(png_jmpbuf(decoder->png)) != 0) return false;
     set_strict_limits(decoder);
     png_set_chunk_malloc_max(decoder->png, MAX_TEXT_SIZE);
-    png_set_chunk_cache_max(decoder->png, MAX_TEXTS);
     png_read_info(decoder->png, decoder->info);
     return !decoder->memory_short || error_memory(decoder->error, decoder->path);
 }
 
 static bool find_text(const Decoder *decoder, const char *key, char *value, size_t size) {
     png_textp texts = NULL;
-    int count = png_get_text(decoder->png, decoder->info, &texts, NULL);
-    for (int i = 0; i < count; i++) {
-        if (strcmp(texts[i].key, key) != 0) continue;
-        size_t length = strlen(texts[i].text);
-        if (length >= size) return error_input(decoder->error, decoder->path, "the text \"%s\" is too long", key);
-        memcpy(value, texts[i].text, length + 1);
-        return true;
+    if (png_get_text(decoder->png, decoder->info, &texts, NULL) == 0)
+        return error_input(decoder->error, decoder->path, "there is no text \"%s\" in the picture", key);
+    const size_t length = strlen(texts[0].text);
+    if (length >= size) return error_input(decoder->error, decoder->path, "the text \"%s\" is too long", key);
+    memcpy(value, texts[0].text, length + 1);
+    return true;
+}
+
+static bool has_key(const PngChunk *chunk, const char *key) {
+    const size_t length = strlen(key) + 1;
+    return (png_chunk_is(chunk, "tEXt") || png_chunk_is(chunk, "zTXt") || png_chunk_is(chunk, "iTXt")) &&
+           chunk->length >= length && memcmp(chunk->data, key, length) == 0;
+}
+
+/* A file that has only the first text with this key before the pixels, which are an empty chunk: to libpng, any chunk above its limit of
+   texts is damage, and so is a damaged text with another key. NULL if out of memory. */
+static uint8_t *with_text_alone(const uint8_t *data, size_t size, const char *key, size_t *kept) {
+    uint8_t *copy = malloc(size + sizeof png_no_pixels);
+    PngChunk chunk;
+    bool found = false, ended = false;
+    size_t at = *kept = size < PNG_SIGNATURE ? size : PNG_SIGNATURE;
+    if (copy == NULL) return NULL;
+    memcpy(copy, data, *kept);
+    for (size_t from = at; !ended && png_chunk_next(data, size, &at, &chunk); from = at) {
+        const bool text = !found && chunk.length <= MAX_TEXT_SIZE && has_key(&chunk, key);
+        ended = png_chunk_is(&chunk, "IDAT");
+        found |= text;
+        if (!text && (chunk.type[0] & 0x20) != 0) continue;
+        memcpy(copy + *kept, ended ? png_no_pixels : data + from, ended ? sizeof png_no_pixels : at - from);
+        *kept += ended ? sizeof png_no_pixels : at - from;
     }
-    return error_input(decoder->error, decoder->path, "there is no text \"%s\" in the picture", key);
+    return copy;
 }
 
 static bool read_text(const uint8_t *data, size_t size, const char *path, const char *key, char *value,
                       size_t value_size, Error *error) {
     Decoder decoder;
-    bool ok = open_decoder(&decoder, data, size, path, error) && decode_texts(&decoder) &&
+    size_t kept;
+    uint8_t *alone = with_text_alone(data, size, key, &kept);
+    if (alone == NULL) return error_memory(error, path);
+    bool ok = open_decoder(&decoder, alone, kept, path, error) && decode_texts(&decoder) &&
               find_text(&decoder, key, value, value_size);
     close_decoder(&decoder);
+    free(alone);
     return ok;
 }
 

@@ -91,13 +91,12 @@ static uint8_t *add_room(PngRows *rows, size_t size) {
 }
 
 static bool scan_pixels(PngRows *rows, Scan *scan, const uint8_t head[CHUNK_HEAD]) {
-    static const uint8_t empty[PNG_CHUNK_FRAME] = {0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xAF, 0x06, 0x1E};
     const PngLayout *layout = &rows->layout;
     if (scan->pixels_ended || (layout->color == PNG_PALETTE && layout->colors == 0)) return false;
     if (!scan->pixels) {
-        uint8_t *room = add_room(rows, sizeof empty);
+        uint8_t *room = add_room(rows, sizeof png_no_pixels);
         if (room == NULL) return false;
-        memcpy(room, empty, sizeof empty);
+        memcpy(room, png_no_pixels, sizeof png_no_pixels);
     }
     scan->pixels = true;
     return check_chunk(rows, head);

@@ -252,11 +252,31 @@ bool content_has_ground(const ContentTraits *traits, const ImageDifference *diff
     return pixels <= NAMING_PIXELS_MAX && (difference->pixels <= pixels / 2 || traits_floor(traits) > 0);
 }
 
-bool content_name_by_ground(const Image *expected, const Image *actual, const uint8_t *masked, int floor,
+static void shift_regions(FrameChanges *changes, int down) {
+    for (int i = 0; i < changes->regions.kept; i++)
+        changes->regions.list[i].top += down, changes->regions.list[i].bottom += down;
+}
+
+static Image rows_of(const Image *image, int top, int count) {
+    const size_t before = 4 * (size_t)image->width * (size_t)top;
+    return (Image){image->width, count, image->pixels + before,
+                   image->pixels16 == NULL ? NULL : image->pixels16 + before};
+}
+
+bool content_name_by_ground(const Image *expected, const Image *actual, int first, const uint8_t *masked, int floor,
                             const ImageDifference *difference, FrameChanges *changes, Error *error) {
-    const Image *const pictures[2] = {expected, actual};
-    return floor > 0 ? name_above(pictures, masked, floor, difference, changes, error)
-                     : name_regions(pictures, masked, changes, error);
+    const int top = larger(difference->top - CONTENT_MARGIN, first),
+              bottom = smaller(difference->bottom + CONTENT_MARGIN, first + expected->height);
+    const Image rows[2] = {rows_of(expected, top - first, bottom - top), rows_of(actual, top - first, bottom - top)};
+    const Image *const pictures[2] = {&rows[0], &rows[1]};
+    ImageDifference inside = *difference;
+    inside.top -= top, inside.bottom -= top;
+    if (masked != NULL) masked += (size_t)(top - first) * (size_t)expected->width;
+    shift_regions(changes, -top);
+    const bool ok = floor > 0 ? name_above(pictures, masked, floor, &inside, changes, error)
+                              : name_regions(pictures, masked, changes, error);
+    shift_regions(changes, top);
+    return ok;
 }
 
 bool content_name(const Image *expected, const Image *actual, const uint8_t *masked, const ImageDifference *difference,
@@ -266,7 +286,7 @@ bool content_name(const Image *expected, const Image *actual, const uint8_t *mas
     if (!sum_rows(pictures, masked, 255, &traits, error)) return false;
     const int floor = changes->count == 0 ? traits_floor(&traits) : 0;
     if (content_has_ground(&traits, difference, expected->width, expected->height))
-        return content_name_by_ground(expected, actual, masked, floor, difference, changes, error);
+        return content_name_by_ground(expected, actual, 0, masked, floor, difference, changes, error);
     content_name_most(&traits, changes);
     return true;
 }

@@ -74,8 +74,12 @@ bool content_has_ground(const ContentTraits *traits, const ImageDifference *diff
 /* Gives all regions that have no name the same: noise, recoloured, or unsure. */
 void content_name_most(const ContentTraits *traits, FrameChanges *changes);
 
-/* Names regions as content_name() does where enough of a picture is equal. floor: of traits_floor(). */
-bool content_name_by_ground(const Image *expected, const Image *actual, const uint8_t *masked, int floor,
+enum { CONTENT_MARGIN = 3 }; /* pixels around a region that are its ground */
+
+/* Names regions as content_name() does where enough of a picture is equal. The pictures begin with row `first` of the whole ones, and
+   have those that differ and CONTENT_MARGIN around; only these are looked at, so that a name does not depend on how much was read.
+   floor: of traits_floor(). */
+bool content_name_by_ground(const Image *expected, const Image *actual, int first, const uint8_t *masked, int floor,
                             const ImageDifference *difference, FrameChanges *changes, Error *error);
 
 /* The rows of pictures that are read row by row, from the first difference to the last: a quarter of them at most, and of 16 MB. */
@@ -83,6 +87,7 @@ typedef struct ContentBand {
     int width, first, count, capacity;
     uint8_t *rows[2];
     int64_t pixels;             /* that differ so far */
+    int below;                  /* equal rows since one that differs */
     bool differs, closed, lost; /* a row differs; rows between were not given, or are too many; one of those differs */
 } ContentBand;
 
@@ -92,9 +97,8 @@ void content_band_begin(ContentBand *band, int width, int height);
 bool content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t *b, int64_t pixels);
 void content_band_end(ContentBand *band);
 
-/* Must not be lost. False with error set if out of memory. */
-bool content_band_name(const ContentBand *band, int floor, const ImageDifference *difference, FrameChanges *changes,
-                       Error *error);
+/* The rows that it has of a picture; it must not be lost. */
+Image content_band_rows(const ContentBand *band, int picture);
 
 /* A region as content sees it. */
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ABOVE = 3 /* rows before the first difference, for its ground */, PART = 4, BYTES_MAX = 1 << 24 };
+enum { PART = 4, BYTES_MAX = 1 << 24 };
 
 void content_band_begin(ContentBand *band, int width, int height) {
     const int64_t row = 2 * 4 * (int64_t)width, bytes = row * height / PART;
@@ -15,7 +15,7 @@ void content_band_begin(ContentBand *band, int width, int height) {
 }
 
 static bool make_room(ContentBand *band) {
-    const size_t bytes = 4 * (size_t)band->width * (size_t)band->capacity;
+    const size_t bytes = 4 * (size_t)band->width * (size_t)(band->capacity + CONTENT_MARGIN);
     for (int i = 0; i < 2; i++)
         if (band->rows[i] == NULL && (band->rows[i] = malloc(bytes)) == NULL) return false;
     return true;
@@ -44,8 +44,10 @@ bool content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t 
         band->closed = band->differs;
         if (!band->differs) band->count = 0;
     }
-    if (!band->differs && band->count == ABOVE) drop_first(band);
-    if (band->closed || is_filled(band, pixels) || band->count == band->capacity) {
+    if (!band->differs && !differs && band->count == CONTENT_MARGIN) drop_first(band);
+    const bool full = is_filled(band, pixels) || band->count >= band->capacity;
+    const bool ground = !differs && band->below < CONTENT_MARGIN; /* of the last rows that differ */
+    if (band->closed || (full && !ground)) {
         band->closed = true;
         band->lost = differs;
         return true;
@@ -56,24 +58,12 @@ bool content_band_add(ContentBand *band, int y, const uint8_t *a, const uint8_t 
     memcpy(band->rows[1] + (size_t)band->count * row, b, row);
     band->count++;
     band->differs |= differs;
+    band->below = differs ? 0 : band->below + 1;
     return true;
 }
 
-static void shift(FrameChanges *changes, int down) {
-    for (int i = 0; i < changes->regions.kept; i++)
-        changes->regions.list[i].top += down, changes->regions.list[i].bottom += down;
-}
-
-bool content_band_name(const ContentBand *band, int floor, const ImageDifference *difference, FrameChanges *changes,
-                       Error *error) {
-    const Image images[2] = {{.width = band->width, .height = band->count, .pixels = band->rows[0]},
-                             {.width = band->width, .height = band->count, .pixels = band->rows[1]}};
-    ImageDifference moved = *difference;
-    moved.top -= band->first, moved.bottom -= band->first;
-    shift(changes, -band->first);
-    const bool ok = content_name_by_ground(&images[0], &images[1], NULL, floor, &moved, changes, error);
-    shift(changes, band->first);
-    return ok;
+Image content_band_rows(const ContentBand *band, int picture) {
+    return (Image){.width = band->width, .height = band->count, .pixels = band->rows[picture]};
 }
 
 void content_band_end(ContentBand *band) {

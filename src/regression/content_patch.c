@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHANNELS = 4, MARGIN = 3, NO_GROUND = UINT16_MAX };
+enum { CHANNELS = 4, MARGIN = CONTENT_MARGIN, NO_GROUND = UINT16_MAX };
 
 /* The pixels of a region and some around it. */
 typedef struct Ground {

@@ -73,7 +73,7 @@ bool regression_decide(const Regression *regression, RegressionFrame *frame, con
    that compare names. Only if it has a limit of FLIP: FLIP takes longer than everything else. */
 bool regression_measure_first(Regression *regression, Error *error);
 
-/* Regions and names of what changed in a frame: sets `changes` and `other_view` of a frame whose pixels differ. data: the two PNG files, whose texts are read.
+/* Regions, and if the frame fails, names of what changed in it: sets `changes` and `other_view` of a frame whose pixels differ. data: the two PNG files, whose texts are read.
    Thread-safe. False with error set if out of memory. */
 bool regression_find_changes(Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
                              const Image *const images[SIDES], const uint8_t *masked, Error *error);

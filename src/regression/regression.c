@@ -91,8 +91,12 @@ static bool name_rows(const RowJudge *judge, RegressionFrame *frame, bool *named
     if (judge->difference.equal || !*named) return true;
     if (!regression_keep_regions(frame, &judge->regions, error)) return false;
     if (!frame_failed(frame) || lost) return true;
-    if (ground)
-        return content_band_name(&judge->band, traits_floor(&judge->traits), &judge->difference, frame->changes, error);
+    if (ground) {
+        const Image expected = content_band_rows(&judge->band, EXPECTED),
+                    actual = content_band_rows(&judge->band, ACTUAL);
+        return content_name_by_ground(&expected, &actual, judge->band.first, NULL, traits_floor(&judge->traits),
+                                      &judge->difference, frame->changes, error);
+    }
     content_name_most(&judge->traits, frame->changes);
     return true;
 }
@@ -101,7 +105,7 @@ static bool name_rows(const RowJudge *judge, RegressionFrame *frame, bool *named
 static bool judge_rows(const Regression *regression, RegressionFrame *frame, PngFile files[SIDES], bool *done,
                        Error *error) {
     RowJudge judge = {.tolerance = regression_level(regression, frame)};
-    const RowSink sink = {begin_rows, place_row, judge_row, &judge, false};
+    const RowSink sink = {begin_rows, place_row, judge_row, &judge, CONTENT_MARGIN};
     *done = png_files_scan(files, regression->count == 1, &sink);
     bool ok = judge.error.kind == ERROR_NONE;
     if (ok && *done) {

@@ -312,9 +312,10 @@ bool regression_find_changes(Regression *regression, RegressionFrame *frame, uin
     const ShownFolder *folders[SIDES];
     ImageRegions regions;
     return image_regions_find(images[EXPECTED], images[ACTUAL], masked, &frame->difference, &regions, error) &&
-           regression_keep_regions(frame, &regions, error) && find_folders(regression, frame, folders, error) &&
-           name_own(frame, folders, data, images, masked, error) &&
-           content_name(images[EXPECTED], images[ACTUAL], masked, &frame->difference, frame->changes, error);
+           regression_keep_regions(frame, &regions, error) &&
+           (!frame_failed(frame) ||
+            (find_folders(regression, frame, folders, error) && name_own(frame, folders, data, images, masked, error) &&
+             content_name(images[EXPECTED], images[ACTUAL], masked, &frame->difference, frame->changes, error)));
 }
 
 enum { RANGES = 4 };

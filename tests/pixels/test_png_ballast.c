@@ -100,6 +100,32 @@ TEST(other_chunks_have_any_size) {
     free(ballast);
 }
 
+/* The text of twinbox behind any other chunk, and before a large one of pixels. */
+TEST(texts_are_found_behind_any_chunk) {
+    static const char *const types[] = {"tEXt", "zTXt", "iTXt", "eXIf", "iCCP", "sPLT", "caBX", "tIME", "vpAg"};
+    static const size_t sizes[] = {0, 1, 1 << 16, (1 << 16) + 1, 1 << 20};
+    File file = {malloc(ROOM), 0};
+    uint8_t *ballast = calloc(1 << 20, 1);
+    char value[16];
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
+        for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
+            begin(&file, false);
+            put_chunk(&file, types[i], ballast, sizes[k]);
+            put_chunk(&file, "tEXt", "Stat\0before", 11);
+            put_chunk(&file, "tEXt", "State\0first", 11);
+            put_chunk(&file, "tEXt", "State\0second", 12);
+            put_chunk(&file, "IDAT", ballast, 1 << 20);
+            put_chunk(&file, "tEXt", "Later\0text", 10);
+            put_chunk(&file, "IEND", NULL, 0);
+            assert_ok(image_find_text(file.data, file.size, "State", value, sizeof value, &error), error);
+            if (strcmp(value, "first") != 0) fail_msg("'%s' behind %zu bytes of %s", value, sizes[k], types[i]);
+            assert_ok(image_find_text(file.data, file.size, "Later", value, sizeof value, &error), error);
+            assert_string_equal(value, "");
+        }
+    free(file.data);
+    free(ballast);
+}
+
 /* Files read in pieces, with a large chunk: what displays is held, the rest is not. */
 TEST(large_chunks_are_not_held) {
     static const char *const types[] = {"caBX", "eXIf"};

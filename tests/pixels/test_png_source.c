@@ -72,7 +72,7 @@ static void take(void *context, int y, const uint8_t *a, const uint8_t *b) {
 static bool scan(PngFile files[2], int changed, bool threads, int *differing) {
     Image *a = noise(HEIGHT), *b = noise(changed);
     Rows rows = {.wanted = {a, b}};
-    const RowSink sink = {begin, place, take, &rows, true};
+    const RowSink sink = {begin, place, take, &rows, ROWS_ALL};
     const bool ok = png_files_scan(files, threads, &sink);
     *differing = rows.differing;
     image_destroy(a);
