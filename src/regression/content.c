@@ -164,19 +164,22 @@ static void add_change(FrameChanges *changes, const Verdict *verdict, int region
     if (change >= 0) changes->list[change].pixels += changes->regions.list[region].pixels;
 }
 
-/* Names the regions by their surroundings. */
-static bool name_regions(const Image *const pictures[2], const uint8_t *masked, FrameChanges *changes, Error *error) {
+/* Many regions, and all of few pixels. */
+static bool are_scattered(const ImageRegions *regions) {
+    return regions->count > 4 * IMAGE_REGIONS_MAX && regions->list[0].pixels <= 16;
+}
+
+/* Names the regions by their surroundings. shift: of most of them; 0, 0: not known. */
+static bool name_regions(const Image *const pictures[2], const uint8_t *masked, const Motion *shift,
+                         FrameChanges *changes, Error *error) {
     Verdict verdicts[IMAGE_REGIONS_MAX] = {0};
-    enum { MANY = 4 };
-    Motion hint = {0}, shift = {0};
+    Motion hint = {0};
     int regions[IMAGE_REGIONS_MAX], count = 0;
-    /* Many regions, and all of few pixels. */
-    const bool scattered = changes->regions.count > 4 * IMAGE_REGIONS_MAX && changes->regions.list[0].pixels <= 16;
-    bool ok = scattered || changes->regions.kept < MANY || content_lines_shift(pictures[0], pictures[1], &shift, error);
-    const bool shifted = shift.right != 0 || shift.down != 0;
+    const bool scattered = are_scattered(&changes->regions), shifted = shift->right != 0 || shift->down != 0;
+    bool ok = true;
     for (int i = 0; ok && i < changes->regions.kept; i++) {
         if (changes->region_change[i] >= 0) continue;
-        if (shifted) hint = shift;
+        if (shifted) hint = *shift;
         ok = judge_region(pictures, masked, &changes->regions.list[i], scattered, &hint, &verdicts[count], error);
         if (verdicts[count].kind == CHANGE_MOVED) hint = verdicts[count].motion;
         regions[count++] = i;
@@ -237,7 +240,7 @@ static bool name_above(const Image *const pictures[2], const uint8_t *masked, in
     if (ok) {
         ImageRegions *regions = &changes->regions;
         if (regions->kept == IMAGE_REGIONS_MAX) regions->kept--;
-        ok = name_regions(pictures, strong, changes, error);
+        ok = name_regions(pictures, strong, &(Motion){0}, changes, error);
         regions->list[regions->kept++] = all, regions->count++;
         for (int i = 0; i < regions->kept - 1; i++) regions->list[regions->kept - 1].pixels -= regions->list[i].pixels;
         const Verdict verdict = {.kind = kind_of_most(&traits)};
@@ -245,6 +248,64 @@ static bool name_above(const Image *const pictures[2], const uint8_t *masked, in
     }
     free(strong);
     return ok;
+}
+
+/* What a shift shows anew at the sides is a part of it up to this. */
+enum { SIDES_SMALL = 16 };
+
+/* All that differs is of the same picture, shifted, but for what is new at its sides: a region of its own if it is not small. */
+static bool name_shifted(const Image *const pictures[2], const uint8_t *masked, const Motion *shift,
+                         const ImageDifference *difference, FrameChanges *changes, Error *error) {
+    const int width = pictures[0]->width, height = pictures[0]->height, right = (int)shift->right,
+              down = (int)shift->down;
+    const int sides_x = abs(right) <= SIDES_SMALL ? 0 : right, sides_y = abs(down) <= SIDES_SMALL ? 0 : down;
+    ImageRegion all = {difference->pixels, difference->left, difference->top, difference->right, difference->bottom};
+    uint8_t *new = calloc((size_t)width, (size_t)height);
+    bool ok = new != NULL || error_memory(error, "regions");
+    for (int y = 0; ok && y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const size_t at = (size_t)y * (size_t)width + (size_t)x;
+            const bool inside = x >= sides_x && x < width + sides_x && y >= sides_y && y < height + sides_y;
+            if (masked != NULL) new[at] = masked[at];
+            if (inside && new[at] == IGNORED_NOT) new[at] = IGNORED_RULE;
+        }
+    ok = ok && image_regions_find(pictures[0], pictures[1], new, difference, &changes->regions, error) &&
+         name_regions(pictures, new, &(Motion){0}, changes, error);
+    free(new);
+    if (!ok) return false;
+    ImageRegions *regions = &changes->regions;
+    if (regions->kept == IMAGE_REGIONS_MAX) regions->kept--;
+    for (int i = 0; i < regions->kept; i++) all.pixels -= regions->list[i].pixels;
+    memmove(regions->list + 1, regions->list, (size_t)regions->kept * sizeof *regions->list);
+    memmove(changes->region_change + 1, changes->region_change, (size_t)regions->kept * sizeof *changes->region_change);
+    regions->list[0] = all;
+    regions->kept++, regions->count++;
+    add_change(changes, &(Verdict){.kind = CHANGE_MOVED, .motion = *shift}, 0);
+    return true;
+}
+
+/* *named: it is the same picture, shifted, and that is less to tell than its regions. *shift is that of most of it in any case. */
+static bool find_shifted(const Image *const pictures[2], const uint8_t *masked, const ImageDifference *difference,
+                         Motion *shift, FrameChanges *changes, bool *named, Error *error) {
+    enum { FEW = 4 };
+    if (!content_shift(pictures[0], pictures[1], difference->pixels, shift, error)) return false;
+    const bool alone = fmax(fabs(shift->right), fabs(shift->down)) <= SIDES_SMALL;
+    *named = changes->count == 0 && (alone || changes->regions.kept == 1 || changes->regions.kept >= FEW) &&
+             content_is_shifted(pictures[0], pictures[1], masked, shift);
+    if (*named) return name_shifted(pictures, masked, shift, difference, changes, error);
+    if (changes->regions.kept < FEW) *shift = (Motion){0}; /* each tells more exactly */
+    return true;
+}
+
+static bool name_by_ground(const Image *const pictures[2], const uint8_t *masked, int floor,
+                           const ImageDifference *difference, FrameChanges *changes, Error *error) {
+    Motion shift = {0};
+    bool named = false;
+    if (floor > 0) return name_above(pictures, masked, floor, difference, changes, error);
+    if (changes->regions.kept > 1 && !are_scattered(&changes->regions) &&
+        !find_shifted(pictures, masked, difference, &shift, changes, &named, error))
+        return false;
+    return named || name_regions(pictures, masked, &shift, changes, error);
 }
 
 bool content_has_ground(const ContentTraits *traits, const ImageDifference *difference, int width, int height) {
@@ -268,15 +329,26 @@ bool content_name_by_ground(const Image *expected, const Image *actual, int firs
     const int top = larger(difference->top - CONTENT_MARGIN, first),
               bottom = smaller(difference->bottom + CONTENT_MARGIN, first + expected->height);
     const Image rows[2] = {rows_of(expected, top - first, bottom - top), rows_of(actual, top - first, bottom - top)};
-    const Image *const pictures[2] = {&rows[0], &rows[1]};
     ImageDifference inside = *difference;
     inside.top -= top, inside.bottom -= top;
     if (masked != NULL) masked += (size_t)(top - first) * (size_t)expected->width;
     shift_regions(changes, -top);
-    const bool ok = floor > 0 ? name_above(pictures, masked, floor, &inside, changes, error)
-                              : name_regions(pictures, masked, changes, error);
+    const bool ok = name_by_ground((const Image *const[2]){&rows[0], &rows[1]}, masked, floor, &inside, changes, error);
     shift_regions(changes, top);
     return ok;
+}
+
+bool content_may_be_shifted(const Image rows[2], const ContentTraits *traits, int width, int height, bool *may,
+                            Error *error) {
+    enum { ENOUGH = 32, LITTLE = 1 << 20 };
+    const int64_t pixels = (int64_t)width * height;
+    Motion shift = {0};
+    *may = kind_of_most(traits) == CHANGE_UNSURE && pixels <= CONTENT_WHOLE_MAX;
+    if (!*may || pixels <= LITTLE || rows[0].height < ENOUGH) return true;
+    const Image first[2] = {rows_of(&rows[0], 0, ENOUGH), rows_of(&rows[1], 0, ENOUGH)};
+    if (!content_shift(&first[0], &first[1], (int64_t)width * ENOUGH, &shift, error)) return false;
+    *may = shift.right != 0 || shift.down != 0;
+    return true;
 }
 
 bool content_name(const Image *expected, const Image *actual, const uint8_t *masked, const ImageDifference *difference,
@@ -287,6 +359,11 @@ bool content_name(const Image *expected, const Image *actual, const uint8_t *mas
     const int floor = changes->count == 0 ? traits_floor(&traits) : 0;
     if (content_has_ground(&traits, difference, expected->width, expected->height))
         return content_name_by_ground(expected, actual, 0, masked, floor, difference, changes, error);
-    content_name_most(&traits, changes);
+    const int top = larger(difference->top - CONTENT_MARGIN, 0), left = expected->height - top;
+    const Image rows[2] = {rows_of(expected, top, left), rows_of(actual, top, left)};
+    bool named = false;
+    if (!content_may_be_shifted(rows, &traits, expected->width, expected->height, &named, error)) return false;
+    if (named && !find_shifted(pictures, masked, difference, &(Motion){0}, changes, &named, error)) return false;
+    if (!named) content_name_most(&traits, changes);
     return true;
 }

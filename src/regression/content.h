@@ -24,7 +24,7 @@
    noise       small differences of any pattern, or nine tenths of the pixels differ only along edges (antialias_mark())
    replaced    something appears and something vanishes, a tenth each at least, or colours change without their pattern
 
-   Anything else is unsure. At last, faint regions and those that moved by at most two pixels become noise, if they are four or
+   If all that differs is the same picture, shifted, that is one region. Anything else is unsure. At last, faint regions and those that moved by at most two pixels become noise, if they are four or
    more and did not move alike. If noise lies all over a picture, the stronger regions are named without it, and the noise is
    one more region.
 
@@ -74,7 +74,8 @@ bool content_has_ground(const ContentTraits *traits, const ImageDifference *diff
 /* Gives all regions that have no name the same: noise, recoloured, or unsure. */
 void content_name_most(const ContentTraits *traits, FrameChanges *changes);
 
-enum { CONTENT_MARGIN = 3 }; /* pixels around a region that are its ground */
+enum { CONTENT_WHOLE_MAX = 10000000 }; /* pixels of a picture that is read again as a whole, if rows do not tell */
+enum { CONTENT_MARGIN = 3 };           /* pixels around a region that are its ground */
 
 /* Names regions as content_name() does where enough of a picture is equal. The pictures begin with row `first` of the whole ones, and
    have those that differ and CONTENT_MARGIN around; only these are looked at, so that a name does not depend on how much was read.
@@ -140,6 +141,14 @@ typedef struct Motion {
 static const double MOTION_EXACT = 0.999; /* explains all */
 Motion content_motion(const Patch *const *patches, int count, const Motion *hint);
 
-/* How far most of the differing rows or columns have moved, such as those below a banner; 0, 0 if they do not agree. The pictures
-   have one size. ERROR_MEMORY. */
-bool content_lines_shift(const Image *expected, const Image *actual, Motion *shift, Error *error);
+/* How far most of what differs has moved, such as what follows a banner; 0, 0 if it does not agree. The pictures have one size, and
+   `pixels` of them differ. ERROR_MEMORY. */
+bool content_shift(const Image *expected, const Image *actual, int64_t pixels, Motion *shift, Error *error);
+
+/* Whether the actual picture is the expected one, shifted: all that both have is equal. */
+bool content_is_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift);
+
+/* *may: a picture of this size, of whose pixels more than half differ, may be shifted, as far as its first rows that differ tell; then
+   it is worth being read as a whole. */
+bool content_may_be_shifted(const Image rows[2], const ContentTraits *traits, int width, int height, bool *may,
+                            Error *error);

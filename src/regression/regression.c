@@ -84,19 +84,20 @@ static void judge_row(void *context, int y, const uint8_t *a, const uint8_t *b) 
 
 /* The regions of a frame and their names. *named: false where only whole pictures can tell, and are small enough. */
 static bool name_rows(const RowJudge *judge, RegressionFrame *frame, bool *named, Error *error) {
-    enum { WHOLE_MAX = 10000000 }; /* pixels of a picture that is read twice */
+    const Image rows[2] = {content_band_rows(&judge->band, EXPECTED), content_band_rows(&judge->band, ACTUAL)};
     const bool ground = content_has_ground(&judge->traits, &judge->difference, judge->width, judge->height);
     const bool lost = ground && judge->band.lost;
-    *named = !frame_failed(frame) || !lost || (int64_t)judge->width * judge->height > WHOLE_MAX;
+    bool shifted = false;
+    if (!ground && frame_failed(frame) &&
+        !content_may_be_shifted(rows, &judge->traits, judge->width, judge->height, &shifted, error))
+        return false;
+    *named = !frame_failed(frame) || !(shifted || (lost && (int64_t)judge->width * judge->height <= CONTENT_WHOLE_MAX));
     if (judge->difference.equal || !*named) return true;
     if (!regression_keep_regions(frame, &judge->regions, error)) return false;
     if (!frame_failed(frame) || lost) return true;
-    if (ground) {
-        const Image expected = content_band_rows(&judge->band, EXPECTED),
-                    actual = content_band_rows(&judge->band, ACTUAL);
-        return content_name_by_ground(&expected, &actual, judge->band.first, NULL, traits_floor(&judge->traits),
+    if (ground)
+        return content_name_by_ground(&rows[0], &rows[1], judge->band.first, NULL, traits_floor(&judge->traits),
                                       &judge->difference, frame->changes, error);
-    }
     content_name_most(&judge->traits, frame->changes);
     return true;
 }

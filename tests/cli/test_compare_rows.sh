@@ -44,7 +44,7 @@ def scenes(folder):
     """Grey discs on a gradient with some texture, some of them moved; each pair of pictures in several encodings."""
     draw = random.Random(2)
     encodings = {"grey": (0, 8, 0), "rgb": (2, 8, 0), "rgba": (6, 8, 0), "deep": (2, 16, 0), "interlaced": (2, 8, 1), "grey-interlaced": (0, 8, 1)}
-    for number in range(30):
+    for number in range(32):
         width, height = draw.randint(60, 400), draw.randint(40, 160)
         slope, texture = draw.choice((0, 0, 1, 2)), draw.choice((1, 1, 9))
         ground = [[60 + slope * y // 4 + draw.randrange(texture) for x in range(width)] for y in range(height)]
@@ -54,6 +54,9 @@ def scenes(folder):
             pair[1] = (x + draw.uniform(-6, 6), y + draw.uniform(-6, 6), radius, grey)
         for side in 0, 1:
             picture = [row[:] for row in ground]
+            if number >= 30: # all of it is shifted, and most of it differs
+                discs = []
+                picture = [[(x - 2 * side) * (x - 2 * side) * (y + 70 - 3 * side) // 7 % 251 for x in range(width)] for y in range(height)]
             for pair in discs:
                 cx, cy, radius, grey = pair[side]
                 for y in range(max(0, int(cy - radius) - 1), min(height, int(cy + radius) + 2)):
@@ -125,7 +128,9 @@ done
 import glob, json
 found = {path: {frame["name"]: frame["regions"] for frame in json.load(open(path))["frames"]} for path in glob.glob("scenes/*.json")}
 first = found["scenes/rgb.json"]
-assert len(found) == 6 and len(first) == 30 and sum(region["kind"] == "moved" for regions in first.values() for region in regions) > 20, first
+assert len(found) == 6 and len(first) == 32 and sum(region["kind"] == "moved" for regions in first.values() for region in regions) > 20, first
+for name in "case-30x.png", "case-31x.png":
+    assert [region["name"] for region in first[name]] == ["moved 2.0 px right and 3.0 px down"], first[name]
 for path, regions in found.items():
     assert regions == first, (path, [(name, first[name], regions[name]) for name in first if first[name] != regions[name]][:1])
 PYTHON

@@ -96,4 +96,42 @@ TEST(what_follows_something_new_moves) {
         }
 }
 
+/* A page of lines, or noise all over, that lies at (right, down). */
+static void write_shifted(Image *image, bool page, int right, int down) {
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const int u = x - right + 64, v = y - down + 64; /* from 0 */
+            const bool line = u % 320 > 100 && v % 12 < 6 && v > 100 && v < HEIGHT;
+            const int level = page ? line && noise(u / 2 + v / 12 * 977, v) > 90 ? 0 : 255 : noise(u, v);
+            memset(image->pixels + 4 * (y * WIDTH + x), level, 3);
+            image->pixels[4 * (y * WIDTH + x) + 3] = 255;
+        }
+}
+
+/* A whole picture that is shifted is one region, of any texture and in any direction; but nothing is told that another change breaks. */
+TEST(a_shift_of_everything_is_one_region) {
+    static const int shifts[][2] = {{3, 0}, {0, 5}, {2, 3}, {-7, 4}, {-1, -16}};
+    for (size_t i = 0; i < 2 * sizeof shifts / sizeof shifts[0]; i++)
+        for (int broken = 0; broken < 2; broken++) {
+            const int *by = shifts[i / 2];
+            Image *a = image_sized(WIDTH, HEIGHT), *b = image_sized(WIDTH, HEIGHT);
+            write_shifted(a, i % 2 == 0, 0, 0);
+            write_shifted(b, i % 2 == 0, by[0], by[1]);
+            for (int y = 0; y < 6 * broken; y++)
+                memset(b->pixels + 4 * ((HEIGHT / 2 + y) * WIDTH + WIDTH / 2), 128, 24);
+            ImageDifference difference;
+            image_compare(a, b, &difference);
+            const FrameChanges changes = changes_of(a, b);
+            const ImageRegion *region = &changes.regions.list[0];
+            const Change *change = &changes.list[changes.region_change[0]];
+            const bool whole = changes.regions.count == 1 && changes.count == 1 && change->kind == CHANGE_MOVED &&
+                               fabs(change->right - by[0]) < 0.01 && fabs(change->up + by[1]) < 0.01 &&
+                               region->pixels == difference.pixels && region->left == difference.left &&
+                               region->bottom == difference.bottom;
+            if (whole == broken)
+                fail_msg("%zu regions where all moved by (%d, %d)%s", (size_t)changes.regions.count, by[0], by[1],
+                         broken ? " but one thing" : "");
+        }
+}
+
 RUN_TESTS(NULL, NULL)
