@@ -4,6 +4,7 @@
 #include "regression/compare.h"
 #include "regression/internal.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -252,6 +253,66 @@ static inline bool share_side(const Around *a, const Around *b, int x, const uin
     return false;
 }
 
+/* Twice the colours of the sides, on average of both pictures: flat ones that they share, within two pixels. False if there are not
+   two. */
+static bool find_sides(const Around *a, const Around *b, int x, const uint8_t slacks[CHANNELS],
+                       int sides[2][CHANNELS]) {
+    uint32_t of_pixel;
+    memcpy(&of_pixel, slacks, sizeof of_pixel);
+    const Bytes more = (Bytes)((Pixels){0} + of_pixel);
+    int farthest = -1;
+    for (int i = 1; i < SIDE - 1; i++)
+        for (size_t dx = 1; dx < SIDE - 1; dx++) {
+            const size_t at = (size_t)x + dx;
+            const uint8_t *p = a->rows[i] + 4 * at, *q = b->rows[i] + 4 * at;
+            if (look_equal(load(p), load(q), more)[0] == 0 || are_flat(a, i, at, more)[0] == 0 ||
+                are_flat(b, i, at, more)[0] == 0)
+                continue;
+            int distance = 0, colour[CHANNELS];
+            for (int c = 0; c < CHANNELS; c++) {
+                colour[c] = p[c] + q[c];
+                distance += farthest < 0 ? 0 : abs(colour[c] - sides[0][c]);
+            }
+            if (farthest < 0) memcpy(sides[0], colour, sizeof colour);
+            if (distance > farthest) memcpy(sides[1], colour, sizeof colour);
+            farthest = larger(farthest, distance);
+        }
+    return farthest >= 2 * LEAST_CONTRAST;
+}
+
+/* Whether the sums of 5 x 5 pixels, b less a, are what it takes to move an edge or a line between two sides by half a pixel at most:
+   one side's colour gives way to the other's. */
+static bool moves_between(const int sums[CHANNELS], int sides[2][CHANNELS], const Window *p, const Window *q) {
+    static const double MOST = 0.5 * 7; /* of the longest edge in a window */
+    double steps[CHANNELS], product = 0, square = 0;
+    for (int c = 0; c < CHANNELS; c++) {
+        steps[c] = (sides[1][c] - sides[0][c]) / 2.0;
+        product += sums[c] * steps[c], square += steps[c] * steps[c];
+    }
+    const double moved = product / square;
+    bool fits = fabs(moved) <= MOST;
+    for (int c = 0; fits && c < CHANNELS; c++)
+        fits = 20 * fabs(sums[c] - moved * steps[c]) <= 9 * contrast_of(p, q, c) + 60;
+    return fits;
+}
+
+/* The same as the second part of 2, for a line whose sides differ: in one of the windows around the pixel and its neighbours. */
+static bool lies_between(const Around *a, const Around *b, int x, const Window *p, const Window *q,
+                         const uint8_t slacks[CHANNELS]) {
+    int sides[2][CHANNELS] = {{0}};
+    if (!find_sides(a, b, x, slacks, sides)) return false;
+    for (int window = 0; window < 9; window++) {
+        int sums[CHANNELS] = {0};
+        for (int i = window / 3; i < window / 3 + SIDE - 2; i++)
+            for (int k = 0; k < (SIDE - 2) * CHANNELS; k++) {
+                const size_t at = 4 * ((size_t)x + (size_t)(window % 3)) + (size_t)k;
+                sums[k % CHANNELS] += b->rows[i][at] - a->rows[i][at];
+            }
+        if (moves_between(sums, sides, p, q)) return true;
+    }
+    return false;
+}
+
 static void mark_row(const Around *a, const Around *b, const uint8_t *levels, int width, uint8_t *masked) {
     Window p, q;
     uint8_t slacks[CHANNELS];
@@ -264,7 +325,7 @@ static void mark_row(const Around *a, const Around *b, const uint8_t *levels, in
         bool explained = is_explained(&p, &q, slacks, NULL);
         if (!explained) {
             least_changes(a, b, x, changes);
-            explained = is_explained(&p, &q, slacks, changes);
+            explained = is_explained(&p, &q, slacks, changes) || lies_between(a, b, x, &p, &q, slacks);
         }
         if (explained && keeps_colours(a, b, x)) masked[x] = IGNORED_EDGE;
     }

@@ -102,7 +102,8 @@ double mask_most_hidden(const Mask *mask, int width, int height);
       of 255: gradients of areas are no edges.
    2. Either each value lies within the range of the other window: an edge between two colours that both pictures show.
       Or the sums of both windows differ by at most 3 * 0.15 c: a thin line has moved, and has kept its strength. Where it
-      crosses another, the same holds of a window of 5 x 5 pixels around the pixel or one of its neighbours.
+      crosses another, the same holds of a window of 5 x 5 pixels around the pixel or one of its neighbours; and where it lies
+      between two flat colours, the outline of a shape, after what it takes to move them by half a pixel at most.
    3. Within two pixels there is a flat colour (three neighbours are equal to it) that both pictures share: one side of
       the edge. In textures, such as photos, nothing is an edge.
 

@@ -249,6 +249,58 @@ TEST(lines_that_cross_may_move) {
 }
 
 /* In the picture of a shape: a pixel of the edge, the inside or the paper gets the opposite colour, or red. */
+/* A line of this width and colour between sky and earth, by 16 x 16 samples; its normal has this angle. */
+static Image *outlined(double angle, double width, double move, const int line[3], double strength) {
+    static const int sky[3] = {135, 206, 235}, earth[3] = {181, 101, 29};
+    enum { FINE_SIDE = 16 };
+    Image *image = image_sized(SIDE, SIDE);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        double sum[3] = {0};
+        for (int k = 0; k < FINE_SIDE * FINE_SIDE; k++) {
+            const double x = i % SIDE - SIDE / 2 + (k % FINE_SIDE + 0.5) / FINE_SIDE,
+                         y = i / SIDE - SIDE / 2 + (k / FINE_SIDE + 0.5) / FINE_SIDE,
+                         far = x * cos(angle) + y * sin(angle) - move;
+            for (int c = 0; c < 3; c++) {
+                const int side = far < 0 ? sky[c] : earth[c];
+                sum[c] += fabs(far) <= width / 2 ? side + strength * (line[c] - side) : side;
+            }
+        }
+        for (int c = 0; c < 3; c++) image->pixels[4 * i + c] = (uint8_t)(sum[c] / (FINE_SIDE * FINE_SIDE) + 0.5);
+        image->pixels[4 * i + 3] = 255;
+    }
+    return image;
+}
+
+/* An outline that moves also moves the border of what is on its sides. A few of one pixel change by more than a part of an edge may. It
+   must not fade, vanish or change its colour. */
+TEST(outlines_move_between_two_colours) {
+    static const int dark[3] = {50, 50, 50}, red[3] = {120, 40, 40};
+    static const double moves[] = {-0.25, 0.15, 0.25}, angles[] = {0, 0.3, 0.785, 1.5707963267948966};
+    int all = 0, passed = 0;
+    for (int i = 0; i < 4; i++)
+        for (double width = 1; width <= 2; width += 0.5) {
+            for (int k = 0; k < 3; k++, all++) {
+                Image *a = outlined(angles[i], width, 0.3, dark, 1),
+                      *b = outlined(angles[i], width, 0.3 + moves[k], dark, 1);
+                passed += difference_of(a, b).pixels == 0;
+                image_destroy(a);
+                image_destroy(b);
+            }
+            for (int k = 0; k < 4; k++) {
+                Image *a = outlined(angles[i], width, 0.3, dark, 1),
+                      *b = outlined(angles[i], width, k == 3 ? 1.3 : 0.3, k == 0 ? red : dark,
+                                    k == 1   ? 0
+                                    : k == 2 ? 0.7
+                                             : 1);
+                if (difference_of(a, b).pixels == 0)
+                    fail_msg("change %d passes: angle %g, width %g", k, angles[i], width);
+                image_destroy(a);
+                image_destroy(b);
+            }
+        }
+    if (9 * passed < 8 * all) fail_msg("%d of %d pass", passed, all);
+}
+
 TEST(single_wrong_pixels_are_detected) {
     for (int i = 0; i < SHAPES; i++) {
         Image *image = drawn(&shapes[i], &plain), *wrong = drawn(&shapes[i], &plain);
