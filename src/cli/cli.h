@@ -160,9 +160,6 @@ bool output_check_file(const char *path, const char *ending, Error *error);
    of another kind: it must not be lost by a mistyped name. */
 bool output_check_npz(const char *path, const char *kind, Error *error);
 
-/* The output is, or becomes, a file of that name: not standard output, a device or a pipe. Its pieces can be kept beside it. */
-bool output_is_file(const char *path);
-
 /* ERROR_INPUT for a folder with the name of a file, such as "chart.png", which is a mistake. */
 bool output_check_folder_name(const char *path, Error *error);
 
@@ -223,7 +220,6 @@ void shard_option_print(const Pieces *pieces, const char *output);
 
 /* The next command that runs is a merge. */
 void shard_option_merge(const PiecesRun *run);
-bool shard_option_is_merge(void);
 
 /* Finds the scenes that `cmake --install` put beside the program. */
 

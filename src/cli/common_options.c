@@ -67,8 +67,6 @@ static const PiecesRun *merging;
 
 void shard_option_merge(const PiecesRun *run) { merging = run; }
 
-bool shard_option_is_merge(void) { return merging != NULL; }
-
 /* The arguments that all shards have: without --shard, whose value differs. They last as long as the program. */
 static bool keep_arguments(PiecesRun *run, int argc, char **argv, Error *error) {
     static char **kept;
@@ -142,12 +140,6 @@ static bool try_folder(const char *folder, const char *path, Error *error) {
 static bool is_standard_output(const struct stat *status) {
     struct stat output;
     return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == status->st_dev && output.st_ino == status->st_ino;
-}
-
-bool output_is_file(const char *path) {
-    struct stat status;
-    return !path_is_standard(path) &&
-           (stat(path, &status) != 0 || (S_ISREG(status.st_mode) && !is_standard_output(&status)));
 }
 
 bool output_check_file(const char *path, const char *ending, Error *error) {

@@ -6,7 +6,6 @@
 #include "cli/options.h"
 #include "learning/dataset.h"
 #include "methods/pair.h"
-#include "runs/pieces.h"
 #include "scenes/scenes.h"
 
 #include <inttypes.h>
@@ -15,7 +14,6 @@ typedef struct Options {
     DatasetOptions dataset;
     const char *scenes[DATASET_MAX_SCENES];
     const char *output;
-    const char *shard; /* or NULL */
 } Options;
 
 static const char *view_names[PAIR_VIEWS + 1]; /* of pair_views, in the order of PairView */
@@ -50,7 +48,6 @@ static const Option option_table[] = {
     {"--seed", 0, "N",
      "Seed of the launches of --random and of the fifth of all launches that is held out (default: 1)",
      OPTION_SEED(Options, dataset.seed)},
-    {OPTION_SHARD(Options, shard)},
     {0}};
 
 static const CommandSpec spec = {
@@ -61,87 +58,41 @@ static const CommandSpec spec = {
     .inputs = {1, DATASET_MAX_SCENES, "scene"},
     .help =
         "Record a dataset to train on: for every touching pair in every step of every launch, positions, rotations and "
-        "velocities before the solve, and what the solve changed. An interrupted recording continues where it "
-        "stopped.\v"
+        "velocities before the solve, and what the solve changed.\v"
         "Example: twinbox dataset single stack -o pairs.npz\n"
         "         twinbox dataset single -o impulses.npz --inputs raw --target impulse"};
 
-static void print_rows(const Options *options, int64_t rows, int64_t unconverged, int launches) {
-    printf("%" PRId64 " rows of %d launch%s -> %s\n", rows, launches, plural_es(launches), options->output);
+static void print_rows(const Options *options, const Dataset *dataset) {
+    printf("%" PRId64 " rows of %d launch%s -> %s\n", dataset->rows, dataset->launches, plural_es(dataset->launches),
+           options->output);
     if (options->dataset.labels == DATASET_BY_REFERENCE)
-        printf("    steps left out, as the reference does not converge: %" PRId64 "\n", unconverged);
+        printf("    steps left out, as the reference does not converge: %" PRId64 "\n", dataset->unconverged);
 }
 
-/* A pipe has no folder for pieces. */
-static bool record_in_memory(const Options *options, Error *error) {
+static bool record(const Options *options, Error *error) {
+    FileReservation reservation;
+    if (!file_reserve(&reservation, options->output, error)) return false;
     Dataset *dataset = dataset_record(&options->dataset, progress_bar_begin("recording launches"), error);
     progress_bar_end();
     const bool ok = dataset != NULL && dataset_write(dataset, options->output, error);
-    if (ok) print_rows(options, dataset->rows, dataset->unconverged, dataset->launches);
+    if (ok) print_rows(options, dataset);
     dataset_destroy(dataset);
-    return ok;
-}
-
-static bool join_pieces(const Options *options, const DatasetPieces *dataset, const Pieces *pieces, Error *error) {
-    int64_t rows, unconverged;
-    const bool ok = dataset_pieces_write(dataset, pieces, options->output, &rows, &unconverged,
-                                         progress_bar_begin("writing"), error) &&
-                    pieces_end(pieces, error) && dataset_check_rows(rows, unconverged, error);
-    progress_bar_end();
-    if (ok) print_rows(options, rows, unconverged, dataset->recording.dataset->launches);
-    return ok;
-}
-
-/* Shards share a file's pieces; a whole recording has them to itself. */
-static bool do_pieces(const Options *options, const DatasetPieces *dataset, Pieces *pieces, Error *error) {
-    FileReservation reservation;
-    const bool reserves = pieces->mode != PIECES_SHARD;
-    if (reserves && !file_reserve(&reservation, options->output, error)) return false;
-    bool ok = pieces_do(pieces, &dataset->plan, progress_bar_begin("recording launches"), error);
-    progress_bar_end();
-    if (ok && pieces->mode == PIECES_SHARD)
-        shard_option_print(pieces, options->output);
-    else if (ok)
-        ok = join_pieces(options, dataset, pieces, error);
-    return (!reserves || file_release(&reservation, error)) && ok;
-}
-
-static bool record_in_pieces(const Options *options, const PiecesRun *run, Error *error) {
-    DatasetPieces dataset;
-    Pieces pieces = {0};
-    StudyKey key = {0};
-    const bool ok =
-        dataset_pieces_make(&dataset, &options->dataset, error) && dataset_pieces_key(&dataset, &key, error) &&
-        pieces_open(&pieces, options->output, true, &key, run, error) && do_pieces(options, &dataset, &pieces, error);
-    pieces_close(&pieces);
-    study_key_free(&key);
-    dataset_pieces_free(&dataset);
-    return ok;
-}
-
-static bool record(const Options *options, const PiecesRun *run, Error *error) {
-    if (run->merge || output_is_file(options->output)) return record_in_pieces(options, run, error);
-    if (run->request.shard.count > 1)
-        return error_input(error, options->output,
-                           "shards need the name of a file, beside which their pieces are kept");
-    return record_in_memory(options, error);
+    return file_release(&reservation, error) && ok;
 }
 
 bool command_dataset(int argc, char **argv, Error *error) {
     Options options = {.dataset.seed = 1};
-    PiecesRun run;
     for (int v = 0; v < PAIR_VIEWS; v++) view_names[v] = pair_views[v].name;
     if (!options_parse(&spec, argc, argv, &options, error)) return false;
     if (!output_check_npz(options.output, "dataset", error)) return false;
-    if (!shard_option_take(&run, options.shard, argc, argv, error)) return false;
     options.dataset.scenes = options.scenes;
-    if (options.dataset.table_path == NULL) return record(&options, &run, error);
+    if (options.dataset.table_path == NULL) return record(&options, error);
     if (options.dataset.bomb_x.count + options.dataset.random > 0)
         return error_input(error, "--launches", "cannot be combined with --bomb-x or --random");
     LaunchTable table;
     if (!launches_read(&table, options.dataset.table_path, error)) return false;
     options.dataset.table = &table;
-    const bool ok = record(&options, &run, error);
+    const bool ok = record(&options, error);
     launches_free(&table);
     return ok;
 }

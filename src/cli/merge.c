@@ -34,7 +34,7 @@ static const CommandSpec spec = {
               OPTION_PATH(Options, output)},
     .inputs = {1, 1, "output"},
     .help =
-        "Join what the shards of a command (--shard) left in OUTPUT/shards, or OUTPUT.shards if the output is a file: "
+        "Join what the shards of a command (--shard) left in OUTPUT/shards: "
         "checks that every piece is there, of this version and of these inputs, and writes what the command writes "
         "without shards, byte for byte. The shards stay; a second merge changes nothing.\n"
         "If pieces are missing, nothing is written: the message names them, standard output has the option for sbatch "
@@ -45,7 +45,7 @@ static const CommandSpec spec = {
         "         sbatch $(twinbox merge out/stability) job.sh"};
 
 /* The commands that can be merged: a record does not run any other. */
-static const char *const mergeable[] = {"chart", "dataset", "paper", "render", "stability", "train"};
+static const char *const mergeable[] = {"chart", "paper", "render", "stability"};
 
 static const Command *find_command(const StudyRecord *record, const char *path, Error *error) {
     const char *space = strrchr(record->command.argv[0], ' '), *name = space != NULL ? space + 1 : "";
@@ -59,16 +59,9 @@ static const Command *find_command(const StudyRecord *record, const char *path, 
 
 /* run.json of an output. */
 static bool find_record(const char *output, char path[PIECES_PATH_SIZE], Error *error) {
-    for (int is_file = 0; is_file < 2; is_file++) {
-        char folder[PIECES_PATH_SIZE];
-        bool there;
-        if (!pieces_shards_folder(folder, output, is_file != 0, error) ||
-            !file_path(path, PIECES_PATH_SIZE, error, "%s/run.json", folder) || !file_find(path, &there, error))
-            return false;
-        if (there) return true;
-    }
-    return error_input(error, output, "has no shards: neither %s/shards/run.json nor %s.shards/run.json is there",
-                       output, output);
+    bool there;
+    if (!pieces_record_path(path, output, error) || !file_find(path, &there, error)) return false;
+    return there || error_input(error, output, "has no shards: %s is missing", path);
 }
 
 /* Goes to the folder in which the shards ran, so that their paths are right. output: absolute if that is another. */

@@ -223,7 +223,7 @@ static bool check_directory(const char *path, Error *error) {
 /* How the command is to run. The merge reads the inputs of shards once more. */
 static bool choose_mode(Options *options, int argc, char **argv, Error *error) {
     if (!shard_option_take(&options->run, options->shard, argc, argv, error) ||
-        !pieces_find_mode(&options->mode, options->render.directory, false, &options->run, error))
+        !pieces_find_mode(&options->mode, options->render.directory, &options->run, error))
         return false;
     bool ok = true;
     for (int i = 0; ok && options->mode == PIECES_SHARD && i < options->input_count; i++)

@@ -209,7 +209,6 @@ typedef struct TrainRequest {
     const struct TrainKind *kind;
     const char *input, *output;
     const char *values[OPTIONS_MAX]; /* texts of the kind's options; NULL: neither given nor a standard; "": a flag */
-    PiecesRun run;                   /* of kinds with TRAIN_SHARD; of others zero */
     const struct Scene *scene;       /* of kinds that read one */
     const char *state, *command;     /* of kinds with a state: its file, and the command, cut to what they keep of it */
 } TrainRequest;
@@ -224,14 +223,6 @@ typedef struct TrainKind {
     size_t command_size; /* of the command in its state and result */
 } TrainKind;
 
-/* The row of the option of kinds that use train_pieces(). No kind reads its value, and no network stores it. */
-#define TRAIN_SHARD                                                                                            \
-    "--shard", 0, "I/N",                                                                                       \
-        "Only record share I of N of the first round's launches and the held-out ones, which do not need the " \
-        "network; "                                                                                            \
-        "'twinbox merge' reads them and trains (default: as Slurm or MPI says, or all)",                       \
-        .read = NULL
-
 #define TRAIN_KIND_DECLARED(name) extern const TrainKind train_##name;
 TRAIN_KINDS(TRAIN_KIND_DECLARED)
 #undef TRAIN_KIND_DECLARED
@@ -244,10 +235,6 @@ bool train_read(const TrainRequest *request, void *options, Error *error);
 
 /* Sets the text of an option; NULL: as if it were not given. */
 void train_set(TrainRequest *request, const char *option, const char *value);
-
-/* What a training records before it has a network, in pieces: opens them, and does those of a shard, or checks those of a merge.
-   The whole training does no piece: pieces->mode tells. */
-bool train_pieces(const TrainRequest *request, const PiecePlan *plan, Pieces *pieces, Error *error);
 
 /* Of a text for train_describe(). */
 enum { TRAIN_COMMAND_SIZE = 2048 };

@@ -8,7 +8,6 @@
 #include "learning/dataset.h"
 #include "learning/pair_training.h"
 #include "nets/nets.h"
-#include "runs/pieces.h"
 #include "scenes/scenes.h"
 
 #include <assert.h>
@@ -49,52 +48,6 @@ void train_describe(const TrainRequest *request, char *command, size_t size) {
         const bool negative = option->standard != NULL && option->standard[0] == '-';
         if (option->value != NULL) text_add(command, size, "%s%s", negative ? "=" : " ", request->values[i]);
     }
-}
-
-/* Takes the value of --shard, or the environment's, if the kind has the option. */
-static bool train_take_shard(TrainRequest *request, int argc, char **argv, Error *error) {
-    const int i = train_find_option(request->kind, "--shard");
-    if (i < 0)
-        return !shard_option_is_merge() ||
-               error_input(error, "--kind", "%s has no shards that could be merged", request->kind->name);
-    const char *text = request->values[i];
-    request->values[i] = NULL;
-    return shard_option_take(&request->run, text, argc, argv, error);
-}
-
-static bool train_is_shard(const TrainRequest *request) {
-    return request->run.request.shard.count > 1 || request->run.request.array.step > 0;
-}
-
-/* Hashes everything that determines the network: the command without its paths, and the file that it reads. */
-static bool find_key(const TrainRequest *request, StudyKey *key, Error *error) {
-    TrainRequest options = *request;
-    char command[TRAIN_COMMAND_SIZE];
-    options.input = NULL;
-    options.output = "";
-    train_describe(&options, command, sizeof command);
-    if (!study_key_begin(key, error)) return false;
-    study_key_add(key, command, strlen(command));
-    return request->input == NULL || study_key_add_file(key, request->input, error);
-}
-
-static bool do_pieces(const TrainRequest *request, const PiecePlan *plan, Pieces *pieces, Error *error) {
-    const bool ok = pieces_do(pieces, plan, progress_bar_begin("recorded launches"), error);
-    progress_bar_end();
-    if (ok && pieces->mode == PIECES_SHARD) shard_option_print(pieces, request->output);
-    return ok;
-}
-
-bool train_pieces(const TrainRequest *request, const PiecePlan *plan, Pieces *pieces, Error *error) {
-    StudyKey key = {0};
-    if (train_is_shard(request) && !output_is_file(request->output))
-        return error_input(error, request->output,
-                           "shards need the name of a file, beside which their pieces are kept");
-    const bool ok = find_key(request, &key, error) &&
-                    pieces_open(pieces, request->output, true, &key, &request->run, error) &&
-                    (pieces->mode == PIECES_WHOLE || do_pieces(request, plan, pieces, error));
-    study_key_free(&key);
-    return ok;
 }
 
 typedef struct TrainPairNetOptions {
@@ -382,13 +335,11 @@ bool command_train(int argc, char **argv, Error *error) {
                 "         twinbox train --kind scene-net stack -o scene-net.npz"};
     TrainRequest request;
     if (!options_parse(&spec, argc, argv, &options, error) || !make_request(&options, &request, error) ||
-        !output_check_npz(request.output, request.kind->file_kind, error) ||
-        !train_take_shard(&request, argc, argv, error))
+        !output_check_npz(request.output, request.kind->file_kind, error))
         return false;
     char command[TRAIN_COMMAND_SIZE];
     train_describe(&request, command, sizeof command);
     note_verbose("with all options: %s", command);
-    if (train_is_shard(&request)) return train_on_scene(&request, error);
     FileReservation reservation;
     if (!file_reserve(&reservation, request.output, error)) return false;
     const bool done = train_kind(&request, error);

@@ -16,7 +16,6 @@
 #include "nets/kernels.h"
 #include "nets/kinds.h"
 #include "nets/nets.h"
-#include "runs/pieces.h"
 #include "scenes/scenes.h"
 
 #include <string.h>
@@ -370,7 +369,6 @@ static const Option scene_net_options[] = {
      OPTION_FLAG(SceneNetOptions, smallest)},
     {"--within", 0, "E", "Held-out error to reach, m/s; only with --smallest",
      OPTION_DOUBLE(SceneNetOptions, within, 0, 1000)},
-    {TRAIN_SHARD},
     {0}};
 
 static bool read_momentum(const Option *option, const char *text, void *value, Error *error) {
@@ -462,19 +460,6 @@ static bool scene_net_train_and_store(const Scene *scene, const TrainRequest *re
     return ok;
 }
 
-/* A shard records and does not train; every width that a merge trains reads the same records. */
-static bool record_or_train(const Scene *scene, const TrainRequest *request, SceneNetOptions *given, Error *error) {
-    SceneRecording recording;
-    Pieces pieces = {0};
-    bool ok = scene_recording_begin(&recording, scene, &given->training, error) &&
-              train_pieces(request, &recording.plan, &pieces, error);
-    if (ok && pieces.mode == PIECES_MERGE) given->training.recorded = &pieces;
-    if (ok && pieces.mode != PIECES_SHARD) ok = scene_net_train_and_store(scene, request, given, error);
-    pieces_close(&pieces);
-    scene_recording_end(&recording);
-    return ok;
-}
-
 static bool scene_net_run(const TrainRequest *request, Error *error) {
     SceneNetOptions given = {
         .training = {.widths = {.state = 16, .present = 32, .warm = 16}, .on_score = scene_net_print_score},
@@ -485,7 +470,7 @@ static bool scene_net_run(const TrainRequest *request, Error *error) {
     if (width % ROW_LANES != 0) return error_input(error, "--width", "%d is not a multiple of %d", width, ROW_LANES);
     if (given.smallest != (given.within >= 0))
         return error_input(error, "--smallest", "goes with --within E, and that with it");
-    return record_or_train(request->scene, request, &given, error);
+    return scene_net_train_and_store(request->scene, request, &given, error);
 }
 
 const TrainKind train_scene_net = {

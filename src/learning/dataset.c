@@ -156,8 +156,8 @@ static void copy_rows(void *to, const void *from, const Dataset *dataset, const 
 
 static void copy_all_rows(Dataset *to, const Dataset *from, const bool *keep) {
     DatasetArrays arrays, others;
-    const int count = dataset_arrays(to, to->context != NULL, &arrays);
-    dataset_arrays(from, from->context != NULL, &others);
+    const int count = dataset_arrays(to, &arrays);
+    dataset_arrays(from, &others);
     for (int i = DATASET_FIRST_ROWS; i < count; i++)
         copy_rows((void *)arrays.list[i].data, others.list[i].data, from, keep, dataset_row_size(&others.list[i]));
 }

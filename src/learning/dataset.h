@@ -8,7 +8,6 @@
 #include "methods/methods.h"
 #include "methods/pair.h"
 #include "nets/nets.h"
-#include "runs/pieces.h"
 #include "scenes/scenes.h"
 
 #include <stddef.h>
@@ -124,17 +123,6 @@ typedef struct LaunchRows {
 /* Runs a launched scene with the engine, and appends the rows for the dataset's view, target and labels. */
 bool dataset_record_rows(const Dataset *dataset, const Scene *launched, LaunchRows *rows, Error *error);
 
-/* What a recording is made of: scenes and launches. Ranges of launches can be recorded one by one. */
-
-typedef struct DatasetRecording {
-    const DatasetOptions *options;
-    Scene *scenes[DATASET_MAX_SCENES];
-    Dataset *dataset; /* its launches, and no rows yet */
-} DatasetRecording;
-
-/* ERROR_INPUT if there are no rows. unconverged: as in Dataset. */
-bool dataset_check_rows(int64_t rows, int64_t unconverged, Error *error);
-
 /* The launches of a dataset. */
 
 /* Launches of each scene. */
@@ -173,39 +161,10 @@ typedef struct DatasetArrays {
     char scenes[DATASET_SCENES_SIZE];
 } DatasetArrays;
 
-/* The arrays in the order of the file; they point to the dataset and to *arrays. Of a dataset without rows, the arrays of
-   rows have no data: rows can be appended (base/npz.h). Returns their number, which is one less without context. */
-int dataset_arrays(const Dataset *dataset, bool context, DatasetArrays *arrays);
+/* The arrays in the order of the file; they point to the dataset and to *arrays. Returns their number, which is one less without context. */
+int dataset_arrays(const Dataset *dataset, DatasetArrays *arrays);
 
 /* Bytes of a row in an array of rows, which all have numbers of 4 bytes. */
 static inline size_t dataset_row_size(const NpzArray *array) {
     return sizeof(float) * (array->rank == 2 ? (size_t)array->shape[1] : 1);
 }
-
-/* A dataset file in pieces (runs/pieces.h): the rows of some launches each. */
-
-/* dataset_pieces_free(). */
-typedef struct DatasetPieces {
-    DatasetRecording recording;
-    PieceRanges launches; /* a group for each scene */
-    PiecePlan plan;
-} DatasetPieces;
-
-/* Errors as dataset_record(). The options and *pieces must stay where they are. */
-bool dataset_pieces_make(DatasetPieces *pieces, const DatasetOptions *options, Error *error);
-void dataset_pieces_free(DatasetPieces *pieces);
-
-/* Hashes everything that determines the file. */
-bool dataset_pieces_key(const DatasetPieces *pieces, StudyKey *key, Error *error);
-
-/* The number of rows in the results of a piece: these are the count of its unconverged steps, in DATASET_PIECE_HEAD
-   bytes, and the arrays of rows one after the other. -1 with error set: the results, of the file `path`, are not of
-   these launches. */
-enum { DATASET_PIECE_HEAD = sizeof(int64_t) };
-int64_t dataset_piece_rows(const DatasetPieces *pieces, int64_t piece, const char *results, size_t size,
-                           int64_t *unconverged, const char *path, Error *error);
-
-/* Writes the file that dataset_write() writes of dataset_record(), in bounded memory. *rows: in the file.
-   *unconverged: as in Dataset. Without rows, nothing is written: dataset_check_rows() refuses that. */
-bool dataset_pieces_write(const DatasetPieces *pieces, const Pieces *done, const char *path, int64_t *rows,
-                          int64_t *unconverged, const Progress *progress, Error *error);

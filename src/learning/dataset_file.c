@@ -200,8 +200,8 @@ static bool check_contents(void *of, const char *path, Error *error) {
 
 static const NetFileKind kind = {"dataset", DATASET_VERSION, list_fields, read_sizes, create, check_contents};
 
-int dataset_arrays(const Dataset *dataset, bool context, DatasetArrays *arrays) {
-    DatasetFile file = {(Dataset *)dataset, context, arrays->scenes};
+int dataset_arrays(const Dataset *dataset, DatasetArrays *arrays) {
+    DatasetFile file = {(Dataset *)dataset, dataset->context != NULL, arrays->scenes};
     join_scenes(dataset, arrays->scenes);
     const int count = list_fields(&file, arrays->fields);
     arrays->list[0] = (NpzArray){"version", NPZ_INT32, 0, {0}, &kind.version};
@@ -212,7 +212,7 @@ int dataset_arrays(const Dataset *dataset, bool context, DatasetArrays *arrays) 
 
 bool dataset_write(const Dataset *dataset, const char *path, Error *error) {
     DatasetArrays arrays;
-    const int count = dataset_arrays(dataset, dataset->context != NULL, &arrays);
+    const int count = dataset_arrays(dataset, &arrays);
     return npz_write(path, arrays.list, (size_t)count, error);
 }
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What scene-net and sain learn from: problems with their references, and the launches of scene-net's rounds, run or read
-   from pieces. */
+/* What scene-net and sain learn from: problems with their references, and the launches of scene-net's rounds. */
 #include "base/base.h"
 #include "base/machine.h"
 #include "engine/engine.h"
@@ -10,12 +9,10 @@
 #include "methods/reference.h"
 #include "methods/solvers.h"
 #include "nets/kinds.h"
-#include "runs/pieces.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 
 #include <gsl/gsl_errno.h>
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -57,10 +54,6 @@ bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from) {
 /* STEPS_AFTER: steps after the scene's impact frames that are samples too. */
 enum { STEPS_AFTER = 2, HELD_OUT_LAUNCHES = 60, HELD_OUT_SEED = 7919 };
 
-/* Launches of a piece, and about the time of one: steps up to the impact, and its references. */
-enum { PIECE_LAUNCHES = 100 };
-static const double launch_seconds = 0.02;
-
 /* Of turned launches, unless the scene has a family of them; rad, rad/s. */
 static const SceneSpan turned = {0, -1.5f, 1.5f}, spinning = {0, -20, 20};
 /* The setting `near` (residual) of scene-net in the runs that record training samples. */
@@ -84,11 +77,8 @@ static void draw_launches(const SceneRecording *recording, Launch *launches, int
     }
 }
 
-/* Where the launches of a set begin; of the number of sets: where all end. */
-static int first_of(const SceneRecording *recording, int set) { return (int)recording->ranges.first_item[set]; }
-
 static Launch *round_launches(const SceneRecording *recording) {
-    return recording->launches + first_of(recording, SCENE_BY_MOMENTUM);
+    return recording->launches + recording->first[SCENE_BY_MOMENTUM];
 }
 
 bool solver_with(ContactSolver *solver, const ContactSolverKind *kind, const char *text, Error *error) {
@@ -131,58 +121,19 @@ static bool run(const SceneRecording *recording, Driver driver, int first, int e
     return slot_rollout(&rollout, samples, NULL, error) && slot_samples_label(samples, had, progress, error);
 }
 
-static void describe(void *context, int64_t piece, PieceInfo *info) {
-    static const char *const names[SCENE_SETS] = {"held-out launches", "launches by momentum", "launches by reference"};
-    const SceneRecording *recording = context;
-    int64_t first, end;
-    const int set = piece_ranges_find(&recording->ranges, piece, &first, &end), begin = first_of(recording, set);
-    snprintf(info->name, sizeof info->name, "%s %" PRId64 "-%" PRId64, names[set], first - begin + 1, end - begin);
-    info->weight = launch_seconds * (double)(end - first);
-}
-
-static bool work(void *context, int64_t piece, FILE *results, const Progress *progress, Error *error) {
-    const SceneRecording *recording = context;
-    int64_t first, end;
-    const Driver driver = {(SceneSet)piece_ranges_find(&recording->ranges, piece, &first, &end), NULL};
-    SlotSamples samples = {0};
-    const bool ok = run(recording, driver, (int)first, (int)end, &samples, progress, error);
-    if (ok) slot_samples_write(&samples, results);
-    slot_samples_free(&samples);
-    return ok;
-}
-
-static bool read_piece(const SceneRecording *recording, int64_t piece, SlotSamples *samples, Error *error) {
-    char path[PIECES_PATH_SIZE];
-    size_t size;
-    if (!pieces_path(recording->training->recorded, piece, path, error)) return false;
-    char *results = pieces_read(recording->training->recorded, piece, &size, NULL, error);
-    const bool ok =
-        results != NULL && slot_samples_read(samples, results, size, recording->scene->body_count + 1, path, error);
-    free(results);
-    return ok;
-}
-
 bool scene_recording_take(const SceneRecording *recording, SceneSet set, SlotSamples *samples, const Progress *progress,
                           Error *error) {
-    if (recording->training->recorded == NULL)
-        return run(recording, (Driver){set, NULL}, first_of(recording, (int)set), first_of(recording, (int)set + 1),
-                   samples, progress, error);
-    const int64_t first = recording->ranges.first_piece[set], end = recording->ranges.first_piece[set + 1];
-    for (int64_t piece = first; piece < end; piece++) {
-        if (!read_piece(recording, piece, samples, error)) return false;
-        if (!progress_report(progress, (double)(piece - first + 1), (double)(end - first)))
-            return error_interrupted(error, "scene-net", "stopped");
-    }
-    return true;
+    return run(recording, (Driver){set, NULL}, recording->first[set], recording->first[set + 1], samples, progress,
+               error);
 }
 
 bool scene_recording_next(SceneRecording *recording, const SlotNetwork *network, SlotSamples *samples,
                           const Progress *progress, Error *error) {
-    const int first = first_of(recording, SCENE_BY_MOMENTUM);
+    const int first = recording->first[SCENE_BY_MOMENTUM];
     recording->round++;
     draw_launches(recording, round_launches(recording), recording->training->launches);
-    return run(recording, (Driver){SCENE_BY_MOMENTUM, network}, first, first_of(recording, SCENE_SETS), samples,
-               progress, error);
+    return run(recording, (Driver){SCENE_BY_MOMENTUM, network}, first, recording->first[SCENE_SETS], samples, progress,
+               error);
 }
 
 static bool check_scene(const Scene *scene, Error *error) {
@@ -193,7 +144,7 @@ static bool check_scene(const Scene *scene, Error *error) {
 
 /* Held-out launches have their own random seed. */
 static bool draw_held_out(const SceneRecording *recording, Error *error) {
-    const int count = first_of(recording, SCENE_BY_MOMENTUM);
+    const int count = recording->first[SCENE_BY_MOMENTUM];
     gsl_rng_set(recording->generator, (unsigned long)recording->training->seed + HELD_OUT_SEED);
     draw_launches(recording, recording->launches, count);
     return launches_check(recording->scene, recording->launches, count, error);
@@ -209,22 +160,21 @@ static bool check_rounds(const SceneRecording *recording, Error *error) {
     return true;
 }
 
-static void plan_sets(SceneRecording *recording) {
-    const int launches = recording->training->launches, half = launches / 2;
-    const int counts[SCENE_SETS] = {launches < HELD_OUT_LAUNCHES ? launches : HELD_OUT_LAUNCHES, half, launches - half};
-    for (int set = 0; set < SCENE_SETS; set++)
-        piece_ranges_add(&recording->ranges, counts[set], (double)counts[set] / PIECE_LAUNCHES);
-    recording->plan = (PiecePlan){
-        .count = piece_ranges_count(&recording->ranges), .describe = describe, .work = work, .context = recording};
+static void count_launches(SceneRecording *recording) {
+    const int launches = recording->training->launches,
+              held_out = launches < HELD_OUT_LAUNCHES ? launches : HELD_OUT_LAUNCHES;
+    recording->first[SCENE_BY_MOMENTUM] = held_out;
+    recording->first[SCENE_BY_REFERENCE] = held_out + launches / 2;
+    recording->first[SCENE_SETS] = held_out + launches;
 }
 
 bool scene_recording_begin(SceneRecording *recording, const Scene *scene, const SceneTraining *training, Error *error) {
     *recording = (SceneRecording){.scene = scene, .training = training};
     if (!check_scene(scene, error)) return false;
-    plan_sets(recording);
+    count_launches(recording);
     gsl_set_error_handler_off(); /* its default aborts */
     recording->generator = gsl_rng_alloc(gsl_rng_mt19937);
-    recording->launches = malloc((size_t)first_of(recording, SCENE_SETS) * sizeof *recording->launches);
+    recording->launches = malloc((size_t)recording->first[SCENE_SETS] * sizeof *recording->launches);
     if (recording->generator == NULL || recording->launches == NULL) return error_memory(error, "scene-net");
     if (!check_rounds(recording, error) || !draw_held_out(recording, error)) return false;
     gsl_rng_set(recording->generator, (unsigned long)training->seed);

@@ -7,7 +7,6 @@
 #include "methods/reference.h"
 #include "methods/solvers.h"
 #include "nets/kinds.h"
-#include "runs/pieces.h"
 #include "scenes/scenes.h"
 
 #include <gsl/gsl_rng.h>
@@ -125,14 +124,6 @@ bool slot_samples_label(SlotSamples *samples, int first, const Progress *progres
    has projections. */
 bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetwork *network, Error *error);
 
-/* Labelled samples as bytes, and how many were left out; without view and inputs, which follow from the network. The
-   stream tells whether writing failed. */
-void slot_samples_write(const SlotSamples *samples, FILE *out);
-
-/* Appends what slot_samples_write() wrote. ERROR_INPUT, naming the file `path`, if the bytes are damaged, or the problems do not
-   have a bomb and `bodies` bodies. */
-bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int bodies, const char *path, Error *error);
-
 /* Errors of a scene network and of its untrained baseline. */
 
 typedef struct SceneNetScore {
@@ -181,7 +172,6 @@ typedef struct SceneTraining {
     void (*on_score)(void *context, const SceneNetScore *score);
     void *context;
     SceneNetVerdict *verdict; /* on the network that is returned; or NULL */
-    const Pieces *recorded;   /* what the first round runs is read from these; or NULL */
 } SceneTraining;
 
 /* NULL with error set: a scene without a bomb or with one x, launches that touch nothing, memory, a loss that is NaN
@@ -214,7 +204,7 @@ bool impact_problems_add(ImpactProblems *problems, const ContactProblem *problem
 bool impact_problems_move(ImpactProblems *problems, ImpactProblems *from);
 
 /* The launches of a training of a scene network. Those that are held out, and those of the first round, do not depend on the
-   network: they can be recorded in pieces (runs/pieces.h), and be read by the training. */
+   network. */
 
 /* RMS residual of the warm start over the contacts, m/s: below it at rest, above it during a shock. Only the latter are samples. */
 #define SCENE_RECORDING_GATE 0.3f
@@ -228,9 +218,8 @@ typedef struct SceneRecording {
     const SceneTraining *training;
     gsl_rng *generator; /* of the next round */
     int round;
-    Launch *launches;   /* of the sets, in their order; the last two are the round's */
-    PieceRanges ranges; /* a group for each set */
-    PiecePlan plan;
+    Launch *launches;          /* of the sets, in their order; the last two are the round's */
+    int first[SCENE_SETS + 1]; /* launch of each set, then the end */
 } SceneRecording;
 
 /* Draws the launches of the first round, and checks those of all rounds: the last round must not be the first to be refused.
@@ -239,7 +228,7 @@ typedef struct SceneRecording {
 bool scene_recording_begin(SceneRecording *recording, const Scene *scene, const SceneTraining *training, Error *error);
 void scene_recording_end(SceneRecording *recording);
 
-/* Appends the labelled samples of a set, in the order of launches: from training->recorded, or by running them. */
+/* Runs the launches of a set and appends their labelled samples, in the order of launches. */
 bool scene_recording_take(const SceneRecording *recording, SceneSet set, SlotSamples *samples, const Progress *progress,
                           Error *error);
 

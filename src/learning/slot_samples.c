@@ -137,52 +137,6 @@ bool slot_samples_compute_inputs(SlotSamples *samples, int first, const SlotNetw
     return ok || error_memory(error, "samples");
 }
 
-void slot_samples_write(const SlotSamples *samples, FILE *out) {
-    const int32_t unconverged = samples->unconverged;
-    fwrite(&unconverged, sizeof unconverged, 1, out);
-    for (int i = 0; i < samples->count; i++) {
-        const SlotSample *sample = &samples->items[i];
-        const int32_t place[2] = {sample->launch, sample->since};
-        fwrite(place, sizeof place, 1, out);
-        problem_bytes_write(&sample->problem, out);
-        stream_put(out, sample->reference, sizeof *sample->reference, (size_t)sample->problem.body_count);
-        stream_put(out, sample->goal, sizeof *sample->goal, (size_t)sample->problem.contact_count);
-    }
-}
-
-/* The numbers of reference and goal are not checked: of NaN the training refuses its loss. */
-static bool read_label(SlotSample *sample, const ReferenceVelocity *velocities, ProblemBytes *bytes, Error *error) {
-    return (begin_label(sample, velocities) || error_memory(error, bytes->path)) &&
-           problem_bytes_take(bytes, sample->goal, (size_t)sample->problem.contact_count, sizeof *sample->goal, error);
-}
-
-static bool read_sample(SlotSamples *samples, ProblemBytes *bytes, int bodies, Error *error) {
-    int32_t place[2];
-    ContactProblem problem = {0};
-    ReferenceVelocity *velocities = malloc((size_t)bodies * sizeof *velocities);
-    bool ok = velocities != NULL || error_memory(error, bytes->path);
-    ok = ok && problem_bytes_take(bytes, place, 1, sizeof place, error) && problem_bytes_read(&problem, bytes, error);
-    if (ok && (place[0] < 0 || place[1] < 0 || problem.body_count != bodies || problem.marked < 0))
-        ok = problem_bytes_refuse(bytes, error);
-    ok = ok && problem_bytes_take(bytes, velocities, (size_t)bodies, sizeof *velocities, error) &&
-         (slot_samples_add(samples, &problem, place[0], place[1]) || error_memory(error, bytes->path)) &&
-         read_label(&samples->items[samples->count - 1], velocities, bytes, error);
-    problem_bytes_free(&problem);
-    free(velocities);
-    return ok;
-}
-
-bool slot_samples_read(SlotSamples *samples, const char *data, size_t size, int bodies, const char *path,
-                       Error *error) {
-    ProblemBytes bytes = {data, size, path};
-    int32_t unconverged;
-    bool ok = problem_bytes_take(&bytes, &unconverged, 1, sizeof unconverged, error) &&
-              (unconverged >= 0 || problem_bytes_refuse(&bytes, error));
-    if (ok) samples->unconverged += unconverged;
-    while (ok && bytes.left > 0) ok = read_sample(samples, &bytes, bodies, error);
-    return ok;
-}
-
 /* *finite: false if the new state is NaN or infinite. */
 static bool step(const Scene *scene, const ContactSolver *solver, World *world, ContactProblem *problem, bool *finite,
                  Error *error) {

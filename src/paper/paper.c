@@ -187,7 +187,7 @@ static bool finish(const PaperPlan *plan, Error *error) {
 static bool do_parts(PaperPlan *plan, Pieces *pieces, const StudyKey *key, const Progress *progress, Error *error) {
     const PaperOptions *options = plan->options;
     plan->pieces = pieces;
-    return pieces_open(pieces, options->folder, false, key, options->run, error) &&
+    return pieces_open(pieces, options->folder, key, options->run, error) &&
            (pieces->mode != PIECES_WHOLE || folder_reserve(options->folder, error)) &&
            (pieces->mode == PIECES_MERGE || file_make_directory(plan->networks_folder, error)) &&
            pieces_do(pieces, &plan->plan, progress, error) && (pieces->mode == PIECES_SHARD || finish(plan, error));

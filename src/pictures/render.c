@@ -271,7 +271,7 @@ static bool sequence_pieces_do(const WorkerJob *job, RenderStudy *study, const P
                             .context = &ranges};
     study_key_add(study->key, job->manifest->head, strlen(job->manifest->head));
     if (!manifest_check(job->manifest, error) ||
-        !pieces_open(pieces, job->options->directory, false, study->key, study->run, error))
+        !pieces_open(pieces, job->options->directory, study->key, study->run, error))
         return false;
     if (pieces->mode == PIECES_WHOLE) return true;
     const bool ok =

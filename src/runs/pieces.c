@@ -86,18 +86,17 @@ char *piece_file_read(const char *path, PieceHead *head, size_t *size, Error *er
 /* Many files in one folder make some file systems slow. */
 enum { FILES_IN_A_FOLDER = 1000 };
 
-bool pieces_shards_folder(char path[PIECES_PATH_SIZE], const char *output, bool output_is_file, Error *error) {
-    return file_path(path, PIECES_PATH_SIZE, error, "%s%sshards", output, output_is_file ? "." : "/");
+bool pieces_record_path(char path[PIECES_PATH_SIZE], const char *output, Error *error) {
+    return file_path(path, PIECES_PATH_SIZE, error, "%s/shards/run.json", output);
 }
 
-static bool open_whole(Pieces *pieces, const char *output, bool output_is_file, const char *record, Error *error) {
+static bool open_whole(Pieces *pieces, const char *output, const char *record, Error *error) {
     bool there;
     if (!file_find(record, &there, error)) return false;
     if (there)
         return error_input(error, record,
                            "belongs to shards of a study: merge them (twinbox merge %s), or delete the folder", output);
-    return file_path(pieces->folder, sizeof pieces->folder, error, "%s%sparts-%016" PRIx64, output,
-                     output_is_file ? "." : "/", pieces->key);
+    return file_path(pieces->folder, sizeof pieces->folder, error, "%s/parts-%016" PRIx64, output, pieces->key);
 }
 
 /* The other shards and the merge read the same files. */
@@ -135,36 +134,29 @@ static bool is_shard(const PiecesRun *run, bool recorded) {
     return run->request.shard.count > 1 || (run->request.array.step > 0 && recorded);
 }
 
-static bool record_path(char path[PIECES_PATH_SIZE], const char *output, bool output_is_file, Error *error) {
-    char folder[PIECES_PATH_SIZE];
-    return pieces_shards_folder(folder, output, output_is_file, error) &&
-           file_path(path, PIECES_PATH_SIZE, error, "%s/run.json", folder);
-}
-
-bool pieces_find_mode(PiecesMode *mode, const char *output, bool output_is_file, const PiecesRun *run, Error *error) {
+bool pieces_find_mode(PiecesMode *mode, const char *output, const PiecesRun *run, Error *error) {
     char record[PIECES_PATH_SIZE];
     bool recorded;
     *mode = run != NULL && run->merge ? PIECES_MERGE : PIECES_WHOLE;
     if (run == NULL || run->merge) return true;
-    if (!record_path(record, output, output_is_file, error) || !file_find(record, &recorded, error)) return false;
+    if (!pieces_record_path(record, output, error) || !file_find(record, &recorded, error)) return false;
     if (is_shard(run, recorded)) *mode = PIECES_SHARD;
     return true;
 }
 
-bool pieces_open(Pieces *pieces, const char *output, bool output_is_file, const StudyKey *key, const PiecesRun *run,
-                 Error *error) {
+bool pieces_open(Pieces *pieces, const char *output, const StudyKey *key, const PiecesRun *run, Error *error) {
     char record[PIECES_PATH_SIZE];
     *pieces = (Pieces){.shard = {1, 1}, .key = key->value, .run = run};
-    if (!pieces_find_mode(&pieces->mode, output, output_is_file, run, error) ||
-        !pieces_shards_folder(pieces->folder, output, output_is_file, error) ||
-        !record_path(record, output, output_is_file, error))
+    if (!pieces_find_mode(&pieces->mode, output, run, error) ||
+        !file_path(pieces->folder, sizeof pieces->folder, error, "%s/shards", output) ||
+        !pieces_record_path(record, output, error))
         return false;
     switch (pieces->mode) {
     case PIECES_SHARD: return open_shard(pieces, output, key, record, error);
     case PIECES_MERGE: return open_merge(pieces, key, record, error);
     case PIECES_WHOLE: break;
     }
-    return open_whole(pieces, output, output_is_file, record, error);
+    return open_whole(pieces, output, record, error);
 }
 
 void pieces_close(Pieces *pieces) { *pieces = (Pieces){0}; }

@@ -161,12 +161,11 @@ typedef struct Pieces {
 } Pieces;
 
 /* How a command will run, as pieces_open() decides it. */
-bool pieces_find_mode(PiecesMode *mode, const char *output, bool output_is_file, const PiecesRun *run, Error *error);
+bool pieces_find_mode(PiecesMode *mode, const char *output, const PiecesRun *run, Error *error);
 
-/* output: the folder or the file that the study writes. A whole study is refused where shards are, a shard where another
+/* output: the folder that the study writes. A whole study is refused where shards are, a shard where another
    study's are; a merge where the study's inputs have changed. */
-bool pieces_open(Pieces *pieces, const char *output, bool output_is_file, const StudyKey *key, const PiecesRun *run,
-                 Error *error);
+bool pieces_open(Pieces *pieces, const char *output, const StudyKey *key, const PiecesRun *run, Error *error);
 void pieces_close(Pieces *pieces);
 
 /* Does the process's pieces that are not done yet: those of the whole, or of the shard. The results do not depend on
@@ -193,26 +192,8 @@ bool pieces_end(const Pieces *pieces, Error *error);
 void pieces_head(const Pieces *pieces, int64_t piece, PieceHead *head);
 bool pieces_path(const Pieces *pieces, int64_t piece, char path[PIECES_PATH_SIZE], Error *error);
 
-/* Where the shards of an output are: "DIR/shards" or "FILE.shards". */
-bool pieces_shards_folder(char path[PIECES_PATH_SIZE], const char *output, bool output_is_file, Error *error);
-
-/* Work that consists of groups of items, such as launches of some scenes: a piece is a range of items of one group. */
-
-enum { PIECE_RANGES_MAX = 16 };
-
-/* Zero: no group. */
-typedef struct PieceRanges {
-    int groups;
-    int64_t first_piece[PIECE_RANGES_MAX + 1], first_item[PIECE_RANGES_MAX + 1]; /* of each group, then the ends */
-} PieceRanges;
-
-/* Adds a group of at least one item, in so many pieces; at least 1 and at most one for each item. */
-void piece_ranges_add(PieceRanges *ranges, int64_t items, double pieces);
-
-/* The items of a piece, first to end - 1, numbered through all groups. Returns its group. */
-int piece_ranges_find(const PieceRanges *ranges, int64_t piece, int64_t *first, int64_t *end);
-
-static inline int64_t piece_ranges_count(const PieceRanges *ranges) { return ranges->first_piece[ranges->groups]; }
+/* run.json of the shards of an output. */
+bool pieces_record_path(char path[PIECES_PATH_SIZE], const char *output, Error *error);
 
 /* run.json: what the shards of a study have in common. The first process of the study writes it, all others compare. */
 

@@ -369,7 +369,7 @@ bool study_key_add_scene(StudyKey *key, const char *path, Error *error) {
 
 bool study_do(Pieces *pieces, const char *folder, const StudyKey *key, const PiecesRun *run, const PiecePlan *plan,
               const Progress *progress, Error *error) {
-    return pieces_open(pieces, folder, false, key, run, error) &&
+    return pieces_open(pieces, folder, key, run, error) &&
            (pieces->mode != PIECES_WHOLE || folder_reserve(folder, error)) && pieces_do(pieces, plan, progress, error);
 }
 

@@ -9,7 +9,7 @@ listed() { sed -n "/^ $1/,/^\$/p" out | sed -nE 's/^      --([a-z-]+).*/\1/p' | 
 equal "options of pair-net" "$(listed 'pair-net (default): ')" \
     "from hidden iterations laws layers loss optimizer output-activation scale seed "
 equal "options of scene-net" "$(listed 'scene-net: ')" \
-    "iterations launches momentum rounds seed shard smallest sweeps width within "
+    "iterations launches momentum rounds seed smallest sweeps width within "
 says "  or:  twinbox train [OPTION...] --kind scene-net SCENE"
 equal "options of sain" "$(listed 'sain: ')" "launches rounds seed steps with "
 equal "options of hybrid" "$(listed 'hybrid: ')" "launches limit seed steps tolerance "

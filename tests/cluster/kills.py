@@ -27,7 +27,6 @@ PREPARED = "simulate SCENES/single.yaml --frames 400 -o a.npz"
 # Output, command, seconds of a shard and of a merge, within which they are killed.
 STUDIES = [
     ("map", "stability SCENES/stability/heavy_on_one.yaml --vary ratio --vary iterations --methods engine", 0.3, 0.3),
-    ("pairs.npz", "dataset SCENES/single.yaml --bomb-x=-4:4:0.01", 0.15, 0.3),
     ("chart", "chart SCENES/single.yaml --quick --launches 40 --methods engine:k=10,momentum:k=20", 0.1, 0.6),
     ("frames", "render a.npz --size 64x64 --jobs 1", 0.4, 0.2),
 ]
@@ -38,10 +37,9 @@ class Round:
 
     def __init__(self, twinbox, number, kills, choice, machines):
         name, command, self.shard_time, self.merge_time = STUDIES[number % len(STUDIES)]
-        base, ending = os.path.splitext(name)
         self.twinbox, self.choice, self.kills, self.machines = twinbox, choice, kills, machines
-        self.whole, self.output = f"{base}-whole{ending}", f"{base}-{number}{ending}"
-        self.shards = self.output + (".shards" if ending else "/shards")
+        self.whole, self.output = f"{name}-whole", f"{name}-{number}"
+        self.shards = f"{self.output}/shards"
         self.command = f"{command} -o {self.output}"
         self.killed, self.pieces, self.started = 0, {}, []
         self.timed = name == "chart"  # two processes that do the same piece measure other times

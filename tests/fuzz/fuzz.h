@@ -32,9 +32,7 @@
     TARGET(piece)            \
     TARGET(record)           \
     TARGET(scores)           \
-    TARGET(times)            \
-    TARGET(rows)             \
-    TARGET(samples)
+    TARGET(times)
 
 #define FUZZ_DECLARE(name) void fuzz_##name(const uint8_t *data, size_t size);
 FUZZ_TARGETS(FUZZ_DECLARE)

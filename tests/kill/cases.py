@@ -3,10 +3,6 @@
 import fnmatch
 
 SCENE_NET = "train --kind scene-net SCENES/stack.yaml -o net.npz --launches 10 --rounds 1 --iterations 1 --width 16"
-IMPACTS = SCENE_NET.replace("net.npz", "impacts.npz")
-
-# Four pieces.
-PIECES = "dataset SCENES/single.yaml -o pieces.npz --random 200"
 
 # Three pieces, of which the first shard has two.
 SHARDED = "stability SCENES/stability/bomb_speed.yaml --vary speed --quick --methods engine:k=4,momentum:k=3,nncg"
@@ -29,8 +25,6 @@ PREPARED = {
     "small": "sh mkdir small && cp -r SCENES/networks small && for name in single stack pyramid; do "
              "sed 's/^frames: .*/frames: 60/' SCENES/$name.yaml >small/$name.yaml; done && "
              "cp small/stack.yaml small/pyramid_settled.yaml",
-    "pieces.npz.shards": f"{PIECES} --shard 1/2 && {PIECES} --shard 2/2",
-    "impacts.npz.shards": f"{IMPACTS} --shard 1/2 && {IMPACTS} --shard 2/2",
     "study": "stability --scenes SCENES --study heavy_on_one --methods engine:k=4 -o study",
     "sharded": f"{SHARDED} -o sharded --shard 1/2 && {SHARDED} -o sharded --shard 2/2",
 }
@@ -79,8 +73,6 @@ CASES = [
     Case("train-pair-net", "train pairs.npz -o net.npz --iterations 3", "pairs.npz net.npz", most=14,
          early="net.npz"),
     Case("train-scene-net", SCENE_NET, most=12, early="net.npz"),
-    Case("train-shard", f"{IMPACTS} --shard 1/2", most=14),
-    Case("train-merge", "merge impacts.npz", "impacts.npz.shards", most=10, early="impacts.npz"),
     Case("train-sain", "train --kind sain SCENES/single.yaml -o net.npz --launches 4 --rounds 2 --steps 120", most=20),
     Case("train-hybrid", "train --kind hybrid SCENES/single.yaml -o net.npz --launches 60 --steps 3", most=20),
     Case("train-gns", "train --kind gns -o net.npz --scenes SCENES/single.yaml --launches 2 --steps 600 --rounds 1",
@@ -88,8 +80,6 @@ CASES = [
     Case("train-subspace", "train --kind subspace SCENES/single.yaml -o net.npz --launches 2 --epochs 2 --width 16",
          most=12),
     Case("dataset", "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 --context", "pairs.npz", most=14),
-    Case("dataset-shard", f"{PIECES} --shard 1/2", most=20),
-    Case("dataset-merge", "merge pieces.npz", "pieces.npz.shards", most=14),
     Case("approve", "approve report --expected expected", "report expected actual", most=20),
     Case("simulate", "simulate SCENES/single.yaml --frames 40 -o a.npz --hash a.csv --verdict a.json", "a.npz",
          most=12),

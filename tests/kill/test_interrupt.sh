@@ -109,8 +109,6 @@ rm -rf group long.npz kept.npz pairs.npz
 
 # A training that was stopped early is stored, once it has reported.
 rm -f new.npz
-# So are the finished pieces of a dataset, if it had any.
-rm -rf new.npz.parts-*
 equal "files" "$(ls -A | tr '\n' ' ')" \
     "a.npz chart err frames out paper pipe problem.npz study "
 

@@ -25,7 +25,7 @@ TEST(a_scene_has_a_row_for_each_engine_and_size) {
     static const CsvLayout *const layout = &subspace_study_layout;
     SystemStudy study = {.scenes = SOURCE_DIR "/scenes", .quick = true, .seed = 1};
     const PiecePlan plan = {.count = 1, .describe = describe, .work = work, .context = &study};
-    assert_ok(pieces_open(&done, folder(), false, &(StudyKey){.value = 1}, NULL, &error), error);
+    assert_ok(pieces_open(&done, folder(), &(StudyKey){.value = 1}, NULL, &error), error);
     assert_ok(pieces_do(&done, &plan, NULL, &error), error);
     assert_ok(piece_tables_write(&done, folder(), &layout, 1, NULL, 0, &error), error);
     assert_ok(pieces_end(&done, &error), error);

@@ -75,7 +75,7 @@ static void do_parts(Pieces *done, bool end) {
     static PaperPlan whole = {
         .size = &size, .systems = systems, .datasets.scenes = {[1] = SOURCE_DIR "/scenes/stack.yaml"}};
     const PiecePlan plan = {.count = 3, .describe = describe, .work = work, .context = &whole};
-    assert_ok(pieces_open(done, folder(), false, &(StudyKey){.value = 1}, NULL, &error), error);
+    assert_ok(pieces_open(done, folder(), &(StudyKey){.value = 1}, NULL, &error), error);
     assert_ok(pieces_do(done, &plan, NULL, &error), error);
     assert_ok(piece_tables_write(done, folder(), layouts, 2, NULL, 0, &error), error);
     if (end) assert_ok(pieces_end(done, &error), error);

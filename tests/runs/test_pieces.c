@@ -64,7 +64,7 @@ static bool run_study(Study *study, const char *folder, int shard, int count, ui
     study->numbers.pieces = &study->pieces;
     bool ok = study_key_begin(&key, error);
     study_key_add(&key, &seed, sizeof seed);
-    ok = ok && pieces_open(&study->pieces, folder, false, &key, shard == 0 ? NULL : &run, error) &&
+    ok = ok && pieces_open(&study->pieces, folder, &key, shard == 0 ? NULL : &run, error) &&
          pieces_do(&study->pieces, &study->plan, progress, error);
     study_key_free(&key);
     return ok;

@@ -54,7 +54,7 @@ static bool run_study(Files *files, Pieces *pieces, PiecePlan *plan, int shard, 
     StudyKey key;
     const PiecesRun run = {.request = {.shard = {shard, SHARDS}}, .merge = shard == 0, .argc = 2, .argv = arguments};
     *plan = (PiecePlan){.count = COUNT, .describe = describe, .work = work, .whole = whole, .context = files};
-    const bool ok = study_key_begin(&key, error) && pieces_open(pieces, files->folder, false, &key, &run, error) &&
+    const bool ok = study_key_begin(&key, error) && pieces_open(pieces, files->folder, &key, &run, error) &&
                     pieces_do(pieces, plan, NULL, error);
     study_key_free(&key);
     return ok;
