@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "base/json.h"
 #include "cli/cli.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"

@@ -2,7 +2,7 @@
 /* -DTWINBOX_PARTS=compare: the table of the commands, and what stands for the rooms that this build leaves out. */
 #include "base/base.h"
 #include "cli/cli.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "methods/methods.h"
 #include "nets/kernels.h"
 #include "pictures/player.h"
@@ -28,7 +28,7 @@ bool compare_runs(const CompareOptions *options, Error *error) {
     return error_input(error, options->paths[0], "%s", only);
 }
 
-/* So that a folder's .npz files are counted as not compared (regression/words.c). */
+/* So that a folder's .npz files are counted as not compared (regression/comparison_words.c). */
 Trajectory *trajectory_read(const char *path, Error *error) {
     error_input(error, path, "%s", only);
     return NULL;

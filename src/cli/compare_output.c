@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "base/json.h"
 #include "cli/cli.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "regression/naming.h"
 #include "regression/regression.h"
 #include "regression/report.h"

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "cli/cli.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "pictures/page.h"
 #include "pictures/player.h"
 #include "runs/runs.h"

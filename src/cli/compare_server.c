@@ -4,7 +4,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "pixels/png.h"
 #include "regression/odiff.h"
 

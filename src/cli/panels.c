@@ -5,7 +5,7 @@
 #include "base/machine.h"
 #include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"

@@ -4,7 +4,7 @@
 #include "base/csv.h"
 #include "base/machine.h"
 #include "cli/cli.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "methods/methods.h"
 #include "pictures/player.h"
 #include "runs/pieces.h"

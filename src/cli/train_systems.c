@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "learning/gns_training.h"
 #include "learning/hybrid_training.h"
 #include "learning/sain_training.h"

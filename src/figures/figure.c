@@ -4,7 +4,7 @@
 
 #include "base/base.h"
 #include "base/file.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "runs/trajectory.h"

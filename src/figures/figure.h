@@ -59,7 +59,7 @@ typedef struct FigureKind {
     /* Begins the sketch and draws. ERROR_INPUT for what cannot be shown; the caller frees the sketch, also on
        failure. */
     bool (*draw)(Sketch *sketch, const FigureSpec *spec, Error *error);
-    /* Writes sentences for LaTeX (figures/internal.h) from the facts of a figure that was drawn. */
+    /* Writes sentences for LaTeX (figures/figures_internal.h) from the facts of a figure that was drawn. */
     void (*caption)(FILE *out, const FigureSpec *spec);
 } FigureKind;
 

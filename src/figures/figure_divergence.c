@@ -4,7 +4,7 @@
 #include "base/base.h"
 #include "base/machine.h"
 #include "figures/figure.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pictures/picture.h"

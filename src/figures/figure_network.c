@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/npz.h"
 #include "figures/figure.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "nets/kinds.h"
 #include "nets/nets.h"

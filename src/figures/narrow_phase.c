@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "figures/figure.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"

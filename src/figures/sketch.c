@@ -5,7 +5,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "engine/engine.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"
 #include "pixels/type.h"

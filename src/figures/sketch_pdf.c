@@ -2,7 +2,7 @@
 /* The objects of a PDF file and of its font. */
 #include "base/base.h"
 #include "base/file.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "pixels/png.h"
 #include "pixels/type.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What plots are made of: axes and their ticks, styles, marks, and places of labels. */
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "pixels/png.h"

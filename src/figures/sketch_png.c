@@ -2,7 +2,7 @@
 /* A sketch as PNG: a rasteriser of polygons, letters and pictures. */
 #include "base/base.h"
 #include "base/file.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "pixels/png.h"
 #include "pixels/type.h"

@@ -4,7 +4,7 @@
    holds its content. */
 #include "base/base.h"
 #include "base/file.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "pictures/page.h"
 #include "pixels/png.h"

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/json_write.h"
 #include "engine/engine.h"
-#include "live/internal.h"
+#include "live/live_internal.h"
 #include "live/live.h"
 #include "methods/methods.h"
 #include "runs/framing.h"

@@ -5,7 +5,7 @@
 #include "base/base.h"
 #include "base/yaml.h"
 #include "engine/engine.h"
-#include "live/internal.h"
+#include "live/live_internal.h"
 #include "methods/methods.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"

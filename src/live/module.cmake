@@ -88,8 +88,8 @@ if(TWINBOX_LIVE)
         endif()
         list(APPEND objects ${object})
     endforeach()
-    module_object(live/module/methods ${module_folder}/networks.o -Oz)
-    module_object(live/module/methods ${module_folder}/plain.o -Oz -DLIVE_PLAIN)
+    module_object(live/module/module_methods ${module_folder}/networks.o -Oz)
+    module_object(live/module/module_methods ${module_folder}/plain.o -Oz -DLIVE_PLAIN)
     foreach(module networks plain)
         add_custom_command(
             OUTPUT ${module_folder}/${module}.wasm

@@ -7,7 +7,7 @@
 #include "figures/sketch.h"
 #include "methods/methods.h"
 #include "methods/pair.h"
-#include "paper/report.h"
+#include "paper/paper_report.h"
 #include "paper/report_internal.h"
 #include "pictures/picture.h"
 #include "pixels/png.h"

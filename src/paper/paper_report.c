@@ -2,7 +2,7 @@
 /* Memory for cmark-gfm, which aborts the program where malloc() fails. */
 #include "base/base.h"
 #include "base/file.h"
-#include "paper/report.h"
+#include "paper/paper_report.h"
 #include "paper/report_internal.h"
 #include "pictures/page.h"
 #include "pixels/png.h"

@@ -8,7 +8,7 @@
 #include "learning/pair_training.h"
 #include "paper/paper.h"
 #include "paper/paper_internal.h"
-#include "paper/report.h"
+#include "paper/paper_report.h"
 #include "paper/report_internal.h"
 #include "scenes/scenes.h"
 

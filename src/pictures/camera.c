@@ -5,7 +5,7 @@
    frame, make speed and acceleration continuous and let the camera anticipate. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "runs/trajectory.h"
 

@@ -19,7 +19,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/json.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
 #include "pictures/render_internal.h"

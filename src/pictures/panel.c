@@ -2,7 +2,7 @@
 /* Panels: the grid in which they are arranged, their metre grid and axes, scales of arrows and colours, their layers. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"

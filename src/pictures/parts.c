@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is drawn in panels, bodies and marks; the key events of runs; and where the parts of a picture are. */
 #include "engine/engine.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"

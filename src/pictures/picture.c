@@ -4,7 +4,7 @@
 
 #include "base/base.h"
 #include "methods/methods.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pixels/gl.h"
 #include "runs/trajectory.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Draws pictures in this process: the texts of their files, frames of a sequence, still bodies. */
 #include "base/base.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
 #include "pictures/render_internal.h"

@@ -2,7 +2,7 @@
 /* The look: its check, colours, and the legend that explains it. */
 #include "base/base.h"
 #include "methods/methods.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"

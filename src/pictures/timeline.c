@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The curves of distances over time below the panels. */
 #include "base/base.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"
 #include "pixels/png.h"

@@ -4,7 +4,7 @@
 #include "base/machine.h"
 #include "pixels/gl.h"
 #include "pixels/gl_functions.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "pixels/png.h"
 
 #include <stddef.h>

@@ -4,7 +4,7 @@
    Exact coverage, by signed areas: each piece of an outline within a pixel adds the area between it and the pixel's right
    side, and its height to all pixels farther right. */
 #include "pixels/gl.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "pixels/png.h"
 #include "pixels/type.h"
 

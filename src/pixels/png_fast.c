@@ -2,7 +2,7 @@
 /* From filtered rows to pixels: one file, or two that are mostly equal. */
 #include "base/base.h"
 #include "base/machine.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "pixels/png.h"
 
 #ifdef __SSE2__

@@ -5,7 +5,7 @@
    becomes one pixel and matches that repeat it. The bits of a row are kept, and its part of the checksum, which is
    computed per run: a row is compressed again only if it or the row above has changed. */
 #include "base/base.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "pixels/png.h"
 
 #include <stdlib.h>

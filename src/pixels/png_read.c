@@ -2,7 +2,7 @@
 /* Checks PNG files, and reads them, from untrusted sources: damaged, truncated, or crafted to exhaust memory. */
 #include "base/base.h"
 #include "base/file.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "pixels/png.h"
 
 #include <libdeflate.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The filtered rows of common PNG files: chunks are checked, then their pixels are decompressed. */
 #include "base/base.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "pixels/png.h"
 
 #ifdef TWINBOX_ISAL

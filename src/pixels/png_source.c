@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/hash.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

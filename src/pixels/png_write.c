@@ -2,7 +2,7 @@
 /* Writes PNG files: pictures with libpng, whose pixels are compressed by libpng or by png_idat.c; and files of few colours. */
 #include "base/base.h"
 #include "base/file.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "pixels/png.h"
 
 #include <png.h>

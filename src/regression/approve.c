@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "base/json.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/report.h"
 
 #include <errno.h>

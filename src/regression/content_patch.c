@@ -4,7 +4,7 @@
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/content.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

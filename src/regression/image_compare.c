@@ -2,7 +2,7 @@
 /* The numbers of the comments are those of the header. */
 #include "pixels/png.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/flip.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/regression.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

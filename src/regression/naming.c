@@ -6,7 +6,7 @@
 #include "base/base.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "runs/trajectory.h"
 
 #include <math.h>

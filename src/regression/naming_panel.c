@@ -2,7 +2,7 @@
 /* A panel of a picture as naming sees it: its bodies as drawn, and what is on top. */
 #include "base/base.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/naming.h"
 #include "runs/trajectory.h"
 

@@ -45,9 +45,9 @@ typedef struct Tolerance {
     int tolerance;              /* pixels that differ by at most this, 0..255, count as equal */
     PixelLimit beyond;          /* of pixels that differ by more than `tolerance` */
     double flip_mean, flip_p99; /* largest FLIP: mean, 99th percentile (regression/flip.h) */
-    bool antialias;             /* ignore pixels along edges (regression/internal.h) */
-    int shift;                  /* pixels that content may move by, 0..FEW_PIXELS_MAX (regression/internal.h) */
-    int size; /* by this much, 0..FEW_PIXELS_MAX, width and height may differ: the overlap is judged */
+    bool antialias;             /* ignore pixels along edges (regression/regression_internal.h) */
+    int shift; /* pixels that content may move by, 0..FEW_PIXELS_MAX (regression/regression_internal.h) */
+    int size;  /* by this much, 0..FEW_PIXELS_MAX, width and height may differ: the overlap is judged */
 } Tolerance;
 
 /* Replaces in *tolerance what `over` gives. */

@@ -10,7 +10,7 @@
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/flip.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/regression.h"
 #include "runs/trajectory.h"
 

@@ -5,7 +5,7 @@
 #include "base/json.h"
 #include "pictures/page.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/naming.h"
 #include "regression/regression.h"
 #include "regression/report.h"

@@ -2,7 +2,7 @@
 /* Each curve is an SVG that is stretched to its place, one unit of width per frame. Its labels are text of the page, so
    they keep their size on any screen and are never clipped. */
 #include "pictures/page.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/regression.h"
 #include "runs/trajectory.h"
 

@@ -5,7 +5,7 @@
 #include "base/yaml.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/regression.h"
 
 #include <fnmatch.h>

@@ -2,7 +2,7 @@
 /* Content that moved by whole pixels. The header has the definition. */
 #include "pixels/png.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

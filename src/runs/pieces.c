@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/machine.h"
-#include "runs/internal.h"
+#include "runs/runs_internal.h"
 
 #include <dirent.h>
 #include <errno.h>

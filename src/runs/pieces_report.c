@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
-#include "runs/internal.h"
+#include "runs/runs_internal.h"
 #include "runs/pieces.h"
 
 #include <inttypes.h>

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/npz.h"
 #include "engine/engine.h"
-#include "runs/internal.h"
+#include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 #include "runs/verdict.h"
 

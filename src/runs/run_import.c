@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "base/csv.h"
 #include "engine/engine.h"
-#include "runs/internal.h"
+#include "runs/runs_internal.h"
 #include "runs/trajectory.h"
 
 #include <inttypes.h>

@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "runs/internal.h"
+#include "runs/runs_internal.h"
 #include "runs/runs.h"
 #include "scenes/scenes.h"
 

@@ -283,7 +283,7 @@ typedef struct PassFinder {
 } PassFinder;
 
 /* Zero-initialise; free with verdict_watch_free(); may be begun again. Internal to the checks
-   (runs/internal.h). */
+   (runs/runs_internal.h). */
 typedef struct VerdictWatch {
     VerdictRun run;
     VerdictReading worst; /* so far, from creeps on */

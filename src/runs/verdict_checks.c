@@ -3,7 +3,7 @@
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
-#include "runs/internal.h"
+#include "runs/runs_internal.h"
 #include "runs/runs.h"
 #include "runs/verdict.h"
 #include "scenes/scenes.h"

@@ -2,7 +2,7 @@
 /* Whether bodies pass through each other: through static boxes by their centres, through moving ones by their sides. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "runs/internal.h"
+#include "runs/runs_internal.h"
 #include "runs/runs.h"
 #include "runs/verdict.h"
 

@@ -2,7 +2,7 @@
 /* Numbers of scenes: expressions with parameters, and their values from outside. */
 #include "base/base.h"
 #include "base/yaml.h"
-#include "scenes/internal.h"
+#include "scenes/scenes_internal.h"
 #include "scenes/scenes.h"
 
 #include <math.h>

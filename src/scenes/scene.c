@@ -4,7 +4,7 @@
 #include "base/csv.h"
 #include "base/yaml.h"
 #include "engine/engine.h"
-#include "scenes/internal.h"
+#include "scenes/scenes_internal.h"
 #include "scenes/scenes.h"
 
 #include <math.h>

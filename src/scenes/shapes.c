@@ -3,7 +3,7 @@
    neighbour, so that rounding does not add up. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "scenes/internal.h"
+#include "scenes/scenes_internal.h"
 #include "scenes/scenes.h"
 
 #include <stddef.h>

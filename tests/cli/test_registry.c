@@ -5,7 +5,7 @@
 #include "files.h"
 
 #include "cli/cli.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
 #include "methods/methods.h"
 #include "studies/chart.h"

@@ -11,11 +11,6 @@ PREPARATION = [
     "export a.npz -o a.csv -q",
     "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 -q",
     "train pairs.npz -o net.npz --iterations 1 -q",
-    "dataset SCENES/single.yaml -o pieces.npz --bomb-x=0:4:1 --shard 1/2 -q",
-    "train --kind scene-net SCENES/stack.yaml -o network.npz --launches 10 --rounds 1 --iterations 1 --width 16"
-    " --shard 1/2 -q",
-    "train --kind scene-net SCENES/stack.yaml -o network.npz --launches 10 --rounds 1 --iterations 1 --width 16"
-    " --shard 2/2 -q",
     "solve SCENES/single.yaml --frame 45 -o problem.npz -q",
     "render a.npz -o expected --size 64x64 --frames 40:42 --jobs 1 -q",
     "render b.npz -o actual --size 64x64 --frames 41:43 --jobs 1 -q",
@@ -60,7 +55,7 @@ SHORT = [
     Case("compare-runs", "compare a.npz b.npz --csv out.csv", "a.npz b.npz out.csv=a.csv"),
     Case("compare-equal", "compare expected equal", "expected equal"),
     Case("compare-json", "compare expected actual --json --antialias", "expected actual"),
-    Case("approve", "approve report", "report expected actual"),
+    Case("approve", "approve report --remove", "report expected actual"),
     Case("page", "page a.npz b.npz -o out.html --frames 40:50", "a.npz b.npz out.html=a.csv"),
     Case("compare-runs-json", "compare a.npz b.npz --json", "a.npz b.npz"),
     Case("solve-step", "solve SCENES/single.yaml --frame 45 -o out.npz -m engine:k=3", "out.npz=problem.npz"),
@@ -70,19 +65,13 @@ SHORT = [
 # Take longer: the first call from each place fails.
 LONG = [
     Case("compare-report", "compare expected actual --report report", "expected actual report"),
-    Case("dataset", "dataset SCENES/single.yaml -o out.npz --bomb-x=0:4:1 --context", "out.npz=pairs.npz",
-         "out.npz.parts-*"),
-    Case("dataset-shard", "dataset SCENES/single.yaml -o out.npz --bomb-x=0:4:1 --shard 1/2", "", "out.npz.shards/*"),
-    Case("dataset-merge", "merge pieces.npz", "pieces.npz.shards pieces.npz=pairs.npz"),
+    Case("dataset", "dataset SCENES/single.yaml -o out.npz --bomb-x=0:4:1 --context", "out.npz=pairs.npz"),
     Case("train-pair-net", "train pairs.npz -o out.npz --iterations 2", "pairs.npz"),
     Case("train-from", "train pairs.npz -o net.npz --from net.npz --iterations 2", "pairs.npz net.npz"),
     Case("train-lm", "train pairs.npz -o out.npz --iterations 2 --layers 10-8-8-6 --optimizer lm", "pairs.npz"),
     Case("train-bfgs", "train pairs.npz -o out.npz --iterations 2 --optimizer bfgs", "pairs.npz"),
     Case("train-scene-net", "train --kind scene-net SCENES/stack.yaml -o out.npz --launches 10 --rounds 1 --iterations 1"
          " --width 16"),
-    Case("train-shard", "train --kind scene-net SCENES/stack.yaml -o out.npz --launches 10 --rounds 1 --iterations 1"
-         " --width 16 --shard 1/2", "", "out.npz.shards/*"),
-    Case("train-merge", "merge network.npz", "network.npz.shards"),
     Case("train-sain", "train --kind sain SCENES/single.yaml -o out.npz --launches 2 --rounds 1 --steps 3", "",
          "out.npz.part"),
     Case("train-hybrid", "train --kind hybrid SCENES/single.yaml -o out.npz --launches 2 --steps 3", "",

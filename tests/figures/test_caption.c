@@ -3,7 +3,7 @@
 #include "testing.h"
 #include "files.h"
 
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/run_figure.h"
 
 enum { FRAMES = 61, IMPACT = 30 };

@@ -6,7 +6,7 @@
 
 #include "figures/clear_texts.h"
 #include "figures/run_figure.h"
-#include "paper/report.h"
+#include "paper/paper_report.h"
 #include "pictures/mesa.h"
 #include "studies/chart.h"
 #include "studies/stability_drawn.h"

@@ -3,7 +3,7 @@
 
 #include "files.h"
 
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "figures/run_figure.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "figures/run_figure.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 
 static const int frames[] = {0, 5, 11};
 enum { COUNT = 3 };

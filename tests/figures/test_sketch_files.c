@@ -5,7 +5,7 @@
 
 #include "base/hash.h"
 #include "base/machine.h"
-#include "figures/internal.h"
+#include "figures/figures_internal.h"
 #include "pixels/type.h"
 
 #include <inttypes.h>

@@ -5,7 +5,7 @@
 #include "fuzz_png.h"
 #include "regression/naming.h"
 #include "regression/regression.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

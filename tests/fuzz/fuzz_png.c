@@ -6,7 +6,7 @@
 
 #include "pixels/png.h"
 #include "regression/compare.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

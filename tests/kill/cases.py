@@ -80,7 +80,7 @@ CASES = [
     Case("train-subspace", "train --kind subspace SCENES/single.yaml -o net.npz --launches 2 --epochs 2 --width 16",
          most=12),
     Case("dataset", "dataset SCENES/single.yaml -o pairs.npz --bomb-x=-2:2:1 --context", "pairs.npz", most=14),
-    Case("approve", "approve report --expected expected", "report expected actual", most=20),
+    Case("approve", "approve report --expected expected --remove", "report expected actual", most=20),
     Case("simulate", "simulate SCENES/single.yaml --frames 40 -o a.npz --hash a.csv --verdict a.json", "a.npz",
          most=12),
     Case("page", "page a.npz b.npz -o page.html", "a.npz b.npz page.html=a.npz", most=8),

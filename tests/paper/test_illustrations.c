@@ -7,7 +7,7 @@
 
 #include "learning/dataset.h"
 #include "paper/report_internal.h"
-#include "paper/report.h"
+#include "paper/paper_report.h"
 #include "figures/figure.h"
 #include "figures/sketch.h"
 

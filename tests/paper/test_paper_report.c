@@ -4,7 +4,7 @@
 #include "python.h"
 #include "tables.h"
 
-#include "paper/report.h"
+#include "paper/paper_report.h"
 
 static const char *const tables[] = {"table1.csv",   "networks.csv", "rates.csv",         "closed_loop.csv", "laws.csv",
                                      "transfer.csv", "study.csv",    "system_scores.csv", "systems.csv",     NULL};

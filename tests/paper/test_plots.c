@@ -4,7 +4,7 @@
 #include "python.h"
 #include "sanitized.h"
 
-#include "paper/report.h"
+#include "paper/paper_report.h"
 
 #include <sys/stat.h>
 

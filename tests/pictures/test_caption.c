@@ -2,7 +2,7 @@
 /* A caption has the method's name as on the command line, then what its description states. */
 #include "testing.h"
 
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
 
 static const MethodDescription captioned = {.name = "captioned", .caption = "a caption"}, bare = {.name = "bare"};

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "methods/methods.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
 
 static const char *const methods[RENDER_PANELS_MAX] = {

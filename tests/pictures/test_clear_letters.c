@@ -5,7 +5,7 @@
 
 #include "made.h"
 #include "methods/methods.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 
 #include <math.h>

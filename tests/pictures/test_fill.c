@@ -2,7 +2,7 @@
 /* How much of a panel the boxes fill by default: every scene of scenes/, 1 to 6 panels, pictures of all shapes. */
 #include "made.h"
 
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 
 #include <glob.h>
 #include <math.h>

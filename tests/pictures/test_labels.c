@@ -3,7 +3,7 @@
    from every colour of a box. */
 #include "testing.h"
 
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/look_runs.h"
 
 static Picture picture_of(double metres, LookLabels labels) {

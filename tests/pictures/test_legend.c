@@ -2,7 +2,7 @@
 /* The rows of a picture's legend fit the room that the layout keeps for them. */
 #include "testing.h"
 
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
 
 enum { NARROWEST = 320, WIDEST = 1600, STEP = 8 };

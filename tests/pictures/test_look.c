@@ -4,7 +4,7 @@
 
 #include "look_runs.h"
 #include "mesa.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/render_internal.h"
 
 static Picture picture_with_look(int count, const RenderLook *look) {

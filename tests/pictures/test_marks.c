@@ -3,7 +3,7 @@
    outside. */
 #include "testing.h"
 
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/look_runs.h"
 
 /* All boxes are 1 m high; the view is `metres` wide. */

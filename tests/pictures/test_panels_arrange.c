@@ -2,7 +2,7 @@
 /* Long and high scenes fill their panels, in pictures of all shapes, and the grid is the one in which they are largest. */
 #include "testing.h"
 
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/runs.h"
 
 #include <limits.h>

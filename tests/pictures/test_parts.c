@@ -2,7 +2,7 @@
 /* Whatever a picture draws outside its panels is in one of its parts, and nothing but the panels' content is in panels. */
 #include "testing.h"
 
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/look_runs.h"
 
 static const int sizes[][2] = {{420, 300}, {640, 360}, {1280, 720}, {720, 1280}, {2000, 400}, {100, 80}, {3840, 2160}};

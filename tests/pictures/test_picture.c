@@ -5,7 +5,7 @@
 #include "pixels/built_contexts.h"
 #include "regression/compare.h"
 #include "mesa.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/render.h"
 #include "runs.h"
 

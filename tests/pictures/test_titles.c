@@ -2,7 +2,7 @@
 /* Titles break into lines that fit, in the header and on cards; captions stand for the names of methods. */
 #include "testing.h"
 
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pictures/runs.h"
 

@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "pixels/gl.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 
 enum { LEVEL = 5 };
 

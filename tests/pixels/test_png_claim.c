@@ -3,7 +3,7 @@
 #include "testing.h"
 
 #include "pixels/png.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "png_parts.h"
 
 enum { SIDE = 9000 }; /* 81 million pixels: less than IMAGE_MAX_PIXELS */

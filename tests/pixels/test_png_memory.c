@@ -5,7 +5,7 @@
 
 #include "allocations.h"
 #include "regression/compare.h"
-#include "pixels/internal.h"
+#include "pixels/pixels_internal.h"
 #include "png_parts.h"
 #include "pngs.h"
 

@@ -3,7 +3,7 @@
    erased, faded, moved by a pixel or with one wrong pixel they have. */
 #include "made.h"
 
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/compare.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 
 #define HEAD "{\"format\": \"twinbox compare 1\", \"expected\": \"old\", \"actual\": \"new\""
 #define FILE_1 "{\"name\": \"1.png\", \"size\": 7, \"xxh3\": \"00000000000000ff\"}"

@@ -2,7 +2,7 @@
 /* The pictures of a report, read back: every colour of their scales, and sizes beyond one part of the compressor. */
 #include "made.h"
 
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/compare.h"
 
 enum { LEVELS = 256 };

@@ -5,7 +5,7 @@
 #include "figures/sketch.h"
 #include "regression/compare.h"
 #include "regression/flip.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/regression.h"
 
 #include <math.h>

@@ -6,10 +6,10 @@
 
 #include "pixels/gl.h"
 #include "pixels/gl_functions.h"
-#include "pictures/internal.h"
+#include "pictures/pictures_internal.h"
 #include "pictures/mesa.h"
 #include "pictures/render.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 
 #include <math.h>
 

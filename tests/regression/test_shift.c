@@ -3,7 +3,7 @@
 #include "made.h"
 
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/regression.h"
 
 enum { WIDTH = 40, HEIGHT = 24 };

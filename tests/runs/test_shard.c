@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "testing.h"
 
-#include "runs/internal.h"
+#include "runs/runs_internal.h"
 
 TEST(every_piece_has_one_shard_and_shards_are_equally_large) {
     enum { MOST = 300 };

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# bash completion for twinbox. The program answers what a word may become (src/cli/completion.c).
+# bash completion for twinbox. The program answers what a word may become (src/cli/command_completion.c).
 # shellcheck shell=bash
 
 # Adds the files and folders that begin with $2 and, if endings follow, have one of them, behind $1.

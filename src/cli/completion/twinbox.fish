@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# fish completion for twinbox. The program answers what a word may become (src/cli/completion.c).
+# fish completion for twinbox. The program answers what a word may become (src/cli/command_completion.c).
 
 function __twinbox_complete
     set -l words (commandline -opc)

@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/regression.h"

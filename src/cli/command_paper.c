@@ -5,7 +5,7 @@
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "paper/paper.h"
-#include "paper/report.h"
+#include "paper/paper_report.h"
 #include "runs/pieces.h"
 
 typedef struct Options {

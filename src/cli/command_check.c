@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "engine/engine.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"

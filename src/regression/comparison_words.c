@@ -4,7 +4,7 @@
 #include "base/base.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
-#include "regression/internal.h"
+#include "regression/regression_internal.h"
 #include "regression/naming.h"
 #include "regression/regression.h"
 #include "runs/trajectory.h"

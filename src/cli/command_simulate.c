@@ -6,7 +6,7 @@
 #include "base/machine.h"
 #include "cli/cli.h"
 #include "cli/options.h"
-#include "cli/runs.h"
+#include "cli/larger_commands.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
 #include "methods/reference.h"
