@@ -120,7 +120,7 @@ static void assert_same(const Image *a, const Image *b) {
     assert_memory_equal(a->pixels, b->pixels, (size_t)a->width * (size_t)a->height * 4);
 }
 
-/* What libpng makes of an accepted file; NULL for an incomplete code, which ISA-L reads (internal.h). */
+/* What libpng makes of an accepted file; NULL for an incomplete code, which ISA-L reads (pixels_internal.h). */
 static Image *accepted_by_libpng(const PngParts *file) {
     Error error = {0};
     Image *image = png_libpng_decode(file->data, file->size, "file", 1 << 20, &error);

@@ -291,9 +291,9 @@ TEST(the_axes_show_the_coloured_curves) {
                                  "stack,engine,k=100,closed,impact,40,200,190,210,,,0.1,,,,,,,,\n"
                                  "stack,playback,launches=25,closed,impact,40,0.2,0.1,0.3,,,0.05,,,,,,,,\n"
                                  "stack,playback,launches=100,closed,after,40,0.4,0.3,0.5,,,0.01,,,,,,,,\n"
-                                 "stack,constant,,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
+                                 "stack,pair-net,net=off,closed,impact,40,5,4,6,,,3,,,,,,,,\n"
                                  "stack,reference,,closed,impact,40,400,390,410,,,0,,,,,,,,\n");
-    assert_true(chart.us_least == 4 && chart.us_most == 210); /* the constant is near */
+    assert_true(chart.us_least == 4 && chart.us_most == 210); /* pair-net is near */
     assert_true(chart.error_least == 0.1 && chart.error_most == 3);
     assert_int_equal(chart.panels[0].count, 3);
     assert_int_equal(chart.panels[1].count, 0);

@@ -93,14 +93,19 @@ static void check_figure(Trajectory *const *runs, const RunColours *colours, int
     sketch_free(&sketch);
 }
 
+/* Of at_once runs each: the last picture has the four whose colours depend on what is beside them, so no other has any of these. */
+static int next_picture(int first, int at_once, int last) {
+    if (first + at_once >= last) return first < last ? last : last + 1;
+    return first + 2 * at_once > last ? last - at_once : first + at_once;
+}
+
 TEST(film_page_and_figure_have_the_colours_of_methods) {
     const char *names[COLOURS_MAX];
     RunColours all[COLOURS_MAX];
     const int count = list_methods(names);
     assert_ok(colours_assign(names, count, NULL, all, &error), error);
-    /* The last picture has the four whose colours depend on what is beside them. */
     const int at_once = 4, last = count - at_once;
-    for (int first = 0; first <= last; first = first < last && first + at_once > last ? last : first + at_once) {
+    for (int first = 0; first <= last; first = next_picture(first, at_once, last)) {
         Trajectory *runs[RENDER_PANELS_MAX];
         for (int i = 0; i < at_once; i++) runs[i] = run_make(names[first + i], FRAMES);
         const RunColours *colours = &all[first];
