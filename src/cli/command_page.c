@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* twinbox page: runs, or scenes that are stepped in the browser, as one HTML file. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

@@ -250,10 +250,10 @@ static bool name_above(const Image *const pictures[2], const uint8_t *masked, in
     return ok;
 }
 
-/* What a shift shows anew at the sides is a part of it up to this. */
+/* Pixels: strips up to this wide, which a shift uncovers at the sides, belong to it. */
 enum { SIDES_SMALL = 16 };
 
-/* All that differs is of the same picture, shifted, but for what is new at its sides: a region of its own if it is not small. */
+/* The actual picture is the expected one, shifted. A strip that it uncovers is a region of its own, unless it is small. */
 static bool name_shifted(const Image *const pictures[2], const uint8_t *masked, const Motion *shift,
                          const ImageDifference *difference, FrameChanges *changes, Error *error) {
     const int width = pictures[0]->width, height = pictures[0]->height, right = (int)shift->right,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The shift of most of a picture: of a page into which something was inserted, or of the whole. Windows of both pictures are chosen by
-   what they show, so that the same are chosen wherever they are; those that are alone in showing it vote for how far they moved. */
+/* The shift of most of a picture: of a page into which something was inserted, or of the whole. What windows show decides which are
+   chosen, so both pictures choose the same ones, wherever they are. Windows that show what no other does vote for a shift. */
 #include "base/base.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
@@ -84,7 +84,7 @@ static const Anchor *find_single(const Anchors *anchors, uint64_t hash) {
     return low + 1 < anchors->count && found[1].hash == hash ? NULL : found;
 }
 
-/* Replaces the windows of the actual picture by how far they moved, and finds what at least half of them say. */
+/* Replaces the windows of the actual picture by their shifts, and finds the one of at least half of them. */
 static void count_votes(const Anchors *expected, Anchors *actual, Motion *shift) {
     size_t votes = 0, most = 0, run = 0;
     Anchor *list = actual->list;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The limits of a comparison: how they are read and told, and whether a difference is within them. */
 #include "base/base.h"
 #include "base/file.h"
 #include "pixels/png.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a file says of how its picture is shown, beside the pixels: colours, profile, orientation, resolution. */
 #include "base/base.h"
 #include "pixels/png.h"
 #include "regression/compare.h"

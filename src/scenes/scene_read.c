@@ -157,6 +157,7 @@ static bool read_entry(const YamlTree *tree, int node, Pattern *pattern, int *no
 /* Appends the names of the bodies from `first` on; the scene's array begins with its first name. */
 static bool add_names(const YamlTree *tree, const Pattern *pattern, Scene *scene, int first, Error *error) {
     if (scene->names == NULL && pattern->name.text[0] == '\0') return true;
+    /* And one more: realloc() to nothing may return NULL. */
     BodyName *names = realloc(scene->names, ((size_t)scene->body_count + 1) * sizeof *names);
     if (names == NULL) return error_memory(error, tree->source.path);
     if (scene->names == NULL) memset(names, 0, (size_t)first * sizeof *names);
