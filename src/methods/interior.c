@@ -289,19 +289,16 @@ static bool follow_path(State *solver, const ContactProblem *problem, ContactSol
 
 /* Sweeps with momentum until the residual (methods/solvers.h) is below `near`. False when memory is short. */
 static bool sweep(State *solver, const ContactProblem *problem, float near, const float *factors, int count) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
     const StoppingRule rule = {.near = near, .more = MORE_SWEEPS};
-    return sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem) &&
-           sweeps_run_momentum(sweeps, factors, count) &&
-           momentum_run_more(sweeps, problem, &rule, solver->more_factors);
+    return sweeps_begin_coloured(&solver->momentum.sweeps, sweeps_best_kernel(), problem) &&
+           momentum_begin(&solver->momentum, problem) && momentum_run(&solver->momentum, factors, count) &&
+           momentum_run_more(&solver->momentum, &rule, solver->more_factors);
 }
 
-/* Stores what sweep() left; as many sweeps of the scalar implementation if that is not finite. */
-static bool end_sweep(State *solver, const ContactProblem *problem, const float *factors, int count,
-                      ContactSolution *solution, Error *error) {
+/* Stores what sweep() left. */
+static bool end_sweep(State *solver, ContactSolution *solution, Error *error) {
     solution->fallbacks.by_sweeps = 1;
-    return sweeps_end(&solver->momentum.sweeps, solution) ||
-           momentum_solve(&solver->momentum, problem, factors, count, solution, error);
+    return momentum_end(&solver->momentum, solution) || error_memory(error, "interior");
 }
 
 /* The solution of the iterations is stored. Replaces it if the residual of sweeps is smaller. */
@@ -313,7 +310,7 @@ static bool fall_back(State *solver, bool finite, float near, const ContactProbl
         !interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem))
         return error_memory(error, "interior");
     if (finite && before <= solver->interior.residual) return true;
-    return end_sweep(solver, problem, factors, FALLBACK_SWEEPS, solution, error);
+    return end_sweep(solver, solution, error);
 }
 
 /* Begins with the warm start, and with the first sweeps if the problem is calm. False when memory is short. */
@@ -349,7 +346,7 @@ static bool try_sweeps(State *solver, const ContactProblem *problem, const Look 
 /* All by sweeps with momentum. */
 static bool solve_by_sweeps(State *solver, const ContactProblem *problem, float near, const float *factors, int count,
                             ContactSolution *solution, Error *error) {
-    return sweep(solver, problem, near, factors, count) ? end_sweep(solver, problem, factors, count, solution, error)
+    return sweep(solver, problem, near, factors, count) ? end_sweep(solver, solution, error)
                                                         : error_memory(error, "interior");
 }
 

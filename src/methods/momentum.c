@@ -8,8 +8,18 @@
    Solving a Convex Programming Problem with Convergence Rate O(1/k^2)" (1983); for contacts Mazhar, Heyn, Negrut,
    Tasora, "Using Nesterov's Method to Accelerate Multibody Dynamics with Friction and Contact" (2015), with full
    gradient steps in place of sweeps. Sweeps visit contacts in the order of colours: as accurate, and faster
-   (tests/bench/colours). Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the
-   first sweeps of an impact gain little. */
+   (tests/bench/colours).
+
+   Extrapolation can carry impulses past the solution for ever. It even makes errors grow where boxes slide: there friction
+   follows the normal impulse and acts on the normal velocity, too, so a visit overshoots, by a share e of the error, and the
+   error grows if e (1 + 2 beta) > 1 (its factor z solves z^2 + e (1 + beta) z - e beta = 0). So the first sweeps have a
+   lower beta where contacts slide, and sweeps are watched there, and in runs of 16 or more: each island's residual is
+   measured after blocks of 8. Where it exceeds 4 times the least, one block follows without extrapolation, and momentum
+   begins anew (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient Schemes", 2015). An island whose residual is
+   not its least in the end goes back to the solution that was best.
+
+   Fails while friction cones change from sweep to sweep: then the extrapolation is wrong, so the first sweeps of an impact
+   gain little. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -74,6 +84,20 @@ float *momentum_factors_make(int count) {
     return factors;
 }
 
+/* The course of an island. Residuals are squared and summed over its contacts, (m/s)^2 (residual_of_pair()). */
+struct MomentumIsland {
+    float left, best; /* after the last block; the least, whose solution is kept */
+    float least;      /* since momentum last began, */
+    int sweeps;       /* so many sweeps ago */
+    float most;       /* beta is at most this, in the first block */
+    bool plain;       /* the next block is without extrapolation */
+};
+
+enum { LONGEST_BLOCK = 2 * STOPPING_BLOCK - 1 }; /* the last one, so that none is short */
+
+/* Momentum makes residuals rise and fall. It begins anew at this multiple of the least sum of squares. */
+static const float risen = 4;
+
 void momentum_free(Momentum *momentum) {
     sweeps_free(&momentum->sweeps);
     free(momentum->arrays.memory);
@@ -81,36 +105,214 @@ void momentum_free(Momentum *momentum) {
     *momentum = (Momentum){0};
 }
 
-/* Momentum makes the residual rise and fall. It begins again at this multiple of the least sum of squares. */
-static const float overshoot = 4;
+/* The largest beta of which errors do not grow where a visit overshoots by the share a: below 0 where sweeps alone would make
+   them grow. Two contacts of a box that slides overshoot together: by 1.22 a if it is a cube of friction 0.8; here by
+   a (1 + a). */
+static float largest_factor(float a) {
+    const float both = a * (1 + a);
+    return 3 * both <= 1 ? 1 : 0.5f / both - 0.5f;
+}
 
-bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors) {
-    float least = HUGE_VALF;
-    for (int done = 0, rising = 0; stopping_needs_more(rule, done, sweeps, problem); done += STOPPING_BLOCK) {
-        const float left = residual_of_sweeps(sweeps);
-        if (left > overshoot * least) rising = 0, least = left;
-        if (left < least) least = left;
-        if (!(rising == 0 ? sweeps_run_momentum(sweeps, factors, STOPPING_BLOCK)
-                          : sweeps_continue_momentum(sweeps, factors + rising, STOPPING_BLOCK)))
-            return false;
-        rising += STOPPING_BLOCK;
+/* keeps: copies the solutions of the islands that are better than ever. */
+static void measure(Momentum *momentum, bool keeps) {
+    Sweeps *sweeps = &momentum->sweeps;
+    MomentumIsland *courses = momentum->courses;
+    residual_of_pairs(sweeps, momentum->of_pairs);
+    for (int k = 0; k < sweeps->groups; k++) courses[k].left = 0;
+    for (int i = 0; i < sweeps->pair_count; i++) courses[sweeps->group[i]].left += momentum->of_pairs[i];
+    for (int k = 0; k < sweeps->groups; k++) {
+        momentum->chosen[k] = courses[k].left <= courses[k].best;
+        if (momentum->chosen[k]) courses[k].best = courses[k].left;
     }
+    if (keeps) sweeps_keep(sweeps, momentum->chosen);
+}
+
+static void keep_all(Momentum *momentum) {
+    for (int k = 0; k < momentum->sweeps.groups; k++) momentum->chosen[k] = true;
+    sweeps_keep(&momentum->sweeps, momentum->chosen);
+}
+
+/* Finds the islands, and keeps what there is. */
+static void watch(Momentum *momentum) {
+    Sweeps *sweeps = &momentum->sweeps;
+    if (momentum->watched) return;
+    sweeps_group(sweeps);
+    for (int k = 0; k < sweeps->groups; k++)
+        momentum->courses[k] = (MomentumIsland){.left = HUGE_VALF, .best = HUGE_VALF, .most = 1};
+    keep_all(momentum);
+    momentum->watched = true;
+}
+
+/* Where contacts slide, and overshoot, sweeps are watched from the beginning. */
+static void watch_sliding(Momentum *momentum) {
+    const Sweeps *sweeps = &momentum->sweeps;
+    bool slides = false;
+    overshoot_of_pairs(sweeps, momentum->of_pairs);
+    for (int i = 0; i < sweeps->pair_count; i++) slides |= largest_factor(momentum->of_pairs[i]) < 1;
+    if (!slides) return;
+    watch(momentum);
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        MomentumIsland *course = &momentum->courses[sweeps->group[i]];
+        const float most = largest_factor(momentum->of_pairs[i]);
+        if (most < course->most) course->most = most;
+    }
+    measure(momentum, false);
+}
+
+static bool is_rough(const Sweeps *sweeps) {
+    bool rough = false;
+    for (int i = 0; i < sweeps->pair_count; i++) rough |= sweeps->pairs[i].friction >= SWEEP_SLIPPERY;
+    return rough;
+}
+
+bool momentum_begin(Momentum *momentum, const ContactProblem *problem) {
+    Sweeps *sweeps = &momentum->sweeps;
+    const size_t pairs = (size_t)sweeps->pair_count;
+    momentum->problem = problem;
+    momentum->watched = false;
+    sweeps->block = STOPPING_BLOCK;
+    if (!ARRAY_BLOCK_RESERVE(&momentum->arrays, ARRAY_PART(momentum->courses, pairs), /* as many islands at most */
+                             ARRAY_PART(momentum->chosen, pairs), ARRAY_PART(momentum->of_pairs, pairs),
+                             ARRAY_PART(momentum->factors, LONGEST_BLOCK * pairs)))
+        return false;
+    if (is_rough(sweeps)) watch_sliding(momentum);
+    return true;
+}
+
+static void begin_anew(MomentumIsland *course, bool plain) {
+    course->least = course->left;
+    course->sweeps = 0;
+    course->plain = plain;
+}
+
+/* After a block of `count` sweeps. */
+static void judge(MomentumIsland *course, int count) {
+    if (!(course->left <= risen * course->least)) {
+        begin_anew(course, true);
+        return;
+    }
+    course->least = course->left < course->least ? course->left : course->least;
+    course->sweeps = course->plain ? 0 : course->sweeps + count;
+    course->plain = false;
+}
+
+/* Islands with numbers that are NaN or infinite go back to what was best. */
+static void judge_all(Momentum *momentum, int count, bool last) {
+    bool any = false;
+    measure(momentum, !last);
+    for (int k = 0; k < momentum->sweeps.groups; k++) {
+        MomentumIsland *course = &momentum->courses[k];
+        momentum->chosen[k] = !(course->left < HUGE_VALF);
+        any |= momentum->chosen[k];
+        if (momentum->chosen[k]) {
+            course->left = course->best;
+            begin_anew(course, true);
+        } else
+            judge(course, count);
+    }
+    if (any) sweeps_return(&momentum->sweeps, momentum->chosen);
+}
+
+/* Before the sweep after so many of the block. factors: of the run. */
+static float factor_of(const MomentumIsland *course, const float *factors, bool first, int after) {
+    const int sweep = course->sweeps + after;
+    if (sweep == 0) return 0;
+    const float wanted = course->plain ? 0 : factors[sweep];
+    const float most = first || course->most < 0 ? course->most : 1;
+    return wanted < most ? wanted : most;
+}
+
+/* factors: of the run that the block is a part of. first, last: in that run. False when memory is short. */
+static bool run_block(Momentum *momentum, const float *factors, bool first, bool last, int count) {
+    Sweeps *sweeps = &momentum->sweeps;
+    float *factor = momentum->factors;
+    for (int s = 0; s < count; s++)
+        for (int k = 0; k < sweeps->groups; k++) *factor++ = factor_of(&momentum->courses[k], factors, first, s);
+    if (!(first ? sweeps_run_momentum(sweeps, momentum->factors, count)
+                : sweeps_continue_momentum(sweeps, momentum->factors, count)))
+        return false;
+    judge_all(momentum, count, last);
+    return true;
+}
+
+/* Chooses the islands that have been better. False if there are none. */
+static bool choose_worse(Momentum *momentum) {
+    bool any = false;
+    for (int k = 0; k < momentum->sweeps.groups; k++) {
+        momentum->chosen[k] = !(momentum->courses[k].left <= momentum->courses[k].best);
+        any |= momentum->chosen[k];
+    }
+    return any;
+}
+
+/* Takes islands back to their best solutions. */
+static void settle(Momentum *momentum) {
+    if (choose_worse(momentum)) sweeps_return(&momentum->sweeps, momentum->chosen);
+}
+
+/* After a single block, which is worse than the start: one sweep without extrapolation from there. */
+static void settle_from_start(Momentum *momentum) {
+    if (!choose_worse(momentum)) return;
+    sweeps_return(&momentum->sweeps, momentum->chosen);
+    sweeps_run_groups(&momentum->sweeps, momentum->chosen);
+}
+
+static void begin_all_anew(Momentum *momentum) {
+    for (int k = 0; k < momentum->sweeps.groups; k++) begin_anew(&momentum->courses[k], false);
+}
+
+static void forget_best(Momentum *momentum) {
+    for (int k = 0; k < momentum->sweeps.groups; k++) momentum->courses[k].best = HUGE_VALF;
+}
+
+bool momentum_run(Momentum *momentum, const float *factors, int count) {
+    const bool single = count <= LONGEST_BLOCK;
+    if (single && !momentum->watched) return sweeps_run_momentum(&momentum->sweeps, factors, count);
+    watch(momentum);
+    begin_all_anew(momentum);
+    if (single) {
+        if (!run_block(momentum, factors, true, true, count)) return false;
+        settle_from_start(momentum);
+        return true;
+    }
+    forget_best(momentum); /* the start: its impulses may be outside of the cones */
+    for (int done = 0, block; done < count; done += block) {
+        block = count - done <= LONGEST_BLOCK ? count - done : STOPPING_BLOCK;
+        if (!run_block(momentum, factors, done == 0, done + block == count, block)) return false;
+    }
+    settle(momentum);
+    return true;
+}
+
+bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float *factors) {
+    const ContactProblem *problem = momentum->problem;
+    const Sweeps *sweeps = &momentum->sweeps;
+    if (!stopping_needs_more(rule, 0, sweeps, problem)) return true;
+    watch(momentum);
+    forget_best(momentum);
+    keep_all(momentum);
+    measure(momentum, false);
+    begin_all_anew(momentum);
+    int done = 0;
+    for (; stopping_needs_more(rule, done, sweeps, problem); done += STOPPING_BLOCK)
+        if (!run_block(momentum, factors, done == 0, false, STOPPING_BLOCK)) return false;
+    if (residual_reaches(sweeps, problem->contact_count, rule->near)) settle(momentum);
+    return true;
+}
+
+bool momentum_end(Momentum *momentum, ContactSolution *solution) {
+    if (sweeps_end(&momentum->sweeps, solution)) return true;
+    if (!sweeps_begin_coloured(&momentum->sweeps, momentum->sweeps.kernel, momentum->problem)) return false;
+    sweeps_end(&momentum->sweeps, solution);
     return true;
 }
 
 bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,
                     ContactSolution *solution, Error *error) {
-    if (!sweeps_begin_coloured(&momentum->sweeps, sweeps_best_kernel(), problem) ||
-        !sweeps_run_momentum(&momentum->sweeps, factors, count) ||
-        !momentum_run_more(&momentum->sweeps, problem, &momentum->rule, momentum->more_factors))
-        return error_memory(error, "momentum");
-    if (sweeps_end(&momentum->sweeps, solution)) return true;
-    ContactSolution *before = &momentum->before;
-    if (!ARRAY_BLOCK_RESERVE(&momentum->arrays, ARRAY_PART(before->velocities, problem->body_count),
-                             ARRAY_PART(before->impulses, problem->contact_count)))
-        return error_memory(error, "momentum");
-    momentum_solve_scalar(problem, momentum->sweeps.colours.visits, factors, count, before, solution);
-    return true;
+    return (sweeps_begin_coloured(&momentum->sweeps, sweeps_best_kernel(), problem) &&
+            momentum_begin(momentum, problem) && momentum_run(momentum, factors, count) &&
+            momentum_run_more(momentum, &momentum->rule, momentum->more_factors) && momentum_end(momentum, solution)) ||
+           error_memory(error, "momentum");
 }
 
 typedef struct State {

@@ -205,7 +205,6 @@ typedef struct SceneNet {
     SceneNetChoice choice;
     int half;                             /* sweeps in calm steps */
     float after_factors[SLOT_SWEEPS_MAX]; /* [after] */
-    bool after_without_momentum;          /* all of them are 0 */
     float *rest_factors, *half_factors;   /* [rest], [half] */
     float *more_factors;                  /* [rule.more] of the sweeps that follow if the residual is too large */
 } SceneNet;
@@ -241,7 +240,6 @@ static void choose_factors(SceneNet *solver) {
     bool learned = false;
     for (int s = 1; s < network->sweeps; s++) learned |= network->factors[s] > 0;
     learned |= !solver->choice.predicts;
-    solver->after_without_momentum = !learned;
     for (int s = 0; s < solver->choice.after; s++)
         solver->after_factors[s] = solver->choice.after == network->sweeps && solver->choice.predicts
                                        ? network->factors[s]
@@ -316,27 +314,22 @@ static bool is_bounded(const Sweeps *sweeps) {
     return bounded != 0;
 }
 
-static bool run_after(SceneNet *solver) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
-    return solver->after_without_momentum ? sweeps_run(sweeps, solver->choice.after)
-                                          : sweeps_run_momentum(sweeps, solver->after_factors, solver->choice.after);
-}
-
-static bool run_more(SceneNet *solver, const ContactProblem *problem, const StoppingRule *rule) {
-    return momentum_run_more(&solver->momentum.sweeps, problem, rule, solver->more_factors);
+static bool run_more(SceneNet *solver, const StoppingRule *rule) {
+    return momentum_run_more(&solver->momentum, rule, solver->more_factors);
 }
 
 static bool run(SceneNet *solver, const ContactProblem *problem, Route route) {
-    Sweeps *sweeps = &solver->momentum.sweeps;
+    Momentum *momentum = &solver->momentum;
     const StoppingRule *rule = &solver->choice.rule;
     const StoppingRule calm = {0, calm_share * rule->near, rule->more < CALM_MORE ? rule->more : CALM_MORE};
+    if (!momentum_begin(momentum, problem)) return false;
     switch (route) {
-    case ROUTE_CALM:
-        return sweeps_run_momentum(sweeps, solver->half_factors, solver->half) && run_more(solver, problem, &calm);
-    case ROUTE_NETWORK: return run_after(solver) && run_more(solver, problem, rule);
+    case ROUTE_CALM: return momentum_run(momentum, solver->half_factors, solver->half) && run_more(solver, &calm);
+    case ROUTE_NETWORK:
+        return momentum_run(momentum, solver->after_factors, solver->choice.after) && run_more(solver, rule);
     case ROUTE_MOMENTUM: break;
     }
-    return sweeps_run_momentum(sweeps, solver->rest_factors, solver->choice.rest);
+    return momentum_run(momentum, solver->rest_factors, solver->choice.rest);
 }
 
 /* After the warm start. */

@@ -119,8 +119,8 @@ bool stopping_needs_more(const StoppingRule *rule, int done, const Sweeps *sweep
 bool stopping_needs_more_scalar(const StoppingRule *rule, int done, const ContactProblem *problem,
                                 const ContactSolution *solution);
 
-/* Sweeps with momentum: a scalar reference implementation, and the fast one of the solvers, which visits contacts in
-   the order of colours (methods/sweeps.h). The solvers choose the factors. */
+/* Sweeps with momentum (momentum.c): a scalar reference implementation, and the fast one of the solvers, which visits
+   contacts in the order of colours (methods/sweeps.h). The solvers choose the factors. */
 
 /* Scalar reference implementation: `count` sweeps over the contacts visits[contact_count]; before each sweep s > 0 the
    extrapolation by factors[s] >= 0. `before`: work space, a solution of the same size. sweeps_run_momentum gives the
@@ -136,26 +136,42 @@ float momentum_factor_tuned(int sweep, int count);
 /* The hand-tuned factors of `count` sweeps; the caller frees them. NULL when memory is short. */
 float *momentum_factors_make(int count);
 
+typedef struct MomentumIsland MomentumIsland;
+
 /* Zero-initialise; arrays grow and are reused. */
 typedef struct Momentum {
     Sweeps sweeps;
-    ContactSolution before; /* work space of the scalar implementation */
-    ArrayBlock arrays;      /* of `before` */
-    StoppingRule rule;      /* its k does not count */
-    float *more_factors;    /* [rule.more] */
+    StoppingRule rule;   /* its k does not count */
+    float *more_factors; /* [rule.more] */
+    const ContactProblem *problem;
+    bool watched;            /* its islands have courses */
+    MomentumIsland *courses; /* [sweeps.groups] */
+    bool *chosen;            /* [sweeps.groups] */
+    float *of_pairs;         /* [sweeps.pair_count] what was last measured */
+    float *factors;          /* [sweeps of a block, sweeps.groups] */
+    ArrayBlock arrays;
 } Momentum;
-
-/* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb
-   on a whole stack, which need momentum with large factors: so this is one run of sweeps with momentum, not many short
-   ones. It begins again from factors[0] once the residual is twice the least since it last did: else errors of impacts on
-   many boxes are carried past the solution for ever. Source: O'Donoghue, Candes, "Adaptive Restart for Accelerated
-   Gradient Schemes" (2015). False when memory is short. */
-bool momentum_run_more(Sweeps *sweeps, const ContactProblem *problem, const StoppingRule *rule, const float *factors);
 
 void momentum_free(Momentum *momentum);
 
-/* Uses the fast sweeps with the stopping rule, or `count` of the scalar implementation if these end with a NaN or
-   infinite number. */
+/* momentum->sweeps have begun with this problem, which must stay until the end. False when memory is short. */
+bool momentum_begin(Momentum *momentum, const ContactProblem *problem);
+
+/* `count` sweeps with factors[count]. After 16 or more no island's residual is above the least that was measured on the way,
+   after each 8. After fewer, it is not above that of the start where contacts slide so that visits overshoot, or the solution
+   is that of one sweep without extrapolation. False when memory is short. */
+bool momentum_run(Momentum *momentum, const float *factors, int count);
+
+/* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb
+   on a whole stack, which need momentum with large factors: so this is one run of sweeps with momentum, not many short
+   ones. Where it ends by rule->more, no island's residual is above the least, before or on the way. False when memory is
+   short. */
+bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float *factors);
+
+/* Stores the solution; that of the warm start if it is NaN or infinite. False when memory is short. */
+bool momentum_end(Momentum *momentum, ContactSolution *solution);
+
+/* All of these, from the warm start, with the momentum's rule. */
 bool momentum_solve(Momentum *momentum, const ContactProblem *problem, const float *factors, int count,
                     ContactSolution *solution, Error *error);
 
@@ -272,8 +288,14 @@ typedef struct PairResidual {
 
 PairResidual residual_of_pair(const Sweeps *sweeps, int pair);
 
-/* (m/s)^2: the sum of `visit` over all pairs. */
-float residual_of_sweeps(const Sweeps *sweeps);
+/* squared[pair_count]: `visit` of each pair; NaN if a velocity of its bodies is NaN or infinite. By the sweeps' kernel. */
+void residual_of_pairs(const Sweeps *sweeps, float *squared);
+
+/* overshoot[pair_count]: the share of a contact's error by which a visit carries its normal velocity past the aim, because it
+   slides, or is new and will slide: mu |knt| / knn, where the friction acts against the normal velocity; the larger of the
+   pair's points, else 0. knn: what a normal impulse changes the normal velocity by, 1 / mass_normal; knt: what an impulse
+   along the tangent does. For boxes |knt| / knn is at most sqrt(3) / 2, as no point is further from the centre than a corner. */
+void overshoot_of_pairs(const Sweeps *sweeps, float *overshoot);
 
 /* (m/s)^2: how the bodies of a contact move relative to each other there without any impulse, in any direction; or NaN. A
    step of gravity makes 0.17 m/s at rest, whatever the masses. */

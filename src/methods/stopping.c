@@ -5,6 +5,7 @@
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 /* m/s: of a contact point of body b relative to that of body a. */
@@ -20,14 +21,14 @@ static float squared_residual(float bias, float normal_velocity, float normal) {
     return residual * residual;
 }
 
-/* (m/s)^2: of point k of a pair, whose bodies move relative to each other at this velocity there. */
-typedef float SquaredOfPoint(const SweepPair *pair, int k, Vec2 velocity);
+/* Of point k of a pair, whose bodies move relative to each other at this velocity there. */
+typedef float OfPoint(const SweepPair *pair, int k, Vec2 velocity);
 
 static float squared_of_point(const SweepPair *pair, int k, Vec2 velocity) {
     return squared_residual(pair->points[k].bias, vec2_dot(velocity, pair->normal), pair->sums[k].normal);
 }
 
-/* (m/s)^2: of the changes that a visit would make. NaN remains. */
+/* (m/s)^2: of the changes that a visit would make; NaN if a velocity is NaN or infinite. */
 static float squared_of_visit(const SweepPair *pair, int k, Vec2 velocity) {
     const SweepPoint *point = &pair->points[k];
     const ContactImpulse sum = pair->sums[k];
@@ -37,27 +38,26 @@ static float squared_of_visit(const SweepPair *pair, int k, Vec2 velocity) {
     const float limit = pair->friction * sum.normal;
     const float wanted = contact_clamp(sum.tangent - point->mass_tangent * slip, -limit, limit);
     const float tangent = (sum.tangent - wanted) / point->mass_tangent;
-    return normal * normal + tangent * tangent;
+    const float if_finite = (velocity.x - velocity.x) + (velocity.y - velocity.y);
+    return normal * normal + tangent * tangent + if_finite;
 }
 
-static inline float squared_of(SquaredOfPoint *squared, const SweepPair *pair, int k, const SweepBody *a,
-                               const SweepBody *b) {
+static inline float measure(OfPoint *of, const SweepPair *pair, int k, const SweepBody *a, const SweepBody *b) {
     const SweepPoint *point = &pair->points[k];
-    return squared(pair, k,
-                   relative_velocity(vec2(b->x, b->y), b->spin, point->arm_b, vec2(a->x, a->y), a->spin, point->arm_a));
+    return of(pair, k,
+              relative_velocity(vec2(b->x, b->y), b->spin, point->arm_b, vec2(a->x, a->y), a->spin, point->arm_a));
 }
 
 /* Whether the sum over all points reaches the limit; `or_nan`: or is NaN. Inline, so that the compiler knows the summand.
    The second point is computed whether it is there or not: a branch would mispredict. */
-static inline bool sum_reaches(const Sweeps *sweeps, int contact_count, float limit, SquaredOfPoint *squared,
-                               bool or_nan) {
+static inline bool sum_reaches(const Sweeps *sweeps, int contact_count, float limit, OfPoint *of, bool or_nan) {
     const float enough = limit * limit * (float)contact_count;
     float sum = 0;
     for (int i = 0; i < sweeps->pair_count; i++) {
         const SweepPair *pair = &sweeps->pairs[i];
         const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
         const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
-        const float first = squared_of(squared, pair, 0, a, b), second = squared_of(squared, pair, 1, a, b);
+        const float first = measure(of, pair, 0, a, b), second = measure(of, pair, 1, a, b);
         sum += first;
         sum += sweep_pair_points(pair) == 2 ? second : 0;
         if (or_nan ? !(sum < enough) : sum >= enough) return true;
@@ -80,16 +80,51 @@ PairResidual residual_of_pair(const Sweeps *sweeps, int i) {
     PairResidual sum = {0};
     for (int k = 0; k < sweep_pair_points(pair); k++) {
         const float held = pair->sums[k].normal / pair->points[k].mass_normal;
-        sum.visit += squared_of(squared_of_visit, pair, k, a, b);
+        sum.visit += measure(squared_of_visit, pair, k, a, b);
         sum.held += held * held;
     }
     return sum;
 }
 
-float residual_of_sweeps(const Sweeps *sweeps) {
-    float sum = 0;
-    for (int i = 0; i < sweeps->pair_count; i++) sum += residual_of_pair(sweeps, i).visit;
-    return sum;
+void residual_of_pairs(const Sweeps *sweeps, float *squared) {
+    if (sweeps->kernel == SWEEP_LANES)
+        sweeps_residuals_in_lanes(sweeps, squared);
+    else
+        for (int i = 0; i < sweeps->pair_count; i++) squared[i] = residual_of_pair(sweeps, i).visit;
+}
+
+static float overshoot_of_point(const SweepPair *pair, int k, Vec2 velocity) {
+    const SweepPoint *point = &pair->points[k];
+    const ContactImpulse sum = pair->sums[k];
+    const Vec2 n = pair->normal, t = vec2_cross_scalar(n, 1.0f);
+    const float gap = vec2_dot(velocity, n) - point->bias, slip = vec2_dot(velocity, t);
+    const float turn_a = vec2_cross(point->arm_a, n) * vec2_cross(point->arm_a, t),
+                turn_b = vec2_cross(point->arm_b, n) * vec2_cross(point->arm_b, t);
+    const float knt = pair->inv_inertia_a * turn_a + pair->points[0].extra * turn_b;
+    const float share = pair->friction * (point->mass_normal * knt);
+    const bool held = sum.normal > 0;
+    const float slides = held ? pair->friction * sum.normal - SWEEP_AT_LIMIT * fabsf(sum.tangent) : gap;
+    const float against = held ? sum.tangent : -slip;
+    const float overshoot = against < 0 ? -share : share;
+    return slides < 0 && overshoot > 0 ? overshoot : 0;
+}
+
+static float overshoot_of_pair(const Sweeps *sweeps, int i) {
+    const SweepPair *pair = &sweeps->pairs[i];
+    if (pair->friction < SWEEP_SLIPPERY) return 0;
+    const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
+    const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
+    const float first = measure(overshoot_of_point, pair, 0, a, b);
+    if (sweep_pair_points(pair) == 1) return first;
+    const float second = measure(overshoot_of_point, pair, 1, a, b);
+    return second > first ? second : first;
+}
+
+void overshoot_of_pairs(const Sweeps *sweeps, float *overshoot) {
+    if (sweeps->kernel == SWEEP_LANES)
+        sweeps_overshoots_in_lanes(sweeps, overshoot);
+    else
+        for (int i = 0; i < sweeps->pair_count; i++) overshoot[i] = overshoot_of_pair(sweeps, i);
 }
 
 bool residual_reaches_scalar(const ContactProblem *problem, const ContactSolution *solution, float limit) {

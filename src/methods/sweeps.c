@@ -25,7 +25,7 @@ static bool add_level(SweepSchedule *schedule, const Sweeps *sweeps, bool turns)
         SweepTurns *slots = &schedule->turns[schedule->level_count];
         for (int i = 0; i < LEVEL_WIDTH; i++) {
             slots->from[i] = slots->to[i] = sweeps->pair_count * SUMS_FLOATS;
-            slots->sweep[i] = 0;
+            slots->factor[i] = 0;
         }
     }
     SweepLevel *level = &schedule->levels[schedule->level_count];
@@ -69,21 +69,23 @@ static void place_turns(SweepSchedule *schedule, const Sweeps *sweeps, int32_t p
     SweepTurns *turns = &schedule->turns[level];
     turns->from[slot] = (1 - sweep % 2) * half + pair * SUMS_FLOATS;
     turns->to[slot] = sweep % 2 * half + pair * SUMS_FLOATS;
-    turns->sweep[slot] = sweep;
+    turns->factor[slot] = sweep * sweeps->groups + sweeps->group[pair];
     schedule->levels[level].a[slot] += sweep % 2 * body_half;
     schedule->levels[level].b[slot] += sweep % 2 * body_half;
 }
 
 /* A body is extrapolated at its first visit in a sweep, when the previous sweep no longer changes it. */
-static bool add_body_turn(SweepSchedule *schedule, Sweeps *sweeps, int32_t body, int32_t sweep) {
+static bool add_body_turn(SweepSchedule *schedule, Sweeps *sweeps, int32_t body, int32_t group, int32_t sweep) {
     if (sweeps->seen[body] > sweep) return true;
     sweeps->seen[body] = sweep + 1;
     size_t wanted = (size_t)schedule->body_turn_count + 1;
     if (!array_reserve((void **)&schedule->unsorted, &schedule->unsorted_capacity, wanted, sizeof *schedule->unsorted))
         return false;
     int32_t half = (sweeps->body_count + 1) * BODY_FLOATS, at = body * BODY_FLOATS;
-    schedule->unsorted[schedule->body_turn_count++] = (SweepBodyTurn){
-        .from = (1 - sweep % 2) * half + at, .to = sweep % 2 * half + at, .sweep = sweep, .level = sweeps->ready[body]};
+    schedule->unsorted[schedule->body_turn_count++] = (SweepBodyTurn){.from = (1 - sweep % 2) * half + at,
+                                                                      .to = sweep % 2 * half + at,
+                                                                      .factor = sweep * sweeps->groups + group,
+                                                                      .level = sweeps->ready[body]};
     return true;
 }
 
@@ -107,8 +109,9 @@ static bool add_visit(SweepSchedule *schedule, Sweeps *sweeps, int32_t pair, int
     SweepEnds ends = sweeps->ends[pair];
     bool moves_a = ends.a >= 0, moves_b = ends.b >= 0;
     int32_t a = moves_a ? ends.a : ~ends.a, b = moves_b ? ends.b : ~ends.b;
-    if (turns && ((moves_a && !add_body_turn(schedule, sweeps, a, sweep)) ||
-                  (moves_b && !add_body_turn(schedule, sweeps, b, sweep))))
+    const int32_t group = sweeps->group[pair];
+    if (turns && ((moves_a && !add_body_turn(schedule, sweeps, a, group, sweep)) ||
+                  (moves_b && !add_body_turn(schedule, sweeps, b, group, sweep))))
         return false;
     int32_t level = moves_a ? ready[a] : 0, slot;
     if (moves_b && ready[b] > level) level = ready[b];
@@ -168,7 +171,8 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
     size_t size = (size_t)sweeps->pair_count * sizeof *sweeps->ends;
     if (sweeps->scheduled_count == sweeps->pair_count && memcmp(sweeps->scheduled, sweeps->ends, size) == 0 &&
         sweeps->scheduled_bodies == sweeps->body_count && sweeps->whole.sweeps == at_once &&
-        (rest == 0 || sweeps->rest.sweeps == rest) && sweeps->scheduled_turns == turns)
+        (rest == 0 || sweeps->rest.sweeps == rest) && sweeps->scheduled_turns == turns &&
+        (!turns || sweeps->scheduled_groups == sweeps->groups))
         return true;
     sweeps->scheduled_count = 0;
     if (!make_schedule(&sweeps->whole, sweeps, at_once, turns) || !make_schedule(&sweeps->rest, sweeps, rest, turns))
@@ -177,6 +181,7 @@ static bool reschedule(Sweeps *sweeps, int at_once, int rest, bool turns) {
     sweeps->scheduled_count = sweeps->pair_count;
     sweeps->scheduled_bodies = sweeps->body_count;
     sweeps->scheduled_turns = turns;
+    sweeps->scheduled_groups = sweeps->groups;
     return true;
 }
 
@@ -193,7 +198,7 @@ static int sweeps_of_schedule(const Sweeps *sweeps, int count, bool turns) {
     return turns ? equal + equal % 2 : equal;
 }
 
-/* True to use lanes: the processor has them and enough visits share a level. */
+/* By lanes if the processor has them and enough visits share a level. False when memory is short. */
 static bool run(Sweeps *sweeps, const float *factors, int count) {
     bool turns = factors != NULL;
     int at_once = sweeps_of_schedule(sweeps, count, turns);
@@ -205,8 +210,8 @@ static bool run(Sweeps *sweeps, const float *factors, int count) {
     }
     int done = 0;
     for (; done + at_once <= count; done += at_once)
-        sweeps_run_lanes(sweeps, &sweeps->whole, turns ? factors + done : NULL);
-    if (done < count) sweeps_run_lanes(sweeps, &sweeps->rest, turns ? factors + done : NULL);
+        sweeps_run_lanes(sweeps, &sweeps->whole, turns ? factors + done * sweeps->groups : NULL);
+    if (done < count) sweeps_run_lanes(sweeps, &sweeps->rest, turns ? factors + done * sweeps->groups : NULL);
     return true;
 }
 
@@ -253,6 +258,70 @@ bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count) {
     return true;
 }
 
+/* The body that stands for the group; halves the path to it. */
+static int32_t find_root(int32_t *parent, int32_t body) {
+    while (parent[body] != body) body = parent[body] = parent[parent[body]];
+    return body;
+}
+
+void sweeps_group(Sweeps *sweeps) {
+    int32_t *parent = sweeps->ready, *number = sweeps->seen; /* of the next schedule */
+    for (int32_t i = 0; i < sweeps->body_count; i++) parent[i] = i, number[i] = -1;
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const SweepEnds ends = sweeps->ends[i];
+        if (ends.a >= 0 && ends.b >= 0) parent[find_root(parent, ends.b)] = find_root(parent, ends.a);
+    }
+    sweeps->groups = 0;
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const SweepEnds ends = sweeps->ends[i];
+        int32_t *group = &number[find_root(parent, ends.a >= 0 ? ends.a : ends.b)];
+        if (*group < 0) *group = sweeps->groups++;
+        sweeps->group[i] = *group;
+        if (ends.a >= 0) sweeps->group_of_body[ends.a] = *group;
+        if (ends.b >= 0) sweeps->group_of_body[ends.b] = *group;
+    }
+}
+
+static void keep_all(Sweeps *sweeps) {
+    memcpy(sweeps->kept_bodies, sweeps->bodies, (size_t)sweeps->body_count * sizeof *sweeps->bodies);
+    for (int i = 0; i < sweeps->pair_count; i++)
+        memcpy(&sweeps->kept_sums[2 * i], sweeps->pairs[i].sums, sizeof sweeps->pairs[i].sums);
+}
+
+void sweeps_keep(Sweeps *sweeps, const bool *chosen) {
+    bool all = true;
+    for (int k = 0; k < sweeps->groups; k++) all &= chosen[k];
+    if (all) {
+        keep_all(sweeps);
+        return;
+    }
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        if (!chosen[sweeps->group[i]]) continue;
+        const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
+        memcpy(&sweeps->kept_sums[2 * i], sweeps->pairs[i].sums, sizeof sweeps->pairs[i].sums);
+        sweeps->kept_bodies[a] = sweeps->bodies[a], sweeps->kept_bodies[b] = sweeps->bodies[b];
+    }
+}
+
+/* Both halves: a change of 0 has no NaN, whatever was found in between. */
+static void return_body(Sweeps *sweeps, int32_t end) {
+    if (end < 0) return;
+    sweeps->bodies[end] = sweeps->bodies[sweeps->body_count + 1 + end] = sweeps->kept_bodies[end];
+}
+
+void sweeps_return(Sweeps *sweeps, const bool *chosen) {
+    const size_t half = 2 * ((size_t)sweeps->pair_count + 1);
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        if (!chosen[sweeps->group[i]]) continue;
+        const ContactImpulse *kept = &sweeps->kept_sums[2 * i];
+        memcpy(sweeps->pairs[i].sums, kept, sizeof sweeps->pairs[i].sums);
+        memcpy(&sweeps->sums[2 * i], kept, sizeof sweeps->pairs[i].sums);
+        memcpy(&sweeps->sums[half + 2 * (size_t)i], kept, sizeof sweeps->pairs[i].sums);
+        return_body(sweeps, sweeps->ends[i].a);
+        return_body(sweeps, sweeps->ends[i].b);
+    }
+}
+
 bool sweeps_end(const Sweeps *sweeps, ContactSolution *solution) {
     bool finite = true;
     for (int i = 0; i < sweeps->body_count; i++) {
@@ -276,6 +345,8 @@ static bool reserve(Sweeps *sweeps, const ContactProblem *problem) {
     return ARRAY_BLOCK_RESERVE(&sweeps->arrays, ARRAY_PART(sweeps->bodies, 2 * bodies),
                                ARRAY_PART(sweeps->pairs, pairs), ARRAY_PART(sweeps->first, pairs),
                                ARRAY_PART(sweeps->ends, pairs), ARRAY_PART(sweeps->sums, 4 * pairs),
+                               ARRAY_PART(sweeps->group, pairs), ARRAY_PART(sweeps->group_of_body, bodies),
+                               ARRAY_PART(sweeps->kept_bodies, bodies), ARRAY_PART(sweeps->kept_sums, 2 * pairs),
                                ARRAY_PART(sweeps->moves, bodies), ARRAY_PART(sweeps->quiet_since, pairs),
                                ARRAY_PART(sweeps->changed_at, bodies), ARRAY_PART(sweeps->ready, bodies),
                                ARRAY_PART(sweeps->seen, bodies)) &&
@@ -296,6 +367,7 @@ static void load_bodies(Sweeps *sweeps, const ContactProblem *problem) {
         const ProblemBody *body = &problem->bodies[i];
         sweeps->bodies[i] = (SweepBody){body->velocity.x, body->velocity.y, body->angular_velocity, body->inv_mass};
         sweeps->moves[i] = moves(body);
+        sweeps->group_of_body[i] = 0;
     }
     sweeps->bodies[problem->body_count] = (SweepBody){0};
 }
@@ -331,6 +403,7 @@ static int load_pair(Sweeps *sweeps, const ContactProblem *problem, int first, b
     load_point(pair, 0, contact, problem->bodies[contact->b].inv_inertia, warm);
     load_point(pair, 1, points == 2 ? next : &none, points == 2 ? -1.0f : 0.0f, warm);
     sweeps->first[sweeps->pair_count] = first;
+    sweeps->group[sweeps->pair_count] = 0;
     sweeps->ends[sweeps->pair_count++] = ends_of(sweeps, contact->a, contact->b);
     return points;
 }
@@ -346,6 +419,7 @@ static bool begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *prob
     if (!reserve(sweeps, problem)) return false;
     sweeps->kernel = kernel;
     sweeps->coloured = visits != NULL;
+    sweeps->groups = 1;
     load_bodies(sweeps, problem);
     load_pairs(sweeps, problem, visits, warm);
     sweeps_warm_start(sweeps);

@@ -122,14 +122,14 @@ typedef struct SweepLevel {
 } SweepLevel;
 
 /* With momentum extrapolation: the offsets, in floats, of a visit's sums after the previous sweep and of those of this
-   sweep (which overwrite the sums of two sweeps ago), and the sweep's number in the schedule. */
+   sweep (which overwrite the sums of two sweeps ago), and the number of its factor in the schedule: of the sweep and group. */
 typedef struct SweepTurns {
-    int32_t from[LEVEL_WIDTH], to[LEVEL_WIDTH], sweep[LEVEL_WIDTH];
+    int32_t from[LEVEL_WIDTH], to[LEVEL_WIDTH], factor[LEVEL_WIDTH];
 } SweepTurns;
 
 /* The same for a body, before the levels from `level` on. */
 typedef struct SweepBodyTurn {
-    int32_t from, to, sweep, level;
+    int32_t from, to, factor, level;
 } SweepBodyTurn;
 
 /* The levels of `sweeps` sweeps. */
@@ -168,12 +168,17 @@ typedef struct Sweeps {
     int32_t *first;       /* [pair_count] the first contact of each pair in the problem */
     SweepEnds *ends;      /* [pair_count] */
     SweepEnds *scheduled; /* [scheduled_count] the ends that the schedules are for */
-    int scheduled_count, scheduled_bodies;
+    int scheduled_count, scheduled_bodies, scheduled_groups;
     bool scheduled_turns; /* they are for momentum extrapolation */
     bool coloured;        /* the pairs are in the order of colours */
     Colours colours;
     ContactImpulse
         *sums; /* [2, pair_count + 1, 2] with momentum extrapolation: of this sweep and the previous one, alternating */
+    int groups;                /* of pairs, each with factors of its own: 1, or the islands */
+    int32_t *group;            /* [pair_count] 0 to groups - 1 */
+    int32_t *group_of_body;    /* [body_count] that of a moving body's pairs */
+    SweepBody *kept_bodies;    /* [body_count] what sweeps_keep() copied */
+    ContactImpulse *kept_sums; /* [pair_count, 2] */
     SweepSchedule whole, rest; /* of as many sweeps as fit, run repeatedly, and of the remaining sweeps */
     bool *moves;               /* [body_count] an impulse can change the body's velocity */
     int64_t *quiet_since;      /* [pair_count] one by one: the visit since which the pair is unchanged; 0: none */
@@ -196,15 +201,36 @@ bool sweeps_begin_coloured(Sweeps *sweeps, SweepKernel kernel, const ContactProb
 bool sweeps_run(Sweeps *sweeps, int count);
 
 /* The same with momentum extrapolation before each sweep but the first, with the bits of the scalar reference
-   implementation in momentum.c: velocities and sums advance by factors[sweep] (>= 0) times the change by the previous
+   implementation in momentum.c: velocities and sums advance by factors[sweep, group] times the change by the previous
    sweep, including its extrapolation. */
 bool sweeps_run_momentum(Sweeps *sweeps, const float *factors, int count);
 
-/* Continues after sweeps_run_momentum() or itself, as if in one run: here factors[0] counts. Both counts are even. */
+/* Continues after sweeps_run_momentum() or itself, as if in one run: here the first sweep's factors count. Both counts are
+   even. */
 bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count);
+
+/* Islands: groups of pairs that share no moving body with others, so what happens in one changes no bit in another. After
+   sweeps_begin(), which makes a single group of all. */
+
+/* Finds the islands. */
+void sweeps_group(Sweeps *sweeps);
+
+/* Copies sums, and velocities of moving bodies, of the groups for which chosen[groups] is true. */
+void sweeps_keep(Sweeps *sweeps, const bool *chosen);
+
+/* Copies them back. sweeps_continue_momentum() then begins from them without momentum. */
+void sweeps_return(Sweeps *sweeps, const bool *chosen);
+
+/* One sweep over the pairs of these groups, without momentum. */
+void sweeps_run_groups(Sweeps *sweeps, const bool *chosen);
 
 /* Applies additional impulses [contact_count] and adds them to the sums. */
 void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses);
+
+/* A contact slides if its tangent impulse times this exceeds the limit. */
+#define SWEEP_AT_LIMIT 1.0001f
+/* Friction below which no contact of boxes overshoots enough to matter (overshoot_of_pairs() in solvers.h). */
+#define SWEEP_SLIPPERY 0.3f
 
 static inline int sweep_pair_points(const SweepPair *pair) { return pair->points[1].extra < 0.0f ? 2 : 1; }
 
@@ -264,9 +290,13 @@ enum { SWEEPS_AT_ONCE = 16 }; /* sweeps in one schedule, which is run repeatedly
 
 bool sweeps_have_lanes(void);
 
-/* Solves the levels one after the other, a pair in each lane. factors: one for each of the schedule's sweeps, or NULL
-   without momentum extrapolation. */
+/* Solves the levels one after the other, a pair in each lane. factors[the schedule's sweeps, groups], or NULL without
+   momentum extrapolation. */
 void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors);
+
+/* As residual_of_pairs() and overshoot_of_pairs() in solvers.h, a pair in each lane. */
+void sweeps_residuals_in_lanes(const Sweeps *sweeps, float *squared);
+void sweeps_overshoots_in_lanes(const Sweeps *sweeps, float *overshoot);
 
 /* Applies the initial impulses in the sums. */
 void sweeps_warm_start(Sweeps *sweeps);

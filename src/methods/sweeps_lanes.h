@@ -78,14 +78,11 @@ TARGET static inline void solve_point(Side *a, Side *b, const Surface *surface, 
 TARGET static inline void load_rows(Lanes out[4], const float *base, const int32_t *offsets);
 TARGET static inline void store_rows(float *base, const int32_t *offsets, const Lanes in[4]);
 
-/* A sweep's factor for extrapolation, for a whole row. */
-typedef float Factor[4];
-
-/* As load_rows, of now - (factor * (before - now) + 0). */
+/* As load_rows, of now - (factor * (before - now) + 0). number: that of each lane's factor. */
 TARGET static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
-                                            const Factor *factors, const int32_t *sweep);
+                                            const float *factors, const int32_t *number);
 /* Replaces the row of two sweeps ago. */
-TARGET static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const Factor *factors);
+TARGET static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const float *factors);
 
 TARGET static inline Side load_side(const Sweeps *sweeps, const int32_t *offsets, Lanes inv_inertia) {
     Lanes rows[4];
@@ -106,8 +103,8 @@ TARGET static inline void keep_where_single(Side *after, const Side *before, Lan
 }
 
 /* turns, factors: NULL without momentum extrapolation. */
-TARGET static inline void solve_pairs(Sweeps *sweeps, const SweepLevel *level, const SweepTurns *turns, int lane,
-                                      const Factor *factors) {
+TARGET __attribute__((always_inline)) static inline void
+solve_pairs(Sweeps *sweeps, const SweepLevel *level, const SweepTurns *turns, int lane, const float *factors) {
     SweepPair *records = sweeps->pairs;
     const int32_t *pair = level->pair + lane, *offset_a = level->a + lane, *offset_b = level->b + lane;
     Lanes sums[4], shared[4], arms1[4], masses1[4], arms2[4], masses2[4];
@@ -115,7 +112,7 @@ TARGET static inline void solve_pairs(Sweeps *sweeps, const SweepLevel *level, c
         load_rows(sums, &records->sums[0].normal, pair);
     else
         load_extrapolated(sums, &sweeps->sums->normal, turns->from + lane, turns->to + lane, factors,
-                          turns->sweep + lane);
+                          turns->factor + lane);
     load_rows(shared, &records->normal.x, pair);
     load_rows(arms1, &records->points[0].arm_a.x, pair);
     load_rows(masses1, &records->points[0].mass_normal, pair);
@@ -147,14 +144,137 @@ TARGET static inline void run_levels(Sweeps *sweeps, const SweepSchedule *schedu
 }
 
 TARGET static inline void run_levels_extrapolating(Sweeps *sweeps, const SweepSchedule *schedule,
-                                                   const float *sweep_factors) {
-    Factor factors[SWEEPS_AT_ONCE];
-    for (int sweep = 0; sweep < schedule->sweeps; sweep++)
-        for (int i = 0; i < 4; i++) factors[sweep][i] = sweep_factors[sweep];
+                                                   const float *factors) {
     for (int i = 0, turn = 0; i < schedule->level_count; i++) {
         for (; turn < schedule->turns_end[i]; turn++)
             extrapolate_body(&sweeps->bodies->x, &schedule->body_turns[turn], factors);
         for (int lane = 0; lane < schedule->filled[i]; lane += LANES)
             solve_pairs(sweeps, &schedule->levels[i], &schedule->turns[i], lane, factors);
+    }
+}
+
+/* What is measured at the points of pairs: two at most, of the same bodies. */
+typedef struct LanePoint {
+    Lanes arms[4], masses[4]; /* as in solve_normal() */
+    Lanes normal, tangent;    /* the sums */
+} LanePoint;
+
+typedef struct LanePair {
+    Surface surface;
+    Side a, b;
+    LanePoint points[2];
+} LanePair;
+
+/* The pairs whose records have these offsets, as in a level. */
+TARGET static inline LanePair load_pair_lanes(const Sweeps *sweeps, const SweepLevel *at) {
+    const SweepPair *records = sweeps->pairs;
+    LanePair pair;
+    Lanes sums[4], shared[4];
+    load_rows(sums, &records->sums[0].normal, at->pair);
+    load_rows(shared, &records->normal.x, at->pair);
+    for (int k = 0; k < 2; k++) {
+        load_rows(pair.points[k].arms, &records->points[k].arm_a.x, at->pair);
+        load_rows(pair.points[k].masses, &records->points[k].mass_normal, at->pair);
+        pair.points[k].normal = sums[2 * k];
+        pair.points[k].tangent = sums[2 * k + 1];
+    }
+    pair.surface = (Surface){{shared[0], shared[1]}, {shared[1], lanes_negate(shared[0])}, shared[2]};
+    pair.a = load_side(sweeps, at->a, shared[3]);
+    pair.b = load_side(sweeps, at->b, pair.points[0].masses[3]);
+    return pair;
+}
+
+/* As in stopping.c. */
+TARGET static inline LaneVec velocity_there(const LanePair *pair, const Lanes arms[4]) {
+    const Side *a = &pair->a, *b = &pair->b;
+    return (LaneVec){
+        lanes_sub(lanes_sub(b->x, lanes_mul(b->spin, arms[3])), lanes_sub(a->x, lanes_mul(a->spin, arms[1]))),
+        lanes_sub(lanes_add(b->y, lanes_mul(b->spin, arms[2])), lanes_add(a->y, lanes_mul(a->spin, arms[0])))};
+}
+
+TARGET static inline Lanes dot(LaneVec a, LaneVec b) { return lanes_add(lanes_mul(a.x, b.x), lanes_mul(a.y, b.y)); }
+
+/* The operations of squared_of_visit() in stopping.c. Anything for a point that is not there. */
+TARGET static inline Lanes squared_of_visit(const LanePair *pair, const LanePoint *point) {
+    const LaneVec v = velocity_there(pair, point->arms);
+    const Lanes slip = dot(v, pair->surface.tangent), gap = lanes_sub(dot(v, pair->surface.normal), point->masses[2]);
+    const Lanes normal = lanes_min(lanes_divide(point->normal, point->masses[0]), gap);
+    const Lanes limit = lanes_mul(pair->surface.friction, point->normal);
+    const Lanes wanted = lanes_min(lanes_sub(point->tangent, lanes_mul(point->masses[1], slip)), limit);
+    const Lanes clamped = lanes_max(lanes_negate(limit), wanted);
+    const Lanes tangent = lanes_divide(lanes_sub(point->tangent, clamped), point->masses[1]);
+    const Lanes squared = lanes_add(lanes_mul(normal, normal), lanes_mul(tangent, tangent));
+    return lanes_add(squared, lanes_add(lanes_sub(v.x, v.x), lanes_sub(v.y, v.y)));
+}
+
+/* The operations of overshoot_of_point() in stopping.c. Anything for a point that is not there. */
+TARGET static inline Lanes overshoot_of_point(const LanePair *pair, const LanePoint *point) {
+    const LaneVec v = velocity_there(pair, point->arms), n = pair->surface.normal, t = pair->surface.tangent;
+    const LaneVec arm_a = {point->arms[0], point->arms[1]}, arm_b = {point->arms[2], point->arms[3]};
+    const Lanes gap = lanes_sub(dot(v, n), point->masses[2]), slip = dot(v, t);
+    const Lanes turn_a = lanes_mul(cross(arm_a, n), cross(arm_a, t)),
+                turn_b = lanes_mul(cross(arm_b, n), cross(arm_b, t));
+    const Lanes knt = lanes_add(lanes_mul(pair->a.inv_inertia, turn_a), lanes_mul(pair->b.inv_inertia, turn_b));
+    const Lanes share = lanes_mul(pair->surface.friction, lanes_mul(point->masses[0], knt));
+    const Lanes held = lanes_sub(lanes_zero(), point->normal); /* < 0 */
+    const Lanes dragged = lanes_max(point->tangent, lanes_negate(point->tangent));
+    const Lanes room =
+        lanes_sub(lanes_mul(pair->surface.friction, point->normal), lanes_mul(lanes_all(SWEEP_AT_LIMIT), dragged));
+    /* + 0, as -0 is not below 0 */
+    const Lanes slides = lanes_add(lanes_choose(gap, room, held), lanes_zero());
+    const Lanes against = lanes_add(lanes_choose(lanes_negate(slip), point->tangent, held), lanes_zero());
+    const Lanes overshoot = lanes_choose(share, lanes_negate(share), against);
+    return lanes_max(lanes_choose(lanes_zero(), overshoot, slides), lanes_zero());
+}
+
+/* Some pairs in a row, those behind the last as the first of them. */
+TARGET static inline SweepLevel pairs_from(const Sweeps *sweeps, int first) {
+    SweepLevel at;
+    for (int lane = 0; lane < LANES; lane++) {
+        const int i = first + lane < sweeps->pair_count ? first + lane : first;
+        at.pair[lane] = i * PAIR_FLOATS;
+        at.a[lane] = sweep_body_at(sweeps->ends[i].a) * BODY_FLOATS;
+        at.b[lane] = sweep_body_at(sweeps->ends[i].b) * BODY_FLOATS;
+    }
+    return at;
+}
+
+TARGET static inline void store_from(const Sweeps *sweeps, int first, Lanes values, float *to) {
+    float row[LANES];
+    lanes_store(row, values);
+    for (int lane = 0; lane < LANES && first + lane < sweeps->pair_count; lane++) to[first + lane] = row[lane];
+}
+
+TARGET static inline void measure_residuals(const Sweeps *sweeps, float *squared) {
+    for (int first = 0; first < sweeps->pair_count; first += LANES) {
+        const SweepLevel at = pairs_from(sweeps, first);
+        const LanePair pair = load_pair_lanes(sweeps, &at);
+        const Lanes second = squared_of_visit(&pair, &pair.points[1]);
+        const Lanes sum = lanes_add(squared_of_visit(&pair, &pair.points[0]),
+                                    lanes_choose(lanes_zero(), second, pair.points[1].masses[3]));
+        store_from(sweeps, first, sum, squared);
+    }
+}
+
+static inline bool any_rough(const Sweeps *sweeps, int first) {
+    bool rough = false;
+    for (int i = first; i < first + LANES && i < sweeps->pair_count; i++)
+        rough |= sweeps->pairs[i].friction >= SWEEP_SLIPPERY;
+    return rough;
+}
+
+TARGET static inline void measure_overshoots(const Sweeps *sweeps, float *overshoot) {
+    for (int first = 0; first < sweeps->pair_count; first += LANES) {
+        Lanes most = lanes_zero();
+        if (any_rough(sweeps, first)) {
+            const SweepLevel at = pairs_from(sweeps, first);
+            const LanePair pair = load_pair_lanes(sweeps, &at);
+            const Lanes second = overshoot_of_point(&pair, &pair.points[1]);
+            most = lanes_max(lanes_choose(lanes_zero(), second, pair.points[1].masses[3]),
+                             overshoot_of_point(&pair, &pair.points[0]));
+            const Lanes slippery = lanes_sub(pair.surface.friction, lanes_all(SWEEP_SLIPPERY)); /* < 0 */
+            most = lanes_choose(most, lanes_zero(), slippery);
+        }
+        store_from(sweeps, first, most, overshoot);
     }
 }

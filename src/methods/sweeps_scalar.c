@@ -134,10 +134,12 @@ static uint32_t extrapolate(float *before, float now, float factor) {
     return difference(next, now);
 }
 
-/* Replaces `to`, the velocities of two sweeps ago, by those that the next sweep starts from. */
-static bool extrapolate_bodies(Sweeps *sweeps, SweepBody *to, const SweepBody *from, float factor, int64_t now) {
+/* Replaces `to`, the velocities of two sweeps ago, by those that the next sweep starts from. factors[groups] */
+static bool extrapolate_bodies(Sweeps *sweeps, SweepBody *to, const SweepBody *from, const float *factors,
+                               int64_t now) {
     bool any = false;
     for (int i = 0; i < sweeps->body_count; i++) {
+        const float factor = factors[sweeps->group_of_body[i]];
         if (extrapolate(&to[i].x, from[i].x, factor) | extrapolate(&to[i].y, from[i].y, factor) |
             extrapolate(&to[i].spin, from[i].spin, factor)) {
             sweeps->changed_at[i] = now;
@@ -157,13 +159,13 @@ static uint32_t extrapolate_sums(ContactImpulse to[2], const ContactImpulse from
 
 /* One sweep in the current half of bodies and sums; the other half has the results of the previous sweep. True if it
    changed anything. */
-static bool sweep_in_turn(Sweeps *sweeps, int half, float factor, int64_t *now) {
+static bool sweep_in_turn(Sweeps *sweeps, int half, const float *factors, int64_t *now) {
     SweepBody *halves[2] = {sweeps->bodies, sweeps->bodies + sweeps->body_count + 1};
     ContactImpulse *sums[2] = {sweeps->sums, sweeps->sums + 2 * (sweeps->pair_count + 1)};
-    bool changed = extrapolate_bodies(sweeps, halves[half], halves[1 - half], factor, ++*now);
+    bool changed = extrapolate_bodies(sweeps, halves[half], halves[1 - half], factors, ++*now);
     for (int i = 0; i < sweeps->pair_count; i++) {
         if (may_rest(sweeps, i)) continue;
-        uint32_t moved = extrapolate_sums(&sums[half][2 * i], &sums[1 - half][2 * i], factor);
+        uint32_t moved = extrapolate_sums(&sums[half][2 * i], &sums[1 - half][2 * i], factors[sweeps->group[i]]);
         moved |= visit(halves[half], &sweeps->pairs[i], &sums[half][2 * i], sweeps->ends[i]);
         changed |= note_visit(sweeps, i, moved != 0, ++*now);
     }
@@ -186,8 +188,13 @@ void sweeps_run_one_by_one(Sweeps *sweeps, const float *factors, int count) {
     bool changed = true;
     int64_t now = 0;
     for (int sweep = 0; changed && sweep < count; sweep++)
-        changed =
-            factors != NULL ? sweep_in_turn(sweeps, sweep % 2, factors[sweep], &now) : sweep_in_place(sweeps, &now);
+        changed = factors != NULL ? sweep_in_turn(sweeps, sweep % 2, factors + sweep * sweeps->groups, &now)
+                                  : sweep_in_place(sweeps, &now);
+}
+
+void sweeps_run_groups(Sweeps *sweeps, const bool *chosen) {
+    for (int i = 0; i < sweeps->pair_count; i++)
+        if (chosen[sweeps->group[i]]) visit(sweeps->bodies, &sweeps->pairs[i], sweeps->pairs[i].sums, sweeps->ends[i]);
 }
 
 /* Sequential impulses (projected Gauss-Seidel), as in Box2D-Lite.

@@ -12,9 +12,11 @@
 typedef v128_t Lanes;
 
 static inline Lanes lanes_zero(void) { return wasm_f32x4_const_splat(0); }
+static inline Lanes lanes_all(float x) { return wasm_f32x4_splat(x); }
 static inline Lanes lanes_add(Lanes a, Lanes b) { return wasm_f32x4_add(a, b); }
 static inline Lanes lanes_sub(Lanes a, Lanes b) { return wasm_f32x4_sub(a, b); }
 static inline Lanes lanes_mul(Lanes a, Lanes b) { return wasm_f32x4_mul(a, b); }
+static inline Lanes lanes_divide(Lanes a, Lanes b) { return wasm_f32x4_div(a, b); }
 /* a > b ? a : b and a < b ? a : b, also for zeros of either sign: pmax(x, y) is x < y ? y : x. */
 static inline Lanes lanes_max(Lanes a, Lanes b) { return wasm_f32x4_pmax(b, a); }
 static inline Lanes lanes_min(Lanes a, Lanes b) { return wasm_f32x4_pmin(b, a); }
@@ -24,6 +26,7 @@ static inline Lanes lanes_choose(Lanes a, Lanes b, Lanes by) {
     return wasm_v128_bitselect(b, a, wasm_i32x4_shr(by, 31));
 }
 static inline bool lanes_any_positive(Lanes a) { return wasm_i32x4_bitmask(a) != 0xf; }
+static inline void lanes_store(float *to, Lanes a) { wasm_v128_store(to, a); }
 
 #include "methods/sweeps_lanes.h"
 
@@ -52,28 +55,32 @@ static inline void store_rows(float *base, const int32_t *offsets, const Lanes i
 
 static inline Lanes extrapolated(const float *now, const float *before, const float *factor) {
     const Lanes from = wasm_v128_load(now), change = lanes_sub(wasm_v128_load(before), from);
-    return lanes_sub(from, lanes_add(lanes_mul(wasm_v128_load(factor), change), lanes_zero()));
+    return lanes_sub(from, lanes_add(lanes_mul(wasm_v128_load32_splat(factor), change), lanes_zero()));
 }
 
 static inline void load_extrapolated(Lanes out[4], const float *base, const int32_t *now, const int32_t *before,
-                                     const Factor *factors, const int32_t *sweep) {
+                                     const float *factors, const int32_t *number) {
     Lanes rows[4];
-    for (int i = 0; i < 4; i++) rows[i] = extrapolated(base + now[i], base + before[i], factors[sweep[i]]);
+    for (int i = 0; i < 4; i++) rows[i] = extrapolated(base + now[i], base + before[i], factors + number[i]);
     transpose(out, rows);
 }
 
-static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const Factor *factors) {
-    wasm_v128_store(base + turn->to, extrapolated(base + turn->from, base + turn->to, factors[turn->sweep]));
+static inline void extrapolate_body(float *base, const SweepBodyTurn *turn, const float *factors) {
+    wasm_v128_store(base + turn->to, extrapolated(base + turn->from, base + turn->to, factors + turn->factor));
 }
 
 bool sweeps_have_lanes(void) { return true; }
 
 void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float *factors) {
-    if (factors == NULL)
-        run_levels(sweeps, schedule);
-    else
+    if (factors != NULL)
         run_levels_extrapolating(sweeps, schedule, factors);
+    else
+        run_levels(sweeps, schedule);
 }
+
+void sweeps_residuals_in_lanes(const Sweeps *sweeps, float *squared) { measure_residuals(sweeps, squared); }
+
+void sweeps_overshoots_in_lanes(const Sweeps *sweeps, float *overshoot) { measure_overshoots(sweeps, overshoot); }
 
 #else
 typedef int no_lanes_for_this_processor; /* C wants a declaration in a file. */

@@ -114,29 +114,4 @@ TEST(a_cold_engine_starts_from_zero) {
     world_destroy(world);
 }
 
-TEST(numbers_that_overflow_have_the_bits_of_the_plain_text) {
-    World *world = make_crash();
-    ContactProblem problem = *world_problem(world);
-    ContactPoint contacts[32];
-    assert_in_range(problem.contact_count, 1, 32);
-    memcpy(contacts, problem.contacts, (size_t)problem.contact_count * sizeof *contacts);
-    contacts[2].mass_normal = 1e38f;
-    problem.contacts = contacts;
-    ContactSolution plain = make_solution(&problem), before = make_solution(&problem), fast = make_solution(&problem);
-    float factors[10];
-    for (int s = 0; s < 10; s++) factors[s] = momentum_factor_tuned(s, 10);
-    Colours colours = {0};
-    assert_true(colours_order(&colours, &problem));
-    momentum_solve_scalar(&problem, colours.visits, factors, 10, &before, &plain);
-    solve_with(&solver_momentum, "", &problem, &fast);
-    bool finite = isfinite(plain.velocities[1].linear.y);
-    assert_false(finite);
-    assert_memory_equal(fast.velocities, plain.velocities, (size_t)problem.body_count * sizeof *plain.velocities);
-    colours_free(&colours);
-    free_solution(&plain);
-    free_solution(&before);
-    free_solution(&fast);
-    world_destroy(world);
-}
-
 RUN_TESTS(NULL, NULL)

@@ -31,29 +31,33 @@ static void calm(RandomProblem *random, float factor) {
     }
 }
 
-/* One run of up to `most` sweeps, looked at every 8, while the residual is `near` or more. Returns how many times 8. */
-static int go_on(Sweeps *sweeps, const ContactProblem *problem, float near, int most) {
-    float factors[MORE];
-    for (int s = 0; s < MORE; s++) factors[s] = momentum_factor_tuned(s, MORE);
+/* `count` sweeps with momentum from the warm start, and 8 n more, up to `most`: the first n that leave a residual below
+   `near`. Returns n. */
+static int sweep_until(Known *known, const float *factors, int count, float near, int most) {
+    const ContactProblem *problem = &known->random.problem;
+    Momentum momentum = {0};
+    float more_factors[MORE];
+    for (int s = 0; s < MORE; s++) more_factors[s] = momentum_factor_tuned(s, MORE);
     int times = 0;
-    for (; 8 * times < most && residual_reaches(sweeps, problem->contact_count, near); times++)
-        assert_true(times == 0 ? sweeps_run_momentum(sweeps, factors, 8)
-                               : sweeps_continue_momentum(sweeps, factors + 8 * times, 8));
+    for (bool more = true; more; times += more) {
+        const StoppingRule rule = {.near = near, .more = 8 * times};
+        assert_true(sweeps_begin_coloured(&momentum.sweeps, sweeps_best_kernel(), problem));
+        assert_true(momentum_begin(&momentum, problem) && momentum_run(&momentum, factors, count));
+        assert_true(momentum_run_more(&momentum, &rule, more_factors));
+        more = 8 * times < most && residual_reaches(&momentum.sweeps, problem->contact_count, near);
+    }
+    assert_true(sweeps_end(&momentum.sweeps, &known->expected));
+    momentum_free(&momentum);
     return times;
 }
 
 static int sweep_from_the_warm_start(Known *known) {
     const ContactProblem *problem = &known->random.problem;
-    const SlotNetwork *network = known->network;
     Sweeps sweeps = {0};
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
-    assert_true(residual_reaches(&sweeps, problem->contact_count, network->gate));
-    assert_true(network->factors[1] > 0 ? sweeps_run_momentum(&sweeps, network->factors, AFTER)
-                                        : sweeps_run(&sweeps, AFTER));
-    const int times = go_on(&sweeps, problem, near_aim, MORE);
-    assert_true(sweeps_end(&sweeps, &known->expected));
+    assert_true(residual_reaches(&sweeps, problem->contact_count, known->network->gate));
     sweeps_free(&sweeps);
-    return times;
+    return sweep_until(known, known->network->factors, AFTER, near_aim, MORE);
 }
 
 /* But for the sign of a 0, to which nothing was added. */
@@ -67,16 +71,9 @@ static void assert_same_velocities(const Known *known) {
 
 /* 10 sweeps, and 8, 16 or 24 more while the residual is 0.0075 m/s or more. */
 static int sweep_calmly(Known *known) {
-    const ContactProblem *problem = &known->random.problem;
-    Sweeps sweeps = {0};
     float factors[REST / 2];
     for (int s = 0; s < REST / 2; s++) factors[s] = momentum_factor_tuned(s, REST / 2);
-    assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
-    assert_true(sweeps_run_momentum(&sweeps, factors, REST / 2));
-    const int times = go_on(&sweeps, problem, near_aim * 0.15f, CALM_MORE);
-    assert_true(sweeps_end(&sweeps, &known->expected));
-    sweeps_free(&sweeps);
-    return times;
+    return sweep_until(known, factors, REST / 2, near_aim * 0.15f, CALM_MORE);
 }
 
 TEST(a_calm_step_takes_half_the_sweeps) {

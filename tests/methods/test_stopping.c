@@ -156,8 +156,17 @@ TEST(momentum_that_begins_again_converges) {
     run_engine(world, "", 3);
     const ContactProblem *problem = world_problem(world);
     ContactSolution found = make_solution(problem);
-    solve_with(&solver_momentum, "k=4000", problem, &found);
+    Sweeps sweeps = {0};
+    float *factors = momentum_factors_make(4000);
+    assert_non_null(factors);
+    assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
+    assert_true(sweeps_run_momentum(&sweeps, factors, 4000));
+    assert_true(sweeps_end(&sweeps, &found));
     assert_true(residual_reaches_scalar(problem, &found, 0.003f));
+    free(factors);
+    sweeps_free(&sweeps);
+    solve_with(&solver_momentum, "k=4000", problem, &found);
+    assert_false(residual_reaches_scalar(problem, &found, 0.001f));
     solve_with(&solver_momentum, "near=1e-9,more=4000", problem, &found);
     assert_false(residual_reaches_scalar(problem, &found, 0.001f));
     free_solution(&found);
