@@ -6,8 +6,9 @@
 
        g = p - p',   beta = min(|g|^2 / |previous g|^2, 1),   p = p' + beta d,   d = beta d - g,
 
-   restarted (p = p', d = 0) if the sweep goes against the direction, g . d > 0. Velocities are linear in the impulses,
-   so they follow by the same recursion. A sweep comes last, so the result is inside the friction cones. Source:
+   restarted (p = p', d = 0) if the sweep goes against the direction, g . d > 0. Each island has its own products, so its
+   impulses do not depend on what happens elsewhere. Velocities are linear in the impulses, so they follow by the same
+   recursion. A sweep comes last, so the result is inside the friction cones. Source:
    Silcowitz, Niebuhr, Poulsen, Erleben, "A Nonsmooth Nonlinear Conjugate Gradient Method for Interactive Contact Force
    Problems" (2010). They restart if |g| grows, which happens often and without harm at impacts; the test used here is
    that of O'Donoghue and Candes, "Adaptive Restart for Accelerated Gradient Schemes" (2015), and leaves half to four
@@ -33,11 +34,23 @@ typedef struct NncgRow {
 _Static_assert(sizeof(NncgRow) == sizeof(SweepBody), "a body is a row");
 _Static_assert(sizeof(NncgRow) == sizeof((SweepPair){0}).sums, "the sums of a pair are a row");
 
+/* Products of the last sweep's step, -g, in eight partial sums, as in vector registers: of even and odd pairs of the island, of
+   each point and direction. */
+typedef struct NncgIsland {
+    float squared[2][4]; /* |g|^2 */
+    float along[2][4];   /* -g . d */
+    int pairs;           /* so far */
+    float before;        /* |g|^2 of the sweep before */
+    float beta;
+    bool restarts;
+} NncgIsland;
+
 typedef struct Nncg {
     StoppingRule rule;
     Sweeps sweeps;
     NncgRow *pair_before, *pair_direction; /* [pair_count] p and d */
     NncgRow *body_before, *body_direction; /* [body_count] the same of the velocities */
+    NncgIsland *islands;                   /* [sweeps.groups] */
     ArrayBlock arrays;
 } Nncg;
 
@@ -52,11 +65,11 @@ static bool reserve(Nncg *solver) {
     const size_t pairs = (size_t)solver->sweeps.pair_count, bodies = (size_t)solver->sweeps.body_count;
     return ARRAY_BLOCK_RESERVE(&solver->arrays, ARRAY_PART(solver->pair_before, pairs),
                                ARRAY_PART(solver->pair_direction, pairs), ARRAY_PART(solver->body_before, bodies),
-                               ARRAY_PART(solver->body_direction, bodies));
+                               ARRAY_PART(solver->body_direction, bodies), ARRAY_PART(solver->islands, pairs));
 }
 
-/* p = p', d = 0 */
-static void restart(Nncg *solver) {
+/* d = 0 */
+static void begin_all(Nncg *solver) {
     const Sweeps *sweeps = &solver->sweeps;
     size_t bodies = (size_t)sweeps->body_count * sizeof(NncgRow), pairs = (size_t)sweeps->pair_count * sizeof(NncgRow);
     memset(solver->body_direction, 0, bodies);
@@ -64,53 +77,61 @@ static void restart(Nncg *solver) {
     memcpy(solver->body_before, sweeps->bodies, bodies);
     for (int i = 0; i < sweeps->pair_count; i++)
         memcpy(&solver->pair_before[i], sweeps->pairs[i].sums, sizeof *solver->pair_before);
+    for (int k = 0; k < sweeps->groups; k++) solver->islands[k].before = 0;
 }
-
-/* Of the last sweep's step, -g. */
-typedef struct Slope {
-    float squared; /* |g|^2 */
-    float along;   /* -g . d */
-} Slope;
 
 static float add_up(float partial[2][4]) {
     for (int k = 0; k < 4; k++) partial[0][k] += partial[1][k];
     return (partial[0][0] + partial[0][2]) + (partial[0][1] + partial[0][3]);
 }
 
-/* Eight partial sums, as in vector registers: of even and odd pairs, of each point and direction. */
-static Slope measure(const Nncg *solver) {
-    float squared[2][4] = {{0}}, along[2][4] = {{0}};
-    for (int i = 0; i < solver->sweeps.pair_count; i++) {
-        NncgRow after;
-        memcpy(&after, solver->sweeps.pairs[i].sums, sizeof after);
-        for (int k = 0; k < 4; k++) {
-            float step = after.values[k] - solver->pair_before[i].values[k];
-            squared[i % 2][k] += step * step;
-            along[i % 2][k] += step * solver->pair_direction[i].values[k];
-        }
-    }
-    return (Slope){add_up(squared), add_up(along)};
+static void decide(NncgIsland *island) {
+    const float squared = add_up(island->squared);
+    island->restarts = add_up(island->along) < 0.0f;
+    island->beta = squared < island->before ? squared / island->before : 1.0f;
+    island->before = squared;
 }
 
-/* p = p' + beta d and d = beta d - g for one row. */
-static void extrapolate_row(void *row, NncgRow *before, NncgRow *direction, float beta) {
+static void measure(Nncg *solver) {
+    const Sweeps *sweeps = &solver->sweeps;
+    for (int k = 0; k < sweeps->groups; k++) solver->islands[k] = (NncgIsland){.before = solver->islands[k].before};
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        NncgIsland *island = &solver->islands[sweeps->group[i]];
+        const int odd = island->pairs++ % 2;
+        NncgRow after;
+        memcpy(&after, sweeps->pairs[i].sums, sizeof after);
+        for (int k = 0; k < 4; k++) {
+            float step = after.values[k] - solver->pair_before[i].values[k];
+            island->squared[odd][k] += step * step;
+            island->along[odd][k] += step * solver->pair_direction[i].values[k];
+        }
+    }
+    for (int k = 0; k < sweeps->groups; k++) decide(&solver->islands[k]);
+}
+
+/* p = p' + beta d and d = beta d - g for one row; or p = p' and d = 0. */
+static void extrapolate_row(void *row, NncgRow *before, NncgRow *direction, const NncgIsland *island) {
+    static const NncgRow none;
     NncgRow now;
     memcpy(&now, row, sizeof now);
-    for (int k = 0; k < 4; k++) {
-        float step = now.values[k] - before->values[k], carried = beta * direction->values[k];
-        now.values[k] += carried;
+    for (int k = 0; k < 4 && !island->restarts; k++) {
+        float step = now.values[k] - before->values[k], carried = island->beta * direction->values[k];
+        now.values[k] -= 0.0f - carried; /* a change of 0 keeps -0 */
         direction->values[k] = carried + step;
     }
+    if (island->restarts) *direction = none;
     *before = now;
     memcpy(row, &now, sizeof now);
 }
 
-static void extrapolate(Nncg *solver, float beta) {
+static void extrapolate(Nncg *solver) {
     Sweeps *sweeps = &solver->sweeps;
     for (int i = 0; i < sweeps->pair_count; i++)
-        extrapolate_row(sweeps->pairs[i].sums, &solver->pair_before[i], &solver->pair_direction[i], beta);
+        extrapolate_row(sweeps->pairs[i].sums, &solver->pair_before[i], &solver->pair_direction[i],
+                        &solver->islands[sweeps->group[i]]);
     for (int i = 0; i < sweeps->body_count; i++)
-        extrapolate_row(&sweeps->bodies[i], &solver->body_before[i], &solver->body_direction[i], beta);
+        extrapolate_row(&sweeps->bodies[i], &solver->body_before[i], &solver->body_direction[i],
+                        &solver->islands[sweeps->group_of_body[i]]);
 }
 
 /* True after sweep number `sweep`, counted from 1, if none follows. */
@@ -123,17 +144,13 @@ static bool is_last(const Nncg *solver, int sweep, const ContactProblem *problem
 /* False when memory is short. */
 static bool run(Nncg *solver, SweepKernel kernel, const ContactProblem *problem) {
     if (!sweeps_begin(&solver->sweeps, kernel, problem, true) || !reserve(solver)) return false;
-    restart(solver);
-    float squared_before = 0.0f;
+    sweeps_group(&solver->sweeps);
+    begin_all(solver);
     for (int sweep = 1;; sweep++) {
         if (!sweeps_run(&solver->sweeps, 1)) return false;
         if (is_last(solver, sweep, problem)) return true;
-        Slope slope = measure(solver);
-        if (slope.along < 0.0f)
-            restart(solver);
-        else
-            extrapolate(solver, slope.squared < squared_before ? slope.squared / squared_before : 1.0f);
-        squared_before = slope.squared;
+        measure(solver);
+        extrapolate(solver);
     }
 }
 

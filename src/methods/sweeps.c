@@ -264,21 +264,28 @@ static int32_t find_root(int32_t *parent, int32_t body) {
     return body;
 }
 
+/* Whether an island goes on through the pair's body a or b: unlike in `ends`, not through one that does not move. */
+static bool connects_a(const Sweeps *sweeps, int i) {
+    return sweeps->bodies[sweep_body_at(sweeps->ends[i].a)].inv_mass > 0 || sweeps->pairs[i].inv_inertia_a > 0;
+}
+
+static bool connects_b(const Sweeps *sweeps, int i) {
+    return sweeps->bodies[sweep_body_at(sweeps->ends[i].b)].inv_mass > 0 || sweeps->pairs[i].points[0].extra > 0;
+}
+
 void sweeps_group(Sweeps *sweeps) {
     int32_t *parent = sweeps->ready, *number = sweeps->seen; /* of the next schedule */
     for (int32_t i = 0; i < sweeps->body_count; i++) parent[i] = i, number[i] = -1;
     for (int i = 0; i < sweeps->pair_count; i++) {
-        const SweepEnds ends = sweeps->ends[i];
-        if (ends.a >= 0 && ends.b >= 0) parent[find_root(parent, ends.b)] = find_root(parent, ends.a);
+        const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
+        if (connects_a(sweeps, i) && connects_b(sweeps, i)) parent[find_root(parent, b)] = find_root(parent, a);
     }
     sweeps->groups = 0;
     for (int i = 0; i < sweeps->pair_count; i++) {
-        const SweepEnds ends = sweeps->ends[i];
-        int32_t *group = &number[find_root(parent, ends.a >= 0 ? ends.a : ends.b)];
+        const int32_t a = sweep_body_at(sweeps->ends[i].a), b = sweep_body_at(sweeps->ends[i].b);
+        int32_t *group = &number[find_root(parent, connects_b(sweeps, i) ? b : a)];
         if (*group < 0) *group = sweeps->groups++;
-        sweeps->group[i] = *group;
-        if (ends.a >= 0) sweeps->group_of_body[ends.a] = *group;
-        if (ends.b >= 0) sweeps->group_of_body[ends.b] = *group;
+        sweeps->group[i] = sweeps->group_of_body[a] = sweeps->group_of_body[b] = *group;
     }
 }
 

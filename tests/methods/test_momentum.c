@@ -202,8 +202,10 @@ static void assert_islands_independent(const ContactSolverKind *kind, const char
 
 TEST(islands_do_not_change_each_other) {
     static const char *const settings[] = {"k=5", "k=10", "k=20", "k=50", "k=200"};
-    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
+    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++) {
         assert_islands_independent(&solver_momentum, settings[i]);
+        assert_islands_independent(&solver_nncg, settings[i]);
+    }
 }
 
 /* Lanes have the bits of the pairs one by one: factors of groups, also below 0, what is measured, what is returned to. */

@@ -5,6 +5,8 @@
 #include "random_problem.h"
 #include "worlds.h"
 
+#include "methods/islands.h"
+
 /* Velocities and impulses as one row of numbers. */
 enum { NUMBERS_MAX = 3 * BODIES_MAX + 2 * CONTACTS_MAX };
 
@@ -21,13 +23,14 @@ static void from_numbers(const ContactProblem *problem, const float *numbers, Co
     memcpy(solution->impulses, numbers + bodies, contacts * sizeof *numbers);
 }
 
-/* Sum of x * y over the impulses in the order that nncg.c promises. */
-static float multiply(const ContactProblem *problem, const float *x, const float *y) {
+/* Sum of x * y over the impulses of an island in the order that nncg.c promises. */
+static float multiply(const ContactProblem *problem, const int *islands, int island, const float *x, const float *y) {
     float partial[8] = {0};
     for (int i = 0, pair = -1, point = 1; i < problem->contact_count; i++) {
         const ContactPoint *contact = &problem->contacts[i];
         bool second = point == 0 && contact->a == contact[-1].a && contact->b == contact[-1].b;
         point = second ? 1 : 0;
+        if (islands[i] != island) continue;
         pair += second ? 0 : 1;
         float *part = &partial[4 * (pair % 2) + 2 * point];
         part[0] += x[2 * i] * y[2 * i];
@@ -37,28 +40,63 @@ static float multiply(const ContactProblem *problem, const float *x, const float
     return (partial[0] + partial[2]) + (partial[1] + partial[3]);
 }
 
-/* Returns how often it began anew. */
+/* A sweep's conclusion for each island. */
+typedef struct Plain {
+    float before[CONTACTS_MAX + BODIES_MAX], beta[CONTACTS_MAX + BODIES_MAX];
+    bool anew[CONTACTS_MAX + BODIES_MAX];
+} Plain;
+
+/* islands[contact_count]. Contacts of two bodies that do not move are islands, too: those of the same first body. Returns a
+   limit of the numbers. */
+static int find_islands(const ContactProblem *problem, int *islands) {
+    Islands found = {0};
+    assert_true(islands_find(&found, problem));
+    for (int i = 0; i < problem->contact_count; i++)
+        islands[i] = found.island[i] >= 0 ? found.island[i] : found.count + problem->contacts[i].a;
+    const int count = found.count + problem->body_count;
+    islands_free(&found);
+    return count;
+}
+
+/* The island that a number belongs to: of its contact, or of a contact of its body; -1: none. */
+static int island_of(const ContactProblem *problem, const int *islands, int number) {
+    const int impulses = 3 * problem->body_count, body = number / 3;
+    if (number >= impulses) return islands[(number - impulses) / 2];
+    for (int i = 0; i < problem->contact_count && problem_body_moves(&problem->bodies[body]); i++)
+        if (problem->contacts[i].a == body || problem->contacts[i].b == body) return islands[i];
+    return -1;
+}
+
+/* Returns how often an island began anew. */
 static int solve_plainly(const ContactProblem *problem, int count, ContactSolution *solution) {
     static float p[NUMBERS_MAX], after[NUMBERS_MAX], d[NUMBERS_MAX], step[NUMBERS_MAX];
+    static int island[NUMBERS_MAX];
+    static Plain plain;
+    static int islands[CONTACTS_MAX];
+    const int count_of_islands = find_islands(problem, islands);
     sequential_impulses_begin(problem, &engine_options, solution);
     int numbers = to_numbers(problem, solution, p), impulses = 3 * problem->body_count, begun_anew = 0;
-    float squared_before = 0;
+    for (int i = 0; i < numbers; i++) island[i] = island_of(problem, islands, i);
     memset(d, 0, sizeof d);
+    memset(&plain, 0, sizeof plain);
     for (int sweep = 0; sweep < count; sweep++) {
         sequential_impulses_sweep(problem, &engine_options, solution);
         if (sweep == count - 1) break;
         to_numbers(problem, solution, after);
         for (int i = 0; i < numbers; i++) step[i] = after[i] - p[i];
-        float squared = multiply(problem, step + impulses, step + impulses);
-        float beta = squared < squared_before ? squared / squared_before : 1;
-        bool anew = multiply(problem, step + impulses, d + impulses) < 0;
+        for (int k = 0; k < count_of_islands; k++) {
+            const float squared = multiply(problem, islands, k, step + impulses, step + impulses);
+            plain.beta[k] = squared < plain.before[k] ? squared / plain.before[k] : 1;
+            plain.anew[k] = multiply(problem, islands, k, step + impulses, d + impulses) < 0;
+            plain.before[k] = squared;
+            begun_anew += plain.anew[k];
+        }
         for (int i = 0; i < numbers; i++) {
-            p[i] = anew ? after[i] : after[i] + beta * d[i];
-            d[i] = anew ? 0 : beta * d[i] + step[i];
+            const bool anew = island[i] < 0 || plain.anew[island[i]];
+            p[i] = anew ? after[i] : after[i] - (0.0f - plain.beta[island[i]] * d[i]);
+            d[i] = anew ? 0 : plain.beta[island[i]] * d[i] + step[i];
         }
         from_numbers(problem, p, solution);
-        begun_anew += anew;
-        squared_before = squared;
     }
     return begun_anew;
 }
