@@ -210,6 +210,13 @@ static float tangent_force(const AvbdRow *row, float gap, float most) {
     return contact_clamp(row->force - row->penalty * gap, -most, most);
 }
 
+/* N/m: at its bound a force hardly resists more, the less the further the contact slides (its secant). The 2D program has the
+   penalty there, too: then each pass gives a box that slides only a part of its friction. */
+static float tangent_stiffness(const AvbdRow *row, float gap, float most) {
+    const float way = fabsf(gap);
+    return row->penalty * way > most ? most / way : row->penalty;
+}
+
 /* The symmetric system of a body: rows of the lower triangle and the right-hand side. */
 typedef struct System {
     float xx, yx, yy, tx, ty, tt;
@@ -251,8 +258,9 @@ static void visit_body(Avbd *avbd, int i, float share) {
         const float most = contact->friction * normal->force;
         add_row(&system, is_a ? &normal->of_a : &normal->of_b, normal->penalty,
                 normal_force(normal, gap(avbd, contact, normal, share)));
-        add_row(&system, is_a ? &tangent->of_a : &tangent->of_b, tangent->penalty,
-                tangent_force(tangent, gap(avbd, contact, tangent, share), most));
+        const float slid = gap(avbd, contact, tangent, share);
+        add_row(&system, is_a ? &tangent->of_a : &tangent->of_b, tangent_stiffness(tangent, slid, most),
+                tangent_force(tangent, slid, most));
     }
     const Vec3 change = solved(&system);
     body->moved = (Vec3){body->moved.x + change.x, body->moved.y + change.y, body->moved.turn + change.turn};
