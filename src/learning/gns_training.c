@@ -304,11 +304,26 @@ static void destroy_scenes(const GnsTraining *training) {
     for (int i = 0; i < training->scene_count; i++) scene_destroy(training->scenes[i]);
 }
 
+/* A network learns one gravity: what holds resting boxes against it. */
+static bool take_gravity(const GnsTraining *training, GnsNet *net, Error *error) {
+    const Scene *first = training->scenes[0];
+    net->gravity[0] = first->gravity.x;
+    net->gravity[1] = first->gravity.y;
+    for (int i = 1; i < training->scene_count; i++) {
+        const Scene *other = training->scenes[i];
+        if (other->gravity.x != first->gravity.x || other->gravity.y != first->gravity.y)
+            return error_input(error, other->name, "its gravity is not that of %s; one network learns one gravity",
+                               first->name);
+    }
+    return true;
+}
+
 static bool run(Trainer *trainer, Error *error) {
     const GnsTraining *training = trainer->training;
     trainer->examples.noise = training->noise;
     trainer->examples.seed = training->seed << 32;
-    const bool begun = gns_net_create(trainer->net, training->width, training->rounds, error) && begin(trainer, error);
+    const bool begun = gns_net_create(trainer->net, training->width, training->rounds, error) &&
+                       take_gravity(training, trainer->net, error) && begin(trainer, error);
     if (!begun) {
         destroy_scenes(training);
         return false;

@@ -53,26 +53,37 @@ static Spread column_spread(const Dataset *dataset, int outputs, int column) {
     return spread;
 }
 
-/* A constant column has a width of exactly 0: sums of equal float32 are exact in double. */
-static void set_scale(Normalisation *normalisation, int column, double offset, double width) {
-    float scale = (float)(1 / width);
+/* A column keeps its scale if it varies by no more than the rounding of the largest number beside it: it is constant, but for
+   the rounding of what it was computed from. Else a network would take rounding errors for its input. */
+static void set_scale(Normalisation *normalisation, int column, double offset, double width, double largest) {
+    const float scale = (float)(1 / width);
     normalisation->offset[column] = (float)offset;
-    normalisation->scale[column] = isfinite(scale) && scale > 0 ? scale : 1;
+    normalisation->scale[column] = width > 0x1p-23 * largest && isfinite(scale) && scale > 0 ? scale : 1;
+}
+
+/* Of `count` columns: spreads[count]; outputs == 0: of the inputs. Returns the largest magnitude in them. */
+static double spreads_of(const Dataset *dataset, int outputs, int count, Spread *spreads) {
+    double largest = 0;
+    for (int i = 0; i < count; i++) {
+        spreads[i] = column_spread(dataset, outputs, i);
+        largest = fmax(largest, fmax(fabs(spreads[i].minimum), fabs(spreads[i].maximum)));
+    }
+    return largest;
 }
 
 void samples_fit_normalisation(const Dataset *dataset, OutputScale scale, Network *network) {
-    int outputs = network->widths[network->layers];
-    for (int i = 0; i < network->widths[0]; i++) {
-        Spread spread = column_spread(dataset, 0, i);
-        set_scale(&network->input, i, spread.mean, spread.deviation);
-    }
+    Spread spreads[PAIR_INPUTS_MAX]; /* more than outputs */
+    const int inputs = network->widths[0], outputs = network->widths[network->layers];
+    double largest = spreads_of(dataset, 0, inputs, spreads);
+    for (int i = 0; i < inputs; i++) set_scale(&network->input, i, spreads[i].mean, spreads[i].deviation, largest);
+    largest = spreads_of(dataset, outputs, outputs, spreads);
     for (int k = 0; k < outputs; k++) {
-        Spread spread = column_spread(dataset, outputs, k);
-        network->output_mean[k] = (float)spread.mean;
+        const Spread *spread = &spreads[k];
+        network->output_mean[k] = (float)spread->mean;
         if (scale == SCALE_STANDARD)
-            set_scale(&network->output, k, spread.mean, spread.deviation);
+            set_scale(&network->output, k, spread->mean, spread->deviation, largest);
         else
-            set_scale(&network->output, k, spread.minimum, spread.maximum - spread.minimum);
+            set_scale(&network->output, k, spread->minimum, spread->maximum - spread->minimum, largest);
     }
 }
 

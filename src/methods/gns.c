@@ -17,7 +17,9 @@
    past of constant velocity.
 
    Fails where it was not trained: nothing in the method keeps boxes apart, or momentum. It is as good as its data for that
-   motion, and slow: its cost is that of tens of edges of each particle, M times. */
+   motion, and slow: its cost is that of tens of edges of each particle, M times. Under another gravity than in its training
+   boxes rise or sink, as the network holds what rests against the gravity that it learned; such steps are counted as unlike
+   the training. */
 #include "base/base.h"
 #include "engine/engine.h"
 #include "methods/methods.h"
@@ -199,11 +201,13 @@ static bool solve(void *state, BegunStep *begun, Error *error) {
     const ContactProblem *problem = begun->problem;
     ContactSolution *solution = begun->solution;
     if (!begin(gns, begun) || (gns->uses_net && !predict(gns))) return error_memory(error, "gns");
-    solution->fallbacks.beyond_training += gns->uses_net && gns->graph.beyond;
+    const Vec2 gravity = begun->step->scene->gravity;
+    const bool other_gravity = gravity.x != gns->net.gravity[0] || gravity.y != gns->net.gravity[1];
+    solution->fallbacks.beyond_training += gns->uses_net && (gns->graph.beyond || other_gravity);
     memset(solution->velocities, 0, (size_t)problem->body_count * sizeof *solution->velocities);
     for (int i = 0; i < problem->contact_count; i++) solution->impulses[i] = (ContactImpulse){0};
     for (int i = 0; i < gns->particles.bodies; i++) {
-        move_particles(gns, i, begun->step->scene->gravity, problem->dt, &solution->fallbacks);
+        move_particles(gns, i, gravity, problem->dt, &solution->fallbacks);
         end_body(gns, i, problem, solution);
     }
     begun->poses = gns->poses;

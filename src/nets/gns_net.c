@@ -63,6 +63,7 @@ static int list_fields(void *of, NetField *fields) {
          {sizeof net->scales / sizeof(float)},
          .data = &net->scales,
          .range = &float_positive},
+        {"gravity", NPZ_FLOAT32, 1, {2}, .data = net->gravity, .range = &float_any},
         {"parameters", NPZ_FLOAT32, 1, {net->layout.parameters}, .data = net->parameters, .range = &float_any}};
     memcpy(fields, all, sizeof all);
     return sizeof all / sizeof *all;

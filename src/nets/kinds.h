@@ -15,7 +15,7 @@
    own weights. float32; sums run in one order, so the bits are the same on every machine. */
 
 enum {
-    GNS_VERSION = 1,
+    GNS_VERSION = 2,
     GNS_HISTORY = 5,      /* past velocities of a particle (paper) */
     GNS_NODE_INPUTS = 14, /* methods/gns_graph.c */
     GNS_EDGE_INPUTS = 5,
@@ -59,6 +59,7 @@ GnsLayout gns_layout(int width, int rounds);
 typedef struct GnsNet {
     GnsLayout layout;
     GnsScales scales;
+    float gravity[2];  /* m/s^2: of the scenes that it learned, where what rests is held against it */
     float *parameters; /* [layout.parameters] */
     char command[GNS_COMMAND_SIZE];
 } GnsNet;

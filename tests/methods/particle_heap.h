@@ -48,4 +48,5 @@ static inline void make_net(GnsNet *net, int width, int rounds) {
     assert_ok(gns_net_create(net, width, rounds, &error), error);
     for (int i = 0; i < net->layout.parameters; i++) net->parameters[i] = random_between(&random, -0.4, 0.4);
     net->scales = (GnsScales){0.6f, 3, 20, 30, 1000};
+    net->gravity[1] = -10;
 }

@@ -136,6 +136,17 @@ TEST(steps_allocate_nothing) {
     }
 }
 
+/* The network's gravity is (0, -10). */
+TEST(another_gravity_than_in_training_is_counted) {
+    BodyDef bodies[] = {box_at(0, 9)};
+    Run run;
+    begin(&run, bodies, 1, "", write_net(0.4f, 1e6f));
+    run.scene.gravity = (Vec2){0, -1.6f};
+    steps(&run, 1, 2);
+    assert_int_equal(world_solution(run.world)->fallbacks.beyond_training, 1);
+    end(&run);
+}
+
 /* Boxes of one place: too many neighbours. Counted once a step. */
 TEST(states_beyond_training_are_counted) {
     enum { BOXES = 12 };
