@@ -197,8 +197,9 @@ static void judge(MomentumIsland *course, int count) {
 }
 
 /* Islands with numbers that are NaN or infinite go back to what was best. */
-static void judge_all(Momentum *momentum, int count, bool last) {
+static void judge_all(Momentum *momentum, int count, bool single, bool last) {
     bool any = false;
+    if (!single) sweeps_refresh(&momentum->sweeps, momentum->problem);
     measure(momentum, !last);
     for (int k = 0; k < momentum->sweeps.groups; k++) {
         MomentumIsland *course = &momentum->courses[k];
@@ -231,7 +232,7 @@ static bool run_block(Momentum *momentum, const float *factors, bool first, bool
     if (!(first ? sweeps_run_momentum(sweeps, momentum->factors, count)
                 : sweeps_continue_momentum(sweeps, momentum->factors, count)))
         return false;
-    judge_all(momentum, count, last);
+    judge_all(momentum, count, first && last, last);
     return true;
 }
 
@@ -250,9 +251,16 @@ static void settle(Momentum *momentum) {
     if (choose_worse(momentum)) sweeps_return(&momentum->sweeps, momentum->chosen);
 }
 
-/* After a single block, which is worse than the start: one sweep without extrapolation from there. */
+/* After a single block, which is worse than the start: one sweep without extrapolation from there. Only where contacts slide: a
+   block is as if unwatched elsewhere. */
 static void settle_from_start(Momentum *momentum) {
-    if (!choose_worse(momentum)) return;
+    bool any = false;
+    choose_worse(momentum);
+    for (int k = 0; k < momentum->sweeps.groups; k++) {
+        momentum->chosen[k] &= momentum->courses[k].most < 1;
+        any |= momentum->chosen[k];
+    }
+    if (!any) return;
     sweeps_return(&momentum->sweeps, momentum->chosen);
     sweeps_run_groups(&momentum->sweeps, momentum->chosen);
 }
@@ -290,6 +298,7 @@ bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float
     if (!stopping_needs_more(rule, 0, sweeps, problem)) return true;
     watch(momentum);
     forget_best(momentum);
+    sweeps_refresh(&momentum->sweeps, momentum->problem);
     keep_all(momentum);
     measure(momentum, false);
     begin_all_anew(momentum);

@@ -258,6 +258,14 @@ bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count) {
     return true;
 }
 
+void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem) {
+    for (int i = 0; i < sweeps->body_count; i++) {
+        const ProblemBody *body = &problem->bodies[i];
+        sweeps->bodies[i] = (SweepBody){body->velocity.x, body->velocity.y, body->angular_velocity, body->inv_mass};
+    }
+    sweeps_warm_start(sweeps);
+}
+
 /* The body that stands for the group; halves the path to it. */
 static int32_t find_root(int32_t *parent, int32_t body) {
     while (parent[body] != body) body = parent[body] = parent[parent[body]];

@@ -215,6 +215,10 @@ bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count);
 /* Finds the islands. */
 void sweeps_group(Sweeps *sweeps);
 
+/* Computes the velocities from the sums, for the problem that the sweeps began with: over many sweeps with momentum rounding
+   errors take them apart, by mm/s after a hundred. */
+void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem);
+
 /* Copies sums, and velocities of moving bodies, of the groups for which chosen[groups] is true. */
 void sweeps_keep(Sweeps *sweeps, const bool *chosen);
 

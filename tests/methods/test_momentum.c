@@ -94,6 +94,7 @@ static void sweep_on(Course *course, const ContactProblem *problem, int count, i
     assert_true(sweeps_begin_coloured(&momentum->sweeps, sweeps_best_kernel(), problem));
     assert_true(momentum_begin(momentum, problem) && momentum_run(momentum, course->factors, count));
     assert_true(momentum_run_more(momentum, &rule, course->factors));
+    sweeps_refresh(&momentum->sweeps, problem);
     const int islands = residuals_of(momentum, &course->islands, problem, course->left);
     for (int k = 0; k < islands; k++) {
         if (!(course->left[k] <= course->least[k] * (1 + 1e-5)))
@@ -109,6 +110,7 @@ static double plain_momentum(Course *course, const ContactProblem *problem, int 
     double sum = 0;
     assert_true(sweeps_begin_coloured(sweeps, sweeps_best_kernel(), problem));
     assert_true(sweeps_run_momentum(sweeps, course->factors, count));
+    sweeps_refresh(sweeps, problem);
     for (int i = 0; i < sweeps->pair_count; i++) sum += (double)residual_of_pair(sweeps, i).visit;
     return sum;
 }

@@ -105,7 +105,7 @@ TEST(one_solver_has_the_same_bits_step_after_step) {
     }
 }
 
-/* The first k sweeps, then one run of 8 n with momentum. */
+/* The first k sweeps, then one run of 8 n with momentum. Where a residual is measured, velocities are computed anew. */
 static void sweep_with_momentum(const ContactProblem *problem, int n, ContactSolution *solution) {
     Sweeps sweeps = {0};
     float first[7], more[48];
@@ -113,12 +113,18 @@ static void sweep_with_momentum(const ContactProblem *problem, int n, ContactSol
     for (int s = 0; s < 48; s++) more[s] = momentum_factor_tuned(s, 48);
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
     assert_true(sweeps_run_momentum(&sweeps, first, 7));
-    assert_true(sweeps_run_momentum(&sweeps, more, STOPPING_BLOCK * n));
+    if (n > 0) sweeps_refresh(&sweeps, problem);
+    for (int i = 0; i < n; i++) {
+        const float *factors = more + STOPPING_BLOCK * i;
+        assert_true(i == 0 ? sweeps_run_momentum(&sweeps, factors, STOPPING_BLOCK)
+                           : sweeps_continue_momentum(&sweeps, factors, STOPPING_BLOCK));
+        sweeps_refresh(&sweeps, problem);
+    }
     assert_true(sweeps_end(&sweeps, solution));
     sweeps_free(&sweeps);
 }
 
-/* Until the residual doubles. */
+/* As long as it does not begin anew. After the most sweeps, 48, it returns the best solution. */
 TEST(momentum_continues_in_one_run) {
     World *world = make_struck(5);
     const ContactProblem *problem = world_problem(world);
@@ -131,7 +137,7 @@ TEST(momentum_continues_in_one_run) {
         char text[64];
         snprintf(text, sizeof text, "k=7,near=%.9g", (double)near);
         solve_with(&solver_momentum, text, problem, &found);
-        assert_same_bits(problem, &found, &expected, text);
+        if (n < 6) assert_same_bits(problem, &found, &expected, text);
         least = n < least ? n : least;
         most = n > most ? n : most;
         between += n > 1 && n < 6;
@@ -166,9 +172,9 @@ TEST(momentum_that_begins_again_converges) {
     free(factors);
     sweeps_free(&sweeps);
     solve_with(&solver_momentum, "k=4000", problem, &found);
-    assert_false(residual_reaches_scalar(problem, &found, 0.001f));
+    assert_false(residual_reaches_scalar(problem, &found, 0.003f));
     solve_with(&solver_momentum, "near=1e-9,more=4000", problem, &found);
-    assert_false(residual_reaches_scalar(problem, &found, 0.001f));
+    assert_false(residual_reaches_scalar(problem, &found, 0.003f));
     free_solution(&found);
     world_destroy(world);
 }
