@@ -93,7 +93,10 @@ struct MomentumIsland {
     bool plain;       /* the next block is without extrapolation */
 };
 
-enum { LONGEST_BLOCK = 2 * STOPPING_BLOCK - 1 }; /* the last one, so that none is short */
+enum {
+    LONGEST_BLOCK = 2 * STOPPING_BLOCK - 1, /* the last one, so that none is short */
+    LONG_RUN = 48                           /* sweeps from which on velocities are computed anew after each block */
+};
 
 /* Momentum makes residuals rise and fall. It begins anew at this multiple of the least sum of squares. */
 static const float risen = 4;
@@ -197,9 +200,9 @@ static void judge(MomentumIsland *course, int count) {
 }
 
 /* Islands with numbers that are NaN or infinite go back to what was best. */
-static void judge_all(Momentum *momentum, int count, bool single, bool last) {
+static void judge_all(Momentum *momentum, int count, bool last) {
     bool any = false;
-    if (!single) sweeps_refresh(&momentum->sweeps, momentum->problem);
+    if (momentum->refreshes) sweeps_refresh(&momentum->sweeps, momentum->problem);
     measure(momentum, !last);
     for (int k = 0; k < momentum->sweeps.groups; k++) {
         MomentumIsland *course = &momentum->courses[k];
@@ -232,7 +235,7 @@ static bool run_block(Momentum *momentum, const float *factors, bool first, bool
     if (!(first ? sweeps_run_momentum(sweeps, momentum->factors, count)
                 : sweeps_continue_momentum(sweeps, momentum->factors, count)))
         return false;
-    judge_all(momentum, count, first && last, last);
+    judge_all(momentum, count, last);
     return true;
 }
 
@@ -276,6 +279,7 @@ static void forget_best(Momentum *momentum) {
 bool momentum_run(Momentum *momentum, const float *factors, int count) {
     const bool single = count <= LONGEST_BLOCK;
     if (single && !momentum->watched) return sweeps_run_momentum(&momentum->sweeps, factors, count);
+    momentum->refreshes = count >= LONG_RUN;
     watch(momentum);
     begin_all_anew(momentum);
     if (single) {
@@ -296,6 +300,7 @@ bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float
     const ContactProblem *problem = momentum->problem;
     const Sweeps *sweeps = &momentum->sweeps;
     if (!stopping_needs_more(rule, 0, sweeps, problem)) return true;
+    momentum->refreshes = true;
     watch(momentum);
     forget_best(momentum);
     sweeps_refresh(&momentum->sweeps, momentum->problem);

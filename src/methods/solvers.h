@@ -144,7 +144,8 @@ typedef struct Momentum {
     StoppingRule rule;   /* its k does not count */
     float *more_factors; /* [rule.more] */
     const ContactProblem *problem;
-    bool watched;            /* its islands have courses */
+    bool watched;   /* its islands have courses */
+    bool refreshes; /* the run computes velocities anew after each block: long ones */
     MomentumIsland *courses; /* [sweeps.groups] */
     bool *chosen;            /* [sweeps.groups] */
     float *of_pairs;         /* [sweeps.pair_count] what was last measured */

@@ -127,7 +127,7 @@ static void forget(Course *course) {
 }
 
 static bool check_step(void *context, int frame, const World *world, Error *error) {
-    static const int counts[] = {16, 24, 48, 96, 200, 400, 800, LONGEST}, more[] = {8, 16, 40, 96, 200, 800};
+    static const int counts[] = {48, 64, 96, 200, 400, 800, LONGEST}, more[] = {8, 16, 40, 96, 200, 800};
     Course *course = context;
     const ContactProblem *problem = world_problem(world);
     (void)error;
