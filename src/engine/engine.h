@@ -210,6 +210,7 @@ typedef struct ContactProblem {
     int body_count, contact_count;
     int marked; /* body that the caller of world_mark() chose: a scene marks its bomb; or -1 */
     float dt;   /* s */
+    float fall; /* m/s, what gravity has added to each velocity: |g| dt; 0: nothing, or unknown */
     const ProblemBody *bodies;
     const ContactPoint *contacts;
 } ContactProblem;

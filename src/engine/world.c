@@ -209,6 +209,7 @@ bool world_begin_step(World *world, float dt, ContactProblem *problem, ContactSo
                                 .contact_count = world->next.contact_count,
                                 .marked = world->marked,
                                 .dt = dt,
+                                .fall = sqrtf(vec2_dot(world->def.gravity, world->def.gravity)) * dt,
                                 .bodies = world->problem_bodies,
                                 .contacts = world->next.contacts};
     world->problem = *problem;

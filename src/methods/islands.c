@@ -139,8 +139,13 @@ ContactProblem islands_take(Islands *s, const ContactProblem *problem, int k, Co
     const int32_t *contacts = &s->contacts[s->behind_contacts[k] - island->contacts];
     const int fixed = find_fixed(s, problem, k, contacts);
     merge(s, members, island->bodies, fixed);
-    ContactProblem part = {island->bodies + fixed, island->contacts, -1, problem->dt,
-                           s->body_copies,         s->contact_copies};
+    ContactProblem part = {.body_count = island->bodies + fixed,
+                           .contact_count = island->contacts,
+                           .marked = -1,
+                           .dt = problem->dt,
+                           .fall = problem->fall,
+                           .bodies = s->body_copies,
+                           .contacts = s->contact_copies};
     for (int i = 0; i < part.body_count; i++) {
         s->place[s->bodies[i]] = i;
         s->body_copies[i] = problem->bodies[s->bodies[i]];

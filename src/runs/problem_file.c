@@ -48,18 +48,22 @@ static const ProblemField contact_fields[CONTACT_FIELDS] = {
 
 static bool read_file_head(StoredProblem *stored, NpzFile *file, const char *path, Error *error) {
     int32_t frame, bomb;
-    float dt;
+    float dt, fall = 0;
     if (!npz_check_kind(file, PROBLEM_KIND, PROBLEM_VERSION, error) ||
         !npz_read_name(file, "scene", stored->scene, sizeof stored->scene, error) ||
         !npz_read_scalar(file, "frame", NPZ_INT32, &frame, sizeof frame, error) ||
         !npz_read_scalar(file, "dt", NPZ_FLOAT32, &dt, sizeof dt, error) ||
-        !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error))
+        !npz_read_scalar(file, "bomb", NPZ_INT32, &bomb, sizeof bomb, error) ||
+        (npz_has(file, "fall") && !npz_read_scalar(file, "fall", NPZ_FLOAT32, &fall, sizeof fall, error)))
         return false;
     if (frame < 1) return error_input(error, path, "frame must be at least 1 (got %d)", (int)frame);
     if (!isfinite(dt) || !(dt > 0))
         return error_input(error, path, "dt must be finite and greater than 0 (got %g)", (double)dt);
+    if (!isfinite(fall) || fall < 0)
+        return error_input(error, path, "fall must be finite and not negative (got %g)", (double)fall);
     stored->frame = frame;
     stored->problem.dt = dt;
+    stored->problem.fall = fall;
     stored->problem.marked = bomb;
     return true;
 }
@@ -209,7 +213,7 @@ StoredProblem *problem_read(const char *path, Error *error) {
     return NULL;
 }
 
-enum { HEAD_ARRAYS = 8, ARRAYS = HEAD_ARRAYS + BODY_FIELDS + CONTACT_FIELDS };
+enum { HEAD_ARRAYS = 9, ARRAYS = HEAD_ARRAYS + BODY_FIELDS + CONTACT_FIELDS };
 
 /* Fills the arrays of these fields, in sequence in `numbers`; returns the end. */
 static float *split_records(NpzArray *arrays, const ProblemField *fields, int field_count, const void *records,
@@ -249,6 +253,7 @@ bool problem_write(const ContactProblem *problem, const char *scene, int frame, 
             {"scene", NPZ_TEXT, 0, {0}, scene},
             {"frame", NPZ_INT32, 0, {0}, &frame_number},
             {"dt", NPZ_FLOAT32, 0, {0}, &problem->dt},
+            {"fall", NPZ_FLOAT32, 0, {0}, &problem->fall},
             {"bomb", NPZ_INT32, 0, {0}, &bomb},
             {"contact_bodies", NPZ_INT32, 2, {problem->contact_count, 2}, pairs},
             {"contact_feature", NPZ_UINT32, 1, {problem->contact_count}, features},

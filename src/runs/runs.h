@@ -175,7 +175,7 @@ typedef struct LaunchMisses {
 bool launches_find_misses(const Scene *scene, LaunchMisses *misses, Error *error);
 
 /* The file of one contact problem: .npz with the members of ContactProblem as arrays: kind, version, scene, frame, dt,
-   bomb; per body position[N,2], angle[N], size[N,2], inv_mass[N], inv_inertia[N], velocity[N,2], angular_velocity[N];
+   fall (0 in a file without it), bomb; per body position[N,2], angle[N], size[N,2], inv_mass[N], inv_inertia[N], velocity[N,2], angular_velocity[N];
    per contact contact_bodies[C,2], contact_feature[C], contact_position[C,2], contact_normal[C,2], contact_arm_a[C,2],
    contact_arm_b[C,2], contact_separation[C], contact_mass[C,2], contact_friction[C], contact_bias[C],
    contact_warm[C,2]. Arrays with two columns hold x, y or normal, tangent. */

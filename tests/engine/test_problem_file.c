@@ -38,9 +38,10 @@ static const ContactPoint touch = {.a = 0,
                                    .warm_tangent = -0.5f};
 
 static void make_example(Example *example) {
-    *example = (Example){.problem = {.body_count = BODIES, .contact_count = CONTACTS, .marked = 2, .dt = 1.0f / 60.0f},
-                         .bodies = {{.size = {100, 20}}, box, box},
-                         .contacts = {touch, touch, touch}};
+    *example = (Example){
+        .problem = {.body_count = BODIES, .contact_count = CONTACTS, .marked = 2, .dt = 1.0f / 60.0f, .fall = 0.2f},
+        .bodies = {{.size = {100, 20}}, box, box},
+        .contacts = {touch, touch, touch}};
     example->problem.bodies = example->bodies;
     example->problem.contacts = example->contacts;
     example->bodies[2].position.x = -9;
@@ -59,6 +60,7 @@ TEST(written_is_read) {
     assert_int_equal(stored->frame, 41);
     assert_int_equal(stored->problem.marked, 2);
     assert_true(stored->problem.dt == example.problem.dt);
+    assert_true(stored->problem.fall == example.problem.fall);
     assert_int_equal(stored->problem.body_count, BODIES);
     assert_int_equal(stored->problem.contact_count, CONTACTS);
     assert_memory_equal(stored->problem.bodies, example.bodies, sizeof example.bodies);
@@ -104,6 +106,8 @@ TEST(bad_heads_are_refused) {
     REFUSE(problem.dt, 0, "dt must be finite and greater than 0 (got 0)");
     REFUSE(problem.dt, -1, "dt must be");
     REFUSE(problem.dt, NAN, "dt must be");
+    REFUSE(problem.fall, -1, "fall must be finite and not negative (got -1)");
+    REFUSE(problem.fall, INFINITY, "fall must be");
     REFUSE(problem.marked, 3, "the bomb is body 3 of 3");
     REFUSE(problem.marked, -2, "the bomb is body -2 of 3");
     REFUSE(problem.body_count, 0, "0 bodies");

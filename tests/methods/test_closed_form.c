@@ -12,7 +12,7 @@ static ContactImpulse touch(const char *settings, Vec2 velocity, float friction,
     const ProblemBody bodies[] = {{.inv_mass = 0}, {.inv_mass = 0.5f, .velocity = velocity}};
     const ContactPoint contact = {
         .a = 0, .b = 1, .normal = {0, 1}, .mass_normal = 2, .mass_tangent = 2, .friction = friction, .bias = bias};
-    const ContactProblem problem = {2, 1, -1, world_dt, bodies, &contact};
+    const ContactProblem problem = {2, 1, -1, world_dt, 0, bodies, &contact};
     BodyVelocity velocities[2];
     ContactImpulse impulse;
     ContactSolution solution = {velocities, &impulse, 0, {0}};
