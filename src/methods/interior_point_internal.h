@@ -30,7 +30,7 @@
    Algorithm" (2024), which solve conic programs with a symmetric matrix.
 
    Fails where the friction problem has no solution or where iterations cycle between sliding and sticking: the
-   residual shows it, and the method `interior` then follows the central path (methods/interior.c). Beyond some
+   residual shows it, and the method `interior` then goes on with sweeps (methods/interior.c). Beyond some
    hundred bodies the time of the factorization grows faster than the number of contacts (block_lu.h). Same bits on
    every instruction set: double, a fixed order of operations, no fused multiply-add. */
 #pragma once
@@ -49,6 +49,7 @@ typedef struct InteriorGroup {
     Vec4 normal, tangent;                 /* J_n v and J_t v, m/s */
     Vec4 free_normal, free_tangent;       /* the same of v' */
     Vec4 answer_normal, answer_tangent;   /* N s: impulses inside the cone, the result */
+    Vec4 best_normal, best_tangent;       /* N s: the answer with the least residual so far */
     /* of an iteration */
     Vec4 aim_normal, aim_tangent; /* the targets of l z, and of p (mu l - t) and q (mu l + t) */
     Vec4 dn, dt, s;               /* D_n, D_t, s */
@@ -66,9 +67,11 @@ typedef struct Interior {
     /* [graph.lu.count + 1] by position; the last is zero, for bodies that do not move. x, y, spin, unused. changes: of
        the first solve of an iteration; corrected: of the second */
     Vec4 *velocities, *start, *changes, *corrected;
-    double residual; /* m/s, of the answer */
-    double rounding; /* m: of the farthest contact's position in float */
-    int iterations;  /* of the last solve */
+    double residual;       /* m/s, of the answer */
+    double rounding;       /* m: of the farthest contact's position in float */
+    double heaviest;       /* kg, body that moves */
+    double iteration_work; /* of an iteration, in sweeps over the same contacts */
+    int iterations;        /* of the last solve */
     ArrayBlock memory;
 } Interior;
 
@@ -97,6 +100,9 @@ void interior_free(Interior *interior);
 bool interior_load(Interior *interior, const InteriorKernels *kernels, const Sweeps *sweeps,
                    const ContactProblem *problem);
 
+/* The work of an iteration, in sweeps over as many pairs. products: of blocks in the factorization. */
+double interior_work(double products, int pair_count);
+
 /* Friction below this holds nothing. */
 #define INTERIOR_SLIPPERY 0.01f
 
@@ -104,31 +110,38 @@ bool interior_load(Interior *interior, const InteriorKernels *kernels, const Swe
    a little open, and boxes that rest on each other would part. */
 void interior_close(Interior *interior, double speed, double dt);
 
-/* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus `least_scale`. */
+/* How iterations start and proceed. Their scale of velocities is 4 times the residual at the start plus the least scale of the
+   attempt. */
 typedef struct InteriorRule {
     double impulse, gap, slip; /* how far they start beyond the values of the start, as shares of the scale */
-    double first;              /* tau^2 at the start, as a share of the squared scale */
+    bool by_heaviest; /* that share of impulses is of the heaviest body, not of each contact's effective mass */
+    double first;     /* tau^2 at the start, as a share of the squared scale */
     double shrink,
         follow; /* each makes tau^2 this share of itself, but no less than that share of the squared residual */
 } InteriorRule;
 
-/* m/s, of impulse / effective mass. Impulses are stored in float. Between jammed bodies they can grow without an effect on
-   velocities, until their rounding makes velocities of 0.1 m/s. */
-static const double interior_impulse_max = 0.1 * 0x1p24;
+/* far: a heavy body passes impulses on through light ones that are many times larger than those that move them. From a start
+   by the contacts' own masses it takes hundreds of iterations to get there, or they cycle. */
+extern const InteriorRule interior_quick, interior_gentle, interior_far;
 
-extern const InteriorRule interior_quick, interior_gentle;
+/* Speeds are shares of a speed of the problem, so that no limit depends on its units. */
+typedef struct InteriorAttempt {
+    const InteriorRule *rule;
+    /* How far inside the bounds the iterations start if the residual is near 0. Contacts that should stick slide at up to about
+       that speed until tau^2 is small: if it is tiny, one iteration from the impulses of the last step suffices at rest. But
+       iterations that start so near the bounds may cycle between sets of closed contacts. */
+    double least_scale;
+    /* Iterations end if the residual exceeds this multiple of the best so far and 0.01 together. With friction the path to the
+       solution can turn back. Then iterations jump about for long, and may never converge. */
+    double lost;
+    int iterations; /* at most */
+} InteriorAttempt;
 
-/* After interior_load(): iterates until the residual is at most `near` (m/s), at most `most` times, and sets `residual`
-   and `iterations`. The residual is infinite or NaN if the iterations broke down.
-
-   least_scale (m/s): how far inside the bounds the iterations start if the residual is near 0. Contacts that should stick
-   slide at up to about that speed until tau^2 is small: with 1e-6, one iteration from the impulses of the last step
-   suffices at rest. But iterations that start so near the bounds may cycle between sets of closed contacts.
-
-   lost: iterations have broken down if the residual exceeds this multiple of the scale and 0.1 m/s together. With
-   friction the path to the solution can turn back. Then iterations jump about for long, and may never converge. */
-void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorRule *rule, double least_scale,
-                      double lost, double near, int most);
+/* After interior_load(): iterates until the residual is at most `near` (m/s), at most as often as the attempt says and `most`
+   times, and sets `residual` and `iterations`. If it ends above, its answer is the best so far, the start included. The
+   residual is infinite if float cannot hold the impulses. speed: m/s. */
+void interior_iterate(Interior *interior, const InteriorKernels *kernels, const InteriorAttempt *attempt, double speed,
+                      double near, int most);
 
 /* Stores the solution: impulses inside the friction cones, and the velocities that they make. False if a velocity is
    NaN or infinite. */

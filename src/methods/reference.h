@@ -52,7 +52,6 @@ typedef struct Reference {
     int most;           /* factorizations that a solve may use */
     bool persist;       /* goes on where a method would rather leave a step to sweeps */
     bool push_out;      /* contacts have their bias */
-    double jammed;      /* m/s: the impulse over effective mass that ends a solve, as there is no solution */
     int left;           /* that this attempt may still use */
     double stiffest;    /* a contact resists by at most this times its effective mass */
     double best;        /* residual of the best answer, m/s */
@@ -93,9 +92,8 @@ bool reference_reserve(Reference *reference, const ContactProblem *problem);
    energy than before its impulses. An answer with more is shortened: all impulses times the share that has the least energy. */
 bool reference_solve(Reference *reference, const ContactProblem *problem, const ContactImpulse *start, Error *error);
 
-/* The same, but ends as soon as the residual is at most `tolerance` (m/s), after about `most` factorizations, or when
-   impulses grow as they do where there is no solution. `residual` is then the largest change by one more visit of a
-   contact while all others stay. */
+/* The same, but ends as soon as the residual is at most `tolerance` (m/s), or after about `most` factorizations. `residual` is
+   then the largest change by one more visit of a contact while all others stay. */
 bool reference_solve_to(Reference *reference, const ContactProblem *problem, double tolerance, int most, Error *error);
 
 /* Stores the results of the last solve, in float: rounding may take a tangent impulse out of the friction cone. */

@@ -417,18 +417,6 @@ static double centre_step(Reference *r, double mean) {
     return length;
 }
 
-/* m/s, over effective masses. */
-static double largest_impulse(const Reference *r) {
-    Vec4 most = all4(0);
-    for (int i = 0; i < r->group_count; i++) {
-        const ReferenceGroup *g = &r->groups[i];
-        most = larger4(g->weight * g->now.l * g->inverse_normal, most);
-    }
-    double largest = 0;
-    for (int k = 0; k < BLOCK_SLOTS; k++) largest = most[k] > largest ? most[k] : largest;
-    return largest;
-}
-
 /* Short steps in a row that end an attempt which had no long one yet: where masses differ much, dozens lead to the path. */
 enum { PATIENCE = 40 };
 
@@ -442,10 +430,6 @@ static bool follow(Reference *r, int most, bool carefully) {
         const double length = centre_step(r, mean);
         mean = mean_product(r);
         if (!(mean > 0) || isinf(mean)) break;
-        if (r->jammed < INFINITY && largest_impulse(r) > r->jammed) {
-            r->most = r->factorizations; /* no further attempt */
-            break;
-        }
         if (mean < near_end) answer(r);
         if (r->best <= r->aim || (r->best <= r->enough && length < 0.5)) return true;
         const bool forward = goes_forward(r);

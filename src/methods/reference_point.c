@@ -149,10 +149,6 @@ static const ReferenceKernels *kernels(const Reference *r) {
     return &reference_scalar;
 }
 
-/* m/s. Impulses over effective masses reach 6e3 on the way to solutions of piles, walls and pyramids. Where there is no
-   solution, they grow without limit, mostly beyond this within ten factorizations. */
-static const double jammed = 2e4;
-
 static bool solve_scaled(Reference *r, const ContactProblem *problem, const ContactImpulse *start, Error *error) {
     if (!load(r, problem)) return error_memory(error, "reference");
     set_start(r, problem, start);
@@ -228,7 +224,6 @@ bool reference_solve(Reference *r, const ContactProblem *problem, const ContactI
     r->aim = REFERENCE_TOLERANCE / 10;
     r->enough = REFERENCE_TOLERANCE / 4;
     r->most = INT_MAX;
-    r->jammed = INFINITY;
     r->persist = r->push_out = true;
     if (!solve_scaled(r, problem, start, error)) return false;
     r->residual = kernels(r)->residual(r);
@@ -238,7 +233,6 @@ bool reference_solve(Reference *r, const ContactProblem *problem, const ContactI
 bool reference_solve_to(Reference *r, const ContactProblem *problem, double tolerance, int most, Error *error) {
     r->aim = r->enough = tolerance;
     r->most = most;
-    r->jammed = jammed;
     r->persist = false;
     r->push_out = true;
     if (!solve_scaled(r, problem, NULL, error)) return false;

@@ -330,6 +330,11 @@ float scene_view_angle(const ProblemBody *body);
 /* The problem must have the network's bodies. False when memory is short. */
 bool scene_view_take(SceneView *view, const SlotNetwork *network, const ContactProblem *problem);
 
+/* The method interior: the most work that the last step took for an island, in sweeps over its contacts. At most
+   INTERIOR_MOST_WORK, by a count of what was done. */
+enum { INTERIOR_MOST_WORK = 200 };
+double interior_work_done(const void *state);
+
 /* The method scene-net with a network in memory, for training. */
 
 /* The network remains the caller's and must outlive the solver. near: the setting, m/s. */
