@@ -108,6 +108,11 @@ static void print_fit(FILE *out, const Scene *scene) {
             "    size: of the smallest side, %.3g m, contacts leave %.3g%% as overlap (slop, %g m), and a box falls by "
             "%.3g%% in a step: make the scene larger, or dt shorter\n",
             fit.side, 100 * fit.slop, (double)CONTACT_SLOP, 100 * fit.step);
+    if (fit.side < (double)CONTACT_THIN)
+        fprintf(out,
+                "    thin: boxes under %g m that lie on one another can change places with the engine, which has "
+                "Box2D-Lite's contacts; methods that mend them hold if they converge\n",
+                (double)CONTACT_THIN);
 }
 
 /* "launches from x = -4.9 to -1.25 and from 1.25 to 4.9 m": where they miss, if they differ in x. */

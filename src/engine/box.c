@@ -138,24 +138,31 @@ static bool clearly_better(float separation, float best, float half) {
 
 static Vec2 toward(float distance, Vec2 axis) { return distance > 0.0f ? axis : vec2_negate(axis); }
 
-/* False if an axis separates the boxes. */
-static bool find_reference_face(ReferenceFace *face, const Box *a, const Box *b) {
+/* The faces at 45 degrees and more to a normal; NULL: all faces. */
+static inline bool allowed(const Vec2 *across, Vec2 normal) {
+    return across == NULL || fabsf(vec2_dot(*across, normal)) < 0.7072f;
+}
+
+/* False if an axis separates the boxes by more than the gap. */
+static inline __attribute__((always_inline)) bool find_reference_face(ReferenceFace *face, const Box *a, const Box *b,
+                                                                      const Vec2 *across, float gap) {
     Mat22 to_a = mat22_transpose(a->rotation), to_b = mat22_transpose(b->rotation);
     Vec2 between = vec2_sub(b->position, a->position);
     Vec2 in_a = mat22_multiply(to_a, between), in_b = mat22_multiply(to_b, between);
     Mat22 turn = mat22_abs(mat22_product(to_a, b->rotation));
 
     Vec2 face_a = vec2_sub(vec2_sub(vec2_abs(in_a), a->half), mat22_multiply(turn, b->half));
-    if (face_a.x > 0.0f || face_a.y > 0.0f) return false;
+    if (face_a.x > gap || face_a.y > gap) return false;
     Vec2 face_b = vec2_sub(vec2_sub(vec2_abs(in_b), mat22_multiply(mat22_transpose(turn), a->half)), b->half);
-    if (face_b.x > 0.0f || face_b.y > 0.0f) return false;
+    if (face_b.x > gap || face_b.y > gap) return false;
 
     *face = (ReferenceFace){false, false, face_a.x, toward(in_a.x, a->rotation.column1)};
-    if (clearly_better(face_a.y, face->separation, a->half.y))
+    if (!allowed(across, face->normal)) face->separation = -INFINITY;
+    if (clearly_better(face_a.y, face->separation, a->half.y) && allowed(across, a->rotation.column2))
         *face = (ReferenceFace){false, true, face_a.y, toward(in_a.y, a->rotation.column2)};
-    if (clearly_better(face_b.x, face->separation, b->half.x))
+    if (clearly_better(face_b.x, face->separation, b->half.x) && allowed(across, b->rotation.column1))
         *face = (ReferenceFace){true, false, face_b.x, toward(in_b.x, b->rotation.column1)};
-    if (clearly_better(face_b.y, face->separation, b->half.y))
+    if (clearly_better(face_b.y, face->separation, b->half.y) && allowed(across, b->rotation.column2))
         *face = (ReferenceFace){true, true, face_b.y, toward(in_b.y, b->rotation.column2)};
     return true;
 }
@@ -213,10 +220,13 @@ static uint32_t feature_of(const ClipVertex *v, bool reference_is_b) {
     return reference_is_b ? incident | reference << 16 : reference | incident << 16;
 }
 
-void manifold_compute(Manifold *manifold, const Box *a, const Box *b) {
+/* Returns the separation along the reference face. Inlined, so that contacts by all faces without a gap cost no more than if there
+   were no others. */
+static inline __attribute__((always_inline)) float compute(Manifold *manifold, const Box *a, const Box *b,
+                                                           const Vec2 *across, float gap) {
     manifold->count = 0;
     ReferenceFace face;
-    if (!find_reference_face(&face, a, b)) return;
+    if (!find_reference_face(&face, a, b, across, gap)) return INFINITY;
     manifold->normal = face.normal;
 
     const Box *reference = face.of_b ? b : a, *incident = face.of_b ? a : b;
@@ -230,14 +240,26 @@ void manifold_compute(Manifold *manifold, const Box *a, const Box *b) {
     ClipVertex edge[2], half_clipped[2], clipped[2];
     find_incident_edge(edge, incident, front_normal);
     if (!clip(half_clipped, edge, vec2_negate(side_normal), -side + side_half, face.along_y ? EDGE_LEFT : EDGE_BOTTOM))
-        return;
-    if (!clip(clipped, half_clipped, side_normal, side + side_half, face.along_y ? EDGE_RIGHT : EDGE_TOP)) return;
+        return face.separation;
+    if (!clip(clipped, half_clipped, side_normal, side + side_half, face.along_y ? EDGE_RIGHT : EDGE_TOP))
+        return face.separation;
 
     for (int i = 0; i < 2; i++) {
         float separation = vec2_dot(front_normal, clipped[i].position) - front;
-        if (separation > 0.0f) continue;
+        if (separation > gap) continue;
         /* Projected onto the reference face, so that both lever arms end in the same point. */
         Vec2 position = vec2_sub(clipped[i].position, vec2_scale(separation, front_normal));
         manifold->points[manifold->count++] = (ManifoldPoint){position, separation, feature_of(&clipped[i], face.of_b)};
     }
+    return face.separation;
+}
+
+void manifold_compute(Manifold *manifold, const Box *a, const Box *b) { compute(manifold, a, b, NULL, 0.0f); }
+
+void manifold_compute_within(Manifold *manifold, const Box *a, const Box *b, float gap) {
+    compute(manifold, a, b, NULL, gap);
+}
+
+float manifold_compute_across(Manifold *manifold, const Box *a, const Box *b, Vec2 normal) {
+    return compute(manifold, a, b, &normal, 0.0f);
 }

@@ -11,6 +11,7 @@ void contact_set_free(ContactSet *set) {
     free(set->arbiters);
     free(set->contacts);
     free(set->impulses);
+    free(set->partners);
     *set = (ContactSet){0};
 }
 
@@ -33,19 +34,17 @@ bool contact_set_copy(ContactSet *to, const ContactSet *from) {
     return true;
 }
 
-static void add_arbiter(ContactSet *set, BodyPair pair, const Manifold *manifold, const Box *boxes) {
+/* Writes an arbiter and its points, from set->contacts[first] on. */
+static void write_arbiter(ContactSet *set, Arbiter *arbiter, BodyPair pair, int first, const Manifold *manifold,
+                          const Box *boxes) {
     const Box *a = &boxes[pair.a], *b = &boxes[pair.b];
-    Arbiter *arbiter = &set->arbiters[set->arbiter_count++];
     *arbiter = (Arbiter){
-        pair.a,
-        pair.b,
-        set->contact_count,
-        manifold->count,
-        {vec2_sub(b->position, a->position), a->rotation.column1, b->rotation.column1, {0, 0}},
+        pair.a,          pair.b, first,
+        manifold->count, false,  {vec2_sub(b->position, a->position), a->rotation.column1, b->rotation.column1, {0, 0}},
     };
     for (int k = 0; k < manifold->count; k++) {
         const ManifoldPoint *point = &manifold->points[k];
-        ContactPoint *contact = &set->contacts[set->contact_count++];
+        ContactPoint *contact = &set->contacts[first + k];
         contact->a = pair.a;
         contact->b = pair.b;
         contact->position = point->position;
@@ -66,22 +65,26 @@ static Vec2 moved_by(Vec2 turn, Vec2 arm) {
     return vec2_sub(vec2(turn.x * arm.x - turn.y * arm.y, turn.y * arm.x + turn.x * arm.y), arm);
 }
 
+static float smallest_half(const Box *a, const Box *b) {
+    return fminf(fminf(a->half.x, a->half.y), fminf(b->half.x, b->half.y));
+}
+
 static float radius(const Box *box) { return sqrtf(vec2_dot(box->half, box->half)); }
 
 /* Adds the arbiter of the last step with the points that it had; false if it must be found anew. A single point is: a
    corner that another may soon join. */
 static bool keep_arbiter(ContactSet *set, const ContactSet *last, const Arbiter *old, const Box *boxes, float keep) {
-    const float least_cosine = 0.98f,
-                share = 0.05f; /* Box2D's angle; a thin box is not supported far beyond its edge */
+    const float least_cosine = 0.98f; /* Box2D's angle */
     if (old->count < 2) return false;
     const Box *a = &boxes[old->a], *b = &boxes[old->b];
     const Vec2 shift = vec2_sub(vec2_sub(b->position, a->position), old->found.between);
     const Vec2 turn_a = turn_from(old->found.axis_a, a->rotation.column1);
     const Vec2 turn_b = turn_from(old->found.axis_b, b->rotation.column1);
-    const float side = 2.0f * fminf(fminf(a->half.x, a->half.y), fminf(b->half.x, b->half.y));
-    const float reach = fminf(radius(a), radius(b));
-    const float drift = sqrtf(vec2_dot(shift, shift)) + reach * fabsf(vec2_cross(turn_a, turn_b));
-    if (!(turn_a.x > least_cosine && turn_b.x > least_cosine && drift < fminf(keep, share * side))) return false;
+    const Vec2 normal = last->contacts[old->first].normal;
+    const float most = keep * 2.0f * smallest_half(a, b), reach = fminf(radius(a), radius(b));
+    const float drift = fabsf(vec2_cross(shift, normal)) + reach * fabsf(vec2_cross(turn_a, turn_b));
+    if (!(turn_a.x > least_cosine && turn_b.x > least_cosine && drift < most && vec2_dot(shift, normal) < most))
+        return false;
 
     Arbiter *arbiter = &set->arbiters[set->arbiter_count++];
     *arbiter = *old;
@@ -99,8 +102,150 @@ static bool keep_arbiter(ContactSet *set, const ContactSet *last, const Arbiter 
 
 static bool before(int a, int b, int of_a, int of_b) { return a < of_a || (a == of_a && b < of_b); }
 
-bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last, float keep) {
-    const Arbiter *old = last->arbiters, *end = old + (keep > 0 ? last->arbiter_count : 0);
+/* Ghosts at seams. A box that slides from a tile onto the next overlaps this one along the way by less, at first, than it
+   has sunk into both. So separating axes find the side of the tile, which stops the box, although the tile before covers it.
+   A box that has not sunk at all is not stopped, because its overlap of such a side is empty: so converged steps, which
+   start on the floor, slide over seams, and others do not.
+
+   Here the pair takes the faces across instead, if a support, which is another pair of one of the two boxes with that normal,
+   is beside it and the box overlaps the tile no deeper than it overlaps the support: then the tile does not stick out. Jolt
+   Physics drops such contacts, too, of the triangles of a mesh ("enhanced internal edge removal"). */
+
+/* For each body a list of its arbiters: heads [bodies], then for each arbiter the next one of a and of b; -1 ends it. An
+   entry is 2 * arbiter + (0: the body is a, 1: it is b). */
+static bool list_partners(ContactSet *set, int body_count) {
+    const size_t size = (size_t)body_count + 2 * (size_t)set->arbiter_count;
+    if (!array_reserve((void **)&set->partners, &set->partner_capacity, size, sizeof *set->partners)) return false;
+    int *next = set->partners + body_count;
+    for (int i = 0; i < body_count; i++) set->partners[i] = -1;
+    for (int i = set->arbiter_count - 1; i >= 0; i--) {
+        const int bodies[] = {set->arbiters[i].a, set->arbiters[i].b};
+        for (int side = 0; side < 2; side++) {
+            next[2 * i + side] = set->partners[bodies[side]];
+            set->partners[bodies[side]] = 2 * i + side;
+        }
+    }
+    return true;
+}
+
+/* A pair that may touch at a side that is covered. */
+typedef struct Side {
+    int arbiter;
+    float least;     /* m, half of the smallest side of both boxes */
+    Manifold across; /* its points by the faces across */
+    float depth;     /* m, along them */
+} Side;
+
+/* The box is on the tile more than in it. */
+static bool may_be_covered(Side *side, const ContactSet *set, const Box *boxes) {
+    const Arbiter *arbiter = &set->arbiters[side->arbiter];
+    if (!arbiter->narrow) return false;
+    const Box *a = &boxes[arbiter->a], *b = &boxes[arbiter->b];
+    side->least = smallest_half(a, b);
+    side->depth = -manifold_compute_across(&side->across, a, b, set->contacts[arbiter->first].normal);
+    return side->depth >= 0 && side->depth < side->least;
+}
+
+/* Whether the tile does not stick out of the support, compared where their points are nearest. A box that only just touches
+   the tile has no point across. */
+static bool is_flush(const Side *side, const ContactSet *set, const Arbiter *support) {
+    const float tolerance = 1e-3f * side->least;
+    const ManifoldPoint touch = {set->contacts[set->arbiters[side->arbiter].first].position, -side->depth, 0};
+    const ManifoldPoint *points = side->across.count > 0 ? side->across.points : &touch;
+    const Vec2 tangent = vec2_cross_scalar(side->across.normal, 1.0f);
+    float nearest = side->least, step = INFINITY;
+    for (int i = 0; i < (side->across.count > 0 ? side->across.count : 1); i++)
+        for (int k = support->first; k < support->first + support->count; k++) {
+            const float way = fabsf(vec2_dot(tangent, vec2_sub(points[i].position, set->contacts[k].position)));
+            if (way >= nearest) continue;
+            nearest = way;
+            step = set->contacts[k].separation - points[i].separation;
+        }
+    return step <= tolerance;
+}
+
+static bool is_covered(const Side *side, const ContactSet *set, int body_count) {
+    const float least_cosine = 0.98f; /* as of kept contacts */
+    const int bodies[] = {set->arbiters[side->arbiter].a, set->arbiters[side->arbiter].b};
+    for (int end = 0; end < 2; end++)
+        for (int i = set->partners[bodies[end]]; i >= 0; i = set->partners[body_count + i]) {
+            const Arbiter *support = &set->arbiters[i / 2];
+            if (i / 2 == side->arbiter || support->count == 0) continue;
+            const float cosine = vec2_dot(set->contacts[support->first].normal, side->across.normal);
+            if ((i % 2 == end ? cosine : -cosine) > least_cosine && is_flush(side, set, support)) return true;
+        }
+    return false;
+}
+
+/* Replaces the points of an arbiter, and moves those behind them. */
+static void replace(ContactSet *set, int arbiter, const Manifold *manifold, const Box *boxes) {
+    Arbiter *old = &set->arbiters[arbiter];
+    const int first = old->first, end = first + old->count, more = manifold->count - old->count;
+    memmove(&set->contacts[end + more], &set->contacts[end],
+            (size_t)(set->contact_count - end) * sizeof *set->contacts);
+    for (int i = arbiter + 1; i < set->arbiter_count; i++) set->arbiters[i].first += more;
+    set->contact_count += more;
+    write_arbiter(set, old, (BodyPair){old->a, old->b}, first, manifold, boxes);
+}
+
+static int body_end(const ContactSet *set) {
+    int end = 0;
+    for (int i = 0; i < set->arbiter_count; i++)
+        if (set->arbiters[i].b >= end) end = set->arbiters[i].b + 1;
+    return end;
+}
+
+static bool mend_seams(ContactSet *set, const Box *boxes) {
+    int body_count = 0; /* until partners are listed */
+    for (int i = 0; i < set->arbiter_count; i++) {
+        Side side = {.arbiter = i};
+        if (!may_be_covered(&side, set, boxes)) continue;
+        if (body_count == 0) {
+            body_count = body_end(set);
+            if (!list_partners(set, body_count)) return false;
+        }
+        if (is_covered(&side, set, body_count)) replace(set, i, &side.across, boxes);
+    }
+    return true;
+}
+
+static const float gap_share = 0.05f; /* of the smaller side of thin boxes */
+
+float contact_gap(const Box *box, ContactRules rules) {
+    const float side = 2.0f * smallest_half(box, box);
+    return rules.mend && side < CONTACT_THIN ? gap_share * side : 0;
+}
+
+/* Returns whether the boxes touch along a way that is short beside their sides, as a covered side is touched. */
+static bool find_mended(Manifold *manifold, const Box *a, const Box *b) {
+    const float least = smallest_half(a, b);
+    if (2.0f * least < CONTACT_THIN)
+        manifold_compute_within(manifold, a, b, gap_share * 2.0f * least);
+    else
+        manifold_compute(manifold, a, b);
+    if (manifold->count < 2) return true;
+    const Vec2 way = vec2_sub(manifold->points[1].position, manifold->points[0].position);
+    return vec2_dot(way, way) < least * least;
+}
+
+/* Adds the arbiter of a pair, if it touches. */
+static void find_arbiter(ContactSet *set, BodyPair pair, const Box *boxes, bool mend) {
+    Manifold manifold;
+    bool narrow = false;
+    if (mend)
+        narrow = find_mended(&manifold, &boxes[pair.a], &boxes[pair.b]);
+    else
+        manifold_compute(&manifold, &boxes[pair.a], &boxes[pair.b]);
+    if (manifold.count == 0) return;
+    Arbiter *arbiter = &set->arbiters[set->arbiter_count++];
+    write_arbiter(set, arbiter, pair, set->contact_count, &manifold, boxes);
+    arbiter->narrow = narrow;
+    set->contact_count += manifold.count;
+}
+
+bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last,
+                         ContactRules rules) {
+    const Arbiter *old = last->arbiters, *end = old + (rules.keep > 0 ? last->arbiter_count : 0);
     const BodyPair *pair = pairs->pairs, *pairs_end = pair + pairs->count;
     set->arbiter_count = set->contact_count = 0;
     if (!reserve(set, pairs->count + (size_t)(end - old))) return false;
@@ -108,15 +253,12 @@ bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxe
     while (pair < pairs_end || old < end) {
         const bool is_old = old < end && (pair == pairs_end || !before(pair->a, pair->b, old->a, old->b));
         const bool may_touch = !is_old || (pair < pairs_end && pair->a == old->a && pair->b == old->b);
-        Manifold manifold = {0};
-        if (!(is_old && keep_arbiter(set, last, old, boxes, keep)) && may_touch) {
-            manifold_compute(&manifold, &boxes[pair->a], &boxes[pair->b]);
-            if (manifold.count > 0) add_arbiter(set, *pair, &manifold, boxes);
-        }
+        if (!(is_old && keep_arbiter(set, last, old, boxes, rules.keep)) && may_touch)
+            find_arbiter(set, *pair, boxes, rules.mend);
         old += is_old;
         pair += may_touch;
     }
-    return true;
+    return !rules.mend || mend_seams(set, boxes);
 }
 
 void contact_set_match(ContactSet *set, const ContactSet *last) {

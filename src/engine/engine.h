@@ -95,6 +95,13 @@ typedef struct Manifold {
 /* Fills the manifold of a and b; count is 0 if they do not touch. */
 void manifold_compute(Manifold *manifold, const Box *a, const Box *b);
 
+/* The same for boxes that are apart by no more than `gap` m, too; so are points. */
+void manifold_compute_within(Manifold *manifold, const Box *a, const Box *b, float gap);
+
+/* The same, by the faces alone that are at 45 degrees and more to `normal`. Returns the separation of the face that it
+   takes, m, also if no point lies on both boxes; it is positive for boxes that do not touch. */
+float manifold_compute_across(Manifold *manifold, const Box *a, const Box *b, Vec2 normal);
+
 /* Broad phase: which pairs of boxes may touch. */
 
 /* Axis-aligned bounds, m. */
@@ -198,7 +205,7 @@ typedef struct ContactPoint {
     Vec2 position;                   /* m, world */
     Vec2 normal;                     /* unit, from a to b; the tangent is normal turned a quarter clockwise */
     Vec2 arm_a, arm_b;               /* m, from the centre of each body to the point */
-    float separation;                /* m, negative for penetration, positive only for kept contacts */
+    float separation;                /* m, negative for penetration, positive only for kept and mended contacts */
     float mass_normal, mass_tangent; /* kg, effective masses along normal and tangent */
     float friction;                  /* coefficient of the pair */
     float bias;                      /* m/s, target normal velocity of position correction; 0 without it */
@@ -277,6 +284,7 @@ typedef struct FoundPair {
 typedef struct Arbiter {
     int a, b;         /* bodies, a < b */
     int first, count; /* its points in the contact set; count is 0 once forgotten */
+    bool narrow;      /* of mended contacts: its points are nearer to each other than half of the smallest side */
     FoundPair found;
 } Arbiter;
 
@@ -286,8 +294,32 @@ typedef struct ContactSet {
     Arbiter *arbiters;
     ContactPoint *contacts;   /* [contact_count] */
     ContactImpulse *impulses; /* [contact_count] of the solution */
-    size_t arbiter_capacity, contact_capacity, impulse_capacity;
+    int *partners;            /* scratch: lists of the arbiters of each body */
+    size_t arbiter_capacity, contact_capacity, impulse_capacity, partner_capacity;
 } ContactSet;
+
+/* How contacts are found. Zeros: as Box2D-Lite finds them, with its bits.
+
+   keep > 0: a pair of two points in the last step is kept, instead of found anew, while its boxes have shifted along its face,
+   or apart, by less than `keep` of the smaller side since its points were found, and neither has turned by more than 0.2 rad.
+   Its separations follow the boxes and may be positive; lever arms and normal stay as they were in world coordinates. So a
+   column that leans a little has no tipping moment from contacts that give way under its own weight, which it would
+   otherwise buckle by. The price: support up to `keep` beyond an edge. Sweeps that end early still let boxes sink.
+   Source: Catto, Box2D's contact recycling (2026), whose tolerance is a length.
+
+   mend: no ghosts at seams (contact_problem.c); and thin boxes (CONTACT_THIN) touch before they overlap. */
+typedef struct ContactRules {
+    float keep;
+    bool mend;
+} ContactRules;
+
+/* m: the smallest side below which boxes are thin. As Box2D-Lite finds contacts, boxes that rounding or the end of sweeps sets
+   apart fall until they overlap. In a stack of thin boxes this presses the centre of one past that of another; and contacts,
+   which push centres apart, then push it out on the wrong side. */
+#define CONTACT_THIN (5 * CONTACT_SLOP)
+
+/* m: the distance from which on a thin box touches others, where contacts are mended; 0: not before it overlaps them. */
+float contact_gap(const Box *box, ContactRules rules);
 
 void contact_set_free(ContactSet *set);
 
@@ -295,14 +327,9 @@ void contact_set_free(ContactSet *set);
 bool contact_set_copy(ContactSet *to, const ContactSet *from);
 
 /* Narrow phase over the candidate pairs; fills positions, normals, lever arms, separations and feature ids, not masses or
-   impulses. False when memory is short.
-
-   keep > 0: a pair of two points in `last` is kept, instead, while its boxes have shifted by less than `keep` m (and 5% of
-   the smaller side) against each other since its points were found, and neither has turned by more than 0.2 rad. Its
-   separations follow the boxes and may be positive; lever arms and normal stay as they were in world coordinates. So a
-   column that leans a little has no tipping moment from contacts that give way under its own weight, which it would
-   otherwise buckle by. The price: support up to `keep` beyond an edge. Source: Catto, Box2D's contact recycling (2026). */
-bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last, float keep);
+   impulses. `last`: the contacts of the last step, for those that are kept. False when memory is short. */
+bool contact_set_collide(ContactSet *set, const PairList *pairs, const Box *boxes, const ContactSet *last,
+                         ContactRules rules);
 
 /* Sets warm-start impulses: those of the last step at the point with the same pair and feature id. */
 void contact_set_match(ContactSet *set, const ContactSet *last);
@@ -366,8 +393,8 @@ bool world_add_body(World *world, const BodyDef *def, Error *error);
 /* Removes the body added last, and its contacts; the other contacts keep their impulses. The world must have a body. */
 void world_remove_last_body(World *world);
 
-/* From the next step on contacts are kept (contact_set_collide) by this many m; 0, at first: never. */
-void world_keep_contacts(World *world, float keep);
+/* From the next step on; zeros at first. */
+void world_set_contacts(World *world, ContactRules rules);
 
 /* Marks a body (-1: none) for those who read the contact problem: a scene marks its bomb. The step makes no difference. */
 void world_mark(World *world, int body);

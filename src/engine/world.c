@@ -11,7 +11,7 @@
    unchanged. */
 struct World {
     WorldDef def;
-    float keep; /* m */
+    ContactRules rules;
     int body_count, marked;
     int posed; /* bodies whose boxes and bounds are valid: for the pose in `moved`, after a failed step in `bodies` */
     size_t body_capacity;
@@ -106,7 +106,7 @@ void world_remove_last_body(World *world) {
 
 bool world_copy(World *to, const World *from, Error *error) {
     to->def = from->def;
-    to->keep = from->keep;
+    to->rules = from->rules;
     to->marked = from->marked;
     to->problem = (ContactProblem){.marked = -1};
     to->posed = 0;
@@ -123,7 +123,10 @@ bool world_copy(World *to, const World *from, Error *error) {
     return true;
 }
 
-void world_keep_contacts(World *world, float keep) { world->keep = keep; }
+void world_set_contacts(World *world, ContactRules rules) {
+    if (rules.mend != world->rules.mend) world->posed = 0;
+    world->rules = rules;
+}
 void world_mark(World *world, int body) { world->marked = body; }
 int world_body_count(const World *world) { return world->body_count; }
 const Body *world_bodies(const World *world) { return world->bodies; }
@@ -135,15 +138,21 @@ static bool same_pose(const Body *x, const Body *y) {
            memcmp(&x->angle, &y->angle, sizeof x->angle) == 0;
 }
 
+static Bounds bounds_with_gap(const Box *box, float gap) {
+    const Bounds bounds = bounds_of_box(box);
+    const Vec2 wide = vec2(gap, gap);
+    return gap == 0 ? bounds : (Bounds){vec2_sub(bounds.low, wide), vec2_add(bounds.high, wide)};
+}
+
 static bool collide(World *world) {
     for (int i = 0; i < world->body_count; i++) {
         const Body *body = &world->bodies[i];
         if (i < world->posed && same_pose(body, &world->moved[i])) continue;
         world->boxes[i] = box_make(body->position, body->size, body->angle);
-        world->bounds[i] = bounds_of_box(&world->boxes[i]);
+        world->bounds[i] = bounds_with_gap(&world->boxes[i], contact_gap(&world->boxes[i], world->rules));
     }
     return sort_and_sweep_find(&world->broad_phase, &world->pairs, world->bounds, world->fixed, world->body_count) &&
-           contact_set_collide(&world->next, &world->pairs, world->boxes, &world->last, world->keep);
+           contact_set_collide(&world->next, &world->pairs, world->boxes, &world->last, world->rules);
 }
 
 /* The bodies of the contact problem, with gravity in their velocities. */

@@ -234,7 +234,9 @@ static bool solve_metered(void *state, const ContactProblem *problem, ContactSol
 }
 
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error) {
-    world_keep_contacts(world, stepper->keep);
+    const MethodDescription *method = stepper->description;
+    const bool lite = (method->lite_contacts || method->needs_network) && stepper->keep == 0;
+    world_set_contacts(world, (ContactRules){.keep = stepper->keep, .mend = !lite && !step->engine_step});
     if (stepper->stepping != NULL) return stepping_step(stepper->stepping, stepper->state, world, step, error);
     MeteredSolver metered = {&stepper->solver, step};
     return world_step(world, solve_metered, &metered, step->scene->dt, error);

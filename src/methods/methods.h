@@ -36,6 +36,8 @@ typedef struct MethodDescription {
                             that it is scored against have none of position correction either */
     bool no_contacts;   /* it moves bodies without contacts: collision detection in its step serves measurement and
                             pictures only, so that its time is that of solve(), not the whole step's */
+    bool lite_contacts; /* without `keep` its contacts are Box2D-Lite's, bit for bit; so are those of needs_network,
+                            which learned from them; other methods mend them (ContactRules) */
     bool falls_back;    /* sweeps may solve a step instead; results report how often, as for networks */
     bool external;      /* a program of others, which the text names behind ':'; its time is what it reports */
     bool whole_scenes;  /* it runs scenes from their start, with contacts of its own: no single steps, no impulses */
@@ -113,6 +115,7 @@ typedef struct StepMeter {
 typedef struct Step {
     const Scene *scene; /* with the launch of the run */
     int frame;          /* number of the step, 1 .. frames */
+    bool engine_step;   /* of the engine's run: with its contacts, so that all methods solve the same problem */
     StepMeter *meter;   /* or NULL */
 } Step;
 
@@ -219,10 +222,10 @@ const char *programs_failure(void);
 /* False for methods that are no program, or one that has not run yet. */
 bool method_program(const Method *method, ProgramName *name);
 
-/* For the table of a method in whose step contacts may be kept (contact_set_collide); stepper_create() reads it. `...`:
+/* For the table of a method in whose step contacts may be kept (ContactRules); stepper_create() reads it. `...`:
    SETTING_OWN, or a member of the method's own. */
 #define KEEP_SETTING(...) \
-    { "keep", "shift up to which a contact keeps its lever arms, m (default: 0)", __VA_ARGS__ }
+    { "keep", "shift up to which a contact keeps its lever arms, of the smaller side (default: 0)", __VA_ARGS__ }
 
 /* A method in use. It steps worlds of one scene, with any launch, one world after the other. */
 typedef struct Stepper Stepper;
@@ -233,8 +236,9 @@ void stepper_destroy(Stepper *stepper);
 /* The description of its method. */
 const MethodDescription *stepper_describe(const Stepper *stepper);
 
-/* Advances the world by the scene's dt; on failure the world is unchanged. Afterwards world_problem() and
-   world_solution() are those of the step. */
+/* Advances the world by the scene's dt; on failure the world is unchanged. Its contacts are mended, unless the method
+   has Box2D-Lite's (lite_contacts) or the step is the engine's. Afterwards world_problem() and world_solution() are those
+   of the step. */
 bool stepper_step(Stepper *stepper, World *world, const Step *step, Error *error);
 
 /* How methods are named in all pictures: captions, legends, charts and figures. Their colours: pictures/colours.h.

@@ -70,7 +70,8 @@ typedef struct SoftStep {
     size_t kept_capacity;
 } SoftStep;
 
-#define SKIN 0.005f         /* m, Box2D's linear slop */
+#define SKIN 0.005f         /* m, Box2D's linear slop; of thin boxes less */
+#define SKIN_SHARE 0.1f     /* of the smallest side */
 #define PUSH_OUT_SPEED 3.0f /* m/s, the limit of correction */
 
 static void push(SoftBody *a, SoftBody *b, const SoftPoint *point, Vec2 impulse) {
@@ -229,8 +230,10 @@ static ContactImpulse warm_start(const SoftStep *stepping, const ContactPoint *c
 
 /* In a step of unknown past, a contact that carries load has closed: in the engine's runs, overlaps below CONTACT_SLOP
    are at rest. */
-static float first_gap(const SoftStep *stepping, const ContactPoint *contact, int i) {
-    const float gap = contact->separation + (stepping->keep > 0 ? 0 : SKIN);
+static float first_gap(const SoftStep *stepping, const ContactProblem *problem, const ContactPoint *contact, int i) {
+    const Vec2 a = problem->bodies[contact->a].size, b = problem->bodies[contact->b].size;
+    const float side = fminf(fminf(a.x, a.y), fminf(b.x, b.y)), skin = fminf(SKIN, SKIN_SHARE * side);
+    const float gap = contact->separation + (stepping->keep > 0 ? 0 : skin);
     const bool closed = stepping->memory.before[i] < 0 && contact->warm_normal > 0;
     return closed && gap > 0 ? 0 : gap;
 }
@@ -251,12 +254,13 @@ static void add_point(SoftStep *stepping, const ContactProblem *problem, int i) 
                                                              moving ? &stepping->moving : &stepping->fixed};
     }
     const Vec2 between = vec2_sub(contact->arm_b, contact->arm_a);
-    stepping->points[i] = (SoftPoint){.arm_a = contact->arm_a,
-                                      .arm_b = contact->arm_b,
-                                      .base = first_gap(stepping, contact, i) - vec2_dot(between, contact->normal),
-                                      .mass_normal = contact->mass_normal,
-                                      .mass_tangent = contact->mass_tangent,
-                                      .impulse = warm_start(stepping, contact, i)};
+    stepping->points[i] =
+        (SoftPoint){.arm_a = contact->arm_a,
+                    .arm_b = contact->arm_b,
+                    .base = first_gap(stepping, problem, contact, i) - vec2_dot(between, contact->normal),
+                    .mass_normal = contact->mass_normal,
+                    .mass_tangent = contact->mass_tangent,
+                    .impulse = warm_start(stepping, contact, i)};
 }
 
 static bool begin(SoftStep *stepping, const BegunStep *begun) {

@@ -62,7 +62,7 @@ static void end(Runs *runs) {
 static bool step_learned(Runs *runs, int frame, Error *error) {
     Error failure = {0};
     StepMeter meter = {.now = meter_time};
-    const Step step = {runs->scene, frame, &meter};
+    const Step step = {.scene = runs->scene, .frame = frame, .meter = &meter};
     if (!runs->broken) runs->broken = !stepping_step(&stepping_gns, runs->gns, runs->learned, &step, &failure);
     if (failure.kind != ERROR_NONE && failure.failure == FAILURE_NONE) return *error = failure, false;
     runs->nanoseconds += meter.solving;

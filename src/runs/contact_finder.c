@@ -33,7 +33,7 @@ bool contact_finder_find(ContactFinder *finder, const Body *bodies, int count, f
         finder->fixed[i] = bodies[i].inv_mass == 0;
     }
     if (!sort_and_sweep_find(&finder->broad_phase, &finder->pairs, finder->bounds, finder->fixed, count) ||
-        !contact_set_collide(&finder->set, &finder->pairs, finder->boxes, &(ContactSet){0}, 0))
+        !contact_set_collide(&finder->set, &finder->pairs, finder->boxes, &(ContactSet){0}, (ContactRules){0}))
         return finder->broad_phase.too_many
                    ? error_input(error, "contacts", "more than %d pairs of bodies may touch", BROAD_PHASE_MAX_PAIRS)
                    : error_memory(error, "contacts");

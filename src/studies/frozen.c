@@ -245,7 +245,7 @@ bool snapshots_score(const SnapshotList *list, Stepper *stepper, World *world, S
     assert(push_out || list->no_push_out);
     for (int i = 0; i < list->count; i++) {
         const Snapshot *snapshot = &list->items[i];
-        const Step step = {.scene = snapshot->scene, .frame = snapshot->frame};
+        const Step step = {.scene = snapshot->scene, .frame = snapshot->frame, .engine_step = true};
         Error failure = {0};
         if (!world_copy(world, snapshot->world, error)) return false;
         if (!stepper_step(stepper, world, &step, &failure)) {

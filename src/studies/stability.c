@@ -140,7 +140,8 @@ static double rigid_staircase(void) { return 1.0 / 10; }                        
 static double rigid_tip(void) { return 1.0 / 5; }                                 /* width / height */
 static double rigid_kick(void) { return 5 * sqrt(3 * 10 * (sqrt(26) - 5) / 26); } /* 1 m x 5 m, g = 10 m/s^2 */
 static double rigid_ledge(void) { return 0; }
-static double rigid_slope(void) { return 0.2; } /* friction */
+static double rigid_slope(void) { return 0.2; }                     /* friction */
+static double rigid_seams(void) { return sqrt(2 * 0.3 * 10 * 10); } /* 2 x friction x g x the way to the edge */
 
 /* clang-format off */
 /* from, to, points */
@@ -179,6 +180,8 @@ const StabilityStudy stability_studies[] = {
     {"tip", "Tall box on a slope", "tip", "slope", LINEAR(0, 0.4, 9), .stands = true, .weight = 1, .rigid = rigid_tip},
     {"kick", "Kicked tall box", "kick", "kick", LINEAR(0, 4, 9), .stands = true, .weight = 1, .rigid = rigid_kick},
     {"ledge", "Box past an edge", "ledge", "past", LINEAR(-0.1, 0.1, 9), .stands = true, .weight = 1, .rigid = rigid_ledge},
+    {"seams", "Box over seams", "seams", "speed", LINEAR(2, 20, 10), .stands = true, .weight = 1,
+     .rigid = rigid_seams},
     {"overlap", "Overlap at the start", "overlap", "spacing", LINEAR(0.4, 1, 13, .fails_low = true), .stands = true,
      .weight = 8},
     {"card_house", "Card house", "card_house", "friction", LINEAR(0.1, 1, 10, .fails_low = true), .stands = true,
@@ -211,6 +214,8 @@ const StabilityMap stability_maps[] = {
      .y = {"thickness", LOGARITHMIC(0.1, 2, 10), 4}, .quick = true, .weight = 3},
     {.name = "spin_x", .scene = "random_bombs", .x = {"spin", LINEAR(0, 20, 11), 4}, .y = {"x", LINEAR(-5, 5, 11), 4},
      .quick = true, .weight = 10},
+    {.name = "speed_friction", .scene = "seams", .x = {"speed", LINEAR(1, 20, 10), 4},
+     .y = {"friction", LINEAR(0.05, 0.95, 10), 4}, .stands = true, .weight = 2},
     /* The grid avoids the border, where the slope equals the friction. */
     {.name = "slope_friction", .scene = "friction_ramp", .x = {"slope", LINEAR(0.025, 0.575, 12), 4},
      .y = {"friction", LINEAR(0.05, 0.6, 12), 4}, .stands = true, .weight = 2}};

@@ -200,7 +200,7 @@ static bool run_frozen(Stepper *stepper, const SnapshotList *list, World *world,
     Cost cost;
     for (int i = 0; i < list->count; i++) {
         const Snapshot *snapshot = &list->items[i];
-        const Step step = {.scene = snapshot->scene, .frame = snapshot->frame};
+        const Step step = {.scene = snapshot->scene, .frame = snapshot->frame, .engine_step = true};
         if (!world_copy(world, snapshot->world, &failure) ||
             !metered_step(stepper, world, step, meter, &cost, &failure) ||
             !log_step(log, &cost, snapshot->phase, &failure))

@@ -153,6 +153,10 @@ printf '%s\n' "gravity: [0, -10]" "dt: 1/60" "iterations: 10" "frames: 2" "bodie
     "  - {static: true, size: [10, 1], position: [0, -0.5]}" "  - {mass: 1, size: [1, 0.05], position: [0, 0.025]}" >thin.yaml
 run 0 check thin.yaml -o thin.png
 says "    size: of the smallest side, 0.05 m, contacts leave 20% as overlap (slop, 0.01 m), and a box falls by 5.56% in a step: "
+equal "lines about thin boxes" "$(grep -c '    thin:' out)" 0
+sed 's/0.05]/0.03]/; s/0.025]/0.015]/' thin.yaml >plate.yaml
+run 0 check plate.yaml -o plate.png
+says "    thin: boxes under 0.05 m that lie on one another can change places with the engine"
 run 0 check thin.yaml -o thin.png --json
 says '"size": {"smallest_side": 0.05'
 sed 's/0.05]/0.5]/; s/0.025]/0.25]/' thin.yaml >thick.yaml

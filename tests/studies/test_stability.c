@@ -54,10 +54,13 @@ TEST(studies_scan_parameters_of_their_scenes) {
 }
 
 /* A stack of n leans by at most width / n a box; a box tips where its centre passes its corner, or where a turn about the corner
-   (inertia m (w^2 + h^2) / 3, speed of the top h w) lifts it that far; it slides where the slope exceeds the friction. */
+   (inertia m (w^2 + h^2) / 3, speed of the top h w) lifts it that far; it slides where the slope exceeds the friction, and
+   slides on by v^2 / (2 mu g), here to the edge of the last tile. */
 TEST(rigid_answers_follow_from_the_scenes) {
     Scene *stairs = read_scene("tilted_stack"), *tip = read_scene("tip"), *kick = read_scene("kick");
-    Scene *ramp = read_scene("friction_ramp");
+    Scene *ramp = read_scene("friction_ramp"), *seams = read_scene("seams");
+    const BodyDef *slider = &seams->bodies[seams->body_count - 1], *tile = slider - 1;
+    const double way = (double)(tile->position.x + tile->size.x / 2 - slider->position.x);
     const double w = (double)kick->bodies[1].size.x, h = (double)kick->bodies[1].size.y;
     const double lift = (sqrt(w * w + h * h) - h) / 2, inertia = (w * w + h * h) / 3;
     const struct {
@@ -67,7 +70,8 @@ TEST(rigid_answers_follow_from_the_scenes) {
                 {"tip", (double)(tip->bodies[1].size.x / tip->bodies[1].size.y)},
                 {"kick", h * sqrt(-2 * (double)kick->gravity.y * lift / inertia)},
                 {"ledge", 0},
-                {"friction_ramp", (double)ramp->bodies[1].friction}};
+                {"friction_ramp", (double)ramp->bodies[1].friction},
+                {"seams", sqrt(2 * (double)slider->friction * -(double)seams->gravity.y * way)}};
     int found = 0;
     for (int i = 0; i < stability_study_count; i++) found += stability_studies[i].rigid != NULL;
     assert_int_equal(found, sizeof laws / sizeof laws[0]);
@@ -76,6 +80,7 @@ TEST(rigid_answers_follow_from_the_scenes) {
     scene_destroy(tip);
     scene_destroy(kick);
     scene_destroy(ramp);
+    scene_destroy(seams);
 }
 
 /* Two steps of the search beside the rigid answer. */
