@@ -13,8 +13,8 @@
    Extrapolation can carry impulses past the solution for ever. It even makes errors grow where boxes slide: there friction
    follows the normal impulse and acts on the normal velocity, too, so a visit overshoots, by a share e of the error, and the
    error grows if e (1 + 2 beta) > 1 (its factor z solves z^2 + e (1 + beta) z - e beta = 0). So the first sweeps have a
-   lower beta where contacts slide, and sweeps are watched there, and in runs of 16 or more: each island's residual is
-   measured after blocks of 8. Where it exceeds 4 times the least, one block follows without extrapolation, and momentum
+   lower beta where contacts slide, and sweeps are watched there, and in runs of 32 or more: each island's residual is
+   measured after blocks of 16, or of 8 where contacts slide or a stopping rule reads it. Where it exceeds 4 times the least, one block follows without extrapolation, and momentum
    begins anew (O'Donoghue, Candes, "Adaptive Restart for Accelerated Gradient Schemes", 2015). An island whose residual is
    not its least in the end goes back to the solution that was best.
 
@@ -89,13 +89,15 @@ struct MomentumIsland {
     float left, best; /* after the last block; the least, whose solution is kept */
     float least;      /* since momentum last began, */
     int sweeps;       /* so many sweeps ago */
-    float most;       /* beta is at most this, in the first block */
+    float most;       /* beta is at most this, in the first sweeps */
     bool plain;       /* the next block is without extrapolation */
 };
 
 enum {
-    LONGEST_BLOCK = 2 * STOPPING_BLOCK - 1, /* the last one, so that none is short */
-    LONG_RUN = 48                           /* sweeps from which on velocities are computed anew after each block */
+    SLIDING_EVERY = 8, /* sweeps between two looks at an island in which contacts slide, and at others: */
+    CALM_EVERY = 16,   /* a look takes the time of two sweeps */
+    LONGEST_BLOCK = 2 * CALM_EVERY - 1,
+    LONG_RUN = 48 /* sweeps from which on velocities are computed anew at each look */
 };
 
 /* Momentum makes residuals rise and fall. It begins anew at this multiple of the least sum of squares. */
@@ -116,22 +118,12 @@ static float largest_factor(float a) {
     return 3 * both <= 1 ? 1 : 0.5f / both - 0.5f;
 }
 
-/* keeps: copies the solutions of the islands that are better than ever. */
-static void measure(Momentum *momentum, bool keeps) {
-    Sweeps *sweeps = &momentum->sweeps;
-    MomentumIsland *courses = momentum->courses;
-    residual_of_pairs(sweeps, momentum->of_pairs);
-    for (int k = 0; k < sweeps->groups; k++) courses[k].left = 0;
-    for (int i = 0; i < sweeps->pair_count; i++) courses[sweeps->group[i]].left += momentum->of_pairs[i];
-    for (int k = 0; k < sweeps->groups; k++) {
-        momentum->chosen[k] = courses[k].left <= courses[k].best;
-        if (momentum->chosen[k]) courses[k].best = courses[k].left;
-    }
-    if (keeps) sweeps_keep(sweeps, momentum->chosen);
+static void choose_all(Momentum *momentum) {
+    for (int k = 0; k < momentum->sweeps.groups; k++) momentum->chosen[k] = true;
 }
 
 static void keep_all(Momentum *momentum) {
-    for (int k = 0; k < momentum->sweeps.groups; k++) momentum->chosen[k] = true;
+    choose_all(momentum);
     sweeps_keep(&momentum->sweeps, momentum->chosen);
 }
 
@@ -142,7 +134,6 @@ static void watch(Momentum *momentum) {
     sweeps_group(sweeps);
     for (int k = 0; k < sweeps->groups; k++)
         momentum->courses[k] = (MomentumIsland){.left = HUGE_VALF, .best = HUGE_VALF, .most = 1};
-    keep_all(momentum);
     momentum->watched = true;
 }
 
@@ -150,6 +141,9 @@ static void watch(Momentum *momentum) {
 static void watch_sliding(Momentum *momentum) {
     const Sweeps *sweeps = &momentum->sweeps;
     bool slides = false;
+    for (int i = 0; i < sweeps->pair_count; i++) slides |= sweep_pair_may_overshoot(&sweeps->pairs[i]);
+    if (!slides) return;
+    slides = false;
     overshoot_of_pairs(sweeps, momentum->of_pairs);
     for (int i = 0; i < sweeps->pair_count; i++) slides |= largest_factor(momentum->of_pairs[i]) < 1;
     if (!slides) return;
@@ -159,13 +153,6 @@ static void watch_sliding(Momentum *momentum) {
         const float most = largest_factor(momentum->of_pairs[i]);
         if (most < course->most) course->most = most;
     }
-    measure(momentum, false);
-}
-
-static bool is_rough(const Sweeps *sweeps) {
-    bool rough = false;
-    for (int i = 0; i < sweeps->pair_count; i++) rough |= sweeps->pairs[i].friction >= SWEEP_SLIPPERY;
-    return rough;
 }
 
 bool momentum_begin(Momentum *momentum, const ContactProblem *problem) {
@@ -178,7 +165,7 @@ bool momentum_begin(Momentum *momentum, const ContactProblem *problem) {
                              ARRAY_PART(momentum->chosen, pairs), ARRAY_PART(momentum->of_pairs, pairs),
                              ARRAY_PART(momentum->factors, LONGEST_BLOCK * pairs)))
         return false;
-    if (is_rough(sweeps)) watch_sliding(momentum);
+    watch_sliding(momentum);
     return true;
 }
 
@@ -188,54 +175,90 @@ static void begin_anew(MomentumIsland *course, bool plain) {
     course->plain = plain;
 }
 
-/* After a block of `count` sweeps. */
-static void judge(MomentumIsland *course, int count) {
-    if (!(course->left <= risen * course->least)) {
+/* Sweeps of a run, as many as are done. total: 0 where a stopping rule ends it. */
+typedef struct Run {
+    const float *factors;
+    int done, total;
+} Run;
+
+/* Whether the island is judged now. Its looks depend on nothing but itself and the run, so they are no matter of others. The
+   last part is never short; a run with a single part has no look. */
+static bool is_due(const MomentumIsland *course, const Run *run) {
+    const int every = run->total == 0 || course->most < 1 ? SLIDING_EVERY : CALM_EVERY;
+    if (run->done == run->total) return run->total >= 2 * every;
+    return run->done % every == 0 && (run->total == 0 || run->total - run->done >= every);
+}
+
+/* Measures the residuals of the chosen islands, and copies the solutions of those that are better than ever. */
+static void measure(Momentum *momentum) {
+    Sweeps *sweeps = &momentum->sweeps;
+    MomentumIsland *courses = momentum->courses;
+    bool *chosen = momentum->chosen;
+    if (momentum->refreshes) sweeps_refresh(sweeps, momentum->problem, chosen);
+    residual_of_pairs(sweeps, momentum->of_pairs);
+    for (int k = 0; k < sweeps->groups; k++)
+        if (chosen[k]) courses[k].left = 0;
+    for (int i = 0; i < sweeps->pair_count; i++)
+        if (chosen[sweeps->group[i]]) courses[sweeps->group[i]].left += momentum->of_pairs[i];
+    for (int k = 0; k < sweeps->groups; k++) {
+        chosen[k] = chosen[k] && courses[k].left <= courses[k].best;
+        if (chosen[k]) courses[k].best = courses[k].left;
+    }
+    sweeps_keep(sweeps, chosen);
+}
+
+/* At a look. Returns true where numbers are NaN or infinite: the island goes back to what was best. */
+static bool judge(MomentumIsland *course) {
+    const bool lost = !(course->left < HUGE_VALF);
+    if (lost) course->left = course->best;
+    if (lost || course->left > risen * course->least) {
         begin_anew(course, true);
-        return;
+        return lost;
     }
     course->least = course->left < course->least ? course->left : course->least;
-    course->sweeps = course->plain ? 0 : course->sweeps + count;
+    if (course->plain) course->sweeps = 0;
     course->plain = false;
+    return false;
 }
 
-/* Islands with numbers that are NaN or infinite go back to what was best. */
-static void judge_all(Momentum *momentum, int count, bool last) {
-    bool any = false;
-    if (momentum->refreshes) sweeps_refresh(&momentum->sweeps, momentum->problem);
-    measure(momentum, !last);
-    for (int k = 0; k < momentum->sweeps.groups; k++) {
-        MomentumIsland *course = &momentum->courses[k];
-        momentum->chosen[k] = !(course->left < HUGE_VALF);
-        any |= momentum->chosen[k];
-        if (momentum->chosen[k]) {
-            course->left = course->best;
-            begin_anew(course, true);
-        } else
-            judge(course, count);
+static void look(Momentum *momentum, const Run *run) {
+    const int groups = momentum->sweeps.groups;
+    bool any_due = false, any_lost = false;
+    for (int k = 0; k < groups; k++) {
+        momentum->chosen[k] = is_due(&momentum->courses[k], run);
+        any_due |= momentum->chosen[k];
     }
-    if (any) sweeps_return(&momentum->sweeps, momentum->chosen);
+    if (!any_due) return;
+    measure(momentum);
+    for (int k = 0; k < groups; k++) {
+        momentum->chosen[k] = is_due(&momentum->courses[k], run) && judge(&momentum->courses[k]);
+        any_lost |= momentum->chosen[k];
+    }
+    if (any_lost) sweeps_return(&momentum->sweeps, momentum->chosen);
 }
 
-/* Before the sweep after so many of the block. factors: of the run. */
-static float factor_of(const MomentumIsland *course, const float *factors, bool first, int after) {
-    const int sweep = course->sweeps + after;
+/* Before the sweep after so many of the block. */
+static float factor_of(const MomentumIsland *course, const Run *run, int after) {
+    const int sweep = course->sweeps + after, first = 2 * SLIDING_EVERY;
     if (sweep == 0) return 0;
-    const float wanted = course->plain ? 0 : factors[sweep];
-    const float most = first || course->most < 0 ? course->most : 1;
+    const float wanted = course->plain ? 0 : run->factors[sweep];
+    const bool begins = run->done + after < SLIDING_EVERY || (run->total > 0 && run->total < first);
+    const float most = begins || course->most < 0 ? course->most : 1;
     return wanted < most ? wanted : most;
 }
 
-/* factors: of the run that the block is a part of. first, last: in that run. False when memory is short. */
-static bool run_block(Momentum *momentum, const float *factors, bool first, bool last, int count) {
+/* False when memory is short. */
+static bool run_block(Momentum *momentum, Run *run, int count) {
     Sweeps *sweeps = &momentum->sweeps;
     float *factor = momentum->factors;
     for (int s = 0; s < count; s++)
-        for (int k = 0; k < sweeps->groups; k++) *factor++ = factor_of(&momentum->courses[k], factors, first, s);
-    if (!(first ? sweeps_run_momentum(sweeps, momentum->factors, count)
-                : sweeps_continue_momentum(sweeps, momentum->factors, count)))
+        for (int k = 0; k < sweeps->groups; k++) *factor++ = factor_of(&momentum->courses[k], run, s);
+    if (!(run->done == 0 ? sweeps_run_momentum(sweeps, momentum->factors, count)
+                         : sweeps_continue_momentum(sweeps, momentum->factors, count)))
         return false;
-    judge_all(momentum, count, last);
+    for (int k = 0; k < sweeps->groups; k++) momentum->courses[k].sweeps += count;
+    run->done += count;
+    look(momentum, run);
     return true;
 }
 
@@ -254,20 +277,6 @@ static void settle(Momentum *momentum) {
     if (choose_worse(momentum)) sweeps_return(&momentum->sweeps, momentum->chosen);
 }
 
-/* After a single block, which is worse than the start: one sweep without extrapolation from there. Only where contacts slide: a
-   block is as if unwatched elsewhere. */
-static void settle_from_start(Momentum *momentum) {
-    bool any = false;
-    choose_worse(momentum);
-    for (int k = 0; k < momentum->sweeps.groups; k++) {
-        momentum->chosen[k] &= momentum->courses[k].most < 1;
-        any |= momentum->chosen[k];
-    }
-    if (!any) return;
-    sweeps_return(&momentum->sweeps, momentum->chosen);
-    sweeps_run_groups(&momentum->sweeps, momentum->chosen);
-}
-
 static void begin_all_anew(Momentum *momentum) {
     for (int k = 0; k < momentum->sweeps.groups; k++) begin_anew(&momentum->courses[k], false);
 }
@@ -277,20 +286,17 @@ static void forget_best(Momentum *momentum) {
 }
 
 bool momentum_run(Momentum *momentum, const float *factors, int count) {
-    const bool single = count <= LONGEST_BLOCK;
-    if (single && !momentum->watched) return sweeps_run_momentum(&momentum->sweeps, factors, count);
+    if (count < 2 * CALM_EVERY && !momentum->watched) return sweeps_run_momentum(&momentum->sweeps, factors, count);
+    const int every = momentum->watched ? SLIDING_EVERY : CALM_EVERY;
+    Run run = {.factors = factors, .total = count};
     momentum->refreshes = count >= LONG_RUN;
     watch(momentum);
     begin_all_anew(momentum);
-    if (single) {
-        if (!run_block(momentum, factors, true, true, count)) return false;
-        settle_from_start(momentum);
-        return true;
-    }
     forget_best(momentum); /* the start: its impulses may be outside of the cones */
-    for (int done = 0, block; done < count; done += block) {
-        block = count - done <= LONGEST_BLOCK ? count - done : STOPPING_BLOCK;
-        if (!run_block(momentum, factors, done == 0, done + block == count, block)) return false;
+    keep_all(momentum);    /* for islands in which the first numbers are infinite */
+    while (run.done < count) {
+        const int left = count - run.done;
+        if (!run_block(momentum, &run, left < 2 * every ? left : every)) return false;
     }
     settle(momentum);
     return true;
@@ -300,16 +306,15 @@ bool momentum_run_more(Momentum *momentum, const StoppingRule *rule, const float
     const ContactProblem *problem = momentum->problem;
     const Sweeps *sweeps = &momentum->sweeps;
     if (!stopping_needs_more(rule, 0, sweeps, problem)) return true;
+    Run run = {.factors = factors};
     momentum->refreshes = true;
     watch(momentum);
     forget_best(momentum);
-    sweeps_refresh(&momentum->sweeps, momentum->problem);
-    keep_all(momentum);
-    measure(momentum, false);
+    choose_all(momentum);
+    measure(momentum);
     begin_all_anew(momentum);
-    int done = 0;
-    for (; stopping_needs_more(rule, done, sweeps, problem); done += STOPPING_BLOCK)
-        if (!run_block(momentum, factors, done == 0, false, STOPPING_BLOCK)) return false;
+    while (stopping_needs_more(rule, run.done, sweeps, problem))
+        if (!run_block(momentum, &run, STOPPING_BLOCK)) return false;
     if (residual_reaches(sweeps, problem->contact_count, rule->near)) settle(momentum);
     return true;
 }

@@ -144,8 +144,8 @@ typedef struct Momentum {
     StoppingRule rule;   /* its k does not count */
     float *more_factors; /* [rule.more] */
     const ContactProblem *problem;
-    bool watched;   /* its islands have courses */
-    bool refreshes; /* the run computes velocities anew after each block: long ones */
+    bool watched;            /* its islands have courses */
+    bool refreshes;          /* the run computes velocities anew after each block: long ones */
     MomentumIsland *courses; /* [sweeps.groups] */
     bool *chosen;            /* [sweeps.groups] */
     float *of_pairs;         /* [sweeps.pair_count] what was last measured */
@@ -158,9 +158,9 @@ void momentum_free(Momentum *momentum);
 /* momentum->sweeps have begun with this problem, which must stay until the end. False when memory is short. */
 bool momentum_begin(Momentum *momentum, const ContactProblem *problem);
 
-/* `count` sweeps with factors[count]. After 16 or more no island's residual is above the least that was measured on the way,
-   after each 8. After fewer, it is not above that of the start where contacts slide so that visits overshoot, or the solution
-   is that of one sweep without extrapolation. False when memory is short. */
+/* `count` sweeps with factors[count]. Of 32 or more, each island's residual is not above the least of those that 16, 32, ... of
+   them left; where contacts slide so that visits overshoot, of 16 or more, that 8, 16, ... of them left. False when memory is
+   short. */
 bool momentum_run(Momentum *momentum, const float *factors, int count);
 
 /* Sweeps by the rule after those before; factors[rule->more]. The remaining error has long waves, such as a heavy bomb

@@ -111,7 +111,7 @@ static float overshoot_of_point(const SweepPair *pair, int k, Vec2 velocity) {
 
 static float overshoot_of_pair(const Sweeps *sweeps, int i) {
     const SweepPair *pair = &sweeps->pairs[i];
-    if (pair->friction < SWEEP_SLIPPERY) return 0;
+    if (!sweep_pair_may_overshoot(pair)) return 0;
     const SweepBody *a = &sweeps->bodies[sweep_body_at(sweeps->ends[i].a)];
     const SweepBody *b = &sweeps->bodies[sweep_body_at(sweeps->ends[i].b)];
     const float first = measure(overshoot_of_point, pair, 0, a, b);

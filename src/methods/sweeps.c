@@ -258,12 +258,13 @@ bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count) {
     return true;
 }
 
-void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem) {
+void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem, const bool *chosen) {
     for (int i = 0; i < sweeps->body_count; i++) {
+        if (chosen != NULL && !chosen[sweeps->group_of_body[i]]) continue;
         const ProblemBody *body = &problem->bodies[i];
         sweeps->bodies[i] = (SweepBody){body->velocity.x, body->velocity.y, body->angular_velocity, body->inv_mass};
     }
-    sweeps_warm_start(sweeps);
+    sweeps_push_sums(sweeps, chosen);
 }
 
 /* The body that stands for the group; halves the path to it. */
@@ -437,7 +438,7 @@ static bool begin(Sweeps *sweeps, SweepKernel kernel, const ContactProblem *prob
     sweeps->groups = 1;
     load_bodies(sweeps, problem);
     load_pairs(sweeps, problem, visits, warm);
-    sweeps_warm_start(sweeps);
+    sweeps_push_sums(sweeps, NULL);
     return true;
 }
 

@@ -216,8 +216,8 @@ bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count);
 void sweeps_group(Sweeps *sweeps);
 
 /* Computes the velocities from the sums, for the problem that the sweeps began with: over many sweeps with momentum rounding
-   errors take them apart, by mm/s after a hundred. */
-void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem);
+   errors take them apart, by mm/s after a hundred. chosen[groups]: of which; NULL: of all. */
+void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem, const bool *chosen);
 
 /* Copies sums, and velocities of moving bodies, of the groups for which chosen[groups] is true. */
 void sweeps_keep(Sweeps *sweeps, const bool *chosen);
@@ -225,18 +225,29 @@ void sweeps_keep(Sweeps *sweeps, const bool *chosen);
 /* Copies them back. sweeps_continue_momentum() then begins from them without momentum. */
 void sweeps_return(Sweeps *sweeps, const bool *chosen);
 
-/* One sweep over the pairs of these groups, without momentum. */
-void sweeps_run_groups(Sweeps *sweeps, const bool *chosen);
-
 /* Applies additional impulses [contact_count] and adds them to the sums. */
 void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses);
 
 /* A contact slides if its tangent impulse times this exceeds the limit. */
 #define SWEEP_AT_LIMIT 1.0001f
-/* Friction below which no contact of boxes overshoots enough to matter (overshoot_of_pairs() in solvers.h). */
-#define SWEEP_SLIPPERY 0.3f
+/* Friction below which no contact of boxes overshoots enough to matter (overshoot_of_pairs() in solvers.h): an impulse at a
+   corner, r from the middle, in the plane's directions n and t, overshoots by friction times q c s / (1 + q c^2), where
+   c = cos, s = sin of the angle between the arm and t, and q = m r^2 / I = 3: at most 0.75. Less than 0.264 is no matter
+   (largest_factor() in momentum.c). */
+#define SWEEP_SLIPPERY 0.35f
 
 static inline int sweep_pair_points(const SweepPair *pair) { return pair->points[1].extra < 0.0f ? 2 : 1; }
+
+/* False if none of the pair's contacts slides, or friction is too low for it to matter. New contacts may slide. */
+static inline bool sweep_pair_may_overshoot(const SweepPair *pair) {
+    if (pair->friction < SWEEP_SLIPPERY) return false;
+    bool may = false;
+    for (int k = 0; k < sweep_pair_points(pair); k++) {
+        const ContactImpulse sum = pair->sums[k];
+        may |= !(sum.normal > 0) || pair->friction * sum.normal < SWEEP_AT_LIMIT * fabsf(sum.tangent);
+    }
+    return may;
+}
 
 /* Stores velocities and impulses. False if a velocity is NaN or infinite: then the bits may depend on the order of
    visits. */
@@ -302,8 +313,8 @@ void sweeps_run_lanes(Sweeps *sweeps, const SweepSchedule *schedule, const float
 void sweeps_residuals_in_lanes(const Sweeps *sweeps, float *squared);
 void sweeps_overshoots_in_lanes(const Sweeps *sweeps, float *overshoot);
 
-/* Applies the initial impulses in the sums. */
-void sweeps_warm_start(Sweeps *sweeps);
+/* Applies the impulses in the sums, of the groups for which chosen[groups] is true; NULL: of all. */
+void sweeps_push_sums(Sweeps *sweeps, const bool *chosen);
 
 /* Sweeps pair by pair, and stops early after a sweep without a change: later ones would change nothing. */
 void sweeps_run_one_by_one(Sweeps *sweeps, const float *factors, int count);

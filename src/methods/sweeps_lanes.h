@@ -256,17 +256,17 @@ TARGET static inline void measure_residuals(const Sweeps *sweeps, float *squared
     }
 }
 
-static inline bool any_rough(const Sweeps *sweeps, int first) {
-    bool rough = false;
+static inline bool any_may_overshoot(const Sweeps *sweeps, int first) {
+    bool may = false;
     for (int i = first; i < first + LANES && i < sweeps->pair_count; i++)
-        rough |= sweeps->pairs[i].friction >= SWEEP_SLIPPERY;
-    return rough;
+        may |= sweep_pair_may_overshoot(&sweeps->pairs[i]);
+    return may;
 }
 
 TARGET static inline void measure_overshoots(const Sweeps *sweeps, float *overshoot) {
     for (int first = 0; first < sweeps->pair_count; first += LANES) {
         Lanes most = lanes_zero();
-        if (any_rough(sweeps, first)) {
+        if (any_may_overshoot(sweeps, first)) {
             const SweepLevel at = pairs_from(sweeps, first);
             const LanePair pair = load_pair_lanes(sweeps, &at);
             const Lanes second = overshoot_of_point(&pair, &pair.points[1]);

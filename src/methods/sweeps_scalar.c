@@ -34,8 +34,9 @@ static void push_pair(Sweeps *sweeps, int i, const ContactImpulse impulses[2]) {
     if (ends.b >= 0) sweeps->bodies[ends.b] = b;
 }
 
-void sweeps_warm_start(Sweeps *sweeps) {
-    for (int i = 0; i < sweeps->pair_count; i++) push_pair(sweeps, i, sweeps->pairs[i].sums);
+void sweeps_push_sums(Sweeps *sweeps, const bool *chosen) {
+    for (int i = 0; i < sweeps->pair_count; i++)
+        if (chosen == NULL || chosen[sweeps->group[i]]) push_pair(sweeps, i, sweeps->pairs[i].sums);
 }
 
 void sweeps_push(Sweeps *sweeps, const ContactImpulse *impulses) {
@@ -190,11 +191,6 @@ void sweeps_run_one_by_one(Sweeps *sweeps, const float *factors, int count) {
     for (int sweep = 0; changed && sweep < count; sweep++)
         changed = factors != NULL ? sweep_in_turn(sweeps, sweep % 2, factors + sweep * sweeps->groups, &now)
                                   : sweep_in_place(sweeps, &now);
-}
-
-void sweeps_run_groups(Sweeps *sweeps, const bool *chosen) {
-    for (int i = 0; i < sweeps->pair_count; i++)
-        if (chosen[sweeps->group[i]]) visit(sweeps->bodies, &sweeps->pairs[i], sweeps->pairs[i].sums, sweeps->ends[i]);
 }
 
 /* Sequential impulses (projected Gauss-Seidel), as in Box2D-Lite.

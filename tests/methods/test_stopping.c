@@ -113,12 +113,12 @@ static void sweep_with_momentum(const ContactProblem *problem, int n, ContactSol
     for (int s = 0; s < 48; s++) more[s] = momentum_factor_tuned(s, 48);
     assert_true(sweeps_begin_coloured(&sweeps, sweeps_best_kernel(), problem));
     assert_true(sweeps_run_momentum(&sweeps, first, 7));
-    if (n > 0) sweeps_refresh(&sweeps, problem);
+    if (n > 0) sweeps_refresh(&sweeps, problem, NULL);
     for (int i = 0; i < n; i++) {
         const float *factors = more + STOPPING_BLOCK * i;
         assert_true(i == 0 ? sweeps_run_momentum(&sweeps, factors, STOPPING_BLOCK)
                            : sweeps_continue_momentum(&sweeps, factors, STOPPING_BLOCK));
-        sweeps_refresh(&sweeps, problem);
+        sweeps_refresh(&sweeps, problem, NULL);
     }
     assert_true(sweeps_end(&sweeps, solution));
     sweeps_free(&sweeps);
