@@ -88,10 +88,10 @@ static const float calm_speed = 10;
    there again, further inside, than from where they are. */
 enum { ATTEMPTS = 3, FEW_BODIES = 32 };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
-static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 6},
+static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
                                                   {&interior_gentle, 0.01, hasty, 40},
                                                   {&interior_far, 0.01, patient, 40}},
-                             at_rest_uneven[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 6},
+                             at_rest_uneven[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
                                                          {&interior_far, 0.01, patient, 40}},
                              at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 10},
                                                     {&interior_far, 0.1, patient, 40}};
