@@ -258,13 +258,24 @@ bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count) {
     return true;
 }
 
+/* body += factor * by */
+static void add_velocity(SweepBody *body, const SweepBody *by, float factor) {
+    body->x += factor * by->x;
+    body->y += factor * by->y;
+    body->spin += factor * by->spin;
+}
+
 void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem, const bool *chosen) {
+    SweepBody *previous = sweeps->bodies + sweeps->body_count + 1;
     for (int i = 0; i < sweeps->body_count; i++) {
         if (chosen != NULL && !chosen[sweeps->group_of_body[i]]) continue;
         const ProblemBody *body = &problem->bodies[i];
+        add_velocity(&previous[i], &sweeps->bodies[i], -1);
         sweeps->bodies[i] = (SweepBody){body->velocity.x, body->velocity.y, body->angular_velocity, body->inv_mass};
     }
     sweeps_push_sums(sweeps, chosen);
+    for (int i = 0; i < sweeps->body_count; i++)
+        if (chosen == NULL || chosen[sweeps->group_of_body[i]]) add_velocity(&previous[i], &sweeps->bodies[i], 1);
 }
 
 /* The body that stands for the group; halves the path to it. */

@@ -216,7 +216,8 @@ bool sweeps_continue_momentum(Sweeps *sweeps, const float *factors, int count);
 void sweeps_group(Sweeps *sweeps);
 
 /* Computes the velocities from the sums, for the problem that the sweeps began with: over many sweeps with momentum rounding
-   errors take them apart, by mm/s after a hundred. chosen[groups]: of which; NULL: of all. */
+   errors take them apart, by mm/s after a hundred. The velocities before the last sweep move by as much: momentum would go on
+   along the difference, and make it 1 / (1 - beta) times as large. chosen[groups]: of which; NULL: of all. */
 void sweeps_refresh(Sweeps *sweeps, const ContactProblem *problem, const bool *chosen);
 
 /* Copies sums, and velocities of moving bodies, of the groups for which chosen[groups] is true. */
