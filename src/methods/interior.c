@@ -30,6 +30,7 @@
 #include "methods/interior_point_internal.h"
 #include "methods/islands.h"
 #include "methods/methods.h"
+#include "methods/reference.h"
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
@@ -45,17 +46,20 @@ enum {
     LARGE_SWEEPS = 20,    /* with momentum, where iterations are too dear; then more while the residual is too large */
     LAST_SWEEPS = 8,      /* with momentum, from the best answer of iterations; then more */
     MORE_SWEEPS = 96,     /* at most, of those */
+    LEAST_ON_PATH = 8,    /* factorizations */
     LEAST_ITERATIONS = 7, /* of a struck island of many: fewer seldom are as good as sweeps; */
     LEAST_ITERATIONS_AT_REST = 3 /* and one more for each hundred bodies */
 };
 
-/* A step takes at most the work of INTERIOR_MOST_WORK sweeps of each island: 20 times that of the engine's ten. It is counted, not
-   timed: as sweeps over the same contacts. */
+/* A step takes at most the work of so many sweeps of each island (solvers.h). It is counted, not timed: as sweeps over the same
+   contacts. */
 static const double begin_work = 3, load_work = 5.5;
 /* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and walls, 1.4 in
    piles. */
 static const double usual_products = 2;
 /* Kept for sweeps where iterations do not converge. */
+/* A factorization of the path, in iterations. */
+static const double path_work = 2;
 static const double last_work = 20, last_work_of_struck_many = 40;
 
 /* Speeds at rest are multiples of the island's pace: that of a fall through five slops, 1 m/s on Earth. An island is calm if its
@@ -93,11 +97,9 @@ static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty
                                                   {&interior_far, 0.01, patient, 40}},
                              at_rest_uneven[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
                                                          {&interior_far, 0.01, patient, 40}},
-                             at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 10},
-                                                    {&interior_far, 0.1, patient, 40}};
+                             at_impact[ATTEMPTS] = {{&interior_quick, 1e-3, hasty, 20}};
 /* Those of stacks find back after many jumps. */
-static const InteriorAttempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 15},
-                                                           {&interior_far, 0.1, patient, 40}};
+static const InteriorAttempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 30}};
 /* Beyond MANY_BODIES iterations that do not converge at once rarely do, and impacts' tolerance would let contacts open. */
 static const InteriorAttempt at_rest_of_many[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10}};
 /* Impacts of more than MANY_BODIES seldom converge from near the bounds. */
@@ -126,13 +128,16 @@ typedef struct State {
     Look *looks; /* [islands.count] */
     ArrayBlock look_block;
     Momentum momentum;
-    double left;            /* of the island's work, in sweeps */
-    double work;            /* the most of an island in the last step */
-    bool analysed;          /* the island's matrix is, */
-    bool loaded;            /* and iterations may begin */
-    double best;            /* m/s, residual of the solution that is stored */
-    ContactPoint *contacts; /* [contact_count] with the best answer as warm start */
-    size_t contact_capacity;
+    Reference reference;
+    int room_bodies, room_contacts; /* of the largest problems so far that the reference has room for */
+    double left;                    /* of the island's work, in sweeps */
+    double work;                    /* the most of an island in the last step */
+    bool analysed;                  /* the island's matrix is, */
+    bool loaded;                    /* and iterations may begin */
+    double best;                    /* m/s, residual of the solution that is stored */
+    ProblemBody *bodies;            /* of a copy of the problem */
+    ContactPoint *contacts;
+    ArrayBlock copy_block;
     float start_factors[START_SWEEPS], many_factors[MANY_SWEEPS], large_factors[LARGE_SWEEPS],
         last_factors[LAST_SWEEPS], more_factors[MORE_SWEEPS];
 } State;
@@ -149,7 +154,8 @@ static void destroy(void *state) {
     islands_free(&solver->islands);
     free(solver->look_block.memory);
     momentum_free(&solver->momentum);
-    free(solver->contacts);
+    reference_free(&solver->reference);
+    free(solver->copy_block.memory);
     free(solver);
 }
 
@@ -352,6 +358,88 @@ static bool iterate(State *solver, const ContactProblem *problem, const Look *st
     return attempt(solver, problem, step, step->uneven ? at_rest_uneven : at_rest, close, step->near, solution);
 }
 
+/* Makes room for a solve by the reference, so that the step that does need it allocates nothing. False when memory is
+   short. */
+static bool reserve_reference(State *solver, const ContactProblem *problem) {
+    if (problem->body_count <= solver->room_bodies && problem->contact_count <= solver->room_contacts) return true;
+    if (problem->body_count > solver->room_bodies) solver->room_bodies = problem->body_count;
+    if (problem->contact_count > solver->room_contacts) solver->room_contacts = problem->contact_count;
+    return reference_reserve(&solver->reference, problem);
+}
+
+/* A problem whose bodies and contacts may be changed, valid until the next call. False when memory is short. */
+static bool copy_problem(State *solver, const ContactProblem *problem, ContactProblem *copy) {
+    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
+    if (!ARRAY_BLOCK_RESERVE(&solver->copy_block, ARRAY_PART(solver->bodies, bodies),
+                             ARRAY_PART(solver->contacts, contacts)))
+        return false;
+    memcpy(solver->bodies, problem->bodies, bodies * sizeof *solver->bodies);
+    memcpy(solver->contacts, problem->contacts, contacts * sizeof *solver->contacts);
+    *copy = *problem;
+    copy->bodies = solver->bodies;
+    copy->contacts = solver->contacts;
+    return true;
+}
+
+/* The problem with all speeds multiplied by a power of two, so that the fastest is 4 to 8 m/s: the reference has limits in m/s. */
+static bool copy_at_speed(State *solver, const ContactProblem *problem, float factor, ContactProblem *copy) {
+    if (!copy_problem(solver, problem, copy)) return false;
+    for (int i = 0; i < problem->body_count; i++) {
+        solver->bodies[i].velocity = vec2_scale(factor, solver->bodies[i].velocity);
+        solver->bodies[i].angular_velocity *= factor;
+    }
+    for (int i = 0; i < problem->contact_count; i++) {
+        solver->contacts[i].bias *= factor;
+        solver->contacts[i].warm_normal *= factor;
+        solver->contacts[i].warm_tangent *= factor;
+    }
+    return true;
+}
+
+static float power_for(double speed) {
+    int exponent;
+    frexp(speed, &exponent);
+    return ldexpf(1, 3 - exponent);
+}
+
+/* Rounded into the cones, at the problem's own speed. */
+static void take_path(const Reference *reference, const ContactProblem *problem, float factor,
+                      ContactSolution *solution) {
+    reference_round(reference, problem, solution);
+    for (int i = 0; i < problem->body_count; i++) {
+        BodyVelocity *velocity = &solution->velocities[i];
+        *velocity = (BodyVelocity){vec2_scale(1 / factor, velocity->linear), velocity->angular / factor};
+    }
+    for (int i = 0; i < problem->contact_count; i++) {
+        ContactImpulse *impulse = &solution->impulses[i];
+        const float limit = problem->contacts[i].friction * impulse->normal;
+        impulse->tangent = contact_clamp(impulse->tangent, -limit, limit) / factor;
+        impulse->normal /= factor;
+    }
+}
+
+/* Stores the reference's solution if its residual is the least so far, and float can hold the impulses. */
+static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
+                        Error *error) {
+    Reference *reference = &solver->reference;
+    const double each = path_work * solver->interior.iteration_work;
+    const int most = (int)fmax((solver->left - last_work) / each, 0);
+    if (most < LEAST_ON_PATH) return true;
+    const float factor = power_for(speed_of(step));
+    ContactProblem fast;
+    if (!copy_at_speed(solver, problem, factor, &fast)) return error_memory(error, "interior");
+    if (!reference_solve_to(reference, &fast, (double)(factor * solver->near), most, error)) return false;
+    solver->left -= reference->factorizations * each;
+    bool better = reference->residual < solver->best * (double)factor;
+    for (int i = 0; i < problem->contact_count; i++)
+        better &= reference->impulses[i].normal <=
+                  interior_most_held(speed_of(step) * (double)factor) * (double)problem->contacts[i].mass_normal;
+    if (!better) return true;
+    solver->best = reference->residual / (double)factor;
+    take_path(reference, &fast, factor, solution);
+    return true;
+}
+
 /* Begins, and sweeps with momentum until the residual (methods/solvers.h) is below `near`, or the work is done. False when
    memory is short. */
 static bool sweep(State *solver, const ContactProblem *problem, float near, const float *factors, int count) {
@@ -382,16 +470,11 @@ static double residual_of(const Sweeps *sweeps, int contacts) {
 /* The problem with that solution as its warm start, valid until the next call. False when memory is short. */
 static bool begin_from(State *solver, const ContactProblem *problem, const ContactSolution *solution,
                        ContactProblem *from) {
-    const size_t contacts = (size_t)problem->contact_count;
-    if (!array_reserve((void **)&solver->contacts, &solver->contact_capacity, contacts, sizeof *solver->contacts))
-        return false;
-    memcpy(solver->contacts, problem->contacts, contacts * sizeof *solver->contacts);
-    for (size_t i = 0; i < contacts; i++) {
+    if (!copy_problem(solver, problem, from)) return false;
+    for (int i = 0; i < problem->contact_count; i++) {
         solver->contacts[i].warm_normal = solution->impulses[i].normal;
         solver->contacts[i].warm_tangent = solution->impulses[i].tangent;
     }
-    *from = *problem;
-    from->contacts = solver->contacts;
     return true;
 }
 
@@ -418,9 +501,15 @@ static bool solve_further(State *solver, const ContactProblem *problem, const Lo
     bool cheap;
     if (!load_if_cheap(solver, problem, step, &cheap)) return error_memory(error, "interior");
     if (!cheap) return solve_by_sweeps(solver, problem, near, solution, error);
-    if (!iterate(solver, problem, step, solution)) return error_memory(error, "interior");
+    if (!reserve_reference(solver, problem) || !iterate(solver, problem, step, solution))
+        return error_memory(error, "interior");
+    if (solver->best > (double)step->enough && !(step->calm && step->many) &&
+        !follow_path(solver, problem, step, solution, error))
+        return false;
     return solver->best <= (double)step->enough || fall_back(solver, problem, near, solution, error);
 }
+
+static double most_work(const Look *step) { return step->many ? INTERIOR_MOST_WORK_OF_MANY : INTERIOR_MOST_WORK; }
 
 /* A problem that is a single island. */
 static bool solve_island(State *solver, const ContactProblem *problem, const Look *seen, ContactSolution *solution,
@@ -428,7 +517,7 @@ static bool solve_island(State *solver, const ContactProblem *problem, const Loo
     Look look = *seen, *step = &look;
     bool done = false;
     step->left = (PairResidual){0};
-    solver->left = INTERIOR_MOST_WORK;
+    solver->left = most_work(step);
     solver->analysed = solver->loaded = false;
     if (!start(solver, problem, step->calm)) return error_memory(error, "interior");
     if (step->calm) {
@@ -471,7 +560,7 @@ static bool solve_islands(State *solver, const ContactProblem *problem, ContactS
         ContactSolution of_part;
         const ContactProblem part = islands_take(islands, problem, k, &of_part);
         if (!solve_island(solver, &part, step, &of_part, error)) return false;
-        solver->work = fmax(solver->work, INTERIOR_MOST_WORK - solver->left);
+        solver->work = fmax(solver->work, most_work(step) - solver->left);
         islands_put(islands, k, &part, &of_part, solution);
     }
     solution->fallbacks.by_sweeps = solution->fallbacks.by_sweeps > 0;
@@ -488,7 +577,7 @@ static bool solve(void *state, const ContactProblem *problem, ContactSolution *s
     solver->work = 0;
     if (!single) return solve_islands(solver, problem, solution, error);
     const bool done = solve_island(solver, problem, &solver->looks[0], solution, error);
-    solver->work = INTERIOR_MOST_WORK - solver->left;
+    solver->work = most_work(&solver->looks[0]) - solver->left;
     return done;
 }
 
