@@ -2,8 +2,9 @@
 /* Interior-point steps with a sparse direct solve over the bodies; equations and sources in
    methods/interior_point_internal.h. Each island is solved by itself, with no more than it needs in that step: two sweeps if it
    is calm, else a few with momentum; then iterations until the residual is at most `near`: from near the bounds, and if these
-   break down, from far inside them. If no attempt gets there, sweeps with momentum go on from its best answer, and the solution
-   counts this as a fallback.
+   break down, from far inside them at rest; at impacts the reference follows the path from its beginning, also where it turns back
+   (methods/interior_path.h). If nothing gets there, sweeps with momentum go on from the best answer, and the solution counts this
+   as a fallback.
 
    The work of all this is counted in sweeps, and has a bound: iterations end when it is reached, and the best answer so far is the
    solution. The analysis of the matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a
@@ -23,14 +24,14 @@
    No limit depends on units: masses count as ratios, speeds at impacts by the fastest motion at a contact, and at rest by gravity
    and the engine's slop.
 
-   Fails at impacts whose central path turns back: iterations jump about, and half of the freshly struck walls of 46 bricks end no
-   better than sweeps of the same work. What bounds all methods there is which contacts open, stick and slide. */
+   Fails at impacts whose central path turns back, beyond 128 bodies, where the bound leaves no room to follow it: what bounds all
+   methods there is which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/interior_path.h"
 #include "methods/interior_point_internal.h"
 #include "methods/islands.h"
 #include "methods/methods.h"
-#include "methods/reference.h"
 #include "methods/solvers.h"
 #include "methods/sweeps.h"
 
@@ -128,16 +129,14 @@ typedef struct State {
     Look *looks; /* [islands.count] */
     ArrayBlock look_block;
     Momentum momentum;
-    Reference reference;
-    int room_bodies, room_contacts; /* of the largest problems so far that the reference has room for */
-    double left;                    /* of the island's work, in sweeps */
-    double work;                    /* the most of an island in the last step */
-    bool analysed;                  /* the island's matrix is, */
-    bool loaded;                    /* and iterations may begin */
-    double best;                    /* m/s, residual of the solution that is stored */
-    ProblemBody *bodies;            /* of a copy of the problem */
-    ContactPoint *contacts;
-    ArrayBlock copy_block;
+    InteriorPath path;
+    double left;            /* of the island's work, in sweeps */
+    double work;            /* the most of an island in the last step */
+    bool analysed;          /* the island's matrix is, */
+    bool loaded;            /* and iterations may begin */
+    double best;            /* m/s, residual of the solution that is stored */
+    ContactPoint *contacts; /* [contact_count] with the best answer as warm start */
+    size_t contact_capacity;
     float start_factors[START_SWEEPS], many_factors[MANY_SWEEPS], large_factors[LARGE_SWEEPS],
         last_factors[LAST_SWEEPS], more_factors[MORE_SWEEPS];
 } State;
@@ -154,8 +153,8 @@ static void destroy(void *state) {
     islands_free(&solver->islands);
     free(solver->look_block.memory);
     momentum_free(&solver->momentum);
-    reference_free(&solver->reference);
-    free(solver->copy_block.memory);
+    interior_path_free(&solver->path);
+    free(solver->contacts);
     free(solver);
 }
 
@@ -358,85 +357,18 @@ static bool iterate(State *solver, const ContactProblem *problem, const Look *st
     return attempt(solver, problem, step, step->uneven ? at_rest_uneven : at_rest, close, step->near, solution);
 }
 
-/* Makes room for a solve by the reference, so that the step that does need it allocates nothing. False when memory is
-   short. */
-static bool reserve_reference(State *solver, const ContactProblem *problem) {
-    if (problem->body_count <= solver->room_bodies && problem->contact_count <= solver->room_contacts) return true;
-    if (problem->body_count > solver->room_bodies) solver->room_bodies = problem->body_count;
-    if (problem->contact_count > solver->room_contacts) solver->room_contacts = problem->contact_count;
-    return reference_reserve(&solver->reference, problem);
-}
-
-/* A problem whose bodies and contacts may be changed, valid until the next call. False when memory is short. */
-static bool copy_problem(State *solver, const ContactProblem *problem, ContactProblem *copy) {
-    const size_t bodies = (size_t)problem->body_count, contacts = (size_t)problem->contact_count;
-    if (!ARRAY_BLOCK_RESERVE(&solver->copy_block, ARRAY_PART(solver->bodies, bodies),
-                             ARRAY_PART(solver->contacts, contacts)))
-        return false;
-    memcpy(solver->bodies, problem->bodies, bodies * sizeof *solver->bodies);
-    memcpy(solver->contacts, problem->contacts, contacts * sizeof *solver->contacts);
-    *copy = *problem;
-    copy->bodies = solver->bodies;
-    copy->contacts = solver->contacts;
-    return true;
-}
-
-/* The problem with all speeds multiplied by a power of two, so that the fastest is 4 to 8 m/s: the reference has limits in m/s. */
-static bool copy_at_speed(State *solver, const ContactProblem *problem, float factor, ContactProblem *copy) {
-    if (!copy_problem(solver, problem, copy)) return false;
-    for (int i = 0; i < problem->body_count; i++) {
-        solver->bodies[i].velocity = vec2_scale(factor, solver->bodies[i].velocity);
-        solver->bodies[i].angular_velocity *= factor;
-    }
-    for (int i = 0; i < problem->contact_count; i++) {
-        solver->contacts[i].bias *= factor;
-        solver->contacts[i].warm_normal *= factor;
-        solver->contacts[i].warm_tangent *= factor;
-    }
-    return true;
-}
-
-static float power_for(double speed) {
-    int exponent;
-    frexp(speed, &exponent);
-    return ldexpf(1, 3 - exponent);
-}
-
-/* Rounded into the cones, at the problem's own speed. */
-static void take_path(const Reference *reference, const ContactProblem *problem, float factor,
-                      ContactSolution *solution) {
-    reference_round(reference, problem, solution);
-    for (int i = 0; i < problem->body_count; i++) {
-        BodyVelocity *velocity = &solution->velocities[i];
-        *velocity = (BodyVelocity){vec2_scale(1 / factor, velocity->linear), velocity->angular / factor};
-    }
-    for (int i = 0; i < problem->contact_count; i++) {
-        ContactImpulse *impulse = &solution->impulses[i];
-        const float limit = problem->contacts[i].friction * impulse->normal;
-        impulse->tangent = contact_clamp(impulse->tangent, -limit, limit) / factor;
-        impulse->normal /= factor;
-    }
-}
-
-/* Stores the reference's solution if its residual is the least so far, and float can hold the impulses. */
+/* Stores the path's solution if its residual is the least so far. */
 static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
                         Error *error) {
-    Reference *reference = &solver->reference;
+    InteriorPath *path = &solver->path;
     const double each = path_work * solver->interior.iteration_work;
     const int most = (int)fmax((solver->left - last_work) / each, 0);
     if (most < LEAST_ON_PATH) return true;
-    const float factor = power_for(speed_of(step));
-    ContactProblem fast;
-    if (!copy_at_speed(solver, problem, factor, &fast)) return error_memory(error, "interior");
-    if (!reference_solve_to(reference, &fast, (double)(factor * solver->near), most, error)) return false;
-    solver->left -= reference->factorizations * each;
-    bool better = reference->residual < solver->best * (double)factor;
-    for (int i = 0; i < problem->contact_count; i++)
-        better &= reference->impulses[i].normal <=
-                  interior_most_held(speed_of(step) * (double)factor) * (double)problem->contacts[i].mass_normal;
-    if (!better) return true;
-    solver->best = reference->residual / (double)factor;
-    take_path(reference, &fast, factor, solution);
+    if (!interior_path_follow(path, problem, speed_of(step), (double)solver->near, most, error)) return false;
+    solver->left -= path->reference.factorizations * each;
+    if (!(path->residual < solver->best)) return true;
+    solver->best = path->residual;
+    interior_path_take(path, problem, solution);
     return true;
 }
 
@@ -470,11 +402,16 @@ static double residual_of(const Sweeps *sweeps, int contacts) {
 /* The problem with that solution as its warm start, valid until the next call. False when memory is short. */
 static bool begin_from(State *solver, const ContactProblem *problem, const ContactSolution *solution,
                        ContactProblem *from) {
-    if (!copy_problem(solver, problem, from)) return false;
-    for (int i = 0; i < problem->contact_count; i++) {
+    const size_t contacts = (size_t)problem->contact_count;
+    if (!array_reserve((void **)&solver->contacts, &solver->contact_capacity, contacts, sizeof *solver->contacts))
+        return false;
+    memcpy(solver->contacts, problem->contacts, contacts * sizeof *solver->contacts);
+    for (size_t i = 0; i < contacts; i++) {
         solver->contacts[i].warm_normal = solution->impulses[i].normal;
         solver->contacts[i].warm_tangent = solution->impulses[i].tangent;
     }
+    *from = *problem;
+    from->contacts = solver->contacts;
     return true;
 }
 
@@ -501,7 +438,7 @@ static bool solve_further(State *solver, const ContactProblem *problem, const Lo
     bool cheap;
     if (!load_if_cheap(solver, problem, step, &cheap)) return error_memory(error, "interior");
     if (!cheap) return solve_by_sweeps(solver, problem, near, solution, error);
-    if (!reserve_reference(solver, problem) || !iterate(solver, problem, step, solution))
+    if (!interior_path_reserve(&solver->path, problem) || !iterate(solver, problem, step, solution))
         return error_memory(error, "interior");
     if (solver->best > (double)step->enough && !(step->calm && step->many) &&
         !follow_path(solver, problem, step, solution, error))
