@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interior-point steps with a sparse direct solve over the bodies; equations and sources in
    methods/interior_point_internal.h. Each island is solved by itself, with no more than it needs in that step: two sweeps if it
-   is calm, else a few with momentum; then iterations until the residual is at most `near`: from near the bounds, and if these
-   break down, from far inside them at rest; at impacts the reference follows the path from its beginning, also where it turns back
+   is calm; else a few with momentum; then iterations until the residual is at most `near`: from near the bounds, and if these
+   break down, from far inside them; at impacts the reference then follows the path from its beginning, also where it turns back
    (methods/interior_path.h). If nothing gets there, sweeps with momentum go on from the best answer, and the solution counts this
    as a fallback.
 
