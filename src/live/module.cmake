@@ -49,7 +49,7 @@ set(module_sources
     engine/box engine/broad_phase engine/contact_problem engine/world
     live/bundle live/describe live/live live/module/npz_bundle live/module/wasi
     methods/admm methods/admm_scalar methods/avbd methods/block_lu methods/block_order methods/closed_form
-    methods/engine methods/gns methods/gns_graph methods/hybrid methods/interior methods/interior_path methods/interior_point methods/interior_scalar
+    methods/engine methods/gns methods/gns_graph methods/hybrid methods/interior methods/interior_look methods/interior_path methods/interior_point methods/interior_scalar
     methods/islands methods/method methods/momentum methods/nncg methods/order methods/pair methods/pair_net methods/reference_point
     methods/reference_scalar methods/relation_view methods/sain methods/scene_net methods/soft_step methods/steppers methods/stopping
     methods/subspace methods/substepping methods/sweeps methods/sweeps_scalar methods/sweeps_simd128 methods/tabulation

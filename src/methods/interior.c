@@ -1,33 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interior-point steps with a sparse direct solve over the bodies; equations and sources in
-   methods/interior_point_internal.h. Each island is solved by itself, with no more than it needs in that step: two sweeps if it
-   is calm; else a few with momentum; then iterations until the residual is at most `near`: from near the bounds, and if these
-   break down, from far inside them; at impacts the reference then follows the path from its beginning, also where it turns back
-   (methods/interior_path.h). If nothing gets there, sweeps with momentum go on from the best answer, and the solution counts this
-   as a fallback.
+/* Interior-point steps with a sparse direct solve over the bodies; equations and sources in methods/interior_point_internal.h.
+   Each island is solved by itself, with no more than it needs in that step (methods/interior_look.h):
 
-   The work of all this is counted in sweeps, and has a bound: iterations end when it is reached, and the best answer so far is the
+   1. Two sweeps if it is calm. If they leave little more than rounding errors, they are the solution: in most steps at rest.
+   2. A few sweeps with momentum, where they save more than they cost.
+   3. Iterations until the residual is at most `near`: from near the bounds, and if these break down, from far inside them.
+   4. At impacts the reference's path from its beginning, also where it turns back (methods/interior_path.h).
+   5. If nothing gets there, sweeps with momentum from the best answer; the solution counts this as a fallback.
+
+   The work of all this is counted in sweeps, and has a bound. Iterations end when it is reached; the best answer so far is the
    solution. The analysis of the matrix tells what an iteration costs: 5 to 10 sweeps up to a hundred boxes, 13 in a pile or a
    pyramid of 500 to 1,000, 40 in a pyramid of 820 that touch on all sides. Where too few fit in, all is left to sweeps.
-
-   An island is calm if none of its bodies move fast relative to each other where they touch, whatever the bias: boxes that
-   overlap and are pushed apart are calm, too. There errors add up from step to step: boxes creep at the speed of the error,
-   until a card slides out of a house of cards or a stack leans. So the tolerance is smaller, and contacts are kept closed
-   (interior_close()): what opens is not found in the next step, falls, and lands on what lies below. If two sweeps leave
-   little more than rounding errors, the step ends with them: so it does in most steps at rest.
-
-   Sweeps carry little where light bodies hold heavy ones, or where there is no friction; a calm island of such bodies is left
-   to iterations. In other calm islands of more than 128 bodies, some bodies nearly always slide for long after an impact, and
-   iterations towards the small tolerance cycle; sweeps with momentum then reach it in less time. After an impact an island
-   is restless for some frames: calm, but the first sweeps leave much. There errors have no time to add up, and `near` will do.
-
-   No limit depends on units: masses count as ratios, speeds at impacts by the fastest motion at a contact, and at rest by gravity
-   and the engine's slop.
 
    Fails at impacts whose central path turns back, beyond 128 bodies, where the bound leaves no room to follow it: what bounds all
    methods there is which contacts open, stick and slide. */
 #include "base/base.h"
 #include "engine/engine.h"
+#include "methods/interior_look.h"
 #include "methods/interior_path.h"
 #include "methods/interior_point_internal.h"
 #include "methods/islands.h"
@@ -42,8 +31,7 @@
 enum {
     FIRST_SWEEPS = 2,
     START_SWEEPS = 6,     /* with momentum */
-    MANY_BODIES = 128,    /* more: an iteration takes as long as 10 sweeps or more, */
-    MANY_SWEEPS = 12,     /* and these save more than they cost */
+    MANY_SWEEPS = 12,     /* where an iteration takes as long as 10 or more; these save more than they cost */
     LARGE_SWEEPS = 20,    /* with momentum, where iterations are too dear; then more while the residual is too large */
     LAST_SWEEPS = 8,      /* with momentum, from the best answer of iterations; then more */
     MORE_SWEEPS = 96,     /* at most, of those */
@@ -58,43 +46,20 @@ static const double begin_work = 3, load_work = 5.5;
 /* Products of blocks in a factorization, as a multiple of the number of loops to the power 1.5: 2 in pyramids and walls, 1.4 in
    piles. */
 static const double usual_products = 2;
-/* Kept for sweeps where iterations do not converge. */
 /* A factorization of the path, in iterations. */
 static const double path_work = 2;
+/* Kept for sweeps where iterations do not converge. */
 static const double last_work = 20, last_work_of_struck_many = 40;
 
-/* Speeds at rest are multiples of the island's pace: that of a fall through five slops, 1 m/s on Earth. An island is calm if its
-   bodies move relative to each other, where they touch, by less than `calm_below` and what gravity adds in a step. Not their
-   mean: it is small if a bomb strikes one of many boxes. There the tolerance is at most `calm_near`, or `many_near` among many
-   bodies; without friction, where nothing holds what an error moves, `slippery_near`; in towers `slender_near`: at 3e-5 some
-   stacks of 41 to 60 boxes sway for seconds, and at 1e-4 one of 40 falls; at 1e-5 no step ends with sweeps, and rounding errors
-   of iterations move a stack of 20 by 15 um in 10 s. */
-static const float calm_below = 1.03f, calm_near = 1e-4f, many_near = 4e-4f, slippery_near = 1e-6f,
-                   slender_near = 2e-5f;
-/* Some of them are multiples of no more than moves bodies by so many slops in a step. */
-static const float longest_way = 1.67f;
 /* Sweeps end an impact if their residual is below this share of the tolerance. Their errors are long waves, which exceed the
    residual more than those of iterations. */
 static const float trusted = 0.3f;
 /* And at rest no more of them follow if it is above this multiple: they rarely make up for it. */
 static const float hopeless = 10;
-/* In calm islands plain sweeps are enough below this, or below so many roundings of what the impulses hold; without friction,
-   and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3 roundings. */
-static const float still = 2e-5f, roundings = 3, slender_roundings = 0.3f;
-/* A calm island of some size whose first sweeps leave more than this multiple of the tolerance of impacts is restless. */
-static const float restless_from = 2;
-/* Sweeps carry little between bodies that touch if one has more than this multiple of the other's mass. There, a multiple of
-   the tolerance has to do among many bodies. */
-static const float uneven_from = 10, jammed_near = 10;
-/* An interior point leaves each contact a little open, and boxes that rest on each other would part. So in calm islands
-   contacts aim to close by up to this speed, until they overlap a little (interior_close()). */
-static const float closing = 1e-3f;
-/* Attempts measure speeds by the fastest motion at a contact, and in calm islands by this. */
-static const float calm_speed = 10;
 
 /* Iterations from the start of the sweeps, near the bounds first. If these break down or cycle, it is better to start from
    there again, further inside, than from where they are. */
-enum { ATTEMPTS = 3, FEW_BODIES = 32 };
+enum { ATTEMPTS = 3 };
 static const double patient = 1e6, hasty = 10; /* for `lost` */
 static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10},
                                                   {&interior_gentle, 0.01, hasty, 40},
@@ -106,32 +71,16 @@ static const InteriorAttempt at_rest[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty
                                                     {&interior_gentle, 1, patient, 25}};
 /* Those of stacks find back after many jumps. */
 static const InteriorAttempt at_impact_of_few[ATTEMPTS] = {{&interior_quick, 1e-3, patient, 30}};
-/* Beyond MANY_BODIES iterations that do not converge at once rarely do, and impacts' tolerance would let contacts open. */
+/* Beyond INTERIOR_MANY_BODIES iterations that do not converge at once rarely do, and impacts' tolerance would let contacts open. */
 static const InteriorAttempt at_rest_of_many[ATTEMPTS] = {{&interior_gentle, 1e-7, hasty, 10}};
-/* Impacts of more than MANY_BODIES seldom converge from near the bounds. */
+/* Impacts of more than INTERIOR_MANY_BODIES seldom converge from near the bounds. */
 static const InteriorAttempt at_impact_of_many[ATTEMPTS] = {{&interior_far, 0.1, patient, 40}};
-
-static float smaller(float x, float y) { return x < y ? x : y; }
-static float larger(float x, float y) { return x > y ? x : y; }
-
-/* What a step is for an island. */
-typedef struct Look {
-    int bodies, loops; /* bodies: that move */
-    float fastest;     /* (m/s)^2, relative to each other where they touch */
-    float fall;        /* m/s, that gravity adds in a step */
-    float pace, brief; /* m/s, units of speeds at rest; brief: the one that gets shorter in long steps */
-    bool calm, many, slippery, uneven;
-    bool restless;      /* calm only now, after an impact: it slides on for some time */
-    bool slender;       /* towers: errors below are larger above */
-    float near, enough; /* m/s: residuals at which iterations stop, and that are taken */
-    PairResidual left;  /* sum over its pairs, after the first sweeps */
-} Look;
 
 typedef struct State {
     float near; /* m/s */
     Interior interior;
     Islands islands;
-    Look *looks; /* [islands.count] */
+    InteriorLook *looks; /* [islands.count] */
     ArrayBlock look_block;
     Momentum momentum;
     InteriorPath path;
@@ -179,86 +128,6 @@ static void *create(const Settings *chosen, Error *error) {
     return solver;
 }
 
-static bool is_uneven(float inv_mass_a, float inv_mass_b) {
-    return inv_mass_a > 0 && inv_mass_b > 0 &&
-           (inv_mass_a > uneven_from * inv_mass_b || inv_mass_b > uneven_from * inv_mass_a);
-}
-
-static void look_at_contact(Look *step, const ContactProblem *problem, int i) {
-    const ContactPoint *contact = &problem->contacts[i];
-    const float motion = residual_of_motion(problem, i);
-    if (!(motion <= step->fastest)) step->fastest = motion; /* NaN, too */
-    step->slippery |= contact->friction < INTERIOR_SLIPPERY;
-    step->uneven |= is_uneven(problem->bodies[contact->a].inv_mass, problem->bodies[contact->b].inv_mass);
-}
-
-static float tolerance(const Look *step, float near) {
-    if (!step->calm) return near;
-    if (step->slippery) return smaller(near, slippery_near * step->pace);
-    if (step->slender) return smaller(near, slender_near * step->pace);
-    return smaller(near, step->many && !step->uneven ? many_near * step->brief : calm_near * step->pace);
-}
-
-/* Sweeps carry little between its bodies. */
-static bool jams(const Look *step) { return step->slippery || step->uneven; }
-
-static void decide(Look *step, float near) {
-    const float limit = step->fall + calm_below * step->pace;
-    step->calm = step->fastest < limit * limit;
-    step->near = tolerance(step, near);
-    step->enough = !step->calm || !step->many ? near : jams(step) ? jammed_near * step->near : step->near;
-}
-
-/* m/s: what attempts measure speeds by. */
-static double speed_of(const Look *step) {
-    return step->calm ? (double)(calm_speed * step->pace) : sqrt((double)step->fastest);
-}
-
-/* Looks at each island before the step. False when memory is short. */
-static bool look(State *solver, const ContactProblem *problem) {
-    const Islands *islands = &solver->islands;
-    const float pace = sqrtf(10 * CONTACT_SLOP * problem->fall / problem->dt);
-    if (!ARRAY_BLOCK_RESERVE(&solver->look_block, ARRAY_PART(solver->looks, islands->count))) return false;
-    for (int k = 0; k < islands->count; k++)
-        solver->looks[k] = (Look){.bodies = islands->islands[k].bodies,
-                                  .loops = islands->islands[k].loops,
-                                  .fall = problem->fall,
-                                  .pace = pace,
-                                  .brief = smaller(pace, longest_way * CONTACT_SLOP / problem->dt),
-                                  .slender = islands->islands[k].bodies > 4 * (islands->islands[k].loops + 1),
-                                  .many = islands->islands[k].bodies > MANY_BODIES};
-    for (int i = 0; i < problem->contact_count; i++)
-        if (islands->island[i] >= 0) look_at_contact(&solver->looks[islands->island[i]], problem, i);
-    for (int k = 0; k < islands->count; k++) decide(&solver->looks[k], solver->near);
-    return true;
-}
-
-/* Adds up what the first sweeps left in each island. `island`: as Islands has it, or NULL if there is a single one. */
-static void add_residuals(const Sweeps *sweeps, const int32_t *island, Look *looks) {
-    for (int i = 0; i < sweeps->pair_count; i++) {
-        const int32_t k = island != NULL ? island[sweeps->first[i]] : 0;
-        if (k < 0) continue;
-        const PairResidual residual = residual_of_pair(sweeps, i);
-        looks[k].left.visit += residual.visit;
-        looks[k].left.held += residual.held;
-    }
-}
-
-/* Whether that is little more than rounding errors. */
-static bool is_still(const Look *step, int contacts) {
-    const float held = sqrtf(step->left.held / (float)contacts);
-    const float least = step->slippery || step->slender ? 0 : still * step->brief;
-    const float limit = larger((step->slender ? slender_roundings : roundings) * 0x1p-24f * (step->pace + held), least);
-    return step->calm && step->left.visit < limit * limit * (float)contacts;
-}
-
-/* Whether it is more than `restless_from` times what impacts may leave, in an island where such errors do no harm. */
-static bool is_restless(const Look *step, float near, int contacts) {
-    const float limit = restless_from * near;
-    return step->calm && step->bodies > FEW_BODIES && !step->slippery && !step->slender &&
-           step->left.visit > limit * limit * (float)contacts;
-}
-
 /* Begins with the warm start, and with the first sweeps if the problem is calm. False when memory is short. */
 static bool start(State *solver, const ContactProblem *problem, bool calm) {
     Sweeps *sweeps = &solver->momentum.sweeps;
@@ -268,8 +137,8 @@ static bool start(State *solver, const ContactProblem *problem, bool calm) {
 
 /* Sweeps with momentum after the first ones. Sets *done if they are enough: the solution is stored. False when memory is
    short. */
-static bool continue_sweeps(State *solver, const ContactProblem *problem, const Look *step, const float *factors,
-                            int count, ContactSolution *solution, bool *done) {
+static bool continue_sweeps(State *solver, const ContactProblem *problem, const InteriorLook *step,
+                            const float *factors, int count, ContactSolution *solution, bool *done) {
     Sweeps *sweeps = &solver->momentum.sweeps;
     const float enough = step->calm ? step->near : trusted * solver->near;
     solver->left -= count;
@@ -280,11 +149,13 @@ static bool continue_sweeps(State *solver, const ContactProblem *problem, const 
 
 /* Where sweeps with momentum save as much of an iteration as they cost. At rest iterations converge at once from the first
    sweeps, or not at all; impacts of many bodies that are not solved by these are hard, and iterations then converge sooner from
-   the plain start. */
-static bool try_sweeps(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
-                       bool *done) {
+   the plain start. Sweeps carry little where light bodies hold heavy ones, or where there is no friction. In other calm islands
+   of many bodies, some nearly always slide for long after an impact, and iterations towards the small tolerance cycle; sweeps
+   with momentum then reach it in less time. */
+static bool try_sweeps(State *solver, const ContactProblem *problem, const InteriorLook *step,
+                       ContactSolution *solution, bool *done) {
     *done = false;
-    if (step->calm && (!step->many || jams(step))) return true;
+    if (step->calm && (!step->many || interior_look_jams(step))) return true;
     if ((step->calm || !step->many) &&
         !continue_sweeps(solver, problem, step, solver->start_factors, START_SWEEPS, solution, done))
         return false;
@@ -297,24 +168,24 @@ static bool try_sweeps(State *solver, const ContactProblem *problem, const Look 
 }
 
 /* Of the matrix of an island. */
-static double analysis_work(const Look *step) { return fmin(2 + step->bodies / 16.0, 14); }
+static double analysis_work(const InteriorLook *step) { return fmin(2 + step->bodies / 16.0, 14); }
 
 /* False when memory is short. */
-static bool load(State *solver, const ContactProblem *problem, const Look *step) {
+static bool load(State *solver, const ContactProblem *problem, const InteriorLook *step) {
     solver->left -= load_work + (solver->analysed ? 0 : analysis_work(step));
     solver->analysed = solver->loaded = true;
     return interior_load(&solver->interior, interior_best(), &solver->momentum.sweeps, problem);
 }
 
 /* Iterations of that work that the island's has room for, after a step that takes `before` of it. */
-static int affordable(const State *solver, const Look *step, double before, double iteration_work) {
+static int affordable(const State *solver, const InteriorLook *step, double before, double iteration_work) {
     const double kept = step->many && !step->calm ? last_work_of_struck_many : last_work;
     return (int)fmax((solver->left - before - kept) / iteration_work, 0);
 }
 
 /* Loads the island, unless its iterations are too dear: by what its loops tell, so that its matrix is not analysed in vain; then
    by the analysis. Sets *cheap. False when memory is short. */
-static bool load_if_cheap(State *solver, const ContactProblem *problem, const Look *step, bool *cheap) {
+static bool load_if_cheap(State *solver, const ContactProblem *problem, const InteriorLook *step, bool *cheap) {
     const double usual =
         interior_work(usual_products * step->loops * sqrt(step->loops), solver->momentum.sweeps.pair_count);
     const int least = !step->many ? 0 : step->calm ? LEAST_ITERATIONS_AT_REST + step->bodies / 100 : LEAST_ITERATIONS;
@@ -333,8 +204,8 @@ static void offer(State *solver, const ContactProblem *problem, ContactSolution 
 }
 
 /* Some attempts, until the residual is at most `near` or the work is done. False when memory is short. */
-static bool attempt(State *solver, const ContactProblem *problem, const Look *step, const InteriorAttempt *attempts,
-                    bool close, float near, ContactSolution *solution) {
+static bool attempt(State *solver, const ContactProblem *problem, const InteriorLook *step,
+                    const InteriorAttempt *attempts, bool close, float near, ContactSolution *solution) {
     Interior *interior = &solver->interior;
     for (int i = 0; i < ATTEMPTS && attempts[i].rule != NULL && solver->best > (double)near; i++) {
         const double again = solver->loaded ? 0 : begin_work + FIRST_SWEEPS + load_work;
@@ -342,8 +213,9 @@ static bool attempt(State *solver, const ContactProblem *problem, const Look *st
         if (most == 0) return true;
         if (!solver->loaded && !(start(solver, problem, step->calm) && load(solver, problem, step))) return false;
         solver->loaded = false;
-        if (close) interior_close(interior, (double)smaller(solver->near, closing * step->pace), (double)problem->dt);
-        interior_iterate(interior, interior_best(), &attempts[i], speed_of(step), (double)near, most);
+        /* What opens is not found in the next step, falls, and lands on what lies below. */
+        if (close) interior_close(interior, interior_look_closing(step, solver->near), (double)problem->dt);
+        interior_iterate(interior, interior_best(), &attempts[i], interior_look_speed(step), (double)near, most);
         solver->left -= interior->iterations * interior->iteration_work;
         offer(solver, problem, solution);
     }
@@ -352,25 +224,27 @@ static bool attempt(State *solver, const ContactProblem *problem, const Look *st
 
 /* Contacts that cycle at rest mostly converge to a larger tolerance as impacts do. Among many bodies that must not let them
    open: a wall that creeps once goes on. False when memory is short. */
-static bool iterate(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution) {
-    const InteriorAttempt *as_impact = step->many                  ? at_impact_of_many
-                                       : step->bodies > FEW_BODIES ? at_impact
-                                                                   : at_impact_of_few;
+static bool iterate(State *solver, const ContactProblem *problem, const InteriorLook *step, ContactSolution *solution) {
+    const InteriorAttempt *as_impact = step->many                           ? at_impact_of_many
+                                       : step->bodies > INTERIOR_FEW_BODIES ? at_impact
+                                                                            : at_impact_of_few;
     const bool close = step->calm;
-    if (!step->calm || (step->restless && (!step->many || jams(step))))
+    if (!step->calm || (step->restless && (!step->many || interior_look_jams(step))))
         return attempt(solver, problem, step, as_impact, close, step->near, solution);
-    if (step->many && !jams(step)) return attempt(solver, problem, step, at_rest_of_many, close, step->near, solution);
+    if (step->many && !interior_look_jams(step))
+        return attempt(solver, problem, step, at_rest_of_many, close, step->near, solution);
     return attempt(solver, problem, step, step->uneven ? at_rest_uneven : at_rest, close, step->near, solution);
 }
 
 /* Stores the path's solution if its residual is the least so far. */
-static bool follow_path(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
-                        Error *error) {
+static bool follow_path(State *solver, const ContactProblem *problem, const InteriorLook *step,
+                        ContactSolution *solution, Error *error) {
     InteriorPath *path = &solver->path;
     const double each = path_work * solver->interior.iteration_work;
     const int most = (int)fmax((solver->left - last_work) / each, 0);
     if (most < LEAST_ON_PATH) return true;
-    if (!interior_path_follow(path, problem, speed_of(step), (double)solver->near, most, error)) return false;
+    if (!interior_path_follow(path, problem, interior_look_speed(step), (double)solver->near, most, error))
+        return false;
     solver->left -= path->reference.factorizations * each;
     if (!(path->residual < solver->best)) return true;
     solver->best = path->residual;
@@ -400,9 +274,9 @@ static bool solve_by_sweeps(State *solver, const ContactProblem *problem, float 
 
 /* m/s, as that of the iterations. */
 static double residual_of(const Sweeps *sweeps, int contacts) {
-    Look all = {0};
-    add_residuals(sweeps, NULL, &all);
-    return sqrt((double)all.left.visit / contacts);
+    InteriorLook all = {0};
+    interior_look_at_residuals(&all, sweeps, NULL);
+    return interior_look_residual(&all, contacts);
 }
 
 /* The problem with that solution as its warm start, valid until the next call. False when memory is short. */
@@ -437,8 +311,8 @@ static bool fall_back(State *solver, const ContactProblem *problem, float near, 
 }
 
 /* Iterations, then sweeps. */
-static bool solve_further(State *solver, const ContactProblem *problem, const Look *step, ContactSolution *solution,
-                          Error *error) {
+static bool solve_further(State *solver, const ContactProblem *problem, const InteriorLook *step,
+                          ContactSolution *solution, Error *error) {
     const float near = step->calm && step->many ? step->near : solver->near;
     solver->best = INFINITY;
     bool cheap;
@@ -452,22 +326,24 @@ static bool solve_further(State *solver, const ContactProblem *problem, const Lo
     return solver->best <= (double)step->enough || fall_back(solver, problem, near, solution, error);
 }
 
-static double most_work(const Look *step) { return step->many ? INTERIOR_MOST_WORK_OF_MANY : INTERIOR_MOST_WORK; }
+static double most_work(const InteriorLook *step) {
+    return step->many ? INTERIOR_MOST_WORK_OF_MANY : INTERIOR_MOST_WORK;
+}
 
 /* A problem that is a single island. */
-static bool solve_island(State *solver, const ContactProblem *problem, const Look *seen, ContactSolution *solution,
-                         Error *error) {
-    Look look = *seen, *step = &look;
+static bool solve_island(State *solver, const ContactProblem *problem, const InteriorLook *seen,
+                         ContactSolution *solution, Error *error) {
+    InteriorLook look = *seen, *step = &look;
     bool done = false;
     step->left = (PairResidual){0};
     solver->left = most_work(step);
     solver->analysed = solver->loaded = false;
     if (!start(solver, problem, step->calm)) return error_memory(error, "interior");
     if (step->calm) {
-        add_residuals(&solver->momentum.sweeps, NULL, step);
-        if (is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution)) return true;
-        step->restless = is_restless(step, solver->near, problem->contact_count);
-        if (step->restless) step->near = step->enough = solver->near;
+        interior_look_at_residuals(step, &solver->momentum.sweeps, NULL);
+        if (interior_look_is_still(step, problem->contact_count) && sweeps_end(&solver->momentum.sweeps, solution))
+            return true;
+        interior_look_again(step, solver->near, problem->contact_count);
     }
     if (!try_sweeps(solver, problem, step, solution, &done)) return error_memory(error, "interior");
     return done || solve_further(solver, problem, step, solution, error);
@@ -487,7 +363,7 @@ static bool sweep_all(State *solver, const ContactProblem *problem, ContactSolut
     *done = false;
     if (!are_mostly_calm(solver, problem->contact_count)) return true;
     if (!start(solver, problem, true)) return false;
-    add_residuals(sweeps, solver->islands.island, solver->looks);
+    interior_look_at_residuals(solver->looks, sweeps, solver->islands.island);
     *done = sweeps_end(sweeps, solution);
     return true;
 }
@@ -498,8 +374,8 @@ static bool solve_islands(State *solver, const ContactProblem *problem, ContactS
     if (!sweep_all(solver, problem, solution, &swept)) return error_memory(error, "interior");
     if (!swept) contact_solution_begin(problem, solution);
     for (int k = 0; k < islands->count; k++) {
-        const Look *step = &solver->looks[k];
-        if (swept && is_still(step, islands->islands[k].contacts)) continue;
+        const InteriorLook *step = &solver->looks[k];
+        if (swept && interior_look_is_still(step, islands->islands[k].contacts)) continue;
         ContactSolution of_part;
         const ContactProblem part = islands_take(islands, problem, k, &of_part);
         if (!solve_island(solver, &part, step, &of_part, error)) return false;
@@ -513,7 +389,10 @@ static bool solve_islands(State *solver, const ContactProblem *problem, ContactS
 static bool solve(void *state, const ContactProblem *problem, ContactSolution *solution, Error *error) {
     State *solver = state;
     const Islands *islands = &solver->islands;
-    if (!islands_find(&solver->islands, problem) || !look(solver, problem)) return error_memory(error, "interior");
+    if (!islands_find(&solver->islands, problem) ||
+        !ARRAY_BLOCK_RESERVE(&solver->look_block, ARRAY_PART(solver->looks, islands->count)))
+        return error_memory(error, "interior");
+    interior_look(solver->looks, islands, problem, solver->near);
     /* A body alone in the air would change the order of elimination. */
     const bool single = islands->count == 1 && islands->islands[0].bodies == islands->moving &&
                         islands->islands[0].contacts == problem->contact_count;

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a step is for each island. */
+#include "methods/interior_look.h"
+
+#include "engine/engine.h"
+#include "methods/interior_point_internal.h"
+
+#include <math.h>
+
+/* Speeds at rest are multiples of the island's pace: that of a fall through five slops, 1 m/s on Earth. An island is calm if its
+   bodies move relative to each other, where they touch, by less than `calm_below` and what gravity adds in a step. Not their
+   mean: it is small if a bomb strikes one of many boxes. There the tolerance is at most `calm_near`, or `many_near` among many
+   bodies; without friction, where nothing holds what an error moves, `slippery_near`; in towers `slender_near`: at 3e-5 some
+   stacks of 41 to 60 boxes sway for seconds, and at 1e-4 one of 40 falls; at 1e-5 no step ends with sweeps, and rounding errors
+   of iterations move a stack of 20 by 15 um in 10 s. */
+static const float calm_below = 1.03f, calm_near = 1e-4f, many_near = 4e-4f, slippery_near = 1e-6f,
+                   slender_near = 2e-5f;
+/* Some of them are multiples of no more than moves bodies by so many slops in a step. */
+static const float longest_way = 1.67f;
+/* In calm islands plain sweeps are enough below this, or below so many roundings of what the impulses hold; without friction,
+   and in towers, only below the latter. At 1e-4 a house of cards falls, and a stack of 60 at 3 roundings. */
+static const float still = 2e-5f, roundings = 3, slender_roundings = 0.3f;
+/* A calm island of some size whose first sweeps leave more than this multiple of the tolerance of impacts is restless. */
+static const float restless_from = 2;
+/* Sweeps carry little between bodies that touch if one has more than this multiple of the other's mass. There, a multiple of
+   the tolerance has to do among many bodies. */
+static const float uneven_from = 10, jammed_near = 10;
+/* Of the pace. */
+static const float closing = 1e-3f, calm_speed = 10;
+
+static float smaller(float x, float y) { return x < y ? x : y; }
+static float larger(float x, float y) { return x > y ? x : y; }
+
+static bool is_uneven(float inv_mass_a, float inv_mass_b) {
+    return inv_mass_a > 0 && inv_mass_b > 0 &&
+           (inv_mass_a > uneven_from * inv_mass_b || inv_mass_b > uneven_from * inv_mass_a);
+}
+
+static void look_at_contact(InteriorLook *look, const ContactProblem *problem, int i) {
+    const ContactPoint *contact = &problem->contacts[i];
+    const float motion = residual_of_motion(problem, i);
+    if (!(motion <= look->fastest)) look->fastest = motion; /* NaN, too */
+    look->slippery |= contact->friction < INTERIOR_SLIPPERY;
+    look->uneven |= is_uneven(problem->bodies[contact->a].inv_mass, problem->bodies[contact->b].inv_mass);
+}
+
+bool interior_look_jams(const InteriorLook *look) { return look->slippery || look->uneven; }
+
+static float tolerance(const InteriorLook *look, float near) {
+    if (!look->calm) return near;
+    if (look->slippery) return smaller(near, slippery_near * look->pace);
+    if (look->slender) return smaller(near, slender_near * look->pace);
+    return smaller(near, look->many && !look->uneven ? many_near * look->brief : calm_near * look->pace);
+}
+
+static void decide(InteriorLook *look, float near) {
+    const float limit = look->fall + calm_below * look->pace;
+    look->calm = look->fastest < limit * limit;
+    look->near = tolerance(look, near);
+    look->enough = !look->calm || !look->many ? near : interior_look_jams(look) ? jammed_near * look->near : look->near;
+}
+
+void interior_look(InteriorLook *looks, const Islands *islands, const ContactProblem *problem, float near) {
+    const float pace = sqrtf(10 * CONTACT_SLOP * problem->fall / problem->dt);
+    for (int k = 0; k < islands->count; k++)
+        looks[k] = (InteriorLook){.bodies = islands->islands[k].bodies,
+                                  .loops = islands->islands[k].loops,
+                                  .fall = problem->fall,
+                                  .pace = pace,
+                                  .brief = smaller(pace, longest_way * CONTACT_SLOP / problem->dt),
+                                  .slender = islands->islands[k].bodies > 4 * (islands->islands[k].loops + 1),
+                                  .many = islands->islands[k].bodies > INTERIOR_MANY_BODIES};
+    for (int i = 0; i < problem->contact_count; i++)
+        if (islands->island[i] >= 0) look_at_contact(&looks[islands->island[i]], problem, i);
+    for (int k = 0; k < islands->count; k++) decide(&looks[k], near);
+}
+
+void interior_look_at_residuals(InteriorLook *looks, const Sweeps *sweeps, const int32_t *island) {
+    for (int i = 0; i < sweeps->pair_count; i++) {
+        const int32_t k = island != NULL ? island[sweeps->first[i]] : 0;
+        if (k < 0) continue;
+        const PairResidual residual = residual_of_pair(sweeps, i);
+        looks[k].left.visit += residual.visit;
+        looks[k].left.held += residual.held;
+    }
+}
+
+double interior_look_residual(const InteriorLook *look, int contacts) {
+    return sqrt((double)look->left.visit / contacts);
+}
+
+bool interior_look_is_still(const InteriorLook *look, int contacts) {
+    const float held = sqrtf(look->left.held / (float)contacts);
+    const float least = look->slippery || look->slender ? 0 : still * look->brief;
+    const float limit = larger((look->slender ? slender_roundings : roundings) * 0x1p-24f * (look->pace + held), least);
+    return look->calm && look->left.visit < limit * limit * (float)contacts;
+}
+
+void interior_look_again(InteriorLook *look, float near, int contacts) {
+    const float limit = restless_from * near;
+    look->restless = look->calm && look->bodies > INTERIOR_FEW_BODIES && !look->slippery && !look->slender &&
+                     look->left.visit > limit * limit * (float)contacts;
+    if (look->restless) look->near = look->enough = near;
+}
+
+double interior_look_speed(const InteriorLook *look) {
+    return look->calm ? (double)(calm_speed * look->pace) : sqrt((double)look->fastest);
+}
+
+double interior_look_closing(const InteriorLook *look, float near) {
+    return (double)smaller(near, closing * look->pace);
+}
