@@ -15,14 +15,6 @@ figures() {
     done
 }
 
-run 2 paper
-complains "-o DIR is needed"
-run 2 paper -o none --scenes nowhere
-complains "nowhere/single.yaml: error:"
-run 2 paper -o none --seed x --scenes "$scenes"
-complains "--seed"
-run 3 paper -o /proc/none --quick --scenes "$scenes"
-
 # A study that is interrupted keeps what it has done. A sanitizer would take minutes for a study: it sees one begin and be
 # interrupted, and every part of a study in tests/paper.
 part=7
@@ -129,7 +121,7 @@ complains "belongs to shards of a study"
 timed=$(grep -l "^name closed-loop-stack" shards/shards/0000/*)
 sed -i '1,/^$/s/^cpu .*/cpu Another/' "$timed"
 run 2 merge shards
-complains "times were measured on different processors"
+complains "different processors"
 run 2 merge shards --times first
-complains "a report needs times of one: delete those pieces"
+complains "needs times of one"
 finish
