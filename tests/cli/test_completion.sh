@@ -16,8 +16,6 @@ for shell in bash zsh fish; do
     cmp -s out "${!script}" || fail "the installed script of $shell is another than that of twinbox completion"
     command -v $shell >/dev/null && { $shell -n "${!script}" || fail "$shell does not understand its script"; }
 done
-run 2 completion tcsh
-complains "'tcsh' is neither bash nor zsh nor fish"
 run 0 help completion
 says "Usage: twinbox completion"
 

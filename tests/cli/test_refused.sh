@@ -3,7 +3,7 @@
 # Options and inputs that are refused: the tables of refused/. A row is
 #     [3] COMMAND ARGUMENT... | WORDS [& WORDS]... [| VALUE...]
 # and stands for one command, or for one with each VALUE in the place of @. Such a command ends with exit status 2 (3: the
-# system refuses), says on standard error the place and the reason, which are the WORDS, prints nothing else (train has
+# system refuses), says on standard error the place and the reason, which are the WORDS, prints nothing else, no control character and no long text (train has
 # begun its table, compare counts what it cannot compare), and leaves every file as it was. Words that change when the message is put better are not in the tables.
 . "$(dirname "$0")/checks.sh"
 tables=$sources/tests/cli/refused
@@ -40,6 +40,8 @@ refused() {
         checks=$((checks + 1))
         grep -qF -- "$word" ../err || fail "twinbox $2: no '$word' in: $(head -c 400 ../err)"
     done <<<"${3// & /$'\n'}"
+    LC_ALL=C grep -qP '[\x00-\x09\x0b-\x1f\x7f]|\xc2[\x80-\x9f]|^::' ../out ../err && fail "what $2 prints: $(cat -v ../out ../err | head -c 300)"
+    [ "$(wc -c <../err)" -lt 1500 ] || fail "$2: $(wc -c <../err) bytes of errors"
     files >../after
     cmp -s ../before ../after || fail "twinbox $2 changes files: $(diff ../before ../after | head -5)"
     mv ../after ../before

@@ -2,6 +2,8 @@
 # Sourced by test_refused.sh: inputs of the tables that no command makes.
 trainings=(pairs.npz "--kind scene-net $scenes/stack.yaml" "--kind sain $scenes/stack.yaml" "--kind hybrid $scenes/stack.yaml" "--kind gns")
 studies=("chart $scenes/single.yaml --quick" "stability --scenes $scenes" "paper --scenes $scenes")
+hostile=$'\e[31mred\n::error::x\u009b' visible='\x1b[31mred\n::error::x\u009b'
+long=$(head -c 100000 /dev/zero | tr '\0' x) short=xxxxxxxx
 png() { /usr/bin/python3 "$sources/tests/cli/png.py" "$@"; }
 
 # Folders of pictures: two that differ, one with links, one without pictures.
