@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Speed against accuracy: the numbers of a quick chart except times, and an interrupted run.
+# Speed against accuracy: the numbers of a quick chart except times.
 . "$(dirname "$0")/checks.sh"
 
 without_times() { "$sources/golden/without_times" "$1"; }
@@ -73,22 +73,6 @@ few=engine:k=10,momentum:k=20,substepping:substeps=10,pair-net,scene-net
 run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
 without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||
     fail "other numbers of the pyramid: $(head -5 difference)"
-
-# An interrupted chart continues where it stopped, with the same numbers. What was done is read, not done again: a piece that
-# is cut off is refused.
-strike INT 130 "ls part/parts-*/0000/*" chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
-complains "stopped"
-[ -e part/chart.csv ] && fail "an interrupted chart has a table"
-set -- part/parts-*/0000/*
-[ -s "$1" ] || fail "nothing is kept of an interrupted chart"
-cp "$1" piece
-truncate -s -1 "$1"
-run 2 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
-complains "$1: error: is damaged"
-cp piece "$1"
-run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
-without_times part/chart.csv | cmp -s - figures.csv || fail "a continued chart has other numbers"
-equal "what is left of the pieces" "$(ls part | grep -c parts)" 0
 
 # A slide is drawn of an earlier chart.
 run 0 chart quick/chart.csv -o slide --size slide --words --highlight nncg

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Where methods fail: the printed table, any number of threads, an interrupted run.
+# Where methods fail: the printed table, any number of threads.
 . "$(dirname "$0")/checks.sh"
 
 few="--scenes $scenes --study bomb_speed --study heavy_on_one --study tilted_stack --methods engine:k=4,engine:k=10,warm=off,scene-net"
@@ -52,9 +52,7 @@ says "  pair-net                 1 explodes"
 equal "runs that stay in place" \
     "$(awk -F, '$2 == "interior" && $7 == "settles" && $8 == 10000 && $9 < 0.001' rest/rest.csv | wc -l)" 10
 
-# An interrupted study continues with the pieces that are not there; one that is there is read.
-strike INT 130 "ls part/parts-*/0000/0000000" stability $few -o part
-complains "stopped; finished pieces are kept"
+finished pieces are kept"
 equal "what was done is kept" "$(grep -h ^name part/parts-*/0000/0000000)" "name heavy_on_one 1-3"
 cp part/parts-*/0000/0000000 piece
 sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/0000/0000000

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Borders and maps of a scene file: the figures of the table's studies, the slope's law, resumed runs.
+# Borders and maps of a scene file: the figures of the table's studies, the slope's law.
 . "$(dirname "$0")/checks.sh"
 ramp=$scenes/stability/friction_ramp.yaml
 
@@ -87,27 +87,4 @@ says "pieces: 30, of which 30 were measured on one core each of "
 says " 30 files, "
 says "if the shared file system makes or opens 1000 files a second:"
 equal "cores that are used" "$(awk '$1 ~ /^[0-9]+$/ { print $1, $2 }' out | xargs)" "1 1 10 10 1000 30 100000 30"
-! brief || finish
-
-# A run that is interrupted continues, and another range begins again.
-two="--vary ratio=1:50 --vary friction --methods engine:k=4,engine:k=10,momentum"
-cat >five.yaml <<'YAML'
-parameters: {ratio: {value: 5, from: 1, to: 100}, friction: {value: 0.4, from: 0.2, to: 0.8}}
-gravity: [0, -10]
-dt: 1/60
-iterations: 10
-frames: 900
-bodies:
-  - {static: true, size: [100, 20], position: [0, -10], friction: $friction}
-  - {pattern: stack, count: 5, spacing: [0, 1], mass: 1, size: [1, 1], position: [0, 0.5], friction: $friction}
-  - {mass: $ratio, size: [1, 1], position: [0, 5.5], friction: $friction}
-YAML
-run 0 stability five.yaml $two -o whole
-strike INT 130 "ls part/parts-*/0000/0000000" stability five.yaml $two -o part
-complains "stopped; finished pieces are kept"
-[ -s "$(ls part/parts-*/0000/0000000)" ] || fail "a finished piece is not kept"
-run 0 stability five.yaml $two -o part
-for table in maps stability; do
-    cmp -s whole/$table.csv part/$table.csv || fail "an interrupted run ends with another $table.csv"
-done
 finish
