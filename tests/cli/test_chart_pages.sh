@@ -79,8 +79,6 @@ for target in links.targets:
 PYTHON
 checks=$((checks + 1))
 
-run 2 chart charted/chart.csv -o again --pages
-complains "charted/chart.csv: error: a finished chart is drawn as it is: give only this file and -o DIR"
 run 0 chart "$scenes/single.yaml" -o plain --quick --methods engine:k=10 --launches 2
 [ -e plain/chart.html ] && fail "pages that nobody asked for"
 finish

@@ -51,17 +51,4 @@ says "  interior                 20 settles, "
 says "  pair-net                 1 explodes"
 equal "runs that stay in place" \
     "$(awk -F, '$2 == "interior" && $7 == "settles" && $8 == 10000 && $9 < 0.001' rest/rest.csv | wc -l)" 10
-
-finished pieces are kept"
-equal "what was done is kept" "$(grep -h ^name part/parts-*/0000/0000000)" "name heavy_on_one 1-3"
-cp part/parts-*/0000/0000000 piece
-sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/0000/0000000
-run 2 stability $few -o part
-complains "0000000: error: is damaged"
-cp piece part/parts-*/0000/0000000
-run 0 stability $few -o part
-for table in stability maps refusals fallbacks rest; do
-    cmp -s one/$table.csv part/$table.csv || fail "an interrupted run ends with another $table.csv"
-done
-equal "files" "$(echo $(ls part))" "borders.png borders.svg borders.txt $tables"
 finish
