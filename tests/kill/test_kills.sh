@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A sample of what tests/kill/run does: about twenty kills; tests/run --deep does all.
+# A sample of what tests/kill/run does, of nine commands; tests/run --deep does all.
 set -eu
 most=2 video=video
 # The sanitizers need no video; ffmpeg and slow starts would take most of the time.
