@@ -2,7 +2,7 @@
 # Sourced by test_refused.sh: inputs of the tables that no command makes.
 trainings=(pairs.npz "--kind scene-net $scenes/stack.yaml" "--kind sain $scenes/stack.yaml" "--kind hybrid $scenes/stack.yaml" "--kind gns")
 studies=("chart $scenes/single.yaml --quick" "stability --scenes $scenes" "paper --scenes $scenes")
-hostile=$'\e[31mred\n::error::x\u009b' visible='\x1b[31mred\n::error::x\u009b'
+hostile=$'\e[31mred\n::error::x\xc2\x9b' visible='\x1b[31mred\n::error::x\u009b'
 long=$(head -c 100000 /dev/zero | tr '\0' x) short=xxxxxxxx
 png() { /usr/bin/python3 "$sources/tests/cli/png.py" "$@"; }
 
@@ -69,6 +69,7 @@ pairs = problem["contact_bodies"].copy()
 pairs[0, 1] = 1 << 30
 change("bodies", contact_bodies=pairs)
 PYTHON
+/usr/bin/python3 -B "$sources/tests/pictures/hostile_runs.py" plain many_letters other_letters backwards control nan_velocity infinite other_dt
 : >positions.npy
 : >problem.hdf5
 echo text >notes.npz
