@@ -50,6 +50,7 @@ refused() {
     mv ../after ../before
 }
 
+sample=$(brief && echo yes)
 files >../before
 all=("$tables"/*.txt)
 set -f
@@ -65,6 +66,7 @@ for table in "${all[@]}"; do
             refused $status "$command" "$text"
         else
             eval "values=($values)"
+            [ ! "$sample" ] || values=("${values[0]}")
             for value in "${values[@]}"; do refused $status "${command//@/$value}" "${text//@/$value}"; done
             unset values
         fi

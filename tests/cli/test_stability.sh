@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Where methods fail: the printed table, any number of threads.
+# Where methods fail: the printed table; a small stack; a map alone. (Any number of threads: test_threads.sh.)
 . "$(dirname "$0")/checks.sh"
 
 few="--scenes $scenes --study bomb_speed --study heavy_on_one --study tilted_stack --methods engine:k=4,engine:k=10,warm=off,scene-net"
@@ -18,7 +18,7 @@ if ! sanitized && "${hidden[@]}" true 2>/dev/null; then # sanitizers read it, to
     complains "/proc/self/exe: error: "
 fi
 
-OMP_NUM_THREADS=1 run 0 stability $few -o one
+run 0 stability $few -o one
 says "bomb_speed: speed in m/s, holds | fails"
 says "heavy_on_one: ratio, holds | fails"
 says "  scene-net                not applicable"
@@ -30,10 +30,6 @@ equal "lines a method with two settings" "$(grep -cE '^  engine:k=10,warm=off +[
 tables="fallbacks.csv maps.csv refusals.csv rest.csv stability.csv unconverged.csv"
 equal "files" "$(echo $(ls one))" "borders.png borders.svg borders.txt $tables"
 equal "maps" "$(wc -l <one/maps.csv)" 1
-OMP_NUM_THREADS=3 run 0 stability $few -o three
-for table in stability maps refusals fallbacks rest; do
-    cmp -s one/$table.csv three/$table.csv || fail "three threads write another $table.csv"
-done
 
 # A map alone has no borders to print.
 run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o map
