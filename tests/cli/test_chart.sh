@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Speed against accuracy: the numbers of a quick chart except times, and an interrupted run.
+# Speed against accuracy: the numbers of a quick chart except times.
 . "$(dirname "$0")/checks.sh"
 
 without_times() { "$sources/golden/without_times" "$1"; }
@@ -58,10 +58,6 @@ for file in quick/*.png quick/*.svg quick/equal_time*.csv; do
     checks=$((checks + 1))
     cmp -s "$file" "again/$(basename "$file")" || fail "$file is drawn differently from its table"
 done
-run 2 chart quick/chart.csv "$scenes/stack.yaml" -o again
-complains "quick/chart.csv: error: a finished chart is drawn as it is: give only this file and -o DIR"
-run 2 chart nowhere.csv -o again
-complains "nowhere.csv: error:"
 
 ! brief || finish
 
@@ -78,29 +74,8 @@ run 0 chart "$scenes/pyramid_settled.yaml" -o pyramid --quick --methods $few
 without_times pyramid/chart.csv | diff "$sources/golden/chart_pyramid.csv" - >difference ||
     fail "other numbers of the pyramid: $(head -5 difference)"
 
-# An interrupted chart continues where it stopped, with the same numbers. What was done is read, not done again: a piece that
-# is cut off is refused.
-strike INT 130 "ls part/parts-*/0000/*" chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
-complains "stopped"
-[ -e part/chart.csv ] && fail "an interrupted chart has a table"
-set -- part/parts-*/0000/*
-[ -s "$1" ] || fail "nothing is kept of an interrupted chart"
-cp "$1" piece
-truncate -s -1 "$1"
-run 2 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
-complains "$1: error: is damaged or cut off; delete it"
-cp piece "$1"
-run 0 chart "$scenes/single.yaml" "$scenes/stack.yaml" -o part --quick
-without_times part/chart.csv | cmp -s - figures.csv || fail "a continued chart has other numbers"
-equal "what is left of the pieces" "$(ls part | grep -c parts)" 0
-
-# A name that the study does not have is refused before the work; a slide is drawn of an earlier chart.
-run 2 chart "$scenes/single.yaml" -o never --quick --methods engine:k=10 --highlight avdb
-complains "--highlight: error: 'avdb' is not a method of this chart"
-[ -e never ] && fail "a folder of a refused chart"
+# A slide is drawn of an earlier chart.
 run 0 chart quick/chart.csv -o slide --size slide --words --highlight nncg
-run 2 chart quick/chart.csv -o slide --size poster
-complains "--size: error: 'poster' is not page, column or slide"
 
 # Own launches.
 printf 'x,spin\n1.02,5\n-2.02,-5\n0.3,0\n' >launches.csv
@@ -141,13 +116,7 @@ says "single: 1 method and settings, 3 launches"
 printf 'x\n-2\n0\n2\n' >places.csv
 run 0 chart "$scenes/single.yaml" -o listed $few --launches places.csv
 cmp -s <(without_times swept/chart.csv) <(without_times listed/chart.csv) || fail "a sweep and a table differ"
-run 2 chart "$scenes/single.yaml" -o none $few --bomb-x=-2:2:2 --launches 5
-complains "--bomb-x: error: cannot be combined with --launches"
-run 2 chart "$scenes/single.yaml" -o none $few --launches 0
-complains "0: error:"
 sed 's/x: {[^}]*}/x: 4/' "$scenes/single.yaml" | sed "s|networks/|$scenes/networks/|" >alone.yaml
-run 2 chart alone.yaml -o none $few
-complains "alone: error: the bomb has one launch and no family"
 # Large scenes have fewer launches, unless their number is given.
 sed "s|networks/|$scenes/networks/|; s|size: \[100, 20\]|size: [2000, 20]|" "$scenes/single.yaml" |
     sed '/^bodies:/a\  - {pattern: row, count: 200, spacing: [2, 0], mass: 1, size: [1, 1], position: [50, 0.5]}' >large.yaml
@@ -162,26 +131,4 @@ printf 'x\n1.505\n2.505\n' >places.csv
 run 0 chart alone.yaml -o alone $few --launches places.csv
 cmp -s <(without_times family/chart.csv | sed s/family/alone/) <(without_times alone/chart.csv) ||
     fail "a family from 1 to 3 is not what it says"
-
-printf 'x,colour\n1,red\n' >bad.csv
-run 2 chart "$scenes/single.yaml" -o none --quick --launches bad.csv
-complains "bad.csv:1:3: error: "
-run 2 chart "$scenes/single.yaml" "$scenes/single.yaml" -o none --quick --methods engine:k=10
-complains "single.yaml: error: another scene has the same name (single)"
-run 2 chart "$scenes/single.yaml" -o none --methods magic
-complains "'magic' is not a method; known: "
-run 2 chart "$scenes/single.yaml" -o none --methods engine:k=10,engine:k=10
-complains "is given twice"
-run 2 chart nowhere.yaml -o none --quick
-complains "nowhere.yaml: error:"
-run 2 chart -o none
-complains "a scene file, or the chart.csv of an earlier run, is needed"
-run 2 chart "$scenes/single.yaml"
-complains "-o DIR is needed"
-run 2 chart "$scenes/single.yaml" -o none --quick --methods engine,interior --colour motor=7a9a01
-complains "--colour: error: 'motor' is not a run of this picture"
-run 2 chart "$scenes/single.yaml" -o none --quick --methods engine,interior --colour interior=0072b2
-complains "too close to the colour of 'engine'"
-run 3 chart "$scenes/single.yaml" -o /proc/none --quick --methods engine:k=10
-[ -e none/chart.csv ] && fail "a chart that was refused has a table"
 finish

@@ -65,23 +65,6 @@ assert abs(solved / float(sys.argv[1]) - 1) < 1e-5, (solved, sys.argv)
 PYTHON
 checks=$((checks + 1))
 
-# Interrupted while pages are written, it continues with them: those that are done are read, not written again.
-slow="$scenes/stack.yaml --quick --pages --methods $few --launches 60"
-strike INT 130 "grep '^chart_pages:' part/parts-*/0000/0000000" chart $slow -o part
-[ -e part/chart.csv ] && [ ! -e part/chart.html ] || fail "pages were interrupted: $(ls part)"
-first=$(grep -l '^chart_pages:' part/parts-*/0000/0000000)
-cp "$first" done
-truncate -s -1 "$first"
-cp part/chart.csv measured.csv
-run 2 chart $slow -o part
-complains "$first: error: is damaged or cut off; delete it"
-cp done "$first"
-run 0 chart $slow -o part
-cmp -s part/chart.csv measured.csv || fail "what was measured is measured again"
-sed -n 's/^chart_pages://p' done >rows
-equal "rows of the first part" "$(sed -n "2,$(($(wc -l <rows) + 1))p" part/chart_pages.csv)" "$(cat rows)"
-equal "what is left behind" "$(ls part | grep -c part)" 0
-
 # A scene's name is text.
 cp "$scenes/single.yaml" "a&b'<i>#1.yaml"
 sed -i "s|networks/|$scenes/networks/|" "a&b'<i>#1.yaml"
@@ -96,8 +79,6 @@ for target in links.targets:
 PYTHON
 checks=$((checks + 1))
 
-run 2 chart charted/chart.csv -o again --pages
-complains "charted/chart.csv: error: a finished chart is drawn as it is: give only this file and -o DIR"
 run 0 chart "$scenes/single.yaml" -o plain --quick --methods engine:k=10 --launches 2
 [ -e plain/chart.html ] && fail "pages that nobody asked for"
 finish

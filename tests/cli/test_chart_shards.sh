@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Shards of a chart: merged, they give the tables of one process, but for times; what does not belong together is refused.
-# (Environments, records and damaged pieces: test_stability_shards.sh.)
+# (Records and damaged pieces: test_stability_shards.sh; kills: tests/cluster.)
 . "$(dirname "$0")/checks.sh"
 without_times() { "$sources/golden/without_times" "$1"; }
 
@@ -66,34 +66,10 @@ for figure in chart-single equal_time; do
         fail "$figure.txt does not say whose times are left out"
 done
 
-# Shards that are killed again and again go on; nothing that is done is done again.
-for shard in 1 2; do
-    for i in $(seq 40); do
-        timeout -s KILL "$((i / 10)).$((RANDOM % 20 + 10))" "$twinbox" chart $few -o killed --shard $shard/2 >out 2>err </dev/null &&
-            break
-    done 2>/dev/null # the shell tells of each kill
-    equal "files of killed shards" "$(echo killed/*)" killed/shards
-    run 0 chart $few -o killed --shard $shard/2
-    run 0 chart $few -o killed --shard $shard/2
-    says "shard $shard of 2: 6 pieces, 6 of them done before"
-done
-run 0 merge killed
-same_as_whole killed
-equal "files that are no pieces" "$(find killed -name '*.tmp')" ""
-
 # Refused, and nothing is changed.
-refused() { unchanged three "$@"; }
-refused "the study was begun in 3 shards, and this is one of 2" chart $few -o three --shard 1/2
-refused "three/shards/run.json: error: belongs to shards of a study: merge them (twinbox merge three)" chart $few -o three
-refused "another study: " chart $few --launches 4 -o three --shard 1/3
-refused "three/chart.csv: error: a finished chart is drawn as it is" chart three/chart.csv -o three --shard 1/3
-cp "$scenes/single.yaml" own.yaml
-sed -i "s|networks/|$scenes/networks/|" own.yaml
-own="own.yaml --quick --methods engine:k=4 -o own"
-run 0 chart $own --shard 1/2
-sed -i 's/^frames: .*/frames: 100/' own.yaml
-run 2 chart $own --shard 2/2
-complains "another study: the hash of the input own.yaml is "
+unchanged three "begun in 3 shards" chart $few -o three --shard 1/2
+unchanged three "three/shards/run.json: error: belongs to shards of a study" chart $few -o three
+unchanged three "another study: " chart $few --launches 4 -o three --shard 1/3
 
 # The memory of a shard does not grow with the launches.
 peak() {

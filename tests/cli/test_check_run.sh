@@ -36,19 +36,6 @@ run 0 check struck.npz --scene "$scenes/stack.yaml"
 says "$words"
 run 0 check struck.npz
 says "energy gained: unknown without masses"
-run 2 check struck.npz --max-gain 1
-complains "--max-gain needs --scene"
-run 2 check struck.npz --max-drift 1
-complains "struck.npz: error: lasts 1.67 s: --max-drift needs a run of more than 10 s"
-run 2 check struck.npz --scene "$scenes/pyramid.yaml"
-complains "pyramid: error: has 67 bodies, but the run has 12"
-run 2 check "$scenes/stack.yaml" --verdict holds
-complains "is a scene"
-run 2 check struck.npz -o picture.png
-complains "applies to scenes only"
-: >positions.npy
-run 2 check positions.npy
-complains "positions.npy: error: is one array of NumPy; a run is a .npz"
 
 # An engine that keeps boxes 15 mm apart: the same run explodes without its skin, one that really explodes does with it.
 /usr/bin/python3 - <<'PYTHON'
@@ -93,7 +80,7 @@ grep -v '^0,4,' skin.csv >late.csv
 run 0 import late.csv -o late.npz
 says "no verdict: "
 run 2 check late.npz
-complains "such a run has no verdict"
+complains "no verdict"
 
 # compare and figures find contacts again where a run has none.
 run 0 simulate "$scenes/stack.yaml" --frames 100 --no-contacts -o bare.npz
@@ -132,6 +119,4 @@ PYTHON
 run 0 compare struck.npz momentum.npz --tolerance 100,100 --report passed
 says "equal within the tolerance of 100 m and 100 rad: 101 frames of 12 bodies; 4 of them in every bit"
 grep -q 'failures="0"' passed/junit.xml || fail "a comparison within tolerance fails in JUnit"
-run 2 compare struck.npz momentum.npz --tolerance 1,x
-complains "'1,x' is not a distance in metres, or METRES,RADIANS"
 finish

@@ -1,165 +1,345 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-tests=$(cd "$(dirname "$0")" && pwd)
-. "$tests/checks.sh"
+# compare of pictures: what a verdict rests on, what it says, and that none passes by mistake. (The judgements themselves:
+# tests/regression. What is refused: refused/compare.txt.)
+. "$(dirname "$0")/checks.sh"
+draw() { /usr/bin/python3 "$sources/tests/cli/png.py" -; }
+# Pairs of folders, with a subfolder.
+fresh() {
+    rm -rf a b report
+    mkdir -p a/sub b/sub
+    draw
+    for name in home sub/x; do [ -e a/$name.png ] && [ ! -e b/$name.png ] && cp a/$name.png b/$name.png; done
+}
+compare() { run "$1" compare a b "${@:2}"; }
+has() { grep -qF -- "$2" "$1" || fail "no '$2' in $1: $(head -c 400 "$1")"; }
 
+# Films. One line for each cause, then counts; frames of equal states are equal, whatever the run does.
 run 0 simulate "$scenes/stack.yaml" --frames 40 -o a.npz
-run 0 simulate "$scenes/stack.yaml" --frames 40 --bomb-x 1 -o b.npz
-run 0 simulate "$scenes/stack.yaml" --frames 30 -o short.npz
-run 0 simulate "$scenes/single.yaml" --frames 40 -o other.npz
-run 0 compare a.npz a.npz
-says "equal: 41 frames of 12 bodies"
-run 1 compare a.npz b.npz
-says "first difference: frame 0, body 11 (the bomb):"
-run 1 compare a.npz short.npz
-says "41"
-says "31"
-run 1 compare a.npz other.npz
-says "bodies"
-
 /usr/bin/python3 - <<'PYTHON'
-# One bit of one body in one frame.
 import numpy
 run = dict(numpy.load("a.npz", allow_pickle=False))
-run["angle"].view(numpy.uint32)[17, 4] ^= 1
-numpy.savez("bit.npz", **run)
+run["camera"] = numpy.array([[0, 5], [18, 12]], numpy.float32)
+numpy.savez("a.npz", **run)
+run["position"][3:6, 7, 0] += 0.05 # below the bomb, which has not arrived
+run["position"][8, 4, 1] += 1
+numpy.savez("b.npz", **run)
+run["camera"] = numpy.array([[0, 5], [20, 14]], numpy.float32)
+numpy.savez("c.npz", **run)
 PYTHON
-run 1 compare a.npz bit.npz
-says "first difference: frame 17, body 4: 0 m apart"
-
-render() { run 0 render "$1" -o "$2" --size 160x90 --frames 0:4; }
-render a.npz one
-render a.npz two
-render b.npz three
-run 0 compare one two
-says "equal: 5 frames"
-run 1 compare one three
-says "first difference: frame_000000.png:"
-says "5 of 5 frames differ"
-says "physics changed first in stack-engine.npz: from frame 0, body 11: "
-says "verdict: physics changed"
-mv two/frame_000003.png two/frame_000007.png
-run 1 compare one two
-says "only in one: 1 frame: frame_000003.png"
-says "only in two: 1 frame: frame_000007.png"
+render() { run 0 render "$1.npz" -o "$1" --size 640x360 --frames 0:9; }
+for name in a b c; do render $name; done
+mv a same
+render a
+run 0 compare a same
+says "equal: 10 frames, 1 trajectory"
+compare 1 --report report
+for text in "first difference: frame_000003.png: " "states differ in panel 1: body 7 moved 1." " of them differ: body 7 moved 1." \
+    "frames 3 to 5, 8: states differ, body 7 first" "4 of 10 frames differ, 1 of 1 trajectory differs" "verdict: physics changed"; do
+    says "$text"
+done
+/usr/bin/python3 - <<'PYTHON' || fail "results.json or junit.xml lacks regions, names or causes"
+import json, xml.etree.ElementTree
+results = json.load(open("report/results.json"))
+assert results["causes"] == ["frames 3 to 5, 8: states differ, body 7 first"], results["causes"]
+for number, frame in enumerate(results["frames"]):
+    changed = number in (3, 4, 5, 8)
+    assert frame["verdict"] == ("physics changed" if changed else "equal"), frame
+    assert (frame["region_count"] > 0) == changed == (len(frame["regions"]) > 0)
+    body = "body 4 moved" if number == 8 else "body 7 moved"
+    assert all(region["name"].startswith(body) for region in frame["regions"]), frame["regions"]
+    sizes = [region["pixels"] for region in frame["regions"]]
+    assert sizes == sorted(sizes, reverse=True) and sum(sizes) == frame["differing"]
+    for left, top, right, bottom in (region["box"] for region in frame["regions"]):
+        assert frame["box"][0] <= left < right <= frame["box"][2] and frame["box"][1] <= top < bottom <= frame["box"][3]
+text = xml.etree.ElementTree.parse("report/junit.xml").getroot()[3].find("failure").text
+assert "of them differ: body 7 moved" in text, text
+PYTHON
+# Other cameras come first, and name the option that avoids them. A manifest that makes no sense names no bodies.
+run 1 compare a c
+equal "the camera is the first line" "$(head -1 out | cut -d: -f1,2)" "frames 0 to 9: the camera differs"
+says "; render with --view-from a/stack-engine.npz"
+rm b/*.npz
+for text in '{' '{"size": [640, 360], "view": 1}' \
+    '{"size": [640, 360], "view": {"panels": [{"rectangle": [0, 0, 1e9, 1], "runs": ["../a.npz"], "scale": 1, "left": 0, "top": 0}], "parts": []}}'; do
+    echo "$text" >b/manifest.json
+    compare 1
+    says "frame_000003.png: "
+done
+# Frames that only one side has; a trajectory that is damaged on one side, and what nobody can read on both.
+mv same/frame_000003.png same/frame_000017.png
+run 1 compare a same
+says "only in a: 1 frame: frame_000003.png"
+says "only in same: 1 frame: frame_000017.png"
 says "verdict: 1 frame missing, 1 frame extra"
-run 0 compare one/frame_000002.png two/frame_000002.png
-head -c 300 one/frame_000001.png >two/frame_000001.png
-run 2 compare one two
-complains "two/frame_000001.png"
-head -c 200 one/frame_000001.png >two/frame_000002.png
-run 2 compare one two
-complains "two/frame_000001.png"
-complains "(further frames that cannot be compared: 1)"
-says "not comparable: two/frame_000002.png: error: "
-says "only in two: 1 frame: frame_000007.png"
-says "verdict: 1 frame missing, 1 frame extra, 2 frames not comparable"
+mv same/frame_000017.png same/frame_000003.png
+head -c 1000 a.npz >same/stack-engine.npz
+run 2 compare a same
+complains "same/stack-engine.npz: error:"
+head -c 1000 a.npz >a/stack-engine.npz
+echo 1 >>a/stack-engine.npz
+run 0 compare a same
 
 # What cannot be read hides nothing: all others are compared and reported, and it is not approved.
-mkdir good bad
-for name in a b c; do /usr/bin/python3 "$tests/png.py" good/$name.png 20 10 "9 9 9 255"; done
-cp good/a.png bad
-/usr/bin/python3 "$tests/png.py" bad/b.png 20 10 "99 9 9 255"
-head -c 60 good/c.png >bad/c.png
-run 2 compare good bad --report unread
-says "differs: b.png: 200 pixels differ"
+fresh <<'END'
+a/home.png 20 10 9
+a/two.png 20 10 9
+a/three.png 20 10 9
+b/two.png 20 10 99
+END
+head -c 60 a/three.png >b/three.png
+compare 2 --report unread
+says "differs: two.png: 200 pixels differ"
 says "1 of 2 frames differs"
-complains "bad/c.png: error: not a PNG file, or damaged"
-grep -q '"name": "c.png", "verdict": "not comparable", "failed": true, "shown": false' unread/results.json || fail "c.png is not in the results"
-grep -q '"different": 1, .*"not_comparable": 1' unread/results.json || fail "counts: $(grep counts unread/results.json)"
-for file in report.html junit.xml results.tap; do grep -q 'c\.png' unread/$file || fail "c.png is not in $file"; done
-cp good/c.png kept.png
-run 1 approve unread # b.png is, c.png is not
-equal "an expected picture whose actual one cannot be read" "$(md5sum <good/c.png)" "$(md5sum <kept.png)"
-run 2 compare good bad
-complains "bad/c.png"
+says "verdict: pictures differ, 1 frame not comparable"
+complains "b/three.png: error: not a PNG file, or damaged"
+has unread/results.json '"name": "three.png", "verdict": "not comparable", "failed": true, "shown": false'
+for file in report.html junit.xml results.tap; do has unread/$file three.png; done
+cp a/three.png kept.png
+run 1 approve unread # two.png is, three.png is not
+cmp -s kept.png a/three.png || fail "an expected picture whose actual one cannot be read"
 
-# Pictures of other programs: no states, other names, other depths.
-png() { /usr/bin/python3 "$tests/png.py" "$@"; }
-mkdir theirs ours
-png theirs/shot-1.png 20 10 "9 9 9 255"
-png theirs/shot-2.png 20 10 "9 9 9 255"
-png ours/frame_0001.png 20 10 "9 9 9 255"
-png ours/frame_0002.png 20 10 "9 9 9 255" 3 4 "9 12 9 255" 5 4 "9 9 8 255"
-run 1 compare theirs ours
-says "first difference: shot-2.png: 2 pixels differ (1%) by at most 3, first at (3, 4)"
-says "verdict: pictures differ (cause unknown: no states)"
-run 1 compare theirs/shot-2.png ours/frame_0002.png
-png ours/frame_0002.png 20 11 "9 9 9 255"
-run 1 compare theirs ours
-says "20 x 10 and 20 x 11 pixels"
-png ours/frame_0002.png 20 10 "9 9 9 255" 3 4 "9 12 9 255" 5 4 "9 9 8 255"
-
-# Both bounds must hold, and what lies on one is within.
-for passing in 3,0.01 255,1 4,0.5; do
-    run 0 compare theirs ours --fuzzy $passing
-    says "passed: 2 frames, 1 of them not equal, but within tolerance"
-done
-for failing in 2,0.01 3,0.009 255,0 0,1; do run 1 compare theirs ours --fuzzy $failing; done
-for wrong in 3 3, ,1 3,1.5 256,1 -1,1 3,0.1,7 x,y; do
-    run 2 compare theirs ours --fuzzy=$wrong
-    complains "--fuzzy: error: '$wrong' is not MAX,SHARE"
-done
-
-# Masks: each hides one of the two pixels.
-run 1 compare theirs ours --mask 3,4,1,1
-says "1 pixel differs (0.503%) by at most 1, first at (5, 4)"
-run 0 compare theirs ours --mask 3,4,1,1 --mask 5,4,1,1
-run 0 compare theirs ours --mask 0,4,1000,1
-run 1 compare theirs ours --mask 0,5,1000,1
-png mask.png 20 10 "255 255 255 0" 3 4 "255 255 255 255" 5 4 "0 0 0 255"
-run 1 compare theirs ours --mask mask.png
-says "first at (5, 4)"
-png mask.png 20 10 "0 0 0 255" 3 4 "1 0 0 1" 5 4 "0 0 9 255"
-run 0 compare theirs ours --mask mask.png
-png mask.png 20 11 "0 0 0 255"
-run 2 compare theirs ours --mask mask.png
-complains "mask.png: error: the mask has 20 x 11 pixels, but theirs/shot-1.png has 20 x 10"
-for wrong in 1,2,3 1,2,0,4 a,b,c,d 1,2,3,4,5 mask.jpg; do
-    run 2 compare theirs ours --mask $wrong
-    complains "'$wrong' is neither a PNG file nor X,Y,W,H"
-done
-
-# What claims to be large is refused before it is unpacked; the limit is an option.
-/usr/bin/python3 - <<'PYTHON'
-import struct, zlib
-chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-pack = zlib.compressobj(9)
-rows = b"".join(pack.compress(bytes(1 << 20)) for _ in range(19000 * (19000 // 8 + 1) // (1 << 20) + 1)) + pack.flush()
-with open("bomb.png", "wb") as file:
-    file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 19000, 19000, 1, 0, 0, 0, 0)))
-    file.write(chunk(b"IDAT", rows) + chunk(b"IEND", b""))
+# Limits of the command line, of a rule, and of both: 15 of 1,000 pixels differ, 10 by 2 and 5 by 30. STATUS | options
+fresh <<'END'
+a/home.png 50 20 100
+b/home.png 50 20 100 3*10 3 102 3*5 5 130
+mask.png 50 20 0 3*5 5 255 3*10 3 255
+half.png 50 20 "0 0 0 255" 3*10 3 255
+END
+compare 1
+says "home.png: 15 pixels differ (1.5%) by at most 30, first at (3, 3)"
+! grep -q FLIP out || fail "FLIP without --flip"
+while IFS='|' read -r status options; do
+    compare $status $options
+    [[ $status = 1 || $options = --mask* ]] || says "passed: 1 frame, 1 of them not equal, but within tolerance"
+done <<'END'
+0|--tolerance 30
+1|--tolerance 29
+0|--tolerance 2 --beyond 0.005
+1|--tolerance 2 --beyond 0.0049
+1|--tolerance 1 --beyond 0.005
+0|--beyond 15px
+1|--beyond 14px
+0|--fuzzy 30,15px
+0|--fuzzy 30,0.015
+1|--fuzzy 29,15px
+1|--fuzzy 30,14px
+0|--tolerance 2 --beyond 0.005 --fuzzy 30,0.015
+1|--tolerance 2 --beyond 0.005 --fuzzy 29,0.015
+1|--tolerance 1 --beyond 0.005 --fuzzy 30,0.015
+1|--flip 1 --tolerance 29
+0|--mask 3,3,10,1 --mask 3,5,5,1 --tolerance 0
+0|--mask 0,0,50,6
+0|--mask mask.png
+1|--mask 3,4,1000,1
+1|--mask half.png
+END
+says "first at (3, 5)"
+compare 1 --flip 0
+/usr/bin/python3 - "$twinbox" <<'PYTHON' || fail "limits of FLIP are not the numbers that are printed"
+import re, subprocess, sys
+mean, p99 = map(float, re.search(r"FLIP: mean (\S+), .*99th percentile (\S+)", open("out").read()).groups())
+assert 0 < mean < p99, (mean, p99) # 1.5% of the pixels differ
+for limits, wanted in ([f"{mean * 1.01}"], 0), ([f"{mean * 0.99}"], 1), ([f"p99={p99 * 1.01}", f"mean={mean * 1.01}"], 0), \
+        ([f"p99={p99 * 0.99}"], 1), ([f"p99={p99 * 1.01}", f"mean={mean * 0.99}"], 1):
+    options = [word for limit in limits for word in ("--flip", limit)]
+    assert subprocess.run([sys.argv[1], "compare", "a", "b", *options], capture_output=True).returncode == wanted, limits
 PYTHON
-[ "$(wc -c <bomb.png)" -lt 60000 ] || fail "the bomb is no bomb: $(wc -c <bomb.png) bytes"
-run 2 compare theirs/shot-1.png bomb.png
-complains "bomb.png: error: the picture has 19000 x 19000 pixels; at most 100000000"
-run 2 compare theirs ours --max-pixels 199
-complains "theirs/shot-2.png: error: the picture has 20 x 10 pixels; at most 199"
-run 1 compare theirs ours --max-pixels 200
+# Rules: for some names, later ones first; the command line replaces them. In the expected folder they need no option.
+fresh <<'END'
+a/home.png 50 20 100
+a/sub/x.png 50 20 100
+b/home.png 50 20 100 3*10 3 102
+b/sub/x.png 50 20 100 3*10 3 102
+END
+echo 'rules: [{files: "*", tolerance: 2}, {files: sub/x.png, tolerance: 1, masks: [{rectangle: [3, 3, 9, 1]}]}]' >rules.yaml
+compare 1 --rules rules.yaml
+says "x.png: 1 pixel differs (0.101%) by at most 2, first at (12, 3)"
+compare 0 --rules rules.yaml --tolerance 2
+compare 1 --rules rules.yaml --tolerance 0
+says "2 of 2 frames differ"
+cp rules.yaml a/compare.yaml
+compare 1
+says "1 of 2 frames differ"
+run 0 compare a/home.png b/home.png
+cp a/sub/x.png b/sub/x.png
+printf 'rules: [{files: sub/x.png, masks: [{rectangle: [0, 0, 50, 12]}]}]\n' >a/compare.yaml
+compare 0 --mask 0,13,50,7 --tolerance 2
+compare 2 --mask 0,12,50,8 # together they hide everything, though the files are equal
+complains "a/sub/x.png: error: the masks hide all its pixels"
+# Edges; content that moves by a pixel; what an allowed region hides is named.
+fresh <<'END'
+a/home.png 50 20 250 5*40 9 10
+b/home.png 50 20 250 5*40 9 130 5*40 10 130 25 3 200
+END
+compare 1 --antialias
+says "home.png: 1 pixel differs (0.1%) by at most 50, first at (25, 3); 80 pixels differ as limits allow"
+draw <<<'b/home.png 50 20 250 5*40 10 10'
+echo 'rules: [{files: home.png, shift: 1}]' >rules.yaml
+compare 0 --rules rules.yaml --report report
+compare 1 --antialias
+run 0 approve report
+says "0 replaced, 0 added, 0 removed"
 
-run 2 compare a.npz one
-complains "is not a trajectory"
-run 2 compare a.npz b.npz --annotations github
-complains "apply to pictures only"
-run 2 compare one nowhere
-complains "nowhere"
-run 2 compare one one/frame_000001.png
-complains "is a folder"
-mkdir empty
-run 2 compare one empty
-complains "empty"
-run 2 compare a.npz a.npz a.npz
-head -c 1000 a.npz >cut.npz
-run 2 compare a.npz cut.npz
-complains "cut.npz: error:"
+# Pictures of different size: the overlap is compared, and the verdict stays, but where a rule allows for it.
+fresh <<'END'
+a/home.png 50 20 100
+b/home.png 40 30 100 3*10 3 102 3*10 25 0
+END
+compare 1 --report report --tolerance 255
+says "home.png: sizes differ: 50 x 20 and 40 x 30 pixels"
+compare 1 --report report
+says "overlap: 10 pixels differ (1.25%) by at most 2, first at (3, 3)"
+compare 1 --mask 0,0,50,4
+says "overlap: equal pixels"
+/usr/bin/python3 - <<'PYTHON' || fail "the report's pictures of different size"
+import base64, json, re, struct
+page = open("report/report.html").read()
+size = lambda kind: struct.unpack(">II", base64.b64decode(re.search('id="p0%s">([^<]*)<' % kind, page).group(1))[16:24])
+assert [size(kind) for kind in "eadf"] == [(50, 20), (40, 30), (50, 30), (40, 20)]
+assert "<svg" not in page, "a plot of one picture"
+frame = json.load(open("report/results.json"))["frames"][0]
+assert (frame["differing"], frame["counted"], frame["box"]) == (10, 800, [3, 3, 13, 4]) and frame["flip"] > 0
+PYTHON
+echo 'rules: [{files: "*", size: 1, tolerance: 2}]' >rules.yaml
+for sizes in "0 50 21" "0 51 20" "0 49 20" "1 50 22"; do
+    read -r status width height <<<"$sizes"
+    draw <<<"b/home.png $width $height 100 3*10 3 102"
+    compare $status --rules rules.yaml --report report
+    grep -q "sizes differ: 50 x 20 and $width x $height pixels" report/results.json || fail "the report does not tell $sizes"
+done
+draw <<<'b/home.png 8 7 100' # less than 1/16 of the larger one
+compare 1 --report report --flip 1
+! grep -q overlap out || fail "an overlap of 8 x 7 pixels is compared"
+grep -q '"differing": 0, .*"counted": 0, ' report/results.json || fail "an overlap in the report: $(cat report/results.json)"
 
-# A damaged trajectory beside the frames is told; numbers of another kind in both folders are nobody's business.
-rm -r two
-cp -r one two
-cp cut.npz two/stack-engine.npz
-run 2 compare one two
-complains "two/stack-engine.npz: error:"
-cp cut.npz one/stack-engine.npz
-echo 1 >>one/stack-engine.npz
-run 0 compare one two
+! brief || finish
+
+# Pictures that are no film: a line each, the worst first, with no line of a sequence.
+rm a/home.png b/home.png
+draw <<'END'
+a/aa.png 40 8 255
+a/logo.png 40 8 255
+a/colour.png 40 8 255
+a/plot3.png 40 8 255
+b/aa.png 40 8 255 1 1 0
+b/colour.png 40 8 255 1*2 1 0 30 6 9
+b/plot3.png 40 9 255
+END
+compare 1 --report report
+equal "lines of cases" "$(sed 's/: added.*//' out)" "only in a: 1 frame: logo.png
+differs: plot3.png: sizes differ: 40 x 8 and 40 x 9 pixels; overlap: equal pixels
+differs: colour.png: 3 pixels differ (0.938%) by at most 255, first at (1, 1)
+differs: aa.png: 1 pixel differs (0.312%) by at most 255, first at (1, 1)
+3 of 3 frames differ
+verdict: pictures differ, 1 frame missing
+report -> report/report.html"
+grep -q '<svg' report/report.html && fail "a plot over pictures that are no film"
+
+# Subfolders. A folder beside itself tells nothing; runs are of the folder that they are in, and do not replace pictures.
+fresh <<'END'
+a/home.png 8 8 255
+a/sub/x.png 8 8 255
+b/sub/x.png 8 8 255 1 2 0
+END
+compare 1
+says "sub/x.png: 1 pixel differs (1.56%) by at most 255, first at (1, 2)"
+compare 0 --no-recursive
+says "not compared: 1 picture in subfolders of a (--no-recursive)"
+run 0 compare a a
+says "expected and actual are the same folder"
+cp a/sub/x.png b/sub/x.png
+run 0 simulate "$scenes/single.yaml" --frames 3 -o a/sub/run.npz
+run 0 simulate "$scenes/single.yaml" --frames 3 --bomb-x 1 -o b/sub/run.npz
+compare 1 --report report
+says "physics changed first in sub/run.npz: from frame 0"
+has report/results.json '"name": "home.png", "verdict": "equal"'
+has report/results.json '"name": "sub/x.png", "verdict": "physics changed"'
+run 0 approve report
+says "replaced a/sub/run.npz"
+compare 0
+says "equal: 2 frames, 1 trajectory"
+echo text | tee a/run.npz >b/run.npz
+compare 0
+says "not compared: 1 .npz file without a trajectory"
+! grep -q "2 trajectories" out || fail "text was counted as a trajectory"
+rm b/run.npz b/home.png b/sub/x.png
+compare 2 # the folder has runs, but no pictures
+# Links within a folder are followed.
+fresh <<'END'
+a/home.png 8 8 255
+a/sub/x.png 8 8 255
+END
+ln -s ../home.png a/sub/again.png
+ln -s sub a/same
+cp a/home.png b/sub/again.png
+compare 0
+says "equal: 3 frames"
+
+# Metadata that changes the display of equal pixels.
+fresh <<<'a/home.png 8 8 255'
+while read -r chunk words; do
+    draw <<<"b/home.png 8 8 255 $chunk"
+    compare 0 --report report
+    says "metadata differs in 1 frame, first in home.png: $words"
+    has report/results.json '"notes": "metadata differs in 1 frame, first'
+    has report/report.html 'id="notes">metadata differs in 1 frame, first'
+    compare 1 --metadata strict --report report
+    says "verdict: metadata changed"
+    has report/results.json '"name": "home.png", "verdict": "metadata changed", "failed": true'
+    has report/junit.xml 'type="metadata changed"'
+done <<'END'
+gAMA=0001869f gAMA none and 0.99999
+eXIf=4d4d002a00000008000101120003000000010006000000000000 orientation 1 and 6
+bKGD=000000000000 bKGD none and set
+END
+run 0 approve report
+says "replaced a/home.png"
+compare 0 --metadata strict
+
+# Opaque white is not transparent white, in numbers and in the report: the larger of FLIP on white and on black.
+fresh <<'END'
+a/home.png 8 8 255
+b/home.png 8 8 "255 255 255 0"
+END
+compare 1 --report report
+says "64 pixels differ (100%) by at most 255"
+/usr/bin/python3 -c 'import json; assert abs(json.load(open("report/results.json"))["frames"][0]["flip"] - 0.9674) < 1e-3' ||
+    fail "FLIP of transparent white"
+
+# More than one accepted picture: the closest counts, and approve replaces it. A damaged one is not passed over.
+fresh <<'END'
+a/home.png 8 8 255
+a/home.1.png 8 8 9
+a/home.2.png 8 8 9 0*2 0 0
+b/home.png 8 8 9 0*2 0 0
+END
+compare 0
+says "1 frame passed by another accepted picture"
+draw <<<"b/home.png 8 8 9 0*3 0 0"
+compare 0 --fuzzy 9,0.05
+says "1 frame passed by another accepted picture"
+compare 1 --report report
+says "home.png: 1 pixel differs"
+says "closest accepted picture: home.2.png"
+cp a/home.png first.png
+run 0 approve report --only home.png
+says "replaced a/home.2.png"
+cmp -s a/home.png first.png || fail "approve replaced another picture"
+compare 0
+cp a/home.1.png second.png
+head -c 50 second.png >a/home.1.png
+cp b/home.png another.png
+for picture in a/home.png another.png; do # also where the first passes
+    cp $picture b/home.png
+    compare 2
+    complains "a/home.1.png: error: not a PNG file"
+done
+cp second.png a/home.1.png
+rm b/home.png
+cp a/home.png b/other.png
+compare 1 --report report
+says "3 frames missing"
+run 0 approve report --remove
+says "0 replaced, 1 added, 3 removed"
 finish

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The pytest plugin, the npm wrapper and the GitHub Action of golden/: each by the example of its page, and what else it does.
+# The pytest plugin and the npm wrapper of golden/: each by the example of its page, and what else it does.
 . "$(dirname "$0")/checks.sh"
 
 mkdir -p bin twinbox
@@ -260,72 +260,10 @@ test_npm() {
     fi
 }
 
-# Each step is a shell of its own, in the repository; lines of GITHUB_PATH come to the front of the path.
-test_action() {
-    /usr/bin/python3 - "$sources/golden/action/action.yml" <<'PYTHON' || fail "action.yml has no such steps"
-import re, sys
-lines, count = open(sys.argv[1]).read().split("\n"), 0
-for number, line in enumerate(lines):
-    run = re.match(r"( *)run: (.*)", line)
-    if run:
-        count += 1
-        below = [text[len(run[1]) + 2:] for text in lines[number + 1:]]
-        end = next(i for i, text in enumerate(lines[number + 1:]) if not text.startswith(run[1] + "  "))
-        open(f"step.{count}", "w").write("\n".join(below[:end]) if run[2] == "|" else run[2])
-assert count == 2
-PYTHON
-    grep -q 'uses: ./twinbox/golden/action$' "$sources/golden/action/README.md" || fail "the page uses another folder"
-    mkdir -p temporary
-    picture expected/home.png 50
-    picture actual/home.png 50
-    action 0 ""
-    picture actual/home.png 51
-    action 1 ""
-    says "::error file=expected/home.png,title="
-    grep -q 'home.png' summary || fail "no row in the summary: $(cat summary)"
-    [ -s twinbox-report/report.html ] || fail "no report"
-    action 0 "--tolerance 1"
-    # Options are split at spaces, unless quoted; no pattern becomes the names of files.
-    /usr/bin/python3 "$sources/tests/cli/png.py" "the mask.png" 20 20 "0 0 0 255" 3 4 "255 255 255 255"
-    action 0 '--tolerance 1 --mask "the mask.png"'
-    action 2 '--mask the*mask.png'
-    action 1 '--mask "the mask.png'
-    grep -q "unmatched double quote" err || fail "an open quote: $(cat err)"
-    # Without twinbox, what is built is on the path of the next step.
-    for stub in apt-get sudo cmake; do
-        printf '#!/bin/sh\necho %s "$@" >>"%s/calls"\n[ %s != sudo ] || "$@"\n' $stub "$folder" $stub >bin/$stub
-    done
-    chmod +x bin/apt-get bin/sudo bin/cmake
-    mkdir -p temporary/twinbox
-    mv bin/twinbox temporary/twinbox
-    action 0 "--tolerance 1"
-    mv temporary/twinbox/twinbox bin
-    grep -q "^cmake -S $sources/golden/action/../.. .*-DTWINBOX_PARTS=compare$" calls || fail "the build: $(cat calls)"
-    for package in $(grep -o 'lib[a-z]*-dev' "$sources/golden/action/action.yml"); do
-        "$sources/tests/setup" --list | grep -qw -- "$package" || fail "$package is not one of tests/setup"
-    done
-}
-# action STATUS OPTIONS
-action() {
-    local status=0
-    rm -rf twinbox-report
-    : >github.path
-    : >summary
-    : >out
-    for step in 1 2; do
-        [ $status -ne 0 ] || EXPECTED=expected ACTUAL=actual OPTIONS=$2 GITHUB_STEP_SUMMARY=$folder/summary \
-            GITHUB_ACTION_PATH=$sources/golden/action RUNNER_TEMP=$folder/temporary GITHUB_PATH=$folder/github.path \
-            PATH="$(tac github.path | tr '\n' ':')$folder/bin:/usr/bin:/bin" bash -e -o pipefail "$folder/step.$step" >>out 2>err
-        status=$?
-    done
-    equal "exit status of the action" $status "$1"
-}
-
-for client in action pytest npm; do
+for client in pytest npm; do
     case $client in
         pytest) needed="/usr/bin/python3 -m pytest --version" ;;
         npm) needed="node --version" ;;
-        *) needed=true ;;
     esac
     if $needed >/dev/null 2>&1; then
         test_$client

@@ -49,7 +49,7 @@ grep -q '"name": "box.npz", "verdict": "missing", "failed": true' alone/results.
 grep -q 'tests="3" failures="2"' alone/junit.xml || fail "no failures in junit.xml"
 cp -r expected before
 run 2 approve alone
-complains "1 expected file has no actual one: box.npz"
+complains "no actual one: box.npz"
 run 0 approve alone --remove
 says "0 replaced, 1 added, 1 removed"
 compare 0
@@ -71,13 +71,9 @@ says "1 of 2 trajectories differs"
 compare 0 --tolerance 0.0031
 says "passed: 1 frame, 2 trajectories, 1 of them not equal, but within tolerance"
 
-# Runs of other lengths or worlds are not near. A limit that limits nothing is refused.
+# Runs of other lengths or worlds are not near.
 run 0 simulate "$scenes/single.yaml" --frames 19 --no-bomb -o actual/same.npz
 compare 1 --tolerance 100.5
 rm expected/*.npz
-run 2 compare expected actual --tolerance 0.5
-complains "--tolerance: error: '0.5' is not a whole number from 0 to 255, and there are no runs to limit"
-run 2 compare expected/frame_000000.png actual/frame_000000.png --tolerance 0.5
-complains "--tolerance: error: '0.5' is not a whole number from 0 to 255"
 compare 0 --tolerance 3
 finish

@@ -16,8 +16,6 @@ for shell in bash zsh fish; do
     cmp -s out "${!script}" || fail "the installed script of $shell is another than that of twinbox completion"
     command -v $shell >/dev/null && { $shell -n "${!script}" || fail "$shell does not understand its script"; }
 done
-run 2 completion tcsh
-complains "'tcsh' is neither bash nor zsh nor fish"
 run 0 help completion
 says "Usage: twinbox completion"
 
@@ -126,17 +124,11 @@ if command -v fish >/dev/null; then
         equal "fish: $keys" "$(HOME=$PWD fish -N -c "source '$fish_script'; complete -C '${keys%<TAB>}'" | cut -f1 | head -1)" "$line"
     done <<'END'
 twinbox simu<TAB>|simulate
-twinbox simulate --meth<TAB>|--method
-twinbox simulate -m pair-net:netw<TAB>|pair-net:network=
 twinbox simulate -m pair-net:network=eng<TAB>|pair-net:network=engine.npz
 twinbox simulate --method=engine:acc<TAB>|--method=engine:accumulate=
-twinbox render --show ghosts,tr<TAB>|ghosts,trails
 twinbox render two<TAB>|two words.npz
 twinbox render -o d<TAB>|drawn/
 twinbox simulate height.yaml --set hei<TAB>|height=
-twinbox simulate scenes/pyramid_s<TAB>|scenes/pyramid_settled.yaml
-twinbox simulate pyramid_se<TAB>|pyramid_settled
-twinbox figure strip engine.npz -o fi<TAB>|figure.svg
 ~/../prefix/bin/twinbox completion fi<TAB>|fish
 END
 fi

@@ -93,16 +93,8 @@ complains "exec:./none: error: adapter failed: cannot be run: No such file or di
 echo text >text
 run 2 simulate fall.yaml --method "exec:./text"
 complains "cannot be run: Permission denied"
-run 2 simulate fall.yaml --method exec
-complains "exec: error: needs a program"
-run 2 simulate fall.yaml --method "exec:,k=3"
-complains "exec: error: needs a program"
-run 2 simulate fall.yaml --method "$(method json),step_limit=0"
-complains "step_limit"
 run 2 simulate fall.yaml --method "$(method settings),k=8,mode=a=b,name=Fall"
 complains "says: {'k': '8', 'mode': 'a=b'}"
-run 2 solve fall.yaml --frame 3 -m "$(method json)"
-complains "is not a contact solver"
 
 # A stored run names its method; only a program that the command line names is started.
 run 2 compare json.npz binary.npz --scene fall.yaml
@@ -150,8 +142,6 @@ PYTHON
 run 0 export "$scenes/stack.yaml" --flat -o flat.json
 says "stack: 11 bodies and a bomb -> flat.json"
 run 0 export "$scenes/stability/arch.yaml" --flat --set friction=0.7 -o arch.json
-run 2 export "$scenes/stack.yaml" --flat -o flat.csv
-run 2 export json.npz --set friction=1 -o json.csv
 /usr/bin/python3 - <<'PYTHON' || fail "a flat scene"
 import json
 flat, arch = json.load(open("flat.json")), json.load(open("arch.json"))

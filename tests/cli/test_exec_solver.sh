@@ -105,8 +105,6 @@ run 2 simulate rest.yaml --method "exec:/usr/bin/python3 $solver good"
 complains "answers impulses, which 'exec-solver:PROGRAM' takes"
 run 2 simulate rest.yaml --method "$(method settings),k=8,name=Warm,run_limit=3"
 complains "says: {'k': '8', 'run_limit': '3'}"
-run 2 simulate rest.yaml --method exec-solver
-complains "exec-solver: error: needs a program"
 run 2 solve impact.npz -m "exec-solver:./none"
 complains "exec-solver:./none: error: adapter failed: cannot be run: No such file or directory"
 run 2 compare mine.npz engine.npz --scene "$scenes/stack.yaml"

@@ -8,7 +8,7 @@ for golden in "$sources"/golden/trajectories/*.npz; do
     name=$(basename "$golden" .npz)
     scene=${name%%-*}
     method=${name#*-}
-    steps=$(sed -n "s/^ *renew $scene \([0-9]*\) .*/\1/p" "$sources/golden/renew")
+    steps=$(sed -n "s/^ *renew $scene \([0-9]*\)$/\1/p" "$sources/golden/renew")
     run 0 simulate "$scenes/$scene.yaml" --frames "$steps" --method "$method" -o "$name.npz"
     run 0 compare "$golden" "$name.npz"
     cat out

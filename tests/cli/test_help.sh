@@ -45,12 +45,6 @@ run 0 compare closed.npz closed.npz
 
 run 2
 complains "Usage: twinbox COMMAND"
-run 2 simulat
-complains "twinbox: error: 'simulat' is not a command; did you mean 'simulate'?"
-run 2 xyz
-complains "twinbox: error: 'xyz' is not a command; known: new, check, simulate, methods, import, render"
-run 2 "$(head -c 100000 /dev/zero | tr '\0' x)"
-[ "$(wc -c <err)" -lt 500 ] || fail "a long command is echoed in full"
 for version in --version -V "simulate --version" "chart -V"; do
     run 0 $version
     says "twinbox "
@@ -70,12 +64,6 @@ run 0 help simulate
 cp out by_help
 run 0 simulate --help
 cmp -s by_help out || fail "help simulate differs from simulate --help"
-run 2 help simulat
-complains "did you mean 'simulate'?"
-run 2 simulate "$scenes/stack.yaml" --method interor
-complains "method: error: 'interor' is not a method; did you mean 'interior'?"
-run 2 simulate "$scenes/stack.yaml" --method interior:naer=1
-complains "'naer' is not a setting; did you mean 'near'?"
 
 run 0 methods
 says "engine"

@@ -15,14 +15,6 @@ figures() {
     done
 }
 
-run 2 paper
-complains "-o DIR is needed"
-run 2 paper -o none --scenes nowhere
-complains "nowhere/single.yaml: error:"
-run 2 paper -o none --seed x --scenes "$scenes"
-complains "--seed"
-run 3 paper -o /proc/none --quick --scenes "$scenes"
-
 # A study that is interrupted keeps what it has done. A sanitizer would take minutes for a study: it sees one begin and be
 # interrupted, and every part of a study in tests/paper.
 part=7
@@ -41,14 +33,6 @@ run_undrawn quick/figures/laws.png paper -o quick --quick --scenes "$scenes"
 run 0 paper -o quick --quick --scenes "$scenes"
 equal "a network that was trained" "$(stat -c %i quick/networks/baseline.npz)" "$before"
 says "quick/report.html"
-equal "header of table1" "$(head -1 quick/table1.csv)" "network,target,optimizer,iteration,test,train,constant"
-equal "header of rates" "$(head -1 quick/rates.csv)" \
-    "network,scene,definition,phase,rate,constant,engine1,engine4,engine10,unconverged"
-equal "header of closed_loop" "$(head -1 quick/closed_loop.csv)" \
-    "network,scene,frames_until_apart,penetration_max,momentum_error,energy_ratio,unconverged,us_step,us_step_engine"
-equal "header of system_scores" "$(head -1 quick/system_scores.csv)" \
-    "system,method,scene,launches,frames,frames_engine,frames_converged,moved,penetration_max,energy_created,momentum_error,fallback_share,unconverged,us_step,us_step_engine"
-equal "header of systems" "$(head -1 quick/systems.csv)" "system,claim,source,measured,figure,holds"
 for name in loop narrow-phase data scenes loss factors rates closed-loop laws transfer; do
     [ -s quick/figures/$name.png ] && [ -s quick/figures/$name.svg ] || fail "no figure $name"
 done
@@ -129,7 +113,7 @@ complains "belongs to shards of a study"
 timed=$(grep -l "^name closed-loop-stack" shards/shards/0000/*)
 sed -i '1,/^$/s/^cpu .*/cpu Another/' "$timed"
 run 2 merge shards
-complains "times were measured on different processors"
+complains "different processors"
 run 2 merge shards --times first
-complains "a report needs times of one: delete those pieces"
+complains "needs times of one"
 finish

@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Where methods fail: the printed table, any number of threads, an interrupted run, refused input.
+# Where methods fail: the printed table; a small stack; a map alone. (Any number of threads: test_threads.sh.)
 . "$(dirname "$0")/checks.sh"
 
 few="--scenes $scenes --study bomb_speed --study heavy_on_one --study tilted_stack --methods engine:k=4,engine:k=10,warm=off,scene-net"
@@ -18,7 +18,7 @@ if ! sanitized && "${hidden[@]}" true 2>/dev/null; then # sanitizers read it, to
     complains "/proc/self/exe: error: "
 fi
 
-OMP_NUM_THREADS=1 run 0 stability $few -o one
+run 0 stability $few -o one
 says "bomb_speed: speed in m/s, holds | fails"
 says "heavy_on_one: ratio, holds | fails"
 says "  scene-net                not applicable"
@@ -30,10 +30,6 @@ equal "lines a method with two settings" "$(grep -cE '^  engine:k=10,warm=off +[
 tables="fallbacks.csv maps.csv refusals.csv rest.csv stability.csv unconverged.csv"
 equal "files" "$(echo $(ls one))" "borders.png borders.svg borders.txt $tables"
 equal "maps" "$(wc -l <one/maps.csv)" 1
-OMP_NUM_THREADS=3 run 0 stability $few -o three
-for table in stability maps refusals fallbacks rest; do
-    cmp -s one/$table.csv three/$table.csv || fail "three threads write another $table.csv"
-done
 
 # A map alone has no borders to print.
 run 0 stability --scenes "$scenes" --quick --study speed_thickness --methods engine -o map
@@ -51,34 +47,4 @@ says "  interior                 20 settles, "
 says "  pair-net                 1 explodes"
 equal "runs that stay in place" \
     "$(awk -F, '$2 == "interior" && $7 == "settles" && $8 == 10000 && $9 < 0.001' rest/rest.csv | wc -l)" 10
-
-# An interrupted study continues with the pieces that are not there; one that is there is read.
-strike INT 130 "ls part/parts-*/0000/0000000" stability $few -o part
-complains "stopped; finished pieces are kept"
-equal "what was done is kept" "$(grep -h ^name part/parts-*/0000/0000000)" "name heavy_on_one 1-3"
-cp part/parts-*/0000/0000000 piece
-sed -i 's/engine,k=4,ratio,,[0-9.]*/engine,k=4,ratio,,1.5/' part/parts-*/0000/0000000
-run 2 stability $few -o part
-complains "0000000: error: is damaged or cut off; delete it"
-cp piece part/parts-*/0000/0000000
-run 0 stability $few -o part
-for table in stability maps refusals fallbacks rest; do
-    cmp -s one/$table.csv part/$table.csv || fail "an interrupted run ends with another $table.csv"
-done
-equal "files" "$(echo $(ls part))" "borders.png borders.svg borders.txt $tables"
-
-run 2 stability --scenes "$scenes" --study nothing -o none
-complains "'nothing' is not a study or map; known: stack_height"
-run 2 stability --scenes "$scenes" --methods magic -o none
-complains "'magic' is not a method; known: "
-run 2 stability --scenes "$scenes" --methods engine,engine -o none
-complains "is given twice"
-run 2 stability --study bomb_speed -o none
-complains "scenes/stability/bomb_speed.yaml"
-run 2 stability
-complains "-o DIR is needed"
-run 2 stability stack_height -o none
-complains "stack_height: error: --vary NAME is needed"
-[ -e none ] && fail "what was refused has left a folder"
-run 3 stability --scenes "$scenes" --study bomb_speed --methods engine -o /proc/none
 finish

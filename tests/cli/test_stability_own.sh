@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Borders and maps of a scene file: the figures of the table's studies, the slope's law, resumed runs, refused input.
+# Borders and maps of a scene file: the figures of the table's studies, the slope's law.
 . "$(dirname "$0")/checks.sh"
 ramp=$scenes/stability/friction_ramp.yaml
 
@@ -87,71 +87,4 @@ says "pieces: 30, of which 30 were measured on one core each of "
 says " 30 files, "
 says "if the shared file system makes or opens 1000 files a second:"
 equal "cores that are used" "$(awk '$1 ~ /^[0-9]+$/ { print $1, $2 }' out | xargs)" "1 1 10 10 1000 30 100000 30"
-! brief || finish
-
-# A run that is interrupted continues, and another range begins again.
-two="--vary ratio=1:50 --vary friction --methods engine:k=4,engine:k=10,momentum"
-cat >five.yaml <<'YAML'
-parameters: {ratio: {value: 5, from: 1, to: 100}, friction: {value: 0.4, from: 0.2, to: 0.8}}
-gravity: [0, -10]
-dt: 1/60
-iterations: 10
-frames: 900
-bodies:
-  - {static: true, size: [100, 20], position: [0, -10], friction: $friction}
-  - {pattern: stack, count: 5, spacing: [0, 1], mass: 1, size: [1, 1], position: [0, 0.5], friction: $friction}
-  - {mass: $ratio, size: [1, 1], position: [0, 5.5], friction: $friction}
-YAML
-run 0 stability five.yaml $two -o whole
-strike INT 130 "ls part/parts-*/0000/0000000" stability five.yaml $two -o part
-complains "stopped; finished pieces are kept"
-[ -s "$(ls part/parts-*/0000/0000000)" ] || fail "a finished piece is not kept"
-run 0 stability five.yaml $two -o part
-for table in maps stability; do
-    cmp -s whole/$table.csv part/$table.csv || fail "an interrupted run ends with another $table.csv"
-done
-
-# Refused before the work, so that no folder is made.
-refused() {
-    local message=$1
-    shift
-    run 2 stability "$@" -o none
-    complains "$message"
-}
-cat >walls.yaml <<'YAML'
-parameters:
-  gap: {value: 2, from: 0.5, to: 3, unit: m}
-  rows: {value: 2, from: 1, to: 4, unit: "m;", whole: on}
-gravity: [0, -10]
-dt: 1/60
-iterations: 10
-frames: 60
-bodies:
-  - {static: true, size: [100, 20], position: [0, -10]}
-  - {mass: 1, size: [1, 1], position: [0, 0.5]}
-  - {pattern: stack, count: $rows, spacing: [0, 1], mass: 1, size: [1, 1], position: [$gap, 0.5]}
-YAML
-refused "'gab' is not a parameter of the scene; did you mean 'gap'?" walls.yaml --vary gab
-refused "'height' is not a parameter of the scene; known: gap, rows" walls.yaml --vary height
-refused "'gap=0:2' is not within the scene's bounds of gap: 0.5 to 3 m" walls.yaml --vary gap=0:2
-refused "'gap=2:4' is not within" walls.yaml --vary gap=2:4
-refused "'gap=2' is not NAME=FROM:TO or NAME=FROM:TO:STEP" walls.yaml --vary gap=2
-refused "'gap=1:2:0' is not NAME=FROM:TO" walls.yaml --vary gap=1:2:0
-refused "'gap=1:2:0.3': TO is not a whole number of steps from FROM" walls.yaml --vary gap=1:2:0.3
-refused "'gap=1:2:0.001' has 1001 values; at most 128 are allowed" walls.yaml --vary gap=1:2:0.001
-refused "'gap=1:2:1e-300' has " walls.yaml --vary gap=1:2:1e-300
-refused "with FROM less than TO" walls.yaml --vary gap=2:2
-refused "the unit 'm;' of rows cannot stand in a table" walls.yaml --vary rows
-refused "this is the scene for --vary with gap = 0.5" walls.yaml --vary gap
-refused "the parameter 'gap' is given twice" walls.yaml --vary gap=1:2 --vary gap=1:3
-refused "at most 2 parameters" "$ramp" --vary slope --vary friction --vary slope
-refused "'height' is not a parameter of the scene; known: iterations, dt, friction, bomb_x, bomb_y, bomb_mass, bomb_speed" \
-    "$scenes/stack.yaml" --vary height
-refused "bomb_mass must be a number from 1e-06 to 1e+09 kg (set to -1)" "$scenes/stack.yaml" --vary bomb_mass=-1:1
-refused "'bomb_x' is not a parameter of the scene; known: gap, rows, iterations, dt, friction" walls.yaml --vary bomb_x
-refused "--vary NAME is needed" "$ramp"
-refused "a scene is needed" --vary slope
-refused "is for the studies without SCENE" "$ramp" --vary slope --study at_rest
-refused "nowhere.yaml: error:" nowhere.yaml --vary slope
-[ -e none ] && fail "what was refused has left a folder"
 finish

@@ -74,21 +74,6 @@ checks=$((checks + 1))
 
 ! brief || finish
 
-# Interrupted while pages are written, it continues with them: those that are done are read, not written again.
-paged="--scenes $scenes -o part --pages --study slope_friction --methods $methods"
-strike INT 130 "grep '^map_pages:' part/parts-*/0000/0000000" stability $paged
-[ -e part/maps.csv ] && [ ! -e part/stability.html ] || fail "pages were interrupted: $(ls part)"
-first=$(grep -l '^map_pages:' part/parts-*/0000/0000000)
-cp "$first" done
-truncate -s -1 "$first"
-run 2 stability $paged
-complains "$first: error: is damaged or cut off; delete it"
-cp done "$first"
-run 0 stability $paged
-sed -n 's/^map_pages://p' done >rows
-equal "rows of the first part" "$(sed -n "2,$(($(wc -l <rows) + 1))p" part/map_pages.csv)" "$(cat rows)"
-equal "what is left behind" "$(ls part | grep -c part)" 0
-
 # A scene of one's own, whose steps are thinned to 60 a second.
 run 0 stability "$scenes/stability/time_step.yaml" --vary height=2:40 --vary rate=30:240 --quick --methods engine \
     -o own --pages

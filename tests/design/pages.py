@@ -8,7 +8,7 @@
 - README.md keeps its limits.
 - Every file of src, tests, scenes, golden or shaders that a page names exists, or a block of the page writes it. NAME,
   ROOM, COMMAND and WHAT stand for any text. So does every test that a page names.
-- Every option after `twinbox COMMAND` in a shell block, a sentence or an example of --help is one of that command.
+- Every option after `twinbox COMMAND` in a shell block or a sentence is one of that command. (Examples of --help: cli/examples.)
 - With `blocks`, marked blocks run instead, page by page from top to bottom, in a fresh copy of the sources with twinbox on
   PATH, as a user would type them. The marks are words after the language of a block and are invisible when rendered:
 
@@ -143,15 +143,6 @@ def check_commands(page):
             check_options(f"{page.path}:{block.line}", block.text())
 
 
-def check_examples():
-    """Of the help of all commands, in lines that are not wrapped."""
-    environment = {**os.environ, "ARGP_HELP_FMT": "rmargin=1000"}
-    listed = subprocess.run([twinbox, "--help"], capture_output=True, text=True).stdout
-    for command in re.findall(r"^  ([a-z]+) ", listed, re.MULTILINE):
-        done = subprocess.run([twinbox, command, "--help"], env=environment, capture_output=True, text=True)
-        check_options(f"twinbox {command} --help", done.stdout.partition("Example:")[2])
-
-
 def is_output(shown, printed):
     """Whether the lines are those printed; "..." stands for any text, alone in a line for any lines."""
     if not shown:
@@ -243,7 +234,6 @@ def check_pages():
     for page in pages.values():
         check_paths(page)
         check_commands(page)
-    check_examples()
 
 
 check_blocks() if sys.argv[3:] == ["blocks"] else check_pages()

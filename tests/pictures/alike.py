@@ -33,6 +33,8 @@ CASES = [
     ("stack", 70, "overlay", "", "light", ""),
     ("stack", 70, "overlay", "trails", "dark", "0,2,6,5"),
     ("stack", 30, "difference", "", "light", "0,3,4,3"),
+    ("single", 33, "split", "", "light", ""),
+    ("pyramid", 30, "split", "", "light", ""),
     ("pyramid", 60, "difference", "velocities", "dark", ""),
     ("pyramid", 60, "split", "ghosts,contacts,impulses", "light", "0,1.5,6,4"),
     ("pyramid_settled", 200, "split", "distance", "light", ""),
