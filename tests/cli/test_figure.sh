@@ -16,7 +16,6 @@ kind png strip engine.npz momentum.npz --at 0.2,0.5,0.9
 kind pdf annotated engine.npz momentum.npz --dpi 60
 kind pdf divergence engine.npz momentum.npz --scene "$scenes/stack.yaml"
 kind svg strobe engine.npz --moments 5 --dpi 60
-kind svg network "$scenes/networks/pair-net.npz"
 kind pdf narrow-phase engine.npz
 
 # 85 mm at 300 dots per inch, and no dates or paths.
@@ -52,17 +51,17 @@ refused() {
     run 2 figure "$@"
     complains "$message"
 }
-refused "'picture' is not a kind of figure; known: strip, annotated, divergence, strobe, network, narrow-phase" \
+refused "'picture' is not a kind of figure; known: strip, annotated, divergence, strobe, narrow-phase" \
     picture engine.npz -o a.png
 refused "a.gif: error: the name of a figure must end in .png, .svg or .pdf" strip engine.npz -o a.gif
 refused "error: the name of a figure must end in" strip engine.npz -o ./png
 refused "needed" strip engine.npz
 refused "--camera: error: does not apply to the kind divergence" divergence engine.npz momentum.npz --camera 0,0,1,1 -o a.png
-refused "--view-from: error: does not apply to the kind network" network engine.npz --view-from engine.npz -o a.png
+refused "--view-from: error: does not apply to the kind divergence" divergence engine.npz momentum.npz --view-from engine.npz -o a.png
 refused "cannot be combined with --camera" strip engine.npz --camera 0,0,1,1 --view-from engine.npz -o a.png
 refused "strobe needs 1 run (.npz), not 2" strobe engine.npz momentum.npz -o a.png
 refused "divergence needs at least 2 runs (.npz), not 1" divergence engine.npz -o a.png
-refused "network needs 1 network (.npz), not 0" network -o a.png
+refused "strip needs at least 1 runs (.npz), not 0" strip -o a.png
 refused "only 7 arguments can be given" strip 1 2 3 4 5 6 7 -o a.png
 refused "--width: error: 'wide'" strip engine.npz -o a.png --width wide
 refused "--width: error: '39'" strip engine.npz -o a.png --width 39
@@ -92,9 +91,6 @@ refused "there is no body 99" narrow-phase engine.npz -o a.png --bodies 1,99
 refused "cannot be shown beside engine.npz: bodies: 12 and 3" strip engine.npz "$sources/golden/trajectories/single-engine.npz" -o a.png
 refused "never diverges from engine.npz" divergence engine.npz engine.npz -o a.png
 refused "single.yaml: error: is not the scene" divergence engine.npz momentum.npz --scene "$scenes/single.yaml" -o a.png
-refused "engine.npz: error: contains no network" network engine.npz -o a.png
-head -c 900 "$scenes/networks/pair-net.npz" >cut.npz
-refused "cut.npz: error:" network cut.npz -o a.png
 head -c 900 engine.npz >cut.npz
 refused "cut.npz: error:" strip cut.npz -o a.png
 refused "nowhere.npz" strip nowhere.npz -o a.png
@@ -136,13 +132,13 @@ for layout in "$sources"/golden/figures/layout/*.svg; do
 done
 # Bytes of every kind in every format: equal on Debian 12 and 13.
 equal "figures with other bytes" "$(diff "$sources/golden/figures/figures.sha256" page/figures.sha256)" ""
-equal "files hashed" "$(wc -l <page/figures.sha256)" 24
+equal "files hashed" "$(wc -l <page/figures.sha256)" 21
 cmp -s "$sources/golden/figures/README.md" page/README.md || fail "golden/figures/README.md is not what golden/figures/draw writes"
 
 /usr/bin/python3 - <<'PYTHON' || fail "an SVG is not XML"
 import xml.dom.minidom
 words = {}
-for name in "strip annotated divergence strobe network narrow-phase".split():
+for name in "strip annotated divergence strobe narrow-phase".split():
     svg = xml.dom.minidom.parse(f"page/layout/{name}.svg").documentElement
     assert svg.getAttribute("width") in ("85.000mm", "174.000mm"), svg.getAttribute("width")
     words[name] = [text.firstChild.data for text in svg.getElementsByTagName("text")]

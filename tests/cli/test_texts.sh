@@ -58,8 +58,6 @@ for words in "Moteur" "Сеть → Δx"; do grep -qF ">$words</text>" named.svg
 grep -q ">engine</text>" named.svg && fail "the name beside its caption"
 run 2 figure strip "$engine" -o none.svg --caption a --caption b
 complains "--caption: error: 2 captions for 1 run"
-run 2 figure network "$scenes/networks/pair-net.npz" -o none.svg --caption a
-complains "--caption: error: does not apply to the kind network"
 run 2 figure strip "$engine" -o none.svg --caption "日"
 complains "--caption: error: the font has no character"
 [ ! -e none.svg ] || fail "something was written"
