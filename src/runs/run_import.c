@@ -283,16 +283,8 @@ static bool is_absent(const CsvRows *rows, int column) { return rows->field[colu
 
 /* The column that an unknown name probably means, among those that the file lacks; NULL: none. */
 static const char *meant(const CsvRows *rows, const char *name) {
-    static const struct {
-        const char *other;
-        int column;
-    } others[] = {{"step", COL_FRAME}, {"id", COL_BODY},       {"theta", COL_ANGLE},  {"rotation", COL_ANGLE},
-                  {"t", COL_TIME},     {"spin", COL_OMEGA},    {"w", COL_OMEGA},      {"pos_x", COL_X},
-                  {"pos_y", COL_Y},    {"velocity_x", COL_VX}, {"velocity_y", COL_VY}};
     const char *missing[COL_COUNT];
     int count = 0;
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (is_absent(rows, others[i].column) && strcmp(others[i].other, name) == 0) return names[others[i].column];
     for (int i = 0; i < COL_COUNT; i++)
         if (is_absent(rows, i)) missing[count++] = names[i];
     return strlen(name) > 3 ? nearest_word(name, missing, count) : NULL;

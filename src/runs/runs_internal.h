@@ -98,14 +98,11 @@ enum { OF_FRAMES = -1, OF_STEPS = -2, OF_BODIES = -3, OF_CONTACTS = -4 };
 /* Arrays that come together or not at all. */
 enum { GROUP_NONE, GROUP_VELOCITIES, GROUP_CONTACTS, GROUP_VERDICT, RUN_ARRAY_GROUPS };
 
-enum { RUN_ARRAY_OTHERS = 8 };
-
 typedef struct RunArray {
     const char *name;
     NpzType type;
     int rank, shape[3];
     int group;
-    const char *others[RUN_ARRAY_OTHERS]; /* what other programs call it, where that is not near its name */
 } RunArray;
 
 extern const RunArray run_arrays[RUN_ARRAYS];
