@@ -143,9 +143,6 @@ void csv_rows_rewind(CsvRows *rows);
 /* Line of the row of a body in a frame; 0: none. */
 int csv_rows_find(CsvRows *rows, int64_t frame, int64_t body);
 
-/* "path:line: error: text". Returns false. */
-bool csv_rows_error(const CsvRows *rows, int line, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
-
 /* A run while it is read from CSV. Part of csv_run. */
 
 typedef struct CsvImport {
