@@ -345,8 +345,3 @@ bool render_study(const Trajectory *const *panels, int panel_count, const Render
     if (result == &ignored) free(ignored.hashes);
     return ok;
 }
-
-bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                     RenderResult *result, const Progress *progress, Error *error) {
-    return render_study(panels, panel_count, options, NULL, result, progress, error);
-}

@@ -74,13 +74,6 @@ strike() {
     equal "exit status of $1 after $signal" $? "$wanted"
 }
 
-# kill_shard PIECES ARGUMENT...: kills the command once that folder has two files. Sets kept: how many it has.
-kill_shard() {
-    local pieces=$1
-    OMP_NUM_THREADS=1 strike KILL 137 "[ \$(ls '$pieces' | wc -l) -ge 2 ]" "${@:2}"
-    kept=$(ls "$pieces" | wc -l)
-}
-
 # run_undrawn PICTURE ARGUMENT...: a folder in the place of the picture lets drawing fail, and so the command.
 run_undrawn() {
     mkdir -p "$1"
