@@ -122,3 +122,21 @@ static inline Image *image_of(const char *path) {
     assert_ok(image != NULL, error);
     return image;
 }
+
+/* Empty: the file has no such text. */
+static inline void text_of_image(const char *path, const char *key, char *value, size_t size) {
+    Error error = {0};
+    size_t bytes;
+    uint8_t *data = image_load_png(path, &bytes, &error);
+    assert_ok(data != NULL && image_find_text(data, bytes, key, value, size, &error), error);
+    free(data);
+}
+
+/* A run as trajectory_write() would, in any format. */
+static inline bool write_as(const Trajectory *run, TrajectoryFormat format, const char *path, Error *error) {
+    TrajectoryStream *stream = trajectory_stream_create(run, run->frames, format, path, error);
+    const bool done =
+        stream != NULL && trajectory_stream_add(stream, run, error) && trajectory_stream_finish(stream, error);
+    trajectory_stream_destroy(stream);
+    return done;
+}

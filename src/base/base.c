@@ -2,6 +2,8 @@
 /* What every file may need, in the order of base.h; settings and numbers from text are in parse.c. */
 #include "base/base.h"
 
+#include "base/numbers.h"
+
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -194,8 +196,6 @@ unsigned control_in_text(const char *text) {
 
 enum { WORD_SIZE = 32 };
 
-static size_t smaller(size_t a, size_t b) { return a < b ? a : b; }
-
 /* The edit distance (Levenshtein 1966), computed row by row. */
 static size_t edits(const char *a, const char *b) {
     size_t row[WORD_SIZE], columns = strlen(b);
@@ -206,7 +206,7 @@ static size_t edits(const char *a, const char *b) {
         for (size_t j = 0; j < columns; j++) {
             size_t replaced = diagonal + (a[i] != b[j]);
             diagonal = row[j + 1];
-            row[j + 1] = smaller(replaced, 1 + smaller(row[j], diagonal));
+            row[j + 1] = size_min(replaced, 1 + size_min(row[j], diagonal));
         }
     }
     return row[columns];

@@ -9,10 +9,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool fail_at(const char *path, int line, int column, Error *error, const char *what) {
-    char where[1280];
-    snprintf(where, sizeof where, "%.1200s:%d:%d", path, line, column);
+PRINTF_LIKE(5, 0)
+static bool set_error(const char *path, int line, int column, Error *error, const char *format, va_list arguments) {
+    char where[1280], what[512];
+    const int used = snprintf(where, sizeof where, "%.1200s:%d", path, line);
+    if (column > 0) snprintf(where + used, sizeof where - (size_t)used, ":%d", column);
+    vsnprintf(what, sizeof what, format, arguments);
     return error_input(error, where, "%s", what);
+}
+
+bool csv_fail(const char *path, int line, int column, Error *error, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    set_error(path, line, column, error, format, arguments);
+    va_end(arguments);
+    return false;
 }
 
 /* UTF-8: the bytes after a character's first do not count. */
@@ -23,11 +34,8 @@ static bool check_text(const char *path, const char *text, size_t size, Error *e
     for (size_t i = 0; i < size; i++) {
         unsigned char c = (unsigned char)text[i];
         bool line_end = c == '\n' || (c == '\r' && text[i + 1] == '\n');
-        if (!line_end && (c < 0x20 || c == 0x7f)) {
-            char what[64];
-            snprintf(what, sizeof what, "control character 0x%02x", (unsigned)c);
-            return fail_at(path, line, column, error, what);
-        }
+        if (!line_end && (c < 0x20 || c == 0x7f))
+            return csv_fail(path, line, column, error, "control character 0x%02x", (unsigned)c);
         column += begins_character(text[i]);
         if (c != '\n') continue;
         line++;
@@ -46,7 +54,7 @@ typedef struct Reader {
 } Reader;
 
 static bool fail(const Reader *reader, int column, Error *error, const char *what) {
-    return fail_at(reader->csv->path, reader->csv->rows + 1, column, error, what);
+    return csv_fail(reader->csv->path, reader->csv->rows + 1, column, error, "%s", what);
 }
 
 static char step(Reader *reader) {
@@ -101,11 +109,8 @@ static bool take_field(Reader *reader, char *separator, Error *error) {
 static bool take_row(Reader *reader, Error *error) {
     Csv *csv = reader->csv;
     reader->column = 1;
-    if (csv->rows > reader->max_rows) {
-        char what[64];
-        snprintf(what, sizeof what, "the table has more than %d rows", reader->max_rows);
-        return fail(reader, 1, error, what);
-    }
+    if (csv->rows > reader->max_rows)
+        return csv_fail(csv->path, csv->rows + 1, 1, error, "the table has more than %d rows", reader->max_rows);
     if (*reader->at == '\n' || *reader->at == '\r') return fail(reader, 1, error, "the line is empty");
     size_t first = reader->count;
     char separator = ',';
@@ -152,12 +157,11 @@ static const CsvField *field_at(const Csv *csv, int row, int field) {
 const char *csv_text(const Csv *csv, int row, int field) { return field_at(csv, row, field)->text; }
 
 bool csv_error(const Csv *csv, int row, int field, Error *error, const char *format, ...) {
-    char what[512];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
+    set_error(csv->path, row + 1, field_at(csv, row, field)->column, error, format, arguments);
     va_end(arguments);
-    return fail_at(csv->path, row + 1, field_at(csv, row, field)->column, error, what);
+    return false;
 }
 
 CsvShown csv_show(const char *text) {

@@ -29,7 +29,10 @@ void csv_free(Csv *csv);
 
 const char *csv_text(const Csv *csv, int row, int field);
 
-/* Sets an input error "path:line:column: error: text". Returns false. */
+/* Sets an input error "path:line:column: error: text"; with column 0 "path:line: error: text". Returns false. */
+bool csv_fail(const char *path, int line, int column, Error *error, const char *format, ...) PRINTF_LIKE(5, 6);
+
+/* The same at a field. */
 bool csv_error(const Csv *csv, int row, int field, Error *error, const char *format, ...) PRINTF_LIKE(5, 6);
 
 /* A text for a message: all but printable ASCII becomes '?', and a long text ends in "...". */

@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"
+#include "base/numbers.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -82,12 +83,10 @@ static bool pack_put_stored(Pack *pack, const void *data, size_t size, Error *er
     return put_bytes(pack, head, sizeof head, error) && put_bytes(pack, data, size, error);
 }
 
-static size_t least(size_t a, size_t b) { return a < b ? a : b; }
-
 /* A full flush ends the sample at a whole byte, and nothing after it refers back: it may be dropped. */
 static bool put_block(Pack *pack, Error *error) {
     unsigned char out[2 * SAMPLE_SIZE];
-    const size_t size = pack->block_used, sample = least(size, SAMPLE_SIZE);
+    const size_t size = pack->block_used, sample = size_min(size, SAMPLE_SIZE);
     pack->block_used = 0;
     pack->deflating.next_in = pack->block;
     pack->deflating.avail_in = (unsigned)sample;
@@ -97,13 +96,13 @@ static bool put_block(Pack *pack, Error *error) {
                (size == sample || deflate_all(pack, pack->block + sample, size - sample, Z_FULL_FLUSH, error));
     bool done = true;
     for (size_t at = 0; done && at < size; at += STORED_MAX)
-        done = pack_put_stored(pack, pack->block + at, least(size - at, STORED_MAX), error);
+        done = pack_put_stored(pack, pack->block + at, size_min(size - at, STORED_MAX), error);
     return done;
 }
 
 static bool put_large(Pack *pack, const unsigned char *data, size_t size, Error *error) {
     for (size_t at = 0, piece; at < size; at += piece) {
-        piece = least(size - at, BLOCK_SIZE - pack->block_used);
+        piece = size_min(size - at, BLOCK_SIZE - pack->block_used);
         memcpy(pack->block + pack->block_used, data + at, piece);
         pack->block_used += piece;
         if (pack->block_used == BLOCK_SIZE && !put_block(pack, error)) return false;

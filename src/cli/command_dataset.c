@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* twinbox dataset: records contact problems with their solutions, whole or in shards. */
+/* twinbox dataset: records contact problems with their solutions. */
 #include "base/base.h"
 #include "base/file.h"
 #include "cli/cli.h"

@@ -136,17 +136,13 @@ static bool refuse(const char *option, const FigureKind *kind, Error *error) {
 }
 
 static bool check_inputs(const FigureKind *kind, const Options *options, Error *error) {
-    int least = kind->max_runs == 0 ? 1 : kind->min_runs, most = kind->max_runs == 0 ? 1 : kind->max_runs;
-    if (options->input_count >= least && options->input_count <= most) return true;
-    return error_input(error, "figure", "%s needs %s%d%s, not %d", kind->name, least < most ? "at least " : "", least,
-                       kind->max_runs == 0 ? " network (.npz)"
-                       : most == 1         ? " run (.npz)"
-                                           : " runs (.npz)",
-                       options->input_count);
+    if (options->input_count >= kind->min_runs && options->input_count <= kind->max_runs) return true;
+    return error_input(error, "figure", "%s needs %s%d %s (.npz), not %d", kind->name,
+                       kind->min_runs < kind->max_runs ? "at least " : "", kind->min_runs,
+                       kind->max_runs == 1 ? "run" : "runs", options->input_count);
 }
 
-static bool check_captions(const FigureKind *kind, const Options *options, Error *error) {
-    if (options->caption_count > 0 && kind->max_runs == 0) return refuse("--caption", kind, error);
+static bool check_captions(const Options *options, Error *error) {
     if (options->caption_count > options->input_count)
         return error_input(error, "--caption", "%d captions for %d run%s", options->caption_count, options->input_count,
                            options->input_count == 1 ? "" : "s");
@@ -159,7 +155,7 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
     const FigureSpec *figure = &options->figure;
     SketchFormat format;
     if (!sketch_format(options->output, &format, error) || !check_inputs(kind, options, error) ||
-        !check_captions(kind, options, error))
+        !check_captions(options, error))
         return false;
     if (options->outlines && format != SKETCH_SVG)
         return error_input(error, "--outlines", "is for SVG, not for %s", options->output);
@@ -174,8 +170,8 @@ static bool check_options(const FigureKind *kind, const Options *options, Error 
         return error_input(error, "--bodies", "cannot be combined with --camera");
     if (figure->body_count > 0 && kind->max_bodies == 0) return refuse("--bodies", kind, error);
     if (figure->body_count > 0 && (figure->body_count < kind->min_bodies || figure->body_count > kind->max_bodies))
-        return error_input(error, "--bodies", "%s takes %d to %d bodies (got %d)", kind->name, kind->min_bodies,
-                           kind->max_bodies, figure->body_count);
+        return error_input(error, "--bodies", "%s takes %s%d bodies (got %d)", kind->name,
+                           kind->min_bodies < kind->max_bodies ? "at most " : "", kind->max_bodies, figure->body_count);
     if (figure->view.width > 0 && !kind->takes_view) return refuse("--camera", kind, error);
     if (options->view_from != NULL && !kind->takes_view) return refuse("--view-from", kind, error);
     return figure->time_count == 0 || figure->moments == 0 ||
@@ -210,8 +206,7 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
     Trajectory *view_from;
     bool ok = camera_option_load(options->view_from, &figure->view, &view_from, error);
     figure->view_from = view_from;
-    if (kind->max_runs == 0) figure->network = options->inputs[0];
-    for (int i = 0; ok && kind->max_runs > 0 && i < options->input_count; i++) {
+    for (int i = 0; ok && i < options->input_count; i++) {
         runs[i] = trajectory_read(options->inputs[i], error);
         figure->runs[i] = runs[i], figure->paths[i] = options->inputs[i];
         figure->run_count++;
@@ -224,7 +219,7 @@ static bool read_and_draw(const FigureKind *kind, Options *options, Error *error
     figure->progress = progress_bar_begin(kind->name);
     ok = ok && draw(kind, options, error);
     progress_bar_end();
-    if (ok && figure->run_count > 0 && !path_is_standard(options->output)) next_chart(runs[0]->scene);
+    if (ok && !path_is_standard(options->output)) next_chart(runs[0]->scene);
     for (int i = 0; i < FIGURE_RUNS_MAX; i++) trajectory_destroy(runs[i]);
     trajectory_destroy(view_from);
     return ok;

@@ -12,8 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const FigureKind *const kinds[] = {
-    &figure_strip, &figure_annotated, &figure_divergence, &figure_strobe, &figure_network, &figure_pair, NULL};
+static const FigureKind *const kinds[] = {&figure_strip,  &figure_annotated, &figure_divergence,
+                                          &figure_strobe, &figure_pair,      NULL};
 
 const FigureKind *const *figure_kinds(void) { return kinds; }
 
@@ -33,10 +33,7 @@ static bool check_contacts(const FigureKind *kind, const FigureSpec *spec, Error
 bool figure_draw(const FigureKind *kind, Sketch *sketch, const FigureSpec *spec, Error *error) {
     if (!check_contacts(kind, spec, error) || !kind->draw(sketch, spec, error)) return false;
     append(sketch->title, "", kind->name);
-    if (spec->network != NULL)
-        append(sketch->title, " of ", spec->network + file_folder_length(spec->network));
-    else
-        append(sketch->title, " of ", spec->runs[0]->scene);
+    append(sketch->title, " of ", spec->runs[0]->scene);
     for (int i = 0; i < spec->run_count; i++)
         append(sketch->title, i == 0 ? ": " : ", ", run_name(spec, spec->runs[i]).text);
     return true;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figures of stored runs and networks for papers: scenes as pixels, everything else as vector graphics and text. */
+/* Figures of stored runs for papers: scenes as pixels, everything else as vector graphics and text. */
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
@@ -23,7 +23,6 @@ typedef struct FigureFacts {
     int frame_count, frames[FIGURE_MOMENTS_MAX]; /* shown */
     int bodies[2];                               /* narrow-phase: the pair */
     int shifted;                                 /* divergence: the number of bodies shifted for the band; 0: no band */
-    char network[SKETCH_TEXT_SIZE];              /* network: its file, layers and number of parameters */
 } FigureFacts;
 
 /* What to draw. Zero it, then fill it in; all pointers belong to the caller. */
@@ -40,7 +39,6 @@ typedef struct FigureSpec {
     int moments;                      /* number of equidistant moments; 0: the kind chooses */
     const char *scene;                /* divergence: scene of the first run, for the band of chaotic divergence;
                                            NULL: no band */
-    const char *network;              /* network: the file */
     CameraView view;                  /* the part of the world to show; width 0: that of `view_from` */
     const Trajectory *view_from;      /* the run whose bodies set the view; NULL: the first */
     int body_count;                   /* 0: the kind chooses */
@@ -51,8 +49,8 @@ typedef struct FigureSpec {
 
 typedef struct FigureKind {
     const char *name, *summary;
-    const char *example;    /* arguments after `twinbox figure` */
-    int min_runs, max_runs; /* 0, 0: takes a network's file instead */
+    const char *example; /* arguments after `twinbox figure` */
+    int min_runs, max_runs;
     bool takes_times, takes_moments, takes_scene, takes_height, takes_view;
     bool needs_contacts;        /* runs without are refused; trajectory_find_contacts() finds them again */
     int min_bodies, max_bodies; /* 0, 0: takes none */

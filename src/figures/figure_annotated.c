@@ -2,6 +2,7 @@
 /* The figure of one moment with the contacts, normals and impulses of the step that starts there. The poses are those before the
    step, for which the contacts were found. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "engine/engine.h"
 #include "figures/figure.h"
 #include "figures/figures_internal.h"

@@ -5,8 +5,6 @@
 #include "figures/figure.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
-#include "nets/kinds.h"
-#include "nets/nets.h"
 #include "pictures/picture.h"
 #include "pictures/render.h"
 #include "pixels/png.h"
@@ -16,12 +14,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-/* The colour of a weight, `share` of the largest, -1 .. 1: blue above 0, orange below, white at 0. The blue is
-   darker, which distinguishes the signs in grey prints. */
-uint32_t weight_colour(double share);
-
 /* The kinds of figures. */
-extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe, figure_network, figure_pair;
+extern const FigureKind figure_strip, figure_annotated, figure_divergence, figure_strobe, figure_pair;
 
 /* A text in lines of a width. */
 typedef struct WrappedText {

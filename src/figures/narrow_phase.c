@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The two halves of a picture of a collision: overlaps along the axes of both boxes, and a close-up of the contact. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "engine/engine.h"
 #include "figures/figure.h"
 #include "figures/figures_internal.h"

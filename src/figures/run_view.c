@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What figures of runs share: contacts with their numbers; moments, windows and rendered cells; texts. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "engine/engine.h"
 #include "figures/figure.h"
 #include "figures/figures_internal.h"

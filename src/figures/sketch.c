@@ -380,8 +380,3 @@ double sketch_scale_bar_width(double scale, double amount, const char *unit, dou
     snprintf(words, sizeof words, "%g %s", amount, unit);
     return scale * amount + number_gap(points) + type_width(words, points);
 }
-
-double round_down(double most) {
-    const double power = pow(10, floor(log10(most))), share = most / power;
-    return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
-}

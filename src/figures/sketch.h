@@ -213,9 +213,6 @@ ShownDecimals show_decimals(double value, int decimals);
 void sketch_scale_bar(Sketch *sketch, Point left, double scale, double amount, const char *unit, double points);
 double sketch_scale_bar_width(double scale, double amount, const char *unit, double points);
 
-/* The largest 1, 2 or 5 times a power of ten that is at most `most`; most > 0. */
-double round_down(double most);
-
 /* Styles of lines and marks, all distinguishable in grey. */
 
 #define PLOT_GREY 0x606060u

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What plots are made of: axes and their ticks, styles, marks, and places of labels. */
+#include "base/numbers.h"
 #include "figures/figures_internal.h"
 #include "figures/sketch.h"
 #include "methods/methods.h"
@@ -120,7 +121,6 @@ static void add_steps(PlotTicks *ticks, const PlotAxis *axis, double step) {
 }
 
 static void choose_steps(PlotTicks *ticks, const PlotAxis *axis, double points, bool across) {
-    static const double digits[] = {1, 2, 5};
     const double most_steps = 8, length = fabs(axis->high - axis->low);
     char text[48];
     if (length == 0) {
@@ -128,9 +128,8 @@ static void choose_steps(PlotTicks *ticks, const PlotAxis *axis, double points, 
         plot_tick_add(ticks, axis->low, false, text);
         return;
     }
-    for (int decade = (int)floor(log10(length / most_steps)), i = 0; i < 12; i++) {
-        const double step = digits[i % 3] * pow(10, decade + i / 3);
-        if (step < length / most_steps) continue;
+    double step = round_up(length / most_steps);
+    for (int i = 0; i < 10; i++, step = round_up(1.5 * step)) {
         ticks->count = 0;
         add_steps(ticks, axis, step);
         if (!is_crowded(ticks, axis, points, across)) return;

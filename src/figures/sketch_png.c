@@ -278,64 +278,42 @@ static void draw_path(Painter *painter, const SketchMark *mark) {
     free(points);
 }
 
-/* Follows a glyph's outline, to fill it or to stroke its halo. */
+/* A glyph's outline, to fill it or to stroke its halo. */
 typedef struct Tracer {
+    OutlineTracer outline;
     Painter *painter;
     Point origin;          /* of the glyph, pixels */
     double x_x, x_y, halo; /* the font's x unit vector, pixels; half the halo's width, or 0 */
-    Point start, at;
 } Tracer;
 
-static Point glyph_point(const Tracer *tracer, const OutlineStep *step) {
+static Point glyph_point(const OutlineTracer *outline, const OutlineStep *step) {
+    const Tracer *tracer = (const Tracer *)outline;
     return (Point){tracer->origin.x + step->x * tracer->x_x + step->y * tracer->x_y,
                    tracer->origin.y + step->x * tracer->x_y - step->y * tracer->x_x};
 }
 
-static void sketch_png_trace_line(Tracer *tracer, Point to) {
+static void glyph_line(OutlineTracer *outline, Point from, Point to) {
+    const Tracer *tracer = (const Tracer *)outline;
     if (tracer->halo > 0) {
-        add_bar(tracer->painter, tracer->at, to, tracer->halo);
+        add_bar(tracer->painter, from, to, tracer->halo);
         add_disc(tracer->painter, to, tracer->halo);
     } else
-        add_edge(tracer->painter, tracer->at, to);
-    tracer->at = to;
-}
-
-static void trace_curve(Tracer *tracer, Point b, Point c, Point d) {
-    enum { PARTS = 8 };
-    const Point a = tracer->at;
-    for (int i = 1; i <= PARTS; i++) {
-        double t = (double)i / PARTS, s = 1 - t;
-        sketch_png_trace_line(tracer,
-                              (Point){s * s * s * a.x + 3 * s * s * t * b.x + 3 * s * t * t * c.x + t * t * t * d.x,
-                                      s * s * s * a.y + 3 * s * s * t * b.y + 3 * s * t * t * c.y + t * t * t * d.y});
-    }
-}
-
-static void trace_glyph(Tracer *tracer, const Glyph *glyph) {
-    for (int i = glyph->first; i < glyph->first + glyph->steps; i++) {
-        const OutlineStep *step = &type_regular.steps[i];
-        if (step->kind == OUTLINE_MOVE) {
-            if (i > glyph->first) sketch_png_trace_line(tracer, tracer->start);
-            tracer->start = tracer->at = glyph_point(tracer, step);
-        } else if (step->kind == OUTLINE_LINE)
-            sketch_png_trace_line(tracer, glyph_point(tracer, step));
-        else {
-            trace_curve(tracer, glyph_point(tracer, step), glyph_point(tracer, step + 1),
-                        glyph_point(tracer, step + 2));
-            i += 2;
-        }
-    }
-    if (glyph->steps > 0) sketch_png_trace_line(tracer, tracer->start);
+        add_edge(tracer->painter, from, to);
 }
 
 static void draw_glyphs(Painter *painter, const SketchMark *mark, double halo, uint32_t colour) {
     const TextPlace place = text_place(painter->sketch, mark);
     const double unit = place.em * painter->scale / type_units;
-    Tracer tracer = {painter, on_page(painter, place.from), unit * place.cosine, -unit * place.sine, halo, {0, 0},
-                     {0, 0}};
+    enum { PARTS = 8 }; /* of a curve */
+    Tracer tracer = {{glyph_point, glyph_line, PARTS},
+                     painter,
+                     on_page(painter, place.from),
+                     unit * place.cosine,
+                     -unit * place.sine,
+                     halo};
     for (const char *text = painter->sketch->texts + mark->text; *text != '\0';) {
         const Glyph *glyph = type_next(&text);
-        trace_glyph(&tracer, glyph);
+        outline_trace(&tracer.outline, &type_regular, glyph);
         tracer.origin.x += glyph->advance * tracer.x_x;
         tracer.origin.y += glyph->advance * tracer.x_y;
     }

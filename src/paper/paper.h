@@ -125,9 +125,6 @@ typedef struct SystemScoreRow {
 
 extern const CsvLayout system_score_layout;
 
-/* The score of a method in a scene of paper_scene_names; NULL: it has none. */
-const SystemScoreRow *system_score_find(const SystemScoreRow *rows, int count, const char *method, int scene);
-
 /* Strips: six moments of a held-out launch, the engine above, a system below; and a page of all runs. */
 
 enum { STRIP_SCENES = 2, STRIP_SYSTEMS_MAX = RENDER_PANELS_MAX - 1 };
@@ -159,7 +156,7 @@ extern const CsvLayout claim_layout;
 /* What a system's claims are judged from besides its table, and where they go. */
 typedef struct Claims {
     const char *system;           /* its name */
-    const SystemScoreRow *scores; /* [score_count] of all systems and rivals (system_score_find) */
+    const SystemScoreRow *scores; /* [score_count] of all systems and rivals */
     int score_count;
     FILE *lines; /* claim_state() writes to it */
 } Claims;

@@ -223,12 +223,6 @@ static const CsvColumn columns[] = {
 const CsvLayout system_score_layout =
     CSV_LAYOUT("system_scores", columns, SystemScoreRow, .min_rows = 1, .max_rows = SYSTEM_SCORES_MAX);
 
-const SystemScoreRow *system_score_find(const SystemScoreRow *rows, int count, const char *method, int scene) {
-    for (int i = 0; i < count; i++)
-        if (rows[i].scene == scene && strcmp(rows[i].method, method) == 0) return &rows[i];
-    return NULL;
-}
-
 #define SYSTEM_LISTED(name) &system_##name,
 const PaperSystem *const paper_systems[] = {SYSTEMS(SYSTEM_LISTED) NULL};
 

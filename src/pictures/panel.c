@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Panels: the grid in which they are arranged, their metre grid and axes, scales of arrows and colours, their layers. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "engine/engine.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
@@ -157,16 +158,11 @@ static bool all_have_tics(const Picture *picture, const Lines *lines, Steps step
     return strong < MIN_TICS && lines->spacing > NUMBER_SPACING * picture->layout.axis.pixels;
 }
 
-/* One line in how many has a number beside its tic: 1, 2, 5, 10, ... until numbers of this many pixels have room. */
+/* One line in how many has a number beside its tic, so that numbers of this many pixels have room. */
 static double numbered(const Lines *lines, double tic, int room) {
-    static const double steps[] = {1, 2, 5};
-    double power = 1;
-    for (int i = 0; i < 30; i++) {
-        const double every = steps[i % 3] * power;
-        if (every * tic * lines->spacing >= room) return every * tic;
-        if (i % 3 == 2) power *= 10;
-    }
-    return HUGE_VAL;
+    double every = 1;
+    for (int i = 0; i < 30 && every * tic * lines->spacing < room; i++) every = round_up(1.5 * every);
+    return every * tic;
 }
 
 static bool has_number(const Lines *lines, int i, double every) { return fmod(lines->first + i, every) == 0; }
@@ -327,18 +323,10 @@ bool scales_measure(const Trajectory *run, ScaleMeasures *measures, Error *error
     return common_impulse(run, &measures->impulse, error) && median_box(run, &measures->box, error);
 }
 
-/* The largest 1, 2 or 5 times a power of ten that is at most `most`. */
-static double round_number(double most) {
-    double power = 1;
-    while (power > most && power > 1e-12) power /= 10;
-    while (10 * power <= most && power < 1e12) power *= 10;
-    return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
-}
-
 /* Sets the pixels per unit, and the value of the legend's arrow. */
 static void choose(double *scale, double *legend, double value, double pixels, double max_legend) {
     *scale = value > 1e-9 ? pixels / value : pixels;
-    *legend = round_number(max_legend / *scale);
+    *legend = round_down(fmin(max_legend / *scale, 5e12));
 }
 
 bool scales_choose(Scales *scales, const Trajectory *run, const Layout *layout, double scale, double largest_distance,

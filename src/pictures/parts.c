@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is drawn in panels, bodies and marks; the key events of runs; and where the parts of a picture are. */
+#include "base/numbers.h"
 #include "engine/engine.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
@@ -432,8 +433,6 @@ enum { MARK_REACH = 8 }; /* pixels that the mark of the present time reaches bey
 static int above(const Font *font) { return font->pixels; }
 static int below(const Font *font) { return font->pixels * 3 / 8; }
 
-static int max(int a, int b) { return a > b ? a : b; }
-
 static int add(Part *parts, int count, PartKind kind, int panel, Rect rect) {
     parts[count] = (Part){kind, panel, rect};
     return count + 1;
@@ -464,7 +463,7 @@ static Rect legend_rect(const Layout *layout) {
 static Rect timeline_rect(const Layout *layout) {
     const Rect *plot = &layout->timeline;
     const bool text = layout->axis.glyphs != NULL;
-    const int foot = text ? max(layout->axis_drop + below(&layout->axis), MARK_REACH) : MARK_REACH;
+    const int foot = text ? int_max(layout->axis_drop + below(&layout->axis), MARK_REACH) : MARK_REACH;
     const int top = text ? layout->key_baseline - above(&layout->method) : plot->top - layout->left;
     return (Rect){0, top, layout->width, plot->bottom + foot};
 }

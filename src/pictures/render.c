@@ -6,6 +6,7 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/machine.h"
+#include "base/numbers.h"
 #include "pictures/picture.h"
 #include "pictures/render_internal.h"
 #include "pictures/style.h"
@@ -169,23 +170,20 @@ typedef struct Ranges {
     int size;       /* pictures in a piece; fewer in the last */
 } Ranges;
 
-static int at_most(int a, int b) { return a < b ? a : b; }
-static int at_least(int a, int b) { return a > b ? a : b; }
-
 /* Follows from the options alone, so that all shards have the same pieces. */
 static void plan_ranges(Ranges *ranges, const WorkerJob *job) {
     const RenderOptions *options = job->options;
     const double pixel_seconds = options->small ? 4e-8 : 2.5e-9;
     const int pictures = job->last - job->first + 1;
     *ranges = (Ranges){.all = *job, .seconds = 1e-3 + pixel_seconds * options->width * options->height};
-    ranges->size = at_least(1, at_most(MOST_PICTURES, (int)(piece_seconds / ranges->seconds)));
-    ranges->size = at_most(ranges->size, at_least(FEW_PICTURES, pictures / FEW_PIECES));
+    ranges->size = int_max(1, int_min(MOST_PICTURES, (int)(piece_seconds / ranges->seconds)));
+    ranges->size = int_min(ranges->size, int_max(FEW_PICTURES, pictures / FEW_PIECES));
 }
 
 static int first_of(const Ranges *ranges, int64_t piece) { return ranges->all.first + (int)piece * ranges->size; }
 
 static int last_of(const Ranges *ranges, int64_t piece) {
-    return at_most(first_of(ranges, piece + 1) - 1, ranges->all.last);
+    return int_min(first_of(ranges, piece + 1) - 1, ranges->all.last);
 }
 
 static void describe(void *context, int64_t piece, PieceInfo *info) {
@@ -346,9 +344,4 @@ bool render_study(const Trajectory *const *panels, int panel_count, const Render
     picture_free(&picture);
     if (result == &ignored) free(ignored.hashes);
     return ok;
-}
-
-bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                     RenderResult *result, const Progress *progress, Error *error) {
-    return render_study(panels, panel_count, options, NULL, result, progress, error);
 }

@@ -17,7 +17,7 @@ typedef struct PictureHashes {
     uint64_t pixels, file;
 } PictureHashes;
 
-/* Result of render_sequence(). */
+/* Result of render_study(). */
 typedef struct RenderResult {
     int first, last;       /* indices of the files */
     bool all;              /* the whole run was drawn */
@@ -26,17 +26,6 @@ typedef struct RenderResult {
     char why[256];         /* options->resume: why nothing could be kept; otherwise empty */
     PictureHashes *hashes; /* [last - first + 1]; freed by the caller */
 } RenderResult;
-
-/* Writes directory/frame_000000.png, ...: the moments of the longest of 1 to 6 runs, or of the selected
-   frames, numbered from the first one; a shorter run shows its last frame. Without slow motion, hold and cards, file
-   k is frame k. manifest.json describes the pictures. Child processes draw, so the caller's environment
-   and threads are unaffected. Progress counts pictures; if it cancels, the pictures in progress are finished and the
-   error is "stopped" (ERROR_INTERRUPTED). `result` may be NULL.
-   If that is the whole run, frames of an earlier sequence that would remain beside these are removed.
-   options->resume keeps the pictures of an earlier call, even one that was killed, whose files are unchanged, and
-   draws all others. If that call had other runs or options or was another version, it draws all. */
-bool render_sequence(const Trajectory *const *panels, int panel_count, const RenderOptions *options,
-                     RenderResult *result, const Progress *progress, Error *error);
 
 /* A sequence that shards may draw (runs/pieces.h). */
 typedef struct RenderStudy {
@@ -48,9 +37,18 @@ typedef struct RenderStudy {
     Pieces pieces; /* set: what was done; it has no plan */
 } RenderStudy;
 
-/* render_sequence() as the whole, as a shard or as a merge; study NULL: as the whole. A piece is a range of consecutive
-   pictures. A shard writes the frames of its pieces and nothing else beside them, and *result has no hashes. A merge takes
-   the frames as the shards left them; a range of which a frame is missing or altered is missing. */
+/* Writes directory/frame_000000.png, ...: the moments of the longest of 1 to 6 runs, or of the selected
+   frames, numbered from the first one; a shorter run shows its last frame. Without slow motion, hold and cards, file
+   k is frame k. manifest.json describes the pictures. Child processes draw, so the caller's environment
+   and threads are unaffected. Progress counts pictures; if it cancels, the pictures in progress are finished and the
+   error is "stopped" (ERROR_INTERRUPTED). `result` may be NULL.
+   If that is the whole run, frames of an earlier sequence that would remain beside these are removed.
+   options->resume keeps the pictures of an earlier call, even one that was killed, whose files are unchanged, and
+   draws all others. If that call had other runs or options or was another version, it draws all.
+
+   study NULL: the sequence as a whole; otherwise also as a shard or as a merge. A piece is a range of consecutive pictures. A shard
+   writes the frames of its pieces and nothing else beside them, and *result has no hashes. A merge takes the frames as the shards
+   left them; a range of which a frame is missing or altered is missing. */
 bool render_study(const Trajectory *const *panels, int panel_count, const RenderOptions *options, RenderStudy *study,
                   RenderResult *result, const Progress *progress, Error *error);
 

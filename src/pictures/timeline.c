@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The curves of distances over time below the panels. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "pictures/pictures_internal.h"
 #include "pictures/picture.h"
 #include "pixels/gl.h"
@@ -118,17 +119,12 @@ static void draw_distance_axis(const Picture *picture, Drawing *drawing) {
     }
 }
 
-/* s between two labels on the axis: 0.1, 0.2, 0.5, 1, ... */
+/* s between two labels on the axis. */
 static double time_step(const Picture *picture) {
-    static const double steps[] = {1, 2, 5};
     const Rect *plot = &picture->layout.timeline;
-    double duration = (picture->frames - 1) * (double)picture->runs[0]->dt, power = 1e-3;
-    double least = TICK_SPACING * picture->layout.axis.pixels * duration / (plot->right - plot->left);
-    for (int i = 0; i < 30; i++) {
-        if (steps[i % 3] * power >= least) return steps[i % 3] * power;
-        if (i % 3 == 2) power *= 10;
-    }
-    return HUGE_VAL;
+    const double duration = (picture->frames - 1) * (double)picture->runs[0]->dt;
+    const double least = TICK_SPACING * picture->layout.axis.pixels * duration / (plot->right - plot->left);
+    return round_up(fmax(least, 1e-3));
 }
 
 static void draw_time_axis(const Picture *picture, Drawing *drawing) {

@@ -2,6 +2,7 @@
 /* Shaders, the rows that changed, and the painting of drawings with OpenGL. */
 #include "base/base.h"
 #include "base/machine.h"
+#include "base/numbers.h"
 #include "pixels/gl.h"
 #include "pixels/gl_functions.h"
 #include "pixels/pixels_internal.h"
@@ -89,10 +90,8 @@ static void mark_glyph(const Rows *rows, const Drawing *drawing, size_t i) {
     mark(rows, box[1], box[1] + box[3]);
 }
 
-static size_t larger(size_t a, size_t b) { return a > b ? a : b; }
-
 static void mark_shapes(const Rows *rows, const Drawing *before, const Drawing *after) {
-    for (size_t i = after->static_shapes; i < larger(before->shape_count, after->shape_count); i++) {
+    for (size_t i = after->static_shapes; i < size_max(before->shape_count, after->shape_count); i++) {
         if (i < before->shape_count && i < after->shape_count &&
             memcmp(&before->shapes[i], &after->shapes[i], sizeof *after->shapes) == 0)
             continue;
@@ -102,7 +101,7 @@ static void mark_shapes(const Rows *rows, const Drawing *before, const Drawing *
 }
 
 static void mark_glyphs(const Rows *rows, const Drawing *before, const Drawing *after) {
-    for (size_t i = 0; i < larger(before->glyph_count, after->glyph_count); i++) {
+    for (size_t i = 0; i < size_max(before->glyph_count, after->glyph_count); i++) {
         if (i < before->glyph_count && i < after->glyph_count &&
             memcmp(&before->glyphs[i], &after->glyphs[i], sizeof *after->glyphs) == 0)
             continue;

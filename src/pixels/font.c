@@ -16,10 +16,9 @@ enum { PARTS = 16 };             /* of a curve: at the largest size a part devia
 enum { LEVELS = 51, LEVEL = 5 }; /* as in the atlas */
 static const double OUTLINE_UNIT = 64; /* per pixel, of FontGlyph.advance and of points */
 
-/* Traces an outline in pixels, y down, and gives its lines to `line`. */
+/* An outline in pixels, y down. */
 typedef struct Tracer {
-    void (*line)(struct Tracer *tracer, Point from, Point to);
-    Point at, start;
+    OutlineTracer outline;
     double scale, left, top;
     double x0, y0, x1, y1; /* bounds */
     double *areas;         /* [height][width + 2] */
@@ -29,41 +28,14 @@ typedef struct Tracer {
 /* Rounded as FreeType does, so that both kinds of glyphs in a word have equally sharp edges. */
 static double round_to_grid(double pixels) { return floor(pixels * OUTLINE_UNIT + 0.5) / OUTLINE_UNIT; }
 
-static Point place(const Tracer *tracer, const OutlineStep *step) {
+static Point place(const OutlineTracer *outline, const OutlineStep *step) {
+    const Tracer *tracer = (const Tracer *)outline;
     return (Point){round_to_grid(step->x * tracer->scale) - tracer->left,
                    tracer->top - round_to_grid(step->y * tracer->scale)};
 }
 
-static void line_to(Tracer *tracer, Point to) {
-    tracer->line(tracer, tracer->at, to);
-    tracer->at = to;
-}
-
-static void curve_to(Tracer *tracer, Point b, Point c, Point d) {
-    const Point a = tracer->at;
-    for (int i = 1; i <= PARTS; i++) {
-        const double t = (double)i / PARTS, s = 1 - t;
-        line_to(tracer, (Point){s * s * s * a.x + 3 * s * s * t * b.x + 3 * s * t * t * c.x + t * t * t * d.x,
-                                s * s * s * a.y + 3 * s * s * t * b.y + 3 * s * t * t * c.y + t * t * t * d.y});
-    }
-}
-
-static void trace(Tracer *tracer, const Typeface *face, const Glyph *glyph) {
-    for (const OutlineStep *step = face->steps + glyph->first, *end = step + glyph->steps; step < end; step++) {
-        if (step->kind == OUTLINE_MOVE) {
-            line_to(tracer, tracer->start);
-            tracer->start = tracer->at = place(tracer, step);
-        } else if (step->kind == OUTLINE_LINE)
-            line_to(tracer, place(tracer, step));
-        else {
-            curve_to(tracer, place(tracer, step), place(tracer, step + 1), place(tracer, step + 2));
-            step += 2;
-        }
-    }
-    line_to(tracer, tracer->start);
-}
-
-static void widen(Tracer *tracer, Point from, Point to) {
+static void widen(OutlineTracer *outline, Point from, Point to) {
+    Tracer *tracer = (Tracer *)outline;
     tracer->x0 = fmin(tracer->x0, fmin(from.x, to.x)), tracer->x1 = fmax(tracer->x1, fmax(from.x, to.x));
     tracer->y0 = fmin(tracer->y0, fmin(from.y, to.y)), tracer->y1 = fmax(tracer->y1, fmax(from.y, to.y));
 }
@@ -82,7 +54,8 @@ static void add_in_row(const Tracer *tracer, int row, double x0, double x1, doub
     }
 }
 
-static void add_line(Tracer *tracer, Point from, Point to) {
+static void add_line(OutlineTracer *outline, Point from, Point to) {
+    const Tracer *tracer = (const Tracer *)outline;
     const double sign = from.y < to.y ? 1 : -1;
     const Point high = sign > 0 ? from : to, low = sign > 0 ? to : from;
     if (from.y == to.y) return;
@@ -96,13 +69,12 @@ static void add_line(Tracer *tracer, Point from, Point to) {
 }
 
 FontGlyph glyph_metrics(const Typeface *face, const Glyph *glyph, int pixels) {
-    Tracer tracer = {.line = widen, .scale = (double)pixels / type_units};
+    Tracer tracer = {.outline = {place, widen, PARTS}, .scale = (double)pixels / type_units};
     FontGlyph metrics = {.code = glyph->code};
     metrics.advance = (short)floor(OUTLINE_UNIT * glyph->advance * tracer.scale + 0.5);
     if (glyph->steps == 0) return metrics;
-    tracer.at = tracer.start = place(&tracer, &face->steps[glyph->first]);
-    tracer.x0 = tracer.x1 = tracer.at.x, tracer.y0 = tracer.y1 = tracer.at.y;
-    trace(&tracer, face, glyph);
+    tracer.x0 = tracer.y0 = HUGE_VAL, tracer.x1 = tracer.y1 = -HUGE_VAL;
+    outline_trace(&tracer.outline, face, glyph);
     metrics.left = (short)floor(tracer.x0), metrics.top = (short)-floor(tracer.y0);
     metrics.width = (short)(ceil(tracer.x1) - floor(tracer.x0));
     metrics.height = (short)(ceil(tracer.y1) - floor(tracer.y0));
@@ -111,13 +83,16 @@ FontGlyph glyph_metrics(const Typeface *face, const Glyph *glyph, int pixels) {
 
 bool glyph_draw(const Typeface *face, const Glyph *glyph, int pixels, const FontGlyph *metrics, uint8_t *bitmap) {
     const int width = metrics->width, height = metrics->height;
-    Tracer tracer = {.line = add_line, .scale = (double)pixels / type_units, .width = width, .height = height};
+    Tracer tracer = {.outline = {place, add_line, PARTS},
+                     .scale = (double)pixels / type_units,
+                     .left = metrics->left,
+                     .top = metrics->top,
+                     .width = width,
+                     .height = height};
     if (width == 0 || height == 0) return true;
-    tracer.left = metrics->left, tracer.top = metrics->top;
     tracer.areas = calloc((size_t)height * (size_t)(width + 2), sizeof *tracer.areas);
     if (tracer.areas == NULL) return false;
-    tracer.at = tracer.start = place(&tracer, &face->steps[glyph->first]);
-    trace(&tracer, face, glyph);
+    outline_trace(&tracer.outline, face, glyph);
     for (int y = 0; y < height; y++) {
         double area = 0;
         for (int x = 0; x < width; x++) {

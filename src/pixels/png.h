@@ -97,12 +97,8 @@ bool png_files_are_same(PngFile files[2]);
    sizes, or memory is short. Then some rows may have been given. threads: with a second thread. */
 bool png_files_scan(PngFile files[2], bool threads, const RowSink *sink);
 
-/* Copies the value of the first text with this key before the pixels. ERROR_INPUT if there is none, or if it needs
-   more than `size` bytes. */
-bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error);
-
-/* The same for a file in memory; `value` is empty if the text is missing or cannot be read. False with error set only
-   when memory is short. */
+/* Copies the value of the first text with this key before the pixels of a file in memory. `value` is empty if there is none, if it
+   cannot be read or needs more than `value_size` bytes. False with error set only when memory is short. */
 bool image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size, Error *error);
 
 /* FNV-1a over width, height (4 bytes each) and the XXH3 of each row: equal for equal pictures, regardless of

@@ -488,14 +488,10 @@ static bool decode_texts(Decoder *decoder) {
     return !decoder->memory_short || error_memory(decoder->error, decoder->path);
 }
 
-static bool find_text(const Decoder *decoder, const char *key, char *value, size_t size) {
+static void copy_text(const Decoder *decoder, char *value, size_t size) {
     png_textp texts = NULL;
-    if (png_get_text(decoder->png, decoder->info, &texts, NULL) == 0)
-        return error_input(decoder->error, decoder->path, "there is no text \"%s\" in the picture", key);
-    const size_t length = strlen(texts[0].text);
-    if (length >= size) return error_input(decoder->error, decoder->path, "the text \"%s\" is too long", key);
-    memcpy(value, texts[0].text, length + 1);
-    return true;
+    if (png_get_text(decoder->png, decoder->info, &texts, NULL) > 0 && strlen(texts[0].text) < size)
+        strcpy(value, texts[0].text);
 }
 
 static bool has_key(const PngChunk *chunk, const char *key) {
@@ -524,30 +520,17 @@ static uint8_t *with_text_alone(const uint8_t *data, size_t size, const char *ke
     return copy;
 }
 
-static bool read_text(const uint8_t *data, size_t size, const char *path, const char *key, char *value,
-                      size_t value_size, Error *error) {
+bool image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size, Error *error) {
     Decoder decoder;
+    Error failure = {0};
     size_t kept;
     uint8_t *alone = with_text_alone(data, size, key, &kept);
-    if (alone == NULL) return error_memory(error, path);
-    bool ok = open_decoder(&decoder, alone, kept, path, error) && decode_texts(&decoder) &&
-              find_text(&decoder, key, value, value_size);
+    value[0] = '\0';
+    if (alone == NULL) return error_memory(error, "image");
+    if (open_decoder(&decoder, alone, kept, "image", &failure) && decode_texts(&decoder))
+        copy_text(&decoder, value, value_size);
     close_decoder(&decoder);
     free(alone);
-    return ok;
-}
-
-bool image_read_text(const char *path, const char *key, char *value, size_t size, Error *error) {
-    size_t file_size;
-    uint8_t *data = image_load_png(path, &file_size, error);
-    bool ok = data != NULL && read_text(data, file_size, path, key, value, size, error);
-    free(data);
-    return ok;
-}
-
-bool image_find_text(const uint8_t *data, size_t size, const char *key, char *value, size_t value_size, Error *error) {
-    Error failure = {0};
-    if (!read_text(data, size, "image", key, value, value_size, &failure)) value[0] = '\0';
     if (failure.kind == ERROR_SYSTEM) *error = failure;
     return failure.kind != ERROR_SYSTEM;
 }

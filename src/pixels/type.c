@@ -43,6 +43,35 @@ const Glyph *type_find(const Typeface *face, unsigned code) {
     return bsearch(&code, face->glyphs, (size_t)type_glyph_count, sizeof *face->glyphs, compare_code);
 }
 
+static void trace_curve(OutlineTracer *tracer, Point a, Point b, Point c, Point d) {
+    Point from = a;
+    for (int i = 1; i <= tracer->parts; i++) {
+        const double t = (double)i / tracer->parts, s = 1 - t;
+        const Point to = {s * s * s * a.x + 3 * s * s * t * b.x + 3 * s * t * t * c.x + t * t * t * d.x,
+                          s * s * s * a.y + 3 * s * s * t * b.y + 3 * s * t * t * c.y + t * t * t * d.y};
+        tracer->line(tracer, from, to);
+        from = to;
+    }
+}
+
+void outline_trace(OutlineTracer *tracer, const Typeface *face, const Glyph *glyph) {
+    const OutlineStep *first = face->steps + glyph->first, *step = first, *end = first + glyph->steps;
+    Point start = {0}, at = {0};
+    for (; step < end; step += step->kind == OUTLINE_CURVE ? 3 : 1) {
+        const Point next = tracer->place(tracer, step->kind == OUTLINE_CURVE ? step + 2 : step);
+        if (step->kind == OUTLINE_CURVE)
+            trace_curve(tracer, at, tracer->place(tracer, step), tracer->place(tracer, step + 1), next);
+        else if (step->kind == OUTLINE_LINE)
+            tracer->line(tracer, at, next);
+        else {
+            if (step > first) tracer->line(tracer, at, start);
+            start = next;
+        }
+        at = next;
+    }
+    if (glyph->steps > 0) tracer->line(tracer, at, start);
+}
+
 unsigned type_next_code(const char **text) {
     unsigned code = utf8_next(text);
     for (const char *next = *text; *next != '\0'; *text = next) {

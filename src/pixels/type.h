@@ -2,6 +2,7 @@
 /* The built-in font: its characters, widths and outlines, and the check of text. */
 #pragma once
 #include "base/base.h"
+#include "pixels/png.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -36,6 +37,15 @@ typedef struct Typeface {
     const Glyph *glyphs; /* [type_glyph_count], the same characters in both faces */
     const OutlineStep *steps;
 } Typeface;
+
+/* Follows an outline: its closed lines, with a curve as `parts` of them. The first member of what the functions need. */
+typedef struct OutlineTracer {
+    Point (*place)(const struct OutlineTracer *tracer, const OutlineStep *step);
+    void (*line)(struct OutlineTracer *tracer, Point from, Point to); /* between places */
+    int parts;
+} OutlineTracer;
+
+void outline_trace(OutlineTracer *tracer, const Typeface *face, const Glyph *glyph);
 
 extern const Typeface type_regular, type_semibold;
 extern const int type_units, type_glyph_count; /* units per em */

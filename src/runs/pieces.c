@@ -159,8 +159,6 @@ bool pieces_open(Pieces *pieces, const char *output, const StudyKey *key, const 
     return open_whole(pieces, output, record, error);
 }
 
-void pieces_close(Pieces *pieces) { *pieces = (Pieces){0}; }
-
 bool pieces_path(const Pieces *pieces, int64_t piece, char path[PIECES_PATH_SIZE], Error *error) {
     return file_path(path, PIECES_PATH_SIZE, error, "%s/%04lld/%07lld", pieces->folder,
                      (long long)(piece / FILES_IN_A_FOLDER), (long long)piece);

@@ -146,7 +146,6 @@ PieceInfo piece_describe(const PiecePlan *plan, int64_t piece);
 /* The shard that does a piece of so many. */
 int piece_shard(const PieceInfo *info, int64_t pieces, int shards);
 
-/* pieces_close() after pieces_open(), also after its failure. */
 typedef struct Pieces {
     PiecesMode mode;
     Shard shard;
@@ -166,7 +165,6 @@ bool pieces_find_mode(PiecesMode *mode, const char *output, const PiecesRun *run
 /* output: the folder that the study writes. A whole study is refused where shards are, a shard where another
    study's are; a merge where the study's inputs have changed. */
 bool pieces_open(Pieces *pieces, const char *output, const StudyKey *key, const PiecesRun *run, Error *error);
-void pieces_close(Pieces *pieces);
 
 /* Does the process's pieces that are not done yet: those of the whole, or of the shard. The results do not depend on
    the number of threads. ERROR_INTERRUPTED if progress requests a stop: finished pieces stay. A merge checks all

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Reads and writes contact problems: files, and the bytes that shards leave. */
+/* Reads and writes contact problems. */
 #include "base/base.h"
 #include "base/file.h"
 #include "base/npz.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Makes a run of the rows of a CSV file, which run_import.c reads. */
 #include "base/base.h"
+#include "base/csv.h"
 #include "base/file.h"
 #include "base/npz.h"
 #include "engine/engine.h"
@@ -43,10 +44,9 @@ static bool check_body(CsvImport *import, int body, Error *error) {
         last = frame;
         if (before < 0 || gap == frame) continue;
         const int line = csv_rows_find(&import->rows, import->first + frame, number);
-        return csv_rows_error(&import->rows, line, error,
-                              "body %" PRId64 " is in frame %" PRId64 " and in frame %" PRId64
-                              ", but not in frame %" PRId64,
-                              number, import->first + before, import->first + frame, import->first + gap);
+        return csv_fail(import->path, line, 0, error,
+                        "body %" PRId64 " is in frame %" PRId64 " and in frame %" PRId64 ", but not in frame %" PRId64,
+                        number, import->first + before, import->first + frame, import->first + gap);
     }
     return true;
 }
@@ -104,9 +104,9 @@ static bool find_end(CsvImport *import, const CsvRow *row, int body, Error *erro
     if (row->not_finite && row->frame < *end) *end = row->frame;
     if (*end < import->end) import->end = *end, import->ended = body;
     return row->not_finite || row->frame <= *end ||
-           csv_rows_error(&import->rows, row->line, error,
-                          "body %" PRId64 " is finite in frame %" PRId64 ", but not in frame %" PRId64, row->body,
-                          row->frame, *end);
+           csv_fail(import->path, row->line, 0, error,
+                    "body %" PRId64 " is finite in frame %" PRId64 ", but not in frame %" PRId64, row->body, row->frame,
+                    *end);
 }
 
 static bool count_rows(CsvImport *import, Error *error) {
@@ -119,7 +119,7 @@ static bool count_rows(CsvImport *import, Error *error) {
     csv_rows_rewind(&import->rows);
     while (csv_rows_next(&import->rows, &row, error)) {
         const int body = csv_head_body(head, row.body);
-        if (body < 0) return csv_rows_error(&import->rows, row.line, error, "body %" PRId64 " has no size", row.body);
+        if (body < 0) return csv_fail(import->path, row.line, 0, error, "body %" PRId64 " has no size", row.body);
         if (!find_end(import, &row, body, error)) return false;
         if (row.frame >= import->end) continue;
         import->row_counts[body]++;
@@ -150,10 +150,10 @@ static bool check_last(CsvImport *import, Error *error) {
     if (import->last - import->first < import->count) return true;
     csv_rows_rewind(&import->rows);
     while (csv_rows_next(&import->rows, &row, error) && row.frame != import->last) continue;
-    return csv_rows_error(&import->rows, row.line, error,
-                          "frame %" PRId64 " cannot follow from frame %" PRId64 ": %" PRId64
-                          " rows are too few for the frames between",
-                          import->last, import->first, import->count);
+    return csv_fail(import->path, row.line, 0, error,
+                    "frame %" PRId64 " cannot follow from frame %" PRId64 ": %" PRId64
+                    " rows are too few for the frames between",
+                    import->last, import->first, import->count);
 }
 
 /* Frames that have one body each, of many: what such a run takes must be in proportion to its text, as in .npz files. */
@@ -200,9 +200,9 @@ static bool check_time(const CsvImport *import, const CsvRow *row, Error *error)
     if (!has_times(import) || import->options->dt > 0 || import->head.dt > 0) return true;
     const double dt = (double)import->run->dt, due = import->first_time + dt * (double)(row->frame - import->first);
     return fabs(row->time - due) <= TIME_TOLERANCE * dt ||
-           csv_rows_error(&import->rows, row->line, error,
-                          "time %g s does not fit to equal steps: frame %" PRId64 " is due at %g s", row->time,
-                          row->frame, due);
+           csv_fail(import->path, row->line, 0, error,
+                    "time %g s does not fit to equal steps: frame %" PRId64 " is due at %g s", row->time, row->frame,
+                    due);
 }
 
 static void set_state(CsvImport *import, const CsvRow *row, int body) {
@@ -228,9 +228,9 @@ static bool fill(CsvImport *import, Error *error) {
         if (row.frame >= import->end) continue;
         if (trajectory_has(run, (int)(row.frame - import->first), body)) {
             const int line = row.line, before = csv_rows_find(&import->rows, row.frame, row.body);
-            return csv_rows_error(&import->rows, line, error,
-                                  "body %" PRId64 " is twice in frame %" PRId64 ": also in line %d", row.body,
-                                  row.frame, before);
+            return csv_fail(import->path, line, 0, error,
+                            "body %" PRId64 " is twice in frame %" PRId64 ": also in line %d", row.body, row.frame,
+                            before);
         }
         if (!check_time(import, &row, error)) return false;
         set_state(import, &row, body);
@@ -253,9 +253,9 @@ static bool check_frames(CsvImport *import, Error *error) {
         while (!has_rows(run, next)) next++;
         csv_rows_rewind(&import->rows);
         while (csv_rows_next(&import->rows, &row, error) && row.frame != import->first + next) continue;
-        return csv_rows_error(&import->rows, row.line, error,
-                              "frame %" PRId64 " comes here, but frame %" PRId64 " has no rows", row.frame,
-                              import->first + frame);
+        return csv_fail(import->path, row.line, 0, error,
+                        "frame %" PRId64 " comes here, but frame %" PRId64 " has no rows", row.frame,
+                        import->first + frame);
     }
     return true;
 }

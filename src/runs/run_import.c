@@ -9,7 +9,6 @@
 #include <inttypes.h>
 #include <float.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -147,25 +146,6 @@ static bool take_value(CsvHead *head, const char *path, int key, char *text, Err
     return true;
 }
 
-/* In a line, and in a column if that is above 0. */
-PRINTF_LIKE(5, 0)
-static bool set(const char *path, int line, int column, Error *error, const char *format, va_list arguments) {
-    char where[1280], what[512];
-    int used = snprintf(where, sizeof where, "%.1200s:%d", path, line);
-    if (column > 0) snprintf(where + used, sizeof where - (size_t)used, ":%d", column);
-    vsnprintf(what, sizeof what, format, arguments);
-    return error_input(error, where, "%s", what);
-}
-
-PRINTF_LIKE(5, 6)
-static bool fail(const char *path, int line, int column, Error *error, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(path, line, column, error, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
 /* "key: value"; comments of another form mean nothing. */
 static bool take_comment(CsvHead *head, const char *path, int line, char *text, Error *error) {
     const char *known[KEYS];
@@ -178,10 +158,10 @@ static bool take_comment(CsvHead *head, const char *path, int line, char *text, 
         known[key] = keys[key].name;
         if (strcmp(text, keys[key].name) != 0) continue;
         if (!take_value(head, path, key, value, error, &right)) return false;
-        return right || fail(path, line, 0, error, "%s: expected %s", keys[key].name, keys[key].form);
+        return right || csv_fail(path, line, 0, error, "%s: expected %s", keys[key].name, keys[key].form);
     }
     const char *near = nearest_word(text, known, KEYS);
-    return near == NULL || fail(path, line, 0, error, "'# %s:': did you mean '# %s:'?", csv_show(text).text, near);
+    return near == NULL || csv_fail(path, line, 0, error, "'# %s:': did you mean '# %s:'?", csv_show(text).text, near);
 }
 
 static int compare_bodies(const void *left, const void *right) {
@@ -213,7 +193,7 @@ bool csv_head_read(CsvHead *head, const char *path, const char **text, int *line
         size_t length = strcspn(begin, "\n"), used = length;
         *text = begin + length + (begin[length] == '\n');
         while (used > 0 && strchr(" \t\r", begin[used - 1]) != NULL) used--;
-        if (used >= CSV_HEAD_LINE_SIZE) return fail(path, *line, 0, error, "a comment longer than 255 bytes");
+        if (used >= CSV_HEAD_LINE_SIZE) return csv_fail(path, *line, 0, error, "a comment longer than 255 bytes");
         memcpy(comment, begin, used);
         comment[used] = '\0';
         if (!take_comment(head, path, *line, comment, error)) return false;
@@ -241,14 +221,6 @@ typedef struct Fields {
     char line[CSV_ROWS_LINE_SIZE];
 } Fields;
 
-bool csv_rows_error(const CsvRows *rows, int line, Error *error, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set(rows->path, line, 0, error, format, arguments);
-    va_end(arguments);
-    return false;
-}
-
 static char *trim(char *text) {
     text += strspn(text, " \t");
     size_t length = strlen(text);
@@ -261,16 +233,16 @@ static bool split(CsvRows *rows, Fields *fields, Error *error) {
     size_t length = strcspn(rows->at, "\n"), used = length;
     fields->count = 0;
     if (used > 0 && rows->at[used - 1] == '\r') used--;
-    if (used == 0) return csv_rows_error(rows, rows->line, error, "the line is empty");
+    if (used == 0) return csv_fail(rows->path, rows->line, 0, error, "the line is empty");
     if (used >= CSV_ROWS_LINE_SIZE)
-        return csv_rows_error(rows, rows->line, error, "longer than %d bytes", CSV_ROWS_LINE_SIZE - 1);
+        return csv_fail(rows->path, rows->line, 0, error, "longer than %d bytes", CSV_ROWS_LINE_SIZE - 1);
     memcpy(fields->line, rows->at, used);
     fields->line[used] = '\0';
     rows->at += length + (rows->at[length] == '\n');
     for (char *next = fields->line; next != NULL;) {
         char *field = next, *comma = strchr(field, ',');
         if (fields->count == FIELDS_MAX)
-            return csv_rows_error(rows, rows->line, error, "more than %d fields", FIELDS_MAX);
+            return csv_fail(rows->path, rows->line, 0, error, "more than %d fields", FIELDS_MAX);
         next = comma != NULL ? comma + 1 : NULL;
         if (comma != NULL) *comma = '\0';
         fields->column[fields->count] = (int)(field - fields->line) + 1;
@@ -283,16 +255,8 @@ static bool is_absent(const CsvRows *rows, int column) { return rows->field[colu
 
 /* The column that an unknown name probably means, among those that the file lacks; NULL: none. */
 static const char *meant(const CsvRows *rows, const char *name) {
-    static const struct {
-        const char *other;
-        int column;
-    } others[] = {{"step", COL_FRAME}, {"id", COL_BODY},       {"theta", COL_ANGLE},  {"rotation", COL_ANGLE},
-                  {"t", COL_TIME},     {"spin", COL_OMEGA},    {"w", COL_OMEGA},      {"pos_x", COL_X},
-                  {"pos_y", COL_Y},    {"velocity_x", COL_VX}, {"velocity_y", COL_VY}};
     const char *missing[COL_COUNT];
     int count = 0;
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (is_absent(rows, others[i].column) && strcmp(others[i].other, name) == 0) return names[others[i].column];
     for (int i = 0; i < COL_COUNT; i++)
         if (is_absent(rows, i)) missing[count++] = names[i];
     return strlen(name) > 3 ? nearest_word(name, missing, count) : NULL;
@@ -305,8 +269,8 @@ static bool place(CsvRows *rows, const Fields *fields, Error *error) {
         while (column < COL_COUNT && strcmp(names[column], fields->text[i]) != 0) column++;
         if (column == COL_COUNT) continue;
         if (!is_absent(rows, column))
-            return fail(rows->path, rows->line, fields->column[i], error, "the column '%s' appears twice",
-                        names[column]);
+            return csv_fail(rows->path, rows->line, fields->column[i], error, "the column '%s' appears twice",
+                            names[column]);
         rows->field[column] = i;
     }
     return true;
@@ -321,8 +285,8 @@ static bool check_others(CsvRows *rows, const Fields *fields, Error *error) {
         const char *right = meant(rows, fields->text[i]);
         const CsvShown shown = csv_show(fields->text[i]);
         if (right != NULL)
-            return fail(rows->path, rows->line, fields->column[i], error,
-                        "unknown column '%s': did you mean '%s'? Rename or remove it", shown.text, right);
+            return csv_fail(rows->path, rows->line, fields->column[i], error,
+                            "unknown column '%s': did you mean '%s'? Rename or remove it", shown.text, right);
         text_join(rows->ignored, sizeof rows->ignored, ", ", "%s", shown.text);
     }
     return true;
@@ -331,16 +295,16 @@ static bool check_others(CsvRows *rows, const Fields *fields, Error *error) {
 bool csv_rows_begin(CsvRows *rows, const char *path, const char *text, int line, Error *error) {
     Fields fields;
     *rows = (CsvRows){.path = path, .at = text, .line = line};
-    if (*text == '\0') return csv_rows_error(rows, line, error, "there is no header 'frame,body,x,y,angle'");
+    if (*text == '\0') return csv_fail(rows->path, line, 0, error, "there is no header 'frame,body,x,y,angle'");
     if (!split(rows, &fields, error) || !place(rows, &fields, error) || !check_others(rows, &fields, error))
         return false;
     for (int i = COL_FRAME; i <= COL_ANGLE; i++)
         if (is_absent(rows, i))
-            return csv_rows_error(rows, line, error, "the column '%s' is missing; expected frame,body,x,y,angle",
-                                  names[i]);
+            return csv_fail(rows->path, line, 0, error, "the column '%s' is missing; expected frame,body,x,y,angle",
+                            names[i]);
     for (int i = COL_VX; i <= COL_OMEGA; i++)
         if (is_absent(rows, i) != is_absent(rows, COL_VX))
-            return csv_rows_error(rows, line, error, "give all of vx, vy and omega, or none of them");
+            return csv_fail(rows->path, line, 0, error, "give all of vx, vy and omega, or none of them");
     rows->width = fields.count;
     rows->first = rows->at;
     rows->first_line = rows->line = line + 1;
@@ -354,8 +318,8 @@ void csv_rows_rewind(CsvRows *rows) {
 
 static bool fail_field(const CsvRows *rows, const Fields *fields, int column, Error *error, const char *what) {
     const int field = rows->field[column];
-    return fail(rows->path, rows->line, fields->column[field], error, "%s: '%s' %s", names[column],
-                csv_show(fields->text[field]).text, what);
+    return csv_fail(rows->path, rows->line, fields->column[field], error, "%s: '%s' %s", names[column],
+                    csv_show(fields->text[field]).text, what);
 }
 
 static bool take_index(const CsvRows *rows, const Fields *fields, int column, int64_t *index, Error *error) {
@@ -386,7 +350,8 @@ bool csv_rows_next(CsvRows *rows, CsvRow *row, Error *error) {
     *row = (CsvRow){.line = rows->line};
     if (*rows->at == '\0' || !split(rows, &fields, error)) return false;
     if (fields.count != rows->width)
-        return csv_rows_error(rows, rows->line, error, "%d fields, but the header has %d", fields.count, rows->width);
+        return csv_fail(rows->path, rows->line, 0, error, "%d fields, but the header has %d", fields.count,
+                        rows->width);
     if (!take_index(rows, &fields, COL_FRAME, &row->frame, error) ||
         !take_index(rows, &fields, COL_BODY, &row->body, error) || !take_state(rows, &fields, row, error))
         return false;

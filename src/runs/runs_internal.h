@@ -98,14 +98,11 @@ enum { OF_FRAMES = -1, OF_STEPS = -2, OF_BODIES = -3, OF_CONTACTS = -4 };
 /* Arrays that come together or not at all. */
 enum { GROUP_NONE, GROUP_VELOCITIES, GROUP_CONTACTS, GROUP_VERDICT, RUN_ARRAY_GROUPS };
 
-enum { RUN_ARRAY_OTHERS = 8 };
-
 typedef struct RunArray {
     const char *name;
     NpzType type;
     int rank, shape[3];
     int group;
-    const char *others[RUN_ARRAY_OTHERS]; /* what other programs call it, where that is not near its name */
 } RunArray;
 
 extern const RunArray run_arrays[RUN_ARRAYS];
@@ -145,9 +142,6 @@ void csv_rows_rewind(CsvRows *rows);
 
 /* Line of the row of a body in a frame; 0: none. */
 int csv_rows_find(CsvRows *rows, int64_t frame, int64_t body);
-
-/* "path:line: error: text". Returns false. */
-bool csv_rows_error(const CsvRows *rows, int line, Error *error, const char *format, ...) PRINTF_LIKE(4, 5);
 
 /* A run while it is read from CSV. Part of csv_run. */
 

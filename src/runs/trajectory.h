@@ -130,12 +130,6 @@ bool trajectory_check(const Trajectory *trajectory, const char *path, Error *err
    run of one frame, none. */
 void trajectory_guess_fixed(Trajectory *trajectory);
 
-/* `frame,body,x,y,angle,vx,vy,omega`, numbers as %.9g (float32 round-trips), existing dynamic bodies only. */
-bool trajectory_write_csv(const Trajectory *trajectory, const char *path, Error *error);
-
-/* `frame,hash` for every frame, hashes as 16 hex digits. */
-bool trajectory_write_hashes(const Trajectory *trajectory, const char *path, Error *error);
-
 /* Where two trajectories differ. */
 typedef struct TrajectoryDifference {
     bool equal;      /* every bit of every pose and velocity */
@@ -293,12 +287,15 @@ Trajectory *csv_run_read(const char *path, const CsvRunOptions *options, CsvRunN
 bool csv_run_write(const Trajectory *run, const char *path, Error *error);
 
 /* Writes a run while it is made, in bounded memory. A part of a run is a Trajectory whose frame 0 is the frame after the
-   last one of the part before, with the contacts of the steps that end in its frames. The files are those that
-   trajectory_write(), trajectory_write_csv() and trajectory_write_hashes() write of the whole. */
+   last one of the part before, with the contacts of the steps that end in its frames. The parts do not show in the file. */
 
 typedef struct TrajectoryStream TrajectoryStream;
 
-typedef enum TrajectoryFormat { TRAJECTORY_NPZ, TRAJECTORY_CSV, TRAJECTORY_HASHES } TrajectoryFormat;
+typedef enum TrajectoryFormat {
+    TRAJECTORY_NPZ,
+    TRAJECTORY_CSV, /* frame,body,x,y,angle,vx,vy,omega; %.9g keeps every float32; the dynamic bodies that are there */
+    TRAJECTORY_HASHES /* frame,hash: 16 hexadecimal digits */
+} TrajectoryFormat;
 
 /* A stream for a run of `frames` frames; names, sizes and all else that does not change are those of `head`, which may
    be its first part and must outlive the stream. Program and verdict are read when it is finished. NULL with error set if no

@@ -214,42 +214,32 @@ static const char *const group_words[RUN_ARRAY_GROUPS] = {[GROUP_VELOCITIES] = "
                                                           [GROUP_VERDICT] = "the three of the verdict"};
 
 const RunArray run_arrays[RUN_ARRAYS] = {
-    {"version", NPZ_INT32, 0, {0}, GROUP_NONE, {NULL}},
-    {"scene", NPZ_TEXT, 0, {0}, GROUP_NONE, {NULL}},
-    {"method", NPZ_TEXT, 0, {0}, GROUP_NONE, {"engine", "solver", "simulator"}},
-    {"scene_hash", NPZ_UINT64, 0, {0}, GROUP_NONE, {NULL}},
-    {"iterations", NPZ_INT32, 0, {0}, GROUP_NONE, {NULL}},
-    {"dt", NPZ_FLOAT32, 0, {0}, GROUP_NONE, {"DT", "Dt", "delta_t", "h", "step", "time_step", "timestep"}},
-    {"bomb", NPZ_INT32, 0, {0}, GROUP_NONE, {NULL}},
-    {"camera", NPZ_FLOAT32, 2, {2, 2}, GROUP_NONE, {NULL}},
-    {"size", NPZ_FLOAT32, 2, {OF_BODIES, 2}, GROUP_NONE, {"box_size", "dimensions", "extent", "extents"}},
-    {"fixed", NPZ_UINT8, 1, {OF_BODIES}, GROUP_NONE, {"is_static", "static"}},
-    {"mass", NPZ_FLOAT32, 1, {OF_BODIES}, GROUP_NONE, {NULL}},
-    {"body_name", NPZ_UINT8, 2, {OF_BODIES, SCENE_BODY_NAME_SIZE}, GROUP_NONE, {NULL}},
-    {"position",
-     NPZ_FLOAT32,
-     3,
-     {OF_FRAMES, OF_BODIES, 2},
-     GROUP_NONE,
-     {"center", "centers", "centre", "centres", "pos", "xy"}},
-    {"angle",
-     NPZ_FLOAT32,
-     2,
-     {OF_FRAMES, OF_BODIES},
-     GROUP_NONE,
-     {"orientation", "orientations", "rot", "rotation", "rotations", "theta"}},
-    {"velocity", NPZ_FLOAT32, 3, {OF_FRAMES, OF_BODIES, 2}, GROUP_VELOCITIES, {"linear_velocity", "vel"}},
-    {"angular_velocity", NPZ_FLOAT32, 2, {OF_FRAMES, OF_BODIES}, GROUP_VELOCITIES, {"omega", "spin"}},
-    {"contact_start", NPZ_INT64, 1, {OF_STEPS}, GROUP_CONTACTS, {NULL}},
-    {"contact_bodies", NPZ_INT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS, {NULL}},
-    {"contact_feature", NPZ_UINT32, 1, {OF_CONTACTS}, GROUP_CONTACTS, {NULL}},
-    {"contact_point", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS, {NULL}},
-    {"contact_normal", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS, {NULL}},
-    {"contact_impulse", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS, {NULL}},
-    {"program", NPZ_TEXT, 0, {0}, GROUP_NONE, {NULL}},
-    {"verdict", NPZ_TEXT, 0, {0}, GROUP_VERDICT, {NULL}},
-    {"verdict_frame", NPZ_INT32, 0, {0}, GROUP_VERDICT, {NULL}},
-    {"verdict_body", NPZ_INT32, 0, {0}, GROUP_VERDICT, {NULL}},
+    {"version", NPZ_INT32, 0, {0}, GROUP_NONE},
+    {"scene", NPZ_TEXT, 0, {0}, GROUP_NONE},
+    {"method", NPZ_TEXT, 0, {0}, GROUP_NONE},
+    {"scene_hash", NPZ_UINT64, 0, {0}, GROUP_NONE},
+    {"iterations", NPZ_INT32, 0, {0}, GROUP_NONE},
+    {"dt", NPZ_FLOAT32, 0, {0}, GROUP_NONE},
+    {"bomb", NPZ_INT32, 0, {0}, GROUP_NONE},
+    {"camera", NPZ_FLOAT32, 2, {2, 2}, GROUP_NONE},
+    {"size", NPZ_FLOAT32, 2, {OF_BODIES, 2}, GROUP_NONE},
+    {"fixed", NPZ_UINT8, 1, {OF_BODIES}, GROUP_NONE},
+    {"mass", NPZ_FLOAT32, 1, {OF_BODIES}, GROUP_NONE},
+    {"body_name", NPZ_UINT8, 2, {OF_BODIES, SCENE_BODY_NAME_SIZE}, GROUP_NONE},
+    {"position", NPZ_FLOAT32, 3, {OF_FRAMES, OF_BODIES, 2}, GROUP_NONE},
+    {"angle", NPZ_FLOAT32, 2, {OF_FRAMES, OF_BODIES}, GROUP_NONE},
+    {"velocity", NPZ_FLOAT32, 3, {OF_FRAMES, OF_BODIES, 2}, GROUP_VELOCITIES},
+    {"angular_velocity", NPZ_FLOAT32, 2, {OF_FRAMES, OF_BODIES}, GROUP_VELOCITIES},
+    {"contact_start", NPZ_INT64, 1, {OF_STEPS}, GROUP_CONTACTS},
+    {"contact_bodies", NPZ_INT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS},
+    {"contact_feature", NPZ_UINT32, 1, {OF_CONTACTS}, GROUP_CONTACTS},
+    {"contact_point", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS},
+    {"contact_normal", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS},
+    {"contact_impulse", NPZ_FLOAT32, 2, {OF_CONTACTS, 2}, GROUP_CONTACTS},
+    {"program", NPZ_TEXT, 0, {0}, GROUP_NONE},
+    {"verdict", NPZ_TEXT, 0, {0}, GROUP_VERDICT},
+    {"verdict_frame", NPZ_INT32, 0, {0}, GROUP_VERDICT},
+    {"verdict_body", NPZ_INT32, 0, {0}, GROUP_VERDICT},
 };
 
 void run_array_shape(const RunArray *array, int64_t frames, int64_t bodies, int64_t contacts,
@@ -270,21 +260,12 @@ static bool is_known(const char *name) {
     return false;
 }
 
-static bool is_other_name(const char *name, int array) {
-    for (int k = 0; k < RUN_ARRAY_OTHERS && run_arrays[array].others[k] != NULL; k++)
-        if (strcmp(run_arrays[array].others[k], name) == 0) return true;
-    return false;
-}
-
 /* The array that an unknown name probably means, among those that the file lacks; NULL: none. */
 static const char *meant(const NpzFile *file, const char *name) {
     const char *missing[RUN_ARRAYS];
     int count = 0;
-    for (int i = 0; i < RUN_ARRAYS; i++) {
-        if (npz_has(file, run_arrays[i].name)) continue;
-        if (is_other_name(name, i)) return run_arrays[i].name;
-        missing[count++] = run_arrays[i].name;
-    }
+    for (int i = 0; i < RUN_ARRAYS; i++)
+        if (!npz_has(file, run_arrays[i].name)) missing[count++] = run_arrays[i].name;
     return strlen(name) > 3 ? nearest_word(name, missing, count) : NULL;
 }
 

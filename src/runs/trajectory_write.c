@@ -222,21 +222,9 @@ bool trajectory_stream_finish(TrajectoryStream *stream, Error *error) {
     return file_draft_publish(stream->draft, stream->path, error);
 }
 
-static bool write_as(const Trajectory *t, TrajectoryFormat format, const char *path, Error *error) {
-    TrajectoryStream *stream = trajectory_stream_create(t, t->frames, format, path, error);
+bool trajectory_write(const Trajectory *t, const char *path, Error *error) {
+    TrajectoryStream *stream = trajectory_stream_create(t, t->frames, TRAJECTORY_NPZ, path, error);
     bool done = stream != NULL && trajectory_stream_add(stream, t, error) && trajectory_stream_finish(stream, error);
     trajectory_stream_destroy(stream);
     return done;
-}
-
-bool trajectory_write(const Trajectory *t, const char *path, Error *error) {
-    return write_as(t, TRAJECTORY_NPZ, path, error);
-}
-
-bool trajectory_write_csv(const Trajectory *t, const char *path, Error *error) {
-    return write_as(t, TRAJECTORY_CSV, path, error);
-}
-
-bool trajectory_write_hashes(const Trajectory *t, const char *path, Error *error) {
-    return write_as(t, TRAJECTORY_HASHES, path, error);
 }

@@ -16,12 +16,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* stability.html: borders and maps as tables, whose letters link to pages of runs. */
-
-/* Writes folder/stability.html from the tables there: stability.csv, maps.csv, map_pages.csv, and engines.csv if it is there
-   (studies/stability.h). */
-bool stability_html_write(const char *folder, Error *error);
-
 /* The converged solution that a step is scored against. For most methods it is that of the step's contact problem. A
    method that moves overlapping bodies apart without giving them a velocity (no_push_out in its description) solves
    another problem: the same one without the bias that pushes bodies apart. */

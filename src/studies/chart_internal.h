@@ -128,6 +128,9 @@ typedef struct BestRival {
 /* Every method's error next to the error that its best rival has in the same time: equal_time.csv for
    each setting at the time that it takes, equal_time_methods.csv for each method at one time for all in a scene. */
 
+/* m/s: smaller errors count as equal. */
+#define PARETO_RESOLUTION 1e-4
+
 /* Whose error is below PARETO_RESOLUTION. Where both are, their ratio says nothing about what a run looks like. */
 typedef enum ErrorsBelow { BELOW_NONE, BELOW_METHOD, BELOW_RIVAL, BELOW_BOTH } ErrorsBelow;
 
@@ -173,21 +176,6 @@ typedef struct EqualTime {
    if out of memory. */
 bool equal_time_make(EqualTime *table, const ChartRow *rows, int count, Error *error);
 void equal_time_free(EqualTime *table);
-
-/* The Pareto front of speed and accuracy: the rows that no other row dominates. */
-
-/* m/s: smaller errors count as equal. */
-#define PARETO_RESOLUTION 1e-4
-
-/* True if a is certainly faster than b and not less accurate: its upper quartile of time is below b's lower quartile,
-   and its mean error is at most b's, or below PARETO_RESOLUTION. Rows whose quartile intervals overlap are not ordered.
-   Rows of different scenes, protocols or phases are not compared. Rows without quartiles of time or without an error,
-   and rows of baselines and of the reference (methods/methods.h), neither dominate nor are dominated. Rows of
-   unknown methods compete. */
-bool pareto_dominates(const ChartRow *a, const ChartRow *b);
-
-/* on_front[count]: rows that compete and that no other row dominates. */
-void pareto_mark(const ChartRow *rows, int count, bool *on_front);
 
 /* A piece of the speed-accuracy study: a launch of a scene with all methods, which share its converged run and its frozen
    steps. */

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Statistics, the Pareto front, curves of error over time, and the converged solution of a step. */
+/* Statistics, curves of error over time, and the converged solution of a step. */
 #include "base/base.h"
 #include "engine/engine.h"
-#include "methods/methods.h"
 #include "methods/reference.h"
 #include "studies/chart.h"
 #include "studies/chart_internal.h"
@@ -31,28 +30,6 @@ double statistics_quantile(double *values, int count, double fraction) {
     if (count == 0) return NAN;
     gsl_sort(values, 1, (size_t)count);
     return gsl_stats_quantile_from_sorted_data(values, 1, (size_t)count, fraction);
-}
-
-static bool comparable(const ChartRow *a, const ChartRow *b) {
-    return a->phase == b->phase && a->protocol == b->protocol && strcmp(a->scene, b->scene) == 0;
-}
-
-static bool competes(const ChartRow *row) {
-    const MethodDescription *method = method_describe(row->method);
-    if (method != NULL && method->role != METHOD_COMPETES) return false;
-    return !isnan(row->us_solver) && !isnan(row->us_solver_q1) && !isnan(row->us_solver_q3) && !isnan(row->error_mean);
-}
-
-bool pareto_dominates(const ChartRow *a, const ChartRow *b) {
-    return comparable(a, b) && competes(a) && competes(b) && a->us_solver_q3 < b->us_solver_q1 &&
-           a->error_mean <= fmax(b->error_mean, PARETO_RESOLUTION);
-}
-
-void pareto_mark(const ChartRow *rows, int count, bool *on_front) {
-    for (int i = 0; i < count; i++) {
-        on_front[i] = competes(&rows[i]);
-        for (int k = 0; on_front[i] && k < count; k++) on_front[i] = !pareto_dominates(&rows[k], &rows[i]);
-    }
 }
 
 static int compare(const void *left, const void *right) {

@@ -466,3 +466,8 @@ int map_pages_choose(const MapPanels *map, int panel, MapPlace places[MAP_PAGES_
 
 /* The row of a cell; NULL: none. */
 const MapCell *map_panels_cell(const MapPanels *map, const CsvTable *table, int panel, MapPlace place);
+
+/* stability.html: borders and maps as tables, whose letters link to pages of runs. */
+
+/* Writes folder/stability.html from the tables there: stability.csv, maps.csv, map_pages.csv, and engines.csv if it is there. */
+bool stability_html_write(const char *folder, Error *error);

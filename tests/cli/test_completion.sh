@@ -107,7 +107,7 @@ in_terminal bash "COMP_WORDBREAKS=' '; source <(twinbox completion bash)"
 sed "s/COMMANDS/$(echo $("$twinbox" --help | awk '/^  [a-z]/ { print $1 }'))/" >alike <<'END'
 twinbox help <ALL>|twinbox help COMMANDS 
 twinbox export <ALL>|twinbox export drawn engine.npz two\ words.npz 
-twinbox figure n<ALL>|twinbox figure narrow-phase network 
+twinbox figure s<ALL>|twinbox figure strip strobe 
 twinbox render --png <ALL>|twinbox render --png fast small 
 twinbox solve --<ALL>|twinbox solve --bomb-x --frame --help --impulses --json --method --output --quiet --run-by --set --verbose --version 
 twinbox simulate our_wall.yaml <ALL>|twinbox simulate our_wall.yaml 

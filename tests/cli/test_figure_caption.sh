@@ -18,11 +18,9 @@ equal "the caption" "$(cat strip.tex)" "\\caption{The scene \\texttt{stack} at 0
 Rows from top to bottom: \\texttt{engine} (physics engine, sequential impulses, \\texttt{k=10}) and \\texttt{momentum:k=20} (sequential \
 impulses with momentum). Drawn with twinbox~$("$twinbox" --version | sed 's/.* //').}"
 
-# With a band, and of a network.
+# With a band.
 run 0 figure divergence engine.npz momentum.npz --scene "$scenes/stack.yaml" -o band.svg --caption-text band.tex
 grep -qF 'each with one of 5 bodies shifted by 1~$\mu$m. ' band.tex || fail "$(cat band.tex)"
-run 0 figure network "$scenes/networks/scene-stack.npz" -o network.pdf --caption-text network.tex
-grep -qF '\texttt{scene-stack.npz}: 12 bodies, ' network.tex || fail "$(cat network.tex)"
 
 # No name, however odd, ends the caption or becomes a command: all braces pair.
 /usr/bin/python3 -c "

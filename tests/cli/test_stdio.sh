@@ -55,9 +55,6 @@ TABLE
 "$twinbox" train - --iterations 5 -o piped.npz <pairs.npz >out 2>err || fail "train -: $(head -c 300 err)"
 "$twinbox" train pairs.npz --iterations 5 --from - -o more.npz <net.npz >out 2>err || fail "train --from -: $(head -c 300 err)"
 
-# The figure shows the name of the file.
-"$twinbox" figure network - -o network.svg <net.npz >out 2>err || fail "figure network -: $(head -c 300 err)"
-
 # Drawn frames: from a run, a scene, and another run's view.
 run 0 render run.npz --frames 0:1 --size 320x180 -o frames
 "$twinbox" render - --frames 0:1 --size 320x180 -o frames_run <run.npz >out 2>err || fail "render a run from -"
@@ -100,7 +97,7 @@ TABLE
 run 1 compare run.npz other.npz --csv far.csv
 cmp -s written far.csv || fail "compare --csv -"
 "$twinbox" train pairs.npz --iterations 5 -o - >written 2>err || fail "train -o -"
-"$twinbox" figure network written -o other.svg >out 2>err || fail "the network that train wrote to -: $(head -c 300 err)"
+"$twinbox" train pairs.npz --iterations 5 --from written -o more.npz >out 2>err || fail "the network that train wrote to -: $(head -c 300 err)"
 "$twinbox" simulate stdin.yaml --frames 20 -o - 2>err >written
 complains "stdin by engine: 20 steps"
 

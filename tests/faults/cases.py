@@ -86,7 +86,6 @@ LONG = [
     Case("figure-png", f"figure strobe a.npz -o out.png --at 0.5,0.7 {PAGE} --caption-text out.tex",
          "a.npz out.png=a.csv out.tex=a.csv"),
     Case("figure-plot", f"figure divergence a.npz b.npz -o out.pdf {PAGE}", "a.npz b.npz out.pdf=a.csv"),
-    Case("figure-network", f"figure network net.npz -o out.pdf {PAGE}", "net.npz out.pdf=a.csv"),
     Case("render", f"render a.npz b.npz -o out --frames 40:42 {SMALL}", "a.npz b.npz", "out/manifest.json.part"),
     Case("render-resume", f"render a.npz -o half --frames 40:42 {SMALL} --resume", "a.npz half",
          "half/manifest.json.part", says_how=True),

@@ -119,15 +119,6 @@ TEST(a_strobe_names_its_moments) {
                    " at 0.25, 0.5 and 0.75~s in one picture; earlier moments are paler. Method: " ENGINE ".");
 }
 
-TEST(a_network_has_its_layers) {
-    FigureSpec spec = {.width = FIGURE_PAGE_WIDTH,
-                       .points = FIGURE_POINTS,
-                       .dpi = 100,
-                       .network = SOURCE_DIR "/scenes/networks/pair-net.npz"};
-    assert_caption("network", spec,
-                   "Layers and weights of the network \\texttt{pair-net.npz}: 10-10-2, 132 parameters.");
-}
-
 /* The poses of the pair are made to touch as the contact says. */
 TEST(a_narrow_phase_names_the_pair) {
     *run_position(runs[0], IMPACT - 1, BOMB_BODY) = vec2(-2, 1.7F);

@@ -38,8 +38,7 @@ static void draw_at_sizes(const FigureKind *kind, FigureSpec *spec, int count, i
         Sketch sketch = {0};
         spec->width = sizes[i][0], spec->points = sizes[i][1];
         snprintf(faults.figure, sizeof faults.figure, "%s of %d runs of %s at %g mm, %g points", kind->name,
-                 spec->run_count, spec->run_count > 0 ? spec->runs[0]->scene : spec->network, spec->width,
-                 spec->points);
+                 spec->run_count, spec->runs[0]->scene, spec->width, spec->points);
         if (figure_draw(kind, &sketch, spec, &error))
             check_texts(&sketch, &faults);
         else if (i < drawn || error.kind != ERROR_INPUT || strstr(error.message, "mm") == NULL)
@@ -68,7 +67,6 @@ TEST(figures_of_runs) {
                               read_run(scenes[scene], "engine")};
         for (int i = 0; figure_kinds()[i] != NULL; i++) {
             const FigureKind *kind = figure_kinds()[i];
-            if (kind->max_runs == 0) continue;
             FigureSpec spec = spec_of(runs, kind->max_runs < 3 ? kind->max_runs : 3);
             spec.dpi = 50;
             draw_at_sizes(kind, &spec, SIZES, USUAL);
@@ -83,7 +81,6 @@ TEST(the_least_width_is_enough) {
     Trajectory *runs[] = {read_run("stack", "engine"), read_run("stack", "pair-net")};
     for (int i = 0; figure_kinds()[i] != NULL; i++) {
         const FigureKind *kind = figure_kinds()[i];
-        if (kind->max_runs == 0) continue;
         FigureSpec spec = spec_of(runs, kind->min_runs);
         spec.dpi = 50, spec.moments = 2;
         draw_at_sizes(kind, &spec, LEAST, LEAST);
@@ -115,7 +112,6 @@ TEST(long_names) {
     strcpy(runs[1]->method, "pair-net:weights=some/where/a-very-long-name-of-a-network-that-fits-nowhere.npz");
     for (int i = 0; figure_kinds()[i] != NULL; i++) {
         const FigureKind *kind = figure_kinds()[i];
-        if (kind->max_runs == 0) continue;
         FigureSpec spec = spec_of(runs, kind->max_runs < 2 ? 1 : 2);
         spec.dpi = 50, spec.moments = 3;
         spec.captions[0] =
@@ -123,17 +119,6 @@ TEST(long_names) {
         draw_at_sizes(kind, &spec, LEAST, USUAL);
     }
     free_runs(runs, 2);
-    assert_clear(&faults);
-}
-
-TEST(figures_of_networks) {
-    static const char *const networks[] = {"pair-net", "pair-net-six", "scene-pyramid_settled"};
-    for (int i = 0; i < 3; i++) {
-        char path[512];
-        snprintf(path, sizeof path, SOURCE_DIR "/scenes/networks/%s.npz", networks[i]);
-        FigureSpec spec = {.dpi = 50, .network = path};
-        draw_at_sizes(figure_kind("network", &error), &spec, SIZES, USUAL);
-    }
     assert_clear(&faults);
 }
 

@@ -37,7 +37,7 @@ static void render_into(const char *folder) {
     Error error = {0};
     const Trajectory *const panels[] = {run};
     const RenderOptions options = {.width = WIDTH, .height = HEIGHT, .last = -1, .jobs = 1, .directory = folder};
-    assert_ok(render_sequence(panels, 1, &options, NULL, NULL, &error), error);
+    assert_ok(render_study(panels, 1, &options, NULL, NULL, NULL, &error), error);
     assert_ok(trajectory_write(run, in(folder, "two_boxes-engine.npz"), &error), error);
 }
 
@@ -127,7 +127,7 @@ static void replace_pixels(int frame, const Image *image) {
     Error error = {0};
     const char *path = frame_path(actual, frame);
     for (int i = 0; i < 3; i++) {
-        assert_ok(image_read_text(path, keys[i], values[i], sizeof values[i], &error), error);
+        text_of_image(path, keys[i], values[i], sizeof values[i]);
         texts[i] = (ImageText){keys[i], values[i]};
     }
     assert_ok(image_write_png(image, path, texts, 3, &error), error);

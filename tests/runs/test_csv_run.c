@@ -178,7 +178,7 @@ static const struct {
     {"# bomb: 7\n" HEAD ROWS, "run.csv: error: the bomb is body 7, which has no size"},
     {"# camera: 0,0,-1,1\n" HEAD ROWS, "the camera's window must be finite and not negative"},
     {"# size: 0,1,1\nframe;body;x;y;angle\n", "run.csv:2: error: the column 'frame' is missing"},
-    {"# size: 0,1,1\nframe,body,x,y,theta\n", "run.csv:2:16: error: unknown column 'theta': did you mean 'angle'?"},
+    {"# size: 0,1,1\nframe,body,x,y,theta\n", "run.csv:2: error: the column 'angle' is missing"},
     {"# size: 0,1,1\nframes,body,x,y,angle\n", "run.csv:2:1: error: unknown column 'frames': did you mean 'frame'?"},
     {"# size: 0,1,1\nframe,body,x,y,angle,x\n", "run.csv:2:22: error: the column 'x' appears twice"},
     {"# size: 0,1,1\nframe,body,x,y,angle,vx\n", "run.csv:2: error: give all of vx, vy and omega, or none"},

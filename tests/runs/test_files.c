@@ -250,7 +250,7 @@ TEST(csv_gives_every_float_back) {
     Trajectory *t = example_trajectory();
     /* With 8 digits this float and the next read the same. */
     t->position[1 * EXAMPLE_BODIES + 1].x = nextafterf(1000, 2000);
-    assert_ok(trajectory_write_csv(t, path, &error), error);
+    assert_ok(write_as(t, TRAJECTORY_CSV, path, &error), error);
     char *text = text_of(path), *line = strtok(text, "\n");
     assert_string_equal(line, "frame,body,x,y,angle,vx,vy,omega");
     for (int frame = 0; frame < EXAMPLE_FRAMES; frame++) {
@@ -276,14 +276,14 @@ TEST(hashes_are_those_of_the_frames) {
     const char *path = temporary_path("run.hashes");
     Trajectory *t = example_trajectory();
     t->fixed[1] = t->fixed[2] = 1;
-    assert_ok(trajectory_write_hashes(t, path, &error), error);
+    assert_ok(write_as(t, TRAJECTORY_HASHES, path, &error), error);
     char *text = text_of(path);
     /* Of no bodies: the start value. */
     assert_string_equal(text,
                         "frame,hash\n0,14650fb0739d0383\n1,14650fb0739d0383\n2,14650fb0739d0383\n3,14650fb0739d0383\n");
     free(text);
     t->fixed[1] = 0;
-    assert_ok(trajectory_write_hashes(t, path, &error), error);
+    assert_ok(write_as(t, TRAJECTORY_HASHES, path, &error), error);
     text = text_of(path);
     char line[64];
     snprintf(line, sizeof line, "\n3,%016" PRIx64 "\n", trajectory_frame_hash(t, 3));
@@ -293,12 +293,10 @@ TEST(hashes_are_those_of_the_frames) {
 }
 
 TEST(failed_writes_tell) {
-    bool (*const writers[])(const Trajectory *, const char *, Error *) = {trajectory_write, trajectory_write_csv,
-                                                                          trajectory_write_hashes};
     Trajectory *t = example_trajectory();
     for (int i = 0; i < 3; i++) {
         error = (Error){0};
-        assert_false(writers[i](t, temporary_path("nowhere/run"), &error));
+        assert_false(write_as(t, (TrajectoryFormat)i, temporary_path("nowhere/run"), &error));
         assert_error(error, ERROR_SYSTEM, "nowhere/run: error: cannot write: ");
     }
     trajectory_destroy(t);

@@ -39,7 +39,7 @@ TEST(files_are_those_of_a_run_in_memory) {
         }
         const char *npz = temporary_path("run.npz"), *csv = temporary_path("run.csv");
         assert_ok(trajectory_write(run, temporary_path("expected.npz"), &error), error);
-        assert_ok(trajectory_write_csv(run, temporary_path("expected.csv"), &error), error);
+        assert_ok(write_as(run, TRAJECTORY_CSV, temporary_path("expected.csv"), &error), error);
         uint64_t hash;
         record_to(scene, &method, (RecorderOutput[]){{npz, TRAJECTORY_NPZ}, {csv, TRAJECTORY_CSV}}, no_contacts, &hash);
         assert_same_file(npz, temporary_path("expected.npz"));

@@ -59,7 +59,6 @@ static bool run(const char *folder, int64_t count, int shard, Error *error) {
     const bool done = study_key_begin(&key, error) && pieces_open(&pieces, folder, &key, &how, error) &&
                       pieces_do(&pieces, &plan, NULL, error) &&
                       (shard > 0 || piece_tables_write(&pieces, folder, layouts, 1, &group, 1, error));
-    pieces_close(&pieces);
     study_key_free(&key);
     return done;
 }
