@@ -137,9 +137,9 @@ static bool refuse(const char *option, const FigureKind *kind, Error *error) {
 
 static bool check_inputs(const FigureKind *kind, const Options *options, Error *error) {
     if (options->input_count >= kind->min_runs && options->input_count <= kind->max_runs) return true;
-    return error_input(error, "figure", "%s needs %s%d %s (.npz), not %d", kind->name,
-                       kind->min_runs < kind->max_runs ? "at least " : "", kind->min_runs,
-                       kind->max_runs == 1 ? "run" : "runs", options->input_count);
+    return error_input(error, "figure", "%s needs %s%d run%s (.npz), not %d", kind->name,
+                       kind->min_runs < kind->max_runs ? "at least " : "", kind->min_runs, plural(kind->min_runs),
+                       options->input_count);
 }
 
 static bool check_captions(const Options *options, Error *error) {
