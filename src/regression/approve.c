@@ -210,57 +210,20 @@ static const char *target_of(const ApprovalItem *item) {
     return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
 }
 
-/* The hashes of the files that were named so far: a table with open addressing, at most half full. 0 is an empty place. */
-typedef struct Named {
-    uint64_t *hashes; /* [size], a power of two */
-    size_t size, count;
-} Named;
-
-static uint64_t *find_place(const Named *named, uint64_t hash) {
-    size_t at = hash & (named->size - 1);
-    while (named->hashes[at] != 0 && named->hashes[at] != hash) at = (at + 1) & (named->size - 1);
-    return &named->hashes[at];
-}
-
-static bool grow(Named *named) {
-    enum { FIRST_SIZE = 64 };
-    if (2 * named->count < named->size) return true;
-    Named larger = {.size = named->size > 0 ? 2 * named->size : FIRST_SIZE, .count = named->count};
-    if ((larger.hashes = calloc(larger.size, sizeof *larger.hashes)) == NULL) return false;
-    for (size_t i = 0; i < named->size; i++)
-        if (named->hashes[i] != 0) *find_place(&larger, named->hashes[i]) = named->hashes[i];
-    free(named->hashes);
-    *named = larger;
-    return true;
-}
-
-/* compare names a file once; many copies of an item would write one file as many times. */
-static bool add_name(const JsonReader *json, Named *named, const ApprovalItem *item, Error *error) {
-    const char *target = target_of(item);
-    uint64_t hash = hash_xxh3(target, strlen(target)), *place;
-    if (hash == 0) hash = 1;
-    if (!grow(named)) return error_memory(error, json->path);
-    if (*(place = find_place(named, hash)) == hash) return json_read_error(json, error, "'%s' is there twice", target);
-    *place = hash;
-    named->count++;
-    return true;
-}
-
-static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Named *named, Error *error) {
+static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Error *error) {
     if (!json_read_char(json, '[')) return json_read_error(json, error, "'%s' must be an array", key);
     for (bool more = !json_read_char(json, ']'); more;) {
         ApprovalItem item = {0};
         const json_t *value = json_read_value(json, error);
         if (value == NULL || !read_item(json, value, &item, error)) return false;
-        if (item.failed && !add_name(json, named, &item, error)) return false;
         if (item.failed && !add_item(list, item)) return error_memory(error, json->path);
         if (!json_read_more(json, ']', &more, error)) return false;
     }
     return true;
 }
 
-static bool read_member(JsonReader *json, int member, ApprovalList *list, Named *named, Error *error) {
-    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, named, error);
+static bool read_member(JsonReader *json, int member, ApprovalList *list, Error *error) {
+    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, error);
     const json_t *value = json_read_value(json, error);
     if (value == NULL || member == MEMBERS) return value != NULL;
     const char *text = read_text(json, value, members[member], PATH_MAX - 1, error);
@@ -284,12 +247,30 @@ static bool read_key(JsonReader *json, bool seen[MEMBERS], int *member, Error *e
     return json_read_char(json, ':') || json_read_error(json, error, "':' expected");
 }
 
-static bool read_list(JsonReader *json, ApprovalList *list, Named *named, Error *error) {
+static int by_target(const void *a, const void *b) {
+    const ApprovalItem *const *x = a, *const *y = b;
+    return strcmp(target_of(*x), target_of(*y));
+}
+
+/* compare names a file once; many copies of an item would write one file as many times. */
+static bool refuse_twice(const ApprovalList *list, const char *path, Error *error) {
+    const ApprovalItem **items = malloc((list->count + 1) * sizeof *items);
+    bool ok = items != NULL || error_memory(error, path);
+    for (size_t i = 0; ok && i < list->count; i++) items[i] = &list->items[i];
+    if (ok) qsort(items, list->count, sizeof *items, by_target);
+    for (size_t i = 1; ok && i < list->count; i++)
+        if (by_target(&items[i - 1], &items[i]) == 0)
+            ok = error_input(error, path, "'%s' is there twice", target_of(items[i]));
+    free(items);
+    return ok;
+}
+
+static bool read_list(JsonReader *json, ApprovalList *list, Error *error) {
     bool seen[MEMBERS] = {false};
     if (!json_read_char(json, '{')) return json_read_error(json, error, "not a report of twinbox compare");
     for (bool more = true; more;) {
         int member = MEMBERS;
-        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, named, error) ||
+        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, error) ||
             !json_read_more(json, '}', &more, error))
             return false;
     }
@@ -297,16 +278,14 @@ static bool read_list(JsonReader *json, ApprovalList *list, Named *named, Error 
     for (int i = 0; i < MEMBERS; i++)
         if (!seen[i])
             return error_input(error, json->path, "'%s' is missing: not a report of twinbox compare", members[i]);
-    return true;
+    return refuse_twice(list, json->path, error);
 }
 
 bool approval_read(ApprovalList *list, const char *path, Error *error) {
     JsonReader json;
     if (!json_read_open(&json, path, MAX_SIZE, error)) return false;
     *list = (ApprovalList){.count = 0};
-    Named named = {0};
-    bool ok = read_list(&json, list, &named, error);
-    free(named.hashes);
+    bool ok = read_list(&json, list, error);
     json_read_close(&json);
     if (!ok) approval_free(list);
     return ok;
@@ -384,22 +363,18 @@ static bool decide(const Folders *folders, const ApprovalItem *item, Action *act
            (as_reported(&actual, &item->actual) || refuse_changed(&folders->actual, name, error));
 }
 
+#define CHANGED "has changed during the approval"
+
 /* Reads the actual file again and checks the hash of exactly the bytes that are written. */
-static bool copy(const ApprovePlace *source, uint64_t hash, const ApprovePlace *target, Error *error) {
+static bool copy(const Folders *folders, const ApprovalFile *actual, const ApprovePlace *target, Error *error) {
+    ApprovePlace source;
     size_t size;
-    if (source->folder < 0) return error_input(error, source->path, "has changed during the approval");
-    char *data = file_read_at(source->folder, source->name, source->path, MAX_FILE_SIZE, &size, error);
-    bool ok = data != NULL &&
-              (hash_xxh3(data, size) == hash || error_input(error, source->path, "has changed during the approval")) &&
+    if (!place_open(&source, &folders->actual, actual->name, false, error)) return false;
+    if (source.folder < 0) return error_input(error, source.path, CHANGED);
+    char *data = file_read_at(source.folder, source.name, source.path, MAX_FILE_SIZE, &size, error);
+    bool ok = data != NULL && (hash_xxh3(data, size) == actual->hash || error_input(error, source.path, CHANGED)) &&
               file_write_at(target->folder, target->name, target->path, data, size, error);
     free(data);
-    return ok;
-}
-
-static bool copy_from(const Folders *folders, const ApprovalFile *actual, const ApprovePlace *target, Error *error) {
-    ApprovePlace source;
-    if (!place_open(&source, &folders->actual, actual->name, false, error)) return false;
-    bool ok = copy(&source, actual->hash, target, error);
     place_close(&source);
     return ok;
 }
@@ -412,12 +387,12 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
     (*counts[action])++;
     if (action == ACTION_NONE) return true;
     if (!place_open(&target, &folders->expected, target_of(item), action == ACTION_ADD, error)) return false;
-    bool ok = target.folder >= 0 || error_input(error, target.path, "has changed during the approval");
+    bool ok = target.folder >= 0 || error_input(error, target.path, CHANGED);
     if (ok && action == ACTION_REMOVE)
         ok = unlinkat(target.folder, target.name, 0) == 0 ||
              error_system(error, target.path, "cannot be removed: %s", strerror(errno));
     else if (ok)
-        ok = copy_from(folders, &item->actual, &target, error);
+        ok = copy(folders, &item->actual, &target, error);
     if (ok) on_change(words[action], target.path);
     place_close(&target);
     return ok;

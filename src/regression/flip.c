@@ -4,6 +4,7 @@
 
 #include "base/base.h"
 #include "pixels/png.h"
+#include "regression/regression_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -476,20 +477,17 @@ static void find_in_row(const Flip *flip, int y, int left, int right, FlipArea *
     found->bottom = y + 1;
 }
 
-static int at_least(int value, int least) { return value < least ? least : value; }
-static int at_most(int value, int most) { return value > most ? most : value; }
-
 /* The part of an area that differences can reach through the filters; empty (bottom 0) if there are none. Beyond it,
    both pictures are filtered from equal pixels. */
 static FlipArea find_reached(const Flip *flip, FlipArea area) {
     int reach = flip->model.reach;
     FlipArea found = {0, 0, 0, 0};
-    int left = at_least(area.left - reach, 0), right = at_most(area.right + reach, flip->width);
-    for (int y = at_least(area.top - reach, 0); y < at_most(area.bottom + reach, flip->height); y++)
+    int left = larger(area.left - reach, 0), right = smaller(area.right + reach, flip->width);
+    for (int y = larger(area.top - reach, 0); y < smaller(area.bottom + reach, flip->height); y++)
         find_in_row(flip, y, left, right, &found);
     if (found.bottom == 0) return found;
-    return (FlipArea){at_least(found.left - reach, area.left), at_least(found.top - reach, area.top),
-                      at_most(found.right + reach, area.right), at_most(found.bottom + reach, area.bottom)};
+    return (FlipArea){larger(found.left - reach, area.left), larger(found.top - reach, area.top),
+                      smaller(found.right + reach, area.right), smaller(found.bottom + reach, area.bottom)};
 }
 
 /* The values of rows top .. bottom - 1. */
@@ -497,7 +495,7 @@ static void fill_band(const Flip *flip, int top, int bottom) {
     size_t width = (size_t)flip->width;
     memset(flip->values, 0, width * (size_t)(bottom - top) * sizeof *flip->values);
     for (int left = 0; left < flip->width; left += FLIP_TILE_WIDTH) {
-        FlipArea area = find_reached(flip, (FlipArea){left, top, at_most(left + FLIP_TILE_WIDTH, flip->width), bottom});
+        FlipArea area = find_reached(flip, (FlipArea){left, top, smaller(left + FLIP_TILE_WIDTH, flip->width), bottom});
         if (area.bottom > 0)
             tile_compute(flip->tile, flip->pictures, area, flip->values + (size_t)(area.top - top) * width, width);
     }
@@ -518,7 +516,7 @@ bool flip_compare(const Image *expected, const Image *actual, double pixels_per_
     Flip flip;
     bool ok = create(&flip, expected, actual, pixels_per_degree, error);
     for (int top = 0; ok && top < flip.height; top += flip.band) {
-        int bottom = at_most(top + flip.band, flip.height);
+        int bottom = smaller(top + flip.band, flip.height);
         fill_band(&flip, top, bottom);
         for (int y = top; ok && y < bottom; y++)
             ok = take_row(&flip, flip.values + (size_t)(y - top) * (size_t)flip.width, sink, error);

@@ -245,46 +245,18 @@ static bool measure(RegressionFrame *frame, const Image *expected, Image *actual
 bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
                        const uint8_t *masked, Error *error) {
     const ImageDifference *difference = &frame->difference;
-    Tolerance tolerance = regression_tolerance(regression, frame);
-    if (!difference->same_size && !regression_accepts_size(regression, frame))
+    const Tolerance tolerance = regression_tolerance(regression, frame);
+    const bool resized = !difference->same_size && !regression_accepts_size(regression, frame);
+    if ((resized || difference->pixels > 0) && (tolerance.given & LIMITS_FLIP) != 0 &&
+        !measure(frame, expected, actual, masked, error))
+        return false;
+    if (resized)
         frame->pixels = PIXELS_RESIZED;
     else if (difference->pixels == 0)
         frame->pixels = difference->moved > 0 || !difference->same_size ? PIXELS_WITHIN : PIXELS_EQUAL;
-    else if ((tolerance.given & LIMITS_FLIP) != 0 && !measure(frame, expected, actual, masked, error))
-        return false;
     else
         frame->pixels = tolerance_holds(&tolerance, difference, &(FlipSummary){frame->flip, frame->flip_p99})
                             ? PIXELS_WITHIN
                             : PIXELS_DIFFER;
-    return true;
-}
-
-static Image *read_picture(const Regression *regression, const char *path, Error *error) {
-    size_t size;
-    uint8_t *data = image_load_png(path, &size, error);
-    Image *image = data == NULL ? NULL : image_decode_png(data, size, path, regression->options.max_pixels, error);
-    free(data);
-    return image;
-}
-
-static bool measure_files(const Regression *regression, RegressionFrame *frame, Error *error) {
-    uint8_t *masked = NULL;
-    Image *expected = read_picture(regression, frame->at[EXPECTED]->path, error);
-    Image *actual = expected == NULL ? NULL : read_picture(regression, frame->at[ACTUAL]->path, error);
-    bool ok = actual != NULL && regression_ignore(regression, frame, expected, actual, &masked, error) &&
-              measure(frame, expected, actual, masked, error);
-    image_destroy(expected);
-    image_destroy(actual);
-    free(masked);
-    return ok;
-}
-
-bool regression_measure_first(Regression *regression, Error *error) {
-    for (int i = 0; i < regression->count; i++) {
-        RegressionFrame *frame = &regression->frames[i];
-        if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
-        bool wanted = !frame->sizes_alone && (regression_tolerance(regression, frame).given & LIMITS_FLIP) != 0;
-        return !wanted || !isnan(frame->flip) || measure_files(regression, frame, error);
-    }
     return true;
 }

@@ -148,7 +148,6 @@ static void drop_empty(Naming *naming, int change) {
 static int add_moved(Panel *panel, const Drawn *body) {
     ChangeKind kind = !body->exists[0] ? CHANGE_APPEARED : !body->exists[1] ? CHANGE_DISAPPEARED : CHANGE_MOVED;
     Change change = change_of(panel, body, kind);
-    change.by_states = true;
     if (kind == CHANGE_MOVED) {
         const BoxModel *a = &body->box[0], *b = &body->box[1];
         change.right = b->x - a->x, change.up = a->y - b->y;
@@ -173,7 +172,7 @@ static bool name_moved(Panel *panel, Error *error) {
             continue;
         }
         Change others = change_of(panel, moved[i], CHANGE_MOVED);
-        others.subject = SUBJECT_BODIES, others.by_states = true, others.body = count - SINGLE;
+        others.subject = SUBJECT_BODIES, others.body = count - SINGLE;
         if (i == SINGLE) rest = add_change(panel->naming, &others);
         if (rest >= 0) take_body(panel, moved[i], rest);
     }

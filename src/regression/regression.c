@@ -490,17 +490,14 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
          regression_read_rules(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
          judge_sequences(regression, error);
     if (ok) count(regression);
-    ok = ok && regression_measure_first(regression, error) && regression_find_causes(regression, error);
+    ok = ok && regression_find_causes(regression, error);
     regression->seconds = clock_seconds() - begun;
     if (!ok) regression_free(regression);
     return ok;
 }
 
 void regression_free(Regression *regression) {
-    for (int i = 0; i < regression->run_count; i++) {
-        free(regression->runs[i].name);
-        free(regression->runs[i].differs);
-    }
+    for (int i = 0; i < regression->run_count; i++) regression_free_run(&regression->runs[i]);
     for (int i = 0; regression->frames != NULL && i < regression->count; i++) {
         free(regression->frames[i].read_error);
         free(regression->frames[i].changes);

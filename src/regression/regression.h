@@ -197,6 +197,7 @@ typedef struct RegressionFrame {
 /* A trajectory that is in both folders. */
 typedef struct RegressionRun {
     char *name;
+    char *paths[SIDES]; /* of the files, also where there is none */
     RegressionFile files[SIDES];
     bool alone[SIDES]; /* only this folder has it; there is no difference then */
     TrajectoryDifference difference;

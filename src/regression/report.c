@@ -166,16 +166,13 @@ static bool gather_pictures(ReportPictures *pictures, Regression *regression, si
 /* Of the states in a page. A page of longer runs shows the frames around the first difference. */
 enum { STATE_BYTES = 8 << 20, FRAMES_BEFORE = 60 };
 
-static bool read_runs(Trajectory *runs[SIDES], const Regression *regression, const RegressionRun *run, Error *error) {
-    char path[PATH_MAX];
+static bool read_runs(Trajectory *runs[SIDES], const RegressionRun *run, Error *error) {
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (!file_path(path, sizeof path, error, "%s/%s", regression->sequences[side]->folder, run->name) ||
-            (runs[side] = trajectory_read(path, error)) == NULL)
-            return false;
+        if ((runs[side] = trajectory_read(run->paths[side], error)) == NULL) return false;
     TrajectoryDifference now;
     trajectory_compare(runs[EXPECTED], runs[ACTUAL], &now);
     return (!now.equal && now.frame == run->difference.frame && now.body == run->difference.body) ||
-           error_input(error, path, "has changed since the comparison");
+           error_input(error, run->paths[ACTUAL], "has changed since the comparison");
 }
 
 typedef struct Stem {
@@ -216,6 +213,20 @@ static PlayerOptions choose_frames(const Trajectory *const runs[SIDES], int firs
     return options;
 }
 
+bool report_write_run(const Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
+                      ReportLink *link, size_t *bytes, Error *error) {
+    char path[PATH_MAX], moment[PLAYER_LINK_SIZE];
+    const PlayerOptions options = choose_frames(runs, frame);
+    PlayerResult result;
+    if (!file_path(path, sizeof path, error, "%s/%s", folder, name) ||
+        !player_write(runs, SIDES, &options, path, &result, error))
+        return false;
+    player_link(moment, frame > 0 ? frame * (double)runs[EXPECTED]->dt : 0, body);
+    snprintf(link->text, sizeof link->text, "%s%s", name, moment);
+    *bytes = (size_t)result.bytes;
+    return true;
+}
+
 typedef struct Writing {
     ReportRuns *runs;
     const Regression *regression;
@@ -224,27 +235,23 @@ typedef struct Writing {
 } Writing;
 
 static bool write_page(Writing *writing, int index, const Trajectory *const runs[SIDES], Error *error) {
-    char name[REPORT_RUN_SIZE], path[PATH_MAX], moment[PLAYER_LINK_SIZE];
+    char name[REPORT_RUN_SIZE];
+    size_t bytes;
     const RegressionRun *run = &writing->regression->runs[index];
     const bool beyond = run->beyond.frame >= 0; /* what fails, where a tolerance lets smaller differences pass */
-    const int frame = beyond ? run->beyond.frame : run->difference.frame;
-    const PlayerOptions options = choose_frames(runs, frame);
-    PlayerResult result;
     name_page(name, writing->regression, index);
-    if (!file_path(path, sizeof path, error, "%s/%s", writing->folder, name) ||
-        !player_write(runs, SIDES, &options, path, &result, error))
+    if (!report_write_run(runs, beyond ? run->beyond.frame : run->difference.frame,
+                          beyond ? run->beyond.body : run->difference.body, writing->folder, name,
+                          &writing->runs->links[index], &bytes, error))
         return false;
-    player_link(moment, frame > 0 ? frame * (double)runs[EXPECTED]->dt : 0,
-                beyond ? run->beyond.body : run->difference.body);
-    snprintf(writing->runs->links[index], sizeof writing->runs->links[index], "%s%s", name, moment);
-    writing->left = (size_t)result.bytes < writing->left ? writing->left - (size_t)result.bytes : 0;
+    writing->left = bytes < writing->left ? writing->left - bytes : 0;
     return true;
 }
 
 /* Runs of different time steps have no common moment: no page. */
 static bool show_run(Writing *writing, int index, Error *error) {
     Trajectory *runs[SIDES] = {NULL, NULL};
-    bool ok = read_runs(runs, writing->regression, &writing->regression->runs[index], error);
+    bool ok = read_runs(runs, &writing->regression->runs[index], error);
     if (ok && memcmp(&runs[EXPECTED]->dt, &runs[ACTUAL]->dt, sizeof(float)) == 0) {
         if (writing->left == 0)
             writing->runs->left_out++;
@@ -275,28 +282,24 @@ static bool write_run_pages(ReportRuns *runs, const Regression *regression, cons
     return show_runs(&writing, progress, error);
 }
 
-/* The files of a report. results.json is last: if it exists, the report is complete. */
-static const struct {
-    const char *name;
-    void (*write)(FILE *file, const void *report);
-} parts[] = {{"report.html", report_write_page},
-             {"junit.xml", report_write_junit},
-             {"results.tap", report_write_tap},
-             {"results.json", report_write_json}};
-
 bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
                              Error *error) {
     ReportPictures pictures;
     ReportRuns runs = {0};
-    char path[PATH_MAX];
     if (!file_make_directory(folder, error) || !gather_pictures(&pictures, regression, max_bytes, progress, error))
         return false;
     const Report report = {regression, &pictures, &runs, folder};
-    bool ok = write_run_pages(&runs, regression, folder, max_bytes, progress, error);
-    for (size_t i = 0; ok && i < sizeof parts / sizeof parts[0]; i++) {
-        ok = file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) &&
-             file_write_text(path, parts[i].write, &report, error);
-    }
+    const RegressionText notes = regression_notes(regression);
+    const ReportResults results = {.comparison = &report,
+                                   .count = regression->count + regression->run_count,
+                                   .failed = regression->failed + regression->run_failed,
+                                   .notes = notes.text,
+                                   .seconds = regression->seconds,
+                                   .at = report_case,
+                                   .write_page = report_write_page,
+                                   .write_json = report_write_json};
+    bool ok =
+        write_run_pages(&runs, regression, folder, max_bytes, progress, error) && report_write(&results, folder, error);
     free(runs.links);
     free_pictures(&pictures);
     return ok;

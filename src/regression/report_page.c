@@ -156,7 +156,7 @@ static void write_notes(FILE *file, const Regression *regression) {
 /* The text of the link tells where it leads, for those who hear the links only. */
 static void write_run_link(FILE *file, const Report *report, int index) {
     const TrajectoryDifference *difference = &report->regression->runs[index].difference;
-    const char *link = report->runs->links[index];
+    const char *link = report->runs->links[index].text;
     if (link[0] == '\0') return;
     fputs("<a href=\"", file);
     html_put(file, link);

@@ -22,11 +22,6 @@
 /* The limit of a trajectory file. */
 static const size_t MAX_RUN_SIZE = (size_t)2 << 30;
 
-static bool run_path(const Regression *regression, RegressionSide side, const char *name, char path[PATH_MAX],
-                     Error *error) {
-    return file_path(path, PATH_MAX, error, "%s/%s", regression->sequences[side]->folder, name);
-}
-
 static bool is_run(const char *name) { return file_name_ends_with(name, ".npz") && name_is_text(name); }
 
 /* Adds a file of one folder. That the other folder has no such file is a failure, unless there are pictures: then the runs
@@ -36,7 +31,7 @@ static bool add_run(Regression *regression, RegressionSide side, const char *nam
     char path[PATH_MAX];
     struct stat status;
     if (!name_is_text(name)) return true; /* of its folder */
-    if (!run_path(regression, other, name, path, error)) return false;
+    if (!file_path(path, sizeof path, error, "%s/%s", regression->sequences[other]->folder, name)) return false;
     const bool alone = stat(path, &status) != 0;
     if (alone && errno != ENOENT && errno != ENOTDIR)
         return error_system(error, path, "cannot be read: %s", strerror(errno));
@@ -45,12 +40,15 @@ static bool add_run(Regression *regression, RegressionSide side, const char *nam
         regression->runs_left_out += side == EXPECTED;
         return true;
     }
-    char *copy = strdup(name);
-    if (copy == NULL) return error_memory(error, name);
     RegressionRun *run = &regression->runs[regression->run_count++];
-    *run = (RegressionRun){.name = copy, .beyond = {.frame = -1}};
+    *run = (RegressionRun){.beyond = {.frame = -1}};
     run->alone[side] = alone;
-    return true;
+    run->paths[other] = strdup(path);
+    if (!file_path(path, sizeof path, error, "%s/%s", regression->sequences[side]->folder, name)) return false;
+    run->paths[side] = strdup(path);
+    run->name = strdup(name);
+    return (run->name != NULL && run->paths[EXPECTED] != NULL && run->paths[ACTUAL] != NULL) ||
+           error_memory(error, name);
 }
 
 static bool list_runs(Regression *regression, Error *error) {
@@ -96,12 +94,11 @@ static bool find_beyond(RegressionRun *run, const Trajectory *a, const Trajector
     return true;
 }
 
-static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], const PoseTolerance *tolerance, bool *foreign,
-                        Error *error) {
+static bool compare_run(RegressionRun *run, const PoseTolerance *tolerance, bool *foreign, Error *error) {
     Error failures[SIDES] = {{0}, {0}};
     Trajectory *sides[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        sides[side] = trajectory_read(paths[side], &failures[side]);
+        sides[side] = trajectory_read(run->paths[side], &failures[side]);
     bool ok = sides[EXPECTED] != NULL && sides[ACTUAL] != NULL, system = false;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (failures[side].kind == ERROR_SYSTEM) *error = failures[side], system = true;
@@ -130,24 +127,28 @@ static bool read_run(RegressionRun *run, const char *path, bool *foreign, Error 
 }
 
 static bool judge_run(const Regression *regression, RegressionRun *run, bool *foreign, Error *error) {
-    char paths[SIDES][PATH_MAX];
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        if (!run_path(regression, side, run->name, paths[side], error)) return false;
         if (run->alone[side == EXPECTED ? ACTUAL : EXPECTED]) continue;
         RegressionFile *file = &run->files[side];
-        char *data = file_read(paths[side], MAX_RUN_SIZE, &file->size, error);
+        char *data = file_read(run->paths[side], MAX_RUN_SIZE, &file->size, error);
         if (data == NULL) return false;
         file->hash = hash_xxh3(data, file->size);
-        bool pointer = !lfs_pointer_refuse(data, file->size, paths[side], error);
+        bool pointer = !lfs_pointer_refuse(data, file->size, run->paths[side], error);
         free(data);
         if (pointer) return false;
     }
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (run->alone[side]) return read_run(run, paths[side], foreign, error);
+        if (run->alone[side]) return read_run(run, run->paths[side], foreign, error);
     const RegressionFile *a = &run->files[EXPECTED], *b = &run->files[ACTUAL];
     bool same = a->hash == b->hash && a->size == b->size;
-    return same ? read_run(run, paths[EXPECTED], foreign, error)
-                : compare_run(run, paths, &regression->options.poses, foreign, error);
+    return same ? read_run(run, run->paths[EXPECTED], foreign, error)
+                : compare_run(run, &regression->options.poses, foreign, error);
+}
+
+void regression_free_run(RegressionRun *run) {
+    free(run->name);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) free(run->paths[side]);
+    free(run->differs);
 }
 
 bool regression_find_runs(Regression *regression, Error *error) {
@@ -163,7 +164,7 @@ bool regression_find_runs(Regression *regression, Error *error) {
         run.seconds = clock_seconds() - begun;
         if (foreign) {
             regression->runs_foreign++;
-            free(run.name);
+            regression_free_run(&run);
         } else
             regression->runs[kept++] = run;
     }
