@@ -151,18 +151,19 @@ static bool read_flag(const JsonReader *json, const json_t *item, const char *ke
 /* null, or name, size and hash. */
 static bool read_file(const JsonReader *json, const json_t *item, const char *key, ApprovalFile *file, Error *error) {
     const json_t *value = json_object_get(item, key);
-    *file = (ApprovalFile){.name = ""};
+    *file = (ApprovalFile){.name = NULL};
     if (value == NULL || json_is_null(value)) return true;
     if (!json_is_object(value)) return json_read_error(json, error, "'%s' must be null or a file", key);
-    file->name = read_text(json, json_object_get(value, "name"), "name", PATH_MAX - 1, error);
-    if (file->name == NULL) return false;
-    if (!is_name_below(file->name))
+    const char *name = read_text(json, json_object_get(value, "name"), "name", PATH_MAX - 1, error);
+    if (name == NULL) return false;
+    if (!is_name_below(name))
         return json_read_error(json, error, "a name must end with .png or .npz and lie below the folder");
     const char *digits = json_string_value(json_object_get(value, "xxh3"));
     if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
         return json_read_error(json, error, "a hash must have 16 digits from 0 to f");
     file->hash = strtoull(digits, NULL, 16);
-    return true;
+    file->name = strdup(name); /* the value does not last */
+    return file->name != NULL || error_memory(error, json->path);
 }
 
 static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem *item, Error *error) {
@@ -172,42 +173,18 @@ static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem 
         !read_file(json, value, "expected", &item->expected, error) ||
         !read_file(json, value, "actual", &item->actual, error))
         return false;
-    return item->expected.name[0] != '\0' || item->actual.name[0] != '\0' ||
+    return item->expected.name != NULL || item->actual.name != NULL ||
            json_read_error(json, error, "an expected or an actual file is required");
 }
 
-static void free_name(const ApprovalFile *file) {
-    if (file->name[0] != '\0') free((void *)file->name);
-}
-
 static void free_names(const ApprovalItem *item) {
-    free_name(&item->expected);
-    free_name(&item->actual);
-}
-
-/* Gives the file a copy of its name, which outlives the value that it was read from. */
-static bool keep_name(ApprovalFile *file) {
-    const char *name = file->name[0] != '\0' ? strdup(file->name) : "";
-    file->name = name != NULL ? name : "";
-    return name != NULL;
-}
-
-static bool add_item(ApprovalList *list, ApprovalItem item) {
-    if (!array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item)) return false;
-    ApprovalItem *added = &list->items[list->count];
-    *added = item;
-    const bool kept = keep_name(&added->expected);
-    const bool ok = keep_name(&added->actual) && kept;
-    if (ok)
-        list->count++;
-    else
-        free_names(added);
-    return ok;
+    free(item->expected.name);
+    free(item->actual.name);
 }
 
 /* The name of the expected file; if that is new, of the actual one. */
 static const char *target_of(const ApprovalItem *item) {
-    return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
+    return item->expected.name != NULL ? item->expected.name : item->actual.name;
 }
 
 static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Error *error) {
@@ -215,8 +192,13 @@ static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Er
     for (bool more = !json_read_char(json, ']'); more;) {
         ApprovalItem item = {0};
         const json_t *value = json_read_value(json, error);
-        if (value == NULL || !read_item(json, value, &item, error)) return false;
-        if (item.failed && !add_item(list, item)) return error_memory(error, json->path);
+        const bool ok = value != NULL && read_item(json, value, &item, error);
+        if (ok && item.failed && array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item)) {
+            list->items[list->count++] = item;
+        } else {
+            free_names(&item);
+            if (!ok || item.failed) return ok ? error_memory(error, json->path) : false;
+        }
         if (!json_read_more(json, ']', &more, error)) return false;
     }
     return true;
@@ -302,45 +284,39 @@ static const size_t MAX_FILE_SIZE = (size_t)2 << 30;
 typedef enum Action { ACTION_NONE, ACTION_REPLACE, ACTION_ADD, ACTION_REMOVE, ACTION_NOT_SELECTED } Action;
 
 typedef struct Found {
-    bool there, link, other; /* other: neither a regular file nor a link */
+    bool there;
     uint64_t hash;
 } Found;
-
-static bool inspect(const ApprovePlace *place, Found *found, Error *error) {
-    struct stat status;
-    *found = (Found){.there = false};
-    if (place->folder < 0) return true;
-    if (fstatat(place->folder, place->name, &status, AT_SYMLINK_NOFOLLOW) != 0)
-        return errno == ENOENT || error_system(error, place->path, "cannot be read: %s", strerror(errno));
-    found->there = true;
-    found->link = S_ISLNK(status.st_mode);
-    found->other = !found->link && !S_ISREG(status.st_mode);
-    if (found->link || found->other) return true;
-    size_t size;
-    char *data = file_read_at(place->folder, place->name, place->path, MAX_FILE_SIZE, &size, error);
-    if (data == NULL) return false;
-    found->hash = hash_xxh3(data, size);
-    free(data);
-    return true;
-}
 
 /* The folders stay open, so that all checks and changes are of the same two. */
 typedef struct Folders {
     Root expected, actual;
 } Folders;
 
-static bool inspect_below(const Root *root, const char *name, Found *found, Error *error) {
+/* A regular file of this name, or none. */
+static bool inspect(const Root *root, const char *name, Found *found, Error *error) {
     ApprovePlace place;
+    struct stat status;
+    *found = (Found){.there = false};
     if (!place_open(&place, root, name, false, error)) return false;
-    bool ok = inspect(&place, found, error);
-    if (ok && (found->link || found->other))
-        ok = error_input(error, place.path, "must be a regular file%s", found->link ? " (is a link)" : "");
+    bool ok = true;
+    if (place.folder >= 0 && fstatat(place.folder, place.name, &status, AT_SYMLINK_NOFOLLOW) != 0) {
+        ok = errno == ENOENT || error_system(error, place.path, "cannot be read: %s", strerror(errno));
+    } else if (place.folder >= 0 && !S_ISREG(status.st_mode)) {
+        ok = error_input(error, place.path, "must be a regular file%s", S_ISLNK(status.st_mode) ? " (is a link)" : "");
+    } else if (place.folder >= 0) {
+        size_t size;
+        char *data = file_read_at(place.folder, place.name, place.path, MAX_FILE_SIZE, &size, error);
+        ok = found->there = data != NULL;
+        if (ok) found->hash = hash_xxh3(data, size);
+        free(data);
+    }
     place_close(&place);
     return ok;
 }
 
 static bool as_reported(const Found *found, const ApprovalFile *file) {
-    bool wanted = file->name[0] != '\0';
+    bool wanted = file->name != NULL;
     return found->there == wanted && (!wanted || found->hash == file->hash);
 }
 
@@ -352,14 +328,14 @@ static bool refuse_changed(const Root *root, const char *name, Error *error) {
 
 static bool decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
     Found expected, actual = {.there = false};
-    if (!inspect_below(&folders->expected, target_of(item), &expected, error)) return false;
+    if (!inspect(&folders->expected, target_of(item), &expected, error)) return false;
     *action = ACTION_NONE;
-    bool removed = item->actual.name[0] == '\0';
+    bool removed = item->actual.name == NULL;
     if (removed ? !expected.there : expected.there && expected.hash == item->actual.hash) return true;
     if (!as_reported(&expected, &item->expected)) return refuse_changed(&folders->expected, target_of(item), error);
-    *action = removed ? ACTION_REMOVE : item->expected.name[0] == '\0' ? ACTION_ADD : ACTION_REPLACE;
+    *action = removed ? ACTION_REMOVE : item->expected.name == NULL ? ACTION_ADD : ACTION_REPLACE;
     const char *name = removed ? item->expected.name : item->actual.name;
-    return inspect_below(&folders->actual, name, &actual, error) &&
+    return inspect(&folders->actual, name, &actual, error) &&
            (as_reported(&actual, &item->actual) || refuse_changed(&folders->actual, name, error));
 }
 
@@ -401,8 +377,9 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
 static bool is_selected(const ApprovalItem *item, const ApprovalRequest *request, Approval *approval) {
     const char *only = request->only;
     bool matches = only == NULL || fnmatch(only, target_of(item), 0) == 0 ||
-                   fnmatch(only, item->actual.name, 0) == 0; /* home.png, where home.1.png is replaced */
-    bool kept = matches && request->missing == MISSING_KEPT && item->actual.name[0] == '\0';
+                   (item->actual.name != NULL &&
+                    fnmatch(only, item->actual.name, 0) == 0); /* home.png, where home.1.png is replaced */
+    bool kept = matches && request->missing == MISSING_KEPT && item->actual.name == NULL;
     approval->not_selected += !matches;
     approval->kept += kept;
     approval->not_shown += matches && !kept && !item->shown;

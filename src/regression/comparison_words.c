@@ -302,9 +302,6 @@ RegressionText regression_begin(const Regression *regression) {
     if (regression->first_run >= 0) {
         const RegressionRun *run = &regression->runs[regression->first_run];
         ADD(&begin, "\n", "physics changed first in %s: %s", run->name, run_words(run).text);
-    } else if (regression->first_physics >= 0) {
-        const RegressionFrame *frame = &regression->frames[regression->first_physics];
-        ADD(&begin, "\n", "physics changed first in %s, panel %d", frame_name(frame), frame->panel);
     }
     if (regression->first_renderer >= 0)
         ADD(&begin, "\n", "renderer changed first in %s", frame_name(&regression->frames[regression->first_renderer]));

@@ -190,7 +190,7 @@ static bool name_regions(const Image *const pictures[2], const uint8_t *masked, 
         ok = find_edges(pictures, verdicts, count, error);
     }
     for (int i = 0; ok && i < count; i++) add_change(changes, &verdicts[i], regions[i]);
-    for (int i = 0; i < count; i++) patch_free(verdicts[i].patch);
+    for (int i = 0; i < count; i++) free(verdicts[i].patch);
     return ok;
 }
 
@@ -248,16 +248,17 @@ static bool name_apart(const Image *const pictures[2], const uint8_t *left, cons
     return true;
 }
 
-/* Noise everywhere, and something else that is stronger. */
+/* *named: there is noise everywhere, or other colours, and something else that is stronger. */
 static bool name_above(const Image *const pictures[2], const uint8_t *masked, int floor,
-                       const ImageDifference *difference, FrameChanges *changes, Error *error) {
+                       const ImageDifference *difference, FrameChanges *changes, bool *named, Error *error) {
     ContentTraits traits = {0};
+    if (!sum_rows(pictures, masked, floor, &traits, error)) return false;
+    const Verdict weak = {.kind = kind_of_most(&traits)};
+    *named = weak.kind != CHANGE_UNSURE;
+    if (!*named) return true;
     uint8_t *strong = copy_mask(pictures[0], masked, error);
-    bool ok = strong != NULL && sum_rows(pictures, masked, floor, &traits, error);
-    if (ok) {
-        level_mark(pictures[0], pictures[1], floor, strong);
-        ok = name_apart(pictures, strong, difference, &(Verdict){.kind = kind_of_most(&traits)}, false, changes, error);
-    }
+    if (strong != NULL) level_mark(pictures[0], pictures[1], floor, strong);
+    const bool ok = strong != NULL && name_apart(pictures, strong, difference, &weak, false, changes, error);
     free(strong);
     return ok;
 }
@@ -300,8 +301,8 @@ static bool name_by_ground(const Image *const pictures[2], const uint8_t *masked
                            const ImageDifference *difference, FrameChanges *changes, Error *error) {
     Motion shift = {0};
     bool named = false;
-    if (floor > 0) return name_above(pictures, masked, floor, difference, changes, error);
-    if (changes->regions.kept > 1 && !are_scattered(&changes->regions) &&
+    if (floor > 0 && !name_above(pictures, masked, floor, difference, changes, &named, error)) return false;
+    if (!named && changes->regions.kept > 1 && !are_scattered(&changes->regions) &&
         !find_shifted(pictures, masked, difference, &shift, changes, &named, error))
         return false;
     return named || name_regions(pictures, masked, &shift, changes, error);

@@ -131,14 +131,6 @@ static void add_energy(const Ground *ground, Patch *patch, size_t pixel, DotKind
     }
 }
 
-static void add_mass(const Ground *ground, Patch *patch, int x, int y, size_t place) {
-    for (int i = 0; i < 2; i++) {
-        const double mass = ground->distance[i][place] == NO_GROUND ? 0 : ground->distance[i][place];
-        patch->mass[i][0][x - patch->region.left] += mass;
-        patch->mass[i][1][y - patch->region.top] += mass;
-    }
-}
-
 /* All differing pixels count in the sums, and some become dots: by multiples of the golden ratio, since every n-th pixel would lie in
    few columns of a box. */
 static void add_dots(const Ground *ground, Patch *patch) {
@@ -154,18 +146,11 @@ static void add_dots(const Ground *ground, Patch *patch) {
             const DotKind kind = kind_of(ground, place);
             if (kind != DOT_APPEARS) extend(&patch->box[0], x, y);
             if (kind != DOT_VANISHES) extend(&patch->box[1], x, y);
-            add_mass(ground, patch, x, y, place);
             number += golden;
             if (number >= limit || patch->count == DOTS_MAX) continue;
             patch->dots[patch->count++] = (Dot){x, y, kind};
             add_energy(ground, patch, pixel_of(ground, x, y), kind);
         }
-}
-
-void patch_free(Patch *patch) {
-    if (patch != NULL)
-        for (int i = 0; i < 4; i++) free(patch->mass[i / 2][i % 2]);
-    free(patch);
 }
 
 /* Of a high region, every n-th row. */
@@ -193,18 +178,13 @@ Patch *patch_create(const Image *const pictures[2], const uint8_t *masked, const
                          .region = *region,
                          .box[0] = {region->right, region->bottom, region->left, region->top},
                          .box[1] = {region->right, region->bottom, region->left, region->top}};
-    for (int i = 0; ok && i < 4; i++) {
-        const int count = i % 2 == 0 ? region->right - region->left : region->bottom - region->top;
-        patch->mass[i / 2][i % 2] = calloc((size_t)count, sizeof(double));
-        ok = patch->mass[i / 2][i % 2] != NULL || error_memory(error, "regions");
-    }
     if (ok) {
         add_dots(&ground, patch);
         add_traits(&ground, &patch->traits);
     }
     ground_free(&ground);
     if (ok) return patch;
-    patch_free(patch);
+    free(patch);
     return NULL;
 }
 

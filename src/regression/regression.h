@@ -214,16 +214,16 @@ typedef struct Regression {
     ImageSequence *sequences[SIDES];
     Rules *rules; /* or NULL */
     int count, run_count;
-    bool film;                                /* there is a sequence of numbered frames */
-    RegressionFrame *frames;                  /* by stem, then number */
-    RegressionRun *runs;                      /* by name */
-    int failed;                               /* frames */
-    int by_verdict[PIXEL_VERDICTS];           /* frames */
-    int renderer, physics, unknown;           /* frames by cause of the difference */
-    int view, elsewhere;                      /* the same: the camera differs; the run does, but not in this frame */
-    int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
-    int run_failed, first_run;                /* trajectories that fail, and the one that differs first (-1: none) */
-    int run_within;                           /* trajectories that are not equal, but within the tolerance */
+    bool film;                      /* there is a sequence of numbered frames */
+    RegressionFrame *frames;        /* by stem, then number */
+    RegressionRun *runs;            /* by name */
+    int failed;                     /* frames */
+    int by_verdict[PIXEL_VERDICTS]; /* frames */
+    int renderer, physics, unknown; /* frames by cause of the difference */
+    int view, elsewhere;            /* the same: the camera differs; the run does, but not in this frame */
+    int first_renderer;             /* first frame of a sequence in which the renderer changed; -1: none */
+    int run_failed, first_run;      /* trajectories that fail, and the one that differs first (-1: none) */
+    int run_within;                 /* trajectories that are not equal, but within the tolerance */
     Shown shown;
     int cause_count, causes_left_out; /* more than CAUSES_MAX */
     RegressionCause *causes;          /* different cameras first, then by first frame */
@@ -270,7 +270,8 @@ RegressionText case_words(const RegressionFrame *frame); /* the same, and where 
 RegressionText run_words(const RegressionRun *run);
 RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: body 7 moved at most 0.4 px" */
 
-/* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, one line each. */
+/* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, as far as no cause tells it, one
+   line each. */
 RegressionText regression_verdict(const Regression *regression);
 RegressionText regression_begin(const Regression *regression);
 

@@ -284,7 +284,7 @@ const char *path_below_current(const char *path);
 /* Reads the failures from results.json. */
 
 typedef struct ApprovalFile {
-    const char *name; /* relative to the folder; empty: there was no file */
+    char *name; /* relative to the folder; NULL: there was no file */
     uint64_t hash;
 } ApprovalFile;
 

@@ -410,6 +410,7 @@ static void add_physics(const Causes *causes, int frame) {
     const Regression *regression = causes->regression;
     const RegressionFrame *at = &regression->frames[frame];
     char what[96] = "states differ";
+    if (at->alone) return; /* its own words say it */
     const TrajectoryDifference *first =
         regression->first_run >= 0 ? &regression->runs[regression->first_run].difference : NULL;
     if (first != NULL && first->body >= 0)
