@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The results of a comparison as text. */
 /* A comparison in words: changes and regions, frames, runs, causes, the verdict, notes. */
 #include "base/base.h"
 #include "pixels/png.h"

@@ -175,29 +175,18 @@ static bool read_runs(Trajectory *runs[SIDES], const RegressionRun *run, Error *
            error_input(error, run->paths[ACTUAL], "has changed since the comparison");
 }
 
-typedef struct Stem {
-    char text[REPORT_RUN_SIZE - 40];
-} Stem;
-
-/* The run's name, without .npz, as a file name. */
-static Stem stem_of(const RegressionRun *run) {
-    Stem stem;
-    snprintf(stem.text, sizeof stem.text, "%.*s", (int)strlen(run->name) - 4, run->name);
-    file_name_clean(stem.text);
-    return stem;
-}
-
-/* "run-NAME.html"; a second run of that name gets "run-NAME-2.html". */
-static void name_page(char name[REPORT_RUN_SIZE], const Regression *regression, int index) {
-    const Stem stem = stem_of(&regression->runs[index]);
-    char number[16] = "";
-    int same = 1;
-    for (int i = 0; i < index; i++) {
-        const Stem other = stem_of(&regression->runs[i]);
-        same += strcmp(stem.text, other.text) == 0;
-    }
-    if (same > 1) snprintf(number, sizeof number, "-%d", same);
-    snprintf(name, REPORT_RUN_SIZE, "run-%s%s.html", stem.text, number);
+/* "run-NAME.html", with the run's name without .npz as a file name; a second page of that name is "run-NAME-2.html". */
+static void name_page(char name[REPORT_RUN_SIZE], const Regression *regression, const ReportLink *links, int index) {
+    const char *run = regression->runs[index].name;
+    char stem[REPORT_RUN_SIZE - 40];
+    snprintf(stem, sizeof stem, "%.*s", (int)strlen(run) - 4, run);
+    file_name_clean(stem);
+    snprintf(name, REPORT_RUN_SIZE, "run-%s.html", stem);
+    for (int i = 0, number = 2; i < index; i++)
+        if (strncmp(links[i].text, name, strlen(name)) == 0) {
+            snprintf(name, REPORT_RUN_SIZE, "run-%s-%d.html", stem, number++);
+            i = -1;
+        }
 }
 
 /* All frames if their states fit. */
@@ -239,7 +228,7 @@ static bool write_page(Writing *writing, int index, const Trajectory *const runs
     size_t bytes;
     const RegressionRun *run = &writing->regression->runs[index];
     const bool beyond = run->beyond.frame >= 0; /* what fails, where a tolerance lets smaller differences pass */
-    name_page(name, writing->regression, index);
+    name_page(name, writing->regression, writing->runs->links, index);
     if (!report_write_run(runs, beyond ? run->beyond.frame : run->difference.frame,
                           beyond ? run->beyond.body : run->difference.body, writing->folder, name,
                           &writing->runs->links[index], &bytes, error))
@@ -262,15 +251,6 @@ static bool show_run(Writing *writing, int index, Error *error) {
     return ok;
 }
 
-static bool show_runs(Writing *writing, const Progress *progress, Error *error) {
-    const int count = writing->regression->run_count;
-    for (int i = 0; i < count; i++) {
-        if (!progress_report(progress, i, count)) return error_interrupted(error, "report", "stopped");
-        if (!writing->regression->runs[i].difference.equal && !show_run(writing, i, error)) return false;
-    }
-    return true;
-}
-
 /* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference
    beyond the tolerance, or at the first one.
    ERROR_INPUT if a run has changed since the comparison. The caller frees runs->links, also on failure. */
@@ -279,7 +259,11 @@ static bool write_run_pages(ReportRuns *runs, const Regression *regression, cons
     *runs = (ReportRuns){.links = calloc((size_t)regression->run_count + 1, sizeof *runs->links)};
     if (runs->links == NULL) return error_memory(error, "report");
     Writing writing = {runs, regression, folder, max_bytes};
-    return show_runs(&writing, progress, error);
+    for (int i = 0; i < regression->run_count; i++) {
+        if (!progress_report(progress, i, regression->run_count)) return error_interrupted(error, "report", "stopped");
+        if (!regression->runs[i].difference.equal && !show_run(&writing, i, error)) return false;
+    }
+    return true;
 }
 
 bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,

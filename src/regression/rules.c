@@ -39,6 +39,8 @@ void rules_destroy(Rules *rules) {
 
 const char *rules_path(const Rules *rules) { return rules->path; }
 
+static int count_of(const Rules *rules) { return rules == NULL ? 0 : rules->count; }
+
 static bool matches(const Rule *rule, const char *name) { return fnmatch(rule->files, name, 0) == 0; }
 
 static bool matches_any(const Rule *rule, const char *const *names, int count) {
@@ -56,13 +58,13 @@ bool rules_check_names(const Rules *rules, const char *const *names, int count, 
 }
 
 void rules_override(const Rules *rules, const char *name, Tolerance *tolerance) {
-    for (int i = 0; i < rules->count; i++)
+    for (int i = 0; i < count_of(rules); i++)
         if (matches(&rules->rules[i], name) && rules->rules[i].region.count == 0)
             tolerance_override(tolerance, &rules->rules[i].tolerance);
 }
 
 bool rules_have_regions(const Rules *rules, const char *name) {
-    for (int i = 0; i < rules->count; i++)
+    for (int i = 0; i < count_of(rules); i++)
         if (rules->rules[i].region.count > 0 && matches(&rules->rules[i], name)) return true;
     return false;
 }
@@ -83,6 +85,7 @@ static bool mark_region(const Rule *rule, const Image *expected, const Image *ac
 
 bool rules_mark_regions(const Rules *rules, const char *name, const Image *expected, const Image *actual,
                         uint8_t *masked, Error *error) {
+    if (!rules_have_regions(rules, name)) return true;
     uint8_t *inside = malloc((size_t)expected->width * (size_t)expected->height);
     bool ok = inside != NULL || error_memory(error, name);
     for (int i = 0; ok && i < rules->count; i++)
@@ -93,21 +96,21 @@ bool rules_mark_regions(const Rules *rules, const char *name, const Image *expec
 }
 
 bool rules_have_masks(const Rules *rules, const char *name) {
-    for (int i = 0; i < rules->count; i++)
+    for (int i = 0; i < count_of(rules); i++)
         if (rules->rules[i].mask.count > 0 && matches(&rules->rules[i], name)) return true;
     return false;
 }
 
 double rules_most_hidden(const Rules *rules, const char *name, int width, int height) {
     double hidden = 0;
-    for (int i = 0; i < rules->count; i++)
+    for (int i = 0; i < count_of(rules); i++)
         if (matches(&rules->rules[i], name)) hidden += mask_most_hidden(&rules->rules[i].mask, width, height);
     return hidden;
 }
 
 bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,
                       Error *error) {
-    for (int i = 0; i < rules->count; i++) {
+    for (int i = 0; i < count_of(rules); i++) {
         const Rule *rule = &rules->rules[i];
         if (matches(rule, name) && !mask_draw(&rule->mask, expected, path, masked, error)) return false;
     }

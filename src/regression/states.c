@@ -198,26 +198,20 @@ static bool in_its_folder(const RegressionRun *run, const SequenceFrame *picture
 }
 
 /* Whether a run of the picture's folder and scene (of any scene if the picture names none) differs in this frame.
-   *somewhere: in any frame. */
+   *somewhere: in any frame. *known becomes true if its folder has a run. */
 static bool runs_differ(const Regression *regression, const SequenceFrame *picture, const Texts *texts, int64_t frame,
-                        bool *somewhere) {
+                        bool *known, bool *somewhere) {
     bool here = false;
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
-        if (run->differs == NULL || !in_its_folder(run, picture) ||
-            (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0))
-            continue;
+        if (!in_its_folder(run, picture)) continue;
+        *known = true;
+        if (run->differs == NULL || (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0)) continue;
         int64_t at = frame < run->frames ? frame : run->frames - 1;
         here = here || run->differs[at < 0 ? 0 : at];
         *somewhere = true;
     }
     return here;
-}
-
-static bool has_runs(const Regression *regression, const SequenceFrame *picture) {
-    for (int i = 0; i < regression->run_count; i++)
-        if (in_its_folder(&regression->runs[i], picture)) return true;
-    return false;
 }
 
 bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
@@ -226,12 +220,11 @@ bool regression_judge_states(const Regression *regression, RegressionFrame *fram
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (!read_texts(&texts[side], data[side], frame->files[side].size, error)) return false;
     const char *a = texts[EXPECTED].states, *b = texts[ACTUAL].states;
-    bool have_texts = a[0] != '\0' && b[0] != '\0', texts_differ = have_texts && strcmp(a, b) != 0;
+    bool known = a[0] != '\0' && b[0] != '\0', texts_differ = known && strcmp(a, b) != 0;
     if (texts_differ) frame->panel = first_panel(a, b);
     const char *number = texts[EXPECTED].frame;
     int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : frame->base->number;
-    bool differs = runs_differ(regression, frame->base, &texts[EXPECTED], at, &frame->run_differs);
-    bool known = have_texts || has_runs(regression, frame->base);
+    bool differs = runs_differ(regression, frame->base, &texts[EXPECTED], at, &known, &frame->run_differs);
     frame->states = texts_differ || differs ? STATES_DIFFER : known ? STATES_EQUAL : STATES_UNKNOWN;
     return true;
 }
@@ -319,8 +312,6 @@ bool regression_find_changes(Regression *regression, RegressionFrame *frame, uin
              content_name(images[EXPECTED], images[ACTUAL], masked, &frame->difference, frame->changes, error)));
 }
 
-enum { RANGES = 4 };
-
 typedef struct Causes {
     Regression *regression;
     bool numbered; /* all frames belong to one sequence of numbered pictures */
@@ -338,41 +329,34 @@ static bool is_numbered(const Regression *regression) {
     return first != NULL;
 }
 
-static void put_name(const Causes *causes, RegressionCause *cause, int frame) {
-    const RegressionFrame *at = &causes->regression->frames[frame];
-    if (causes->numbered)
-        text_add(cause->frames, sizeof cause->frames, "%" PRId64, at->at[EXPECTED]->number);
-    else
-        text_add(cause->frames, sizeof cause->frames, "%.40s", frame_name(at));
-}
-
 /* Adds a frame; frames are added in order. Neighbours form a range. */
 static void add_frame(const Causes *causes, RegressionCause *cause, int frame) {
     const RegressionFrame *at = &causes->regression->frames[frame];
-    bool next = cause->count > 0 && frame == cause->last + 1 && !at->alone &&
-                sequence_compare_stems(at[-1].base, at->base) == 0;
+    const bool next = cause->count++ > 0 && frame == cause->last + 1 && !at->alone &&
+                      sequence_compare_stems(at[-1].base, at->base) == 0;
     cause->last = frame;
-    if (cause->count++ == 0 && causes->numbered) text_add(cause->frames, sizeof cause->frames, "frame ");
-    if (next && cause->ranges <= RANGES) {
-        cause->frames[cause->written] = '\0';
-        text_add(cause->frames, sizeof cause->frames, " to ");
-        put_name(causes, cause, frame);
-        return;
-    }
-    if (!next && ++cause->ranges == RANGES + 1) text_add(cause->frames, sizeof cause->frames, " ...");
-    if (next || cause->ranges > RANGES) return;
-    if (cause->ranges > 1) text_add(cause->frames, sizeof cause->frames, ", ");
-    put_name(causes, cause, frame);
-    cause->written = (int)strlen(cause->frames);
+    if (!next && cause->range_count++ < CAUSE_RANGES) cause->ranges[cause->range_count - 1][0] = frame;
+    if (cause->range_count <= CAUSE_RANGES) cause->ranges[cause->range_count - 1][1] = frame;
+}
+
+static void put_name(const Causes *causes, RegressionCause *cause, const char *before, int frame) {
+    const RegressionFrame *at = &causes->regression->frames[frame];
+    if (causes->numbered)
+        text_add(cause->frames, sizeof cause->frames, "%s%" PRId64, before, at->at[EXPECTED]->number);
+    else
+        text_add(cause->frames, sizeof cause->frames, "%s%.40s", before, frame_name(at));
 }
 
 /* "frame 3", but "frames 3 to 5"; the number if there are too many ranges. */
-static void finish(const Causes *causes, RegressionCause *cause) {
-    char whole[sizeof cause->frames];
-    if (cause->ranges > RANGES) text_add(cause->frames, sizeof cause->frames, " (%d frames)", cause->count);
-    if (!causes->numbered || cause->count == 1) return;
-    snprintf(whole, sizeof whole, "frames%.*s", (int)sizeof whole - 7, cause->frames + strlen("frame"));
-    memcpy(cause->frames, whole, sizeof whole);
+static void put_frames(const Causes *causes, RegressionCause *cause) {
+    const char *first = !causes->numbered ? "" : cause->count == 1 ? "frame " : "frames ";
+    for (int i = 0; i < cause->range_count && i < CAUSE_RANGES; i++) {
+        const int *range = cause->ranges[i];
+        put_name(causes, cause, i == 0 ? first : ", ", range[0]);
+        if (range[1] > range[0]) put_name(causes, cause, " to ", range[1]);
+    }
+    if (cause->range_count > CAUSE_RANGES)
+        text_add(cause->frames, sizeof cause->frames, " ... (%d frames)", cause->count);
 }
 
 static void add_cause(const Causes *causes, int frame, const char *what, double most, bool of_view) {
@@ -385,7 +369,7 @@ static void add_cause(const Causes *causes, int frame, const char *what, double 
     }
     RegressionCause *cause = &regression->causes[at];
     if (at == regression->cause_count) {
-        *cause = (RegressionCause){.of_view = of_view, .last = -2};
+        *cause = (RegressionCause){.of_view = of_view, .order = at};
         snprintf(cause->what, sizeof cause->what, "%s", what);
         regression->cause_count++;
     }
@@ -449,7 +433,7 @@ static void add_causes(const Causes *causes, int frame) {
 static int view_first(const void *a, const void *b) {
     const RegressionCause *x = a, *y = b;
     if (x->of_view != y->of_view) return x->of_view ? -1 : 1;
-    return x->ranges - y->ranges; /* `ranges` holds the order of discovery here */
+    return x->order - y->order;
 }
 
 bool regression_find_causes(Regression *regression, Error *error) {
@@ -457,10 +441,7 @@ bool regression_find_causes(Regression *regression, Error *error) {
     regression->causes = calloc(CAUSES_MAX, sizeof *regression->causes);
     if (regression->causes == NULL) return error_memory(error, "causes");
     for (int i = 0; i < regression->count; i++) add_causes(&causes, i);
-    for (int i = 0; i < regression->cause_count; i++) {
-        finish(&causes, &regression->causes[i]);
-        regression->causes[i].ranges = i;
-    }
+    for (int i = 0; i < regression->cause_count; i++) put_frames(&causes, &regression->causes[i]);
     qsort(regression->causes, (size_t)regression->cause_count, sizeof *regression->causes, view_first);
     return true;
 }
