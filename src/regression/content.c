@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The header has the definitions. */
+/* Names regions by their surroundings, as content.h defines it for content_name(). */
 #include "regression/content.h"
 
 #include "base/base.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers of the comments are those of the header. */
+/* Two pictures pixel by pixel, and the edges that antialias_mark() finds: the numbers 1 to 4 are those of its definition in
+   regression_internal.h. */
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/regression_internal.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Content that moved by whole pixels. The header has the definition. */
+/* Content that moved by whole pixels, as regression_internal.h defines it for shift_mark(). */
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/regression_internal.h"
