@@ -349,8 +349,12 @@ static void write_details(FILE *file, const ReportCase *made) {
 
 /* A comment for each line. */
 static void write_notes(FILE *file, const char *notes) {
-    for (; *notes != '\0'; notes += strcspn(notes, "\n"), notes += *notes == '\n')
-        fprintf(file, "# %.*s\n", (int)strcspn(notes, "\n"), notes);
+    for (size_t length; *notes != '\0'; notes += length + (notes[length] == '\n')) {
+        length = strcspn(notes, "\n");
+        fputs("# ", file);
+        fwrite(notes, 1, length, file);
+        fputc('\n', file);
+    }
 }
 
 static void write_tap(FILE *file, const void *context) {
