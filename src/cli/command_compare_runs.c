@@ -2,6 +2,7 @@
 /* How twinbox compare compares two runs: why and how fast they diverge, as text and as JSON. */
 #include "base/base.h"
 #include "base/json.h"
+#include "base/machine.h"
 #include "cli/cli.h"
 #include "cli/larger_commands.h"
 #include "runs/runs.h"
@@ -322,7 +323,10 @@ static bool show(RunComparison *c, Error *error) {
 
 bool compare_runs(const CompareOptions *options, Error *error) {
     RunComparison comparison = {.options = options};
-    const bool ok = find(&comparison, error) && show(&comparison, error) && comparison.passed;
+    const double begun = clock_seconds();
+    bool ok = find(&comparison, error);
+    comparison.seconds = clock_seconds() - begun;
+    ok = ok && show(&comparison, error) && comparison.passed;
     chaos_free(&comparison.chaos);
     free(comparison.distance);
     free(comparison.text);

@@ -19,17 +19,22 @@
 #include <sys/stat.h>
 #include <time.h>
 
-/* The names of frames with this verdict. */
-static void print_names(const Regression *regression, PixelVerdict verdict, const char *folder) {
+static const char *trajectories(int count) { return count == 1 ? "trajectory" : "trajectories"; }
+
+/* The frames, or the trajectories, that only this folder has. */
+static void print_alone(const Regression *regression, RegressionSide side, bool runs) {
     enum { NAMED = 10 };
-    int count = regression->by_verdict[verdict], named = 0;
+    const PixelVerdict verdict = side == EXPECTED ? PIXELS_MISSING : PIXELS_EXTRA;
+    const int all = runs ? regression->run_count : regression->count;
+    const int count = runs ? regression->runs_alone[side] : regression->by_verdict[verdict];
     if (count == 0) return;
-    printf("only in %s: %d %s:", folder, count, count == 1 ? "frame" : "frames");
-    for (int i = 0; i < regression->count && named < NAMED; i++)
-        if (regression->frames[i].pixels == verdict) {
-            printf(" %s", frame_name(&regression->frames[i]));
-            named++;
-        }
+    printf("only in %s: %d %s%s:", regression->sequences[side]->folder, count, runs ? trajectories(count) : "frame",
+           runs ? "" : plural(count));
+    for (int i = 0, named = 0; i < all && named < NAMED; i++) {
+        if (runs ? !regression->runs[i].alone[side] : regression->frames[i].pixels != verdict) continue;
+        printf(" %s", runs ? regression->runs[i].name : frame_name(&regression->frames[i]));
+        named++;
+    }
     printf(count > NAMED ? " ...\n" : "\n");
 }
 
@@ -40,19 +45,6 @@ static void print_unread(const Regression *regression) {
     for (int i = 0; i < regression->count && count < SHOWN; i++)
         if (regression->frames[i].pixels == PIXELS_UNREAD && count++ > 0)
             printf("not comparable: %s\n", regression->frames[i].read_error);
-}
-
-/* The trajectories that only this folder has. */
-static void print_runs_alone(const Regression *regression, RegressionSide side) {
-    enum { NAMED = 10 };
-    const int count = regression->runs_alone[side];
-    int named = 0;
-    if (count == 0) return;
-    printf("only in %s: %d %s:", regression->sequences[side]->folder, count,
-           count == 1 ? "trajectory" : "trajectories");
-    for (int i = 0; i < regression->run_count && named < NAMED; i++)
-        if (regression->runs[i].alone[side]) printf(" %s", regression->runs[i].name), named++;
-    printf(count > NAMED ? " ...\n" : "\n");
 }
 
 static const char *differ(int count) { return count == 1 ? "differs" : "differ"; }
@@ -108,8 +100,7 @@ static void print_counts(const Regression *regression) {
     int different = by[PIXELS_DIFFER] + by[PIXELS_RESIZED];
     if (different > 0) printf("%d of %d frame%s %s", different, compared, plural(compared), differ(different));
     if (different > 0 && run_failed > 0) printf(", ");
-    if (run_failed > 0)
-        printf("%d of %d %s %s", run_failed, runs, runs == 1 ? "trajectory" : "trajectories", differ(run_failed));
+    if (run_failed > 0) printf("%d of %d %s %s", run_failed, runs, trajectories(runs), differ(run_failed));
     if (different > 0 || run_failed > 0) printf("\n");
 }
 
@@ -133,9 +124,7 @@ static bool print_cases(const Regression *regression, Error *error) {
 
 static bool print_difference(const Regression *regression, Error *error) {
     print_views(regression);
-    print_names(regression, PIXELS_MISSING, regression->sequences[EXPECTED]->folder);
-    print_names(regression, PIXELS_EXTRA, regression->sequences[ACTUAL]->folder);
-    for (RegressionSide side = EXPECTED; side < SIDES; side++) print_runs_alone(regression, side);
+    for (int i = 0; i < 2 * SIDES; i++) print_alone(regression, i % SIDES == 0 ? EXPECTED : ACTUAL, i >= SIDES);
     print_unread(regression);
     print_first(regression);
     if (!print_cases(regression, error)) return false;
@@ -153,7 +142,7 @@ bool compare_print(const Regression *regression, Error *error) {
     printf("%s: %d frame%s", within + regression->run_within > 0 ? "passed" : "equal", regression->count,
            plural(regression->count));
     if (within > 0) printf(", %d of them not equal, but within tolerance", within);
-    if (runs > 0) printf(", %d %s", runs, runs == 1 ? "trajectory" : "trajectories");
+    if (runs > 0) printf(", %d %s", runs, trajectories(runs));
     if (regression->run_within > 0) printf(", %d of them not equal, but within tolerance", regression->run_within);
     printf("\n");
     return true;

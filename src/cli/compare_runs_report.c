@@ -6,11 +6,10 @@
 #include "cli/cli.h"
 #include "cli/larger_commands.h"
 #include "pictures/page.h"
-#include "pictures/player.h"
+#include "regression/report.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -179,58 +178,38 @@ static const char *cause_of(const RunComparison *c) {
     return c->passed ? (c->parting.first.frame < 0 ? "equal" : "within tolerance") : "physics changed";
 }
 
-/* Where the page of both runs opens: where they exceed the tolerance, if they do. */
-static const PartedBody *shown_difference(const RunComparison *c) {
-    return c->options->poses.given && c->parting.beyond.frame >= 0 ? &c->parting.beyond : &c->parting.first;
-}
+/* Whether the tolerance is exceeded: there the page of both runs opens, else at the first difference. */
+static bool is_beyond(const RunComparison *c) { return c->options->poses.given && c->parting.beyond.frame >= 0; }
 
 static void write_page(FILE *out, const void *context) {
     const RunComparison *c = context;
-    char moment[PLAYER_LINK_SIZE];
-    const PartedBody *shown = shown_difference(c);
     house_page_begin(out, "Comparison of two runs", "pre{white-space:pre-wrap}");
     html_print(out, "<main>\n<h1>Comparison of two runs: %s</h1>\n<pre>%s</pre>\n", cause_of(c), c->text);
-    player_link(moment, shown->frame > 0 ? shown->frame * (double)c->runs[0]->dt : 0, shown->body);
-    if (c->has_page)
-        fprintf(out, "<p><a href=\"run.html%s\">Both runs, at the first difference%s</a></p>\n", moment,
-                shown != &c->parting.first ? " beyond the tolerance" : "");
+    if (c->link.text[0] != '\0')
+        html_print(out, "<p><a href=\"%s\">Both runs, at the first difference%s</a></p>\n", c->link.text,
+                   is_beyond(c) ? " beyond the tolerance" : "");
     fputs("</main>\n", out);
     house_page_end(out);
 }
 
-static void write_failure(FILE *out, const RunComparison *c) {
+/* The one case: its file is that of the second run. */
+static ReportCase case_of(const void *context, int i) {
+    const RunComparison *c = context;
     const PartedBody *parted = &c->parting.beyond;
-    fputs("failure type=\"physics changed\" message=\"physics changed: ", out);
+    const char *const *paths = c->options->paths;
+    ReportCase made = {.kind = "trajectories",
+                       .name = paths[1],
+                       .verdict = cause_of(c),
+                       .failed = !c->passed,
+                       .paths = {paths[0], paths[1]},
+                       .seconds = c->seconds};
+    (void)i;
     if (parted->frame >= 0)
-        fprintf(out, "frame %d, body %d; cause of the first difference: %s", parted->frame, parted->body,
-                causes[c->parting.cause]);
+        snprintf(made.words.text, sizeof made.words.text, "frame %d, body %d; cause of the first difference: %s",
+                 parted->frame, parted->body, causes[c->parting.cause]);
     else
-        html_put(out, c->difference.what);
-    fputs("\">", out);
-}
-
-static void write_junit(FILE *out, const void *context) {
-    const RunComparison *c = context;
-    fprintf(
-        out,
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"twinbox compare\" tests=\"1\" failures=\"%d\" "
-        "errors=\"0\" skipped=\"0\">\n  <testcase classname=\"trajectories\" name=\"",
-        !c->passed);
-    html_put(out, c->options->paths[1]);
-    fputs("\">\n    <", out);
-    if (c->passed)
-        fputs("system-out>", out);
-    else
-        write_failure(out, c);
-    html_put(out, c->text);
-    fprintf(out, "</%s>\n  </testcase>\n</testsuite>\n", c->passed ? "system-out" : "failure");
-}
-
-static void write_tap(FILE *out, const void *context) {
-    const RunComparison *c = context;
-    fprintf(out, "TAP version 14\n1..1\n%s 1 - runs: %s\n", c->passed ? "ok" : "not ok", cause_of(c));
-    for (const char *line = c->text; *line != '\0'; line += strcspn(line, "\n") + 1)
-        fprintf(out, "# %.*s\n", (int)strcspn(line, "\n"), line);
+        snprintf(made.words.text, sizeof made.words.text, "%s", c->difference.what);
+    return made;
 }
 
 static void write_results(FILE *out, const void *context) {
@@ -241,40 +220,24 @@ static void write_results(FILE *out, const void *context) {
     json_end(&json);
 }
 
-/* All frames of runs that are not long, else those around the difference at which the page opens. */
-static void choose_frames(const RunComparison *c, PlayerOptions *options) {
-    enum { STATES_MAX = 200000, BEFORE = 60 };
-    const int first = shown_difference(c)->frame, frames = c->parting.frames;
-    const int room = STATES_MAX / (c->runs[0]->bodies + 1) + BEFORE + 1;
-    if (frames <= room) return;
-    options->first = first > BEFORE ? first - BEFORE : 0;
-    options->last = options->first + room < frames ? options->first + room - 1 : frames - 1;
-}
-
 /* None of equal runs, and of those without a common moment. Contacts that were found again have no impulses to show. */
 static bool write_run_page(RunComparison *c, const char *folder, Error *error) {
-    char path[PATH_MAX];
-    PlayerResult result;
-    PlayerOptions options = {.last = -1, .names = {"expected", "actual"}};
-    c->has_page = c->parting.first.frame >= 0;
-    if (c->has_page) choose_frames(c, &options);
+    const PartedBody *shown = is_beyond(c) ? &c->parting.beyond : &c->parting.first;
+    size_t bytes;
     for (int i = 0; i < 2; i++) c->runs[i]->no_contacts |= c->found_contacts;
-    return !c->has_page || (file_path(path, sizeof path, error, "%s/run.html", folder) &&
-                            player_write((const Trajectory *const *)c->runs, 2, &options, path, &result, error));
+    return shown->frame < 0 || report_write_run((const Trajectory *const *)c->runs, shown->frame, shown->body, folder,
+                                                "run.html", &c->link, &bytes, error);
 }
 
 bool compare_runs_report(RunComparison *c, const char *folder, Error *error) {
-    static const struct {
-        const char *name;
-        void (*write)(FILE *out, const void *comparison);
-    } parts[] = {{"report.html", write_page},
-                 {"junit.xml", write_junit},
-                 {"results.tap", write_tap},
-                 {"results.json", write_results}};
-    char path[PATH_MAX];
-    bool ok = file_make_directory(folder, error) && write_run_page(c, folder, error);
-    for (size_t i = 0; ok && i < sizeof parts / sizeof *parts; i++)
-        ok = file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) &&
-             file_write_text(path, parts[i].write, c, error);
-    return ok;
+    const ReportResults results = {.comparison = c,
+                                   .count = 1,
+                                   .failed = !c->passed,
+                                   .notes = c->text,
+                                   .seconds = c->seconds,
+                                   .at = case_of,
+                                   .write_page = write_page,
+                                   .write_json = write_results};
+    return file_make_directory(folder, error) && write_run_page(c, folder, error) &&
+           report_write(&results, folder, error);
 }

@@ -10,6 +10,7 @@
 #include "methods/methods.h"
 #include "regression/compare.h"
 #include "regression/regression.h"
+#include "regression/report.h"
 #include "runs/pieces.h"
 #include "runs/runs.h"
 #include "runs/trajectory.h"
@@ -49,9 +50,10 @@ typedef struct RunComparison {
     TrajectoryParting parting;
     double *distance; /* [frames of both] */
     Growth growth, shifted;
-    Chaos chaos;   /* distance NULL: no scene given */
-    char *text;    /* what is printed */
-    bool has_page; /* the report has a page that plays both */
+    Chaos chaos;     /* distance NULL: no scene given */
+    char *text;      /* what is printed */
+    double seconds;  /* that it took */
+    ReportLink link; /* of the report, to a page that plays both; empty: none */
 } RunComparison;
 
 /* What differs without being compared, as words. */

@@ -151,18 +151,19 @@ static bool read_flag(const JsonReader *json, const json_t *item, const char *ke
 /* null, or name, size and hash. */
 static bool read_file(const JsonReader *json, const json_t *item, const char *key, ApprovalFile *file, Error *error) {
     const json_t *value = json_object_get(item, key);
-    *file = (ApprovalFile){.name = ""};
+    *file = (ApprovalFile){.name = NULL};
     if (value == NULL || json_is_null(value)) return true;
     if (!json_is_object(value)) return json_read_error(json, error, "'%s' must be null or a file", key);
-    file->name = read_text(json, json_object_get(value, "name"), "name", PATH_MAX - 1, error);
-    if (file->name == NULL) return false;
-    if (!is_name_below(file->name))
+    const char *name = read_text(json, json_object_get(value, "name"), "name", PATH_MAX - 1, error);
+    if (name == NULL) return false;
+    if (!is_name_below(name))
         return json_read_error(json, error, "a name must end with .png or .npz and lie below the folder");
     const char *digits = json_string_value(json_object_get(value, "xxh3"));
     if (digits == NULL || strlen(digits) != 16 || strspn(digits, "0123456789abcdef") != 16)
         return json_read_error(json, error, "a hash must have 16 digits from 0 to f");
     file->hash = strtoull(digits, NULL, 16);
-    return true;
+    file->name = strdup(name); /* the value does not last */
+    return file->name != NULL || error_memory(error, json->path);
 }
 
 static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem *item, Error *error) {
@@ -172,95 +173,39 @@ static bool read_item(const JsonReader *json, const json_t *value, ApprovalItem 
         !read_file(json, value, "expected", &item->expected, error) ||
         !read_file(json, value, "actual", &item->actual, error))
         return false;
-    return item->expected.name[0] != '\0' || item->actual.name[0] != '\0' ||
+    return item->expected.name != NULL || item->actual.name != NULL ||
            json_read_error(json, error, "an expected or an actual file is required");
 }
 
-static void free_name(const ApprovalFile *file) {
-    if (file->name[0] != '\0') free((void *)file->name);
-}
-
 static void free_names(const ApprovalItem *item) {
-    free_name(&item->expected);
-    free_name(&item->actual);
-}
-
-/* Gives the file a copy of its name, which outlives the value that it was read from. */
-static bool keep_name(ApprovalFile *file) {
-    const char *name = file->name[0] != '\0' ? strdup(file->name) : "";
-    file->name = name != NULL ? name : "";
-    return name != NULL;
-}
-
-static bool add_item(ApprovalList *list, ApprovalItem item) {
-    if (!array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item)) return false;
-    ApprovalItem *added = &list->items[list->count];
-    *added = item;
-    const bool kept = keep_name(&added->expected);
-    const bool ok = keep_name(&added->actual) && kept;
-    if (ok)
-        list->count++;
-    else
-        free_names(added);
-    return ok;
+    free(item->expected.name);
+    free(item->actual.name);
 }
 
 /* The name of the expected file; if that is new, of the actual one. */
 static const char *target_of(const ApprovalItem *item) {
-    return item->expected.name[0] != '\0' ? item->expected.name : item->actual.name;
+    return item->expected.name != NULL ? item->expected.name : item->actual.name;
 }
 
-/* The hashes of the files that were named so far: a table with open addressing, at most half full. 0 is an empty place. */
-typedef struct Named {
-    uint64_t *hashes; /* [size], a power of two */
-    size_t size, count;
-} Named;
-
-static uint64_t *find_place(const Named *named, uint64_t hash) {
-    size_t at = hash & (named->size - 1);
-    while (named->hashes[at] != 0 && named->hashes[at] != hash) at = (at + 1) & (named->size - 1);
-    return &named->hashes[at];
-}
-
-static bool grow(Named *named) {
-    enum { FIRST_SIZE = 64 };
-    if (2 * named->count < named->size) return true;
-    Named larger = {.size = named->size > 0 ? 2 * named->size : FIRST_SIZE, .count = named->count};
-    if ((larger.hashes = calloc(larger.size, sizeof *larger.hashes)) == NULL) return false;
-    for (size_t i = 0; i < named->size; i++)
-        if (named->hashes[i] != 0) *find_place(&larger, named->hashes[i]) = named->hashes[i];
-    free(named->hashes);
-    *named = larger;
-    return true;
-}
-
-/* compare names a file once; many copies of an item would write one file as many times. */
-static bool add_name(const JsonReader *json, Named *named, const ApprovalItem *item, Error *error) {
-    const char *target = target_of(item);
-    uint64_t hash = hash_xxh3(target, strlen(target)), *place;
-    if (hash == 0) hash = 1;
-    if (!grow(named)) return error_memory(error, json->path);
-    if (*(place = find_place(named, hash)) == hash) return json_read_error(json, error, "'%s' is there twice", target);
-    *place = hash;
-    named->count++;
-    return true;
-}
-
-static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Named *named, Error *error) {
+static bool read_items(JsonReader *json, const char *key, ApprovalList *list, Error *error) {
     if (!json_read_char(json, '[')) return json_read_error(json, error, "'%s' must be an array", key);
     for (bool more = !json_read_char(json, ']'); more;) {
         ApprovalItem item = {0};
         const json_t *value = json_read_value(json, error);
-        if (value == NULL || !read_item(json, value, &item, error)) return false;
-        if (item.failed && !add_name(json, named, &item, error)) return false;
-        if (item.failed && !add_item(list, item)) return error_memory(error, json->path);
+        const bool ok = value != NULL && read_item(json, value, &item, error);
+        if (ok && item.failed && array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof item)) {
+            list->items[list->count++] = item;
+        } else {
+            free_names(&item);
+            if (!ok || item.failed) return ok ? error_memory(error, json->path) : false;
+        }
         if (!json_read_more(json, ']', &more, error)) return false;
     }
     return true;
 }
 
-static bool read_member(JsonReader *json, int member, ApprovalList *list, Named *named, Error *error) {
-    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, named, error);
+static bool read_member(JsonReader *json, int member, ApprovalList *list, Error *error) {
+    if (member == FRAMES || member == TRAJECTORIES) return read_items(json, members[member], list, error);
     const json_t *value = json_read_value(json, error);
     if (value == NULL || member == MEMBERS) return value != NULL;
     const char *text = read_text(json, value, members[member], PATH_MAX - 1, error);
@@ -284,12 +229,30 @@ static bool read_key(JsonReader *json, bool seen[MEMBERS], int *member, Error *e
     return json_read_char(json, ':') || json_read_error(json, error, "':' expected");
 }
 
-static bool read_list(JsonReader *json, ApprovalList *list, Named *named, Error *error) {
+static int by_target(const void *a, const void *b) {
+    const ApprovalItem *const *x = a, *const *y = b;
+    return strcmp(target_of(*x), target_of(*y));
+}
+
+/* compare names a file once; many copies of an item would write one file as many times. */
+static bool refuse_twice(const ApprovalList *list, const char *path, Error *error) {
+    const ApprovalItem **items = malloc((list->count + 1) * sizeof *items);
+    bool ok = items != NULL || error_memory(error, path);
+    for (size_t i = 0; ok && i < list->count; i++) items[i] = &list->items[i];
+    if (ok) qsort(items, list->count, sizeof *items, by_target);
+    for (size_t i = 1; ok && i < list->count; i++)
+        if (by_target(&items[i - 1], &items[i]) == 0)
+            ok = error_input(error, path, "'%s' is there twice", target_of(items[i]));
+    free(items);
+    return ok;
+}
+
+static bool read_list(JsonReader *json, ApprovalList *list, Error *error) {
     bool seen[MEMBERS] = {false};
     if (!json_read_char(json, '{')) return json_read_error(json, error, "not a report of twinbox compare");
     for (bool more = true; more;) {
         int member = MEMBERS;
-        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, named, error) ||
+        if (!read_key(json, seen, &member, error) || !read_member(json, member, list, error) ||
             !json_read_more(json, '}', &more, error))
             return false;
     }
@@ -297,16 +260,14 @@ static bool read_list(JsonReader *json, ApprovalList *list, Named *named, Error 
     for (int i = 0; i < MEMBERS; i++)
         if (!seen[i])
             return error_input(error, json->path, "'%s' is missing: not a report of twinbox compare", members[i]);
-    return true;
+    return refuse_twice(list, json->path, error);
 }
 
 bool approval_read(ApprovalList *list, const char *path, Error *error) {
     JsonReader json;
     if (!json_read_open(&json, path, MAX_SIZE, error)) return false;
     *list = (ApprovalList){.count = 0};
-    Named named = {0};
-    bool ok = read_list(&json, list, &named, error);
-    free(named.hashes);
+    bool ok = read_list(&json, list, error);
     json_read_close(&json);
     if (!ok) approval_free(list);
     return ok;
@@ -323,45 +284,39 @@ static const size_t MAX_FILE_SIZE = (size_t)2 << 30;
 typedef enum Action { ACTION_NONE, ACTION_REPLACE, ACTION_ADD, ACTION_REMOVE, ACTION_NOT_SELECTED } Action;
 
 typedef struct Found {
-    bool there, link, other; /* other: neither a regular file nor a link */
+    bool there;
     uint64_t hash;
 } Found;
-
-static bool inspect(const ApprovePlace *place, Found *found, Error *error) {
-    struct stat status;
-    *found = (Found){.there = false};
-    if (place->folder < 0) return true;
-    if (fstatat(place->folder, place->name, &status, AT_SYMLINK_NOFOLLOW) != 0)
-        return errno == ENOENT || error_system(error, place->path, "cannot be read: %s", strerror(errno));
-    found->there = true;
-    found->link = S_ISLNK(status.st_mode);
-    found->other = !found->link && !S_ISREG(status.st_mode);
-    if (found->link || found->other) return true;
-    size_t size;
-    char *data = file_read_at(place->folder, place->name, place->path, MAX_FILE_SIZE, &size, error);
-    if (data == NULL) return false;
-    found->hash = hash_xxh3(data, size);
-    free(data);
-    return true;
-}
 
 /* The folders stay open, so that all checks and changes are of the same two. */
 typedef struct Folders {
     Root expected, actual;
 } Folders;
 
-static bool inspect_below(const Root *root, const char *name, Found *found, Error *error) {
+/* A regular file of this name, or none. */
+static bool inspect(const Root *root, const char *name, Found *found, Error *error) {
     ApprovePlace place;
+    struct stat status;
+    *found = (Found){.there = false};
     if (!place_open(&place, root, name, false, error)) return false;
-    bool ok = inspect(&place, found, error);
-    if (ok && (found->link || found->other))
-        ok = error_input(error, place.path, "must be a regular file%s", found->link ? " (is a link)" : "");
+    bool ok = true;
+    if (place.folder >= 0 && fstatat(place.folder, place.name, &status, AT_SYMLINK_NOFOLLOW) != 0) {
+        ok = errno == ENOENT || error_system(error, place.path, "cannot be read: %s", strerror(errno));
+    } else if (place.folder >= 0 && !S_ISREG(status.st_mode)) {
+        ok = error_input(error, place.path, "must be a regular file%s", S_ISLNK(status.st_mode) ? " (is a link)" : "");
+    } else if (place.folder >= 0) {
+        size_t size;
+        char *data = file_read_at(place.folder, place.name, place.path, MAX_FILE_SIZE, &size, error);
+        ok = found->there = data != NULL;
+        if (ok) found->hash = hash_xxh3(data, size);
+        free(data);
+    }
     place_close(&place);
     return ok;
 }
 
 static bool as_reported(const Found *found, const ApprovalFile *file) {
-    bool wanted = file->name[0] != '\0';
+    bool wanted = file->name != NULL;
     return found->there == wanted && (!wanted || found->hash == file->hash);
 }
 
@@ -373,33 +328,29 @@ static bool refuse_changed(const Root *root, const char *name, Error *error) {
 
 static bool decide(const Folders *folders, const ApprovalItem *item, Action *action, Error *error) {
     Found expected, actual = {.there = false};
-    if (!inspect_below(&folders->expected, target_of(item), &expected, error)) return false;
+    if (!inspect(&folders->expected, target_of(item), &expected, error)) return false;
     *action = ACTION_NONE;
-    bool removed = item->actual.name[0] == '\0';
+    bool removed = item->actual.name == NULL;
     if (removed ? !expected.there : expected.there && expected.hash == item->actual.hash) return true;
     if (!as_reported(&expected, &item->expected)) return refuse_changed(&folders->expected, target_of(item), error);
-    *action = removed ? ACTION_REMOVE : item->expected.name[0] == '\0' ? ACTION_ADD : ACTION_REPLACE;
+    *action = removed ? ACTION_REMOVE : item->expected.name == NULL ? ACTION_ADD : ACTION_REPLACE;
     const char *name = removed ? item->expected.name : item->actual.name;
-    return inspect_below(&folders->actual, name, &actual, error) &&
+    return inspect(&folders->actual, name, &actual, error) &&
            (as_reported(&actual, &item->actual) || refuse_changed(&folders->actual, name, error));
 }
 
+#define CHANGED "has changed during the approval"
+
 /* Reads the actual file again and checks the hash of exactly the bytes that are written. */
-static bool copy(const ApprovePlace *source, uint64_t hash, const ApprovePlace *target, Error *error) {
+static bool copy(const Folders *folders, const ApprovalFile *actual, const ApprovePlace *target, Error *error) {
+    ApprovePlace source;
     size_t size;
-    if (source->folder < 0) return error_input(error, source->path, "has changed during the approval");
-    char *data = file_read_at(source->folder, source->name, source->path, MAX_FILE_SIZE, &size, error);
-    bool ok = data != NULL &&
-              (hash_xxh3(data, size) == hash || error_input(error, source->path, "has changed during the approval")) &&
+    if (!place_open(&source, &folders->actual, actual->name, false, error)) return false;
+    if (source.folder < 0) return error_input(error, source.path, CHANGED);
+    char *data = file_read_at(source.folder, source.name, source.path, MAX_FILE_SIZE, &size, error);
+    bool ok = data != NULL && (hash_xxh3(data, size) == actual->hash || error_input(error, source.path, CHANGED)) &&
               file_write_at(target->folder, target->name, target->path, data, size, error);
     free(data);
-    return ok;
-}
-
-static bool copy_from(const Folders *folders, const ApprovalFile *actual, const ApprovePlace *target, Error *error) {
-    ApprovePlace source;
-    if (!place_open(&source, &folders->actual, actual->name, false, error)) return false;
-    bool ok = copy(&source, actual->hash, target, error);
     place_close(&source);
     return ok;
 }
@@ -412,12 +363,12 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
     (*counts[action])++;
     if (action == ACTION_NONE) return true;
     if (!place_open(&target, &folders->expected, target_of(item), action == ACTION_ADD, error)) return false;
-    bool ok = target.folder >= 0 || error_input(error, target.path, "has changed during the approval");
+    bool ok = target.folder >= 0 || error_input(error, target.path, CHANGED);
     if (ok && action == ACTION_REMOVE)
         ok = unlinkat(target.folder, target.name, 0) == 0 ||
              error_system(error, target.path, "cannot be removed: %s", strerror(errno));
     else if (ok)
-        ok = copy_from(folders, &item->actual, &target, error);
+        ok = copy(folders, &item->actual, &target, error);
     if (ok) on_change(words[action], target.path);
     place_close(&target);
     return ok;
@@ -426,8 +377,9 @@ static bool apply(const Folders *folders, const ApprovalItem *item, Action actio
 static bool is_selected(const ApprovalItem *item, const ApprovalRequest *request, Approval *approval) {
     const char *only = request->only;
     bool matches = only == NULL || fnmatch(only, target_of(item), 0) == 0 ||
-                   fnmatch(only, item->actual.name, 0) == 0; /* home.png, where home.1.png is replaced */
-    bool kept = matches && request->missing == MISSING_KEPT && item->actual.name[0] == '\0';
+                   (item->actual.name != NULL &&
+                    fnmatch(only, item->actual.name, 0) == 0); /* home.png, where home.1.png is replaced */
+    bool kept = matches && request->missing == MISSING_KEPT && item->actual.name == NULL;
     approval->not_selected += !matches;
     approval->kept += kept;
     approval->not_shown += matches && !kept && !item->shown;

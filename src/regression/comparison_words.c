@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The results of a comparison as text. */
 /* A comparison in words: changes and regions, frames, runs, causes, the verdict, notes. */
 #include "base/base.h"
 #include "pixels/png.h"
@@ -302,9 +301,6 @@ RegressionText regression_begin(const Regression *regression) {
     if (regression->first_run >= 0) {
         const RegressionRun *run = &regression->runs[regression->first_run];
         ADD(&begin, "\n", "physics changed first in %s: %s", run->name, run_words(run).text);
-    } else if (regression->first_physics >= 0) {
-        const RegressionFrame *frame = &regression->frames[regression->first_physics];
-        ADD(&begin, "\n", "physics changed first in %s, panel %d", frame_name(frame), frame->panel);
     }
     if (regression->first_renderer >= 0)
         ADD(&begin, "\n", "renderer changed first in %s", frame_name(&regression->frames[regression->first_renderer]));

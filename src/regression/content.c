@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The header has the definitions. */
+/* Names regions by their surroundings, as content.h defines it for content_name(). */
 #include "regression/content.h"
 
 #include "base/base.h"
+#include "base/numbers.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/regression_internal.h"
@@ -190,7 +191,7 @@ static bool name_regions(const Image *const pictures[2], const uint8_t *masked, 
         ok = find_edges(pictures, verdicts, count, error);
     }
     for (int i = 0; ok && i < count; i++) add_change(changes, &verdicts[i], regions[i]);
-    for (int i = 0; i < count; i++) patch_free(verdicts[i].patch);
+    for (int i = 0; i < count; i++) free(verdicts[i].patch);
     return ok;
 }
 
@@ -220,32 +221,45 @@ static bool sum_rows(const Image *const pictures[2], const uint8_t *masked, int 
     return true;
 }
 
-/* Noise everywhere, and something else that is stronger: the regions become those of the rest, and one of the noise. */
+/* The mask, or one of nothing, to add to. */
+static uint8_t *copy_mask(const Image *picture, const uint8_t *masked, Error *error) {
+    const size_t count = (size_t)picture->width * (size_t)picture->height;
+    uint8_t *copy = calloc(count, 1);
+    if (copy == NULL) return error_memory(error, "regions"), NULL;
+    if (masked != NULL) memcpy(copy, masked, count);
+    return copy;
+}
+
+/* The regions become those of what `left` does not ignore, and one of all the rest, at place 0 or the last. */
+static bool name_apart(const Image *const pictures[2], const uint8_t *left, const ImageDifference *difference,
+                       const Verdict *rest, bool first, FrameChanges *changes, Error *error) {
+    ImageRegions *regions = &changes->regions;
+    ImageRegion all = {difference->pixels, difference->left, difference->top, difference->right, difference->bottom};
+    if (!image_regions_find(pictures[0], pictures[1], left, difference, regions, error)) return false;
+    if (regions->kept == IMAGE_REGIONS_MAX) regions->kept--;
+    if (!name_regions(pictures, left, &(Motion){0}, changes, error)) return false;
+    for (int i = 0; i < regions->kept; i++) all.pixels -= regions->list[i].pixels;
+    const int at = first ? 0 : regions->kept;
+    memmove(regions->list + 1, regions->list, (size_t)(regions->kept - at) * sizeof *regions->list);
+    memmove(changes->region_change + 1, changes->region_change,
+            (size_t)(regions->kept - at) * sizeof *changes->region_change);
+    regions->list[at] = all;
+    regions->kept++, regions->count++;
+    add_change(changes, rest, at);
+    return true;
+}
+
+/* *named: there is noise everywhere, or other colours, and something else that is stronger. */
 static bool name_above(const Image *const pictures[2], const uint8_t *masked, int floor,
-                       const ImageDifference *difference, FrameChanges *changes, Error *error) {
-    const size_t count = (size_t)pictures[0]->width * (size_t)pictures[0]->height;
-    const ImageRegion all = {difference->pixels, difference->left, difference->top, difference->right,
-                             difference->bottom};
+                       const ImageDifference *difference, FrameChanges *changes, bool *named, Error *error) {
     ContentTraits traits = {0};
-    uint8_t *strong = malloc(count);
-    bool ok = (strong != NULL || error_memory(error, "regions")) && sum_rows(pictures, masked, floor, &traits, error);
-    if (ok) {
-        if (masked != NULL)
-            memcpy(strong, masked, count);
-        else
-            memset(strong, IGNORED_NOT, count);
-        level_mark(pictures[0], pictures[1], floor, strong);
-        ok = image_regions_find(pictures[0], pictures[1], strong, difference, &changes->regions, error);
-    }
-    if (ok) {
-        ImageRegions *regions = &changes->regions;
-        if (regions->kept == IMAGE_REGIONS_MAX) regions->kept--;
-        ok = name_regions(pictures, strong, &(Motion){0}, changes, error);
-        regions->list[regions->kept++] = all, regions->count++;
-        for (int i = 0; i < regions->kept - 1; i++) regions->list[regions->kept - 1].pixels -= regions->list[i].pixels;
-        const Verdict verdict = {.kind = kind_of_most(&traits)};
-        if (ok) add_change(changes, &verdict, regions->kept - 1);
-    }
+    if (!sum_rows(pictures, masked, floor, &traits, error)) return false;
+    const Verdict weak = {.kind = kind_of_most(&traits)};
+    *named = weak.kind != CHANGE_UNSURE;
+    if (!*named) return true;
+    uint8_t *strong = copy_mask(pictures[0], masked, error);
+    if (strong != NULL) level_mark(pictures[0], pictures[1], floor, strong);
+    const bool ok = strong != NULL && name_apart(pictures, strong, difference, &weak, false, changes, error);
     free(strong);
     return ok;
 }
@@ -256,32 +270,19 @@ enum { SIDES_SMALL = 16 };
 /* The actual picture is the expected one, shifted. A strip that it uncovers is a region of its own, unless it is small. */
 static bool name_shifted(const Image *const pictures[2], const uint8_t *masked, const Motion *shift,
                          const ImageDifference *difference, FrameChanges *changes, Error *error) {
-    const int width = pictures[0]->width, height = pictures[0]->height, right = (int)shift->right,
-              down = (int)shift->down;
-    const int sides_x = abs(right) <= SIDES_SMALL ? 0 : right, sides_y = abs(down) <= SIDES_SMALL ? 0 : down;
-    ImageRegion all = {difference->pixels, difference->left, difference->top, difference->right, difference->bottom};
-    uint8_t *new = calloc((size_t)width, (size_t)height);
-    bool ok = new != NULL || error_memory(error, "regions");
-    for (int y = 0; ok && y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const size_t at = (size_t)y * (size_t)width + (size_t)x;
-            const bool inside = x >= sides_x && x < width + sides_x && y >= sides_y && y < height + sides_y;
-            if (masked != NULL) new[at] = masked[at];
-            if (inside && new[at] == IGNORED_NOT) new[at] = IGNORED_RULE;
+    const int width = pictures[0]->width, height = pictures[0]->height;
+    const int right = fabs(shift->right) <= SIDES_SMALL ? 0 : (int)shift->right,
+              down = fabs(shift->down) <= SIDES_SMALL ? 0 : (int)shift->down;
+    uint8_t *new = copy_mask(pictures[0], masked, error);
+    for (int y = int_max(down, 0); new != NULL &&y < int_min(height + down, height); y++)
+        for (int x = int_max(right, 0); x < int_min(width + right, width); x++) {
+            uint8_t *pixel = &new[(size_t)y * (size_t)width + (size_t)x];
+            if (*pixel == IGNORED_NOT) *pixel = IGNORED_RULE;
         }
-    ok = ok && image_regions_find(pictures[0], pictures[1], new, difference, &changes->regions, error) &&
-         name_regions(pictures, new, &(Motion){0}, changes, error);
+    const Verdict moved = {.kind = CHANGE_MOVED, .motion = *shift};
+    const bool ok = new != NULL &&name_apart(pictures, new, difference, &moved, true, changes, error);
     free(new);
-    if (!ok) return false;
-    ImageRegions *regions = &changes->regions;
-    if (regions->kept == IMAGE_REGIONS_MAX) regions->kept--;
-    for (int i = 0; i < regions->kept; i++) all.pixels -= regions->list[i].pixels;
-    memmove(regions->list + 1, regions->list, (size_t)regions->kept * sizeof *regions->list);
-    memmove(changes->region_change + 1, changes->region_change, (size_t)regions->kept * sizeof *changes->region_change);
-    regions->list[0] = all;
-    regions->kept++, regions->count++;
-    add_change(changes, &(Verdict){.kind = CHANGE_MOVED, .motion = *shift}, 0);
-    return true;
+    return ok;
 }
 
 /* *named: it is the same picture, shifted, and that is less to tell than its regions. *shift is that of most of it in any case. */
@@ -301,8 +302,8 @@ static bool name_by_ground(const Image *const pictures[2], const uint8_t *masked
                            const ImageDifference *difference, FrameChanges *changes, Error *error) {
     Motion shift = {0};
     bool named = false;
-    if (floor > 0) return name_above(pictures, masked, floor, difference, changes, error);
-    if (changes->regions.kept > 1 && !are_scattered(&changes->regions) &&
+    if (floor > 0 && !name_above(pictures, masked, floor, difference, changes, &named, error)) return false;
+    if (!named && changes->regions.kept > 1 && !are_scattered(&changes->regions) &&
         !find_shifted(pictures, masked, difference, &shift, changes, &named, error))
         return false;
     return named || name_regions(pictures, masked, &shift, changes, error);
@@ -326,8 +327,8 @@ static Image rows_of(const Image *image, int top, int count) {
 
 bool content_name_by_ground(const Image *expected, const Image *actual, int first, const uint8_t *masked, int floor,
                             const ImageDifference *difference, FrameChanges *changes, Error *error) {
-    const int top = larger(difference->top - CONTENT_MARGIN, first),
-              bottom = smaller(difference->bottom + CONTENT_MARGIN, first + expected->height);
+    const int top = int_max(difference->top - CONTENT_MARGIN, first),
+              bottom = int_min(difference->bottom + CONTENT_MARGIN, first + expected->height);
     const Image rows[2] = {rows_of(expected, top - first, bottom - top), rows_of(actual, top - first, bottom - top)};
     ImageDifference inside = *difference;
     inside.top -= top, inside.bottom -= top;
@@ -359,7 +360,7 @@ bool content_name(const Image *expected, const Image *actual, const uint8_t *mas
     const int floor = changes->count == 0 ? traits_floor(&traits) : 0;
     if (content_has_ground(&traits, difference, expected->width, expected->height))
         return content_name_by_ground(expected, actual, 0, masked, floor, difference, changes, error);
-    const int top = larger(difference->top - CONTENT_MARGIN, 0), left = expected->height - top;
+    const int top = int_max(difference->top - CONTENT_MARGIN, 0), left = expected->height - top;
     const Image rows[2] = {rows_of(expected, top, left), rows_of(actual, top, left)};
     bool named = false;
     if (!content_may_be_shifted(rows, &traits, expected->width, expected->height, &named, error)) return false;

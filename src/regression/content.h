@@ -117,16 +117,14 @@ typedef struct Patch {
     ViewRect box[2];                 /* of what the expected and the actual picture have; empty: right < left */
     double energy[DOT_KINDS], total; /* squared differences */
     double rise, fall;               /* sums of differences by sign */
-    double *mass[2][2];              /* by picture: distance from the ground, by column and by row of the region */
     ContentTraits traits;
     ImageRegion region;
     int count;
     Dot dots[DOTS_MAX]; /* all differing pixels of the region, or every n-th */
 } Patch;
 
-/* NULL with error set if out of memory. */
+/* To be freed. NULL with error set if out of memory. */
 Patch *patch_create(const Image *const pictures[2], const uint8_t *masked, const ImageRegion *region, Error *error);
-void patch_free(Patch *patch);                        /* NULL: does nothing */
 double patch_share(const Patch *patch, DotKind kind); /* of the squared difference */
 
 /* How far content moved: pixels, to the right and down. */

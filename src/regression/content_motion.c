@@ -82,7 +82,7 @@ static int best_shift(const double *a, const double *b, int count) {
     return best;
 }
 
-/* By column or by row of a region: how much the pixels differ from those before. */
+/* By column or by row of a region, and the one behind it: how much the pixels differ from those before. */
 static void edge_profile(const Image *image, const ImageRegion *region, bool by_row, int count, double *profile) {
     enum { SAMPLES = 256 }; /* of a line */
     const int length = by_row ? region->right - region->left : region->bottom - region->top;
@@ -100,30 +100,28 @@ static void edge_profile(const Image *image, const ImageRegion *region, bool by_
 static int edge_shift(const Patch *patch, bool by_row) {
     double profiles[2][PROFILE_MAX];
     const ImageRegion *region = &patch->region;
-    const int count = by_row ? region->bottom - region->top : region->right - region->left;
+    const int count = 1 + (by_row ? region->bottom - region->top : region->right - region->left);
     for (int i = 0; i < 2; i++) edge_profile(patch->pictures[i], region, by_row, count, profiles[i]);
     return best_shift(profiles[0], profiles[1], count);
 }
 
-/* Shifts of the sides of what was there to those of what is there now, of its profiles, and of its edges. Each shift to the right
-   is tried with each one down. */
+/* Shifts of the sides of what was there to those of what is there now, and of its edges. Each shift to the right is tried with each
+   one down. */
 static void add_sides(Search *search) {
     const Patch *patch = search->patches[0];
     const ViewRect a = patch->box[0], b = search->patches[search->patch_count - 1]->box[1];
     const int width = patch->region.right - patch->region.left, height = patch->region.bottom - patch->region.top;
-    int right[5] = {0}, down[5] = {0};
+    int right[4] = {0}, down[4] = {0};
     if (a.right >= a.left && b.right >= b.left) {
         right[1] = b.left - a.left, right[2] = b.right - a.right;
         down[1] = b.top - a.top, down[2] = b.bottom - a.bottom;
     }
-    if (search->patch_count == 1 && width <= PROFILE_MAX && height <= PROFILE_MAX) {
-        right[3] = best_shift(patch->mass[0][0], patch->mass[1][0], width);
-        down[3] = best_shift(patch->mass[0][1], patch->mass[1][1], height);
-        right[4] = edge_shift(patch, false);
-        down[4] = edge_shift(patch, true);
-        search->edges = (Motion){right[4], down[4], 0};
+    if (search->patch_count == 1 && width < PROFILE_MAX && height < PROFILE_MAX) {
+        right[3] = edge_shift(patch, false);
+        down[3] = edge_shift(patch, true);
+        search->edges = (Motion){right[3], down[3], 0};
     }
-    for (int i = 0; i < 25; i++) add_start(search, right[i % 5], down[i / 5]);
+    for (int i = 0; i < 16; i++) add_start(search, right[i % 4], down[i / 4]);
 }
 
 /* To a neighbour while that explains more. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A region against its ground: what appears, vanishes, changes. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/content.h"
@@ -77,7 +78,7 @@ static int roughness_of(const Ground *ground) {
         for (int x = ground->box.left; x + 1 < ground->box.right; x++) {
             const size_t pixel = pixel_of(ground, x, y), place = place_of(ground, x, y);
             if (ground->levels[place] > 0 || ground->levels[place + 1] > 0) continue;
-            sum += smaller(distance_in(ground->pictures[0], pixel, pixel + 1), STEP_MAX);
+            sum += int_min(distance_in(ground->pictures[0], pixel, pixel + 1), STEP_MAX);
             count++;
         }
     return USUAL + (int)(count > 0 ? TIMES * sum / count : 0);
@@ -86,8 +87,8 @@ static int roughness_of(const Ground *ground) {
 /* ground_free() frees it, also after an error. */
 static bool ground_find(Ground *ground, const ImageRegion *region, Error *error) {
     const Image *a = ground->pictures[0], *b = ground->pictures[1];
-    ground->box = (ViewRect){larger(region->left - MARGIN, 0), larger(region->top - MARGIN, 0),
-                             smaller(region->right + MARGIN, a->width), smaller(region->bottom + MARGIN, a->height)};
+    ground->box = (ViewRect){int_max(region->left - MARGIN, 0), int_max(region->top - MARGIN, 0),
+                             int_min(region->right + MARGIN, a->width), int_min(region->bottom + MARGIN, a->height)};
     const size_t width = (size_t)(ground->box.right - ground->box.left);
     const size_t count = width * (size_t)(ground->box.bottom - ground->box.top);
     ground->levels = calloc(count, 1);
@@ -98,7 +99,7 @@ static bool ground_find(Ground *ground, const ImageRegion *region, Error *error)
     for (int y = ground->box.top; y < ground->box.bottom; y++)
         (void)image_find_levels(a, b, ground->masked, pixel_of(ground, ground->box.left, y), width,
                                 ground->levels + place_of(ground, ground->box.left, y));
-    for (size_t i = 0; i < count; i++) most = larger(most, ground->levels[i]);
+    for (size_t i = 0; i < count; i++) most = int_max(most, ground->levels[i]);
     ground->weak = most / 8;
     ground->plain = roughness_of(ground);
     for (int i = 0; i < 2; i++) memset(ground->distance[i], 0xff, count * sizeof *ground->distance[i]);
@@ -117,8 +118,8 @@ static DotKind kind_of(const Ground *ground, size_t place) {
 }
 
 static void extend(ViewRect *box, int x, int y) {
-    box->left = smaller(box->left, x), box->top = smaller(box->top, y);
-    box->right = larger(box->right, x + 1), box->bottom = larger(box->bottom, y + 1);
+    box->left = int_min(box->left, x), box->top = int_min(box->top, y);
+    box->right = int_max(box->right, x + 1), box->bottom = int_max(box->bottom, y + 1);
 }
 
 static void add_energy(const Ground *ground, Patch *patch, size_t pixel, DotKind kind) {
@@ -128,14 +129,6 @@ static void add_energy(const Ground *ground, Patch *patch, size_t pixel, DotKind
         patch->energy[kind] += difference * difference;
         patch->total += difference * difference;
         *(difference > 0 ? &patch->rise : &patch->fall) += fabs(difference);
-    }
-}
-
-static void add_mass(const Ground *ground, Patch *patch, int x, int y, size_t place) {
-    for (int i = 0; i < 2; i++) {
-        const double mass = ground->distance[i][place] == NO_GROUND ? 0 : ground->distance[i][place];
-        patch->mass[i][0][x - patch->region.left] += mass;
-        patch->mass[i][1][y - patch->region.top] += mass;
     }
 }
 
@@ -154,18 +147,11 @@ static void add_dots(const Ground *ground, Patch *patch) {
             const DotKind kind = kind_of(ground, place);
             if (kind != DOT_APPEARS) extend(&patch->box[0], x, y);
             if (kind != DOT_VANISHES) extend(&patch->box[1], x, y);
-            add_mass(ground, patch, x, y, place);
             number += golden;
             if (number >= limit || patch->count == DOTS_MAX) continue;
             patch->dots[patch->count++] = (Dot){x, y, kind};
             add_energy(ground, patch, pixel_of(ground, x, y), kind);
         }
-}
-
-void patch_free(Patch *patch) {
-    if (patch != NULL)
-        for (int i = 0; i < 4; i++) free(patch->mass[i / 2][i % 2]);
-    free(patch);
 }
 
 /* Of a high region, every n-th row. */
@@ -193,18 +179,13 @@ Patch *patch_create(const Image *const pictures[2], const uint8_t *masked, const
                          .region = *region,
                          .box[0] = {region->right, region->bottom, region->left, region->top},
                          .box[1] = {region->right, region->bottom, region->left, region->top}};
-    for (int i = 0; ok && i < 4; i++) {
-        const int count = i % 2 == 0 ? region->right - region->left : region->bottom - region->top;
-        patch->mass[i / 2][i % 2] = calloc((size_t)count, sizeof(double));
-        ok = patch->mass[i / 2][i % 2] != NULL || error_memory(error, "regions");
-    }
     if (ok) {
         add_dots(&ground, patch);
         add_traits(&ground, &patch->traits);
     }
     ground_free(&ground);
     if (ok) return patch;
-    patch_free(patch);
+    free(patch);
     return NULL;
 }
 

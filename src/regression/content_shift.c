@@ -2,6 +2,7 @@
 /* The shift of most of a picture: of a page into which something was inserted, or of the whole. What windows show decides which are
    chosen, so both pictures choose the same ones, wherever they are. Windows that show what no other does vote for a shift. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/content.h"
@@ -120,8 +121,8 @@ static bool is_masked(const uint8_t *masked, size_t pixel) { return masked != NU
 bool content_is_shifted(const Image *expected, const Image *actual, const uint8_t *masked, const Motion *shift) {
     const int right = (int)shift->right, down = (int)shift->down, width = expected->width, height = expected->height;
     if (right == 0 && down == 0) return false;
-    for (int y = larger(down, 0); y < smaller(height + down, height); y++)
-        for (int x = larger(right, 0); x < smaller(width + right, width); x++) {
+    for (int y = int_max(down, 0); y < int_min(height + down, height); y++)
+        for (int x = int_max(right, 0); x < int_min(width + right, width); x++) {
             const size_t to = (size_t)y * (size_t)width + (size_t)x,
                          from = (size_t)(y - down) * (size_t)width + (size_t)(x - right);
             if (is_masked(masked, from) || is_masked(masked, to)) continue;

@@ -3,6 +3,7 @@
    matters: an earlier one within reach is in the same region. Regions are joined by union-find; those that no column
    reaches any more are complete, and their nodes are used again. */
 #include "base/base.h"
+#include "base/numbers.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/flip.h"
@@ -61,8 +62,8 @@ static int join(Scan *scan, int a, int b) {
     if (root == other) return root;
     ImageRegion *to = &scan->nodes[root].region;
     const ImageRegion *from = &scan->nodes[other].region;
-    *to = (ImageRegion){to->pixels + from->pixels, smaller(to->left, from->left), smaller(to->top, from->top),
-                        larger(to->right, from->right), larger(to->bottom, from->bottom)};
+    *to = (ImageRegion){to->pixels + from->pixels, int_min(to->left, from->left), int_min(to->top, from->top),
+                        int_max(to->right, from->right), int_max(to->bottom, from->bottom)};
     scan->nodes[other].parent = root;
     return root;
 }
@@ -90,7 +91,7 @@ static void compact(Scan *scan, int row) {
 static void add_run(Scan *scan, const uint8_t *levels, int left, int right, int64_t pixels, int row) {
     int node = scan->node_count++, known = -1;
     scan->nodes[node] = (Node){node, {pixels, left, row, right + 1, row + 1}};
-    const int first = larger(left - scan->gap, 0), last = smaller(right + scan->gap, scan->width - 1),
+    const int first = int_max(left - scan->gap, 0), last = int_min(right + scan->gap, scan->width - 1),
               reach = row - scan->gap;
     int *nodes = scan->column_node, *rows = scan->column_row;
     for (int x = first; x <= last; x++) {

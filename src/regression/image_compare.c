@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers of the comments are those of the header. */
+/* Two pictures pixel by pixel, and the edges that antialias_mark() finds: the numbers 1 to 4 are those of its definition in
+   regression_internal.h. */
+#include "base/numbers.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/regression_internal.h"
@@ -275,7 +277,7 @@ static bool find_sides(const Around *a, const Around *b, int x, const uint8_t sl
             }
             if (farthest < 0) memcpy(sides[0], colour, sizeof colour);
             if (distance > farthest) memcpy(sides[1], colour, sizeof colour);
-            farthest = larger(farthest, distance);
+            farthest = int_max(farthest, distance);
         }
     return farthest >= 2 * LEAST_CONTRAST;
 }
@@ -491,7 +493,7 @@ static void cut(Image *image, int width, int height) {
 }
 
 void image_cut_to_overlap(Image *a, Image *b) {
-    int width = smaller(a->width, b->width), height = smaller(a->height, b->height);
+    int width = int_min(a->width, b->width), height = int_min(a->height, b->height);
     cut(a, width, height);
     cut(b, width, height);
 }

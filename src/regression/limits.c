@@ -127,19 +127,18 @@ bool regression_read_rules(Regression *regression, Error *error) {
 /* Rules first, then what the options give. */
 static Tolerance regression_tolerance(const Regression *regression, const RegressionFrame *frame) {
     Tolerance tolerance = {0};
-    if (regression->rules != NULL) rules_override(regression->rules, frame_name(frame), &tolerance);
+    rules_override(regression->rules, frame_name(frame), &tolerance);
     tolerance_override(&tolerance, &regression->options.tolerance);
     return tolerance;
 }
 
 static bool has_masks(const Regression *regression, const RegressionFrame *frame) {
     const Mask *mask = regression->options.mask;
-    return (mask != NULL && mask->count > 0) ||
-           (regression->rules != NULL && rules_have_masks(regression->rules, frame_name(frame)));
+    return (mask != NULL && mask->count > 0) || rules_have_masks(regression->rules, frame_name(frame));
 }
 
 static bool has_regions(const Regression *regression, const RegressionFrame *frame) {
-    return regression->rules != NULL && rules_have_regions(regression->rules, frame_name(frame));
+    return rules_have_regions(regression->rules, frame_name(frame));
 }
 
 int regression_level(const Regression *regression, const RegressionFrame *frame) {
@@ -158,9 +157,8 @@ bool regression_needs_rows_alone(Regression *regression, const RegressionFrame *
 
 bool regression_may_hide_all(const Regression *regression, const RegressionFrame *frame, int width, int height) {
     const Mask *mask = regression->options.mask;
-    double hidden = mask == NULL ? 0 : mask_most_hidden(mask, width, height);
-    if (regression->rules != NULL) hidden += rules_most_hidden(regression->rules, frame_name(frame), width, height);
-    return hidden >= (double)width * height;
+    const double hidden = mask == NULL ? 0 : mask_most_hidden(mask, width, height);
+    return hidden + rules_most_hidden(regression->rules, frame_name(frame), width, height) >= (double)width * height;
 }
 
 static bool draw_masks(const Regression *regression, const RegressionFrame *frame, const Image *expected,
@@ -168,8 +166,7 @@ static bool draw_masks(const Regression *regression, const RegressionFrame *fram
     const Mask *mask = regression->options.mask;
     const char *path = frame->at[EXPECTED]->path;
     return (mask == NULL || mask_draw(mask, expected, path, masked, error)) &&
-           (regression->rules == NULL ||
-            rules_draw_masks(regression->rules, frame_name(frame), expected, path, masked, error));
+           rules_draw_masks(regression->rules, frame_name(frame), expected, path, masked, error);
 }
 
 static void cut_mask(uint8_t *masked, int width, const Image *to) {
@@ -187,8 +184,7 @@ bool tolerance_mark(const Tolerance *tolerance, const Image *expected, const Ima
 static bool mark_allowed(const Regression *regression, const RegressionFrame *frame, const Image *expected,
                          const Image *actual, uint8_t *masked, Error *error) {
     const Tolerance tolerance = regression_tolerance(regression, frame);
-    return (!has_regions(regression, frame) ||
-            rules_mark_regions(regression->rules, frame_name(frame), expected, actual, masked, error)) &&
+    return rules_mark_regions(regression->rules, frame_name(frame), expected, actual, masked, error) &&
            tolerance_mark(&tolerance, expected, actual, masked, error);
 }
 
@@ -245,46 +241,18 @@ static bool measure(RegressionFrame *frame, const Image *expected, Image *actual
 bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
                        const uint8_t *masked, Error *error) {
     const ImageDifference *difference = &frame->difference;
-    Tolerance tolerance = regression_tolerance(regression, frame);
-    if (!difference->same_size && !regression_accepts_size(regression, frame))
+    const Tolerance tolerance = regression_tolerance(regression, frame);
+    const bool resized = !difference->same_size && !regression_accepts_size(regression, frame);
+    if ((resized || difference->pixels > 0) && (tolerance.given & LIMITS_FLIP) != 0 &&
+        !measure(frame, expected, actual, masked, error))
+        return false;
+    if (resized)
         frame->pixels = PIXELS_RESIZED;
     else if (difference->pixels == 0)
         frame->pixels = difference->moved > 0 || !difference->same_size ? PIXELS_WITHIN : PIXELS_EQUAL;
-    else if ((tolerance.given & LIMITS_FLIP) != 0 && !measure(frame, expected, actual, masked, error))
-        return false;
     else
         frame->pixels = tolerance_holds(&tolerance, difference, &(FlipSummary){frame->flip, frame->flip_p99})
                             ? PIXELS_WITHIN
                             : PIXELS_DIFFER;
-    return true;
-}
-
-static Image *read_picture(const Regression *regression, const char *path, Error *error) {
-    size_t size;
-    uint8_t *data = image_load_png(path, &size, error);
-    Image *image = data == NULL ? NULL : image_decode_png(data, size, path, regression->options.max_pixels, error);
-    free(data);
-    return image;
-}
-
-static bool measure_files(const Regression *regression, RegressionFrame *frame, Error *error) {
-    uint8_t *masked = NULL;
-    Image *expected = read_picture(regression, frame->at[EXPECTED]->path, error);
-    Image *actual = expected == NULL ? NULL : read_picture(regression, frame->at[ACTUAL]->path, error);
-    bool ok = actual != NULL && regression_ignore(regression, frame, expected, actual, &masked, error) &&
-              measure(frame, expected, actual, masked, error);
-    image_destroy(expected);
-    image_destroy(actual);
-    free(masked);
-    return ok;
-}
-
-bool regression_measure_first(Regression *regression, Error *error) {
-    for (int i = 0; i < regression->count; i++) {
-        RegressionFrame *frame = &regression->frames[i];
-        if (frame->pixels != PIXELS_DIFFER && frame->pixels != PIXELS_RESIZED) continue;
-        bool wanted = !frame->sizes_alone && (regression_tolerance(regression, frame).given & LIMITS_FLIP) != 0;
-        return !wanted || !isnan(frame->flip) || measure_files(regression, frame, error);
-    }
     return true;
 }

@@ -33,7 +33,8 @@ static ViewRect clipped(const Naming *naming, ViewRect rect) {
     return rect;
 }
 
-/* box NULL: the whole rectangle. */
+/* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change; -1: to none.
+   Returns their number. */
 static int64_t take(Naming *naming, ViewRect rect, const BoxModel *box, double margin, int change) {
     int64_t taken = 0;
     rect = clipped(naming, rect);
@@ -42,15 +43,12 @@ static int64_t take(Naming *naming, ViewRect rect, const BoxModel *box, double m
             uint8_t *owner = &naming->owners[(size_t)y * (size_t)naming->scene->view->width + (size_t)x];
             if (*owner != OWNER_UNKNOWN) continue;
             if (box != NULL && box_distance(box, x + 0.5, y + 0.5) > margin) continue;
-            *owner = (uint8_t)(OWNER_FIRST + change);
+            *owner = change < 0 ? OWNER_NONE : (uint8_t)(OWNER_FIRST + change);
             taken++;
         }
-    naming->changes->list[change].pixels += taken;
+    if (change >= 0) naming->changes->list[change].pixels += taken;
     return taken;
 }
-
-/* Gives the unknown pixels of a rectangle, or of a box and `margin` pixels around it within the rectangle, to a change.
-   Returns their number. */
 
 static int nearest(double value, int low, int high) { return value <= low ? low : value >= high ? high : (int)value; }
 
@@ -84,20 +82,11 @@ static bool knows_bodies(const Naming *naming, int panel) {
     return !scene->view->follows && scene->runs[panel][0] != NULL && scene->runs[panel][1] != NULL;
 }
 
-/* Leaves the unknown pixels of a rectangle without a name. */
-static void leave_rectangle(Naming *naming, ViewRect rect) {
-    for (int y = rect.top; y < rect.bottom; y++)
-        for (int x = rect.left; x < rect.right; x++) {
-            uint8_t *owner = &naming->owners[(size_t)y * (size_t)naming->scene->view->width + (size_t)x];
-            if (*owner == OWNER_UNKNOWN) *owner = OWNER_NONE;
-        }
-}
-
 static void name_rest(Naming *naming) {
     const FrameView *view = naming->scene->view;
     for (int i = 0; i < view->panel_count; i++) {
         ViewRect rect = view->panels[i].rect;
-        if (!knows_bodies(naming, i)) leave_rectangle(naming, rect); /* a body may be what changed */
+        if (!knows_bodies(naming, i)) take(naming, rect, NULL, 0, -1); /* a body may be what changed */
         name_rectangle(naming,
                        (ViewRect){rect.left - BORDER, rect.top - BORDER, rect.right + BORDER, rect.bottom + BORDER},
                        view->marks ? SUBJECT_MARKS : SUBJECT_BACKGROUND, i + 1);
@@ -148,7 +137,6 @@ static void drop_empty(Naming *naming, int change) {
 static int add_moved(Panel *panel, const Drawn *body) {
     ChangeKind kind = !body->exists[0] ? CHANGE_APPEARED : !body->exists[1] ? CHANGE_DISAPPEARED : CHANGE_MOVED;
     Change change = change_of(panel, body, kind);
-    change.by_states = true;
     if (kind == CHANGE_MOVED) {
         const BoxModel *a = &body->box[0], *b = &body->box[1];
         change.right = b->x - a->x, change.up = a->y - b->y;
@@ -173,7 +161,7 @@ static bool name_moved(Panel *panel, Error *error) {
             continue;
         }
         Change others = change_of(panel, moved[i], CHANGE_MOVED);
-        others.subject = SUBJECT_BODIES, others.by_states = true, others.body = count - SINGLE;
+        others.subject = SUBJECT_BODIES, others.body = count - SINGLE;
         if (i == SINGLE) rest = add_change(panel->naming, &others);
         if (rest >= 0) take_body(panel, moved[i], rest);
     }

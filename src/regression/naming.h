@@ -46,7 +46,6 @@ typedef struct Change {
     int body;         /* index, or number of bodies */
     double right, up; /* moved: pixels, in the picture */
     double turn;      /* moved: rad, counter-clockwise */
-    bool by_states;   /* the states of this frame differ so; otherwise measured in the pixels */
     int64_t pixels;   /* differing */
 } Change;
 

@@ -3,6 +3,7 @@
 #include "regression/odiff.h"
 
 #include "base/base.h"
+#include "base/numbers.h"
 #include "base/file.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
@@ -38,7 +39,7 @@ static int64_t color_delta(const uint8_t *a, const uint8_t *b) {
 
 static bool prepare(OdiffDifference *difference, const Image *base, const Image *compared, const char *name,
                     Error *error) {
-    const int width = larger(base->width, compared->width), height = larger(base->height, compared->height);
+    const int width = int_max(base->width, compared->width), height = int_max(base->height, compared->height);
     const size_t all = (size_t)width * (size_t)height;
     *difference = (OdiffDifference){.width = width, .height = height};
     if (all > IMAGE_MAX_PIXELS)
@@ -72,7 +73,7 @@ static Image row_of(const Image *image, int y, int width) {
 }
 
 static void compare_row(OdiffDifference *difference, const Image *base, const Image *compared, int y, int64_t limit) {
-    const int width = smaller(base->width, compared->width);
+    const int width = int_min(base->width, compared->width);
     const Image a = row_of(base, y, width), b = row_of(compared, y, width);
     const bool deep = limit == 0 && (a.pixels16 != NULL || b.pixels16 != NULL);
     for (size_t x = 0; (x = image_next_difference(&a, &b, 0, x)) < (size_t)width; x++)

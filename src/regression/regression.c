@@ -344,24 +344,20 @@ const RegressionFrame **regression_failures(const Regression *regression, Error 
     return failures;
 }
 
-static void count_first(int *count, int *first, int i) {
-    (*count)++;
-    if (*first < 0) *first = i;
-}
-
 static void count_frame(Regression *regression, int i) {
     const RegressionFrame *frame = &regression->frames[i];
     bool pictures = frame->pixels == PIXELS_DIFFER || frame->pixels == PIXELS_RESIZED;
     regression->by_verdict[frame->pixels]++;
-    if (frame_failed(frame)) count_first(&regression->failed, &regression->first, i);
-    if (frame->states == STATES_DIFFER) count_first(&regression->physics, &regression->first_physics, i);
+    regression->failed += frame_failed(frame);
+    regression->physics += frame->states == STATES_DIFFER;
     bool view = pictures && frame->other_view && frame->states != STATES_DIFFER;
     regression->view += view;
     regression->elsewhere += pictures && !view && frame->states == STATES_DIFFER_ELSEWHERE;
-    if (pictures && !view && frame->states == STATES_EQUAL)
-        count_first(&regression->renderer, &regression->first_renderer, i);
+    const bool renderer = pictures && !view && frame->states == STATES_EQUAL;
+    if (renderer && !frame->alone && regression->first_renderer < 0) regression->first_renderer = i;
+    regression->renderer += renderer;
     regression->unknown += pictures && !view && frame->states == STATES_UNKNOWN;
-    if (frame->metadata.text[0] != '\0') count_first(&regression->metadata, &regression->first_metadata, i);
+    if (frame->metadata.text[0] != '\0' && regression->metadata++ == 0) regression->first_metadata = i;
     regression->metadata_failed += frame->metadata_failed && !pictures && frame->states != STATES_DIFFER;
     regression->other_accepted += !frame_failed(frame) && frame->at[EXPECTED] != frame->base;
 }
@@ -394,8 +390,7 @@ static bool judge_sequences(Regression *regression, Error *error) {
 }
 
 static void count(Regression *regression) {
-    regression->first = regression->first_physics = regression->first_renderer = regression->first_run = -1;
-    regression->first_metadata = -1;
+    regression->first_renderer = regression->first_run = regression->first_metadata = -1;
     for (int i = 0; i < regression->count; i++) count_frame(regression, i);
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *runs = regression->runs;
@@ -490,17 +485,14 @@ bool regression_run(Regression *regression, const char *expected, const char *ac
          regression_read_rules(regression, error) && parallel_for(&work, regression->count, actual, progress, error) &&
          judge_sequences(regression, error);
     if (ok) count(regression);
-    ok = ok && regression_measure_first(regression, error) && regression_find_causes(regression, error);
+    ok = ok && regression_find_causes(regression, error);
     regression->seconds = clock_seconds() - begun;
     if (!ok) regression_free(regression);
     return ok;
 }
 
 void regression_free(Regression *regression) {
-    for (int i = 0; i < regression->run_count; i++) {
-        free(regression->runs[i].name);
-        free(regression->runs[i].differs);
-    }
+    for (int i = 0; i < regression->run_count; i++) regression_free_run(&regression->runs[i]);
     for (int i = 0; regression->frames != NULL && i < regression->count; i++) {
         free(regression->frames[i].read_error);
         free(regression->frames[i].changes);

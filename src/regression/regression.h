@@ -104,7 +104,7 @@ const char *rules_path(const Rules *rules);
 /* Finds the rules for each of the names. ERROR_INPUT, with the place of the rule, if one matches none of them. */
 bool rules_check_names(const Rules *rules, const char *const *names, int count, Error *error);
 
-/* Replaces in *tolerance what the rules for this name give. */
+/* What follows takes NULL for no rules. Replaces in *tolerance what the rules for this name give. */
 void rules_override(const Rules *rules, const char *name, Tolerance *tolerance);
 
 /* Whether the rules for this name have masks; mask_most_hidden() of all of them, and mask_draw(). */
@@ -153,14 +153,16 @@ enum { PIXEL_VERDICTS = PIXELS_UNREAD + 1 };
 typedef enum StateVerdict { STATES_UNKNOWN, STATES_EQUAL, STATES_DIFFER, STATES_DIFFER_ELSEWHERE } StateVerdict;
 
 /* Frames that differ for the same reason. */
+enum { CAUSE_RANGES = 4 };
 typedef struct RegressionCause {
-    char what[512];    /* "body 7 moved" */
-    double most;       /* pixels, of movements; 0: none */
-    int count;         /* frames */
-    char frames[112];  /* "frames 5 to 29", "frame 3", "frames 0, 2 to 4, ..." */
-    bool of_view;      /* the camera differs */
-    int last, written; /* while frames are added: the last one, and the length of `frames` without it */
-    int ranges;
+    char what[512];              /* "body 7 moved" */
+    double most;                 /* pixels, of movements; 0: none */
+    int order;                   /* in which causes were found */
+    int count;                   /* frames */
+    int range_count, last;       /* of successive frames; the last frame */
+    int ranges[CAUSE_RANGES][2]; /* the first and the last frame of each */
+    char frames[112];            /* "frames 5 to 29", "frame 3", "frames 0, 2 to 4, ..." */
+    bool of_view;                /* the camera differs */
 } RegressionCause;
 
 enum { CAUSES_MAX = 32 };
@@ -168,7 +170,7 @@ enum { CAUSES_MAX = 32 };
 /* A file as it was when compared. */
 typedef struct RegressionFile {
     uint64_t hash;     /* XXH3 of its bytes */
-    size_t size;       /* of what was in memory: PngFile */
+    size_t size;       /* of the file; while pictures are compared, of what is in memory (PngFile) */
     int width, height; /* of a picture */
 } RegressionFile;
 
@@ -197,6 +199,7 @@ typedef struct RegressionFrame {
 /* A trajectory that is in both folders. */
 typedef struct RegressionRun {
     char *name;
+    char *paths[SIDES]; /* of the files, also where there is none */
     RegressionFile files[SIDES];
     bool alone[SIDES]; /* only this folder has it; there is no difference then */
     TrajectoryDifference difference;
@@ -213,16 +216,16 @@ typedef struct Regression {
     ImageSequence *sequences[SIDES];
     Rules *rules; /* or NULL */
     int count, run_count;
-    bool film;                                /* there is a sequence of numbered frames */
-    RegressionFrame *frames;                  /* by stem, then number */
-    RegressionRun *runs;                      /* by name */
-    int failed;                               /* frames */
-    int by_verdict[PIXEL_VERDICTS];           /* frames */
-    int renderer, physics, unknown;           /* frames by cause of the difference */
-    int view, elsewhere;                      /* the same: the camera differs; the run does, but not in this frame */
-    int first_renderer, first_physics, first; /* first frames of these causes, first failed frame; -1: none */
-    int run_failed, first_run;                /* trajectories that fail, and the one that differs first (-1: none) */
-    int run_within;                           /* trajectories that are not equal, but within the tolerance */
+    bool film;                      /* there is a sequence of numbered frames */
+    RegressionFrame *frames;        /* by stem, then number */
+    RegressionRun *runs;            /* by name */
+    int failed;                     /* frames */
+    int by_verdict[PIXEL_VERDICTS]; /* frames */
+    int renderer, physics, unknown; /* frames by cause of the difference */
+    int view, elsewhere;            /* the same: the camera differs; the run does, but not in this frame */
+    int first_renderer;             /* first frame of a sequence in which the renderer changed; -1: none */
+    int run_failed, first_run;      /* trajectories that fail, and the one that differs first (-1: none) */
+    int run_within;                 /* trajectories that are not equal, but within the tolerance */
     Shown shown;
     int cause_count, causes_left_out; /* more than CAUSES_MAX */
     RegressionCause *causes;          /* different cameras first, then by first frame */
@@ -269,7 +272,8 @@ RegressionText case_words(const RegressionFrame *frame); /* the same, and where 
 RegressionText run_words(const RegressionRun *run);
 RegressionText cause_words(const RegressionCause *cause); /* "frames 5 to 29: body 7 moved at most 0.4 px" */
 
-/* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, one line each. */
+/* The overall verdict: "equal", or what changed and what is missing; and where the changes begin, as far as no cause tells it, one
+   line each. */
 RegressionText regression_verdict(const Regression *regression);
 RegressionText regression_begin(const Regression *regression);
 

@@ -3,19 +3,16 @@
 #pragma once
 #include "base/base.h"
 #include "base/machine.h"
-#include "pictures/player.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/flip.h"
 #include "regression/naming.h"
 #include "regression/regression.h"
+#include "regression/report.h"
 #include "runs/trajectory.h"
 
 #include <limits.h>
 #include <stdio.h>
-
-static inline int larger(int a, int b) { return a > b ? a : b; }
-static inline int smaller(int a, int b) { return a < b ? a : b; }
 
 /* The steps of regression_run(). */
 
@@ -24,6 +21,7 @@ static inline int smaller(int a, int b) { return a < b ? a : b; }
 /* Finds and compares the .npz files of the same name in both folders. Ignores those that are a trajectory in neither
    folder; ERROR_INPUT if only one of the two is a trajectory. */
 bool regression_find_runs(Regression *regression, Error *error);
+void regression_free_run(RegressionRun *run);
 
 /* Sets the states verdict of a frame. data: the two PNG files, whose texts are read. False with error set when memory is
    short. */
@@ -64,14 +62,10 @@ bool regression_accepts_size(const Regression *regression, const RegressionFrame
 void regression_compare(const Regression *regression, RegressionFrame *frame, const Image *expected,
                         const Image *actual, const uint8_t *masked);
 
-/* Sets the frame's verdict on pixels from its difference. Where a limit of FLIP decides, measures FLIP, and for this
+/* Sets the frame's verdict on pixels from its difference. Where there is a limit of FLIP, measures FLIP of the overlap, and for this
    copies what is ignored into the actual picture. */
 bool regression_decide(const Regression *regression, RegressionFrame *frame, const Image *expected, Image *actual,
                        const uint8_t *masked, Error *error);
-
-/* Measures FLIP of the first frame that failed by its pixels, from its files, if that has not been done: it is the frame
-   that compare names. Only if it has a limit of FLIP: FLIP takes longer than everything else. */
-bool regression_measure_first(Regression *regression, Error *error);
 
 /* Regions, and if the frame fails, names of what changed in it: sets `changes` and `other_view` of a frame whose pixels differ. data: the two PNG files, whose texts are read.
    Thread-safe. False with error set if out of memory. */
@@ -249,11 +243,9 @@ typedef struct ReportPictures {
 } ReportPictures;
 
 /* The pages of runs that differ. */
-enum { REPORT_RUN_SIZE = 256 };
 typedef struct ReportRuns {
-    /* [runs of the comparison] "run-NAME.html#t=0.55&body=7", or empty */
-    char (*links)[REPORT_RUN_SIZE + PLAYER_LINK_SIZE];
-    int left_out; /* runs whose page did not fit */
+    ReportLink *links; /* [runs of the comparison]; empty: no page */
+    int left_out;      /* runs whose page did not fit */
 } ReportRuns;
 
 typedef struct Report {
@@ -263,10 +255,9 @@ typedef struct Report {
     const char *folder; /* of the report, as given */
 } Report;
 
-/* Writers for file_write_text(); `report` is a Report. */
+/* The parts of ReportResults; `report` is a Report. */
+ReportCase report_case(const void *report, int i);
 void report_write_page(FILE *file, const void *report);
-void report_write_junit(FILE *file, const void *report);
-void report_write_tap(FILE *file, const void *report);
 void report_write_json(FILE *file, const void *report);
 
 /* Folders and the files below them, held by descriptors of their directories, so that no link leads out of a folder, even
@@ -290,7 +281,7 @@ const char *path_below_current(const char *path);
 /* Reads the failures from results.json. */
 
 typedef struct ApprovalFile {
-    const char *name; /* relative to the folder; empty: there was no file */
+    char *name; /* relative to the folder; NULL: there was no file */
     uint64_t hash;
 } ApprovalFile;
 
@@ -306,7 +297,7 @@ typedef struct ApprovalList {
 } ApprovalList;
 
 /* ERROR_INPUT, with path:line:column, for anything that compare does not write, above all names that leave the folder,
-   hidden names, names that do not end with .png or .npz, and a file that is named twice. On failure nothing needs to be
+   hidden names, names that do not end with .png or .npz, and, with the path alone, a file that is named twice. On failure nothing needs to be
    freed. Memory: at most four times the size of the file and 2 MiB. */
 bool approval_read(ApprovalList *list, const char *path, Error *error);
 void approval_free(ApprovalList *list);

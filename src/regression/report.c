@@ -3,6 +3,7 @@
 #include "regression/report.h"
 
 #include "base/base.h"
+#include "base/numbers.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/machine.h"
@@ -49,7 +50,7 @@ static bool measure(const Image *expected, const Image *actual, RegressionFrame 
 static bool draw(const Regression *regression, RegressionFrame *frame, Image *expected, Image *actual,
                  ReportPicture pictures[REPORT_KINDS], bool room, Error *error) {
     uint8_t *masked;
-    int width = larger(expected->width, actual->width), height = larger(expected->height, actual->height);
+    int width = int_max(expected->width, actual->width), height = int_max(expected->height, actual->height);
     if (!regression_ignore(regression, frame, expected, actual, &masked, error)) return false;
     ReportPicture *difference = &pictures[DIFFERENCE];
     if (room) difference->data = difference_picture(expected, actual, masked, width, height, &difference->size, error);
@@ -166,41 +167,27 @@ static bool gather_pictures(ReportPictures *pictures, Regression *regression, si
 /* Of the states in a page. A page of longer runs shows the frames around the first difference. */
 enum { STATE_BYTES = 8 << 20, FRAMES_BEFORE = 60 };
 
-static bool read_runs(Trajectory *runs[SIDES], const Regression *regression, const RegressionRun *run, Error *error) {
-    char path[PATH_MAX];
+static bool read_runs(Trajectory *runs[SIDES], const RegressionRun *run, Error *error) {
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (!file_path(path, sizeof path, error, "%s/%s", regression->sequences[side]->folder, run->name) ||
-            (runs[side] = trajectory_read(path, error)) == NULL)
-            return false;
+        if ((runs[side] = trajectory_read(run->paths[side], error)) == NULL) return false;
     TrajectoryDifference now;
     trajectory_compare(runs[EXPECTED], runs[ACTUAL], &now);
     return (!now.equal && now.frame == run->difference.frame && now.body == run->difference.body) ||
-           error_input(error, path, "has changed since the comparison");
+           error_input(error, run->paths[ACTUAL], "has changed since the comparison");
 }
 
-typedef struct Stem {
-    char text[REPORT_RUN_SIZE - 40];
-} Stem;
-
-/* The run's name, without .npz, as a file name. */
-static Stem stem_of(const RegressionRun *run) {
-    Stem stem;
-    snprintf(stem.text, sizeof stem.text, "%.*s", (int)strlen(run->name) - 4, run->name);
-    file_name_clean(stem.text);
-    return stem;
-}
-
-/* "run-NAME.html"; a second run of that name gets "run-NAME-2.html". */
-static void name_page(char name[REPORT_RUN_SIZE], const Regression *regression, int index) {
-    const Stem stem = stem_of(&regression->runs[index]);
-    char number[16] = "";
-    int same = 1;
-    for (int i = 0; i < index; i++) {
-        const Stem other = stem_of(&regression->runs[i]);
-        same += strcmp(stem.text, other.text) == 0;
-    }
-    if (same > 1) snprintf(number, sizeof number, "-%d", same);
-    snprintf(name, REPORT_RUN_SIZE, "run-%s%s.html", stem.text, number);
+/* "run-NAME.html", with the run's name without .npz as a file name; a second page of that name is "run-NAME-2.html". */
+static void name_page(char name[REPORT_RUN_SIZE], const Regression *regression, const ReportLink *links, int index) {
+    const char *run = regression->runs[index].name;
+    char stem[REPORT_RUN_SIZE - 40];
+    snprintf(stem, sizeof stem, "%.*s", (int)strlen(run) - 4, run);
+    file_name_clean(stem);
+    snprintf(name, REPORT_RUN_SIZE, "run-%s.html", stem);
+    for (int i = 0, number = 2; i < index; i++)
+        if (strncmp(links[i].text, name, strlen(name)) == 0) {
+            snprintf(name, REPORT_RUN_SIZE, "run-%s-%d.html", stem, number++);
+            i = -1;
+        }
 }
 
 /* All frames if their states fit. */
@@ -216,6 +203,20 @@ static PlayerOptions choose_frames(const Trajectory *const runs[SIDES], int firs
     return options;
 }
 
+bool report_write_run(const Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
+                      ReportLink *link, size_t *bytes, Error *error) {
+    char path[PATH_MAX], moment[PLAYER_LINK_SIZE];
+    const PlayerOptions options = choose_frames(runs, frame);
+    PlayerResult result;
+    if (!file_path(path, sizeof path, error, "%s/%s", folder, name) ||
+        !player_write(runs, SIDES, &options, path, &result, error))
+        return false;
+    player_link(moment, frame > 0 ? frame * (double)runs[EXPECTED]->dt : 0, body);
+    snprintf(link->text, sizeof link->text, "%s%s", name, moment);
+    *bytes = (size_t)result.bytes;
+    return true;
+}
+
 typedef struct Writing {
     ReportRuns *runs;
     const Regression *regression;
@@ -224,27 +225,23 @@ typedef struct Writing {
 } Writing;
 
 static bool write_page(Writing *writing, int index, const Trajectory *const runs[SIDES], Error *error) {
-    char name[REPORT_RUN_SIZE], path[PATH_MAX], moment[PLAYER_LINK_SIZE];
+    char name[REPORT_RUN_SIZE];
+    size_t bytes;
     const RegressionRun *run = &writing->regression->runs[index];
     const bool beyond = run->beyond.frame >= 0; /* what fails, where a tolerance lets smaller differences pass */
-    const int frame = beyond ? run->beyond.frame : run->difference.frame;
-    const PlayerOptions options = choose_frames(runs, frame);
-    PlayerResult result;
-    name_page(name, writing->regression, index);
-    if (!file_path(path, sizeof path, error, "%s/%s", writing->folder, name) ||
-        !player_write(runs, SIDES, &options, path, &result, error))
+    name_page(name, writing->regression, writing->runs->links, index);
+    if (!report_write_run(runs, beyond ? run->beyond.frame : run->difference.frame,
+                          beyond ? run->beyond.body : run->difference.body, writing->folder, name,
+                          &writing->runs->links[index], &bytes, error))
         return false;
-    player_link(moment, frame > 0 ? frame * (double)runs[EXPECTED]->dt : 0,
-                beyond ? run->beyond.body : run->difference.body);
-    snprintf(writing->runs->links[index], sizeof writing->runs->links[index], "%s%s", name, moment);
-    writing->left = (size_t)result.bytes < writing->left ? writing->left - (size_t)result.bytes : 0;
+    writing->left = bytes < writing->left ? writing->left - bytes : 0;
     return true;
 }
 
 /* Runs of different time steps have no common moment: no page. */
 static bool show_run(Writing *writing, int index, Error *error) {
     Trajectory *runs[SIDES] = {NULL, NULL};
-    bool ok = read_runs(runs, writing->regression, &writing->regression->runs[index], error);
+    bool ok = read_runs(runs, &writing->regression->runs[index], error);
     if (ok && memcmp(&runs[EXPECTED]->dt, &runs[ACTUAL]->dt, sizeof(float)) == 0) {
         if (writing->left == 0)
             writing->runs->left_out++;
@@ -255,15 +252,6 @@ static bool show_run(Writing *writing, int index, Error *error) {
     return ok;
 }
 
-static bool show_runs(Writing *writing, const Progress *progress, Error *error) {
-    const int count = writing->regression->run_count;
-    for (int i = 0; i < count; i++) {
-        if (!progress_report(progress, i, count)) return error_interrupted(error, "report", "stopped");
-        if (!writing->regression->runs[i].difference.equal && !show_run(writing, i, error)) return false;
-    }
-    return true;
-}
-
 /* Writes the pages into the folder, as long as they fit into max_bytes: both runs, opened at the first difference
    beyond the tolerance, or at the first one.
    ERROR_INPUT if a run has changed since the comparison. The caller frees runs->links, also on failure. */
@@ -272,31 +260,31 @@ static bool write_run_pages(ReportRuns *runs, const Regression *regression, cons
     *runs = (ReportRuns){.links = calloc((size_t)regression->run_count + 1, sizeof *runs->links)};
     if (runs->links == NULL) return error_memory(error, "report");
     Writing writing = {runs, regression, folder, max_bytes};
-    return show_runs(&writing, progress, error);
+    for (int i = 0; i < regression->run_count; i++) {
+        if (!progress_report(progress, i, regression->run_count)) return error_interrupted(error, "report", "stopped");
+        if (!regression->runs[i].difference.equal && !show_run(&writing, i, error)) return false;
+    }
+    return true;
 }
-
-/* The files of a report. results.json is last: if it exists, the report is complete. */
-static const struct {
-    const char *name;
-    void (*write)(FILE *file, const void *report);
-} parts[] = {{"report.html", report_write_page},
-             {"junit.xml", report_write_junit},
-             {"results.tap", report_write_tap},
-             {"results.json", report_write_json}};
 
 bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
                              Error *error) {
     ReportPictures pictures;
     ReportRuns runs = {0};
-    char path[PATH_MAX];
     if (!file_make_directory(folder, error) || !gather_pictures(&pictures, regression, max_bytes, progress, error))
         return false;
     const Report report = {regression, &pictures, &runs, folder};
-    bool ok = write_run_pages(&runs, regression, folder, max_bytes, progress, error);
-    for (size_t i = 0; ok && i < sizeof parts / sizeof parts[0]; i++) {
-        ok = file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) &&
-             file_write_text(path, parts[i].write, &report, error);
-    }
+    const RegressionText notes = regression_notes(regression);
+    const ReportResults results = {.comparison = &report,
+                                   .count = regression->count + regression->run_count,
+                                   .failed = regression->failed + regression->run_failed,
+                                   .notes = notes.text,
+                                   .seconds = regression->seconds,
+                                   .at = report_case,
+                                   .write_page = report_write_page,
+                                   .write_json = report_write_json};
+    bool ok =
+        write_run_pages(&runs, regression, folder, max_bytes, progress, error) && report_write(&results, folder, error);
     free(runs.links);
     free_pictures(&pictures);
     return ok;

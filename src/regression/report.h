@@ -4,6 +4,7 @@
 #include "base/base.h"
 #include "base/json.h"
 #include "base/machine.h"
+#include "pictures/player.h"
 #include "regression/regression.h"
 
 #include <stdio.h>
@@ -51,6 +52,43 @@ enum { REPORT_MEGABYTES = 64 };
    except for the times in junit.xml. */
 bool regression_report_write(Regression *regression, const char *folder, size_t max_bytes, const Progress *progress,
                              Error *error);
+
+/* The results of a comparison of pictures, or of two runs, as a list of test cases for CI systems. */
+
+typedef struct ReportCase {
+    const char *kind; /* "frames" or "trajectories" */
+    const char *name, *verdict;
+    bool failed;
+    RegressionText words;
+    const char *paths[SIDES]; /* of the files; NULL where there is none */
+    double seconds;
+    const RegressionFrame *frame; /* NULL for a trajectory */
+} ReportCase;
+
+typedef struct ReportResults {
+    const void *comparison;
+    int count, failed; /* cases */
+    const char *notes; /* lines */
+    double seconds;    /* of the whole comparison */
+    ReportCase (*at)(const void *comparison, int i);
+    void (*write_page)(FILE *file, const void *comparison);
+    void (*write_json)(FILE *file, const void *comparison);
+} ReportResults;
+
+/* Writes report.html, junit.xml, results.tap and results.json into a folder that exists. results.json is last: if it is there, the
+   report is complete. */
+bool report_write(const ReportResults *results, const char *folder, Error *error);
+
+/* A link to a moment in a page that plays two runs: "run-NAME.html#t=0.55&body=7". */
+enum { REPORT_RUN_SIZE = 256 };
+typedef struct ReportLink {
+    char text[REPORT_RUN_SIZE + PLAYER_LINK_SIZE];
+} ReportLink;
+
+/* Writes the page `name` into the folder: all frames of both runs, or of long ones those around `frame`. The link leads to that frame
+   and body. *bytes: of the page. */
+bool report_write_run(const Trajectory *const runs[SIDES], int frame, int body, const char *folder, const char *name,
+                      ReportLink *link, size_t *bytes, Error *error);
 
 /* What results.json has behind its format, into an object that has begun. */
 void regression_write_json(JsonWriter *json, const Regression *regression);

@@ -15,48 +15,34 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* The results of a comparison as CI systems show them: a list of test cases, the frames, then the trajectories. */
-typedef struct RegressionCase {
-    const char *kind; /* "frames" or "trajectories" */
-    const char *name, *verdict;
-    bool failed;
-    RegressionText words;
-    char paths[SIDES][PATH_MAX]; /* of the files; "" where there is none, or if it is too long */
-    double seconds;
-    const RegressionFrame *frame; /* NULL for a trajectory */
-} RegressionCase;
-
 static int regression_case_count(const Regression *regression) { return regression->count + regression->run_count; }
 
-static RegressionCase frame_case(const RegressionFrame *frame) {
-    RegressionCase made = {.kind = "frames",
-                           .name = frame_name(frame),
-                           .verdict = frame_verdict(frame),
-                           .failed = frame_failed(frame),
-                           .words = frame->alone ? case_words(frame) : frame_words(frame),
-                           .seconds = frame->seconds,
-                           .frame = frame};
+/* The frames, then the trajectories. */
+static ReportCase regression_case(const Regression *regression, int i) {
+    const bool framed = i < regression->count;
+    const RegressionFrame *frame = framed ? &regression->frames[i] : NULL;
+    const RegressionRun *run = framed ? NULL : &regression->runs[i - regression->count];
+    ReportCase made = {.kind = framed ? "frames" : "trajectories",
+                       .name = framed ? frame_name(frame) : run->name,
+                       .verdict = framed ? frame_verdict(frame) : run_verdict(run),
+                       .failed = framed ? frame_failed(frame) : run_failed(run),
+                       .words = !framed        ? run_words(run)
+                                : frame->alone ? case_words(frame)
+                                               : frame_words(frame),
+                       .seconds = framed ? frame->seconds : run->seconds,
+                       .frame = frame};
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (frame->at[side] != NULL && !file_path(made.paths[side], PATH_MAX, &(Error){0}, "%s", frame->at[side]->path))
-            made.paths[side][0] = '\0';
+        if (framed)
+            made.paths[side] = frame->at[side] != NULL ? frame->at[side]->path : NULL;
+        else
+            made.paths[side] = run->alone[1 - side] ? NULL : run->paths[side];
     return made;
 }
 
-static RegressionCase regression_case(const Regression *regression, int i) {
-    if (i < regression->count) return frame_case(&regression->frames[i]);
-    const RegressionRun *run = &regression->runs[i - regression->count];
-    RegressionCase made = {.kind = "trajectories",
-                           .name = run->name,
-                           .verdict = run_verdict(run),
-                           .failed = run_failed(run),
-                           .words = run_words(run),
-                           .seconds = run->seconds};
-    for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (run->alone[side == EXPECTED ? ACTUAL : EXPECTED] ||
-            !file_path(made.paths[side], PATH_MAX, &(Error){0}, "%s/%s", regression->sequences[side]->folder,
-                       run->name))
-            made.paths[side][0] = '\0';
-    return made;
+ReportCase report_case(const void *report, int i) { return regression_case(((const Report *)report)->regression, i); }
+
+static const char *path_of(const ReportCase *made) {
+    return made->paths[made->paths[EXPECTED] != NULL ? EXPECTED : ACTUAL];
 }
 
 /* In a property, ':' and ',' end the value; in both, a line break ends the command. */
@@ -92,9 +78,9 @@ typedef struct Failures {
 } Failures;
 
 static void annotate(FILE *out, const Regression *regression, Failures failures) {
-    const RegressionCase made = regression_case(regression, failures.begin);
+    const ReportCase made = regression_case(regression, failures.begin);
     fputs("::error file=", out);
-    put_property(out, made.paths[made.paths[EXPECTED][0] != '\0' ? EXPECTED : ACTUAL]);
+    put_property(out, path_of(&made));
     fputs(",title=", out);
     put_property(out, made.verdict);
     fputs("::", out);
@@ -213,7 +199,7 @@ static void write_figures(FILE *out, const RegressionFrame *frame) {
         fputs(" | |\n", out);
 }
 
-static void write_row(FILE *out, const RegressionCase *made) {
+static void write_row(FILE *out, const ReportCase *made) {
     fputs("| ", out);
     put_code(out, made->name);
     fputs(" | ", out);
@@ -224,7 +210,7 @@ static void write_row(FILE *out, const RegressionCase *made) {
 }
 
 /* The length of a row, to know whether it fits before it is written. */
-static size_t row_length(const RegressionCase *made) {
+static size_t row_length(const ReportCase *made) {
     return 16 + 4 * strlen(made->name) + 2 * (strlen(made->verdict) + strlen(made->words.text)) + 64;
 }
 
@@ -236,7 +222,7 @@ static void write_summary(FILE *out, const void *context) {
     write_head(out, regression);
     if (failures > 0) fputs("| name | verdict | difference | FLIP | largest |\n|---|---|---|---:|---:|\n", out);
     for (int i = 0; i < count && rows < MAX_ROWS; i++) {
-        const RegressionCase made = regression_case(regression, i);
+        const ReportCase made = regression_case(regression, i);
         if (!made.failed) continue;
         if (ftell(out) + (long)row_length(&made) + LAST_LINE > summary->limit) break;
         write_row(out, &made);
@@ -270,7 +256,7 @@ static void write_attribute(FILE *file, const char *key, const char *value) {
 
 /* The form in which GitLab and Jenkins link files; "]]" would end it. */
 static void write_attachment(FILE *file, const char *path) {
-    if (path[0] == '\0' || strstr(path, "]]") != NULL) return;
+    if (path == NULL || strstr(path, "]]") != NULL) return;
     fputs("[[ATTACHMENT|", file);
     html_put(file, path);
     fputs("]]\n", file);
@@ -284,7 +270,7 @@ static void write_words_of_regions(FILE *file, const RegressionFrame *frame) {
     }
 }
 
-static void write_failure(FILE *file, const RegressionCase *made) {
+static void write_failure(FILE *file, const ReportCase *made) {
     static const char *const titles[SIDES] = {"expected: ", "actual: "};
     char message[sizeof made->words.text + 64];
     snprintf(message, sizeof message, "%s: %s", made->verdict, made->words.text);
@@ -293,7 +279,7 @@ static void write_failure(FILE *file, const RegressionCase *made) {
     write_attribute(file, "message", message);
     fputc('>', file);
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        if (made->paths[side][0] == '\0') continue;
+        if (made->paths[side] == NULL) continue;
         fputs(titles[side], file);
         html_put(file, made->paths[side]);
         fputc('\n', file);
@@ -305,10 +291,10 @@ static void write_failure(FILE *file, const RegressionCase *made) {
     fputs("</system-out>\n", file);
 }
 
-static void write_case(FILE *file, const RegressionCase *made) {
+static void write_case(FILE *file, const ReportCase *made) {
     fprintf(file, "  <testcase classname=\"%s\"", made->kind);
     write_attribute(file, "name", made->name);
-    write_attribute(file, "file", made->paths[made->paths[EXPECTED][0] != '\0' ? EXPECTED : ACTUAL]);
+    write_attribute(file, "file", path_of(made));
     fprintf(file, " time=\"%.6f\"", made->seconds);
     if (!made->failed) {
         fputs("/>\n", file);
@@ -319,22 +305,20 @@ static void write_case(FILE *file, const RegressionCase *made) {
     fputs("  </testcase>\n", file);
 }
 
-void report_write_junit(FILE *file, const void *context) {
-    const Regression *regression = ((const Report *)context)->regression;
-    const int count = regression_case_count(regression);
+static void write_junit(FILE *file, const void *context) {
+    const ReportResults *results = context;
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n", file);
     fprintf(file,
             "<testsuite name=\"twinbox compare\" tests=\"%d\" failures=\"%d\" errors=\"0\" skipped=\"0\" "
             "time=\"%.6f\">\n",
-            count, regression->failed + regression->run_failed, regression->seconds);
-    for (int i = 0; i < count; i++) {
-        const RegressionCase made = regression_case(regression, i);
+            results->count, results->failed, results->seconds);
+    for (int i = 0; i < results->count; i++) {
+        const ReportCase made = results->at(results->comparison, i);
         write_case(file, &made);
     }
-    const RegressionText notes = regression_notes(regression);
-    if (notes.text[0] != '\0') {
+    if (results->notes[0] != '\0') {
         fputs("  <system-out>", file);
-        html_put(file, notes.text);
+        html_put(file, results->notes);
         fputs("</system-out>\n", file);
     }
     fputs("</testsuite>\n", file);
@@ -351,35 +335,34 @@ static void put_description(FILE *file, const char *text) {
     }
 }
 
-static void write_details(FILE *file, const RegressionCase *made) {
+static void write_details(FILE *file, const ReportCase *made) {
     JsonWriter json = {.out = file};
     fputs("  ---\n  ", file);
     json_begin_object(&json, NULL, JSON_ONE_LINE);
     json_put_text(&json, "verdict", made->verdict);
     json_put_text(&json, "words", made->words.text);
-    json_put_text(&json, "expected", made->paths[EXPECTED][0] != '\0' ? made->paths[EXPECTED] : NULL);
-    json_put_text(&json, "actual", made->paths[ACTUAL][0] != '\0' ? made->paths[ACTUAL] : NULL);
+    json_put_text(&json, "expected", made->paths[EXPECTED]);
+    json_put_text(&json, "actual", made->paths[ACTUAL]);
     json_end(&json);
     fputs("  ...\n", file);
 }
 
 /* A comment for each line. */
 static void write_notes(FILE *file, const char *notes) {
-    if (notes[0] != '\0') fputs("# ", file);
-    for (; *notes != '\0'; notes++) {
-        fputc(*notes, file);
-        if (*notes == '\n') fputs("# ", file);
-        if (notes[1] == '\0') fputc('\n', file);
+    for (size_t length; *notes != '\0'; notes += length + (notes[length] == '\n')) {
+        length = strcspn(notes, "\n");
+        fputs("# ", file);
+        fwrite(notes, 1, length, file);
+        fputc('\n', file);
     }
 }
 
-void report_write_tap(FILE *file, const void *context) {
-    const Regression *regression = ((const Report *)context)->regression;
-    const int count = regression_case_count(regression);
-    fprintf(file, "TAP version 14\n1..%d\n", count);
-    write_notes(file, regression_notes(regression).text);
-    for (int i = 0; i < count; i++) {
-        const RegressionCase made = regression_case(regression, i);
+static void write_tap(FILE *file, const void *context) {
+    const ReportResults *results = context;
+    fprintf(file, "TAP version 14\n1..%d\n", results->count);
+    write_notes(file, results->notes);
+    for (int i = 0; i < results->count; i++) {
+        const ReportCase made = results->at(results->comparison, i);
         fprintf(file, "%s %d - ", made.failed ? "not ok" : "ok", i + 1);
         put_description(file, made.name);
         if (made.failed) {
@@ -536,4 +519,21 @@ void report_write_json(FILE *file, const void *context) {
     json_put_text(&json, "format", "twinbox compare 1");
     regression_write_json(&json, report->regression);
     json_end(&json);
+}
+
+bool report_write(const ReportResults *results, const char *folder, Error *error) {
+    const struct {
+        const char *name;
+        void (*write)(FILE *file, const void *context);
+        const void *context;
+    } parts[] = {{"report.html", results->write_page, results->comparison},
+                 {"junit.xml", write_junit, results},
+                 {"results.tap", write_tap, results},
+                 {"results.json", results->write_json, results->comparison}};
+    char path[PATH_MAX];
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
+        if (!file_path(path, sizeof path, error, "%s/%s", folder, parts[i].name) ||
+            !file_write_text(path, parts[i].write, parts[i].context, error))
+            return false;
+    return true;
 }

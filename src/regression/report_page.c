@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Each curve is an SVG that is stretched to its place, one unit of width per frame. Its labels are text of the page, so
-   they keep their size on any screen and are never clipped. */
+/* report.html: what a comparison found, the values of all frames as curves, pictures and results for the page's script. */
 #include "pictures/page.h"
 #include "regression/regression_internal.h"
 #include "regression/regression.h"
@@ -11,6 +10,8 @@
 
 enum { HEIGHT = 100 };
 
+/* Each curve is an SVG that is stretched to its place, one unit of width per frame. Its labels are text of the page, so they keep
+   their size on any screen and are never clipped. */
 typedef double (*Measure)(const RegressionFrame *frame);
 
 static bool is_measured(const RegressionFrame *frame) { return frame->pixels <= PIXELS_RESIZED && !frame->sizes_alone; }
@@ -67,7 +68,7 @@ static void report_write_plot(FILE *file, const Regression *regression) {
     write_plot(file, regression, "Largest difference of a channel", "largest", largest_of, 255);
 }
 
-/* report.html: the fixed parts of page/, and pictures and results as data for its script. */
+/* The fixed parts of page/, and pictures and results as data for its script. */
 
 static void write_count(FILE *file, int count, const char *look, const char *what) {
     if (count > 0) fprintf(file, "<li class=\"%s\"><b>%d</b> %s</li>\n", look, count, what);
@@ -156,7 +157,7 @@ static void write_notes(FILE *file, const Regression *regression) {
 /* The text of the link tells where it leads, for those who hear the links only. */
 static void write_run_link(FILE *file, const Report *report, int index) {
     const TrajectoryDifference *difference = &report->regression->runs[index].difference;
-    const char *link = report->runs->links[index];
+    const char *link = report->runs->links[index].text;
     if (link[0] == '\0') return;
     fputs("<a href=\"", file);
     html_put(file, link);

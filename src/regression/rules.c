@@ -39,6 +39,8 @@ void rules_destroy(Rules *rules) {
 
 const char *rules_path(const Rules *rules) { return rules->path; }
 
+static int count_of(const Rules *rules) { return rules == NULL ? 0 : rules->count; }
+
 static bool matches(const Rule *rule, const char *name) { return fnmatch(rule->files, name, 0) == 0; }
 
 static bool matches_any(const Rule *rule, const char *const *names, int count) {
@@ -56,13 +58,13 @@ bool rules_check_names(const Rules *rules, const char *const *names, int count, 
 }
 
 void rules_override(const Rules *rules, const char *name, Tolerance *tolerance) {
-    for (int i = 0; i < rules->count; i++)
+    for (int i = 0; i < count_of(rules); i++)
         if (matches(&rules->rules[i], name) && rules->rules[i].region.count == 0)
             tolerance_override(tolerance, &rules->rules[i].tolerance);
 }
 
 bool rules_have_regions(const Rules *rules, const char *name) {
-    for (int i = 0; i < rules->count; i++)
+    for (int i = 0; i < count_of(rules); i++)
         if (rules->rules[i].region.count > 0 && matches(&rules->rules[i], name)) return true;
     return false;
 }
@@ -83,6 +85,7 @@ static bool mark_region(const Rule *rule, const Image *expected, const Image *ac
 
 bool rules_mark_regions(const Rules *rules, const char *name, const Image *expected, const Image *actual,
                         uint8_t *masked, Error *error) {
+    if (!rules_have_regions(rules, name)) return true;
     uint8_t *inside = malloc((size_t)expected->width * (size_t)expected->height);
     bool ok = inside != NULL || error_memory(error, name);
     for (int i = 0; ok && i < rules->count; i++)
@@ -93,21 +96,21 @@ bool rules_mark_regions(const Rules *rules, const char *name, const Image *expec
 }
 
 bool rules_have_masks(const Rules *rules, const char *name) {
-    for (int i = 0; i < rules->count; i++)
+    for (int i = 0; i < count_of(rules); i++)
         if (rules->rules[i].mask.count > 0 && matches(&rules->rules[i], name)) return true;
     return false;
 }
 
 double rules_most_hidden(const Rules *rules, const char *name, int width, int height) {
     double hidden = 0;
-    for (int i = 0; i < rules->count; i++)
+    for (int i = 0; i < count_of(rules); i++)
         if (matches(&rules->rules[i], name)) hidden += mask_most_hidden(&rules->rules[i].mask, width, height);
     return hidden;
 }
 
 bool rules_draw_masks(const Rules *rules, const char *name, const Image *expected, const char *path, uint8_t *masked,
                       Error *error) {
-    for (int i = 0; i < rules->count; i++) {
+    for (int i = 0; i < count_of(rules); i++) {
         const Rule *rule = &rules->rules[i];
         if (matches(rule, name) && !mask_draw(&rule->mask, expected, path, masked, error)) return false;
     }
@@ -129,12 +132,13 @@ static bool read_files(const YamlTree *tree, int node, const Field *field, void 
                       yaml_show(tree, node).text);
 }
 
-static bool read_level(const YamlTree *tree, int node, const char *what, int *level, Error *error) {
+static bool read_whole(const YamlTree *tree, int node, const char *what, const char *unit, int most, int *number,
+                       Error *error) {
     int64_t value;
-    if (!parse_int(text_of(tree, node), 0, 255, &value))
-        return yaml_error(tree, node, error, "%s must be a whole number from 0 to 255 (got %s)", what,
+    if (!parse_int(text_of(tree, node), 0, most, &value))
+        return yaml_error(tree, node, error, "%s must be a whole number%s from 0 to %d (got %s)", what, unit, most,
                           yaml_show(tree, node).text);
-    *level = (int)value;
+    *number = (int)value;
     return true;
 }
 
@@ -146,7 +150,7 @@ static bool read_pixel_limit(const YamlTree *tree, int node, const char *what, P
 static bool read_tolerance(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
     tolerance->given |= LIMIT_TOLERANCE;
-    return read_level(tree, node, field->key, &tolerance->tolerance, error);
+    return read_whole(tree, node, field->key, "", 255, &tolerance->tolerance, error);
 }
 
 static bool read_fuzzy(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -156,7 +160,7 @@ static bool read_fuzzy(const YamlTree *tree, int node, const Field *field, void 
         return yaml_error(tree, node, error, "%s must be a list of two numbers, such as [2, 0.01] (got %s)", field->key,
                           list->kind == YAML_SEQUENCE ? "another number of them" : yaml_show(tree, node).text);
     tolerance->given |= LIMIT_FUZZY;
-    return read_level(tree, node + 1, field->key, &tolerance->fuzzy, error) &&
+    return read_whole(tree, node + 1, field->key, "", 255, &tolerance->fuzzy, error) &&
            read_pixel_limit(tree, tree->nodes[node + 1].end, field->key, &tolerance->share, error);
 }
 
@@ -191,25 +195,13 @@ static bool read_antialias(const YamlTree *tree, int node, const Field *field, v
     return field_switch(tree, node, field, &tolerance->antialias, error);
 }
 
-static bool read_few(const YamlTree *tree, int node, const Field *field, int *pixels, Error *error) {
-    int64_t value;
-    if (!parse_int(text_of(tree, node), 0, FEW_PIXELS_MAX, &value))
-        return yaml_error(tree, node, error, "%s must be a whole number of pixels from 0 to %d (got %s)", field->key,
-                          FEW_PIXELS_MAX, yaml_show(tree, node).text);
-    *pixels = (int)value;
-    return true;
-}
-
-static bool read_shift(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
+/* shift, size */
+static bool read_few(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
     Tolerance *tolerance = member;
-    tolerance->given |= LIMIT_SHIFT;
-    return read_few(tree, node, field, &tolerance->shift, error);
-}
-
-static bool read_size(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
-    Tolerance *tolerance = member;
-    tolerance->given |= LIMIT_SIZE;
-    return read_few(tree, node, field, &tolerance->size, error);
+    const bool shift = strcmp(field->key, "shift") == 0;
+    tolerance->given |= shift ? LIMIT_SHIFT : LIMIT_SIZE;
+    return read_whole(tree, node, field->key, " of pixels", FEW_PIXELS_MAX,
+                      shift ? &tolerance->shift : &tolerance->size, error);
 }
 
 static bool read_rectangle(const YamlTree *tree, int node, const Field *field, void *member, Error *error) {
@@ -310,8 +302,8 @@ static bool read_rule(const YamlTree *tree, int node, Rule *rule, Error *error) 
                                    {"fuzzy", read_fuzzy, TOLERANCE, NULL, false},
                                    {"flip", read_flip, TOLERANCE, NULL, false},
                                    {"antialias", read_antialias, TOLERANCE, NULL, false},
-                                   {"shift", read_shift, TOLERANCE, NULL, false},
-                                   {"size", read_size, TOLERANCE, NULL, false},
+                                   {"shift", read_few, TOLERANCE, NULL, false},
+                                   {"size", read_few, TOLERANCE, NULL, false},
                                    {"region", read_rectangle, offsetof(Rule, region), NULL, false},
                                    {"masks", read_masks, offsetof(Rule, mask), NULL, false},
                                    {NULL, NULL, 0, NULL, false}};

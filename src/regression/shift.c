@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Content that moved by whole pixels. The header has the definition. */
+/* Content that moved by whole pixels, as regression_internal.h defines it for shift_mark(). */
+#include "base/numbers.h"
 #include "pixels/png.h"
 #include "regression/compare.h"
 #include "regression/regression_internal.h"
@@ -36,8 +37,8 @@ static bool is_inside(const Image *image, int x, int y) {
 static bool is_plain(Island *island, int left, int top, int right, int bottom, size_t *ground) {
     const Image *expected = island->pictures[0], *actual = island->pictures[1];
     *ground = NO_PIXEL;
-    for (int y = larger(top, 0); y < smaller(bottom, expected->height); y++)
-        for (int x = larger(left, 0); x < smaller(right, expected->width); x++) {
+    for (int y = int_max(top, 0); y < int_min(bottom, expected->height); y++)
+        for (int x = int_max(left, 0); x < int_min(right, expected->width); x++) {
             const size_t i = (size_t)y * (size_t)expected->width + (size_t)x;
             if (*ground == NO_PIXEL) *ground = i;
             island->work--;
@@ -117,8 +118,8 @@ static bool has_moved(Island *island) {
 /* Pixels of the box that differ become `what`. */
 static void mark(Island *island, Ignored what, uint8_t *masked) {
     const Image *a = island->pictures[0], *b = island->pictures[1];
-    for (int y = larger(island->top, 0); y < smaller(island->bottom, a->height); y++)
-        for (int x = larger(island->left, 0); x < smaller(island->right, a->width); x++) {
+    for (int y = int_max(island->top, 0); y < int_min(island->bottom, a->height); y++)
+        for (int x = int_max(island->left, 0); x < int_min(island->right, a->width); x++) {
             const size_t i = (size_t)y * (size_t)a->width + (size_t)x;
             island->work--;
             const bool open = masked[i] == IGNORED_NOT || masked[i] == IGNORED_TRIED;

@@ -22,11 +22,6 @@
 /* The limit of a trajectory file. */
 static const size_t MAX_RUN_SIZE = (size_t)2 << 30;
 
-static bool run_path(const Regression *regression, RegressionSide side, const char *name, char path[PATH_MAX],
-                     Error *error) {
-    return file_path(path, PATH_MAX, error, "%s/%s", regression->sequences[side]->folder, name);
-}
-
 static bool is_run(const char *name) { return file_name_ends_with(name, ".npz") && name_is_text(name); }
 
 /* Adds a file of one folder. That the other folder has no such file is a failure, unless there are pictures: then the runs
@@ -36,7 +31,7 @@ static bool add_run(Regression *regression, RegressionSide side, const char *nam
     char path[PATH_MAX];
     struct stat status;
     if (!name_is_text(name)) return true; /* of its folder */
-    if (!run_path(regression, other, name, path, error)) return false;
+    if (!file_path(path, sizeof path, error, "%s/%s", regression->sequences[other]->folder, name)) return false;
     const bool alone = stat(path, &status) != 0;
     if (alone && errno != ENOENT && errno != ENOTDIR)
         return error_system(error, path, "cannot be read: %s", strerror(errno));
@@ -45,12 +40,15 @@ static bool add_run(Regression *regression, RegressionSide side, const char *nam
         regression->runs_left_out += side == EXPECTED;
         return true;
     }
-    char *copy = strdup(name);
-    if (copy == NULL) return error_memory(error, name);
     RegressionRun *run = &regression->runs[regression->run_count++];
-    *run = (RegressionRun){.name = copy, .beyond = {.frame = -1}};
+    *run = (RegressionRun){.beyond = {.frame = -1}};
     run->alone[side] = alone;
-    return true;
+    run->paths[other] = strdup(path);
+    if (!file_path(path, sizeof path, error, "%s/%s", regression->sequences[side]->folder, name)) return false;
+    run->paths[side] = strdup(path);
+    run->name = strdup(name);
+    return (run->name != NULL && run->paths[EXPECTED] != NULL && run->paths[ACTUAL] != NULL) ||
+           error_memory(error, name);
 }
 
 static bool list_runs(Regression *regression, Error *error) {
@@ -96,12 +94,11 @@ static bool find_beyond(RegressionRun *run, const Trajectory *a, const Trajector
     return true;
 }
 
-static bool compare_run(RegressionRun *run, char paths[SIDES][PATH_MAX], const PoseTolerance *tolerance, bool *foreign,
-                        Error *error) {
+static bool compare_run(RegressionRun *run, const PoseTolerance *tolerance, bool *foreign, Error *error) {
     Error failures[SIDES] = {{0}, {0}};
     Trajectory *sides[SIDES];
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        sides[side] = trajectory_read(paths[side], &failures[side]);
+        sides[side] = trajectory_read(run->paths[side], &failures[side]);
     bool ok = sides[EXPECTED] != NULL && sides[ACTUAL] != NULL, system = false;
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (failures[side].kind == ERROR_SYSTEM) *error = failures[side], system = true;
@@ -130,24 +127,28 @@ static bool read_run(RegressionRun *run, const char *path, bool *foreign, Error 
 }
 
 static bool judge_run(const Regression *regression, RegressionRun *run, bool *foreign, Error *error) {
-    char paths[SIDES][PATH_MAX];
     for (RegressionSide side = EXPECTED; side < SIDES; side++) {
-        if (!run_path(regression, side, run->name, paths[side], error)) return false;
         if (run->alone[side == EXPECTED ? ACTUAL : EXPECTED]) continue;
         RegressionFile *file = &run->files[side];
-        char *data = file_read(paths[side], MAX_RUN_SIZE, &file->size, error);
+        char *data = file_read(run->paths[side], MAX_RUN_SIZE, &file->size, error);
         if (data == NULL) return false;
         file->hash = hash_xxh3(data, file->size);
-        bool pointer = !lfs_pointer_refuse(data, file->size, paths[side], error);
+        bool pointer = !lfs_pointer_refuse(data, file->size, run->paths[side], error);
         free(data);
         if (pointer) return false;
     }
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
-        if (run->alone[side]) return read_run(run, paths[side], foreign, error);
+        if (run->alone[side]) return read_run(run, run->paths[side], foreign, error);
     const RegressionFile *a = &run->files[EXPECTED], *b = &run->files[ACTUAL];
     bool same = a->hash == b->hash && a->size == b->size;
-    return same ? read_run(run, paths[EXPECTED], foreign, error)
-                : compare_run(run, paths, &regression->options.poses, foreign, error);
+    return same ? read_run(run, run->paths[EXPECTED], foreign, error)
+                : compare_run(run, &regression->options.poses, foreign, error);
+}
+
+void regression_free_run(RegressionRun *run) {
+    free(run->name);
+    for (RegressionSide side = EXPECTED; side < SIDES; side++) free(run->paths[side]);
+    free(run->differs);
 }
 
 bool regression_find_runs(Regression *regression, Error *error) {
@@ -163,7 +164,7 @@ bool regression_find_runs(Regression *regression, Error *error) {
         run.seconds = clock_seconds() - begun;
         if (foreign) {
             regression->runs_foreign++;
-            free(run.name);
+            regression_free_run(&run);
         } else
             regression->runs[kept++] = run;
     }
@@ -197,26 +198,20 @@ static bool in_its_folder(const RegressionRun *run, const SequenceFrame *picture
 }
 
 /* Whether a run of the picture's folder and scene (of any scene if the picture names none) differs in this frame.
-   *somewhere: in any frame. */
+   *somewhere: in any frame. *known becomes true if its folder has a run. */
 static bool runs_differ(const Regression *regression, const SequenceFrame *picture, const Texts *texts, int64_t frame,
-                        bool *somewhere) {
+                        bool *known, bool *somewhere) {
     bool here = false;
     for (int i = 0; i < regression->run_count; i++) {
         const RegressionRun *run = &regression->runs[i];
-        if (run->differs == NULL || !in_its_folder(run, picture) ||
-            (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0))
-            continue;
+        if (!in_its_folder(run, picture)) continue;
+        *known = true;
+        if (run->differs == NULL || (texts->scene[0] != '\0' && strcmp(texts->scene, run->scene) != 0)) continue;
         int64_t at = frame < run->frames ? frame : run->frames - 1;
         here = here || run->differs[at < 0 ? 0 : at];
         *somewhere = true;
     }
     return here;
-}
-
-static bool has_runs(const Regression *regression, const SequenceFrame *picture) {
-    for (int i = 0; i < regression->run_count; i++)
-        if (in_its_folder(&regression->runs[i], picture)) return true;
-    return false;
 }
 
 bool regression_judge_states(const Regression *regression, RegressionFrame *frame, uint8_t *const data[SIDES],
@@ -225,12 +220,11 @@ bool regression_judge_states(const Regression *regression, RegressionFrame *fram
     for (RegressionSide side = EXPECTED; side < SIDES; side++)
         if (!read_texts(&texts[side], data[side], frame->files[side].size, error)) return false;
     const char *a = texts[EXPECTED].states, *b = texts[ACTUAL].states;
-    bool have_texts = a[0] != '\0' && b[0] != '\0', texts_differ = have_texts && strcmp(a, b) != 0;
+    bool known = a[0] != '\0' && b[0] != '\0', texts_differ = known && strcmp(a, b) != 0;
     if (texts_differ) frame->panel = first_panel(a, b);
     const char *number = texts[EXPECTED].frame;
     int64_t at = number[0] >= '0' && number[0] <= '9' ? strtoll(number, NULL, 10) : frame->base->number;
-    bool differs = runs_differ(regression, frame->base, &texts[EXPECTED], at, &frame->run_differs);
-    bool known = have_texts || has_runs(regression, frame->base);
+    bool differs = runs_differ(regression, frame->base, &texts[EXPECTED], at, &known, &frame->run_differs);
     frame->states = texts_differ || differs ? STATES_DIFFER : known ? STATES_EQUAL : STATES_UNKNOWN;
     return true;
 }
@@ -318,8 +312,6 @@ bool regression_find_changes(Regression *regression, RegressionFrame *frame, uin
              content_name(images[EXPECTED], images[ACTUAL], masked, &frame->difference, frame->changes, error)));
 }
 
-enum { RANGES = 4 };
-
 typedef struct Causes {
     Regression *regression;
     bool numbered; /* all frames belong to one sequence of numbered pictures */
@@ -337,41 +329,34 @@ static bool is_numbered(const Regression *regression) {
     return first != NULL;
 }
 
-static void put_name(const Causes *causes, RegressionCause *cause, int frame) {
-    const RegressionFrame *at = &causes->regression->frames[frame];
-    if (causes->numbered)
-        text_add(cause->frames, sizeof cause->frames, "%" PRId64, at->at[EXPECTED]->number);
-    else
-        text_add(cause->frames, sizeof cause->frames, "%.40s", frame_name(at));
-}
-
 /* Adds a frame; frames are added in order. Neighbours form a range. */
 static void add_frame(const Causes *causes, RegressionCause *cause, int frame) {
     const RegressionFrame *at = &causes->regression->frames[frame];
-    bool next = cause->count > 0 && frame == cause->last + 1 && !at->alone &&
-                sequence_compare_stems(at[-1].base, at->base) == 0;
+    const bool next = cause->count++ > 0 && frame == cause->last + 1 && !at->alone &&
+                      sequence_compare_stems(at[-1].base, at->base) == 0;
     cause->last = frame;
-    if (cause->count++ == 0 && causes->numbered) text_add(cause->frames, sizeof cause->frames, "frame ");
-    if (next && cause->ranges <= RANGES) {
-        cause->frames[cause->written] = '\0';
-        text_add(cause->frames, sizeof cause->frames, " to ");
-        put_name(causes, cause, frame);
-        return;
-    }
-    if (!next && ++cause->ranges == RANGES + 1) text_add(cause->frames, sizeof cause->frames, " ...");
-    if (next || cause->ranges > RANGES) return;
-    if (cause->ranges > 1) text_add(cause->frames, sizeof cause->frames, ", ");
-    put_name(causes, cause, frame);
-    cause->written = (int)strlen(cause->frames);
+    if (!next && cause->range_count++ < CAUSE_RANGES) cause->ranges[cause->range_count - 1][0] = frame;
+    if (cause->range_count <= CAUSE_RANGES) cause->ranges[cause->range_count - 1][1] = frame;
+}
+
+static void put_name(const Causes *causes, RegressionCause *cause, const char *before, int frame) {
+    const RegressionFrame *at = &causes->regression->frames[frame];
+    if (causes->numbered)
+        text_add(cause->frames, sizeof cause->frames, "%s%" PRId64, before, at->at[EXPECTED]->number);
+    else
+        text_add(cause->frames, sizeof cause->frames, "%s%.40s", before, frame_name(at));
 }
 
 /* "frame 3", but "frames 3 to 5"; the number if there are too many ranges. */
-static void finish(const Causes *causes, RegressionCause *cause) {
-    char whole[sizeof cause->frames];
-    if (cause->ranges > RANGES) text_add(cause->frames, sizeof cause->frames, " (%d frames)", cause->count);
-    if (!causes->numbered || cause->count == 1) return;
-    snprintf(whole, sizeof whole, "frames%.*s", (int)sizeof whole - 7, cause->frames + strlen("frame"));
-    memcpy(cause->frames, whole, sizeof whole);
+static void put_frames(const Causes *causes, RegressionCause *cause) {
+    const char *first = !causes->numbered ? "" : cause->count == 1 ? "frame " : "frames ";
+    for (int i = 0; i < cause->range_count && i < CAUSE_RANGES; i++) {
+        const int *range = cause->ranges[i];
+        put_name(causes, cause, i == 0 ? first : ", ", range[0]);
+        if (range[1] > range[0]) put_name(causes, cause, " to ", range[1]);
+    }
+    if (cause->range_count > CAUSE_RANGES)
+        text_add(cause->frames, sizeof cause->frames, " ... (%d frames)", cause->count);
 }
 
 static void add_cause(const Causes *causes, int frame, const char *what, double most, bool of_view) {
@@ -384,7 +369,7 @@ static void add_cause(const Causes *causes, int frame, const char *what, double 
     }
     RegressionCause *cause = &regression->causes[at];
     if (at == regression->cause_count) {
-        *cause = (RegressionCause){.of_view = of_view, .last = -2};
+        *cause = (RegressionCause){.of_view = of_view, .order = at};
         snprintf(cause->what, sizeof cause->what, "%s", what);
         regression->cause_count++;
     }
@@ -409,6 +394,7 @@ static void add_physics(const Causes *causes, int frame) {
     const Regression *regression = causes->regression;
     const RegressionFrame *at = &regression->frames[frame];
     char what[96] = "states differ";
+    if (at->alone) return; /* its own words say it */
     const TrajectoryDifference *first =
         regression->first_run >= 0 ? &regression->runs[regression->first_run].difference : NULL;
     if (first != NULL && first->body >= 0)
@@ -447,7 +433,7 @@ static void add_causes(const Causes *causes, int frame) {
 static int view_first(const void *a, const void *b) {
     const RegressionCause *x = a, *y = b;
     if (x->of_view != y->of_view) return x->of_view ? -1 : 1;
-    return x->ranges - y->ranges; /* `ranges` holds the order of discovery here */
+    return x->order - y->order;
 }
 
 bool regression_find_causes(Regression *regression, Error *error) {
@@ -455,10 +441,7 @@ bool regression_find_causes(Regression *regression, Error *error) {
     regression->causes = calloc(CAUSES_MAX, sizeof *regression->causes);
     if (regression->causes == NULL) return error_memory(error, "causes");
     for (int i = 0; i < regression->count; i++) add_causes(&causes, i);
-    for (int i = 0; i < regression->cause_count; i++) {
-        finish(&causes, &regression->causes[i]);
-        regression->causes[i].ranges = i;
-    }
+    for (int i = 0; i < regression->cause_count; i++) put_frames(&causes, &regression->causes[i]);
     qsort(regression->causes, (size_t)regression->cause_count, sizeof *regression->causes, view_first);
     return true;
 }

@@ -106,17 +106,23 @@ equal "files" "$(ls report | tr '\n' ' ')" "junit.xml report.html results.json r
 import json, re, xml.etree.ElementTree as tree
 suite = tree.parse("report/junit.xml").getroot()
 assert suite.get("tests") == "1" and suite.get("failures") == "1"
-assert suite[0].get("name") == "momentum.npz" and "cause of the first difference: solver" in suite[0][0].get("message")
+case, failure = suite[0], suite[0][0]
+assert (case.get("classname"), case.get("name"), case.get("file")) == ("trajectories", "momentum.npz", "struck.npz")
+assert float(case.get("time")) > 0 and "cause of the first difference: solver" in failure.get("message")
+assert failure.text == "expected: struck.npz\nactual: momentum.npz\n"
+assert "\ncause: the solver\n" in suite.find("system-out").text
 results = json.load(open("report/results.json"))
 assert not results["passed"] and results["tolerance_angle"] == 0.001 and results["frames_equal"] == 4
 assert [other["what"] for other in results["not_compared"]] == ["verdict"]
-assert "not ok 1 - runs: physics changed" in open("report/results.tap").read()
-link = re.search(r"run\.html#t=([\d.]+)&body=(\d+)", open("report/report.html").read())
+tap = open("report/results.tap").read()
+assert "\nnot ok 1 - momentum.npz: physics changed\n" in tap and "\n# cause: the solver\n" in tap
+link = re.search(r"run\.html#t=([\d.]+)&amp;body=(\d+)", open("report/report.html").read())
 beyond = results["beyond"]
 assert beyond["frame"] > results["first"]["frame"]
 assert abs(float(link[1]) * 60 - beyond["frame"]) < 0.1 and int(link[2]) == beyond["body"], (link[0], beyond)
 PYTHON
 run 0 compare struck.npz momentum.npz --tolerance 100,100 --report passed
 says "equal within the tolerance of 100 m and 100 rad: 101 frames of 12 bodies; 4 of them in every bit"
+grep -qx 'ok 1 - momentum.npz' passed/results.tap || fail "a comparison within tolerance fails in TAP"
 grep -q 'failures="0"' passed/junit.xml || fail "a comparison within tolerance fails in JUnit"
 finish

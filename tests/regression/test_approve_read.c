@@ -22,10 +22,10 @@ TEST(failures_are_read_in_any_order_of_members) {
     assert_string_equal(list.actual, "new");
     assert_int_equal(list.count, 2);
     assert_string_equal(list.items[0].expected.name, "0.png");
-    assert_string_equal(list.items[0].actual.name, "");
+    assert_null(list.items[0].actual.name);
     assert_true(list.items[0].expected.hash == 0xff && !list.items[0].shown);
     assert_string_equal(list.items[1].actual.name, "1.png");
-    assert_string_equal(list.items[1].expected.name, "");
+    assert_null(list.items[1].expected.name);
     assert_true(list.items[1].shown);
     approval_free(&list);
 }
@@ -63,7 +63,7 @@ TEST(invalid_results_are_refused_with_their_place) {
     }
 }
 
-/* One of thousands, each with its own name, so that the table of names has grown many times. */
+/* One of thousands, each with its own name. */
 TEST(a_file_that_is_named_twice_is_refused) {
     enum { COUNT = 3000, SIZE = 120 };
     for (int twice = 0; twice <= 1; twice++) {
@@ -79,7 +79,7 @@ TEST(a_file_that_is_named_twice_is_refused) {
         const char *path = store(text);
         free(text);
         if (approval_read(&list, path, &error) == twice) fail_msg("twice %d: %s", twice, error.message);
-        if (twice) assert_error(error, ERROR_INPUT, "results.json:3001:1: error: '7.png' is there twice");
+        if (twice) assert_error(error, ERROR_INPUT, "results.json: error: '7.png' is there twice");
         if (!twice) assert_int_equal(list.count, COUNT);
         if (!twice) approval_free(&list);
     }
